@@ -1,0 +1,122 @@
+//! Time counted in whole frames (§5.1): Δt_fine for most steps, Δt_coarse for a few.
+
+/// Δt_fine of the paper, seconds.
+pub const PAPER_TIME_STEP: f64 = 0.02;
+/// Δt_coarse of the paper, seconds.
+pub const PAPER_COARSE_STEP: f64 = 0.1;
+
+/// Counts fine frames; every time is derived from the count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clock {
+    frame: u64,
+    time_step: f64,
+    coarse_every: u32,
+}
+
+impl Clock {
+    /// A clock at frame 0 with Δt_fine = `time_step` seconds and Δt_coarse = `coarse_every` frames.
+    pub fn new(time_step: f64, coarse_every: u32) -> Self {
+        Self {
+            frame: 0,
+            time_step,
+            coarse_every: coarse_every.max(1),
+        }
+    }
+
+    /// The number of frames that stays nearest to the paper's Δt_coarse when Δt_fine changes.
+    pub fn nearest_coarse_every(time_step: f64) -> u32 {
+        (PAPER_COARSE_STEP / time_step).round().max(1.0) as u32
+    }
+
+    /// The current frame, from 0.
+    pub fn frame(&self) -> u64 {
+        self.frame
+    }
+
+    /// The time at the current frame, seconds.
+    pub fn time(&self) -> f64 {
+        self.time_at(self.frame)
+    }
+
+    /// The time at `frame`, seconds.
+    pub fn time_at(&self, frame: u64) -> f64 {
+        frame as f64 * self.time_step
+    }
+
+    /// The frame nearest to a time in seconds.
+    pub fn frame_at(&self, time: f64) -> u64 {
+        (time / self.time_step).round() as u64
+    }
+
+    /// The first coarse frame that is not before a time in seconds.
+    pub fn coarse_frame_at(&self, time: f64) -> u64 {
+        self.frame_at(time)
+            .next_multiple_of(u64::from(self.coarse_every))
+    }
+
+    /// Δt_fine in seconds.
+    pub fn time_step(&self) -> f64 {
+        self.time_step
+    }
+
+    /// Δt_coarse in fine frames.
+    pub fn coarse_every(&self) -> u32 {
+        self.coarse_every
+    }
+
+    /// Δt_coarse in seconds.
+    pub fn coarse_step(&self) -> f64 {
+        f64::from(self.coarse_every) * self.time_step
+    }
+
+    /// Is the current frame a coarse one?
+    pub fn is_coarse(&self) -> bool {
+        self.frame.is_multiple_of(u64::from(self.coarse_every))
+    }
+
+    /// The number of the current coarse frame, from 0.
+    pub fn coarse_frame(&self) -> u64 {
+        self.frame / u64::from(self.coarse_every)
+    }
+
+    /// On to the next frame.
+    pub fn advance(&mut self) {
+        self.frame += 1;
+    }
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self::new(PAPER_TIME_STEP, Self::nearest_coarse_every(PAPER_TIME_STEP))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_coarse_frame_comes_every_fifth_frame_for_ever() {
+        let mut clock = Clock::default();
+        for frame in 0..100_000 {
+            assert_eq!(clock.is_coarse(), frame % 5 == 0);
+            assert_eq!(clock.coarse_frame(), frame / 5);
+            clock.advance();
+        }
+        assert_eq!(clock.time(), 2000.0);
+    }
+
+    #[test]
+    fn times_in_between_act_at_the_next_coarse_frame() {
+        let clock = Clock::default();
+        assert_eq!(clock.coarse_frame_at(150.0), 7500);
+        assert_eq!(clock.coarse_frame_at(0.12), 10);
+        assert_eq!(clock.frame_at(15.0), 750);
+    }
+
+    #[test]
+    fn the_coarse_step_stays_near_a_tenth_of_a_second() {
+        let frames = [0.0025, 0.02, 0.03, 0.08, 0.5].map(Clock::nearest_coarse_every);
+        assert_eq!(frames, [40, 5, 3, 1, 1]);
+    }
+}

@@ -1,0 +1,192 @@
+//! Reciprocal velocity obstacles (§5.3.2, Eqs. 20 and 21).
+
+use std::f64::consts::TAU;
+
+use rand::Rng;
+
+use crate::frame::Frame;
+use crate::geometry::Wall;
+use crate::math::Vector;
+use crate::random::{self, Purpose};
+
+/// Parameters of Eq. 20 and of its sampling.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rvo {
+    /// w, m: the weight of the time to collision.
+    pub collision_weight: f64,
+    /// How many candidate velocities are drawn per coarse frame.
+    pub candidates: u32,
+    /// Nobody farther away counts, metres.
+    pub avoidance_radius: f64,
+}
+
+impl Default for Rvo {
+    fn default() -> Self {
+        Self {
+            collision_weight: 1.0,
+            candidates: 250,
+            avoidance_radius: 5.0,
+        }
+    }
+}
+
+/// Another disc as agent i sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MovingDisc {
+    /// r_j − r_i, metres.
+    pub offset: Vector,
+    /// v_j, m/s.
+    pub velocity: Vector,
+    /// D_i + D_j, metres.
+    pub reach: f64,
+}
+
+/// Everything that the choice of a velocity depends on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Situation {
+    /// r_i, metres.
+    pub position: Vector,
+    /// v_i, m/s.
+    pub velocity: Vector,
+    /// v_i^pref, m/s.
+    pub preferred_velocity: Vector,
+    /// D_i, metres.
+    pub radius: f64,
+    /// s_max, m/s.
+    pub max_speed: f64,
+    /// Agents in range, not touching, the nearest first.
+    pub discs: Vec<MovingDisc>,
+    /// Walls in range, on their free side, not touching.
+    pub walls: Vec<Wall>,
+}
+
+impl Rvo {
+    /// Eq. 21: the acceleration to hold until the next coarse frame.
+    pub fn acceleration(&self, frame: &Frame, i: usize, max_speed: f64) -> Vector {
+        let situation = Situation::of(frame, i, self.avoidance_radius, max_speed);
+        let mut rng = random::stream(
+            frame.seed,
+            Purpose::Candidates,
+            frame.agents.id[i],
+            frame.clock.coarse_frame(),
+        );
+        let candidates = (0..self.candidates).map(|_| {
+            let angle = TAU * rng.random::<f64>();
+            let length = 2.0 * max_speed * rng.random::<f64>();
+            situation.velocity + Vector::new(angle.cos(), angle.sin()) * length
+        });
+        let best = situation.best(candidates, self.collision_weight);
+        (best - situation.velocity) / frame.clock.coarse_step()
+    }
+}
+
+impl Situation {
+    /// What agent `i` of a frozen frame sees within `radius` metres.
+    pub fn of(frame: &Frame, i: usize, radius: f64, max_speed: f64) -> Self {
+        let agents = frame.agents;
+        let position = agents.position[i];
+        let mut discs: Vec<MovingDisc> = frame
+            .around(i, radius)
+            .map(|(j, r_ij)| MovingDisc {
+                offset: -r_ij,
+                velocity: agents.velocity[j],
+                reach: agents.radius[i] + agents.radius[j],
+            })
+            .filter(|disc| disc.offset.norm_squared() > disc.reach * disc.reach)
+            .collect();
+        // A near neighbour rules out most candidates; the order does not change the choice.
+        discs.sort_by(|a, b| {
+            let gap = |disc: &MovingDisc| disc.offset.norm_squared();
+            gap(a).total_cmp(&gap(b))
+        });
+        let walls = frame.neighbors.far_walls(i).iter();
+        let walls = walls.map(|&k| *frame.walls.wall(k)).filter(|wall| {
+            let distance = (wall.nearest_point(position).point - position).norm();
+            wall.faces(position) && distance < radius && distance > agents.radius[i]
+        });
+        Self {
+            position,
+            velocity: agents.velocity[i],
+            preferred_velocity: frame.fields.preferred_velocity[i],
+            radius: agents.radius[i],
+            max_speed,
+            discs,
+            walls: walls.collect(),
+        }
+    }
+
+    /// The cheapest of `candidates` (Eq. 20), the first of equals; zero if all are too fast.
+    ///
+    /// A candidate is dropped as soon as what is known of it costs no less than the best so far:
+    /// every further neighbour could only raise its cost.
+    pub fn best(&self, candidates: impl Iterator<Item = Vector>, collision_weight: f64) -> Vector {
+        let mut best = Vector::zeros();
+        let mut best_cost = f64::INFINITY;
+        for candidate in candidates.filter(|c| c.norm() <= self.max_speed) {
+            if let Some(cost) = self.cost_below(candidate, collision_weight, best_cost) {
+                best = candidate;
+                best_cost = cost;
+            }
+        }
+        best
+    }
+
+    /// Eq. 20, or `None` if it is not below `limit`.
+    fn cost_below(&self, candidate: Vector, collision_weight: f64, limit: f64) -> Option<f64> {
+        let deviation = (candidate - self.preferred_velocity).norm();
+        // Agent i moves at 2v′ − v_i.
+        let velocity = candidate * 2.0 - self.velocity;
+        let discs = self
+            .discs
+            .iter()
+            .map(|disc| time_to_contact(disc.offset, velocity - disc.velocity, disc.reach));
+        let walls = self
+            .walls
+            .iter()
+            .map(|wall| self.time_to_wall(wall, velocity));
+        let mut cost = deviation;
+        if cost >= limit {
+            return None;
+        }
+        for time in discs.chain(walls) {
+            cost = cost.max(deviation + collision_weight / time);
+            if cost >= limit {
+                return None;
+            }
+        }
+        Some(cost)
+    }
+
+    /// When the disc, moving at `velocity`, first touches a wall: its offset edge or an end point.
+    fn time_to_wall(&self, wall: &Wall, velocity: Vector) -> f64 {
+        let ends = [wall.start, wall.end]
+            .map(|end| time_to_contact(end - self.position, velocity, self.radius));
+        let gap = wall.signed_distance(self.position) - self.radius;
+        let approach = -velocity.dot(&wall.normal);
+        let mut edge = f64::INFINITY;
+        if gap >= 0.0 && approach > 0.0 {
+            let time = gap / approach;
+            let along = (self.position + velocity * time - wall.start).dot(&wall.tangent);
+            if (0.0..=wall.length()).contains(&along) {
+                edge = time;
+            }
+        }
+        edge.min(ends[0]).min(ends[1])
+    }
+}
+
+/// When a point moving at `velocity` (m/s) first comes within `reach` of the point at `offset`
+/// (metres), seconds; infinite if never, or if it is there already.
+pub fn time_to_contact(offset: Vector, velocity: Vector, reach: f64) -> f64 {
+    let gap = offset.norm_squared() - reach * reach;
+    let approach = offset.dot(&velocity);
+    if gap <= 0.0 || approach <= 0.0 {
+        return f64::INFINITY;
+    }
+    let discriminant = approach * approach - velocity.norm_squared() * gap;
+    if discriminant < 0.0 {
+        return f64::INFINITY;
+    }
+    // The smaller root of |velocity|² t² − 2 approach t + gap = 0, without cancellation.
+    gap / (approach + discriminant.sqrt())
+}

@@ -1,0 +1,90 @@
+//! The frozen frame: what every force reads and no force writes.
+
+use crate::agents::Agents;
+use crate::clock::Clock;
+use crate::geometry::Walls;
+use crate::math::Vector;
+use crate::neighbors::Neighbors;
+
+/// What a frame derives from the state, one array per quantity; the step that writes it in brackets.
+#[derive(Debug, Clone, Default)]
+pub struct Fields {
+    /// ρ_i, P/m² (1B).
+    pub density: Vec<f64>,
+    /// The walls' part of ρ_i, P/m² (1B).
+    pub density_from_walls: Vec<f64>,
+    /// ρ̂_i, P/m², before it is clamped (1B).
+    pub mean_density: Vec<f64>,
+    /// ρ_i⁰ of the frame before, which the wall terms use, P/m² (1B).
+    pub rest_density_before: Vec<f64>,
+    /// ρ_i⁰, P/m² (1B).
+    pub rest_density: Vec<f64>,
+    /// p_i (1B).
+    pub pressure: Vec<f64>,
+    /// Σ_k ∫ ∇W over P_k, 1/m (1B): times −p_i it is the walls' pressure force.
+    pub wall_gradient: Vec<Vector>,
+    /// v_i^pref, m/s (2).
+    pub preferred_velocity: Vec<Vector>,
+    /// a_i, m/s² (3, 3B, 4).
+    pub acceleration: Vec<Vector>,
+}
+
+impl Fields {
+    /// Makes room for `count` agents; where `density` is not computed in this frame its arrays are
+    /// empty, so that nobody can read an old one.
+    pub fn resize(&mut self, count: usize, density: bool) {
+        let sph = if density { count } else { 0 };
+        self.density.resize(sph, 0.0);
+        self.density_from_walls.resize(sph, 0.0);
+        self.mean_density.resize(sph, 0.0);
+        self.rest_density_before.resize(sph, 0.0);
+        self.rest_density.resize(sph, 0.0);
+        self.pressure.resize(sph, 0.0);
+        self.wall_gradient.resize(sph, Vector::zeros());
+        self.preferred_velocity.resize(count, Vector::zeros());
+        self.acceleration.resize(count, Vector::zeros());
+    }
+}
+
+/// One frame, frozen between [`evaluate`](crate::simulation::Simulation::evaluate) and
+/// [`integrate`](crate::simulation::Simulation::integrate): positions and everything computed from
+/// them agree.
+#[derive(Clone, Copy)]
+pub struct Frame<'a> {
+    /// Which frame it is.
+    pub clock: &'a Clock,
+    /// The obstacles.
+    pub walls: &'a Walls,
+    /// The crowd's state.
+    pub agents: &'a Agents,
+    /// What was derived from it.
+    pub fields: &'a Fields,
+    /// Who is near whom.
+    pub neighbors: &'a Neighbors,
+    /// Seed of the scene's random numbers.
+    pub seed: u64,
+}
+
+impl Frame<'_> {
+    /// The near neighbours j of agent `i` strictly within `radius` metres, with r_ij = r_i − r_j.
+    pub fn near(&self, i: usize, radius: f64) -> impl Iterator<Item = (usize, Vector)> + '_ {
+        let position = &self.agents.position;
+        let r_i = position[i];
+        self.neighbors.near(i).iter().filter_map(move |&j| {
+            let j = j as usize;
+            let r_ij = r_i - position[j];
+            (r_ij.norm_squared() < radius * radius).then_some((j, r_ij))
+        })
+    }
+
+    /// Everybody else j strictly within an avoidance `radius` of agent `i`, with r_ij = r_i − r_j.
+    pub fn around(&self, i: usize, radius: f64) -> impl Iterator<Item = (usize, Vector)> + '_ {
+        let position = &self.agents.position;
+        let r_i = position[i];
+        let rows = self.neighbors.around(r_i, radius);
+        rows.flatten().filter_map(move |j| {
+            let r_ij = r_i - position[j];
+            (r_ij.norm_squared() < radius * radius && j != i).then_some((j, r_ij))
+        })
+    }
+}

@@ -1,0 +1,193 @@
+//! Simple polygons: validated once, counter-clockwise from then on.
+
+use parry2d::bounding_volume::Aabb;
+use parry2d::partitioning::{Bvh, BvhBuildStrategy};
+use parry2d::utils::{point_in_poly2d, segments_intersection2d};
+
+use super::to_parry;
+use crate::math::{Vector, is_finite};
+
+/// Why a list of points is not an obstacle.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PolygonError {
+    #[error("a polygon needs at least 3 points, this one has {0}")]
+    TooFewPoints(usize),
+    #[error("point {0} is not finite")]
+    NotFinite(usize),
+    #[error("points {0} and {1} are the same; remove one")]
+    RepeatedPoint(usize, usize),
+    #[error("the polygon encloses no area")]
+    NoArea,
+    #[error(
+        "the polygon crosses or touches itself: the edge from point {0} meets the edge from point {1}"
+    )]
+    SelfIntersection(usize, usize),
+}
+
+/// A simple polygon, counter-clockwise, solid inside. Its first point is the first one given.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Polygon {
+    points: Vec<Vector>,
+}
+
+impl Polygon {
+    /// Checks `points` (metres, either orientation, the last not repeating the first) and orients them.
+    ///
+    /// # Errors
+    /// Fewer than three points, a non-finite or repeated point, no area, or edges that meet anywhere
+    /// but at the corner they share. Indices count from 0 in the order given.
+    pub fn new(mut points: Vec<Vector>) -> Result<Self, PolygonError> {
+        let count = points.len();
+        if count < 3 {
+            return Err(PolygonError::TooFewPoints(count));
+        }
+        if let Some(i) = points.iter().position(|&p| !is_finite(p)) {
+            return Err(PolygonError::NotFinite(i));
+        }
+        if let Some(i) = (0..count).find(|&i| points[i] == points[(i + 1) % count]) {
+            return Err(PolygonError::RepeatedPoint(i, (i + 1) % count));
+        }
+        if let Some((i, j)) = first_crossing(&points) {
+            return Err(PolygonError::SelfIntersection(i, j));
+        }
+        let area = signed_area(&points);
+        if area == 0.0 {
+            return Err(PolygonError::NoArea);
+        }
+        if area < 0.0 {
+            points[1..].reverse();
+        }
+        Ok(Self { points })
+    }
+
+    /// The corners, counter-clockwise.
+    pub fn points(&self) -> &[Vector] {
+        &self.points
+    }
+
+    /// The edges as (start, end), counter-clockwise from the first point.
+    pub fn edges(&self) -> impl Iterator<Item = (Vector, Vector)> + '_ {
+        let ends = self.points.iter().cycle().skip(1);
+        self.points.iter().copied().zip(ends.copied())
+    }
+
+    /// The enclosed area in m², always positive.
+    pub fn area(&self) -> f64 {
+        signed_area(&self.points)
+    }
+
+    /// Does `p` lie inside? Undecided within rounding of the boundary.
+    pub fn contains(&self, p: Vector) -> bool {
+        let points: Vec<_> = self.points.iter().map(|&p| to_parry(p)).collect();
+        point_in_poly2d(to_parry(p), &points)
+    }
+}
+
+/// The shoelace formula, relative to the first point so that far-away polygons keep their digits.
+fn signed_area(points: &[Vector]) -> f64 {
+    let origin = points[0];
+    let twice: f64 = points[1..]
+        .windows(2)
+        .map(|pair| (pair[0] - origin).perp(&(pair[1] - origin)))
+        .sum();
+    twice / 2.0
+}
+
+/// The first two edges, by their start points, that share more than a common corner.
+fn first_crossing(points: &[Vector]) -> Option<(usize, usize)> {
+    let count = points.len();
+    let corner = |i: usize| to_parry(points[i % count]);
+    let bounds: Vec<Aabb> = (0..count)
+        .map(|i| Aabb::from_points([corner(i), corner(i + 1)]))
+        .collect();
+    let index = Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds);
+    (0..count).find_map(|i| {
+        let turn = points[(i + 1) % count] - points[i];
+        let next = points[(i + 2) % count] - points[(i + 1) % count];
+        if turn.perp(&next) == 0.0 && turn.dot(&next) < 0.0 {
+            return Some((i, (i + 1) % count));
+        }
+        index
+            .intersect_aabb(&bounds[i])
+            .map(|j| j as usize)
+            .filter(|&j| j > i + 1 && (j + 1) % count != i)
+            .filter(|&j| {
+                segments_intersection2d(corner(i), corner(i + 1), corner(j), corner(j + 1), 0.0)
+                    .is_some()
+            })
+            .min()
+            .map(|j| (i, j))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn polygon(points: &[[f64; 2]]) -> Result<Polygon, PolygonError> {
+        Polygon::new(points.iter().map(|&[x, y]| Vector::new(x, y)).collect())
+    }
+
+    #[test]
+    fn a_clockwise_polygon_is_turned_and_keeps_its_first_point() {
+        let square = polygon(&[[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]]).unwrap();
+        assert_eq!(square.area(), 1.0);
+        assert_eq!(square.points()[0], Vector::new(0.0, 0.0));
+        assert_eq!(square.points()[1], Vector::new(1.0, 0.0));
+    }
+
+    #[test]
+    fn a_bow_tie_names_the_edges_that_cross() {
+        let bow_tie = polygon(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]);
+        assert_eq!(bow_tie, Err(PolygonError::SelfIntersection(0, 2)));
+    }
+
+    #[test]
+    fn a_spike_and_a_corner_on_another_edge_are_refused() {
+        let spike = polygon(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 1.0]]);
+        assert!(matches!(spike, Err(PolygonError::SelfIntersection(..))));
+        let touching = polygon(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0], [0.0, 2.0]]);
+        assert!(matches!(touching, Err(PolygonError::SelfIntersection(..))));
+    }
+
+    #[test]
+    fn degenerate_lists_are_refused_with_their_reason() {
+        assert_eq!(
+            polygon(&[[0.0, 0.0], [1.0, 0.0]]),
+            Err(PolygonError::TooFewPoints(2))
+        );
+        assert_eq!(
+            polygon(&[[0.0, 0.0], [1.0, 0.0], [1.0, f64::NAN]]),
+            Err(PolygonError::NotFinite(2))
+        );
+        assert_eq!(
+            polygon(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0]]),
+            Err(PolygonError::RepeatedPoint(3, 0))
+        );
+        assert!(polygon(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).is_err());
+    }
+
+    #[test]
+    fn the_ring_of_wall_round_the_evacuation_room_contains_its_walls_only() {
+        let ring = polygon(&[
+            [-1.0, -1.0],
+            [21.0, -1.0],
+            [21.0, 9.6],
+            [20.0, 9.6],
+            [20.0, 0.0],
+            [0.0, 0.0],
+            [0.0, 20.0],
+            [20.0, 20.0],
+            [20.0, 10.4],
+            [21.0, 10.4],
+            [21.0, 21.0],
+            [-1.0, 21.0],
+        ])
+        .unwrap();
+        assert!(ring.contains(Vector::new(-0.5, 10.0)));
+        assert!(ring.contains(Vector::new(20.5, 3.0)));
+        assert!(!ring.contains(Vector::new(10.0, 10.0)));
+        assert!(!ring.contains(Vector::new(20.5, 10.0)));
+        assert!((ring.area() - (22.0 * 22.0 - 400.0 - 0.8)).abs() < 1e-12);
+    }
+}

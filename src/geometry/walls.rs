@@ -1,0 +1,195 @@
+//! All obstacles of a scene and the spatial index of their walls.
+
+use parry2d::bounding_volume::Aabb;
+use parry2d::partitioning::{Bvh, BvhBuildStrategy};
+
+use super::{Polygon, Wall, to_parry};
+use crate::math::Vector;
+
+/// How far before a wall a stopped agent is left, metres: far above the rounding of coordinates up
+/// to 10⁶ m, far below anything that matters to a person.
+const CLEARANCE: f64 = 1e-6;
+
+/// Obstacles, their walls in order, and parry's bounding volume hierarchy over them.
+#[derive(Debug, Clone)]
+pub struct Walls {
+    obstacles: Vec<Polygon>,
+    walls: Vec<Wall>,
+    index: Bvh,
+}
+
+impl Walls {
+    /// Numbers the edges in the order of the obstacles and of their points.
+    pub fn new(obstacles: Vec<Polygon>) -> Self {
+        let mut walls = Vec::new();
+        for (obstacle, polygon) in obstacles.iter().enumerate() {
+            let first = walls.len();
+            let last = first + polygon.points().len() - 1;
+            walls.extend(polygon.edges().enumerate().map(|(k, (start, end))| {
+                let previous = if k == 0 { last } else { first + k - 1 };
+                Wall::new(start, end, obstacle as u32, previous as u32)
+            }));
+        }
+        let bounds: Vec<Aabb> = walls
+            .iter()
+            .map(|wall: &Wall| Aabb::from_points([to_parry(wall.start), to_parry(wall.end)]))
+            .collect();
+        let index = Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds);
+        Self {
+            obstacles,
+            walls,
+            index,
+        }
+    }
+
+    /// Are there no walls at all?
+    pub fn is_empty(&self) -> bool {
+        self.walls.is_empty()
+    }
+
+    /// The number of walls.
+    pub fn len(&self) -> usize {
+        self.walls.len()
+    }
+
+    /// Wall `k`.
+    pub fn wall(&self, k: u32) -> &Wall {
+        &self.walls[k as usize]
+    }
+
+    /// All walls in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Wall> {
+        self.walls.iter()
+    }
+
+    /// The obstacles in the order given.
+    pub fn obstacles(&self) -> &[Polygon] {
+        &self.obstacles
+    }
+
+    /// Appends the walls with a point less than `radius` metres from `p`, in rising order.
+    pub fn near(&self, p: Vector, radius: f64, found: &mut Vec<u32>) {
+        let first = found.len();
+        let half = Vector::new(radius, radius);
+        let reach = Aabb::new(to_parry(p - half), to_parry(p + half));
+        found.extend(self.index.intersect_aabb(&reach).filter(|&k| {
+            let nearest = self.wall(k).nearest_point(p).point;
+            (nearest - p).norm_squared() < radius * radius
+        }));
+        found[first..].sort_unstable();
+    }
+
+    /// The fraction of the move `from` → `to` at which it first meets one of `candidates` from its
+    /// free side; `None` where the way is free.
+    pub fn first_crossing(
+        &self,
+        from: Vector,
+        to: Vector,
+        candidates: &[u32],
+    ) -> Option<(f64, u32)> {
+        candidates
+            .iter()
+            .filter_map(|&k| Some((self.wall(k).crossing(from, to)?, k)))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Where a move from `from` to `to` ends if the walls `candidates` stop it: on the way, a hair
+    /// before the first wall, which is returned with the point; `None` where the way is free.
+    pub fn stop(&self, from: Vector, to: Vector, candidates: &[u32]) -> Option<(Vector, u32)> {
+        let (fraction, k) = self.first_crossing(from, to, candidates)?;
+        let way = to - from;
+        let free = (fraction * way.norm() - CLEARANCE).max(0.0);
+        let stopped = from + way * (free / way.norm());
+        // On a grazing way rounding can still put the point behind; where it came from is free.
+        let behind = self.wall(k).signed_distance(stopped) < 0.0;
+        Some((if behind { from } else { stopped }, k))
+    }
+
+    /// The nearest point to `p` on a wall, a hair outside, that lies in no obstacle.
+    pub fn free_point_near(&self, p: Vector) -> Option<Vector> {
+        let mut exits: Vec<Vector> = self
+            .walls
+            .iter()
+            .map(|wall| wall.nearest_point(p).point + wall.normal * CLEARANCE)
+            .collect();
+        exits.sort_by(|a, b| (a - p).norm_squared().total_cmp(&(b - p).norm_squared()));
+        exits
+            .into_iter()
+            .find(|&exit| self.obstacle_at(exit).is_none())
+    }
+
+    /// The first obstacle that contains `p`.
+    pub fn obstacle_at(&self, p: Vector) -> Option<usize> {
+        self.obstacles
+            .iter()
+            .position(|polygon| polygon.contains(p))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rectangle(x: [f64; 2], y: [f64; 2]) -> Polygon {
+        let corners = [(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])];
+        Polygon::new(corners.map(|(x, y)| Vector::new(x, y)).to_vec()).unwrap()
+    }
+
+    #[test]
+    fn walls_are_numbered_by_obstacle_and_point_and_know_the_one_before() {
+        let walls = Walls::new(vec![
+            rectangle([0.0, 1.0], [0.0, 1.0]),
+            rectangle([2.0, 3.0], [0.0, 1.0]),
+        ]);
+        assert_eq!(walls.len(), 8);
+        for (k, wall) in walls.iter().enumerate() {
+            assert_eq!(wall.obstacle as usize, k / 4);
+            assert_eq!(walls.wall(wall.previous).end, wall.start);
+        }
+    }
+
+    #[test]
+    fn the_index_finds_what_brute_force_finds() {
+        let boxes = (0..40)
+            .map(|i| {
+                let (x, y) = ((i % 8) as f64 * 1.7, (i / 8) as f64 * 2.3);
+                rectangle([x, x + 0.9], [y, y + 0.4])
+            })
+            .collect();
+        let walls = Walls::new(boxes);
+        for step in 0..200 {
+            let p = Vector::new((step % 20) as f64 * 0.7, (step / 20) as f64 * 1.1);
+            let mut found = Vec::new();
+            walls.near(p, 1.0, &mut found);
+            let expected: Vec<u32> = (0..walls.len() as u32)
+                .filter(|&k| (walls.wall(k).nearest_point(p).point - p).norm() < 1.0)
+                .collect();
+            assert_eq!(found, expected);
+        }
+    }
+
+    #[test]
+    fn a_move_through_a_wall_ends_before_it() {
+        let walls = Walls::new(vec![rectangle([0.0, 0.01], [-5.0, 5.0])]);
+        let all: Vec<u32> = (0..4).collect();
+        let from = Vector::new(-1.0, 0.0);
+        let (stopped, k) = walls.stop(from, Vector::new(1.0, 0.5), &all).unwrap();
+        assert!(stopped.x < 0.0 && stopped.x > -1e-5);
+        assert_eq!(walls.wall(k).normal, Vector::new(-1.0, 0.0));
+        assert_eq!(walls.stop(from, Vector::new(-0.5, 3.0), &all), None);
+    }
+
+    #[test]
+    fn somebody_inside_an_obstacle_is_put_at_the_nearest_free_point() {
+        // Two boxes side by side: the nearest edge of the first leads into the second.
+        let walls = Walls::new(vec![
+            rectangle([0.0, 2.0], [0.0, 3.0]),
+            rectangle([2.0, 4.0], [0.0, 3.0]),
+        ]);
+        let inside = Vector::new(1.9, 1.0);
+        assert_eq!(walls.obstacle_at(inside), Some(0));
+        let free = walls.free_point_near(inside).unwrap();
+        assert!((free - Vector::new(1.9, 0.0)).norm() < 1e-5);
+        assert_eq!(walls.obstacle_at(free), None);
+    }
+}

@@ -1,0 +1,361 @@
+//! The loop (§4.1).
+
+mod integrate;
+mod schedule;
+mod stages;
+
+pub use schedule::{Event, EventKind};
+pub use stages::{Stage, StageTimes};
+
+use rayon::prelude::*;
+
+use crate::agents::Agents;
+use crate::clock::Clock;
+use crate::density;
+use crate::forces::goal;
+use crate::frame::{Fields, Frame};
+use crate::math::Vector;
+use crate::neighbors::Neighbors;
+use crate::profile::{Blend, Override};
+use crate::scene::{Needs, Scene};
+
+/// Agents per task at least: below this a task costs more than it saves.
+const TASK: usize = 128;
+
+/// A crowd in a scene, one frame after the other.
+///
+/// Each frame is [`evaluate`](Self::evaluate), then [`integrate`](Self::integrate); in between the
+/// frame is frozen, and positions agree with everything computed from them. The bits do not depend on
+/// the number of threads: every agent reads the frozen frame and writes its own slot.
+pub struct Simulation {
+    scene: Scene,
+    needs: Needs,
+    density_until: u64,
+    clock: Clock,
+    agents: Agents,
+    fields: Fields,
+    neighbors: Neighbors,
+    schedule: schedule::Schedule,
+    outcome: Outcome,
+    stages: StageTimes,
+    evaluated: bool,
+    crowd_changed: bool,
+}
+
+/// What has happened so far.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Outcome {
+    /// Who reached the goal and left, in order.
+    pub arrivals: Vec<Arrival>,
+    /// How many moves ended at a wall that they would have crossed.
+    pub contained_moves: u64,
+    /// Agents that were put out of an obstacle when they entered: id and obstacle.
+    pub displaced: Vec<(u32, usize)>,
+}
+
+/// Somebody who reached the goal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arrival {
+    /// The agent's id.
+    pub id: u32,
+    /// When, seconds: after the move that led there.
+    pub time: f64,
+    /// Does it count as evacuated?
+    pub counted: bool,
+}
+
+/// The simulation cannot go on.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Fault {
+    /// A number that is not one.
+    #[error(
+        "frame {frame} (t = {time:.2} s): the {quantity} of agent {agent} at ({:.3}, {:.3}) is not finite; \
+         a smaller time_step_secs, gas_constant or stiffness may help",
+        position.x, position.y
+    )]
+    NotFinite {
+        frame: u64,
+        time: f64,
+        agent: u32,
+        position: Vector,
+        quantity: &'static str,
+    },
+    /// Nowhere to put somebody.
+    #[error("agent {agent} enters inside obstacle {obstacle}, and no free point is near")]
+    NoFreePoint { agent: u32, obstacle: usize },
+}
+
+impl Simulation {
+    /// Lets the first agents in.
+    ///
+    /// # Errors
+    /// Somebody stands inside an obstacle that has no way out.
+    pub fn new(scene: Scene) -> Result<Self, Fault> {
+        let mut simulation = Self {
+            needs: scene.needs(),
+            density_until: 0,
+            clock: scene.clock,
+            agents: Agents::default(),
+            fields: Fields::default(),
+            neighbors: Neighbors::default(),
+            schedule: schedule::Schedule::default(),
+            outcome: Outcome::default(),
+            stages: StageTimes::default(),
+            evaluated: false,
+            crowd_changed: true,
+            scene,
+        };
+        for agent in simulation.scene.agents.clone() {
+            simulation.enter(agent)?;
+        }
+        Ok(simulation)
+    }
+
+    /// One frame.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate) and [`integrate`](Self::integrate).
+    pub fn step(&mut self) -> Result<(), Fault> {
+        self.evaluate()?;
+        self.integrate()
+    }
+
+    /// Steps 1–4 of §4.1. Moves nobody; does nothing if the frame is evaluated already.
+    ///
+    /// # Errors
+    /// Somebody enters inside an obstacle that has no way out.
+    pub fn evaluate(&mut self) -> Result<(), Fault> {
+        if self.evaluated {
+            return Ok(());
+        }
+        if self.clock.is_coarse() {
+            self.follow_schedule()?;
+        }
+        if self.clock.is_coarse() || self.crowd_changed {
+            self.find_neighbors(); // 1
+        }
+        self.update_density_and_pressure(); // 1B
+        self.update_preferred_velocity(); // 2
+        self.update_rvo(); // 3, coarse
+        self.update_acceleration(); // 3, 3B, 4
+        self.evaluated = true;
+        Ok(())
+    }
+
+    /// Step 1.
+    fn find_neighbors(&mut self) {
+        let ranges = self.scene.ranges(&self.needs, self.density_is_due());
+        let (agents, neighbors) = (&mut self.agents, &mut self.neighbors);
+        self.stages
+            .time(Stage::Sort, || neighbors.sort(agents, ranges));
+        self.stages.time(Stage::Neighbors, || {
+            neighbors.list_agents(agents);
+            neighbors.list_walls(agents, &self.scene.walls);
+        });
+        self.crowd_changed = false;
+    }
+
+    /// Step 1B.
+    fn update_density_and_pressure(&mut self) {
+        let due = self.density_is_due();
+        self.fields.resize(self.agents.len(), due);
+        if !due {
+            return;
+        }
+        let mut fields = std::mem::take(&mut self.fields);
+        let frame = frozen(
+            &self.clock,
+            &self.scene,
+            &self.agents,
+            &self.fields,
+            &self.neighbors,
+        );
+        self.stages.time(Stage::DensityAndPressure, || {
+            (
+                &mut fields.density,
+                &mut fields.density_from_walls,
+                &mut fields.mean_density,
+                &mut fields.rest_density_before,
+                &mut fields.rest_density,
+                &mut fields.pressure,
+                &mut fields.wall_gradient,
+            )
+                .into_par_iter()
+                .enumerate()
+                .with_min_len(TASK)
+                .for_each(
+                    |(i, (density, from_walls, mean, before, rest, pressure, gradient))| {
+                        let sph = &blend_of(&self.scene, &self.agents, i).sph;
+                        let state = density::sph_state(&frame, i, sph, self.scene.wall_method);
+                        *density = state.density;
+                        *from_walls = state.density_from_walls;
+                        *mean = state.mean_density;
+                        *before = state.rest_density_before;
+                        *rest = state.rest_density;
+                        *pressure = state.pressure;
+                        *gradient = state.wall_gradient;
+                    },
+                );
+        });
+        self.fields = fields;
+        self.agents
+            .mean_density
+            .copy_from_slice(&self.fields.mean_density);
+        self.agents.newcomer.fill(false);
+    }
+
+    /// Step 2.
+    fn update_preferred_velocity(&mut self) {
+        let (agents, speed) = (&self.agents, self.scene.preferred_speed);
+        let preferred = &mut self.fields.preferred_velocity;
+        self.stages.time(Stage::PreferredVelocity, || {
+            preferred.iter_mut().enumerate().for_each(|(i, v)| {
+                *v = goal::preferred_velocity(agents.position[i], agents.goal[i], speed);
+            });
+        });
+    }
+
+    /// Step 3, the coarse part: RVO where it acts and no earlier choice is held.
+    fn update_rvo(&mut self) {
+        if !self.needs.rvo {
+            return;
+        }
+        let mut avoidance = self.agents.avoidance.clone();
+        let frame = frozen(
+            &self.clock,
+            &self.scene,
+            &self.agents,
+            &self.fields,
+            &self.neighbors,
+        );
+        let coarse = self.clock.is_coarse();
+        self.stages.time(Stage::Rvo, || {
+            avoidance.par_iter_mut().enumerate().for_each(|(i, held)| {
+                let blend = blend_of(&self.scene, &self.agents, i);
+                match blend.rvo().filter(|_| blend.rvo_acts(&frame, i)) {
+                    None => *held = None,
+                    Some(rvo) if coarse || held.is_none() => {
+                        *held = Some(rvo.acceleration(&frame, i, self.scene.max_speed));
+                    }
+                    Some(_) => {}
+                }
+            });
+        });
+        self.agents.avoidance = avoidance;
+    }
+
+    /// Steps 3, 3B and 4.
+    fn update_acceleration(&mut self) {
+        let mut acceleration = std::mem::take(&mut self.fields.acceleration);
+        let frame = frozen(
+            &self.clock,
+            &self.scene,
+            &self.agents,
+            &self.fields,
+            &self.neighbors,
+        );
+        self.stages.time(Stage::Acceleration, || {
+            acceleration
+                .par_iter_mut()
+                .enumerate()
+                .with_min_len(TASK)
+                .for_each(|(i, a)| {
+                    let blend = blend_of(&self.scene, &self.agents, i);
+                    let changed = change_of(&self.scene, &self.agents, i);
+                    *a = blend.acceleration(&frame, i, changed);
+                });
+        });
+        self.fields.acceleration = acceleration;
+    }
+
+    fn density_is_due(&self) -> bool {
+        self.needs.density || self.clock.frame() < self.density_until
+    }
+
+    /// Asks for the density in every frame before `frame`, though no force reads it: for a metric, a
+    /// colour, a breakdown.
+    pub fn request_density_until(&mut self, frame: u64) {
+        self.density_until = self.density_until.max(frame);
+    }
+
+    /// The current frame; frozen and complete after [`evaluate`](Self::evaluate).
+    pub fn frame(&self) -> Frame<'_> {
+        frozen(
+            &self.clock,
+            &self.scene,
+            &self.agents,
+            &self.fields,
+            &self.neighbors,
+        )
+    }
+
+    /// What the simulation was made from.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Which parts of the model this scene pays for.
+    pub fn needs(&self) -> &Needs {
+        &self.needs
+    }
+
+    /// How agent `i` behaves.
+    pub fn blend(&self, i: usize) -> &Blend {
+        blend_of(&self.scene, &self.agents, i)
+    }
+
+    /// What a push changes for agent `i` now.
+    pub fn change(&self, i: usize) -> Option<&Override> {
+        change_of(&self.scene, &self.agents, i)
+    }
+
+    /// What has happened so far.
+    pub fn outcome(&self) -> &Outcome {
+        &self.outcome
+    }
+
+    /// Will anybody enter later?
+    pub fn expects_agents(&self) -> bool {
+        self.schedule.expects_agents(&self.scene)
+    }
+
+    /// Entries and pushes so far.
+    pub fn events(&self) -> &[Event] {
+        self.schedule.events()
+    }
+
+    /// Time spent per stage.
+    pub fn stages(&self) -> &StageTimes {
+        &self.stages
+    }
+
+    /// Starts measuring anew.
+    pub fn reset_stages(&mut self) {
+        self.stages = StageTimes::default();
+    }
+}
+
+fn frozen<'a>(
+    clock: &'a Clock,
+    scene: &'a Scene,
+    agents: &'a Agents,
+    fields: &'a Fields,
+    neighbors: &'a Neighbors,
+) -> Frame<'a> {
+    Frame {
+        clock,
+        walls: &scene.walls,
+        agents,
+        fields,
+        neighbors,
+        seed: scene.seed,
+    }
+}
+
+fn blend_of<'a>(scene: &'a Scene, agents: &Agents, i: usize) -> &'a Blend {
+    &scene.groups[usize::from(agents.group[i])].blend
+}
+
+fn change_of<'a>(scene: &'a Scene, agents: &Agents, i: usize) -> Option<&'a Override> {
+    agents.push[i].map(|push| &scene.pushes[usize::from(push)].change)
+}

@@ -1,0 +1,121 @@
+//! Step 5: moving, stopping at walls, leaving at the goal.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+
+use super::{Arrival, Fault, Simulation, Stage, TASK};
+use crate::math::{Vector, clamp_length, is_finite};
+use crate::scene::Integrator;
+
+impl Simulation {
+    /// Step 5: moves everybody by one frame and removes who has arrived.
+    ///
+    /// # Errors
+    /// A position, velocity or acceleration is not finite: which, of whom, in which frame. Nobody has
+    /// been moved then.
+    pub fn integrate(&mut self) -> Result<(), Fault> {
+        self.evaluate()?;
+        let mut stages = std::mem::take(&mut self.stages);
+        let moved = stages.time(Stage::Integration, || {
+            self.find_fault().map_or_else(
+                || {
+                    self.move_agents();
+                    Ok(())
+                },
+                Err,
+            )
+        });
+        self.stages = stages;
+        moved?;
+        self.clock.advance();
+        self.evaluated = false;
+        if self.needs.removal {
+            self.remove_arrivals();
+        }
+        self.stages.count_frame();
+        Ok(())
+    }
+
+    fn move_agents(&mut self) {
+        let contained = AtomicU64::new(0);
+        let dt = self.clock.time_step();
+        let (scene, neighbors) = (&self.scene, &self.neighbors);
+        let agents = &mut self.agents;
+        (
+            &mut agents.position,
+            &mut agents.velocity,
+            &self.fields.acceleration,
+        )
+            .into_par_iter()
+            .enumerate()
+            .with_min_len(TASK)
+            .for_each(|(i, (position, velocity, acceleration))| {
+                let before = *velocity;
+                *velocity = clamp_length(before + acceleration * dt, scene.max_speed);
+                let step = match scene.integrator {
+                    Integrator::SemiImplicit => *velocity,
+                    Integrator::ForwardEuler => before,
+                };
+                let target = *position + step * dt;
+                let stopped = scene.walls.stop(*position, target, neighbors.near_walls(i));
+                *position = stopped.map_or(target, |(point, _)| point);
+                if let Some((_, wall)) = stopped {
+                    let normal = scene.walls.wall(wall).normal;
+                    *velocity -= normal * velocity.dot(&normal).min(0.0);
+                    contained.fetch_add(1, Ordering::Relaxed);
+                }
+            });
+        self.outcome.contained_moves += contained.into_inner();
+    }
+
+    /// The first quantity that is no number, by agent.
+    fn find_fault(&self) -> Option<Fault> {
+        let (agents, fields) = (&self.agents, &self.fields);
+        let fault = |i: usize, quantity| Fault::NotFinite {
+            frame: self.clock.frame(),
+            time: self.clock.time(),
+            agent: agents.id[i],
+            position: agents.position[i],
+            quantity,
+        };
+        let first = |values: &[Vector]| values.iter().position(|&v| !is_finite(v));
+        if let Some(i) = fields
+            .density
+            .iter()
+            .position(|density| !density.is_finite())
+        {
+            return Some(fault(i, "density"));
+        }
+        first(&fields.acceleration).map(|i| fault(i, "acceleration"))
+    }
+
+    fn remove_arrivals(&mut self) {
+        let time = self.clock.time();
+        let agents = &self.agents;
+        let mut staying: Vec<u32> = Vec::new();
+        let mut arrivals = Vec::new();
+        for i in 0..agents.len() {
+            let group = &self.scene.groups[usize::from(agents.group[i])];
+            let distance = (agents.goal[i] - agents.position[i]).norm();
+            if group
+                .removal_radius
+                .is_some_and(|radius| distance <= radius)
+            {
+                arrivals.push(Arrival {
+                    id: agents.id[i],
+                    time,
+                    counted: group.counted,
+                });
+            } else {
+                staying.push(i as u32);
+            }
+        }
+        if !arrivals.is_empty() {
+            arrivals.sort_by_key(|arrival| arrival.id);
+            self.outcome.arrivals.append(&mut arrivals);
+            self.agents.arrange(&staying);
+            self.crowd_changed = true;
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Where the time goes: the tasks of Fig. 11.
+
+use std::time::{Duration, Instant};
+
+/// A stage of the loop. A stage that a scene does not need never runs and has no entry.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Sorting agents into cells (the paper's kd-tree), coarse.
+    Sort,
+    /// Listing near agents and walls, coarse.
+    Neighbors,
+    /// Step 1B.
+    DensityAndPressure,
+    /// Step 2.
+    PreferredVelocity,
+    /// Velocity obstacles, coarse.
+    Rvo,
+    /// Steps 3, 3B and 4.
+    Acceleration,
+    /// Step 5.
+    Integration,
+}
+
+impl Stage {
+    /// All stages in the order of the loop.
+    pub const ALL: [Self; 7] = [
+        Self::Sort,
+        Self::Neighbors,
+        Self::DensityAndPressure,
+        Self::PreferredVelocity,
+        Self::Rvo,
+        Self::Acceleration,
+        Self::Integration,
+    ];
+
+    /// Its name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sort => "sort",
+            Self::Neighbors => "neighbors",
+            Self::DensityAndPressure => "density_and_pressure",
+            Self::PreferredVelocity => "preferred_velocity",
+            Self::Rvo => "rvo",
+            Self::Acceleration => "acceleration",
+            Self::Integration => "integration",
+        }
+    }
+}
+
+/// Wall-clock time per stage over some frames.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StageTimes {
+    spent: [Option<Duration>; Stage::ALL.len()],
+    frames: u64,
+}
+
+impl StageTimes {
+    pub(super) fn time<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let result = work();
+        let spent = self.spent[stage as usize].get_or_insert(Duration::ZERO);
+        *spent += start.elapsed();
+        result
+    }
+
+    pub(super) fn count_frame(&mut self) {
+        self.frames += 1;
+    }
+
+    /// Mean milliseconds per frame of every stage that ran.
+    pub fn ms_per_frame(&self) -> impl Iterator<Item = (Stage, f64)> + '_ {
+        Stage::ALL.into_iter().filter_map(|stage| {
+            let spent = self.spent[stage as usize]?;
+            Some((stage, 1e3 * spent.as_secs_f64() / self.frames.max(1) as f64))
+        })
+    }
+
+    /// Mean milliseconds per frame over all stages.
+    pub fn total_ms_per_frame(&self) -> f64 {
+        self.ms_per_frame().map(|(_, ms)| ms).sum()
+    }
+}
