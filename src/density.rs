@@ -58,6 +58,7 @@ pub struct SphState {
     pub mean_density: f64,
     pub rest_density_before: f64,
     pub rest_density: f64,
+    pub volume: f64,
     pub pressure: f64,
     pub wall_gradient: Vector,
 }
@@ -104,6 +105,7 @@ pub fn sph_state(frame: &Frame, i: usize, sph: &SphParameters, walls: WallMethod
         mean_density,
         rest_density_before,
         rest_density,
+        volume: frame.agents.mass[i] / density,
         pressure: sph.pressure(density, rest_density),
         wall_gradient,
     }

@@ -19,6 +19,8 @@ pub struct Fields {
     pub rest_density_before: Vec<f64>,
     /// ρ_i⁰, P/m² (1B).
     pub rest_density: Vec<f64>,
+    /// m_i / ρ_i, m² (1B): the agent's volume in the plane.
+    pub volume: Vec<f64>,
     /// p_i (1B).
     pub pressure: Vec<f64>,
     /// Σ_k ∫ ∇W over P_k, 1/m (1B): times −p_i it is the walls' pressure force.
@@ -39,6 +41,7 @@ impl Fields {
         self.mean_density.resize(sph, 0.0);
         self.rest_density_before.resize(sph, 0.0);
         self.rest_density.resize(sph, 0.0);
+        self.volume.resize(sph, 0.0);
         self.pressure.resize(sph, 0.0);
         self.wall_gradient.resize(sph, Vector::zeros());
         self.preferred_velocity.resize(count, Vector::zeros());

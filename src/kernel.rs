@@ -4,7 +4,7 @@
 
 use std::f64::consts::PI;
 
-use crate::math::{Vector, direction};
+use crate::math::Vector;
 
 /// W, Eq. 13, in 1/m², for a squared distance in m²; integrates to 1 over the plane.
 pub fn density(distance_squared: f64, h: f64) -> f64 {
@@ -19,9 +19,10 @@ pub fn density(distance_squared: f64, h: f64) -> f64 {
 /// ∇W, Eq. 14, in 1/m³, for r in metres; its radial potential integrates to 1 over the plane.
 /// Zero at r = 0: coincident agents get no direction.
 pub fn pressure_gradient(r: Vector, h: f64) -> Vector {
-    let rest = h - r.norm();
-    if rest > 0.0 {
-        direction(r) * (-30.0 / (PI * h.powi(5)) * rest * rest)
+    let distance = r.norm();
+    let rest = h - distance;
+    if rest > 0.0 && distance > 0.0 {
+        r * (-30.0 / (PI * h.powi(5)) * rest * rest / distance)
     } else {
         Vector::zeros()
     }

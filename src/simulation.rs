@@ -160,8 +160,12 @@ impl Simulation {
         let due = self.density_is_due();
         self.fields.resize(self.agents.len(), due);
         if !due {
+            self.neighbors.widen();
             return;
         }
+        let (agents, neighbors) = (&self.agents, &mut self.neighbors);
+        self.stages
+            .time(Stage::Neighbors, || neighbors.narrow(agents));
         let mut fields = std::mem::take(&mut self.fields);
         let frame = frozen(
             &self.clock,
@@ -177,6 +181,7 @@ impl Simulation {
                 &mut fields.mean_density,
                 &mut fields.rest_density_before,
                 &mut fields.rest_density,
+                &mut fields.volume,
                 &mut fields.pressure,
                 &mut fields.wall_gradient,
             )
@@ -184,7 +189,7 @@ impl Simulation {
                 .enumerate()
                 .with_min_len(TASK)
                 .for_each(
-                    |(i, (density, from_walls, mean, before, rest, pressure, gradient))| {
+                    |(i, (density, from_walls, mean, before, rest, volume, pressure, gradient))| {
                         let sph = &blend_of(&self.scene, &self.agents, i).sph;
                         let state = density::sph_state(&frame, i, sph, self.scene.wall_method);
                         *density = state.density;
@@ -192,6 +197,7 @@ impl Simulation {
                         *mean = state.mean_density;
                         *before = state.rest_density_before;
                         *rest = state.rest_density;
+                        *volume = state.volume;
                         *pressure = state.pressure;
                         *gradient = state.wall_gradient;
                     },

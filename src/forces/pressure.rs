@@ -14,10 +14,10 @@ pub fn from_agents(frame: &Frame, i: usize, h: f64) -> Vector {
     if !feels_pressure(frame, i) {
         return Vector::zeros();
     }
-    let (fields, mass) = (frame.fields, &frame.agents.mass);
+    let fields = frame.fields;
     let p_i = fields.pressure[i];
     let sum = frame.near(i, h).fold(Vector::zeros(), |sum, (j, r_ij)| {
-        let scale = mass[j] * (p_i + fields.pressure[j]) / (2.0 * fields.density[j]);
+        let scale = fields.volume[j] * 0.5 * (p_i + fields.pressure[j]);
         sum + kernel::pressure_gradient(r_ij, h) * scale
     });
     -sum / fields.density[i]

@@ -14,12 +14,12 @@ pub struct Viscosity {
 impl Viscosity {
     /// μ ∇²v_i / ρ_i, Eq. 7.
     pub fn acceleration(&self, frame: &Frame, i: usize, h: f64) -> Vector {
-        let (density, agents) = (&frame.fields.density, frame.agents);
+        let (fields, agents) = (frame.fields, frame.agents);
         let v_i = agents.velocity[i];
         let laplacian = frame.near(i, h).fold(Vector::zeros(), |sum, (j, r_ij)| {
-            let weight = kernel::viscosity_laplacian(r_ij.norm(), h) * agents.mass[j] / density[j];
+            let weight = kernel::viscosity_laplacian(r_ij.norm(), h) * fields.volume[j];
             sum + (agents.velocity[j] - v_i) * weight
         });
-        laplacian * (self.coefficient / density[i])
+        laplacian * (self.coefficient / fields.density[i])
     }
 }

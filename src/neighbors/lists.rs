@@ -56,6 +56,11 @@ impl Lists {
         self.blocks.clear();
     }
 
+    /// Are there no lists?
+    pub fn is_empty(&self) -> bool {
+        self.blocks.is_empty()
+    }
+
     /// The list of agent `i`; empty after [`clear`](Self::clear).
     pub fn of(&self, i: usize) -> &[u32] {
         let Some(block) = self.blocks.get(i / BLOCK) else {

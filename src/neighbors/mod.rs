@@ -34,7 +34,10 @@ pub struct Ranges {
 pub struct Neighbors {
     ranges: Ranges,
     grid: Grid,
-    agents: Lists,
+    /// Near agents with the skin, as of the last coarse frame.
+    candidates: Lists,
+    /// Those in range now; no lists where candidates are good enough.
+    in_range: Lists,
     near_walls: Lists,
     far_walls: Lists,
 }
@@ -51,12 +54,13 @@ impl Neighbors {
 
     /// Lists everybody's near neighbours.
     pub fn list_agents(&mut self, agents: &Agents) {
+        self.in_range.clear();
         let Some(radius) = near_radius(agents, &self.ranges) else {
-            self.agents.clear();
+            self.candidates.clear();
             return;
         };
         let (grid, position) = (&self.grid, &agents.position);
-        self.agents.rebuild(agents.len(), |i, found| {
+        self.candidates.rebuild(agents.len(), |i, found| {
             let r_i = position[i];
             for row in grid.rows(r_i, radius) {
                 found.extend(row.filter_map(|j| {
@@ -65,6 +69,31 @@ impl Neighbors {
                 }));
             }
         });
+    }
+
+    /// Narrows the lists to who is within the interaction radius in this frame. It pays where several
+    /// sums follow, as in SPH: half of the candidates are skin.
+    pub fn narrow(&mut self, agents: &Agents) {
+        let radius = interaction_radius(agents, &self.ranges);
+        let (candidates, position) = (&self.candidates, &agents.position);
+        self.in_range
+            .rebuild_unless(radius.is_none(), agents.len(), |i, found| {
+                let r_i = position[i];
+                let reach = radius.unwrap_or(0.0).powi(2);
+                let mut end = found.len();
+                found.resize(end + candidates.of(i).len(), 0);
+                // Written first, kept if in range: a branch here would be a coin toss.
+                for &j in candidates.of(i) {
+                    found[end] = j;
+                    end += usize::from((r_i - position[j as usize]).norm_squared() < reach);
+                }
+                found.truncate(end);
+            });
+    }
+
+    /// Undoes [`narrow`](Self::narrow): all candidates again.
+    pub fn widen(&mut self) {
+        self.in_range.clear();
     }
 
     /// Lists the walls near everybody: near ones for SPH and contact and for stopping moves, far ones
@@ -89,7 +118,11 @@ impl Neighbors {
 
     /// Candidates for SPH and contact with agent `i`, rising, without `i`; some are out of range.
     pub fn near(&self, i: usize) -> &[u32] {
-        self.agents.of(i)
+        if self.in_range.is_empty() {
+            self.candidates.of(i)
+        } else {
+            self.in_range.of(i)
+        }
     }
 
     /// Candidates for avoidance within `radius` metres of `p`, as ranges of agents, some out of range
@@ -109,17 +142,16 @@ impl Neighbors {
     }
 }
 
-/// The list radius of near neighbours: interaction radius + skin, 2 s_max Δt_coarse.
+/// How far agents act on each other by SPH and contact; `None` where neither is needed.
+fn interaction_radius(agents: &Agents, ranges: &Ranges) -> Option<f64> {
+    let widest = agents.radius.iter().copied().fold(0.0, f64::max);
+    let contact = ranges.contact.then_some(2.0 * widest);
+    ranges.support.into_iter().chain(contact).reduce(f64::max)
+}
+
+/// The list radius: interaction radius + skin, 2 s_max Δt_coarse.
 fn near_radius(agents: &Agents, ranges: &Ranges) -> Option<f64> {
-    let contact = ranges
-        .contact
-        .then(|| 2.0 * agents.radius.iter().copied().fold(0.0, f64::max));
-    let interaction = match (ranges.support, contact) {
-        (Some(h), Some(contact)) => h.max(contact),
-        (Some(range), None) | (None, Some(range)) => range,
-        (None, None) => return None,
-    };
-    Some(interaction + 2.0 * ranges.drift)
+    Some(interaction_radius(agents, ranges)? + 2.0 * ranges.drift)
 }
 
 #[cfg(test)]
@@ -163,6 +195,21 @@ mod tests {
                     .collect();
                 assert_eq!(neighbors.near(i), expected);
             }
+        }
+    }
+
+    #[test]
+    fn narrowed_lists_hold_exactly_who_is_in_range() {
+        let mut agents = crowd(300, 6.0);
+        let mut neighbors = Neighbors::default();
+        neighbors.sort(&mut agents, ranges());
+        neighbors.list_agents(&agents);
+        neighbors.narrow(&agents);
+        for i in 0..agents.len() {
+            let distance = |j: usize| (agents.position[i] - agents.position[j]).norm();
+            let expected = (0..agents.len()).filter(|&j| j != i && distance(j) < 1.0);
+            let expected: Vec<u32> = expected.map(|j| j as u32).collect();
+            assert_eq!(neighbors.near(i), expected);
         }
     }
 
