@@ -53,13 +53,21 @@ impl SphParameters {
 /// Everything that step 1B knows of one agent; units as in [`Fields`](crate::frame::Fields).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SphState {
+    /// ρ_i.
     pub density: f64,
+    /// The walls' part of it.
     pub density_from_walls: f64,
+    /// ρ̂_i, one step on.
     pub mean_density: f64,
+    /// ρ_i⁰ of the frame before.
     pub rest_density_before: f64,
+    /// ρ_i⁰.
     pub rest_density: f64,
+    /// m_i / ρ_i.
     pub volume: f64,
+    /// p_i.
     pub pressure: f64,
+    /// Σ_k ∫ ∇W over P_k.
     pub wall_gradient: Vector,
 }
 

@@ -7,11 +7,22 @@ use crate::simulation::Simulation;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Measurement {
     /// Mean and standard deviation of ρ_i at a time in seconds, over everybody or in a region, P/m².
-    Density { at: f64, region: Option<Region> },
+    Density {
+        /// When, seconds.
+        at: f64,
+        /// Where; `None`: everywhere.
+        region: Option<Region>,
+    },
     /// (n − 1) / (time of the n-th counted arrival − time of the first), P/s.
-    FlowOfFirst { arrivals: usize },
+    FlowOfFirst {
+        /// n, at least 2.
+        arrivals: usize,
+    },
     /// Counted arrivals until a time in seconds, over that time, P/s.
-    FlowUntil { until: f64 },
+    FlowUntil {
+        /// The time, seconds.
+        until: f64,
+    },
     /// The number of counted arrivals.
     Evacuated,
 }
@@ -42,8 +53,11 @@ impl Measurement {
 /// A measured value; `None` where the run gave none (nobody there, too few arrivals, ended before).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Metric {
+    /// Its name in reports.
     pub name: String,
+    /// The value.
     pub value: Option<f64>,
+    /// The unit of the value.
     pub unit: &'static str,
 }
 

@@ -164,10 +164,13 @@ pub struct BlendStep {
 /// Why a sequence of profiles is not a blend.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BlendError {
+    /// There is no profile.
     #[error("a blend needs at least one profile")]
     Empty,
+    /// Two densities in the wrong order.
     #[error("densities must rise: {1} P/m² follows {0} P/m²")]
     NotRising(f64, f64),
+    /// Two profiles avoid by RVO, each in its own way.
     #[error("profiles of one blend share one velocity of RVO: give them the same RVO parameters")]
     DifferentRvo,
 }

@@ -74,15 +74,25 @@ pub enum Fault {
         position.x, position.y
     )]
     NotFinite {
+        /// The frame.
         frame: u64,
+        /// The time of the frame, seconds.
         time: f64,
+        /// The agent's id.
         agent: u32,
+        /// Where it stands, metres.
         position: Vector,
+        /// Which number.
         quantity: &'static str,
     },
     /// Nowhere to put somebody.
     #[error("agent {agent} enters inside obstacle {obstacle}, and no free point is near")]
-    NoFreePoint { agent: u32, obstacle: usize },
+    NoFreePoint {
+        /// The agent's id.
+        agent: u32,
+        /// The obstacle's index.
+        obstacle: usize,
+    },
 }
 
 impl Simulation {

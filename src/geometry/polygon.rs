@@ -10,14 +10,19 @@ use crate::math::{Vector, is_finite};
 /// Why a list of points is not an obstacle.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PolygonError {
+    /// That many points.
     #[error("a polygon needs at least 3 points, this one has {0}")]
     TooFewPoints(usize),
+    /// The index of the point.
     #[error("point {0} is not finite")]
     NotFinite(usize),
+    /// The indices of both points.
     #[error("points {0} and {1} are the same; remove one")]
     RepeatedPoint(usize, usize),
+    /// All points on one line.
     #[error("the polygon encloses no area")]
     NoArea,
+    /// The indices of the points where the two edges begin.
     #[error(
         "the polygon crosses or touches itself: the edge from point {0} meets the edge from point {1}"
     )]

@@ -26,15 +26,20 @@ pub struct Wall {
 /// Where on a wall its nearest point lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WallPart {
+    /// Its first end.
     Start,
+    /// Between the ends.
     Interior,
+    /// Its second end.
     End,
 }
 
 /// The point of a wall that is nearest to some other point (r_k* in the paper).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearestPoint {
+    /// The point, metres.
     pub point: Vector,
+    /// Where on the wall it lies.
     pub part: WallPart,
 }
 

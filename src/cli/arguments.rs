@@ -1,0 +1,152 @@
+//! The command line as typed.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Simulate, measure and inspect dense crowds (SPH crowds, van Toll et al. 2021).
+#[derive(Parser)]
+#[command(version, arg_required_else_help = true)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// 400 people leave a room through a narrow door (§6.1)
+    #[command(after_help = "Example: sandbox evacuation --profile 'sf->sph' --set rest_density_max=6 --json")]
+    Evacuation(RunOptions),
+    /// A crowd crosses a stream on its way to a narrow door (§6.2)
+    #[command(after_help = "Example: sandbox crossing --profile rvo --save crossing.rrd")]
+    Crossing(RunOptions),
+    /// 10,000 people before a stage, and a shockwave (§6.3)
+    #[command(
+        after_help = "Example: sandbox concert --record-from 149 --save recordings/concert.rrd --force"
+    )]
+    Concert(RunOptions),
+    /// Run a scenario file
+    #[command(after_help = "Example: sandbox run my_station.json --until 60 --threads 2 --json")]
+    Run {
+        /// The scenario, JSON
+        file: PathBuf,
+        #[command(flatten)]
+        options: RunOptions,
+    },
+    /// Lay open the forces on single agents at one moment
+    #[command(after_help = "Example: sandbox inspect evacuation --agent 17 --at 15 --json")]
+    Inspect(InspectOptions),
+    /// List the scenarios, or the settings that --set takes
+    #[command(after_help = "Example: sandbox list --settings")]
+    List {
+        /// List what --set takes instead of the scenarios
+        #[arg(long)]
+        settings: bool,
+    },
+}
+
+/// What changes a scenario, and how it is computed.
+#[derive(Args)]
+pub struct SceneOptions {
+    /// Profile of all agents: sf, rvo, sf+sph, rvo+sph, sph, sf->sph or rvo->sph (quote the arrow)
+    #[arg(long, value_name = "NAME")]
+    pub profile: Option<String>,
+    /// Seed of all random numbers
+    #[arg(long)]
+    pub seed: Option<u64>,
+    /// Change a setting of the scenario (see `sandbox list --settings`); may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Threads to compute on; the results do not depend on it [default: all cores]
+    #[arg(long, value_parser = threads)]
+    pub threads: Option<usize>,
+    /// Replace existing output files
+    #[arg(long)]
+    pub force: bool,
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct RunOptions {
+    #[command(flatten)]
+    pub scene: SceneOptions,
+    /// Stop at this time, seconds [default: the scenario's]
+    #[arg(long, value_name = "SECS", value_parser = seconds)]
+    pub until: Option<f64>,
+    #[command(flatten)]
+    pub record: RecordOptions,
+}
+
+/// What is written to a recording.
+#[derive(Args)]
+pub struct RecordOptions {
+    /// Write a recording for the Rerun viewer
+    #[arg(long, value_name = "FILE.rrd")]
+    pub save: Option<PathBuf>,
+    /// Record every so many frames
+    #[arg(long, value_name = "FRAMES", default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..))]
+    pub record_every: u64,
+    /// Record from this time on, seconds
+    #[arg(long, value_name = "SECS", default_value_t = 0.0, value_parser = seconds)]
+    pub record_from: f64,
+    /// Lay these agents open in the recording: ids, all or none [default: the scenario's choice]
+    #[arg(long, value_name = "17,42|all|none", conflicts_with = "debug_region")]
+    pub debug_agents: Option<String>,
+    /// Lay open the agents that are in this rectangle at each recorded frame
+    #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true)]
+    pub debug_region: Option<String>,
+}
+
+#[derive(Args)]
+pub struct InspectOptions {
+    /// A scenario by name, or a scenario file
+    #[arg(value_name = "SCENARIO_OR_FILE")]
+    pub scenario: String,
+    #[command(flatten)]
+    pub scene: SceneOptions,
+    /// The agent's id; may be repeated
+    #[arg(long, value_name = "ID", required_unless_present = "all")]
+    pub agent: Vec<u32>,
+    /// Inspect every agent
+    #[arg(long, conflicts_with = "agent")]
+    pub all: bool,
+    /// The moment, seconds; 0 is the scenario's start, nobody moved
+    #[arg(long, value_name = "SECS", default_value_t = 0.0, value_parser = seconds)]
+    pub at: f64,
+    /// Write the same as a recording for the Rerun viewer
+    #[arg(long, value_name = "FILE.rrd")]
+    pub save: Option<PathBuf>,
+}
+
+/// Where a scenario comes from.
+pub enum Source {
+    Shipped(&'static str),
+    File(PathBuf),
+}
+
+impl Source {
+    /// A shipped scenario of that name, else a file.
+    pub fn named(text: &str) -> Self {
+        let shipped = crate::scenario::shipped().iter();
+        match shipped.map(|shipped| shipped.name).find(|&name| name == text) {
+            Some(name) => Self::Shipped(name),
+            None => Self::File(PathBuf::from(text)),
+        }
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if (0.0..=1e9).contains(&value) => Ok(value),
+        _ => Err("not a time in seconds, 0 or later".to_owned()),
+    }
+}
+
+fn threads(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count @ 1..=1024) => Ok(count),
+        _ => Err("not a number of threads between 1 and 1024".to_owned()),
+    }
+}

@@ -1,0 +1,129 @@
+//! The drive loop: a scenario from its first frame to its end.
+
+use std::time::Instant;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::arguments::{RunOptions, Source};
+use super::output::Output;
+use super::report::Report;
+use super::{Failure, scenario, use_threads};
+use crate::metrics::Metrics;
+use crate::scenario::Scenario;
+use crate::simulation::{EventKind, Simulation};
+
+/// `sandbox evacuation|crossing|concert|run`.
+pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
+    let scenario = scenario(source, &options.scene)?;
+    use_threads(options.scene.threads)?;
+    let mut simulation = Simulation::new(scenario.scene.clone())?;
+    let mut metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
+    let duration = options.until.unwrap_or(scenario.duration_secs);
+    let mut output = Output::create(options, &scenario, &mut simulation)?;
+    let progress = Progress::new(duration);
+
+    let driven = drive(&mut simulation, &scenario, duration, |simulation, ms| {
+        metrics.observe(simulation);
+        progress.show(simulation);
+        output.log(simulation, ms)
+    });
+    progress.finish();
+    // What was recorded is kept, whatever ended the run.
+    let saved = output.finish();
+    driven?;
+    saved?;
+    report_oddities(&simulation);
+    Report::new(&scenario, &simulation, &metrics).print(options.scene.json);
+    Ok(())
+}
+
+/// Runs to `duration` seconds or the scenario's own end; `observe` sees every evaluated frame with
+/// the milliseconds that the frame before took.
+pub fn drive(
+    simulation: &mut Simulation,
+    scenario: &Scenario,
+    duration: f64,
+    mut observe: impl FnMut(&Simulation, f64) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let last_frame = simulation.frame().clock.frame_at(duration);
+    let mut ms = 0.0;
+    loop {
+        let start = Instant::now();
+        simulation.evaluate()?;
+        let evaluated = start.elapsed();
+        observe(simulation, ms)?;
+        if simulation.frame().clock.frame() >= last_frame || is_over(simulation, scenario) {
+            return Ok(());
+        }
+        let start = Instant::now();
+        simulation.integrate()?;
+        ms = 1e3 * (evaluated + start.elapsed()).as_secs_f64();
+    }
+}
+
+/// Has the scenario come to its own end?
+fn is_over(simulation: &Simulation, scenario: &Scenario) -> bool {
+    let frame = simulation.frame();
+    let empty = frame.agents.is_empty() && !simulation.expects_agents();
+    let arrivals = simulation.outcome().arrivals.iter().rev();
+    let last_arrival = arrivals
+        .filter(|arrival| arrival.counted)
+        .map(|arrival| arrival.time)
+        .next()
+        .unwrap_or(0.0);
+    let idle = frame.clock.time() - last_arrival;
+    (scenario.stop.when_empty && empty) || scenario.stop.idle_secs.is_some_and(|most| idle > most)
+}
+
+/// Says what a careful reader of the results should know.
+fn report_oddities(simulation: &Simulation) {
+    let outcome = simulation.outcome();
+    if !outcome.displaced.is_empty() {
+        let count = outcome.displaced.len();
+        let (agent, obstacle) = outcome.displaced[0];
+        eprintln!(
+            "note: {count} agent(s) entered inside an obstacle and were put at the nearest free point \
+             (the first: agent {agent}, obstacle {obstacle})"
+        );
+    }
+    if outcome.contained_moves > 0 {
+        eprintln!(
+            "note: {} move(s) would have crossed a wall and were stopped there",
+            outcome.contained_moves
+        );
+    }
+    for event in simulation.events() {
+        if event.kind == EventKind::PushBegan(0) {
+            eprintln!("note: nobody stood where {:?} began", event.name);
+        }
+    }
+}
+
+/// A progress bar on stderr, shown only if that is a terminal.
+pub struct Progress {
+    bar: ProgressBar,
+}
+
+impl Progress {
+    pub fn new(duration: f64) -> Self {
+        let bar = ProgressBar::new((duration * 10.0).ceil() as u64);
+        let template = "{bar:30} {msg}, {eta} left";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        Self { bar }
+    }
+
+    pub fn show(&self, simulation: &Simulation) {
+        let frame = simulation.frame();
+        if frame.clock.is_coarse() && !self.bar.is_hidden() {
+            let (time, agents) = (frame.clock.time(), frame.agents.len());
+            self.bar.set_position((time * 10.0) as u64);
+            self.bar.set_message(format!("t = {time:.1} s, {agents} agents"));
+        }
+    }
+
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}

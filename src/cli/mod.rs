@@ -1,0 +1,96 @@
+//! What was typed and what it means. The only place that names clap.
+
+mod arguments;
+mod drive;
+mod inspect;
+mod list;
+mod output;
+mod report;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::scenario::{Scenario, ScenarioError, Setting};
+use crate::simulation::Fault;
+use arguments::{Arguments, Command, Source};
+
+/// Why a command did not do what was asked.
+#[derive(Debug, thiserror::Error)]
+enum Failure {
+    /// What was typed or read makes no sense: exit code 2.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The same, on the command line: exit code 2.
+    #[error("{0}")]
+    Input(String),
+    /// The run cannot go on: exit code 1.
+    #[error(transparent)]
+    Fault(#[from] Fault),
+    /// A file cannot be written: exit code 1.
+    #[error("{0}")]
+    Output(String),
+}
+
+impl Failure {
+    fn exit_code(&self) -> u8 {
+        match self {
+            Self::Scenario(_) | Self::Input(_) => 2,
+            Self::Fault(_) | Self::Output(_) => 1,
+        }
+    }
+}
+
+/// Runs the program; results go to stdout, talk to stderr. Exit code 0: done, 1: the run failed,
+/// 2: bad input.
+pub fn main() -> ExitCode {
+    let command = Arguments::parse().command;
+    match run(command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+fn run(command: Command) -> Result<(), Failure> {
+    match command {
+        Command::Evacuation(options) => drive::run(&Source::Shipped("evacuation"), &options),
+        Command::Crossing(options) => drive::run(&Source::Shipped("crossing"), &options),
+        Command::Concert(options) => drive::run(&Source::Shipped("concert"), &options),
+        Command::Run { file, options } => drive::run(&Source::File(file), &options),
+        Command::Inspect(options) => inspect::run(&options),
+        Command::List { settings } => list::run(settings),
+    }
+}
+
+/// Reads a scenario with the settings of the command line.
+fn scenario(source: &Source, scene: &arguments::SceneOptions) -> Result<Scenario, Failure> {
+    let mut settings: Vec<Setting> = Vec::new();
+    if let Some(profile) = &scene.profile {
+        settings.push(Setting::new("profile", profile.clone().into()));
+    }
+    if let Some(seed) = scene.seed {
+        settings.push(Setting::new("seed", seed.into()));
+    }
+    for text in &scene.set {
+        settings.push(Setting::parse(text)?);
+    }
+    let scenario = match source {
+        Source::Shipped(name) => Scenario::shipped(name, &settings)?,
+        Source::File(path) => Scenario::load(path, &settings)?,
+    };
+    Ok(scenario)
+}
+
+/// Makes rayon use so many threads.
+fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
+    if let Some(threads) = threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build_global()
+            .map_err(|error| Failure::Output(format!("--threads {threads}: {error}")))?;
+    }
+    Ok(())
+}

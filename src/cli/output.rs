@@ -1,0 +1,192 @@
+//! Recordings, as far as the command line is concerned.
+
+use std::path::Path;
+
+use super::Failure;
+use super::arguments::RunOptions;
+use crate::scenario::Scenario;
+use crate::simulation::Simulation;
+
+/// Refuses to replace a file unless told so, before anything is computed.
+fn check_free(path: &Path, force: bool) -> Result<(), Failure> {
+    if path.exists() && !force {
+        let path = path.display();
+        return Err(Failure::Output(format!(
+            "{path} exists already; give --force to replace it"
+        )));
+    }
+    Ok(())
+}
+
+#[cfg(feature = "recording")]
+pub use with_recording::{Output, save_moment};
+
+#[cfg(feature = "recording")]
+mod with_recording {
+    use super::*;
+    use crate::recording::{DebugAgents, Recorder, RecordingError, RecordingOptions};
+    use crate::scene::Region;
+
+    /// What a run writes beside its results.
+    pub struct Output {
+        recorder: Option<Recorder>,
+        every: u64,
+        from: u64,
+    }
+
+    impl Output {
+        /// Opens the recording, if one is asked for.
+        pub fn create(
+            options: &RunOptions,
+            scenario: &Scenario,
+            simulation: &mut Simulation,
+        ) -> Result<Self, Failure> {
+            let record = &options.record;
+            let debug = debug_agents(options, scenario)?;
+            let recorder = match &record.save {
+                None => None,
+                Some(path) => {
+                    check_free(path, options.scene.force)?;
+                    simulation.request_density_until(u64::MAX);
+                    let view = recording_options(scenario, debug);
+                    Some(Recorder::create(path, simulation, &view)?)
+                }
+            };
+            Ok(Self {
+                recorder,
+                every: record.record_every,
+                from: simulation.frame().clock.frame_at(record.record_from),
+            })
+        }
+
+        /// Records an evaluated frame if its turn has come.
+        pub fn log(&mut self, simulation: &Simulation, ms_per_frame: f64) -> Result<(), Failure> {
+            let frame = simulation.frame().clock.frame();
+            if let Some(recorder) = &mut self.recorder
+                && frame >= self.from
+                && frame.is_multiple_of(self.every)
+            {
+                recorder.log(simulation, ms_per_frame)?;
+            }
+            Ok(())
+        }
+
+        /// Closes the recording.
+        pub fn finish(self) -> Result<(), Failure> {
+            self.recorder.map_or(Ok(()), |recorder| Ok(recorder.finish()?))
+        }
+    }
+
+    /// Writes one evaluated frame with some agents laid open.
+    pub fn save_moment(
+        path: &Path,
+        force: bool,
+        scenario: &Scenario,
+        simulation: &Simulation,
+        ids: Vec<u32>,
+    ) -> Result<(), Failure> {
+        check_free(path, force)?;
+        let mut options = recording_options(scenario, DebugAgents::Ids(ids));
+        options.opens_at_secs = simulation.frame().clock.time();
+        let mut recorder = Recorder::create(path, simulation, &options)?;
+        recorder.log(simulation, 0.0)?;
+        Ok(recorder.finish()?)
+    }
+
+    fn recording_options(scenario: &Scenario, debug: DebugAgents) -> RecordingOptions {
+        RecordingOptions {
+            title: format!("{} {} seed {}", scenario.name, scenario.profile_name, scenario.scene.seed),
+            document_markdown: scenario.markdown(),
+            view: scenario.view.region,
+            opens_at_secs: scenario.view.opens_at_secs,
+            debug,
+        }
+    }
+
+    fn debug_agents(options: &RunOptions, scenario: &Scenario) -> Result<DebugAgents, Failure> {
+        let record = &options.record;
+        if let Some(text) = &record.debug_region {
+            return region(text).map(DebugAgents::Region).ok_or_else(|| {
+                Failure::Input(format!(
+                    "--debug-region {text}: four numbers x0,y0,x1,y1 are needed, x0 < x1, y0 < y1"
+                ))
+            });
+        }
+        match record.debug_agents.as_deref() {
+            None => Ok(DebugAgents::Ids(scenario.debug_agents.clone())),
+            Some("all") => Ok(DebugAgents::All),
+            Some("none") => Ok(DebugAgents::None),
+            Some(text) => {
+                let ids: Result<Vec<u32>, _> = text.split(',').map(|id| id.trim().parse()).collect();
+                ids.map(DebugAgents::Ids).map_err(|_| {
+                    Failure::Input(format!(
+                        "--debug-agents {text}: ids separated by commas, all or none are needed"
+                    ))
+                })
+            }
+        }
+    }
+
+    fn region(text: &str) -> Option<Region> {
+        let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+        match numbers.ok()?.as_slice() {
+            &[x0, y0, x1, y1] if x0 < x1 && y0 < y1 => Some(Region {
+                min: [x0, y0].into(),
+                max: [x1, y1].into(),
+            }),
+            _ => None,
+        }
+    }
+
+    impl From<RecordingError> for Failure {
+        fn from(error: RecordingError) -> Self {
+            Self::Output(error.to_string())
+        }
+    }
+}
+
+#[cfg(not(feature = "recording"))]
+pub use without_recording::{Output, save_moment};
+
+#[cfg(not(feature = "recording"))]
+mod without_recording {
+    use super::*;
+
+    /// A program built without the feature `recording` writes nothing beside its results.
+    pub struct Output;
+
+    impl Output {
+        pub fn create(options: &RunOptions, _: &Scenario, _: &mut Simulation) -> Result<Self, Failure> {
+            match &options.record.save {
+                Some(path) => Err(unavailable(path)),
+                None => Ok(Self),
+            }
+        }
+
+        pub fn log(&mut self, _: &Simulation, _: f64) -> Result<(), Failure> {
+            Ok(())
+        }
+
+        pub fn finish(self) -> Result<(), Failure> {
+            Ok(())
+        }
+    }
+
+    pub fn save_moment(
+        path: &Path,
+        force: bool,
+        _: &Scenario,
+        _: &Simulation,
+        _: Vec<u32>,
+    ) -> Result<(), Failure> {
+        check_free(path, force)?;
+        Err(unavailable(path))
+    }
+
+    fn unavailable(path: &Path) -> Failure {
+        let path = path.display();
+        Failure::Output(format!(
+            "--save {path}: this program was built without the feature `recording`"
+        ))
+    }
+}

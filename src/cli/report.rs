@@ -1,0 +1,99 @@
+//! What a run found, as text or JSON, on stdout.
+
+use serde_json::{Map, Value, json};
+
+use crate::metrics::{Metric, Metrics};
+use crate::scenario::Scenario;
+use crate::simulation::Simulation;
+
+/// The results of one run.
+pub struct Report<'a> {
+    scenario: &'a Scenario,
+    simulation: &'a Simulation,
+    metrics: Vec<Metric>,
+}
+
+impl<'a> Report<'a> {
+    pub fn new(scenario: &'a Scenario, simulation: &'a Simulation, metrics: &Metrics) -> Self {
+        Self {
+            scenario,
+            simulation,
+            metrics: metrics.results(simulation),
+        }
+    }
+
+    pub fn print(&self, as_json: bool) {
+        if as_json {
+            println!("{}", self.json());
+        } else {
+            print!("{}", self.text());
+        }
+    }
+
+    fn json(&self) -> Value {
+        let metrics: Map<String, Value> = self
+            .metrics
+            .iter()
+            .map(|metric| (metric.name.clone(), json!(metric.value)))
+            .collect();
+        let stages: Map<String, Value> = self
+            .simulation
+            .stages()
+            .ms_per_frame()
+            .map(|(stage, ms)| (stage.name().to_owned(), json!(ms)))
+            .collect();
+        let frame = self.simulation.frame();
+        let outcome = self.simulation.outcome();
+        json!({
+            "scenario": self.scenario.name,
+            "profile": self.scenario.profile_name,
+            "seed": frame.seed,
+            "threads": rayon::current_num_threads(),
+            "frames": frame.clock.frame(),
+            "time_secs": frame.clock.time(),
+            "agents": frame.agents.entered(),
+            "metrics": metrics,
+            "contained_moves": outcome.contained_moves,
+            "displaced_agents": outcome.displaced.len(),
+            "ms_per_frame": self.ms_per_frame(),
+            "real_time_factor": self.real_time_factor(),
+            "stages_ms": stages,
+        })
+    }
+
+    fn text(&self) -> String {
+        let frame = self.simulation.frame();
+        let mut text = format!(
+            "{} ({}), seed {}: {} agents, {:.2} s in {} frames\n",
+            self.scenario.name,
+            self.scenario.profile_name,
+            frame.seed,
+            frame.agents.entered(),
+            frame.clock.time(),
+            frame.clock.frame(),
+        );
+        for metric in &self.metrics {
+            let value = metric.value.map_or("–".to_owned(), |value| format!("{value:.3}"));
+            text += &format!("  {:<24} {value:>10} {}\n", metric.name, metric.unit);
+        }
+        let threads = rayon::current_num_threads();
+        text += &format!(
+            "{:.3} ms per frame on {threads} thread(s), {:.1} × real time\n",
+            self.ms_per_frame(),
+            self.real_time_factor(),
+        );
+        for (stage, ms) in self.simulation.stages().ms_per_frame() {
+            text += &format!("  {:<24} {ms:>10.4} ms\n", stage.name());
+        }
+        text
+    }
+
+    /// Simulation alone, without recording.
+    fn ms_per_frame(&self) -> f64 {
+        self.simulation.stages().total_ms_per_frame()
+    }
+
+    fn real_time_factor(&self) -> f64 {
+        1e3 * self.simulation.frame().clock.time_step() / self.ms_per_frame()
+    }
+}
