@@ -56,3 +56,5 @@ pub mod simulation;
 pub mod metrics;
 
 pub mod breakdown;
+
+pub mod scenario;

@@ -1,0 +1,235 @@
+//! What a file says → a scenario that can run, or the first thing that is wrong with it.
+
+use std::collections::BTreeSet;
+
+use serde_json::Value;
+
+use super::crowd::{Crowd, MOST_NUMBERED};
+use super::error::{Problem, Under};
+use super::file::{self, File, ProfileChoice};
+use super::range::{COARSE_EVERY, MAX_SPEED, PREFERRED_SPEED, Range, TIME, TIME_STEP};
+use super::range::{point, region};
+use super::{Scenario, Stop, View, profiles, settings};
+use crate::clock::{Clock, PAPER_TIME_STEP};
+use crate::geometry::Polygon;
+use crate::math::Vector;
+use crate::metrics::Measurement;
+use crate::profile::Override;
+use crate::scene::{Push, Region, Scene};
+
+/// How long a run lasts that says nothing, seconds.
+const DEFAULT_DURATION: f64 = 60.0;
+/// The profile of a scenario that names none.
+const DEFAULT_PROFILE: &str = "sph";
+/// Round everything there is, metres: the view of a scenario that gives none.
+const DEFAULT_MARGIN: f64 = 1.0;
+/// K^goal of a push.
+const GOAL_SCALE: Range = Range::at_least(0.0, 1e9);
+/// Times that something is divided by, seconds.
+const UNTIL: Range = Range::above(0.0, 1e7);
+
+/// Checks `document`; a scenario without a name gets `fallback_name`.
+pub(super) fn scenario(document: &Value, fallback_name: &str) -> Result<Scenario, Problem> {
+    let file: File = serde_path_to_error::deserialize(document).map_err(|error| {
+        let path = error.path().to_string();
+        let path = if path == "." { String::new() } else { path };
+        Problem::new(path, error.into_inner().to_string())
+    })?;
+    let name = file
+        .name
+        .clone()
+        .unwrap_or_else(|| fallback_name.to_owned());
+    if name.is_empty() {
+        return Err(Problem::new("name", "must not be empty"));
+    }
+    let duration_secs = file.duration_secs.unwrap_or(DEFAULT_DURATION);
+    let duration_secs = TIME.check("duration_secs", duration_secs)?;
+    let mut scene = empty_scene(&file)?;
+    settings::check(&file.parameters).under("parameters")?;
+    let choice = file.profile.clone();
+    let choice = choice.unwrap_or_else(|| ProfileChoice::Named(DEFAULT_PROFILE.to_owned()));
+    let blend = profiles::blend(&choice, &file.parameters).under("profile")?;
+    file.goal.map(|goal| point("goal", goal)).transpose()?;
+    Crowd::new(&file, &blend, &mut scene, duration_secs).enter()?;
+    scene.pushes = pushes(&file.events)?;
+    Ok(Scenario {
+        name,
+        description: file.description.clone().unwrap_or_default(),
+        duration_secs,
+        stop: stop(&file.stop).under("stop")?,
+        measurements: measurements(&file.measurements)?,
+        view: view(file.view.as_ref(), &scene).under("view")?,
+        debug_agents: without_repetition(&file.debug_agents)?,
+        profile_name: blend.name,
+        document: document.clone(),
+        scene,
+    })
+}
+
+/// Everything but the people.
+fn empty_scene(file: &File) -> Result<Scene, Problem> {
+    let paper = Scene::default();
+    let time_step = file.time_step_secs.unwrap_or(PAPER_TIME_STEP);
+    let time_step = TIME_STEP.check("time_step_secs", time_step)?;
+    let coarse_every = file
+        .coarse_every
+        .unwrap_or_else(|| Clock::nearest_coarse_every(time_step));
+    COARSE_EVERY.check("coarse_every", f64::from(coarse_every))?;
+    let preferred_speed = file.preferred_speed.unwrap_or(paper.preferred_speed);
+    let max_speed = file.max_speed.unwrap_or(paper.max_speed);
+    let mut obstacles = Vec::with_capacity(file.obstacles.len());
+    for (k, corners) in file.obstacles.iter().enumerate() {
+        obstacles.push(obstacle(corners).under(&format!("obstacles[{k}]"))?);
+    }
+    Ok(Scene {
+        seed: file.seed.unwrap_or(paper.seed),
+        clock: Clock::new(time_step, coarse_every),
+        integrator: file.integrator,
+        wall_method: file.wall_method,
+        preferred_speed: PREFERRED_SPEED.check("preferred_speed", preferred_speed)?,
+        max_speed: MAX_SPEED.check("max_speed", max_speed)?,
+        ..Scene::with_obstacles(obstacles)
+    })
+}
+
+fn obstacle(corners: &[[f64; 2]]) -> Result<Polygon, Problem> {
+    let mut points = Vec::with_capacity(corners.len());
+    for (k, &corner) in corners.iter().enumerate() {
+        points.push(point(&format!("[{k}]"), corner)?);
+    }
+    Polygon::new(points).map_err(|error| Problem::new("", error.to_string()))
+}
+
+fn pushes(events: &[file::Event]) -> Result<Vec<Push>, Problem> {
+    if events.len() > MOST_NUMBERED {
+        let reason = format!(
+            "{} events; at most {MOST_NUMBERED} are possible",
+            events.len()
+        );
+        return Err(Problem::new("events", reason));
+    }
+    let numbered = events.iter().enumerate();
+    numbered
+        .map(|(k, event)| {
+            let name = format!("events[{k}]");
+            push(event, &name).under(&name)
+        })
+        .collect()
+}
+
+fn push(event: &file::Event, place: &str) -> Result<Push, Problem> {
+    let name = event.name.as_deref().unwrap_or(place);
+    if name.is_empty() {
+        return Err(Problem::new("name", "must not be empty"));
+    }
+    Ok(Push {
+        name: name.to_owned(),
+        at: TIME.check("at_secs", event.at_secs)?,
+        lasting: TIME.check("for_secs", event.for_secs)?,
+        region: region("region", event.region)?,
+        change: Override {
+            goal_scale: GOAL_SCALE.check_given("goal_scale", event.goal_scale)?,
+            ignore_contact: event.ignore_contact,
+            ignore_sph: event.ignore_sph,
+        },
+    })
+}
+
+fn measurements(given: &[file::Measurement]) -> Result<Vec<Measurement>, Problem> {
+    let mut names = BTreeSet::new();
+    let mut checked = Vec::with_capacity(given.len());
+    for (k, given) in given.iter().enumerate() {
+        let place = format!("measurements[{k}]");
+        let measurement = measurement(given).under(&place)?;
+        for name in measurement.names() {
+            if names.contains(&name) {
+                let reason = format!("`{name}` is measured already");
+                return Err(Problem::new(place, reason));
+            }
+            names.insert(name);
+        }
+        checked.push(measurement);
+    }
+    Ok(checked)
+}
+
+fn measurement(given: &file::Measurement) -> Result<Measurement, Problem> {
+    Ok(match given {
+        file::Measurement::Density { at_secs, region: r } => Measurement::Density {
+            at: TIME.check("density.at_secs", *at_secs)?,
+            region: r.map(|r| region("density.region", r)).transpose()?,
+        },
+        file::Measurement::FlowOfFirst { arrivals } => {
+            if *arrivals < 2 {
+                let reason = format!("a flow needs at least 2 arrivals, not {arrivals}");
+                return Err(Problem::new("flow_of_first.arrivals", reason));
+            }
+            Measurement::FlowOfFirst {
+                arrivals: *arrivals as usize,
+            }
+        }
+        file::Measurement::FlowUntil { until_secs } => Measurement::FlowUntil {
+            until: UNTIL.check("flow_until.until_secs", *until_secs)?,
+        },
+        file::Measurement::Evacuated {} => Measurement::Evacuated,
+    })
+}
+
+fn stop(given: &file::Stop) -> Result<Stop, Problem> {
+    Ok(Stop {
+        when_empty: given.when_empty,
+        idle_secs: UNTIL.check_given("idle_secs", given.idle_secs)?,
+    })
+}
+
+fn view(given: Option<&file::View>, scene: &Scene) -> Result<View, Problem> {
+    let Some(given) = given else {
+        return Ok(View {
+            region: surroundings(scene),
+            opens_at_secs: 0.0,
+        });
+    };
+    let region = region("region", given.region)?;
+    if region.min.x == region.max.x || region.min.y == region.max.y {
+        return Err(Problem::new("region", "encloses no area"));
+    }
+    Ok(View {
+        region,
+        opens_at_secs: TIME.check("opens_at_secs", given.opens_at_secs)?,
+    })
+}
+
+/// Everything there is, and a margin.
+fn surroundings(scene: &Scene) -> Region {
+    let corners = scene.walls.iter().map(|wall| wall.start);
+    let agents = scene
+        .agents
+        .iter()
+        .flat_map(|agent| [agent.position, agent.goal]);
+    let sources = scene
+        .sources
+        .iter()
+        .flat_map(|source| [source.grid.min, source.grid.max]);
+    let margin = Vector::new(DEFAULT_MARGIN, DEFAULT_MARGIN);
+    let bounds = corners
+        .chain(agents)
+        .chain(sources)
+        .map(|p| (p, p))
+        .reduce(|(low, high), (p, _)| (low.inf(&p), high.sup(&p)));
+    let (low, high) = bounds.unwrap_or((Vector::zeros(), Vector::zeros()));
+    Region {
+        min: low - margin,
+        max: high + margin,
+    }
+}
+
+fn without_repetition(ids: &[u32]) -> Result<Vec<u32>, Problem> {
+    let mut seen = BTreeSet::new();
+    for (k, id) in ids.iter().enumerate() {
+        if !seen.insert(id) {
+            let reason = format!("agent {id} is named twice");
+            return Err(Problem::new(format!("debug_agents[{k}]"), reason));
+        }
+    }
+    Ok(ids.to_vec())
+}

@@ -1,0 +1,238 @@
+//! Agents, grids and sources as given → groups, agents and sources of a scene.
+
+use std::collections::BTreeMap;
+
+use super::error::{Problem, Under};
+use super::file::{self, Behaviour, File, ProfileChoice};
+use super::profiles;
+use super::range::{self, COORDINATE, Range, TIME, point};
+use super::settings::DENSITY;
+use crate::agents::NewAgent;
+use crate::placement::Grid;
+use crate::profile::Blend;
+use crate::scene::{Goal, Group, Region, Scene, Source};
+
+/// So many agents may enter in one run.
+pub(super) const MOST_AGENTS: u64 = 10_000_000;
+/// Groups and pushes are numbered in 16 bits.
+pub(super) const MOST_NUMBERED: usize = u16::MAX as usize;
+
+/// D_i, metres.
+const RADIUS: Range = Range::at_least(0.01, 10.0);
+/// m_i.
+const MASS: Range = Range::at_least(1e-6, 1e6);
+/// Removal radius and jitter, metres.
+const DISTANCE: Range = Range::above(0.0, 1e6);
+const JITTER: Range = Range::at_least(0.0, 1e6);
+/// Time between entries, seconds.
+const EVERY: Range = Range::above(0.0, 1e7);
+/// Initial speeds, m/s.
+const VELOCITY: Range = Range::at_least(-100.0, 100.0);
+
+/// Fills a scene with people.
+pub(super) struct Crowd<'a> {
+    file: &'a File,
+    default: &'a Blend,
+    scene: &'a mut Scene,
+    duration_secs: f64,
+    entering: u64,
+    /// Groups of single agents by behaviour.
+    shared: BTreeMap<String, u16>,
+}
+
+impl<'a> Crowd<'a> {
+    /// `default` is the blend of agents that name none.
+    pub(super) fn new(
+        file: &'a File,
+        default: &'a Blend,
+        scene: &'a mut Scene,
+        duration_secs: f64,
+    ) -> Self {
+        Self {
+            file,
+            default,
+            scene,
+            duration_secs,
+            entering: 0,
+            shared: BTreeMap::new(),
+        }
+    }
+
+    /// Single agents, then grids, then sources.
+    pub(super) fn enter(mut self) -> Result<(), Problem> {
+        for (k, agent) in self.file.agents.iter().enumerate() {
+            self.agent(agent).under(&format!("agents[{k}]"))?;
+        }
+        for (k, grid) in self.file.grids.iter().enumerate() {
+            let name = format!("grids[{k}]");
+            self.grid(grid, &name).under(&name)?;
+        }
+        for (k, source) in self.file.sources.iter().enumerate() {
+            let name = format!("sources[{k}]");
+            self.source(source, &name).under(&name)?;
+        }
+        Ok(())
+    }
+
+    fn agent(&mut self, agent: &file::Agent) -> Result<(), Problem> {
+        self.count(1, 1)?;
+        let [x, y] = agent.velocity.unwrap_or_default();
+        VELOCITY.check("velocity[0]", x)?;
+        VELOCITY.check("velocity[1]", y)?;
+        let position = point("position", agent.position)?;
+        let goal = match agent.goal {
+            Some(goal) => point("goal", goal)?,
+            None => self.default_goal()?,
+        };
+        let group = self.shared_group(&agent.behaviour())?;
+        self.scene.agents.push(NewAgent {
+            velocity: [x, y].into(),
+            radius: RADIUS.check_given("radius", agent.radius)?,
+            mass: MASS.check_given("mass", agent.mass)?,
+            mean_density: DENSITY.check_given("mean_density", agent.mean_density)?,
+            ..NewAgent::at(position, goal, group)
+        });
+        Ok(())
+    }
+
+    fn grid(&mut self, given: &file::Grid, place: &str) -> Result<(), Problem> {
+        let (grid, goal) = self.placed(given)?;
+        self.count(grid.len(), 1)?;
+        let name = given.name.as_deref().unwrap_or(place);
+        let group = self.group(name, &given.behaviour())?;
+        let first_id = self.scene.agents.len() as u32;
+        let agents = grid.positions(self.scene.seed, first_id).map(|position| {
+            let goal = match goal {
+                Goal::Point(goal) => goal,
+                Goal::Offset(offset) => position + offset,
+            };
+            NewAgent::at(position, goal, group)
+        });
+        self.scene.agents.extend(agents);
+        Ok(())
+    }
+
+    fn source(&mut self, given: &file::Source, place: &str) -> Result<(), Problem> {
+        let (grid, goal) = self.placed(&given.grid())?;
+        let name = given.name.as_deref().unwrap_or(place);
+        let source = Source {
+            name: name.to_owned(),
+            grid,
+            group: self.group(name, &given.grid().behaviour())?,
+            goal,
+            start: TIME.check("start_secs", given.start_secs)?,
+            every: EVERY.check("every_secs", given.every_secs)?,
+            times: given.times,
+        };
+        let entries = ((self.duration_secs - source.start) / source.every + 1.0).max(0.0) as u64;
+        self.count(
+            grid.len(),
+            entries.min(given.times.map_or(u64::MAX, u64::from)),
+        )?;
+        self.scene.sources.push(source);
+        Ok(())
+    }
+
+    /// What grids and sources share: where agents enter, and where they go.
+    fn placed(&self, given: &file::Grid) -> Result<(Grid, Goal), Problem> {
+        let grid = Grid {
+            min: point("min", given.min)?,
+            max: point("max", given.max)?,
+            columns: given.columns,
+            rows: given.rows,
+            jitter: JITTER.check("jitter", given.jitter)?,
+        };
+        let (min, max) = (grid.min, grid.max);
+        range::ordered(&Region { min, max }).map_err(|reason| Problem::new("min", reason))?;
+        for (key, cells, extent) in [
+            ("columns", grid.columns, max.x - min.x),
+            ("rows", grid.rows, max.y - min.y),
+        ] {
+            if cells == 0 {
+                return Err(Problem::new(key, "must be at least 1"));
+            }
+            if cells > 1 && extent == 0.0 && grid.jitter == 0.0 {
+                let reason = format!(
+                    "{cells} agents would stand on one point: `min` and `max` are 0 m apart"
+                );
+                return Err(Problem::new(key, reason));
+            }
+        }
+        Ok((grid, self.goal(given)?))
+    }
+
+    fn goal(&self, given: &file::Grid) -> Result<Goal, Problem> {
+        match (given.goal, given.goal_offset) {
+            (Some(_), Some(_)) => Err(Problem::new(
+                "goal_offset",
+                "either `goal` or `goal_offset`, not both",
+            )),
+            (Some(goal), None) => Ok(Goal::Point(point("goal", goal)?)),
+            (None, Some(offset)) => Ok(Goal::Offset(point("goal_offset", offset)?)),
+            (None, None) => Ok(Goal::Point(self.default_goal()?)),
+        }
+    }
+
+    fn default_goal(&self) -> Result<crate::math::Vector, Problem> {
+        let [x, y] = self.file.goal.ok_or_else(|| {
+            let reason = "no goal: give `goal` here, or one for all at the top of the file";
+            Problem::new("", reason)
+        })?;
+        debug_assert!(
+            COORDINATE.check("goal", x).is_ok(),
+            "the default goal is checked first"
+        );
+        Ok([x, y].into())
+    }
+
+    /// Notes that `entries` times `agents` will enter.
+    fn count(&mut self, agents: u64, entries: u64) -> Result<(), Problem> {
+        self.entering = self.entering.saturating_add(agents.saturating_mul(entries));
+        if self.entering > MOST_AGENTS {
+            let (so_far, secs) = (self.entering, self.duration_secs);
+            let reason = format!(
+                "too many: with these, {so_far} agents enter within {secs} s; at most {MOST_AGENTS} may"
+            );
+            return Err(Problem::new("", reason));
+        }
+        Ok(())
+    }
+
+    /// The group of single agents with this behaviour.
+    fn shared_group(&mut self, behaviour: &Behaviour) -> Result<u16, Problem> {
+        let key = serde_json::json!([
+            behaviour.profile,
+            behaviour.remove_within,
+            behaviour.counted,
+        ])
+        .to_string();
+        if let Some(&group) = self.shared.get(&key) {
+            return Ok(group);
+        }
+        let group = self.group("agents", behaviour)?;
+        self.shared.insert(key, group);
+        Ok(group)
+    }
+
+    fn group(&mut self, name: &str, behaviour: &Behaviour) -> Result<u16, Problem> {
+        if name.is_empty() {
+            return Err(Problem::new("name", "must not be empty"));
+        }
+        if self.scene.groups.len() >= MOST_NUMBERED {
+            let reason = format!("more than {MOST_NUMBERED} different groups of agents");
+            return Err(Problem::new("", reason));
+        }
+        let choice: Option<&ProfileChoice> = behaviour.profile.as_ref();
+        let blend = match choice {
+            None => self.default.clone(),
+            Some(choice) => profiles::blend(choice, &self.file.parameters).under("profile")?,
+        };
+        let removal_radius = DISTANCE.check_given("remove_within", behaviour.remove_within)?;
+        Ok(self.scene.add_group(Group {
+            name: name.to_owned(),
+            blend,
+            removal_radius,
+            counted: behaviour.counted.unwrap_or(true),
+        }))
+    }
+}

@@ -1,0 +1,117 @@
+//! Text → JSON document; a key that is given twice is an error.
+
+use std::fmt;
+
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Number, Value};
+
+use super::error::ScenarioError;
+
+/// Reads `text`, which came from `file`.
+pub(super) fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
+    let document: Result<Document, _> = serde_json::from_str(text);
+    document.map(|document| document.0).map_err(|error| {
+        let (line, column) = (error.line(), error.column());
+        let said = error.to_string();
+        let place = format!(" at line {line} column {column}");
+        ScenarioError::Syntax {
+            file: file.to_owned(),
+            line,
+            column,
+            reason: said.strip_suffix(&place).unwrap_or(&said).to_owned(),
+        }
+    })
+}
+
+/// A JSON value whose objects have every key once.
+struct Document(Value);
+
+impl<'de> Deserialize<'de> for Document {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(DocumentVisitor).map(Self)
+    }
+}
+
+struct DocumentVisitor;
+
+impl<'de> Visitor<'de> for DocumentVisitor {
+    type Value = Value;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a JSON value")
+    }
+
+    fn visit_bool<E>(self, value: bool) -> Result<Value, E> {
+        Ok(Value::Bool(value))
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
+        Ok(Value::from(value))
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Value, E> {
+        Ok(Value::from(value))
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
+        let number = Number::from_f64(value);
+        number
+            .map(Value::Number)
+            .ok_or_else(|| E::custom("number out of range"))
+    }
+
+    fn visit_str<E>(self, value: &str) -> Result<Value, E> {
+        Ok(Value::from(value))
+    }
+
+    fn visit_unit<E>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Value, A::Error> {
+        let mut list = Vec::new();
+        while let Some(Document(item)) = items.next_element()? {
+            list.push(item);
+        }
+        Ok(Value::Array(list))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
+        let mut object = Map::new();
+        while let Some(key) = entries.next_key::<String>()? {
+            if object.contains_key(&key) {
+                return Err(A::Error::custom(format!("key `{key}` is given twice")));
+            }
+            let Document(value) = entries.next_value()?;
+            object.insert(key, value);
+        }
+        Ok(Value::Object(object))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn documents_read_as_json_does() {
+        let text = r#"{"a": [1, -2, 0.5, "x", null, true, {"b": {}}]}"#;
+        let expected: Value = serde_json::from_str(text).unwrap();
+        assert_eq!(read(text, "f").unwrap(), expected);
+    }
+
+    #[test]
+    fn a_key_given_twice_and_bad_syntax_are_reported_with_their_place() {
+        let twice = read("{\"seed\": 1,\n \"seed\": 2}", "f.json").unwrap_err();
+        assert_eq!(
+            twice.to_string(),
+            "f.json: line 2, column 7: key `seed` is given twice"
+        );
+        let cut = read("{\"seed\": 1", "f.json").unwrap_err();
+        assert_eq!(
+            cut.to_string(),
+            "f.json: line 1, column 10: EOF while parsing an object"
+        );
+        assert!(read(&"[".repeat(100_000), "f").is_err());
+    }
+}

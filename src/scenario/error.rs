@@ -1,0 +1,141 @@
+//! What can be wrong with a scenario, and where.
+
+/// Why a scenario cannot be run; displays as `FILE: key.path[3].key: reason`.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ScenarioError {
+    /// The file could not be read.
+    #[error("{file}: {reason}")]
+    Unreadable {
+        /// The file.
+        file: String,
+        /// What the system said.
+        reason: String,
+    },
+    /// The text is no JSON, or gives a key twice.
+    #[error("{file}: line {line}, column {column}: {reason}")]
+    Syntax {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        /// What is wrong there.
+        reason: String,
+    },
+    /// A key or value that means nothing.
+    #[error("{file}: {problem}")]
+    Invalid {
+        /// The file, and the settings with which it was read if these alone make the difference.
+        file: String,
+        /// Where and why.
+        problem: Problem,
+    },
+    /// The same, put there by a setting.
+    #[error("--set {setting}: {problem}")]
+    Setting {
+        /// The setting as given.
+        setting: String,
+        /// Where below the setting's own key, and why.
+        problem: Problem,
+    },
+    /// No scenario of this name comes with the program.
+    #[error("no scenario is called `{name}`; there are {known}")]
+    UnknownName {
+        /// The name asked for.
+        name: String,
+        /// Those there are.
+        known: String,
+    },
+}
+
+/// One thing that is wrong: a key path, empty for the whole document, and the reason.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// Where, as in `sources[0].every_secs`.
+    pub path: String,
+    /// Why.
+    pub reason: String,
+}
+
+impl std::fmt::Display for Problem {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        if self.path.is_empty() {
+            f.write_str(&self.reason)
+        } else {
+            write!(f, "{}: {}", self.path, self.reason)
+        }
+    }
+}
+
+impl Problem {
+    pub(super) fn new(path: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self {
+            path: path.into(),
+            reason: reason.into(),
+        }
+    }
+
+    /// The same problem as seen from `path`, if it lies there or below.
+    pub(super) fn seen_from(&self, path: &str) -> Option<Self> {
+        let rest = self.path.strip_prefix(path)?;
+        let inside = rest.is_empty() || rest.starts_with(['.', '[']);
+        inside.then(|| Self::new(rest.trim_start_matches('.'), self.reason.clone()))
+    }
+
+    /// The same problem seen from outside of `parent`.
+    fn under(self, parent: &str) -> Self {
+        let joint = match self.path.chars().next() {
+            None | Some('[') => "",
+            Some(_) => ".",
+        };
+        Self {
+            path: format!("{parent}{joint}{}", self.path),
+            reason: self.reason,
+        }
+    }
+}
+
+/// Puts the parent's key before the path of a problem.
+pub(super) trait Under {
+    fn under(self, parent: &str) -> Self;
+}
+
+impl<T> Under for Result<T, Problem> {
+    fn under(self, parent: &str) -> Self {
+        self.map_err(|problem| problem.under(parent))
+    }
+}
+
+/// "; did you mean `x`?" if one of `known` looks like `given`, else nothing.
+pub(super) fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    /// Below this similarity a name is another name, not a slip.
+    const SIMILAR: f64 = 0.75;
+    known
+        .into_iter()
+        .map(|name| (strsim::jaro_winkler(given, name), name))
+        .filter(|(similarity, _)| *similarity >= SIMILAR)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, name)| format!("; did you mean `{name}`?"))
+        .unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_grow_from_the_inside_out() {
+        let problem: Result<(), Problem> = Err(Problem::new("[1]", "no"));
+        let problem = problem.under("goal").under("agents[3]").unwrap_err();
+        assert_eq!(problem.to_string(), "agents[3].goal[1]: no");
+        assert_eq!(Problem::new("", "no").under("a").to_string(), "a: no");
+    }
+
+    #[test]
+    fn slips_of_the_finger_are_recognised() {
+        let known = ["viscosity", "seed"];
+        assert_eq!(suggestion("viscosty", known), "; did you mean `viscosity`?");
+        assert_eq!(suggestion("colour", known), "");
+    }
+}

@@ -1,0 +1,247 @@
+//! What a scenario file says, key by key; nothing is checked here but names and types.
+
+use std::fmt;
+
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, MapAccess, Visitor};
+use serde::{Deserialize, Serialize};
+
+use crate::boundary::WallMethod;
+use crate::catalog::{NavigationKind, Parameters};
+use crate::scene::Integrator;
+
+/// Lower left and upper right corner.
+pub(super) type Corners = [[f64; 2]; 2];
+
+/// A whole file.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct File {
+    pub name: Option<String>,
+    pub description: Option<String>,
+    pub seed: Option<u64>,
+    pub duration_secs: Option<f64>,
+    pub time_step_secs: Option<f64>,
+    pub coarse_every: Option<u32>,
+    pub integrator: Integrator,
+    pub wall_method: WallMethod,
+    pub preferred_speed: Option<f64>,
+    pub max_speed: Option<f64>,
+    pub profile: Option<ProfileChoice>,
+    pub parameters: Parameters,
+    pub obstacles: Vec<Vec<[f64; 2]>>,
+    pub goal: Option<[f64; 2]>,
+    pub agents: Vec<Agent>,
+    pub grids: Vec<Grid>,
+    pub sources: Vec<Source>,
+    pub events: Vec<Event>,
+    pub measurements: Vec<Measurement>,
+    pub stop: Stop,
+    pub view: Option<View>,
+    pub debug_agents: Vec<u32>,
+}
+
+/// How agents behave, and what becomes of them.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Behaviour {
+    pub profile: Option<ProfileChoice>,
+    pub remove_within: Option<f64>,
+    pub counted: Option<bool>,
+}
+
+/// One agent.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Agent {
+    pub position: [f64; 2],
+    pub velocity: Option<[f64; 2]>,
+    pub radius: Option<f64>,
+    pub mass: Option<f64>,
+    pub goal: Option<[f64; 2]>,
+    pub mean_density: Option<f64>,
+    pub profile: Option<ProfileChoice>,
+    pub remove_within: Option<f64>,
+    pub counted: Option<bool>,
+}
+
+/// Agents on a grid, there from the start.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Grid {
+    pub name: Option<String>,
+    pub min: [f64; 2],
+    pub max: [f64; 2],
+    pub columns: u32,
+    pub rows: u32,
+    #[serde(default)]
+    pub jitter: f64,
+    pub goal: Option<[f64; 2]>,
+    pub goal_offset: Option<[f64; 2]>,
+    pub profile: Option<ProfileChoice>,
+    pub remove_within: Option<f64>,
+    pub counted: Option<bool>,
+}
+
+/// Agents that enter on a grid again and again.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Source {
+    pub name: Option<String>,
+    pub min: [f64; 2],
+    pub max: [f64; 2],
+    pub columns: u32,
+    pub rows: u32,
+    #[serde(default)]
+    pub jitter: f64,
+    pub goal: Option<[f64; 2]>,
+    pub goal_offset: Option<[f64; 2]>,
+    pub profile: Option<ProfileChoice>,
+    pub remove_within: Option<f64>,
+    pub counted: Option<bool>,
+    #[serde(default)]
+    pub start_secs: f64,
+    pub every_secs: f64,
+    pub times: Option<u32>,
+}
+
+impl Agent {
+    pub(super) fn behaviour(&self) -> Behaviour {
+        Behaviour {
+            profile: self.profile.clone(),
+            remove_within: self.remove_within,
+            counted: self.counted,
+        }
+    }
+}
+
+impl Grid {
+    pub(super) fn behaviour(&self) -> Behaviour {
+        Behaviour {
+            profile: self.profile.clone(),
+            remove_within: self.remove_within,
+            counted: self.counted,
+        }
+    }
+}
+
+impl Source {
+    /// What it shares with a grid.
+    pub(super) fn grid(&self) -> Grid {
+        Grid {
+            name: self.name.clone(),
+            min: self.min,
+            max: self.max,
+            columns: self.columns,
+            rows: self.rows,
+            jitter: self.jitter,
+            goal: self.goal,
+            goal_offset: self.goal_offset,
+            profile: self.profile.clone(),
+            remove_within: self.remove_within,
+            counted: self.counted,
+        }
+    }
+}
+
+/// A push.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Event {
+    pub name: Option<String>,
+    pub at_secs: f64,
+    pub for_secs: f64,
+    pub region: Corners,
+    pub goal_scale: Option<f64>,
+    #[serde(default)]
+    pub ignore_contact: bool,
+    #[serde(default)]
+    pub ignore_sph: bool,
+}
+
+/// Something to measure.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub(super) enum Measurement {
+    Density {
+        at_secs: f64,
+        region: Option<Corners>,
+    },
+    FlowOfFirst {
+        arrivals: u32,
+    },
+    FlowUntil {
+        until_secs: f64,
+    },
+    Evacuated {},
+}
+
+/// When to stop before the end.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Stop {
+    pub when_empty: bool,
+    pub idle_secs: Option<f64>,
+}
+
+/// What a recording shows first.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct View {
+    pub region: Corners,
+    #[serde(default)]
+    pub opens_at_secs: f64,
+}
+
+/// A profile by name or in full.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub(super) enum ProfileChoice {
+    Named(String),
+    Custom(Box<CustomProfile>),
+}
+
+/// A profile or blend in full: exactly one of `base`, `navigation` and `blend`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct CustomProfile {
+    pub name: Option<String>,
+    pub base: Option<String>,
+    pub navigation: Option<NavigationKind>,
+    pub sph: Option<bool>,
+    pub blend: Option<Vec<Step>>,
+    pub parameters: Parameters,
+}
+
+/// One profile of a blend.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Step {
+    pub at_density: f64,
+    pub profile: ProfileChoice,
+}
+
+/// Not an untagged enum, because of whose errors nobody would find the wrong key.
+impl<'de> Deserialize<'de> for ProfileChoice {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(ProfileVisitor)
+    }
+}
+
+struct ProfileVisitor;
+
+impl<'de> Visitor<'de> for ProfileVisitor {
+    type Value = ProfileChoice;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("the name of a profile, or an object with its parameters")
+    }
+
+    fn visit_str<E>(self, name: &str) -> Result<ProfileChoice, E> {
+        Ok(ProfileChoice::Named(name.to_owned()))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, entries: A) -> Result<ProfileChoice, A::Error> {
+        let custom = CustomProfile::deserialize(MapAccessDeserializer::new(entries))?;
+        Ok(ProfileChoice::Custom(Box::new(custom)))
+    }
+}

@@ -1,0 +1,158 @@
+//! What a scenario file says → a checked [`Scenario`] → a [`Scene`] for the simulation.
+//!
+//! A file is a JSON object; every key is optional, and an unknown one is an error. Lengths are in
+//! metres, times in seconds, points `[x, y]`, regions `[[x0, y0], [x1, y1]]`. The keys with their
+//! units, defaults and ranges are in [`settings`]; the nested ones:
+//!
+//! | in | keys |
+//! |---|---|
+//! | `agents` | `position`, and optionally `velocity`, `radius`, `mass`, `goal`, `mean_density` (ρ̂ of the frame before), `profile`, `remove_within`, `counted` |
+//! | `grids` | `min`, `max`, `columns`, `rows`, and optionally `name`, `jitter`, `goal` or `goal_offset` (from each agent's start), `profile`, `remove_within`, `counted` |
+//! | `sources` | the same, `every_secs`, and optionally `start_secs`, `times` |
+//! | `events` | `at_secs`, `for_secs`, `region`, and optionally `name`, `goal_scale`, `ignore_contact`, `ignore_sph` |
+//! | `measurements` | one of `density` (`at_secs`, optionally `region`), `flow_of_first` (`arrivals`), `flow_until` (`until_secs`), `evacuated` (nothing) |
+//! | `stop` | `when_empty`, `idle_secs` |
+//! | `view` | `region`, and optionally `opens_at_secs` |
+//! | `profile` | one of `base` (a name), `navigation` (`goal`, `social` or `rvo`; with it `sph`, true or false) and `blend` (a list of `at_density`, `profile`), and optionally `name`, `parameters` |
+//!
+//! An agent is removed `remove_within` metres of its goal, and never without that key; unless
+//! `counted` is false, its arrival counts as evacuated. `parameters` at the top go before those of
+//! the profiles. Ids are given from 0 in the order of entry: agents, grids, then sources as they come.
+
+mod check;
+mod crowd;
+mod document;
+mod error;
+mod file;
+mod profiles;
+mod range;
+mod setting;
+mod settings;
+mod shipped;
+
+pub use error::{Problem, ScenarioError};
+pub use setting::{Setting, SettingError};
+pub use settings::{SettingDoc, settings};
+pub use shipped::{SHIPPED, Shipped};
+
+use std::io::Read;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::metrics::Measurement;
+use crate::scene::{Region, Scene};
+
+/// A longer file is refused, bytes.
+const LONGEST_FILE: u64 = 1 << 28;
+
+/// A checked scenario: what to simulate, for how long, and what to look at.
+#[derive(Debug, Clone)]
+pub struct Scenario {
+    /// What it is called.
+    pub name: String,
+    /// What it shows, in a line; may be empty.
+    pub description: String,
+    /// What to simulate.
+    pub scene: Scene,
+    /// For how long, seconds.
+    pub duration_secs: f64,
+    /// When to stop before.
+    pub stop: Stop,
+    /// What to measure.
+    pub measurements: Vec<Measurement>,
+    /// What a recording shows first.
+    pub view: View,
+    /// Ids of agents that a recording lays open; not all of them need ever enter.
+    pub debug_agents: Vec<u32>,
+    /// The name of the profile of agents that name none.
+    pub profile_name: String,
+    /// The file as given, with the settings in it.
+    pub document: Value,
+}
+
+/// When a run stops before its end.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stop {
+    /// When nobody is there and nobody will come.
+    pub when_empty: bool,
+    /// After so many seconds without a counted arrival, from the start or the last one.
+    pub idle_secs: Option<f64>,
+}
+
+/// What a recording shows first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// The part of the plane, metres.
+    pub region: Region,
+    /// The moment, seconds.
+    pub opens_at_secs: f64,
+}
+
+impl Scenario {
+    /// Reads a scenario from JSON; `file` is what messages call it.
+    ///
+    /// # Errors
+    /// Anything wrong with the text or with the settings: the first thing, with its place.
+    pub fn parse(text: &str, file: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
+        let given = document::read(text, file)?;
+        let stem = Path::new(file).file_stem().unwrap_or_default();
+        let stem = stem.to_string_lossy();
+        let invalid = |file: String, problem| ScenarioError::Invalid { file, problem };
+        if settings.is_empty() || !given.is_object() {
+            return check::scenario(&given, &stem).map_err(|p| invalid(file.to_owned(), p));
+        }
+        let mut changed = given.clone();
+        let mut paths = Vec::with_capacity(settings.len());
+        for setting in settings {
+            let applied = setting.apply(&mut changed);
+            paths.push(applied.map_err(|problem| setting.refused(problem))?);
+        }
+        check::scenario(&changed, &stem).map_err(|problem| {
+            for (path, setting) in paths.iter().zip(settings).rev() {
+                if let Some(problem) = problem.seen_from(path) {
+                    return setting.refused(problem);
+                }
+            }
+            let mut source = file.to_owned();
+            if check::scenario(&given, &stem).is_ok() {
+                source.push_str(" with");
+                source.extend(settings.iter().map(|setting| format!(" --set {setting}")));
+            }
+            invalid(source, problem)
+        })
+    }
+
+    /// Reads a scenario from a file.
+    ///
+    /// # Errors
+    /// The file cannot be read or is too long, or as [`parse`](Self::parse).
+    pub fn load(path: &Path, settings: &[Setting]) -> Result<Self, ScenarioError> {
+        let file = path.display().to_string();
+        let unreadable = |reason: String| ScenarioError::Unreadable {
+            file: file.clone(),
+            reason,
+        };
+        let mut text = String::new();
+        std::fs::File::open(path)
+            .and_then(|opened| opened.take(LONGEST_FILE + 1).read_to_string(&mut text))
+            .map_err(|error| unreadable(error.to_string()))?;
+        if text.len() as u64 > LONGEST_FILE {
+            return Err(unreadable(format!("longer than {LONGEST_FILE} bytes")));
+        }
+        Self::parse(&text, &file, settings)
+    }
+
+    /// One of the scenarios that come with the program.
+    ///
+    /// # Errors
+    /// No such name, or as [`parse`](Self::parse) because of the settings.
+    pub fn shipped(name: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
+        let found = SHIPPED.iter().find(|shipped| shipped.name == name);
+        let shipped = found.ok_or_else(|| ScenarioError::UnknownName {
+            name: name.to_owned(),
+            known: SHIPPED.map(|shipped| shipped.name).join(", "),
+        })?;
+        Self::parse(shipped.text, &format!("{name}.json"), settings)
+    }
+}

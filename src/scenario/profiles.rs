@@ -1,0 +1,174 @@
+//! Profiles and blends as given → as the engine takes them.
+
+use super::error::{Problem, Under, suggestion};
+use super::file::{CustomProfile, ProfileChoice, Step};
+use super::settings::{self, DENSITY};
+use crate::catalog::{self, NAMES, Parameters};
+use crate::profile::{Blend, BlendStep, Profile};
+
+/// The blend that is meant; `overriding` are the scenario-wide values, which go before its own.
+pub(super) fn blend(choice: &ProfileChoice, overriding: &Parameters) -> Result<Blend, Problem> {
+    let blend = match choice {
+        ProfileChoice::Named(name) => named(name, overriding)?,
+        ProfileChoice::Custom(custom) => custom_blend(custom, overriding)?,
+    };
+    let (min, max) = (blend.sph.rest_density_min, blend.sph.rest_density_max);
+    if min > max {
+        let reason = format!("rest_density_min {min} is above rest_density_max {max}");
+        return Err(Problem::new("", reason));
+    }
+    Ok(blend)
+}
+
+fn named(name: &str, parameters: &Parameters) -> Result<Blend, Problem> {
+    catalog::named(name, parameters)
+        .ok_or_else(|| unknown(name))?
+        .map_err(|error| Problem::new("", error.to_string()))
+}
+
+fn unknown(name: &str) -> Problem {
+    let names = NAMES.join(", ");
+    let near = suggestion(name, NAMES);
+    Problem::new(
+        "",
+        format!("no profile is called `{name}`{near} (there are {names})"),
+    )
+}
+
+fn custom_blend(custom: &CustomProfile, overriding: &Parameters) -> Result<Blend, Problem> {
+    checked(custom)?;
+    let parameters = overriding.or(&custom.parameters);
+    if let Some(steps) = &custom.blend {
+        return blend_of_steps(custom, steps, overriding);
+    }
+    if let Some(base) = &custom.base
+        && catalog::plain(base, &parameters).is_none()
+    {
+        let mut blend = named(base, &parameters).under("base")?;
+        if let Some(name) = &custom.name {
+            blend.name.clone_from(name);
+        }
+        return Ok(blend);
+    }
+    Ok(Blend::single(
+        custom_profile(custom, &parameters)?,
+        parameters.sph(),
+    ))
+}
+
+/// One profile that is no blend.
+fn custom_profile(custom: &CustomProfile, parameters: &Parameters) -> Result<Profile, Problem> {
+    let profile = match (&custom.base, custom.navigation) {
+        (Some(base), _) => plain(base, parameters).under("base")?,
+        (None, Some(kind)) => parameters.profile("custom", kind, custom.sph.unwrap_or(true)),
+        (None, None) => {
+            let reason = "a blend is made of plain profiles, not of blends";
+            return Err(Problem::new("blend", reason));
+        }
+    };
+    let name = custom.name.clone().unwrap_or(profile.name);
+    Ok(Profile { name, ..profile })
+}
+
+fn plain(name: &str, parameters: &Parameters) -> Result<Profile, Problem> {
+    catalog::plain(name, parameters).ok_or_else(|| {
+        if NAMES.contains(&name) {
+            let reason = format!("a blend is made of plain profiles; `{name}` is a blend itself");
+            Problem::new("", reason)
+        } else {
+            unknown(name)
+        }
+    })
+}
+
+fn checked(custom: &CustomProfile) -> Result<(), Problem> {
+    if custom.name.as_ref().is_some_and(|name| name.is_empty()) {
+        return Err(Problem::new("name", "must not be empty"));
+    }
+    let ways = [
+        custom.base.is_some(),
+        custom.navigation.is_some(),
+        custom.blend.is_some(),
+    ];
+    if ways.into_iter().filter(|&given| given).count() != 1 {
+        let reason = "a profile in full has exactly one of `base`, `navigation` and `blend`";
+        return Err(Problem::new("", reason));
+    }
+    if custom.sph.is_some() && custom.navigation.is_none() {
+        return Err(Problem::new("sph", "goes with `navigation` only"));
+    }
+    settings::check(&custom.parameters).under("parameters")
+}
+
+fn blend_of_steps(
+    custom: &CustomProfile,
+    steps: &[Step],
+    overriding: &Parameters,
+) -> Result<Blend, Problem> {
+    let shared = shared_by(custom, steps)?;
+    let parameters = overriding.or(&custom.parameters).or(&shared);
+    let mut converted = Vec::with_capacity(steps.len());
+    for (k, step) in steps.iter().enumerate() {
+        let place = format!("blend[{k}]");
+        let at_density = DENSITY.check("at_density", step.at_density).under(&place)?;
+        let profile = step_profile(&step.profile, &parameters)
+            .under("profile")
+            .under(&place)?;
+        converted.push(BlendStep {
+            at_density,
+            profile,
+        });
+    }
+    let name = custom.name.clone().unwrap_or_else(|| {
+        let names: Vec<&str> = converted
+            .iter()
+            .map(|step| step.profile.name.as_str())
+            .collect();
+        names.join("->")
+    });
+    Blend::new(name, parameters.sph(), converted)
+        .map_err(|error| Problem::new("blend", error.to_string()))
+}
+
+fn step_profile(choice: &ProfileChoice, parameters: &Parameters) -> Result<Profile, Problem> {
+    match choice {
+        ProfileChoice::Named(name) => plain(name, parameters),
+        ProfileChoice::Custom(custom) => {
+            checked(custom)?;
+            custom_profile(custom, &parameters.or(&custom.parameters))
+        }
+    }
+}
+
+/// The SPH parameters given anywhere in a blend: they belong to all of it.
+fn shared_by(custom: &CustomProfile, steps: &[Step]) -> Result<Parameters, Problem> {
+    let mut shared = sph_only(&custom.parameters);
+    for (k, step) in steps.iter().enumerate() {
+        let ProfileChoice::Custom(step) = &step.profile else {
+            continue;
+        };
+        let own = sph_only(&step.parameters);
+        let so_far = settings::given(&shared);
+        for (key, value) in settings::given(&own) {
+            if let Some((_, other)) = so_far.iter().find(|(k, v)| *k == key && *v != value) {
+                let path = format!("blend[{k}].profile.parameters.{key}");
+                let reason =
+                    format!("all profiles of a blend share it: {value} here, {other} before");
+                return Err(Problem::new(path, reason));
+            }
+        }
+        shared = shared.or(&own);
+    }
+    Ok(shared)
+}
+
+fn sph_only(parameters: &Parameters) -> Parameters {
+    Parameters {
+        support_radius: parameters.support_radius,
+        gas_constant: parameters.gas_constant,
+        rest_density_min: parameters.rest_density_min,
+        rest_density_max: parameters.rest_density_max,
+        averaging_time: parameters.averaging_time,
+        ..Parameters::default()
+    }
+}

@@ -1,0 +1,117 @@
+//! Which numbers are allowed, and how to say so.
+
+use std::fmt;
+
+use super::error::Problem;
+use crate::math::Vector;
+use crate::scene::Region;
+
+/// An interval of finite numbers, closed above.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Range {
+    lowest: f64,
+    /// Is `lowest` itself left out?
+    open: bool,
+    highest: f64,
+}
+
+/// x or y of any point, metres; walls and contacts keep their digits up to here.
+pub(super) const COORDINATE: Range = Range::at_least(-1e6, 1e6);
+/// Times and durations, seconds.
+pub(super) const TIME: Range = Range::at_least(0.0, 1e7);
+/// Δt_fine, seconds.
+pub(super) const TIME_STEP: Range = Range::at_least(1e-6, 1.0);
+/// Δt_coarse in frames.
+pub(super) const COARSE_EVERY: Range = Range::at_least(1.0, 1e6);
+/// s_pref, m/s.
+pub(super) const PREFERRED_SPEED: Range = Range::at_least(0.0, 100.0);
+/// s_max, m/s.
+pub(super) const MAX_SPEED: Range = Range::above(0.0, 100.0);
+
+impl Range {
+    pub(super) const fn at_least(lowest: f64, highest: f64) -> Self {
+        Self {
+            lowest,
+            open: false,
+            highest,
+        }
+    }
+
+    pub(super) const fn above(lowest: f64, highest: f64) -> Self {
+        Self {
+            lowest,
+            open: true,
+            highest,
+        }
+    }
+
+    /// `value`, if it is allowed for `key`.
+    pub(super) fn check(&self, key: &str, value: f64) -> Result<f64, Problem> {
+        let high_enough = value > self.lowest || (value == self.lowest && !self.open);
+        if high_enough && value <= self.highest {
+            Ok(value)
+        } else {
+            Err(Problem::new(key, format!("must be {self}, not {value}")))
+        }
+    }
+
+    /// `value`, if there is none or it is allowed for `key`.
+    pub(super) fn check_given(
+        &self,
+        key: &str,
+        value: Option<f64>,
+    ) -> Result<Option<f64>, Problem> {
+        value.map(|value| self.check(key, value)).transpose()
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let from = if self.open { "above" } else { "at least" };
+        write!(f, "{from} {} and at most {}", self.lowest, self.highest)
+    }
+}
+
+/// Both coordinates in range.
+pub(super) fn point(key: &str, [x, y]: [f64; 2]) -> Result<Vector, Problem> {
+    let checked = |place: &str, value| COORDINATE.check(&format!("{key}{place}"), value);
+    Ok(Vector::new(checked("[0]", x)?, checked("[1]", y)?))
+}
+
+/// Lower left and upper right corner, in this order.
+pub(super) fn region(key: &str, [min, max]: [[f64; 2]; 2]) -> Result<Region, Problem> {
+    let region = Region {
+        min: point(&format!("{key}[0]"), min)?,
+        max: point(&format!("{key}[1]"), max)?,
+    };
+    ordered(&region).map_err(|reason| Problem::new(key, reason))?;
+    Ok(region)
+}
+
+/// Is `min` really below and left of `max`?
+pub(super) fn ordered(region: &Region) -> Result<(), String> {
+    let (min, max) = (region.min, region.max);
+    if min.x <= max.x && min.y <= max.y {
+        return Ok(());
+    }
+    Err(format!(
+        "the lower left corner comes first: ({}, {}) is not below and left of ({}, {})",
+        min.x, min.y, max.x, max.y
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ends_belong_to_a_range_unless_it_is_open() {
+        let closed = Range::at_least(0.0, 1.0);
+        let open = Range::above(0.0, 1.0);
+        assert!(closed.check("a", 0.0).is_ok() && closed.check("a", 1.0).is_ok());
+        assert!(open.check("a", 0.0).is_err() && open.check("a", 1.0).is_ok());
+        assert!(closed.check("a", f64::NAN).is_err());
+        assert!(closed.check("a", f64::INFINITY).is_err());
+        assert_eq!(open.to_string(), "above 0 and at most 1");
+    }
+}

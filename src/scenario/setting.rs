@@ -1,0 +1,201 @@
+//! `--set key=value`: one change to a scenario's document.
+
+use std::str::FromStr;
+
+use serde_json::{Map, Value};
+
+use super::error::{Problem, ScenarioError, suggestion};
+use super::settings::{self, TEXTS, settings};
+
+/// One change: `viscosity=5`, `seed=7`, `profile=sf`, `sources.0.rows=50`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setting {
+    text: String,
+    path: Vec<String>,
+    value: Value,
+}
+
+/// Why a text is no setting.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SettingError {
+    /// There is no `=`.
+    #[error("a setting is written key=value")]
+    NoValue,
+    /// No such key.
+    #[error("unknown setting `{key}`{suggestion} (`sandbox list --settings` shows them all)")]
+    UnknownKey {
+        /// The key as given.
+        key: String,
+        /// "; did you mean …?", or nothing.
+        suggestion: String,
+    },
+}
+
+impl FromStr for Setting {
+    type Err = SettingError;
+
+    /// The value is read as JSON, and as text where it is none.
+    fn from_str(text: &str) -> Result<Self, SettingError> {
+        let (key, value) = text.split_once('=').ok_or(SettingError::NoValue)?;
+        let key = key.trim();
+        let mut path: Vec<String> = key.split('.').map(str::to_owned).collect();
+        let known = settings();
+        if !known.iter().any(|doc| doc.key == path[0]) {
+            return Err(SettingError::UnknownKey {
+                key: path[0].clone(),
+                suggestion: suggestion(&path[0], known.iter().map(|doc| doc.key)),
+            });
+        }
+        if settings::is_parameter(&path[0]) {
+            path.insert(0, "parameters".to_owned());
+        }
+        let as_text = || Value::from(value.trim());
+        let value = if TEXTS.contains(&key) {
+            as_text()
+        } else {
+            serde_json::from_str(value).unwrap_or_else(|_| as_text())
+        };
+        Ok(Self {
+            text: text.to_owned(),
+            path,
+            value,
+        })
+    }
+}
+
+impl std::fmt::Display for Setting {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl Setting {
+    /// The error for a problem at or below the changed value.
+    pub(super) fn refused(&self, problem: Problem) -> ScenarioError {
+        ScenarioError::Setting {
+            setting: self.to_string(),
+            problem,
+        }
+    }
+
+    /// Changes `document` and returns the path of the changed value, as in `sources[0].rows`.
+    pub(super) fn apply(&self, document: &mut Value) -> Result<String, Problem> {
+        let mut place = document;
+        let mut path = String::new();
+        for (depth, segment) in self.path.iter().enumerate() {
+            let begun = if depth + 1 == self.path.len() {
+                Some(Value::Null)
+            } else {
+                let may_begin = depth == 0 && BEGUN.contains(&segment.as_str());
+                may_begin.then(|| Value::Object(Map::new()))
+            };
+            place = inner(place, segment, begun, &path)?;
+            path = match segment.parse::<usize>() {
+                Ok(index) => format!("{path}[{index}]"),
+                Err(_) if path.is_empty() => segment.clone(),
+                Err(_) => format!("{path}.{segment}"),
+            };
+        }
+        *place = self.value.clone();
+        Ok(path)
+    }
+}
+
+/// Objects that a setting may begin where a file has none.
+const BEGUN: [&str; 2] = ["parameters", "stop"];
+
+/// What `segment` means in the value at `path`; an object without it gets `begun`.
+fn inner<'a>(
+    outer: &'a mut Value,
+    segment: &str,
+    begun: Option<Value>,
+    path: &str,
+) -> Result<&'a mut Value, Problem> {
+    let (found, reason) = match outer {
+        Value::Object(object) => {
+            if let Some(begun) = begun {
+                object.entry(segment).or_insert(begun);
+            }
+            let whole = if path.is_empty() { "the file" } else { path };
+            (
+                object.get_mut(segment),
+                format!("{whole} has no `{segment}`"),
+            )
+        }
+        Value::Array(list) => {
+            let reason = format!("{path} has {} elements, counted from 0", list.len());
+            let index = segment.parse::<usize>().ok();
+            (index.and_then(|index| list.get_mut(index)), reason)
+        }
+        _ => (None, format!("{path} is neither an object nor a list")),
+    };
+    found.ok_or_else(|| Problem::new("", reason))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn applied(text: &str, document: Value) -> Result<(String, Value), String> {
+        let setting: Setting = text.parse().map_err(|e: SettingError| e.to_string())?;
+        let mut document = document;
+        let path = setting.apply(&mut document).map_err(|p| p.to_string())?;
+        Ok((path, document))
+    }
+
+    #[test]
+    fn parameters_go_where_the_file_keeps_them() {
+        let expected = (
+            "parameters.viscosity".to_owned(),
+            json!({"parameters": {"viscosity": 5}}),
+        );
+        assert_eq!(applied("viscosity=5", json!({})), Ok(expected.clone()));
+        assert_eq!(applied("parameters.viscosity=5", json!({})), Ok(expected));
+    }
+
+    #[test]
+    fn values_are_json_and_otherwise_text() {
+        let value = |text| applied(text, json!({})).unwrap().1;
+        assert_eq!(value("profile=sf->sph"), json!({"profile": "sf->sph"}));
+        assert_eq!(
+            value("profile={\"base\": \"sf\"}"),
+            json!({"profile": {"base": "sf"}})
+        );
+        assert_eq!(value("name=5"), json!({"name": "5"}));
+        assert_eq!(
+            value("stop.when_empty=true"),
+            json!({"stop": {"when_empty": true}})
+        );
+    }
+
+    #[test]
+    fn dots_lead_into_what_is_there() {
+        let document = || json!({"sources": [{"rows": 1}], "profile": "sf"});
+        let (path, changed) = applied("sources.0.rows=50", document()).unwrap();
+        assert_eq!(path, "sources[0].rows");
+        assert_eq!(changed["sources"][0]["rows"], 50);
+        let reason = |text| applied(text, document()).unwrap_err();
+        assert_eq!(
+            reason("sources.1.rows=5"),
+            "sources has 1 elements, counted from 0"
+        );
+        assert_eq!(reason("grids.0.rows=5"), "the file has no `grids`");
+        assert_eq!(
+            reason("profile.base=sf"),
+            "profile is neither an object nor a list"
+        );
+    }
+
+    #[test]
+    fn unknown_keys_are_refused_with_the_nearest_known_one() {
+        let reason = |text| applied(text, json!({})).unwrap_err();
+        assert_eq!(
+            reason("viscosty=5"),
+            "unknown setting `viscosty`; did you mean `viscosity`? \
+             (`sandbox list --settings` shows them all)"
+        );
+        assert_eq!(reason("viscosity"), "a setting is written key=value");
+        assert!(reason("=5").starts_with("unknown setting ``"));
+    }
+}

@@ -1,0 +1,39 @@
+//! The scenarios that come with the program.
+
+use serde_json::Value;
+
+/// A scenario file inside the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shipped {
+    /// What it is called.
+    pub name: &'static str,
+    /// The file.
+    pub text: &'static str,
+}
+
+/// The paper's three scenarios (§6).
+pub const SHIPPED: [Shipped; 3] = [
+    Shipped {
+        name: "evacuation",
+        text: include_str!("../../scenarios/evacuation.json"),
+    },
+    Shipped {
+        name: "crossing",
+        text: include_str!("../../scenarios/crossing.json"),
+    },
+    Shipped {
+        name: "concert",
+        text: include_str!("../../scenarios/concert.json"),
+    },
+];
+
+impl Shipped {
+    /// The file's `description`.
+    pub fn description(&self) -> String {
+        let document: Value = serde_json::from_str(self.text).unwrap_or_default();
+        document["description"]
+            .as_str()
+            .unwrap_or_default()
+            .to_owned()
+    }
+}
