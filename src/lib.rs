@@ -56,3 +56,6 @@ pub mod simulation;
 pub mod metrics;
 
 pub mod breakdown;
+
+#[cfg(feature = "recording")]
+pub mod recording;
