@@ -28,7 +28,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let goal = Vector::new(13.0, 5.0);
     let places = grid.positions(scene.seed, 0);
-    scene.agents = places.map(|place| NewAgent::at(place, goal, group)).collect();
+    scene.agents = places
+        .map(|place| NewAgent::at(place, goal, group))
+        .collect();
 
     let mut simulation = Simulation::new(scene)?;
     while simulation.frame().clock.time() < 10.0 {

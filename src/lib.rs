@@ -58,3 +58,9 @@ pub mod metrics;
 pub mod breakdown;
 
 pub mod scenario;
+
+#[cfg(feature = "recording")]
+pub mod recording;
+
+#[cfg(feature = "cli")]
+pub mod cli;

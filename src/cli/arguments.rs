@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::scenario::SHIPPED;
+
 /// Simulate, measure and inspect dense crowds (SPH crowds, van Toll et al. 2021).
 #[derive(Parser)]
 #[command(version, arg_required_else_help = true)]
@@ -15,7 +17,9 @@ pub struct Arguments {
 #[derive(Subcommand)]
 pub enum Command {
     /// 400 people leave a room through a narrow door (§6.1)
-    #[command(after_help = "Example: sandbox evacuation --profile 'sf->sph' --set rest_density_max=6 --json")]
+    #[command(
+        after_help = "Example: sandbox evacuation --profile 'sf->sph' --set rest_density_max=6 --json"
+    )]
     Evacuation(RunOptions),
     /// A crowd crosses a stream on its way to a narrow door (§6.2)
     #[command(after_help = "Example: sandbox crossing --profile rvo --save crossing.rrd")]
@@ -129,8 +133,8 @@ pub enum Source {
 impl Source {
     /// A shipped scenario of that name, else a file.
     pub fn named(text: &str) -> Self {
-        let shipped = crate::scenario::shipped().iter();
-        match shipped.map(|shipped| shipped.name).find(|&name| name == text) {
+        let names = SHIPPED.iter().map(|shipped| shipped.name);
+        match names.into_iter().find(|&name| name == text) {
             Some(name) => Self::Shipped(name),
             None => Self::File(PathBuf::from(text)),
         }

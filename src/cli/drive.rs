@@ -119,7 +119,8 @@ impl Progress {
         if frame.clock.is_coarse() && !self.bar.is_hidden() {
             let (time, agents) = (frame.clock.time(), frame.agents.len());
             self.bar.set_position((time * 10.0) as u64);
-            self.bar.set_message(format!("t = {time:.1} s, {agents} agents"));
+            self.bar
+                .set_message(format!("t = {time:.1} s, {agents} agents"));
         }
     }
 

@@ -44,7 +44,10 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     Ok(())
 }
 
-fn breakdowns(simulation: &Simulation, options: &InspectOptions) -> Result<Vec<Breakdown>, Failure> {
+fn breakdowns(
+    simulation: &Simulation,
+    options: &InspectOptions,
+) -> Result<Vec<Breakdown>, Failure> {
     let agents = simulation.frame().agents;
     let mut ids = if options.all {
         agents.id.clone()
@@ -95,14 +98,21 @@ fn table(agent: &Breakdown) -> String {
         agent.pressure
     );
     for share in &agent.profiles {
-        text += &format!("  {} × {:.4}: accelerations, m/s²\n", share.name, share.weight);
+        text += &format!(
+            "  {} × {:.4}: accelerations, m/s²\n",
+            share.name, share.weight
+        );
         for (name, term) in share.accelerations.named() {
             if let Some(term) = term {
                 text += &format!("    {name:<18} {}\n", vector(term.into()));
             }
         }
     }
-    text += &format!("    {:<18} {}\n", "total (weighted)", vector(agent.acceleration));
+    text += &format!(
+        "    {:<18} {}\n",
+        "total (weighted)",
+        vector(agent.acceleration)
+    );
     for wall in &agent.walls {
         text += &format!(
             "  wall {}: nearest point {} m, hidden area {:.5} m², density {:.5} P/m²\n",

@@ -1,7 +1,7 @@
 //! `sandbox list`: the scenarios, or what `--set` takes.
 
 use super::Failure;
-use crate::scenario::{settings, shipped};
+use crate::scenario::{SHIPPED, settings};
 
 pub fn run(list_settings: bool) -> Result<(), Failure> {
     if list_settings {
@@ -16,8 +16,8 @@ pub fn run(list_settings: bool) -> Result<(), Failure> {
              Parameters of profiles apply to every profile of the scenario."
         );
     } else {
-        for scenario in shipped() {
-            println!("{:<12} {}", scenario.name, scenario.description);
+        for scenario in SHIPPED {
+            println!("{:<12} {}", scenario.name, scenario.description());
         }
     }
     Ok(())

@@ -67,16 +67,16 @@ fn run(command: Command) -> Result<(), Failure> {
 
 /// Reads a scenario with the settings of the command line.
 fn scenario(source: &Source, scene: &arguments::SceneOptions) -> Result<Scenario, Failure> {
-    let mut settings: Vec<Setting> = Vec::new();
-    if let Some(profile) = &scene.profile {
-        settings.push(Setting::new("profile", profile.clone().into()));
-    }
-    if let Some(seed) = scene.seed {
-        settings.push(Setting::new("seed", seed.into()));
-    }
-    for text in &scene.set {
-        settings.push(Setting::parse(text)?);
-    }
+    let profile = scene.profile.iter().map(|name| format!("profile={name}"));
+    let seed = scene.seed.iter().map(|seed| format!("seed={seed}"));
+    let settings = profile
+        .chain(seed)
+        .chain(scene.set.iter().cloned())
+        .map(|text| {
+            text.parse()
+                .map_err(|error| Failure::Input(format!("--set {text}: {error}")))
+        })
+        .collect::<Result<Vec<Setting>, Failure>>()?;
     let scenario = match source {
         Source::Shipped(name) => Scenario::shipped(name, &settings)?,
         Source::File(path) => Scenario::load(path, &settings)?,

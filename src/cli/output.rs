@@ -73,7 +73,8 @@ mod with_recording {
 
         /// Closes the recording.
         pub fn finish(self) -> Result<(), Failure> {
-            self.recorder.map_or(Ok(()), |recorder| Ok(recorder.finish()?))
+            self.recorder
+                .map_or(Ok(()), |recorder| Ok(recorder.finish()?))
         }
     }
 
@@ -87,18 +88,22 @@ mod with_recording {
     ) -> Result<(), Failure> {
         check_free(path, force)?;
         let mut options = recording_options(scenario, DebugAgents::Ids(ids));
-        options.opens_at_secs = simulation.frame().clock.time();
+        options.opens_at = simulation.frame().clock.time();
         let mut recorder = Recorder::create(path, simulation, &options)?;
         recorder.log(simulation, 0.0)?;
         Ok(recorder.finish()?)
     }
 
     fn recording_options(scenario: &Scenario, debug: DebugAgents) -> RecordingOptions {
+        let seed = scenario.scene.seed;
         RecordingOptions {
-            title: format!("{} {} seed {}", scenario.name, scenario.profile_name, scenario.scene.seed),
-            document_markdown: scenario.markdown(),
+            title: format!("{} {} seed {seed}", scenario.name, scenario.profile_name),
+            document: format!(
+                "# {}\n{}\n```json\n{:#}\n```\n",
+                scenario.name, scenario.description, scenario.document
+            ),
             view: scenario.view.region,
-            opens_at_secs: scenario.view.opens_at_secs,
+            opens_at: scenario.view.opens_at_secs,
             debug,
         }
     }
@@ -117,7 +122,8 @@ mod with_recording {
             Some("all") => Ok(DebugAgents::All),
             Some("none") => Ok(DebugAgents::None),
             Some(text) => {
-                let ids: Result<Vec<u32>, _> = text.split(',').map(|id| id.trim().parse()).collect();
+                let ids: Result<Vec<u32>, _> =
+                    text.split(',').map(|id| id.trim().parse()).collect();
                 ids.map(DebugAgents::Ids).map_err(|_| {
                     Failure::Input(format!(
                         "--debug-agents {text}: ids separated by commas, all or none are needed"
@@ -156,7 +162,11 @@ mod without_recording {
     pub struct Output;
 
     impl Output {
-        pub fn create(options: &RunOptions, _: &Scenario, _: &mut Simulation) -> Result<Self, Failure> {
+        pub fn create(
+            options: &RunOptions,
+            _: &Scenario,
+            _: &mut Simulation,
+        ) -> Result<Self, Failure> {
             match &options.record.save {
                 Some(path) => Err(unavailable(path)),
                 None => Ok(Self),

@@ -73,7 +73,9 @@ impl<'a> Report<'a> {
             frame.clock.frame(),
         );
         for metric in &self.metrics {
-            let value = metric.value.map_or("–".to_owned(), |value| format!("{value:.3}"));
+            let value = metric
+                .value
+                .map_or("–".to_owned(), |value| format!("{value:.3}"));
             text += &format!("  {:<24} {value:>10} {}\n", metric.name, metric.unit);
         }
         let threads = rayon::current_num_threads();

@@ -1,0 +1,196 @@
+//! The layout that a recording opens with: the crowd twice, some agents laid open, plots, text.
+
+use rerun::blueprint::components::{
+    BackgroundKind, LoopMode, PanelState, PlayState, VisualBounds2D as Bounds,
+};
+use rerun::blueprint::{
+    Blueprint, BlueprintActivation, BlueprintPanel, ContainerLike, Horizontal, SelectionPanel,
+    Spatial2DView, Tabs, TextDocumentView, TextLogView, TimePanel, TimeSeriesView, Vertical,
+    VisualizableArchetype as _, Visualizer, VisualizerComponentMapping,
+};
+use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind};
+use rerun::external::re_sdk_types::blueprint::archetypes::{
+    Background, EntityBehavior, VisualBounds2D,
+};
+use rerun::{AsComponents, Color, EntityPath, Points2D, RecordingStream, RecordingStreamBuilder};
+
+use super::debug::Debug;
+use super::error::RecordingError;
+use super::{APPLICATION, RecordingOptions, SIM_TIME, crowd, geometry, text};
+use crate::math::Vector;
+use crate::scene::Region;
+
+/// Half the side of the part of the plane that the debug view shows round an agent, metres.
+const FOCUS: f64 = 3.0;
+const BACKGROUND: [u8; 3] = [22, 23, 29];
+
+/// A property of a view that rerun's blueprint has no setter for: its entity and its value.
+type Property = (EntityPath, Box<dyn AsComponents>);
+
+/// Sends the default blueprint; the debug view shows the surroundings of `focus`.
+pub fn send(
+    stream: &RecordingStream,
+    options: &RecordingOptions,
+    debug: &Debug,
+    focus: Option<Vector>,
+) -> Result<(), RecordingError> {
+    if !stream.is_enabled() {
+        return Ok(()); // Sending would panic.
+    }
+    let (blueprint, properties) = layout(options, debug, focus);
+    let (memory, storage) = RecordingStreamBuilder::new(APPLICATION)
+        .send_properties(false)
+        .memory()?;
+    let activation = BlueprintActivation {
+        make_active: true,
+        make_default: true,
+    };
+    blueprint.send(&memory, activation)?;
+    let own = |message: &LogMsg| {
+        message.store_id().kind() == StoreKind::Blueprint
+            && !matches!(message, LogMsg::BlueprintActivationCommand(_))
+    };
+    let mut messages: Vec<LogMsg> = storage.take().into_iter().filter(own).collect();
+    let Some(id) = messages.first().map(|message| message.store_id().clone()) else {
+        return Ok(());
+    };
+    let (extra, extra_storage) = RecordingStreamBuilder::from_store_id(&id)
+        .send_properties(false)
+        .memory()?;
+    extra.set_time_sequence("blueprint", 0);
+    for (entity, value) in &properties {
+        extra.log(entity.clone(), value.as_ref())?;
+    }
+    let is_data = |message: &LogMsg| matches!(message, LogMsg::ArrowMsg(..));
+    messages.extend(extra_storage.take().into_iter().filter(is_data));
+    let activation = BlueprintActivationCommand {
+        blueprint_id: id,
+        make_active: true,
+        make_default: true,
+    };
+    stream.send_blueprint(messages, activation);
+    Ok(())
+}
+
+fn layout(
+    options: &RecordingOptions,
+    debug: &Debug,
+    focus: Option<Vector>,
+) -> (Blueprint, Vec<Property>) {
+    let geometry = "+ /world/geometry/**";
+    let agents = format!("+ /{}", crowd::ENTITY);
+    let crowd = |name: &str| {
+        Spatial2DView::new(name)
+            .with_origin("/")
+            .with_contents([geometry, agents.as_str()])
+    };
+    let by_density = crowd("Density 0–8 P/m²").into();
+    let by_speed = crowd("Speed 0–1.8 m/s")
+        .with_overrides(crowd::ENTITY, [speed_colors()])
+        .into();
+    let mut properties = Vec::new();
+    for view in [&by_density, &by_speed] {
+        add_properties(&mut properties, view, &options.view);
+    }
+    let mut below = Vec::new();
+    if !debug.is_empty() {
+        let forces = Spatial2DView::new("Forces")
+            .with_origin("/")
+            .with_contents([geometry, agents.as_str(), "+ /world/debug/**"])
+            .into();
+        let around = focus.map_or(options.view, around);
+        add_properties(&mut properties, &forces, &around);
+        below.push(forces);
+    }
+    below.extend([plots(), texts()]);
+    let root = Vertical::new([
+        Horizontal::new([by_density, by_speed]).into(),
+        Horizontal::new(below).into(),
+    ])
+    .with_row_shares([3.0, 2.0]);
+    let blueprint = Blueprint::new(root)
+        .with_auto_views(false)
+        .with_auto_layout(false)
+        .with_blueprint_panel(BlueprintPanel::from_state(PanelState::Collapsed))
+        .with_selection_panel(SelectionPanel::from_state(PanelState::Collapsed))
+        .with_time_panel(time_panel());
+    (blueprint, properties)
+}
+
+fn time_panel() -> TimePanel {
+    TimePanel::new()
+        .with_state(PanelState::Collapsed)
+        .with_timeline(SIM_TIME)
+        .with_loop_mode(LoopMode::Off)
+        .with_play_state(PlayState::Paused)
+}
+
+/// The crowd's points with the second colouring.
+fn speed_colors() -> Visualizer {
+    let colors = Points2D::descriptor_colors().component;
+    let mapping = VisualizerComponentMapping::new_source_component(colors, crowd::SPEED_COLORS);
+    Points2D::update_fields()
+        .visualizer()
+        .with_mappings(vec![mapping.into()])
+}
+
+fn plots() -> ContainerLike {
+    let plot = |name: &str, origin: &str| TimeSeriesView::new(name).with_origin(origin).into();
+    let pages: [ContainerLike; 3] = [
+        Vertical::new([
+            plot("Density", "/stats/density"),
+            plot("Mean speed", "/stats/speed"),
+        ])
+        .with_name("Density and speed")
+        .into(),
+        Vertical::new([
+            plot("Agents", "/stats/crowd"),
+            plot("Kinetic energy", "/stats/energy"),
+        ])
+        .with_name("Agents and energy")
+        .into(),
+        plot("Computing time", "/stats/time"),
+    ];
+    Tabs::new(pages).into()
+}
+
+fn texts() -> ContainerLike {
+    Tabs::new([
+        TextDocumentView::new("Scenario")
+            .with_origin(format!("/{}", text::DOCUMENT))
+            .into(),
+        TextLogView::new("Events").with_origin("/log").into(),
+    ])
+    .into()
+}
+
+/// Zoom, background, and no clicks for the picture of the obstacles, which would swallow them all.
+fn add_properties(properties: &mut Vec<Property>, view: &ContainerLike, shown: &Region) {
+    let ContainerLike::View(view) = view else {
+        return;
+    };
+    let at = |name: String| view.blueprint_path().join(&EntityPath::from(name));
+    // The picture is turned: y up in metres is y down on the screen.
+    let bounds = VisualBounds2D::new(Bounds(rerun::datatypes::Range2D {
+        x_range: [shown.min.x, shown.max.x].into(),
+        y_range: [-shown.max.y, -shown.min.y].into(),
+    }));
+    properties.push((at("VisualBounds2D".to_owned()), Box::new(bounds)));
+    let [r, g, b] = BACKGROUND;
+    let background =
+        Background::new(BackgroundKind::SolidColor).with_color(Color::from_rgb(r, g, b));
+    properties.push((at("Background".to_owned()), Box::new(background)));
+    let obstacles = geometry::OBSTACLES;
+    properties.push((
+        at(format!("ViewContents/overrides/{obstacles}/visualizers")),
+        Box::new(EntityBehavior::new().with_interactive(false)),
+    ));
+}
+
+fn around(center: Vector) -> Region {
+    let half = Vector::repeat(FOCUS);
+    Region {
+        min: center - half,
+        max: center + half,
+    }
+}

@@ -1,0 +1,23 @@
+//! Why a recording failed.
+
+use std::path::PathBuf;
+
+use rerun::RecordingStreamError;
+use rerun::sink::SinkFlushError;
+
+/// A recording could not be written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    /// The stream refused something.
+    #[error("cannot record: {0}")]
+    Stream(#[from] RecordingStreamError),
+    /// Something did not reach the file.
+    #[error("cannot write the recording (is the disk full?): {0}")]
+    Flush(#[from] SinkFlushError),
+    /// The file is not whole.
+    #[error("the recording {} is not complete: {reason}", path.display())]
+    Incomplete { path: PathBuf, reason: String },
+    /// The file is no recording.
+    #[error("cannot read the recording {}: {reason}", path.display())]
+    Unreadable { path: PathBuf, reason: String },
+}
