@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::arguments::{RunOptions, Source};
 use super::output::Output;
 use super::report::Report;
-use super::{Failure, scenario, use_threads};
+use super::{Failure, say, scenario, use_threads};
 use crate::metrics::Metrics;
 use crate::scenario::Scenario;
 use crate::simulation::{EventKind, Simulation};
@@ -33,8 +33,7 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     driven?;
     saved?;
     report_oddities(&simulation);
-    Report::new(&scenario, &simulation, &metrics).print(options.scene.json);
-    Ok(())
+    say(&Report::new(&scenario, &simulation, &metrics).render(options.scene.json))
 }
 
 /// Runs to `duration` seconds or the scenario's own end; `observe` sees every evaluated frame with

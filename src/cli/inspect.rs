@@ -5,7 +5,7 @@ use serde_json::json;
 use super::arguments::{InspectOptions, Source};
 use super::drive::{Progress, drive};
 use super::output;
-use super::{Failure, scenario, use_threads};
+use super::{Failure, say, scenario, use_threads};
 use crate::breakdown::Breakdown;
 use crate::simulation::Simulation;
 
@@ -28,20 +28,13 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
         output::save_moment(path, options.scene.force, &scenario, &simulation, ids)?;
     }
     let clock = simulation.frame().clock;
+    let (time, frame) = (clock.time(), clock.frame());
     if options.scene.json {
-        let object = json!({
-            "time_secs": clock.time(),
-            "frame": clock.frame(),
-            "agents": breakdowns,
-        });
-        println!("{object}");
-    } else {
-        println!("t = {:.2} s, frame {}", clock.time(), clock.frame());
-        for breakdown in &breakdowns {
-            print!("{}", table(breakdown));
-        }
+        let object = json!({"time_secs": time, "frame": frame, "agents": breakdowns});
+        return say(&format!("{object}\n"));
     }
-    Ok(())
+    let tables: String = breakdowns.iter().map(table).collect();
+    say(&format!("t = {time:.2} s, frame {frame}\n{tables}"))
 }
 
 fn breakdowns(

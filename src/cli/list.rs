@@ -1,24 +1,37 @@
 //! `sandbox list`: the scenarios, or what `--set` takes.
 
-use super::Failure;
+use super::{Failure, say};
 use crate::scenario::{SHIPPED, settings};
 
 pub fn run(list_settings: bool) -> Result<(), Failure> {
+    let mut text = String::new();
     if list_settings {
         for setting in settings() {
-            println!(
-                "{:<20} {:<8} default {:<12} {:<14} {}",
-                setting.key, setting.unit, setting.default, setting.range, setting.description
+            text += &format!(
+                "{:<20} {}{}\n{:20}   default: {}; {}\n",
+                setting.key,
+                setting.description,
+                unit(setting.unit),
+                "",
+                setting.default,
+                setting.range,
             );
         }
-        println!(
-            "\nA dotted path reaches into the scenario's own lists: --set sources.0.rows=50\n\
-             Parameters of profiles apply to every profile of the scenario."
-        );
+        text += "\nA dotted path reaches into the scenario's own lists: --set sources.0.rows=50\n\
+                 Parameters of profiles hold for every profile of the scenario.\n";
     } else {
         for scenario in SHIPPED {
-            println!("{:<12} {}", scenario.name, scenario.description());
+            text += &format!("{:<12} {}\n", scenario.name, scenario.description());
         }
     }
-    Ok(())
+    say(&text)
+}
+
+/// A unit in brackets.
+fn unit(unit: &str) -> String {
+    if unit.is_empty() {
+        String::new()
+    } else {
+        format!(" [{unit}]")
+    }
 }

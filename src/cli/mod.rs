@@ -7,6 +7,7 @@ mod list;
 mod output;
 mod report;
 
+use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -82,6 +83,16 @@ fn scenario(source: &Source, scene: &arguments::SceneOptions) -> Result<Scenario
         Source::File(path) => Scenario::load(path, &settings)?,
     };
     Ok(scenario)
+}
+
+/// Writes results to stdout; a reader that has gone (`| head`) is no failure.
+fn say(text: &str) -> Result<(), Failure> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::Output(format!("stdout: {error}")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Makes rayon use so many threads.

@@ -22,11 +22,12 @@ impl<'a> Report<'a> {
         }
     }
 
-    pub fn print(&self, as_json: bool) {
+    /// The whole report, ready to print.
+    pub fn render(&self, as_json: bool) -> String {
         if as_json {
-            println!("{}", self.json());
+            format!("{}\n", self.json())
         } else {
-            print!("{}", self.text());
+            self.text()
         }
     }
 
