@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use serde_json::Value;
 
 use super::crowd::{Crowd, MOST_NUMBERED};
-use super::error::{Problem, Under};
-use super::file::{self, File, ProfileChoice};
+use super::error::{Problem, Under, in_plain_words};
+use super::file::{self, File, Object, ProfileChoice};
 use super::range::{COARSE_EVERY, MAX_SPEED, PREFERRED_SPEED, Range, TIME, TIME_STEP};
 use super::range::{point, region};
 use super::{Scenario, Stop, View, profiles, settings};
@@ -30,11 +30,7 @@ const UNTIL: Range = Range::above(0.0, 1e7);
 
 /// Checks `document`; a scenario without a name gets `fallback_name`.
 pub(super) fn scenario(document: &Value, fallback_name: &str) -> Result<Scenario, Problem> {
-    let file: File = serde_path_to_error::deserialize(document).map_err(|error| {
-        let path = error.path().to_string();
-        let path = if path == "." { String::new() } else { path };
-        Problem::new(path, error.into_inner().to_string())
-    })?;
+    let file = read(document)?;
     let name = file
         .name
         .clone()
@@ -45,10 +41,10 @@ pub(super) fn scenario(document: &Value, fallback_name: &str) -> Result<Scenario
     let duration_secs = file.duration_secs.unwrap_or(DEFAULT_DURATION);
     let duration_secs = TIME.check("duration_secs", duration_secs)?;
     let mut scene = empty_scene(&file)?;
-    settings::check(&file.parameters).under("parameters")?;
+    settings::check(&file.parameters.0).under("parameters")?;
     let choice = file.profile.clone();
     let choice = choice.unwrap_or_else(|| ProfileChoice::Named(DEFAULT_PROFILE.to_owned()));
-    let blend = profiles::blend(&choice, &file.parameters).under("profile")?;
+    let blend = profiles::blend(&choice, &file.parameters.0).under("profile")?;
     file.goal.map(|goal| point("goal", goal)).transpose()?;
     Crowd::new(&file, &blend, &mut scene, duration_secs).enter()?;
     scene.pushes = pushes(&file.events)?;
@@ -56,13 +52,23 @@ pub(super) fn scenario(document: &Value, fallback_name: &str) -> Result<Scenario
         name,
         description: file.description.clone().unwrap_or_default(),
         duration_secs,
-        stop: stop(&file.stop).under("stop")?,
+        stop: stop(&file.stop.0).under("stop")?,
         measurements: measurements(&file.measurements)?,
         view: view(file.view.as_ref(), &scene).under("view")?,
         debug_agents: without_repetition(&file.debug_agents)?,
         profile_name: blend.name,
         document: document.clone(),
         scene,
+    })
+}
+
+/// Names and types.
+fn read(document: &Value) -> Result<File, Problem> {
+    let file: Result<Object<File>, _> = serde_path_to_error::deserialize(document);
+    file.map(|Object(file)| file).map_err(|error| {
+        let path = error.path().to_string();
+        let path = if path == "." { String::new() } else { path };
+        Problem::new(path, in_plain_words(&error.into_inner().to_string()))
     })
 }
 
@@ -100,7 +106,7 @@ fn obstacle(corners: &[[f64; 2]]) -> Result<Polygon, Problem> {
     Polygon::new(points).map_err(|error| Problem::new("", error.to_string()))
 }
 
-fn pushes(events: &[file::Event]) -> Result<Vec<Push>, Problem> {
+fn pushes(events: &[Object<file::Event>]) -> Result<Vec<Push>, Problem> {
     if events.len() > MOST_NUMBERED {
         let reason = format!(
             "{} events; at most {MOST_NUMBERED} are possible",
@@ -110,7 +116,7 @@ fn pushes(events: &[file::Event]) -> Result<Vec<Push>, Problem> {
     }
     let numbered = events.iter().enumerate();
     numbered
-        .map(|(k, event)| {
+        .map(|(k, Object(event))| {
             let name = format!("events[{k}]");
             push(event, &name).under(&name)
         })
@@ -182,8 +188,8 @@ fn stop(given: &file::Stop) -> Result<Stop, Problem> {
     })
 }
 
-fn view(given: Option<&file::View>, scene: &Scene) -> Result<View, Problem> {
-    let Some(given) = given else {
+fn view(given: Option<&Object<file::View>>, scene: &Scene) -> Result<View, Problem> {
+    let Some(Object(given)) = given else {
         return Ok(View {
             region: surroundings(scene),
             opens_at_secs: 0.0,

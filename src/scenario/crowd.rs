@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::error::{Problem, Under};
-use super::file::{self, Behaviour, File, ProfileChoice};
+use super::file::{self, Behaviour, File, Object, ProfileChoice};
 use super::profiles;
 use super::range::{self, COORDINATE, Range, TIME, point};
 use super::settings::DENSITY;
@@ -60,14 +60,14 @@ impl<'a> Crowd<'a> {
 
     /// Single agents, then grids, then sources.
     pub(super) fn enter(mut self) -> Result<(), Problem> {
-        for (k, agent) in self.file.agents.iter().enumerate() {
+        for (k, Object(agent)) in self.file.agents.iter().enumerate() {
             self.agent(agent).under(&format!("agents[{k}]"))?;
         }
-        for (k, grid) in self.file.grids.iter().enumerate() {
+        for (k, Object(grid)) in self.file.grids.iter().enumerate() {
             let name = format!("grids[{k}]");
             self.grid(grid, &name).under(&name)?;
         }
-        for (k, source) in self.file.sources.iter().enumerate() {
+        for (k, Object(source)) in self.file.sources.iter().enumerate() {
             let name = format!("sources[{k}]");
             self.source(source, &name).under(&name)?;
         }
@@ -225,7 +225,7 @@ impl<'a> Crowd<'a> {
         let choice: Option<&ProfileChoice> = behaviour.profile.as_ref();
         let blend = match choice {
             None => self.default.clone(),
-            Some(choice) => profiles::blend(choice, &self.file.parameters).under("profile")?,
+            Some(choice) => profiles::blend(choice, &self.file.parameters.0).under("profile")?,
         };
         let removal_radius = DISTANCE.check_given("remove_within", behaviour.remove_within)?;
         Ok(self.scene.add_group(Group {

@@ -109,15 +109,45 @@ impl<T> Under for Result<T, Problem> {
 
 /// "; did you mean `x`?" if one of `known` looks like `given`, else nothing.
 pub(super) fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    /// Below this similarity a name is another name, not a slip.
-    const SIMILAR: f64 = 0.75;
+    /// A name begun with so many letters may be meant in full.
+    const STEM: usize = 4;
+    let slips = |name: &str| {
+        if given.len() >= STEM && name.starts_with(given) {
+            1
+        } else {
+            strsim::damerau_levenshtein(given, name)
+        }
+    };
+    let most = (given.len() / 4).max(1);
     known
         .into_iter()
-        .map(|name| (strsim::jaro_winkler(given, name), name))
-        .filter(|(similarity, _)| *similarity >= SIMILAR)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|name| (slips(name), name))
+        .filter(|&(slips, name)| slips <= most && slips < name.len())
+        .min()
         .map(|(_, name)| format!("; did you mean `{name}`?"))
         .unwrap_or_default()
+}
+
+/// What serde says about a document, for people who write no Rust, with a suggestion.
+pub(super) fn in_plain_words(said: &str) -> String {
+    let quoted = said.split('`').skip(1).step_by(2);
+    let is_name = said.starts_with("unknown field") || said.starts_with("unknown variant");
+    let near = match quoted.clone().next() {
+        Some(given) if is_name => suggestion(given, quoted.skip(1)),
+        _ => String::new(),
+    };
+    let number = said
+        .strip_suffix("expected f64")
+        .map(|start| format!("{start}expected a number"));
+    let whole = [("expected u32", "2^32"), ("expected u64", "2^64")]
+        .into_iter()
+        .find_map(|(rust, above)| {
+            let start = said.strip_suffix(rust)?;
+            Some(format!(
+                "{start}expected a whole number from 0 to {above} - 1"
+            ))
+        });
+    number.or(whole).unwrap_or_else(|| said.to_owned()) + &near
 }
 
 #[cfg(test)]
@@ -134,6 +164,11 @@ mod tests {
 
     #[test]
     fn slips_of_the_finger_are_recognised() {
+        assert_eq!(suggestion("fs", ["sf", "sph"]), "; did you mean `sf`?");
+        assert_eq!(
+            suggestion("duration", ["duration_secs"]),
+            "; did you mean `duration_secs`?"
+        );
         let known = ["viscosity", "seed"];
         assert_eq!(suggestion("viscosty", known), "; did you mean `viscosity`?");
         assert_eq!(suggestion("colour", known), "");

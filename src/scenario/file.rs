@@ -1,6 +1,7 @@
 //! What a scenario file says, key by key; nothing is checked here but names and types.
 
 use std::fmt;
+use std::marker::PhantomData;
 
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, Visitor};
@@ -12,6 +13,31 @@ use crate::scene::Integrator;
 
 /// Lower left and upper right corner.
 pub(super) type Corners = [[f64; 2]; 2];
+
+/// A value that is written as an object; serde would take a list of its fields as well.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[serde(transparent)]
+pub(super) struct Object<T>(pub T);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(ObjectVisitor(PhantomData))
+    }
+}
+
+struct ObjectVisitor<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for ObjectVisitor<T> {
+    type Value = Object<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, entries: A) -> Result<Object<T>, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(entries)).map(Object)
+    }
+}
 
 /// A whole file.
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -28,16 +54,16 @@ pub(super) struct File {
     pub preferred_speed: Option<f64>,
     pub max_speed: Option<f64>,
     pub profile: Option<ProfileChoice>,
-    pub parameters: Parameters,
+    pub parameters: Object<Parameters>,
     pub obstacles: Vec<Vec<[f64; 2]>>,
     pub goal: Option<[f64; 2]>,
-    pub agents: Vec<Agent>,
-    pub grids: Vec<Grid>,
-    pub sources: Vec<Source>,
-    pub events: Vec<Event>,
+    pub agents: Vec<Object<Agent>>,
+    pub grids: Vec<Object<Grid>>,
+    pub sources: Vec<Object<Source>>,
+    pub events: Vec<Object<Event>>,
     pub measurements: Vec<Measurement>,
-    pub stop: Stop,
-    pub view: Option<View>,
+    pub stop: Object<Stop>,
+    pub view: Option<Object<View>>,
     pub debug_agents: Vec<u32>,
 }
 
@@ -208,8 +234,8 @@ pub(super) struct CustomProfile {
     pub base: Option<String>,
     pub navigation: Option<NavigationKind>,
     pub sph: Option<bool>,
-    pub blend: Option<Vec<Step>>,
-    pub parameters: Parameters,
+    pub blend: Option<Vec<Object<Step>>>,
+    pub parameters: Object<Parameters>,
 }
 
 /// One profile of a blend.

@@ -1,7 +1,7 @@
 //! Profiles and blends as given → as the engine takes them.
 
 use super::error::{Problem, Under, suggestion};
-use super::file::{CustomProfile, ProfileChoice, Step};
+use super::file::{CustomProfile, Object, ProfileChoice, Step};
 use super::settings::{self, DENSITY};
 use crate::catalog::{self, NAMES, Parameters};
 use crate::profile::{Blend, BlendStep, Profile};
@@ -37,7 +37,7 @@ fn unknown(name: &str) -> Problem {
 
 fn custom_blend(custom: &CustomProfile, overriding: &Parameters) -> Result<Blend, Problem> {
     checked(custom)?;
-    let parameters = overriding.or(&custom.parameters);
+    let parameters = overriding.or(&custom.parameters.0);
     if let Some(steps) = &custom.blend {
         return blend_of_steps(custom, steps, overriding);
     }
@@ -97,18 +97,18 @@ fn checked(custom: &CustomProfile) -> Result<(), Problem> {
     if custom.sph.is_some() && custom.navigation.is_none() {
         return Err(Problem::new("sph", "goes with `navigation` only"));
     }
-    settings::check(&custom.parameters).under("parameters")
+    settings::check(&custom.parameters.0).under("parameters")
 }
 
 fn blend_of_steps(
     custom: &CustomProfile,
-    steps: &[Step],
+    steps: &[Object<Step>],
     overriding: &Parameters,
 ) -> Result<Blend, Problem> {
     let shared = shared_by(custom, steps)?;
-    let parameters = overriding.or(&custom.parameters).or(&shared);
+    let parameters = overriding.or(&custom.parameters.0).or(&shared);
     let mut converted = Vec::with_capacity(steps.len());
-    for (k, step) in steps.iter().enumerate() {
+    for (k, Object(step)) in steps.iter().enumerate() {
         let place = format!("blend[{k}]");
         let at_density = DENSITY.check("at_density", step.at_density).under(&place)?;
         let profile = step_profile(&step.profile, &parameters)
@@ -135,19 +135,19 @@ fn step_profile(choice: &ProfileChoice, parameters: &Parameters) -> Result<Profi
         ProfileChoice::Named(name) => plain(name, parameters),
         ProfileChoice::Custom(custom) => {
             checked(custom)?;
-            custom_profile(custom, &parameters.or(&custom.parameters))
+            custom_profile(custom, &parameters.or(&custom.parameters.0))
         }
     }
 }
 
 /// The SPH parameters given anywhere in a blend: they belong to all of it.
-fn shared_by(custom: &CustomProfile, steps: &[Step]) -> Result<Parameters, Problem> {
-    let mut shared = sph_only(&custom.parameters);
-    for (k, step) in steps.iter().enumerate() {
+fn shared_by(custom: &CustomProfile, steps: &[Object<Step>]) -> Result<Parameters, Problem> {
+    let mut shared = sph_only(&custom.parameters.0);
+    for (k, Object(step)) in steps.iter().enumerate() {
         let ProfileChoice::Custom(step) = &step.profile else {
             continue;
         };
-        let own = sph_only(&step.parameters);
+        let own = sph_only(&step.parameters.0);
         let so_far = settings::given(&shared);
         for (key, value) in settings::given(&own) {
             if let Some((_, other)) = so_far.iter().find(|(k, v)| *k == key && *v != value) {

@@ -51,7 +51,10 @@ impl Range {
         if high_enough && value <= self.highest {
             Ok(value)
         } else {
-            Err(Problem::new(key, format!("must be {self}, not {value}")))
+            Err(Problem::new(
+                key,
+                format!("must be {self}, not {}", brief(value)),
+            ))
         }
     }
 
@@ -68,7 +71,18 @@ impl Range {
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let from = if self.open { "above" } else { "at least" };
-        write!(f, "{from} {} and at most {}", self.lowest, self.highest)
+        let (lowest, highest) = (brief(self.lowest), brief(self.highest));
+        write!(f, "{from} {lowest} and at most {highest}")
+    }
+}
+
+/// As people write it: very large and very small numbers with an exponent.
+fn brief(value: f64) -> String {
+    let plain = value == 0.0 || (1e-4..1e6).contains(&value.abs());
+    if plain {
+        value.to_string()
+    } else {
+        format!("{value:e}")
     }
 }
 

@@ -123,7 +123,10 @@ fn inner<'a>(
             )
         }
         Value::Array(list) => {
-            let reason = format!("{path} has {} elements, counted from 0", list.len());
+            let reason = format!(
+                "{path} has no element `{segment}`: there are {}, counted from 0",
+                list.len()
+            );
             let index = segment.parse::<usize>().ok();
             (index.and_then(|index| list.get_mut(index)), reason)
         }
@@ -178,7 +181,7 @@ mod tests {
         let reason = |text| applied(text, document()).unwrap_err();
         assert_eq!(
             reason("sources.1.rows=5"),
-            "sources has 1 elements, counted from 0"
+            "sources has no element `1`: there are 1, counted from 0"
         );
         assert_eq!(reason("grids.0.rows=5"), "the file has no `grids`");
         assert_eq!(

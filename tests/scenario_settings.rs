@@ -1,0 +1,133 @@
+//! What is documented about settings is what the program does.
+
+use sandbox::catalog::{self, NAMES, Parameters};
+use sandbox::scenario::{Scenario, Setting, settings};
+use sandbox::scene::Scene;
+use serde_json::{Value, json};
+
+fn parameter_keys() -> Vec<String> {
+    let parameters = serde_json::to_value(Parameters::default()).unwrap();
+    parameters.as_object().unwrap().keys().cloned().collect()
+}
+
+fn documented_default(key: &str) -> &'static str {
+    let settings = settings();
+    settings.iter().find(|doc| doc.key == key).unwrap().default
+}
+
+fn parse(settings: &[&str]) -> Scenario {
+    let settings: Vec<Setting> = settings.iter().map(|s| s.parse().unwrap()).collect();
+    Scenario::parse("{}", "nameless.json", &settings).unwrap()
+}
+
+#[test]
+fn every_key_of_a_file_and_every_parameter_is_documented_once() {
+    let error = Scenario::parse("{\"?\": 0}", "f", &[])
+        .unwrap_err()
+        .to_string();
+    let mut known: Vec<String> = error
+        .split('`')
+        .skip(3)
+        .step_by(2)
+        .map(str::to_owned)
+        .collect();
+    assert!(known.len() > 20, "{error}");
+    known.extend(parameter_keys());
+    known.sort();
+    let mut documented: Vec<&str> = settings().iter().map(|doc| doc.key).collect();
+    documented.sort();
+    assert_eq!(documented, known);
+}
+
+#[test]
+fn every_documented_key_is_accepted() {
+    let text = |key: &str| match key {
+        "name" | "description" => "word".to_owned(),
+        "coarse_every" => "3".to_owned(),
+        "parameters" | "stop" => "{}".to_owned(),
+        "goal" => "[1, 2]".to_owned(),
+        "view" => "{\"region\": [[0, 0], [1, 1]]}".to_owned(),
+        "agent_stiffness" | "wall_stiffness" => "10".to_owned(),
+        _ if documented_default(key) == "none" => "[]".to_owned(),
+        _ => documented_default(key).to_owned(),
+    };
+    for doc in settings() {
+        let setting = format!("{}={}", doc.key, text(doc.key));
+        let scenario = parse(&[&setting]);
+        let place = if parameter_keys().iter().any(|key| key == doc.key) {
+            &scenario.document["parameters"][doc.key]
+        } else {
+            &scenario.document[doc.key]
+        };
+        assert_ne!(*place, Value::Null, "{setting}");
+    }
+}
+
+#[test]
+fn the_documented_defaults_of_parameters_are_those_of_the_engine() {
+    for key in parameter_keys() {
+        let default = documented_default(&key);
+        for name in NAMES {
+            let Some(expected) = catalog::plain(name, &Parameters::default()) else {
+                continue;
+            };
+            let value = match default.split_once("; with SPH ") {
+                Some((_, with)) if name.contains("sph") => with,
+                Some((without, _)) => without,
+                None => default,
+            };
+            let value: Value = serde_json::from_str(value).unwrap();
+            let given: Parameters = serde_json::from_value(json!({ key.as_str(): value })).unwrap();
+            assert_eq!(
+                catalog::plain(name, &given),
+                Some(expected),
+                "{key} in {name}"
+            );
+            assert_eq!(given.sph(), Parameters::default().sph(), "{key}");
+        }
+    }
+}
+
+#[test]
+fn the_documented_defaults_of_scenarios_are_those_of_the_engine() {
+    let bare = parse(&[]);
+    let engine = Scene::default();
+    assert_eq!(bare.scene.seed, engine.seed);
+    assert_eq!(bare.scene.clock, engine.clock);
+    assert_eq!(bare.scene.integrator, engine.integrator);
+    assert_eq!(bare.scene.wall_method, engine.wall_method);
+    assert_eq!(bare.scene.preferred_speed, engine.preferred_speed);
+    assert_eq!(bare.scene.max_speed, engine.max_speed);
+    assert_eq!(bare.name, "nameless");
+
+    let scalars = [
+        "seed",
+        "duration_secs",
+        "time_step_secs",
+        "integrator",
+        "wall_method",
+        "preferred_speed",
+        "max_speed",
+        "profile",
+    ];
+    let written = scalars.map(|key| format!("{key}={}", documented_default(key)));
+    let given = parse(&written.each_ref().map(String::as_str));
+    assert_eq!(given.scene.seed, bare.scene.seed);
+    assert_eq!(given.duration_secs, bare.duration_secs);
+    assert_eq!(given.scene.clock, bare.scene.clock);
+    assert_eq!(given.scene.integrator, bare.scene.integrator);
+    assert_eq!(given.scene.wall_method, bare.scene.wall_method);
+    assert_eq!(given.scene.preferred_speed, bare.scene.preferred_speed);
+    assert_eq!(given.scene.max_speed, bare.scene.max_speed);
+    assert_eq!(given.profile_name, bare.profile_name);
+}
+
+#[test]
+fn a_smaller_step_keeps_the_coarse_step_unless_told_otherwise() {
+    assert_eq!(
+        parse(&["time_step_secs=0.01"]).scene.clock.coarse_every(),
+        10
+    );
+    let both = parse(&["time_step_secs=0.01", "coarse_every=3"]);
+    assert_eq!(both.scene.clock.coarse_every(), 3);
+}
