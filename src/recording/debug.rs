@@ -1,7 +1,5 @@
 //! Some agents laid open, frame by frame: kernels, hidden regions, wall points and every force.
 
-use std::collections::BTreeSet;
-
 use rerun::{Arrows2D, AsComponents, Color, Ellipses2D, LineStrips2D, Points2D, Radius};
 use rerun::{RecordingStream, Rgba32};
 
@@ -16,7 +14,7 @@ use crate::scene::{Region, Scene};
 use crate::simulation::Simulation;
 
 /// Length of an arrow in metres for an acceleration of 1 m/s².
-pub const METRES_PER_ACCELERATION: f64 = 0.1;
+pub const METRES_PER_ACCELERATION: f64 = 0.25;
 
 /// Parts of an arc in the outline of a hidden region.
 const ARC_STEPS: usize = 24;
@@ -34,25 +32,56 @@ pub enum DebugAgents {
     None,
 }
 
-impl DebugAgents {
+/// Finds the debug agents and lays them open.
+pub struct Debug {
+    who: DebugAgents,
+}
+
+impl Debug {
+    pub fn new(who: DebugAgents) -> Self {
+        Self { who }
+    }
+
     /// The indices of the agents meant, in the order of their ids.
     fn among(&self, simulation: &Simulation) -> Vec<usize> {
         let agents = simulation.frame().agents;
-        let mut chosen: Vec<usize> = match self {
-            Self::None => Vec::new(),
-            Self::All => (0..agents.len()).collect(),
-            Self::Region(region) => (0..agents.len())
+        let everybody = 0..agents.len();
+        let mut chosen: Vec<usize> = match &self.who {
+            DebugAgents::None => Vec::new(),
+            DebugAgents::All => everybody.collect(),
+            DebugAgents::Region(region) => everybody
                 .filter(|&i| region.contains(agents.position[i]))
                 .collect(),
-            Self::Ids(ids) => {
-                let ids: BTreeSet<u32> = ids.iter().copied().collect();
-                (0..agents.len())
-                    .filter(|&i| ids.contains(&agents.id[i]))
+            DebugAgents::Ids(ids) => {
+                let mut wanted = vec![false; agents.entered() as usize];
+                for &id in ids {
+                    if let Some(wanted) = wanted.get_mut(id as usize) {
+                        *wanted = true;
+                    }
+                }
+                everybody
+                    .filter(|&i| wanted[agents.id[i] as usize])
                     .collect()
             }
         };
         chosen.sort_unstable_by_key(|&i| agents.id[i]);
         chosen
+    }
+
+    /// Lays them open in the current frame; nobody, if it has no densities.
+    pub fn open(&self, simulation: &Simulation) -> Vec<Open> {
+        let chosen = self.among(simulation).into_iter();
+        chosen.filter_map(|i| Open::of(simulation, i)).collect()
+    }
+
+    /// Where the first debug agent is now; of several ids, the first given.
+    pub fn focus(&self, simulation: &Simulation) -> Option<Vector> {
+        let agents = simulation.frame().agents;
+        let first = match &self.who {
+            DebugAgents::Ids(ids) => ids.iter().find_map(|&id| agents.index_of(id)),
+            _ => self.among(simulation).first().copied(),
+        };
+        Some(agents.position[first?])
     }
 }
 
@@ -96,15 +125,14 @@ pub fn force_colors() -> impl Iterator<Item = (&'static str, &'static str)> {
 }
 
 /// Logs the debug agents.
-pub struct Debug {
-    who: DebugAgents,
+pub struct Layers {
     layers: Vec<Layer>,
 }
 
-impl Debug {
-    /// Prepares the layers that `scene` can ever fill.
-    pub fn new(scene: &Scene, who: DebugAgents) -> Self {
-        let kinds = if who == DebugAgents::None {
+impl Layers {
+    /// The layers that `scene` can ever fill.
+    pub fn new(scene: &Scene, who: &DebugAgents) -> Self {
+        let kinds = if *who == DebugAgents::None {
             Vec::new()
         } else {
             kinds(scene)
@@ -115,12 +143,11 @@ impl Debug {
             shown: false,
         });
         Self {
-            who,
             layers: layers.collect(),
         }
     }
 
-    /// Is there anything to show?
+    /// Is there nothing to show?
     pub fn is_empty(&self) -> bool {
         self.layers.is_empty()
     }
@@ -132,19 +159,10 @@ impl Debug {
         Ok(())
     }
 
-    /// Logs the current frame, if it has densities.
-    pub fn log(
-        &mut self,
-        stream: &RecordingStream,
-        simulation: &Simulation,
-    ) -> Result<(), RecordingError> {
-        if self.is_empty() {
-            return Ok(());
-        }
-        let chosen = self.who.among(simulation).into_iter();
-        let open: Vec<Open> = chosen.filter_map(|i| Open::of(simulation, i)).collect();
+    /// Logs one frame; what has just become empty is logged as empty, so that it goes out of sight.
+    pub fn log(&mut self, stream: &RecordingStream, open: &[Open]) -> Result<(), RecordingError> {
         for layer in &mut self.layers {
-            let (data, count) = layer.kind.data(&open);
+            let (data, count) = layer.kind.data(open);
             if count > 0 || layer.shown {
                 stream.log(layer.entity.as_str(), data.as_ref())?;
             }
@@ -152,16 +170,10 @@ impl Debug {
         }
         Ok(())
     }
-
-    /// Where the first debug agent is now.
-    pub fn focus(&self, simulation: &Simulation) -> Option<Vector> {
-        let first = *self.who.among(simulation).first()?;
-        Some(simulation.frame().agents.position[first])
-    }
 }
 
 /// An agent laid open.
-struct Open {
+pub struct Open {
     breakdown: Breakdown,
     position: Vector,
     support_radius: f64,

@@ -44,7 +44,7 @@ fn legend(options: &RecordingOptions) -> String {
          * Metres, seconds, y up; mass 1 = an average person. (The viewer's own *hover position* counts \
          y down.)\n\
          * Density colours (viridis): dark purple 0, green {:.0}, yellow {DENSITY_RANGE} P/m² and more.\n\
-         * Speed colours (plasma): dark blue 0, red {:.1}, yellow {SPEED_RANGE} m/s and more.\n\
+         * Speed colours (inferno): black 0, red {:.1}, pale yellow {SPEED_RANGE} m/s and more.\n\
          * Click an agent: `agent:id`, `agent:density` ρ and `agent:rest_density` ρ⁰ in P/m² (three \
          digits), `agent:pressure` p = k (ρ − ρ⁰).\n\
          * Look first at t = {} s.\n",
