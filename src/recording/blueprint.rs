@@ -14,8 +14,8 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 };
 use rerun::{AsComponents, Color, EntityPath, Points2D, RecordingStream, RecordingStreamBuilder};
 
-use super::debug::Layers;
 use super::error::RecordingError;
+use super::layers::Layers;
 use super::{APPLICATION, RecordingOptions, SIM_TIME, crowd, geometry, text};
 use crate::math::Vector;
 use crate::scene::Region;

@@ -22,8 +22,18 @@ pub enum RecordingError {
     WriterGone,
     /// The file is not whole.
     #[error("the recording {} is not complete: {reason}", path.display())]
-    Incomplete { path: PathBuf, reason: String },
+    Incomplete {
+        /// Which file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// The file is no recording.
     #[error("cannot read the recording {}: {reason}", path.display())]
-    Unreadable { path: PathBuf, reason: String },
+    Unreadable {
+        /// Which file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
 }

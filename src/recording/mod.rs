@@ -19,14 +19,16 @@ mod crowd;
 mod debug;
 mod error;
 mod geometry;
+mod layers;
 mod read;
 mod snapshot;
 mod stats;
 mod text;
 mod writer;
 
-pub use debug::{DebugAgents, METRES_PER_ACCELERATION};
+pub use debug::DebugAgents;
 pub use error::RecordingError;
+pub use layers::METRES_PER_ACCELERATION;
 pub use read::Recording;
 
 use std::path::{Path, PathBuf};
@@ -93,7 +95,7 @@ impl Recorder {
         stream.set_log_tick_enabled(false);
         stream.set_log_time_enabled(false);
         stream.send_recording_name(options.title.clone())?;
-        let layers = debug::Layers::new(scene, &options.debug);
+        let layers = layers::Layers::new(scene, &options.debug);
         blueprint::send(&stream, options, &layers, None)?;
         text::log_document(&stream, scene, options)?;
         geometry::log(&stream, scene)?;

@@ -6,9 +6,9 @@ use rerun::external::arrow::array::{ArrayRef, Float64Array, StringArray, UInt64A
 use rerun::{AnyValues, RecordingStream, TextDocument};
 
 use super::colors::{DENSITY_RANGE, SPEED_RANGE};
-use super::debug::METRES_PER_ACCELERATION;
 use super::error::RecordingError;
-use super::{RecordingOptions, debug};
+use super::layers::{METRES_PER_ACCELERATION, force_colors};
+use super::{DebugAgents, RecordingOptions};
 use crate::scene::Scene;
 
 pub const DOCUMENT: &str = "info/scenario";
@@ -52,14 +52,14 @@ fn legend(options: &RecordingOptions) -> String {
         0.5 * SPEED_RANGE,
         options.opens_at,
     );
-    if options.debug != debug::DebugAgents::None {
+    if options.debug != DebugAgents::None {
         legend += &format!(
             "* Agents laid open (`world/debug`): circle = kernel of radius h; tinted outline = hidden \
              region P_k behind a wall; dots at walls = nearest point r*, between = representative point \
              r°. Arrows: each force's weighted acceleration, {METRES_PER_ACCELERATION} m long per m/s²; \
              white = their sum.\n"
         );
-        for (name, color) in debug::force_colors() {
+        for (name, color) in force_colors() {
             legend += &format!("  * `{name}`: {color}\n");
         }
     }

@@ -7,7 +7,7 @@ use rerun::RecordingStream;
 
 use super::error::RecordingError;
 use super::snapshot::Snapshot;
-use super::{RecordingOptions, blueprint, crowd, debug, set_time, stats};
+use super::{RecordingOptions, blueprint, crowd, layers, set_time, stats};
 
 /// Snapshots under way at most; with more the simulation waits.
 const QUEUE: usize = 4;
@@ -26,7 +26,7 @@ struct Rows {
     stream: RecordingStream,
     options: RecordingOptions,
     crowd: crowd::Crowd,
-    layers: debug::Layers,
+    layers: layers::Layers,
 }
 
 impl Writer {
@@ -34,7 +34,7 @@ impl Writer {
     pub fn start(
         stream: RecordingStream,
         options: RecordingOptions,
-        layers: debug::Layers,
+        layers: layers::Layers,
     ) -> Result<Self, RecordingError> {
         let (snapshots, queue) = sync_channel(QUEUE);
         let (give_back, used) = channel();
