@@ -8,7 +8,7 @@ use rerun::blueprint::{
     Spatial2DView, Tabs, TextDocumentView, TextLogView, TimePanel, TimeSeriesView, Vertical,
     VisualizableArchetype as _, Visualizer, VisualizerComponentMapping,
 };
-use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind};
+use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind, TimeInt};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
     Background, EntityBehavior, VisualBounds2D,
 };
@@ -22,6 +22,8 @@ use crate::scene::Region;
 
 /// Half the side of the part of the plane that the debug view shows round an agent, metres.
 const FOCUS: f64 = 3.0;
+/// Length of the marked stretch of time, seconds.
+const MARKED: f64 = 10.0;
 const BACKGROUND: [u8; 3] = [22, 23, 29];
 /// Light enough for agents at rest, which are black.
 const SPEED_BACKGROUND: [u8; 3] = [72, 75, 88];
@@ -117,14 +119,17 @@ fn layout(
         .with_auto_layout(false)
         .with_blueprint_panel(BlueprintPanel::from_state(PanelState::Collapsed))
         .with_selection_panel(SelectionPanel::from_state(PanelState::Collapsed))
-        .with_time_panel(time_panel());
+        .with_time_panel(time_panel(options.opens_at));
     (blueprint, properties)
 }
 
-fn time_panel() -> TimePanel {
+/// The seconds to look at first are marked: opening there is beyond a blueprint of rerun 0.36.
+fn time_panel(opens_at: f64) -> TimePanel {
+    let marked = [opens_at, opens_at + MARKED].map(TimeInt::from_secs);
     TimePanel::new()
         .with_state(PanelState::Collapsed)
         .with_timeline(SIM_TIME)
+        .with_time_selection(marked[0]..=marked[1])
         .with_loop_mode(LoopMode::Off)
         .with_play_state(PlayState::Paused)
 }

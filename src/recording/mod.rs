@@ -28,7 +28,7 @@ mod writer;
 
 pub use debug::DebugAgents;
 pub use error::RecordingError;
-pub use layers::METRES_PER_ACCELERATION;
+pub use layers::metres_per_acceleration;
 pub use read::Recording;
 
 use std::path::{Path, PathBuf};
@@ -72,7 +72,7 @@ pub struct Recorder {
     writer: Writer,
     debug: Debug,
     opens_at: f64,
-    /// Has the debug view been given its place?
+    /// Is the time to look at first over, and the debug view in its place?
     opened: bool,
     progress: Progress,
 }
@@ -131,8 +131,8 @@ impl Recorder {
         snapshot.ms_per_frame = ms_per_frame;
         snapshot.evacuated = self.progress.count_arrivals(simulation);
         snapshot.events = self.progress.new_events(simulation);
-        snapshot.focus = None;
-        if !self.opened && snapshot.time >= self.opens_at {
+        snapshot.opens_here = !self.opened && snapshot.time >= self.opens_at;
+        if snapshot.opens_here {
             self.opened = true;
             snapshot.focus = self.debug.focus(simulation);
         }

@@ -25,7 +25,9 @@ pub struct Snapshot {
     pub events: Vec<(f64, Event)>,
     /// The agents laid open.
     pub open: Vec<Open>,
-    /// Show the debug view here from now on.
+    /// Is this the frame to look at first?
+    pub opens_here: bool,
+    /// Where the debug view then shows somebody.
     pub focus: Option<Vector>,
 }
 

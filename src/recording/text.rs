@@ -7,7 +7,7 @@ use rerun::{AnyValues, RecordingStream, TextDocument};
 
 use super::colors::{DENSITY_RANGE, SPEED_RANGE};
 use super::error::RecordingError;
-use super::layers::{METRES_PER_ACCELERATION, force_colors};
+use super::layers::{force_colors, metres_per_acceleration};
 use super::{DebugAgents, RecordingOptions};
 use crate::scene::Scene;
 
@@ -19,7 +19,11 @@ pub fn log_document(
     scene: &Scene,
     options: &RecordingOptions,
 ) -> Result<(), RecordingError> {
-    let text = format!("{}\n\n{}", options.document.trim_end(), legend(options));
+    let text = format!(
+        "{}\n\n{}",
+        options.document.trim_end(),
+        legend(scene, options)
+    );
     stream.log_static(DOCUMENT, &TextDocument::from_markdown(text))?;
     let profiles: Vec<&str> = scene
         .groups
@@ -38,7 +42,7 @@ pub fn log_document(
     Ok(stream.send_property("run", &properties)?)
 }
 
-fn legend(options: &RecordingOptions) -> String {
+fn legend(scene: &Scene, options: &RecordingOptions) -> String {
     let mut legend = format!(
         "## Legend\n\
          * Metres, seconds, y up; mass 1 = an average person. (The viewer's own *hover position* counts \
@@ -56,8 +60,9 @@ fn legend(options: &RecordingOptions) -> String {
         legend += &format!(
             "* Agents laid open (`world/debug`): circle = kernel of radius h; tinted outline = hidden \
              region P_k behind a wall; dots at walls = nearest point r*, between = representative point \
-             r°. Arrows: each force's weighted acceleration, {METRES_PER_ACCELERATION} m long per m/s²; \
-             white = their sum.\n"
+             r°. Arrows: each force's weighted acceleration, {} m long per m/s²; \
+             white = their sum.\n",
+            metres_per_acceleration(scene)
         );
         for (name, color) in force_colors() {
             legend += &format!("  * `{name}`: {color}\n");

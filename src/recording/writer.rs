@@ -99,7 +99,8 @@ impl Rows {
         self.crowd.log(&self.stream, snapshot)?;
         self.layers.log(&self.stream, &snapshot.open)?;
         stats::log(&self.stream, snapshot)?;
-        if snapshot.focus.is_some() {
+        if snapshot.opens_here {
+            stats::log_bookmark(&self.stream)?;
             let layers = &self.layers;
             blueprint::send(&self.stream, &self.options, layers, snapshot.focus)?;
         }
