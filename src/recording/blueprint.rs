@@ -8,21 +8,27 @@ use rerun::blueprint::{
     Spatial2DView, Tabs, TextDocumentView, TextLogView, TimePanel, TimeSeriesView, Vertical,
     VisualizableArchetype as _, Visualizer, VisualizerComponentMapping,
 };
-use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind};
+use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind, TimeInt};
 use rerun::external::re_sdk_types::blueprint::archetypes::{
     Background, EntityBehavior, VisualBounds2D,
 };
 use rerun::{AsComponents, Color, EntityPath, Points2D, RecordingStream, RecordingStreamBuilder};
 
-use super::debug::Debug;
 use super::error::RecordingError;
+use super::layers::Layers;
 use super::{APPLICATION, RecordingOptions, SIM_TIME, crowd, geometry, text};
 use crate::math::Vector;
 use crate::scene::Region;
 
 /// Half the side of the part of the plane that the debug view shows round an agent, metres.
 const FOCUS: f64 = 3.0;
+/// Length of the marked stretch of time, seconds.
+const MARKED: f64 = 10.0;
 const BACKGROUND: [u8; 3] = [22, 23, 29];
+/// Light enough for agents at rest, which are black.
+const SPEED_BACKGROUND: [u8; 3] = [72, 75, 88];
+/// The crowd where it is only the background.
+const DIM: [u8; 3] = [64, 68, 84];
 
 /// A property of a view that rerun's blueprint has no setter for: its entity and its value.
 type Property = (EntityPath, Box<dyn AsComponents>);
@@ -31,13 +37,13 @@ type Property = (EntityPath, Box<dyn AsComponents>);
 pub fn send(
     stream: &RecordingStream,
     options: &RecordingOptions,
-    debug: &Debug,
+    layers: &Layers,
     focus: Option<Vector>,
 ) -> Result<(), RecordingError> {
     if !stream.is_enabled() {
         return Ok(()); // Sending would panic.
     }
-    let (blueprint, properties) = layout(options, debug, focus);
+    let (blueprint, properties) = layout(options, layers, focus);
     let (memory, storage) = RecordingStreamBuilder::new(APPLICATION)
         .send_properties(false)
         .memory()?;
@@ -74,7 +80,7 @@ pub fn send(
 
 fn layout(
     options: &RecordingOptions,
-    debug: &Debug,
+    layers: &Layers,
     focus: Option<Vector>,
 ) -> (Blueprint, Vec<Property>) {
     let geometry = "+ /world/geometry/**";
@@ -89,17 +95,17 @@ fn layout(
         .with_overrides(crowd::ENTITY, [speed_colors()])
         .into();
     let mut properties = Vec::new();
-    for view in [&by_density, &by_speed] {
-        add_properties(&mut properties, view, &options.view);
-    }
+    add_properties(&mut properties, &by_density, &options.view, BACKGROUND);
+    add_properties(&mut properties, &by_speed, &options.view, SPEED_BACKGROUND);
     let mut below = Vec::new();
-    if !debug.is_empty() {
+    if !layers.is_empty() {
         let forces = Spatial2DView::new("Forces")
             .with_origin("/")
             .with_contents([geometry, agents.as_str(), "+ /world/debug/**"])
+            .with_overrides(crowd::ENTITY, [dim_colors()])
             .into();
         let around = focus.map_or(options.view, around);
-        add_properties(&mut properties, &forces, &around);
+        add_properties(&mut properties, &forces, &around, BACKGROUND);
         below.push(forces);
     }
     below.extend([plots(), texts()]);
@@ -113,14 +119,17 @@ fn layout(
         .with_auto_layout(false)
         .with_blueprint_panel(BlueprintPanel::from_state(PanelState::Collapsed))
         .with_selection_panel(SelectionPanel::from_state(PanelState::Collapsed))
-        .with_time_panel(time_panel());
+        .with_time_panel(time_panel(options.opens_at));
     (blueprint, properties)
 }
 
-fn time_panel() -> TimePanel {
+/// The seconds to look at first are marked: opening there is beyond a blueprint of rerun 0.36.
+fn time_panel(opens_at: f64) -> TimePanel {
+    let marked = [opens_at, opens_at + MARKED].map(TimeInt::from_secs);
     TimePanel::new()
         .with_state(PanelState::Collapsed)
         .with_timeline(SIM_TIME)
+        .with_time_selection(marked[0]..=marked[1])
         .with_loop_mode(LoopMode::Off)
         .with_play_state(PlayState::Paused)
 }
@@ -132,6 +141,14 @@ fn speed_colors() -> Visualizer {
     Points2D::update_fields()
         .visualizer()
         .with_mappings(vec![mapping.into()])
+}
+
+/// The crowd's points in one dark colour, so that arrows stand out.
+fn dim_colors() -> Visualizer {
+    let [r, g, b] = DIM;
+    Points2D::update_fields()
+        .with_colors([Color::from_rgb(r, g, b)])
+        .visualizer()
 }
 
 fn plots() -> ContainerLike {
@@ -165,7 +182,12 @@ fn texts() -> ContainerLike {
 }
 
 /// Zoom, background, and no clicks for the picture of the obstacles, which would swallow them all.
-fn add_properties(properties: &mut Vec<Property>, view: &ContainerLike, shown: &Region) {
+fn add_properties(
+    properties: &mut Vec<Property>,
+    view: &ContainerLike,
+    shown: &Region,
+    [r, g, b]: [u8; 3],
+) {
     let ContainerLike::View(view) = view else {
         return;
     };
@@ -176,7 +198,6 @@ fn add_properties(properties: &mut Vec<Property>, view: &ContainerLike, shown: &
         y_range: [-shown.max.y, -shown.min.y].into(),
     }));
     properties.push((at("VisualBounds2D".to_owned()), Box::new(bounds)));
-    let [r, g, b] = BACKGROUND;
     let background =
         Background::new(BackgroundKind::SolidColor).with_color(Color::from_rgb(r, g, b));
     properties.push((at("Background".to_owned()), Box::new(background)));

@@ -6,9 +6,9 @@ use colorgrad::{Gradient, preset};
 use rerun::Color;
 
 /// Density that has the last colour, P/m².
-pub const DENSITY_RANGE: f64 = 8.0;
+pub const DENSITY_RANGE: f32 = 8.0;
 /// Speed that has the last colour, m/s.
-pub const SPEED_RANGE: f64 = 1.8;
+pub const SPEED_RANGE: f32 = 1.8;
 
 /// Few enough that equal colours repeat in the file, more than an eye tells apart.
 const STEPS: usize = 64;
@@ -16,11 +16,11 @@ const STEPS: usize = 64;
 /// Colours for values from 0 to some limit.
 pub struct ColorMap {
     colors: [Color; STEPS],
-    range: f64,
+    range: f32,
 }
 
 impl ColorMap {
-    fn new(gradient: &impl Gradient, range: f64) -> Self {
+    fn new(gradient: &impl Gradient, range: f32) -> Self {
         let color = |step: usize| {
             let [r, g, b, _] = gradient.at(step as f32 / (STEPS - 1) as f32).to_rgba8();
             Color::from_rgb(r, g, b)
@@ -32,8 +32,8 @@ impl ColorMap {
     }
 
     /// The colour of `value`; beyond the range that of its end.
-    pub fn color(&self, value: f64) -> Color {
-        let last = (STEPS - 1) as f64;
+    pub fn color(&self, value: f32) -> Color {
+        let last = (STEPS - 1) as f32;
         // `as` saturates, and takes NaN to the first colour.
         self.colors[((value / self.range * last + 0.5) as usize).min(STEPS - 1)]
     }
@@ -42,9 +42,9 @@ impl ColorMap {
 /// Viridis for densities.
 pub static DENSITY: LazyLock<ColorMap> =
     LazyLock::new(|| ColorMap::new(&preset::viridis(), DENSITY_RANGE));
-/// Plasma for speeds.
+/// Inferno for speeds.
 pub static SPEED: LazyLock<ColorMap> =
-    LazyLock::new(|| ColorMap::new(&preset::plasma(), SPEED_RANGE));
+    LazyLock::new(|| ColorMap::new(&preset::inferno(), SPEED_RANGE));
 
 #[cfg(test)]
 mod tests {
@@ -54,7 +54,7 @@ mod tests {
     fn values_beyond_the_range_have_the_colours_of_its_ends() {
         assert_eq!(DENSITY.color(-1.0), DENSITY.color(0.0));
         assert_eq!(DENSITY.color(1e9), DENSITY.color(8.0));
-        assert_eq!(SPEED.color(f64::NAN), SPEED.color(0.0));
+        assert_eq!(SPEED.color(f32::NAN), SPEED.color(0.0));
         assert_ne!(SPEED.color(0.9), SPEED.color(1.8));
     }
 }

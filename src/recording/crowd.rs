@@ -11,8 +11,7 @@ use rerun::{AsComponents, Color, DynamicArchetype, Points2D, Radius, RecordingSt
 
 use super::colors;
 use super::error::RecordingError;
-use crate::agents::Agents;
-use crate::simulation::Simulation;
+use super::snapshot::Snapshot;
 
 type F16 = <Float16Type as ArrowPrimitiveType>::Native;
 
@@ -39,37 +38,32 @@ impl Crowd {
     pub fn log(
         &mut self,
         stream: &RecordingStream,
-        simulation: &Simulation,
+        snapshot: &Snapshot,
     ) -> Result<(), RecordingError> {
-        let frame = simulation.frame();
-        let (agents, fields) = (frame.agents, frame.fields);
-        let rows = self.rows.of(agents);
-        self.log_bodies(stream, agents, &rows)?;
-        let positions = rows.iter().map(|&i| agents.position[i]);
-        let mut points =
-            Points2D::update_fields().with_positions(positions.map(|p| [p.x as f32, p.y as f32]));
-        let speeds = rows.iter().map(|&i| agents.velocity[i].norm());
+        self.rows.sort(&snapshot.ids);
+        self.log_bodies(stream, snapshot)?;
+        let rows = &self.rows.order;
+        let positions = rows.iter().map(|&i| snapshot.positions[i]);
+        let mut points = Points2D::update_fields().with_positions(positions);
+        let speed = |&i: &usize| {
+            let [x, y] = snapshot.velocities[i];
+            colors::SPEED.color(x.hypot(y))
+        };
         let mut values = DynamicArchetype::new(ARCHETYPE)
-            .with_component::<rerun::components::Color>(
-                "speed_colors",
-                speeds.map(|speed| colors::SPEED.color(speed)),
-            );
-        if fields.density.is_empty() {
+            .with_component::<rerun::components::Color>("speed_colors", rows.iter().map(speed));
+        if snapshot.densities.is_empty() {
             points = points.with_colors([Color::from_rgb(128, 128, 128)]);
         } else {
-            let densities = rows.iter().map(|&i| fields.density[i]);
-            points = points.with_colors(densities.map(|density| colors::DENSITY.color(density)));
-            let pressure = rows.iter().map(|&i| fields.pressure[i] as f32);
+            let density = |&i: &usize| colors::DENSITY.color(snapshot.densities[i]);
+            points = points.with_colors(rows.iter().map(density));
+            let pressure = rows.iter().map(|&i| snapshot.pressures[i]);
+            let pressure = Arc::new(Float32Array::from_iter_values(pressure)) as ArrayRef;
             values = values
-                .with_component_from_data("density", halves(&rows, &fields.density))
-                .with_component_from_data("rest_density", halves(&rows, &fields.rest_density))
-                .with_component_from_data(
-                    "pressure",
-                    Arc::new(Float32Array::from_iter_values(pressure)) as ArrayRef,
-                );
+                .with_component_from_data("density", halves(rows, &snapshot.densities))
+                .with_component_from_data("rest_density", halves(rows, &snapshot.rest_densities))
+                .with_component_from_data("pressure", pressure);
         }
         stream.log(ENTITY, &[&points as &dyn AsComponents, &values])?;
-        self.rows.give_back(rows);
         Ok(())
     }
 
@@ -77,16 +71,16 @@ impl Crowd {
     fn log_bodies(
         &mut self,
         stream: &RecordingStream,
-        agents: &Agents,
-        rows: &[usize],
+        snapshot: &Snapshot,
     ) -> Result<(), RecordingError> {
-        let ids = rows.iter().map(|&i| agents.id[i]);
+        let rows = &self.rows.order;
+        let ids = rows.iter().map(|&i| snapshot.ids[i]);
         if ids.clone().eq(self.logged_ids.iter().copied()) {
             return Ok(());
         }
         self.logged_ids.clear();
         self.logged_ids.extend(ids);
-        let radii = rows.iter().map(|&i| agents.radius[i] as f32);
+        let radii = rows.iter().map(|&i| snapshot.radii[i]);
         let points = Points2D::update_fields().with_radii(radii.map(Radius::new_scene_units));
         let ids = Arc::new(UInt32Array::from(self.logged_ids.clone())) as ArrayRef;
         let values = DynamicArchetype::new(ARCHETYPE).with_component_from_data("id", ids);
@@ -96,8 +90,8 @@ impl Crowd {
 }
 
 /// Half precision: three digits of a density in half the bytes.
-fn halves(rows: &[usize], values: &[f64]) -> ArrayRef {
-    let halves = rows.iter().map(|&i| F16::from_f32(values[i] as f32));
+fn halves(rows: &[usize], values: &[f32]) -> ArrayRef {
+    let halves = rows.iter().map(|&i| F16::from_f32(values[i]));
     Arc::new(Float16Array::from_iter_values(halves))
 }
 
@@ -105,29 +99,23 @@ fn halves(rows: &[usize], values: &[f64]) -> ArrayRef {
 #[derive(Default)]
 struct Rows {
     index_of: Vec<u32>,
-    rows: Vec<usize>,
+    /// Indices of the agents in the order of their ids.
+    order: Vec<usize>,
 }
 
 impl Rows {
-    /// Indices of the agents in the order of their ids.
-    fn of(&mut self, agents: &Agents) -> Vec<usize> {
+    fn sort(&mut self, ids: &[u32]) {
         const NOBODY: u32 = u32::MAX;
-        let mut rows = std::mem::take(&mut self.rows);
-        rows.clear();
-        let (Some(&first), Some(&last)) = (agents.id.iter().min(), agents.id.iter().max()) else {
-            return rows;
+        self.order.clear();
+        let (Some(&first), Some(&last)) = (ids.iter().min(), ids.iter().max()) else {
+            return;
         };
         self.index_of.clear();
         self.index_of.resize((last - first) as usize + 1, NOBODY);
-        for (i, id) in agents.id.iter().enumerate() {
+        for (i, id) in ids.iter().enumerate() {
             self.index_of[(id - first) as usize] = i as u32;
         }
         let present = self.index_of.iter().filter(|&&i| i != NOBODY);
-        rows.extend(present.map(|&i| i as usize));
-        rows
-    }
-
-    fn give_back(&mut self, rows: Vec<usize>) {
-        self.rows = rows;
+        self.order.extend(present.map(|&i| i as usize));
     }
 }

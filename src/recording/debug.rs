@@ -1,22 +1,11 @@
-//! Some agents laid open, frame by frame: kernels, hidden regions, wall points and every force.
+//! Some agents laid open, frame by frame, by the engine's own breakdown.
 
-use std::collections::BTreeSet;
-
-use rerun::{Arrows2D, AsComponents, Color, Ellipses2D, LineStrips2D, Points2D, Radius};
-use rerun::{RecordingStream, Rgba32};
-
-use super::error::RecordingError;
 use super::geometry::xy;
-use crate::boundary::WallMethod;
 use crate::breakdown::Breakdown;
 use crate::geometry::HiddenRegion;
 use crate::math::Vector;
-use crate::profile::Navigation;
-use crate::scene::{Region, Scene};
+use crate::scene::Region;
 use crate::simulation::Simulation;
-
-/// Length of an arrow in metres for an acceleration of 1 m/s².
-pub const METRES_PER_ACCELERATION: f64 = 0.1;
 
 /// Parts of an arc in the outline of a hidden region.
 const ARC_STEPS: usize = 24;
@@ -34,139 +23,66 @@ pub enum DebugAgents {
     None,
 }
 
-impl DebugAgents {
+/// Finds the debug agents and lays them open.
+pub struct Debug {
+    who: DebugAgents,
+}
+
+impl Debug {
+    pub fn new(who: DebugAgents) -> Self {
+        Self { who }
+    }
+
     /// The indices of the agents meant, in the order of their ids.
     fn among(&self, simulation: &Simulation) -> Vec<usize> {
         let agents = simulation.frame().agents;
-        let mut chosen: Vec<usize> = match self {
-            Self::None => Vec::new(),
-            Self::All => (0..agents.len()).collect(),
-            Self::Region(region) => (0..agents.len())
+        let everybody = 0..agents.len();
+        let mut chosen: Vec<usize> = match &self.who {
+            DebugAgents::None => Vec::new(),
+            DebugAgents::All => everybody.collect(),
+            DebugAgents::Region(region) => everybody
                 .filter(|&i| region.contains(agents.position[i]))
                 .collect(),
-            Self::Ids(ids) => {
-                let ids: BTreeSet<u32> = ids.iter().copied().collect();
-                (0..agents.len())
-                    .filter(|&i| ids.contains(&agents.id[i]))
+            DebugAgents::Ids(ids) => {
+                let mut wanted = vec![false; agents.entered() as usize];
+                for &id in ids {
+                    if let Some(wanted) = wanted.get_mut(id as usize) {
+                        *wanted = true;
+                    }
+                }
+                everybody
+                    .filter(|&i| wanted[agents.id[i] as usize])
                     .collect()
             }
         };
         chosen.sort_unstable_by_key(|&i| agents.id[i]);
         chosen
     }
-}
 
-/// One entity under `world/debug`.
-struct Layer {
-    entity: String,
-    kind: Kind,
-    shown: bool,
-}
-
-/// What a layer shows.
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    Labels,
-    Kernels,
-    HiddenRegions,
-    Links,
-    NearestPoints,
-    RepresentativePoints,
-    /// A term of the breakdown by its place there.
-    Force(usize),
-    Total,
-}
-
-/// The forces in the order of [`Terms::named`](crate::profile::Terms::named).
-const FORCES: [(&str, &str, [u8; 3]); 9] = [
-    ("goal", "green", [95, 211, 120]),
-    ("social_agents", "light blue", [86, 180, 233]),
-    ("social_walls", "blue", [70, 120, 255]),
-    ("rvo", "cyan", [60, 220, 220]),
-    ("pressure_agents", "orange", [255, 150, 30]),
-    ("pressure_walls", "red", [255, 70, 60]),
-    ("viscosity", "purple", [170, 110, 255]),
-    ("contact_agents", "yellow", [250, 230, 80]),
-    ("contact_walls", "pink", [255, 120, 190]),
-];
-
-/// The forces' arrows and their colours in words.
-pub fn force_colors() -> impl Iterator<Item = (&'static str, &'static str)> {
-    FORCES.iter().map(|&(name, color, _)| (name, color))
-}
-
-/// Logs the debug agents.
-pub struct Debug {
-    who: DebugAgents,
-    layers: Vec<Layer>,
-}
-
-impl Debug {
-    /// Prepares the layers that `scene` can ever fill.
-    pub fn new(scene: &Scene, who: DebugAgents) -> Self {
-        let kinds = if who == DebugAgents::None {
-            Vec::new()
-        } else {
-            kinds(scene)
-        };
-        let layers = kinds.into_iter().map(|kind| Layer {
-            entity: format!("world/debug/{}", kind.name()),
-            kind,
-            shown: false,
-        });
-        Self {
-            who,
-            layers: layers.collect(),
-        }
+    /// Lays them open in the current frame; nobody, if it has no densities.
+    pub fn open(&self, simulation: &Simulation) -> Vec<Open> {
+        let chosen = self.among(simulation).into_iter();
+        chosen.filter_map(|i| Open::of(simulation, i)).collect()
     }
 
-    /// Is there anything to show?
-    pub fn is_empty(&self) -> bool {
-        self.layers.is_empty()
-    }
-
-    pub fn log_style(&self, stream: &RecordingStream) -> Result<(), RecordingError> {
-        for layer in &self.layers {
-            stream.log_static(layer.entity.as_str(), layer.kind.style().as_ref())?;
-        }
-        Ok(())
-    }
-
-    /// Logs the current frame, if it has densities.
-    pub fn log(
-        &mut self,
-        stream: &RecordingStream,
-        simulation: &Simulation,
-    ) -> Result<(), RecordingError> {
-        if self.is_empty() {
-            return Ok(());
-        }
-        let chosen = self.who.among(simulation).into_iter();
-        let open: Vec<Open> = chosen.filter_map(|i| Open::of(simulation, i)).collect();
-        for layer in &mut self.layers {
-            let (data, count) = layer.kind.data(&open);
-            if count > 0 || layer.shown {
-                stream.log(layer.entity.as_str(), data.as_ref())?;
-            }
-            layer.shown = count > 0;
-        }
-        Ok(())
-    }
-
-    /// Where the first debug agent is now.
+    /// Where the first debug agent is now; of several ids, the first given.
     pub fn focus(&self, simulation: &Simulation) -> Option<Vector> {
-        let first = *self.who.among(simulation).first()?;
-        Some(simulation.frame().agents.position[first])
+        let agents = simulation.frame().agents;
+        let first = match &self.who {
+            DebugAgents::Ids(ids) => ids.iter().find_map(|&id| agents.index_of(id)),
+            _ => self.among(simulation).first().copied(),
+        };
+        Some(agents.position[first?])
     }
 }
 
 /// An agent laid open.
-struct Open {
-    breakdown: Breakdown,
-    position: Vector,
-    support_radius: f64,
+pub struct Open {
+    pub breakdown: Breakdown,
+    pub position: Vector,
+    pub support_radius: f64,
     /// The outlines of P_k, in the order of the breakdown's walls.
-    hidden: Vec<Vec<[f32; 2]>>,
+    pub hidden: Vec<Vec<[f32; 2]>>,
 }
 
 impl Open {
@@ -189,7 +105,7 @@ impl Open {
     }
 
     /// The weighted sum of one term over the profiles that act.
-    fn force(&self, term: usize) -> Vector {
+    pub fn force(&self, term: usize) -> Vector {
         let shares = self.breakdown.profiles.iter();
         let terms = shares.filter_map(|share| {
             let (_, acceleration) = share.accelerations.named()[term];
@@ -197,175 +113,4 @@ impl Open {
         });
         terms.sum()
     }
-}
-
-/// The layers that are not empty for ever in `scene`.
-fn kinds(scene: &Scene) -> Vec<Kind> {
-    let mut kinds = vec![Kind::Labels, Kind::Kernels];
-    let walls = !scene.walls.is_empty();
-    if walls {
-        kinds.extend([Kind::HiddenRegions, Kind::Links, Kind::NearestPoints]);
-        if scene.wall_method == WallMethod::Representative {
-            kinds.push(Kind::RepresentativePoints);
-        }
-    }
-    let acts = acting_forces(scene);
-    kinds.extend((0..FORCES.len()).filter(|&f| acts[f]).map(Kind::Force));
-    kinds.push(Kind::Total);
-    kinds
-}
-
-/// Which of [`FORCES`] some profile of `scene` has.
-fn acting_forces(scene: &Scene) -> [bool; 9] {
-    let steps = scene.groups.iter().flat_map(|group| group.blend.steps());
-    let walls = !scene.walls.is_empty();
-    steps.fold([false; 9], |acts, step| {
-        let profile = &step.profile;
-        let social = matches!(profile.navigation, Navigation::Social(..));
-        let rvo = matches!(profile.navigation, Navigation::Rvo(_));
-        let has = [
-            !rvo,
-            social,
-            social && walls,
-            rvo,
-            profile.pressure,
-            profile.pressure && walls,
-            profile.viscosity.is_some(),
-            profile.contact.agent_stiffness.is_some(),
-            profile.contact.wall_stiffness.is_some() && walls,
-        ];
-        std::array::from_fn(|f| acts[f] || has[f])
-    })
-}
-
-impl Kind {
-    fn name(self) -> String {
-        match self {
-            Self::Labels => "agents".to_owned(),
-            Self::Kernels => "kernels".to_owned(),
-            Self::HiddenRegions => "walls/hidden_regions".to_owned(),
-            Self::Links => "walls/links".to_owned(),
-            Self::NearestPoints => "walls/nearest_points".to_owned(),
-            Self::RepresentativePoints => "walls/representative_points".to_owned(),
-            Self::Force(term) => format!("forces/{}", FORCES[term].0),
-            Self::Total => "forces/total".to_owned(),
-        }
-    }
-
-    /// What never changes: colours, widths, order.
-    fn style(self) -> Box<dyn AsComponents> {
-        let points = |[r, g, b]: [u8; 3], size: f32| {
-            Points2D::update_fields()
-                .with_radii([Radius::new_ui_points(size)])
-                .with_colors([Color::from_rgb(r, g, b)])
-                .with_draw_order(12.0)
-        };
-        let lines = |[r, g, b]: [u8; 3], width: f32| {
-            LineStrips2D::update_fields()
-                .with_radii([Radius::new_ui_points(width)])
-                .with_colors([Color::from_rgb(r, g, b)])
-                .with_draw_order(11.0)
-        };
-        let arrows = |[r, g, b]: [u8; 3], width: f32, order: f32| {
-            Arrows2D::update_fields()
-                .with_radii([Radius::new_ui_points(width)])
-                .with_colors([Color(Rgba32::from_rgb(r, g, b))])
-                .with_draw_order(order)
-        };
-        match self {
-            Self::Labels => Box::new(points([255, 255, 255], 1.5).with_show_labels(true)),
-            Self::Kernels => Box::new(
-                Ellipses2D::update_fields()
-                    .with_line_radii([Radius::new_ui_points(0.6)])
-                    .with_colors([Color::from_rgb(150, 160, 220)])
-                    .with_draw_order(10.0),
-            ),
-            Self::HiddenRegions => Box::new(lines([220, 120, 200], 0.8)),
-            Self::Links => Box::new(lines([190, 110, 110], 0.4)),
-            Self::NearestPoints => Box::new(points([255, 90, 80], 3.0)),
-            Self::RepresentativePoints => Box::new(points([255, 190, 80], 3.0)),
-            Self::Force(term) => Box::new(arrows(FORCES[term].2, 1.2, 13.0)),
-            Self::Total => Box::new(arrows([255, 255, 255], 1.6, 14.0)),
-        }
-    }
-
-    /// What changes, for all agents laid open, and how many things that are.
-    fn data(self, open: &[Open]) -> (Box<dyn AsComponents>, usize) {
-        match self {
-            Self::Labels => {
-                let labels = open.iter().map(|agent| agent.breakdown.id.to_string());
-                let points = Points2D::update_fields().with_positions(positions(open));
-                (Box::new(points.with_labels(labels)), open.len())
-            }
-            Self::Kernels => {
-                let half_sizes = open.iter().map(|agent| [agent.support_radius as f32; 2]);
-                let circles = Ellipses2D::update_fields()
-                    .with_centers(positions(open))
-                    .with_half_sizes(half_sizes);
-                (Box::new(circles), open.len())
-            }
-            Self::HiddenRegions => {
-                let outlines = open.iter().flat_map(|agent| agent.hidden.iter().cloned());
-                strips(outlines.collect())
-            }
-            Self::Links => strips(links(open)),
-            Self::NearestPoints => dots(nearest_points(open)),
-            Self::RepresentativePoints => {
-                let walls = open.iter().flat_map(|agent| &agent.breakdown.walls);
-                let found = walls.filter_map(|term| term.representative_point);
-                dots(found.map(|p| xy(p.into())).collect())
-            }
-            Self::Force(term) => arrows(open.iter().map(|a| (a.position, a.force(term)))),
-            Self::Total => arrows(
-                open.iter()
-                    .map(|a| (a.position, Vector::from(a.breakdown.acceleration))),
-            ),
-        }
-    }
-}
-
-fn positions(open: &[Open]) -> impl Iterator<Item = [f32; 2]> + '_ {
-    open.iter().map(|agent| xy(agent.position))
-}
-
-fn nearest_points(open: &[Open]) -> Vec<[f32; 2]> {
-    let walls = open.iter().flat_map(|agent| &agent.breakdown.walls);
-    walls.map(|term| xy(term.nearest_point.into())).collect()
-}
-
-/// From every agent to its nearest point on each wall.
-fn links(open: &[Open]) -> Vec<Vec<[f32; 2]>> {
-    let of = |agent: &Open| {
-        let walls = agent.breakdown.walls.iter();
-        let link = |end: [f64; 2]| vec![xy(agent.position), xy(end.into())];
-        walls
-            .map(|term| link(term.nearest_point))
-            .collect::<Vec<_>>()
-    };
-    open.iter().flat_map(of).collect()
-}
-
-fn strips(strips: Vec<Vec<[f32; 2]>>) -> (Box<dyn AsComponents>, usize) {
-    let count = strips.len();
-    let lines = LineStrips2D::update_fields().with_strips(strips);
-    (Box::new(lines), count)
-}
-
-fn dots(points: Vec<[f32; 2]>) -> (Box<dyn AsComponents>, usize) {
-    let count = points.len();
-    let points = Points2D::update_fields().with_positions(points);
-    (Box::new(points), count)
-}
-
-/// Arrows for the accelerations that are not zero.
-fn arrows(accelerations: impl Iterator<Item = (Vector, Vector)>) -> (Box<dyn AsComponents>, usize) {
-    let (origins, vectors): (Vec<_>, Vec<_>) = accelerations
-        .filter(|(_, acceleration)| *acceleration != Vector::zeros())
-        .map(|(origin, acceleration)| (xy(origin), xy(acceleration * METRES_PER_ACCELERATION)))
-        .unzip();
-    let count = origins.len();
-    let arrows = Arrows2D::update_fields()
-        .with_origins(origins)
-        .with_vectors(vectors);
-    (Box::new(arrows), count)
 }

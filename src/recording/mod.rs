@@ -19,20 +19,28 @@ mod crowd;
 mod debug;
 mod error;
 mod geometry;
+mod layers;
 mod read;
+mod snapshot;
 mod stats;
 mod text;
+mod writer;
 
-pub use debug::{DebugAgents, METRES_PER_ACCELERATION};
+pub use debug::DebugAgents;
 pub use error::RecordingError;
+pub use layers::metres_per_acceleration;
 pub use read::Recording;
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
+use rerun::log::ChunkBatcherConfig;
 use rerun::{RecordingStream, RecordingStreamBuilder};
 
 use crate::scene::Region;
-use crate::simulation::Simulation;
+use crate::simulation::{Event, Simulation};
+use debug::Debug;
+use writer::Writer;
 
 /// The viewer keeps its own settings per application.
 const APPLICATION: &str = "sandbox";
@@ -56,15 +64,17 @@ pub struct RecordingOptions {
 
 /// Writes a recording, frame by frame.
 ///
-/// A background thread compresses and writes; [`log`](Self::log) only copies.
+/// [`log`](Self::log) only copies; one thread makes rows of the copies, another compresses and
+/// writes them.
 pub struct Recorder {
     path: PathBuf,
     stream: RecordingStream,
-    options: RecordingOptions,
-    crowd: crowd::Crowd,
-    debug: debug::Debug,
-    stats: stats::Stats,
+    writer: Writer,
+    debug: Debug,
+    opens_at: f64,
+    /// Is the time to look at first over, and the debug view in its place?
     opened: bool,
+    progress: Progress,
 }
 
 impl Recorder {
@@ -77,30 +87,30 @@ impl Recorder {
         simulation: &Simulation,
         options: &RecordingOptions,
     ) -> Result<Self, RecordingError> {
-        let seed = simulation.scene().seed;
+        let scene = simulation.scene();
         let stream = RecordingStreamBuilder::new(APPLICATION)
-            .recording_id(format!("{}-seed{seed}", options.title))
-            .enabled(true)
+            .recording_id(format!("{}-seed{}", options.title, scene.seed))
+            .batcher_config(batches())
             .save(path)?;
         stream.set_log_tick_enabled(false);
         stream.set_log_time_enabled(false);
         stream.send_recording_name(options.title.clone())?;
-        let debug = debug::Debug::new(simulation.scene(), options.debug.clone());
-        blueprint::send(&stream, options, &debug, None)?;
-        text::log_document(&stream, simulation.scene(), options)?;
-        geometry::log(&stream, simulation.scene())?;
+        let layers = layers::Layers::new(scene, &options.debug);
+        blueprint::send(&stream, options, &layers, None)?;
+        text::log_document(&stream, scene, options)?;
+        geometry::log(&stream, scene)?;
         crowd::log_style(&stream)?;
-        debug.log_style(&stream)?;
+        layers.log_style(&stream)?;
         stats::log_style(&stream)?;
         stream.flush_blocking()?;
         Ok(Self {
             path: path.to_owned(),
+            writer: Writer::start(stream.clone(), options.clone(), layers)?,
             stream,
-            options: options.clone(),
-            crowd: crowd::Crowd::default(),
-            debug,
-            stats: stats::Stats::default(),
+            debug: Debug::new(options.debug.clone()),
+            opens_at: options.opens_at,
             opened: false,
+            progress: Progress::default(),
         })
     }
 
@@ -110,37 +120,76 @@ impl Recorder {
     /// [`Simulation::request_density_until`]).
     ///
     /// # Errors
-    /// The data are not what the file format expects.
+    /// An earlier frame could not be written.
     pub fn log(
         &mut self,
         simulation: &Simulation,
         ms_per_frame: f64,
     ) -> Result<(), RecordingError> {
-        let clock = simulation.frame().clock;
-        self.stats.log_events(&self.stream, simulation)?;
-        set_time(&self.stream, clock.frame(), clock.time());
-        self.crowd.log(&self.stream, simulation)?;
-        self.debug.log(&self.stream, simulation)?;
-        self.stats.log(&self.stream, simulation, ms_per_frame)?;
-        if !self.opened && clock.time() >= self.options.opens_at {
+        let mut snapshot = self.writer.empty();
+        snapshot.take(simulation, &self.debug);
+        snapshot.ms_per_frame = ms_per_frame;
+        snapshot.evacuated = self.progress.count_arrivals(simulation);
+        snapshot.events = self.progress.new_events(simulation);
+        snapshot.opens_here = !self.opened && snapshot.time >= self.opens_at;
+        if snapshot.opens_here {
             self.opened = true;
-            let focus = self.debug.focus(simulation);
-            if focus.is_some() {
-                blueprint::send(&self.stream, &self.options, &self.debug, focus)?;
-            }
+            snapshot.focus = self.debug.focus(simulation);
         }
-        Ok(())
+        self.writer.write(snapshot)
     }
 
     /// Writes what is still in memory, closes the file and checks that it is whole.
     ///
     /// # Errors
     /// Something could not be written: the disk is full, for example.
-    pub fn finish(self) -> Result<(), RecordingError> {
-        let Self { path, stream, .. } = self;
-        stream.flush_blocking()?;
-        drop(stream); // Joins the writer, which adds the footer and only logs its failure.
-        read::check_footer(&path)
+    pub fn finish(mut self) -> Result<(), RecordingError> {
+        self.writer.finish()?;
+        self.stream.flush_blocking()?;
+        drop(self.stream); // Joins rerun's writer, which adds the footer and only logs its failure.
+        read::check_footer(&self.path)
+    }
+}
+
+/// How much of what the simulation reports is in the recording.
+#[derive(Default)]
+struct Progress {
+    started: bool,
+    events: usize,
+    arrivals: usize,
+    evacuated: usize,
+}
+
+impl Progress {
+    fn count_arrivals(&mut self, simulation: &Simulation) -> usize {
+        let arrivals = &simulation.outcome().arrivals;
+        let new = arrivals[self.arrivals..].iter();
+        self.evacuated += new.filter(|arrival| arrival.counted).count();
+        self.arrivals = arrivals.len();
+        self.evacuated
+    }
+
+    /// What happened since the last recorded frame, with times. What happened before a late start
+    /// is left out: it would only stretch the time line.
+    fn new_events(&mut self, simulation: &Simulation) -> Vec<(f64, Event)> {
+        let clock = simulation.frame().clock;
+        let events = simulation.events();
+        let new = events[self.events..]
+            .iter()
+            .filter(|event| self.started || event.frame == clock.frame())
+            .map(|event| (clock.time_at(event.frame), event.clone()))
+            .collect();
+        self.events = events.len();
+        self.started = true;
+        new
+    }
+}
+
+/// Few, large chunks: the crowd's rows fill one by their size, all others by the passing of time.
+fn batches() -> ChunkBatcherConfig {
+    ChunkBatcherConfig {
+        flush_tick: Duration::from_secs(5),
+        ..ChunkBatcherConfig::DEFAULT
     }
 }
 

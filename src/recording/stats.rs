@@ -4,7 +4,8 @@ use rerun::{Color, RecordingStream, Scalars, SeriesLines, TextLog, TextLogLevel}
 
 use super::error::RecordingError;
 use super::set_time;
-use crate::simulation::{Event, EventKind, Simulation};
+use super::snapshot::Snapshot;
+use crate::simulation::{Event, EventKind};
 
 /// One time series: its entity, the name that the plot shows, and its colour.
 struct Series {
@@ -39,15 +40,6 @@ const fn series(entity: &'static str, name: &'static str, color: [u8; 3]) -> Ser
     }
 }
 
-/// Logs time series and events.
-#[derive(Default)]
-pub struct Stats {
-    started: bool,
-    events: usize,
-    arrivals: usize,
-    evacuated: usize,
-}
-
 pub fn log_style(stream: &RecordingStream) -> Result<(), RecordingError> {
     for Series {
         entity,
@@ -64,66 +56,48 @@ pub fn log_style(stream: &RecordingStream) -> Result<(), RecordingError> {
     Ok(())
 }
 
-impl Stats {
-    /// Logs the values of the current frame.
-    pub fn log(
-        &mut self,
-        stream: &RecordingStream,
-        simulation: &Simulation,
-        ms_per_frame: f64,
-    ) -> Result<(), RecordingError> {
-        let frame = simulation.frame();
-        let (agents, density) = (frame.agents, &frame.fields.density);
-        self.count_arrivals(simulation);
-        let speeds = agents.velocity.iter().map(|v| v.norm());
-        let energies = agents.velocity.iter().zip(&agents.mass);
-        let kinetic: f64 = energies.map(|(v, m)| 0.5 * m * v.norm_squared()).sum();
-        let values = [
-            Some(agents.len() as f64),
-            Some(self.evacuated as f64),
-            mean(density.iter().copied()),
-            density.iter().copied().reduce(f64::max),
-            mean(speeds),
-            Some(kinetic),
-            Some(ms_per_frame),
-        ];
-        for (series, value) in SERIES.iter().zip(values) {
-            if let Some(value) = value {
-                stream.log(series.entity, &Scalars::single(value))?;
-            }
+/// Logs the values of one frame.
+pub fn log(stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), RecordingError> {
+    let squares = || {
+        let velocities = snapshot.velocities.iter();
+        velocities.map(|&[x, y]| f64::from(x).powi(2) + f64::from(y).powi(2))
+    };
+    let energies = squares().zip(&snapshot.masses);
+    let densities = snapshot.densities.iter().map(|&density| f64::from(density));
+    let values = [
+        Some(snapshot.ids.len() as f64),
+        Some(snapshot.evacuated as f64),
+        mean(densities.clone()),
+        densities.reduce(f64::max),
+        mean(squares().map(f64::sqrt)),
+        Some(energies.map(|(v2, &m)| 0.5 * f64::from(m) * v2).sum()),
+        Some(snapshot.ms_per_frame),
+    ];
+    for (series, value) in SERIES.iter().zip(values) {
+        if let Some(value) = value {
+            stream.log(series.entity, &Scalars::single(value))?;
         }
-        Ok(())
     }
+    Ok(())
+}
 
-    /// Logs the events since the last recorded frame, each at its own time.
-    pub fn log_events(
-        &mut self,
-        stream: &RecordingStream,
-        simulation: &Simulation,
-    ) -> Result<(), RecordingError> {
-        let clock = simulation.frame().clock;
-        let events = simulation.events();
-        for event in &events[self.events..] {
-            // What happened before a late start would only stretch the time line.
-            if self.started || event.frame == clock.frame() {
-                set_time(stream, event.frame, clock.time_at(event.frame));
-                stream.log(
-                    "log",
-                    &TextLog::new(sentence(event)).with_level(level(event)),
-                )?;
-            }
-        }
-        self.events = events.len();
-        self.started = true;
-        Ok(())
+/// Logs events, each at its own time.
+pub fn log_events(stream: &RecordingStream, events: &[(f64, Event)]) -> Result<(), RecordingError> {
+    for (time, event) in events {
+        set_time(stream, event.frame, *time);
+        stream.log(
+            "log",
+            &TextLog::new(sentence(event)).with_level(level(event)),
+        )?;
     }
+    Ok(())
+}
 
-    fn count_arrivals(&mut self, simulation: &Simulation) {
-        let arrivals = &simulation.outcome().arrivals;
-        let new = arrivals[self.arrivals..].iter();
-        self.evacuated += new.filter(|arrival| arrival.counted).count();
-        self.arrivals = arrivals.len();
-    }
+/// Marks the current time in the log of events; a click there leads to it. The viewer itself always
+/// opens at the first frame: its blueprint has no time.
+pub fn log_bookmark(stream: &RecordingStream) -> Result<(), RecordingError> {
+    let bookmark = TextLog::new("Look here first.").with_level(TextLogLevel::INFO);
+    Ok(stream.log("log", &bookmark)?)
 }
 
 fn sentence(event: &Event) -> String {

@@ -6,9 +6,9 @@ use rerun::external::arrow::array::{ArrayRef, Float64Array, StringArray, UInt64A
 use rerun::{AnyValues, RecordingStream, TextDocument};
 
 use super::colors::{DENSITY_RANGE, SPEED_RANGE};
-use super::debug::METRES_PER_ACCELERATION;
 use super::error::RecordingError;
-use super::{RecordingOptions, debug};
+use super::layers::{force_colors, metres_per_acceleration};
+use super::{DebugAgents, RecordingOptions};
 use crate::scene::Scene;
 
 pub const DOCUMENT: &str = "info/scenario";
@@ -19,7 +19,11 @@ pub fn log_document(
     scene: &Scene,
     options: &RecordingOptions,
 ) -> Result<(), RecordingError> {
-    let text = format!("{}\n\n{}", options.document.trim_end(), legend(options));
+    let text = format!(
+        "{}\n\n{}",
+        options.document.trim_end(),
+        legend(scene, options)
+    );
     stream.log_static(DOCUMENT, &TextDocument::from_markdown(text))?;
     let profiles: Vec<&str> = scene
         .groups
@@ -38,13 +42,13 @@ pub fn log_document(
     Ok(stream.send_property("run", &properties)?)
 }
 
-fn legend(options: &RecordingOptions) -> String {
+fn legend(scene: &Scene, options: &RecordingOptions) -> String {
     let mut legend = format!(
         "## Legend\n\
          * Metres, seconds, y up; mass 1 = an average person. (The viewer's own *hover position* counts \
          y down.)\n\
          * Density colours (viridis): dark purple 0, green {:.0}, yellow {DENSITY_RANGE} P/m² and more.\n\
-         * Speed colours (plasma): dark blue 0, red {:.1}, yellow {SPEED_RANGE} m/s and more.\n\
+         * Speed colours (inferno): black 0, red {:.1}, pale yellow {SPEED_RANGE} m/s and more.\n\
          * Click an agent: `agent:id`, `agent:density` ρ and `agent:rest_density` ρ⁰ in P/m² (three \
          digits), `agent:pressure` p = k (ρ − ρ⁰).\n\
          * Look first at t = {} s.\n",
@@ -52,14 +56,15 @@ fn legend(options: &RecordingOptions) -> String {
         0.5 * SPEED_RANGE,
         options.opens_at,
     );
-    if options.debug != debug::DebugAgents::None {
+    if options.debug != DebugAgents::None {
         legend += &format!(
             "* Agents laid open (`world/debug`): circle = kernel of radius h; tinted outline = hidden \
              region P_k behind a wall; dots at walls = nearest point r*, between = representative point \
-             r°. Arrows: each force's weighted acceleration, {METRES_PER_ACCELERATION} m long per m/s²; \
-             white = their sum.\n"
+             r°. Arrows: each force's weighted acceleration, {} m long per m/s²; \
+             white = their sum.\n",
+            metres_per_acceleration(scene)
         );
-        for (name, color) in debug::force_colors() {
+        for (name, color) in force_colors() {
             legend += &format!("  * `{name}`: {color}\n");
         }
     }

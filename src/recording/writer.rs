@@ -1,0 +1,109 @@
+//! The thread that turns snapshots into rows.
+
+use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::thread::JoinHandle;
+
+use rerun::RecordingStream;
+
+use super::error::RecordingError;
+use super::snapshot::Snapshot;
+use super::{RecordingOptions, blueprint, crowd, layers, set_time, stats};
+
+/// Snapshots under way at most; with more the simulation waits.
+const QUEUE: usize = 4;
+
+/// The simulation's end of the queue.
+pub struct Writer {
+    /// `None` once the thread has been asked to end.
+    snapshots: Option<SyncSender<Snapshot>>,
+    /// Written snapshots, for their memory.
+    used: Receiver<Snapshot>,
+    thread: Option<JoinHandle<Result<(), RecordingError>>>,
+}
+
+/// The thread's end.
+struct Rows {
+    stream: RecordingStream,
+    options: RecordingOptions,
+    crowd: crowd::Crowd,
+    layers: layers::Layers,
+}
+
+impl Writer {
+    /// Starts the thread.
+    pub fn start(
+        stream: RecordingStream,
+        options: RecordingOptions,
+        layers: layers::Layers,
+    ) -> Result<Self, RecordingError> {
+        let (snapshots, queue) = sync_channel(QUEUE);
+        let (give_back, used) = channel();
+        let rows = Rows {
+            stream,
+            options,
+            crowd: crowd::Crowd::default(),
+            layers,
+        };
+        let thread = std::thread::Builder::new()
+            .name("recording".to_owned())
+            .spawn(move || rows.write_all(&queue, &give_back))?;
+        Ok(Self {
+            snapshots: Some(snapshots),
+            used,
+            thread: Some(thread),
+        })
+    }
+
+    /// A snapshot to fill.
+    pub fn empty(&self) -> Snapshot {
+        self.used.try_recv().unwrap_or_default()
+    }
+
+    /// Queues a snapshot; what went wrong with earlier ones shows here or in [`finish`](Self::finish).
+    pub fn write(&mut self, snapshot: Snapshot) -> Result<(), RecordingError> {
+        let queue = self.snapshots.as_ref();
+        if queue.is_some_and(|queue| queue.send(snapshot).is_ok()) {
+            return Ok(());
+        }
+        self.finish()?;
+        Err(RecordingError::WriterGone)
+    }
+
+    /// Waits until everything is written.
+    pub fn finish(&mut self) -> Result<(), RecordingError> {
+        self.snapshots = None;
+        let result = self.thread.take().map(JoinHandle::join);
+        result.map_or(Ok(()), |joined| {
+            joined.unwrap_or(Err(RecordingError::WriterGone))
+        })
+    }
+}
+
+impl Rows {
+    fn write_all(
+        mut self,
+        queue: &Receiver<Snapshot>,
+        give_back: &Sender<Snapshot>,
+    ) -> Result<(), RecordingError> {
+        while let Ok(snapshot) = queue.recv() {
+            self.write(&snapshot)?;
+            // Nobody waits for the memory of the last ones.
+            give_back.send(snapshot).ok();
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, snapshot: &Snapshot) -> Result<(), RecordingError> {
+        stats::log_events(&self.stream, &snapshot.events)?;
+        set_time(&self.stream, snapshot.frame, snapshot.time);
+        self.crowd.log(&self.stream, snapshot)?;
+        self.layers.log(&self.stream, &snapshot.open)?;
+        stats::log(&self.stream, snapshot)?;
+        if snapshot.opens_here {
+            stats::log_bookmark(&self.stream)?;
+            let layers = &self.layers;
+            blueprint::send(&self.stream, &self.options, layers, snapshot.focus)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,219 @@
+//! A small run is recorded, read back and compared with the simulation.
+#![cfg(feature = "recording")]
+
+use std::collections::BTreeMap;
+
+use sandbox::agents::NewAgent;
+use sandbox::catalog::{self, Parameters};
+use sandbox::geometry::Polygon;
+use sandbox::math::Vector;
+use sandbox::recording::{
+    DebugAgents, Recorder, Recording, RecordingError, RecordingOptions, metres_per_acceleration,
+};
+use sandbox::scene::{Group, Region, Scene};
+use sandbox::simulation::Simulation;
+
+const CROWD: &str = "/world/agents";
+
+/// 49 agents close together, the first of them at a wall; some reach the goal at once.
+fn scene(profile: &str) -> Scene {
+    let wall = [[-1.0, -1.0], [8.0, -1.0], [8.0, 0.0], [-1.0, 0.0]];
+    let wall = Polygon::new(wall.map(|[x, y]| Vector::new(x, y)).to_vec()).unwrap();
+    let mut scene = Scene::with_obstacles(vec![wall]);
+    let group = scene.add_group(Group {
+        name: "people".to_owned(),
+        blend: catalog::named(profile, &Parameters::default())
+            .unwrap()
+            .unwrap(),
+        removal_radius: Some(0.5),
+        counted: true,
+    });
+    for k in 0..49 {
+        let (column, row) = (f64::from(k % 7), f64::from(k / 7));
+        let start = Vector::new(0.3 + 0.5 * column, 0.3 + 0.5 * row);
+        let goal = Vector::new(4.0, 1.3);
+        scene.agents.push(NewAgent::at(start, goal, group));
+    }
+    scene
+}
+
+fn options(debug: DebugAgents) -> RecordingOptions {
+    RecordingOptions {
+        title: "a test".to_owned(),
+        document: "# A test".to_owned(),
+        view: Region {
+            min: Vector::new(-1.0, -1.0),
+            max: Vector::new(8.0, 5.0),
+        },
+        opens_at: 0.1,
+        debug,
+    }
+}
+
+/// What the simulation had in one frame, by id: position and density.
+type Truth = BTreeMap<u32, (Vector, Option<f64>)>;
+
+/// Records `frames` frames and returns the file read back and the truth.
+fn record(
+    profile: &str,
+    debug: DebugAgents,
+    density: bool,
+    frames: u64,
+) -> (Recording, Vec<Truth>) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("test.rrd");
+    let mut simulation = Simulation::new(scene(profile)).unwrap();
+    if density {
+        simulation.request_density_until(u64::MAX);
+    }
+    let mut recorder = Recorder::create(&path, &simulation, &options(debug)).unwrap();
+    let mut truth = Vec::new();
+    for _ in 0..frames {
+        simulation.evaluate().unwrap();
+        recorder.log(&simulation, 1.0).unwrap();
+        let frame = simulation.frame();
+        let agents = 0..frame.agents.len();
+        truth.push(
+            agents
+                .map(|i| {
+                    let density = frame.fields.density.get(i).copied();
+                    (frame.agents.id[i], (frame.agents.position[i], density))
+                })
+                .collect(),
+        );
+        simulation.integrate().unwrap();
+    }
+    recorder.finish().unwrap();
+    (Recording::read(&path).unwrap(), truth)
+}
+
+#[test]
+fn positions_and_densities_read_back_are_the_simulations() {
+    let (recording, truth) = record("sf->sph", DebugAgents::None, true, 60);
+    let positions = recording.pairs(CROWD, "Points2D:positions");
+    let densities = recording.numbers(CROWD, "agent:density");
+    assert_eq!(positions.len(), 60);
+    assert_eq!(densities.len(), 60);
+    assert!(truth[59].len() < truth[0].len(), "somebody has left");
+    for (frame, agents) in truth.iter().enumerate() {
+        assert_eq!(positions[frame].0, frame as i64);
+        assert_eq!(positions[frame].1.len(), agents.len());
+        let rows = positions[frame].1.iter().zip(&densities[frame].1);
+        for ((position, density), (truth, true_density)) in rows.zip(agents.values()) {
+            assert!((Vector::from(*position) - truth).norm() < 1e-5);
+            let true_density = true_density.unwrap();
+            assert!((density - true_density).abs() < 1e-3 * true_density);
+        }
+    }
+}
+
+#[test]
+fn ids_and_radii_are_logged_whenever_the_crowd_changes() {
+    let (recording, truth) = record("sf->sph", DebugAgents::None, true, 60);
+    let mut ids = recording.numbers(CROWD, "agent:id").into_iter().peekable();
+    let radii = recording.numbers(CROWD, "Points2D:radii");
+    let mut known = Vec::new();
+    for (frame, agents) in truth.iter().enumerate() {
+        if let Some((_, row)) = ids.next_if(|(logged, _)| *logged == frame as i64) {
+            known = row;
+        }
+        let true_ids: Vec<f64> = agents.keys().map(|&id| f64::from(id)).collect();
+        assert_eq!(known, true_ids);
+    }
+    assert!(
+        (2..30).contains(&radii.len()),
+        "not in every frame: {}",
+        radii.len()
+    );
+}
+
+#[test]
+fn the_arrows_of_every_agent_laid_open_sum_to_their_total() {
+    for profile in ["sf->sph", "rvo+sph"] {
+        let (recording, _) = record(profile, DebugAgents::All, true, 20);
+        let unit = metres_per_acceleration(&scene(profile));
+        let folder = "/world/debug/forces/";
+        let mut sums: BTreeMap<(i64, [u64; 2]), Vector> = BTreeMap::new();
+        let mut totals = sums.clone();
+        for entity in recording.entities() {
+            let Some(force) = entity.strip_prefix(folder) else {
+                continue;
+            };
+            let origins = recording.pairs(&entity, "Arrows2D:origins");
+            let vectors = recording.pairs(&entity, "Arrows2D:vectors");
+            let sums = if force == "total" {
+                &mut totals
+            } else {
+                &mut sums
+            };
+            for ((frame, origins), (_, vectors)) in origins.iter().zip(&vectors) {
+                for (origin, vector) in origins.iter().zip(vectors) {
+                    let key = (*frame, origin.map(f64::to_bits));
+                    *sums.entry(key).or_insert_with(Vector::zeros) += Vector::from(*vector);
+                }
+            }
+        }
+        assert!(totals.len() > 20 * 40);
+        assert_eq!(totals.len(), sums.len());
+        for (key, total) in &totals {
+            let sum = sums[key];
+            assert!(
+                (sum - total).norm() < 1e-5 * (1.0 + total.norm() / unit),
+                "{profile} {key:?}: {sum} is not {total}"
+            );
+        }
+    }
+}
+
+#[test]
+fn only_layers_that_can_fill_are_there_and_nothing_but_our_two_timelines() {
+    let (recording, _) = record("sph", DebugAgents::Ids(vec![0, 7, 9999]), true, 10);
+    let timelines: Vec<String> = recording.timelines().into_iter().collect();
+    assert_eq!(timelines, ["frame", "sim_time"]);
+    let entities = recording.entities();
+    assert!(entities.contains("/world/debug/forces/pressure_walls"));
+    assert!(entities.contains("/world/debug/walls/representative_points"));
+    for never in ["rvo", "social_agents", "viscosity"] {
+        assert!(!entities.contains(&format!("/world/debug/forces/{never}")));
+    }
+    let centers = recording.pairs("/world/debug/kernels", "Ellipses2D:centers");
+    assert!(centers.iter().all(|(_, circles)| circles.len() == 2));
+}
+
+#[test]
+fn a_run_without_densities_is_recorded_without_them() {
+    let (recording, truth) = record("sf", DebugAgents::All, false, 10);
+    assert!(truth[9].values().all(|(_, density)| density.is_none()));
+    assert_eq!(recording.pairs(CROWD, "Points2D:positions").len(), 10);
+    assert!(recording.numbers(CROWD, "agent:density").is_empty());
+    assert!(
+        recording
+            .numbers("/stats/density/mean", "Scalars:scalars")
+            .is_empty()
+    );
+    let agents = recording.numbers("/stats/crowd/agents", "Scalars:scalars");
+    assert_eq!(agents[0], (0, vec![49.0]));
+}
+
+#[test]
+fn a_file_that_cannot_be_written_is_an_error() {
+    let simulation = Simulation::new(scene("sph")).unwrap();
+    let nowhere = std::path::Path::new("/no/such/folder/test.rrd");
+    let result = Recorder::create(nowhere, &simulation, &options(DebugAgents::None));
+    assert!(matches!(result, Err(RecordingError::Stream(_))));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_an_error() {
+    let mut simulation = Simulation::new(scene("sph")).unwrap();
+    let full = std::path::Path::new("/dev/full");
+    let result = Recorder::create(full, &simulation, &options(DebugAgents::None)).and_then(
+        |mut recorder| {
+            simulation.evaluate().unwrap();
+            recorder.log(&simulation, 1.0)?;
+            recorder.finish()
+        },
+    );
+    assert!(result.is_err());
+}
