@@ -107,9 +107,9 @@ fn switched_off_terms_need_nothing() {
 #[test]
 fn without_avoidance_nobody_looks_five_metres_far() {
     let scene = crowd(blend("sph")).scene().clone();
-    assert_eq!(scene.ranges(&scene.needs(), true).avoidance, None);
+    assert_eq!(scene.ranges(&scene.needs()).avoidance, None);
     let scene = crowd(blend("sf")).scene().clone();
-    assert_eq!(scene.ranges(&scene.needs(), false).avoidance, Some(5.0));
+    assert_eq!(scene.ranges(&scene.needs()).avoidance, Some(5.0));
 }
 
 #[test]
