@@ -1,6 +1,8 @@
 //! Scenes that the tests are built from. Each test file uses its own part of this.
 #![allow(dead_code)]
 
+pub mod quadrature;
+
 use sandbox::agents::NewAgent;
 use sandbox::breakdown::Breakdown;
 use sandbox::catalog::{self, Parameters};
