@@ -170,6 +170,9 @@ impl Simulation {
     /// Step 1B.
     fn update_density_and_pressure(&mut self) {
         let due = self.density_is_due();
+        if !due && !self.fields.density.is_empty() {
+            self.agents.newcomer.fill(true); // when asked for again, ρ̂ starts anew
+        }
         self.fields.resize(self.agents.len(), due);
         if !due {
             return;

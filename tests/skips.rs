@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{blend, blend_with, block, room, scene, vector};
+use common::{blend, blend_with, block, person, room, scene, vector};
 use sandbox::boundary::WallMethod;
 use sandbox::catalog::Parameters;
 use sandbox::profile::Blend;
@@ -151,4 +151,27 @@ fn agents_far_from_walls_have_no_walls_to_work_on() {
             .iter()
             .all(|&density| density == 0.0)
     );
+}
+
+#[test]
+fn a_moving_average_that_was_interrupted_starts_anew() {
+    // Two who meet after the density was last asked for: the old average knows nothing of it.
+    let mut scene = scene(Vec::new(), blend("sf"));
+    scene.agents = vec![
+        person(vector(0.0, 0.0), vector(20.0, 0.0)),
+        person(vector(1.6, 0.0), vector(1.6, 0.0)),
+    ];
+    let mut simulation = Simulation::new(scene).unwrap();
+    simulation.request_density_until(10);
+    common::run(&mut simulation, 120);
+    simulation.request_density_until(121);
+    simulation.evaluate().unwrap();
+    for id in 0..2 {
+        let agent = common::laid_open(&simulation, id);
+        assert!(
+            agent.neighbors.len() == 1 && agent.density > 1.28,
+            "{agent:?}"
+        );
+        assert!((agent.mean_density - agent.density).abs() < 1e-12);
+    }
 }
