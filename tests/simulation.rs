@@ -3,8 +3,7 @@
 mod common;
 
 use common::{
-    acceleration, blend, blend_with, block, laid_open, person, rectangle, room, run, scene, state,
-    vector, walker,
+    blend, blend_with, block, laid_open, person, rectangle, room, run, scene, state, vector,
 };
 use proptest::prelude::*;
 use sandbox::agents::NewAgent;
