@@ -150,7 +150,7 @@ proptest! {
         ),
     ) {
         let motion = Motion { angle, mirrored, shift: vector(x, y) };
-        let obstacles = vec![room(3.0, 0.8), polygon(&[[1.0, 1.0], [1.6, 1.2], [1.1, 1.7]])];
+        let obstacles = [room(3.0, 0.8), polygon(&[[1.0, 1.0], [1.6, 1.2], [1.1, 1.7]])];
         let parameters = Parameters { viscosity: Some(5.0), ..Parameters::default() };
         let agents: Vec<NewAgent> = crowd(40, 3.0)
             .into_iter()
