@@ -295,3 +295,27 @@ fn contact_pushes_from_both_faces_and_social_force_from_the_free_one() {
     let social = 2.1 / 0.1 * (-1.0_f64).exp();
     assert!((terms.social_walls.unwrap().y - social).abs() < 1e-9);
 }
+
+#[test]
+fn a_wall_pushes_a_centre_that_stands_on_it_along_its_outward_normal() {
+    for k in 0..400 {
+        let (sine, cosine) = (0.0157 * f64::from(k)).sin_cos();
+        let start = vector(0.3, 0.7);
+        let along = vector(cosine, sine);
+        let outward = vector(sine, -cosine);
+        let triangle = vec![
+            start,
+            start + along * 4.0,
+            start + along * 2.0 - outward * 4.0,
+        ];
+        let place = start + along * (1.0 + 0.005 * f64::from(k));
+        let mut scene = scene(vec![Polygon::new(triangle).unwrap()], blend("sph"));
+        scene.agents = vec![person(place, place)];
+        let terms = laid_open(&evaluated(scene), 0).profiles[0].accelerations;
+        let push = terms.contact_walls.unwrap();
+        assert!(
+            (push - outward * 200.0 * 0.24).norm() < 1e-3,
+            "{k}: {push:?}"
+        );
+    }
+}
