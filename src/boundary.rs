@@ -62,7 +62,7 @@ impl WallMethod {
             .filter_map(|&k| Some((k, HiddenRegion::behind(walls.wall(k), r_i, h)?)));
         match self {
             Self::Representative => {
-                hidden.for_each(|(k, region)| take(representative(walls, k, &region, r_i)));
+                hidden.for_each(|(k, region)| take(representative(k, &region, r_i)));
             }
             Self::Exact => hidden.for_each(|(k, region)| take(exact(k, &region))),
             Self::Union => {
@@ -80,9 +80,9 @@ impl WallMethod {
 }
 
 /// Eq. 10 and 12: P_k condensed into the point half way between r_k* and the rim of the kernel.
-fn representative(walls: &Walls, k: u32, region: &HiddenRegion, r_i: Vector) -> WallShare {
+fn representative(k: u32, region: &HiddenRegion, r_i: Vector) -> WallShare {
     let h = region.support_radius;
-    let to_nearest = walls.wall(k).nearest_point(r_i).point - r_i;
+    let to_nearest = region.to_nearest();
     let distance = to_nearest.norm();
     let ray = if distance > 0.0 {
         direction(to_nearest)
@@ -133,7 +133,7 @@ impl Antiderivatives {
         let r = r2.sqrt();
         let t = s.atan2(q);
         // q² A and q⁴ A vanish with q.
-        let q2a = if q > 0.0 { q2 * (s / q).asinh() } else { 0.0 };
+        let q2a = if q2 > 0.0 { q2 * (s / q).asinh() } else { 0.0 };
         // cos t and sin t; at the wall's own end (q = s = 0) any direction will do, with weight 0.
         let (cosine, sine) = if r > 0.0 { (q / r, s / r) } else { (1.0, 0.0) };
         Self {

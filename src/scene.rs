@@ -181,14 +181,14 @@ impl Scene {
     }
 
     /// How far neighbours must be looked for.
-    pub fn ranges(&self, needs: &Needs, density: bool) -> Ranges {
+    pub fn ranges(&self, needs: &Needs) -> Ranges {
         let support = self
             .groups
             .iter()
             .map(|group| group.blend.sph.support_radius)
             .reduce(f64::max);
         Ranges {
-            support: support.filter(|_| density),
+            support,
             contact: needs.contact,
             avoidance: needs.avoidance,
             drift: self.max_speed * self.clock.coarse_step(),

@@ -40,6 +40,7 @@ pub struct Simulation {
     stages: StageTimes,
     evaluated: bool,
     crowd_changed: bool,
+    density_listed: bool,
 }
 
 /// What has happened so far.
@@ -113,6 +114,7 @@ impl Simulation {
             stages: StageTimes::default(),
             evaluated: false,
             crowd_changed: true,
+            density_listed: false,
             scene,
         };
         for agent in simulation.scene.agents.clone() {
@@ -142,7 +144,10 @@ impl Simulation {
             self.follow_schedule()?;
         }
         if self.clock.is_coarse() || self.crowd_changed {
-            self.find_neighbors(); // 1
+            self.sort_agents(); // 1
+            self.list_neighbors();
+        } else if self.density_is_due() && !self.density_listed {
+            self.list_neighbors(); // somebody has just asked for the density
         }
         self.update_density_and_pressure(); // 1B
         self.update_preferred_velocity(); // 2
@@ -152,22 +157,32 @@ impl Simulation {
         Ok(())
     }
 
-    /// Step 1.
-    fn find_neighbors(&mut self) {
-        let ranges = self.scene.ranges(&self.needs, self.density_is_due());
+    /// Step 1: cells.
+    fn sort_agents(&mut self) {
+        let ranges = self.scene.ranges(&self.needs);
         let (agents, neighbors) = (&mut self.agents, &mut self.neighbors);
         self.stages
             .time(Stage::Sort, || neighbors.sort(agents, ranges));
-        self.stages.time(Stage::Neighbors, || {
-            neighbors.list_agents(agents);
-            neighbors.list_walls(agents, &self.scene.walls);
-        });
         self.crowd_changed = false;
+    }
+
+    /// Step 1: lists.
+    fn list_neighbors(&mut self) {
+        let density = self.density_is_due();
+        let (agents, neighbors) = (&self.agents, &mut self.neighbors);
+        self.stages.time(Stage::Neighbors, || {
+            neighbors.list_agents(agents, density);
+            neighbors.list_walls(agents, &self.scene.walls, density);
+        });
+        self.density_listed = density;
     }
 
     /// Step 1B.
     fn update_density_and_pressure(&mut self) {
         let due = self.density_is_due();
+        if !due && !self.fields.density.is_empty() {
+            self.agents.newcomer.fill(true); // when asked for again, ρ̂ starts anew
+        }
         self.fields.resize(self.agents.len(), due);
         if !due {
             self.neighbors.widen();

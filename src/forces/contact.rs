@@ -3,6 +3,10 @@
 use crate::frame::Frame;
 use crate::math::{Vector, direction};
 
+/// A centre this near to a wall stands on it, metres: the rounding of coordinates up to 10⁶ m, which
+/// would otherwise decide where the wall pushes.
+const ON_THE_WALL: f64 = 1e-9;
+
 /// Stiffnesses of one profile; `None` where that contact is switched off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
@@ -38,7 +42,7 @@ pub fn from_walls(frame: &Frame, i: usize, stiffness: f64) -> Vector {
         let away = r_i - wall.nearest_point(r_i).point;
         let distance = away.norm();
         if distance < radius {
-            let push = if distance > 0.0 {
+            let push = if distance > ON_THE_WALL {
                 away / distance
             } else {
                 wall.normal

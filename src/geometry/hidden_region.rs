@@ -55,6 +55,12 @@ impl HiddenRegion {
         [self.from, self.to].map(|s| s.atan2(self.distance))
     }
 
+    /// r_k* − r_i, metres. Not the difference of two points, whose rounding would decide where it
+    /// points when the agent stands on the wall.
+    pub fn to_nearest(&self) -> Vector {
+        self.towards * self.distance + self.along * 0.0_f64.clamp(self.from, self.to)
+    }
+
     fn angle(&self) -> f64 {
         let [t1, t2] = self.angles();
         t2 - t1

@@ -6,6 +6,10 @@ use parry2d::shape::{Segment, SegmentPointLocation};
 use super::{from_parry, to_parry};
 use crate::math::{Vector, perpendicular};
 
+/// How far beyond its ends a wall still stops a move, metres: above the rounding of coordinates up to
+/// 10⁶ m, so that nobody slips between two walls at their corner.
+const END_ROUNDING: f64 = 1e-9;
+
 /// A directed edge with the obstacle's inside on its left; the free side is on its right.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wall {
@@ -97,7 +101,8 @@ impl Wall {
         }
         let fraction = before / (before - after);
         let along = (from + (to - from) * fraction - self.start).dot(&self.tangent);
-        (0.0..=self.length()).contains(&along).then_some(fraction)
+        let reach = -END_ROUNDING..=self.length() + END_ROUNDING;
+        reach.contains(&along).then_some(fraction)
     }
 }
 

@@ -96,13 +96,11 @@ impl Walls {
     /// Where a move from `from` to `to` ends if the walls `candidates` stop it: on the way, a hair
     /// before the first wall, which is returned with the point; `None` where the way is free.
     pub fn stop(&self, from: Vector, to: Vector, candidates: &[u32]) -> Option<(Vector, u32)> {
-        let (fraction, k) = self.first_crossing(from, to, candidates)?;
-        let way = to - from;
-        let free = (fraction * way.norm() - CLEARANCE).max(0.0);
-        let stopped = from + way * (free / way.norm());
-        // On a grazing way rounding can still put the point behind; where it came from is free.
-        let behind = self.wall(k).signed_distance(stopped) < 0.0;
-        Some((if behind { from } else { stopped }, k))
+        let (_, k) = self.first_crossing(from, to, candidates)?;
+        let [before, after] = [from, to].map(|p| self.wall(k).signed_distance(p));
+        // Who is nearer than a hair stays: rounding must never put anybody behind.
+        let free = (before - CLEARANCE).max(0.0) / (before - after);
+        Some((from + (to - from) * free, k))
     }
 
     /// The nearest point to `p` on a wall, a hair outside, that lies in no obstacle.
@@ -177,6 +175,45 @@ mod tests {
         assert!(stopped.x < 0.0 && stopped.x > -1e-5);
         assert_eq!(walls.wall(k).normal, Vector::new(-1.0, 0.0));
         assert_eq!(walls.stop(from, Vector::new(-0.5, 3.0), &all), None);
+    }
+
+    #[test]
+    fn no_move_slips_between_two_walls_at_their_corner() {
+        // A solid corner and an inner corner, turned and moved; all moves aim at the corner itself,
+        // where rounding can place the crossing beyond the ends of both walls.
+        let solid = vec![[-1.0, -1.0], [0.0, -1.0], [0.0, 0.0], [-1.0, 0.0]];
+        let (long, short) = ([5.0, -1.0], [-1.0, 5.0]);
+        let inner = vec![
+            [-1.0, -1.0],
+            long,
+            [5.0, 0.0],
+            [0.0, 0.0],
+            [0.0, 5.0],
+            short,
+        ];
+        for points in [solid, inner] {
+            for turn in 0..40 {
+                let (sine, cosine) = (0.17 * f64::from(turn)).sin_cos();
+                let place = |[x, y]: [f64; 2]| {
+                    let corner = Vector::new(17.1 / 3.0, -2.0 / 7.0);
+                    corner + Vector::new(cosine * x - sine * y, sine * x + cosine * y)
+                };
+                let placed = points.iter().map(|&p| place(p)).collect();
+                let walls = Walls::new(vec![Polygon::new(placed).unwrap()]);
+                let all: Vec<u32> = (0..walls.len() as u32).collect();
+                for k in 1..500 {
+                    let x = 1e-4 * f64::from(k);
+                    let from = place([x, x * f64::from(1 + k % 12)]);
+                    let to = from + (place([0.0, 0.0]) - from) * 1.7;
+                    let (stopped, _) = walls.stop(from, to, &all).unwrap();
+                    assert!(
+                        walls
+                            .iter()
+                            .all(|wall| wall.faces(stopped) || !wall.faces(from))
+                    );
+                }
+            }
+        }
     }
 
     #[test]

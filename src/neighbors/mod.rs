@@ -19,7 +19,7 @@ use crate::math::Vector;
 /// How far neighbours are looked for; a range that nobody needs is `None`, and costs nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ranges {
-    /// Support radius h of SPH, metres.
+    /// Support radius h of SPH, metres; lists go so far only while the density is due.
     pub support: Option<f64>,
     /// Do discs in contact matter?
     pub contact: bool,
@@ -44,18 +44,24 @@ pub struct Neighbors {
 
 impl Neighbors {
     /// Sorts the agents into the cells of a new grid. Invalidates all lists.
+    ///
+    /// The cells, and with them the order of all sums, do not depend on whether the density is due:
+    /// whoever asks for it must not change the motion, not even by rounding.
     pub fn sort(&mut self, agents: &mut Agents, ranges: Ranges) {
         self.ranges = ranges;
-        let near = near_radius(agents, &ranges);
+        let near = near_radius(agents, &ranges, true);
         let cell = 0.5 * near.unwrap_or(2.0);
         let order = self.grid.rebuild(&agents.position, cell);
         agents.arrange(&order);
     }
 
-    /// Lists everybody's near neighbours.
-    pub fn list_agents(&mut self, agents: &Agents) {
+    /// Lists everybody's near neighbours, for SPH too if the `density` is due.
+    ///
+    /// May come some frames after the sort: who has drifted out of the cells searched here is too
+    /// far away to come back before the next rebuild.
+    pub fn list_agents(&mut self, agents: &Agents, density: bool) {
         self.in_range.clear();
-        let Some(radius) = near_radius(agents, &self.ranges) else {
+        let Some(radius) = near_radius(agents, &self.ranges, density) else {
             self.candidates.clear();
             return;
         };
@@ -74,7 +80,7 @@ impl Neighbors {
     /// Narrows the lists to who is within the interaction radius in this frame. It pays where several
     /// sums follow, as in SPH: half of the candidates are skin.
     pub fn narrow(&mut self, agents: &Agents) {
-        let radius = interaction_radius(agents, &self.ranges);
+        let radius = interaction_radius(agents, &self.ranges, true);
         let (candidates, position) = (&self.candidates, &agents.position);
         self.in_range
             .rebuild_unless(radius.is_none(), agents.len(), |i, found| {
@@ -98,9 +104,9 @@ impl Neighbors {
 
     /// Lists the walls near everybody: near ones for SPH and contact and for stopping moves, far ones
     /// for avoidance.
-    pub fn list_walls(&mut self, agents: &Agents, walls: &Walls) {
+    pub fn list_walls(&mut self, agents: &Agents, walls: &Walls, density: bool) {
         let drift = self.ranges.drift;
-        let support = self.ranges.support.unwrap_or(0.0);
+        let support = self.ranges.support.filter(|_| density).unwrap_or(0.0);
         let position = &agents.position;
         self.near_walls
             .rebuild_unless(walls.is_empty(), agents.len(), |i, found| {
@@ -142,16 +148,18 @@ impl Neighbors {
     }
 }
 
-/// How far agents act on each other by SPH and contact; `None` where neither is needed.
-fn interaction_radius(agents: &Agents, ranges: &Ranges) -> Option<f64> {
+/// How far agents act on each other by contact and, if the `density` is due, by SPH; `None` where
+/// neither is needed.
+fn interaction_radius(agents: &Agents, ranges: &Ranges, density: bool) -> Option<f64> {
     let widest = agents.radius.iter().copied().fold(0.0, f64::max);
     let contact = ranges.contact.then_some(2.0 * widest);
-    ranges.support.into_iter().chain(contact).reduce(f64::max)
+    let support = ranges.support.filter(|_| density);
+    support.into_iter().chain(contact).reduce(f64::max)
 }
 
-/// The list radius: interaction radius + skin, 2 s_max Δt_coarse.
-fn near_radius(agents: &Agents, ranges: &Ranges) -> Option<f64> {
-    Some(interaction_radius(agents, ranges)? + 2.0 * ranges.drift)
+/// The list radius of near neighbours: interaction radius + skin, 2 s_max Δt_coarse.
+fn near_radius(agents: &Agents, ranges: &Ranges, density: bool) -> Option<f64> {
+    Some(interaction_radius(agents, ranges, density)? + 2.0 * ranges.drift)
 }
 
 #[cfg(test)]
@@ -186,7 +194,7 @@ mod tests {
             let mut agents = crowd(count, side);
             let mut neighbors = Neighbors::default();
             neighbors.sort(&mut agents, ranges());
-            neighbors.list_agents(&agents);
+            neighbors.list_agents(&agents, true);
             for i in 0..agents.len() {
                 let expected: Vec<u32> = (0..agents.len())
                     .filter(|&j| j != i)
@@ -203,7 +211,7 @@ mod tests {
         let mut agents = crowd(300, 6.0);
         let mut neighbors = Neighbors::default();
         neighbors.sort(&mut agents, ranges());
-        neighbors.list_agents(&agents);
+        neighbors.list_agents(&agents, true);
         neighbors.narrow(&agents);
         for i in 0..agents.len() {
             let distance = |j: usize| (agents.position[i] - agents.position[j]).norm();
@@ -218,7 +226,7 @@ mod tests {
         let mut agents = crowd(400, 12.0);
         let mut neighbors = Neighbors::default();
         neighbors.sort(&mut agents, ranges());
-        neighbors.list_agents(&agents);
+        neighbors.list_agents(&agents, true);
         for (i, r) in agents.position.iter_mut().enumerate() {
             let angle = i as f64;
             *r += Vector::new(angle.cos(), angle.sin()) * 0.18;
@@ -240,7 +248,7 @@ mod tests {
         agents.enter(NewAgent::at(Vector::new(1e9, -1e9), Vector::zeros(), 0), 0);
         let mut neighbors = Neighbors::default();
         neighbors.sort(&mut agents, ranges());
-        neighbors.list_agents(&agents);
+        neighbors.list_agents(&agents, true);
         assert!(neighbors.grid.cells() < 10_000);
         let loner = agents.index_of(50).unwrap();
         assert!(neighbors.near(loner).is_empty());

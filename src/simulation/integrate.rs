@@ -12,7 +12,7 @@ impl Simulation {
     /// Step 5: moves everybody by one frame and removes who has arrived.
     ///
     /// # Errors
-    /// A position, velocity or acceleration is not finite: which, of whom, in which frame. Nobody has
+    /// A position, velocity, density or acceleration is not finite: which, of whom, in which frame. Nobody has
     /// been moved then.
     pub fn integrate(&mut self) -> Result<(), Fault> {
         self.evaluate()?;
@@ -55,7 +55,8 @@ impl Simulation {
                 *velocity = clamp_length(before + acceleration * dt, scene.max_speed);
                 let step = match scene.integrator {
                     Integrator::SemiImplicit => *velocity,
-                    Integrator::ForwardEuler => before,
+                    // A velocity that an agent enters with may be too fast.
+                    Integrator::ForwardEuler => clamp_length(before, scene.max_speed),
                 };
                 let target = *position + step * dt;
                 let stopped = scene.walls.stop(*position, target, neighbors.near_walls(i));
@@ -69,7 +70,7 @@ impl Simulation {
         self.outcome.contained_moves += contained.into_inner();
     }
 
-    /// The first quantity that is no number, by agent.
+    /// The first quantity that is no number, and whose it is.
     fn find_fault(&self) -> Option<Fault> {
         let (agents, fields) = (&self.agents, &self.fields);
         let fault = |i: usize, quantity| Fault::NotFinite {
@@ -79,15 +80,14 @@ impl Simulation {
             position: agents.position[i],
             quantity,
         };
-        let first = |values: &[Vector]| values.iter().position(|&v| !is_finite(v));
-        if let Some(i) = fields
-            .density
-            .iter()
-            .position(|density| !density.is_finite())
-        {
-            return Some(fault(i, "density"));
-        }
-        first(&fields.acceleration).map(|i| fault(i, "acceleration"))
+        let not_finite = |values: &[Vector]| values.iter().position(|&v| !is_finite(v));
+        let density = || fields.density.iter().position(|d| !d.is_finite());
+        // Causes before effects: a position that is no number makes all forces on it so, or none.
+        None.or_else(|| Some((not_finite(&agents.position)?, "position")))
+            .or_else(|| Some((not_finite(&agents.velocity)?, "velocity")))
+            .or_else(|| Some((density()?, "density")))
+            .or_else(|| Some((not_finite(&fields.acceleration)?, "acceleration")))
+            .map(|(i, quantity)| fault(i, quantity))
     }
 
     fn remove_arrivals(&mut self) {

@@ -1,0 +1,211 @@
+//! The house: modules use only what stands above them in `lib.rs`, each foreign crate has one home,
+//! nothing panics on `unwrap`, and no file grows over the eyes' reach.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const LONGEST_FILE: usize = 400;
+
+fn source() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
+}
+
+/// All Rust files under `folder`, sorted.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(files(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// A line without its comment; `//` in a string is rare enough here to count as one.
+fn without_comment(line: &str) -> &str {
+    line.split_once("//").map_or(line, |(code, _)| code)
+}
+
+/// The code of a file, line by line from 1, without comments and without its tests.
+fn code(path: &Path) -> Vec<(usize, String)> {
+    let text = fs::read_to_string(path).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    // By convention the tests are the last module of a file.
+    let tests = lines
+        .windows(2)
+        .position(|pair| pair[0] == "#[cfg(test)]" && pair[1].starts_with("mod "));
+    let end = tests.unwrap_or(lines.len());
+    let numbered = lines[..end].iter().enumerate();
+    numbered
+        .map(|(k, line)| (k + 1, without_comment(line).to_owned()))
+        .collect()
+}
+
+/// The modules in the order in which `lib.rs` declares them.
+fn order() -> Vec<String> {
+    let declaration = |(_, line): (usize, String)| {
+        let rest = line
+            .trim()
+            .strip_prefix("pub ")
+            .unwrap_or(line.trim())
+            .to_owned();
+        let name = rest.strip_prefix("mod ")?.strip_suffix(';')?;
+        Some(name.to_owned())
+    };
+    code(&source().join("lib.rs"))
+        .into_iter()
+        .filter_map(declaration)
+        .collect()
+}
+
+/// The module in `lib.rs` that a file belongs to.
+fn module_of(path: &Path) -> String {
+    let inside = path.strip_prefix(source()).unwrap();
+    let first = inside.components().next().unwrap().as_os_str();
+    first.to_str().unwrap().trim_end_matches(".rs").to_owned()
+}
+
+/// Every identifier that directly follows `prefix` in a piece of code, the parts of a `{…}` list too.
+fn names_after(text: &str, prefix: &str) -> Vec<String> {
+    let identifier = |text: &str| -> String {
+        let letters = text.trim_start().chars();
+        letters
+            .take_while(|c| c.is_alphanumeric() || *c == '_')
+            .collect()
+    };
+    let mut found = Vec::new();
+    for (at, _) in text.match_indices(prefix) {
+        if text[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_') {
+            continue;
+        }
+        let rest = &text[at + prefix.len()..];
+        let Some(list) = rest.strip_prefix('{') else {
+            found.push(identifier(rest));
+            continue;
+        };
+        // Top-level entries of the list: those at depth 0 of inner braces.
+        let (mut depth, mut entry) = (0, String::new());
+        for c in list.chars() {
+            match c {
+                '{' => depth += 1,
+                '}' if depth == 0 => break,
+                '}' => depth -= 1,
+                ',' if depth == 0 => found.push(identifier(&std::mem::take(&mut entry))),
+                _ if depth == 0 => entry.push(c),
+                _ => {}
+            }
+        }
+        found.push(identifier(&entry));
+    }
+    found.retain(|name| !name.is_empty());
+    found
+}
+
+fn joined(path: &Path) -> String {
+    let lines: Vec<String> = code(path).into_iter().map(|(_, line)| line).collect();
+    lines.join("\n")
+}
+
+#[test]
+fn modules_use_only_what_stands_above_them() {
+    let order = order();
+    assert!(order.len() > 10, "lib.rs was read: {order:?}");
+    for path in files(&source()) {
+        let module = module_of(&path);
+        let Some(own) = order.iter().position(|name| *name == module) else {
+            assert!(
+                ["lib", "main"].contains(&module.as_str()),
+                "{module} is not in lib.rs"
+            );
+            continue;
+        };
+        let text = joined(&path);
+        let mut used = names_after(&text, "crate::");
+        // From a module's own file, `super` is the crate itself.
+        let is_root = path.parent() == Some(source().as_path())
+            || path.file_name().is_some_and(|name| name == "mod.rs");
+        if is_root {
+            used.extend(names_after(&text, "super::"));
+        }
+        for name in used {
+            let place = order.iter().position(|other| *other == name);
+            let place = place.unwrap_or_else(|| panic!("{}: crate::{name}?", path.display()));
+            assert!(
+                place <= own,
+                "{}: `{module}` uses `{name}`, which stands below it",
+                path.display()
+            );
+        }
+    }
+}
+
+/// Every place in the code that uses `krate`, outside the modules that may.
+fn strays(krate: &str, homes: &[&str]) -> Vec<String> {
+    let names = |line: &str| {
+        let path = format!("{krate}::");
+        let starts = line
+            .match_indices(&path)
+            .any(|(at, _)| !line[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_'));
+        starts || line.trim_start().starts_with(&format!("use {krate}"))
+    };
+    let mut found = Vec::new();
+    for path in files(&source()) {
+        if homes.contains(&module_of(&path).as_str()) {
+            continue;
+        }
+        let lines = code(&path).into_iter().filter(|(_, line)| names(line));
+        found.extend(lines.map(|(k, line)| format!("{}:{k}: {line}", path.display())));
+    }
+    found
+}
+
+#[test]
+fn each_foreign_crate_has_one_home() {
+    for (krate, home) in [
+        ("parry2d", "geometry"),
+        ("rerun", "recording"),
+        ("clap", "cli"),
+    ] {
+        assert_eq!(strays(krate, &[home]), Vec::<String>::new());
+    }
+}
+
+#[test]
+fn no_unwrap_outside_tests() {
+    for path in files(&source()) {
+        for (k, line) in code(&path) {
+            assert!(
+                !line.contains(".unwrap()"),
+                "{}:{k}: {line}",
+                path.display()
+            );
+        }
+    }
+}
+
+#[test]
+fn no_file_is_longer_than_four_hundred_lines() {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for path in ["src", "tests"]
+        .iter()
+        .flat_map(|folder| files(&manifest.join(folder)))
+    {
+        let length = fs::read_to_string(&path).unwrap().lines().count();
+        assert!(length <= LONGEST_FILE, "{}: {length} lines", path.display());
+    }
+}
+
+#[test]
+fn the_check_itself_sees_what_it_should() {
+    let text = "use crate::{agents::Agents, math::{Vector, direction}, frame};\nlet x = crate::kernel::density(0.0);";
+    assert_eq!(
+        names_after(text, "crate::"),
+        ["agents", "math", "frame", "kernel"]
+    );
+    assert_eq!(without_comment("let a = 1; // crate::cli"), "let a = 1; ");
+    assert!(!strays("nalgebra", &[]).is_empty());
+}

@@ -1,0 +1,140 @@
+//! Scenes that the tests are built from. Each test file uses its own part of this.
+#![allow(dead_code)]
+
+pub mod quadrature;
+
+use sandbox::agents::NewAgent;
+use sandbox::breakdown::Breakdown;
+use sandbox::catalog::{self, Parameters};
+use sandbox::geometry::Polygon;
+use sandbox::math::Vector;
+use sandbox::profile::Blend;
+use sandbox::scene::{Group, Scene};
+use sandbox::simulation::Simulation;
+
+pub fn vector(x: f64, y: f64) -> Vector {
+    Vector::new(x, y)
+}
+
+pub fn polygon(points: &[[f64; 2]]) -> Polygon {
+    Polygon::new(points.iter().map(|&p| Vector::from(p)).collect()).unwrap()
+}
+
+pub fn rectangle(x: [f64; 2], y: [f64; 2]) -> Polygon {
+    polygon(&[[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]])
+}
+
+/// A square room [0, side]² with walls 1 m thick and a doorway in the middle of the right one.
+pub fn room(side: f64, door: f64) -> Polygon {
+    let [low, high] = [0.5 * (side - door), 0.5 * (side + door)];
+    let (inner, outer) = (side, side + 1.0);
+    polygon(&[
+        [-1.0, -1.0],
+        [outer, -1.0],
+        [outer, low],
+        [inner, low],
+        [inner, 0.0],
+        [0.0, 0.0],
+        [0.0, side],
+        [inner, side],
+        [inner, high],
+        [outer, high],
+        [outer, outer],
+        [-1.0, outer],
+    ])
+}
+
+pub fn blend(name: &str) -> Blend {
+    blend_with(name, &Parameters::default())
+}
+
+pub fn blend_with(name: &str, parameters: &Parameters) -> Blend {
+    catalog::named(name, parameters).unwrap().unwrap()
+}
+
+/// A scene with one group, number 0, whose agents stay for ever.
+pub fn scene(obstacles: Vec<Polygon>, blend: Blend) -> Scene {
+    let mut scene = Scene::with_obstacles(obstacles);
+    scene.add_group(Group {
+        name: "all".to_owned(),
+        blend,
+        removal_radius: None,
+        counted: true,
+    });
+    scene
+}
+
+/// An average person of group 0 at rest.
+pub fn person(position: Vector, goal: Vector) -> NewAgent {
+    NewAgent {
+        radius: Some(0.24),
+        mass: Some(1.0),
+        ..NewAgent::at(position, goal, 0)
+    }
+}
+
+/// As [`person`], but moving.
+pub fn walker(position: Vector, velocity: Vector, goal: Vector) -> NewAgent {
+    NewAgent {
+        velocity,
+        ..person(position, goal)
+    }
+}
+
+/// `columns` × `rows` people, `spacing` metres apart from `corner` on, with bodies by seed.
+pub fn block(corner: Vector, columns: u32, rows: u32, spacing: f64, goal: Vector) -> Vec<NewAgent> {
+    let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+    cells
+        .map(|(column, row)| {
+            let step = vector(f64::from(column), f64::from(row));
+            NewAgent::at(corner + step * spacing, goal, 0)
+        })
+        .collect()
+}
+
+/// The simulation with its first frame evaluated, densities included.
+pub fn evaluated(scene: Scene) -> Simulation {
+    let mut simulation = Simulation::new(scene).unwrap();
+    simulation.request_density_until(1);
+    simulation.evaluate().unwrap();
+    simulation
+}
+
+pub fn run(simulation: &mut Simulation, frames: u64) {
+    for _ in 0..frames {
+        simulation.step().unwrap();
+    }
+}
+
+/// Agent `id` of an evaluated frame, laid open.
+pub fn laid_open(simulation: &Simulation, id: u32) -> Breakdown {
+    let i = simulation.frame().agents.index_of(id).unwrap();
+    Breakdown::of(simulation, i).unwrap()
+}
+
+/// Total acceleration of agent `id` of an evaluated frame.
+pub fn acceleration(simulation: &Simulation, id: u32) -> Vector {
+    let frame = simulation.frame();
+    frame.fields.acceleration[frame.agents.index_of(id).unwrap()]
+}
+
+/// Position and velocity of agent `id`.
+pub fn state(simulation: &Simulation, id: u32) -> (Vector, Vector) {
+    let agents = simulation.frame().agents;
+    let i = agents.index_of(id).unwrap();
+    (agents.position[i], agents.velocity[i])
+}
+
+/// Everybody's id, position, velocity and mean density, bit by bit, by id.
+pub fn bits(simulation: &Simulation) -> Vec<(u32, [u64; 5])> {
+    let agents = simulation.frame().agents;
+    let mut bits: Vec<(u32, [u64; 5])> = (0..agents.len())
+        .map(|i| {
+            let (r, v) = (agents.position[i], agents.velocity[i]);
+            let numbers = [r.x, r.y, v.x, v.y, agents.mean_density[i]];
+            (agents.id[i], numbers.map(f64::to_bits))
+        })
+        .collect();
+    bits.sort_unstable();
+    bits
+}

@@ -1,0 +1,151 @@
+//! The same bits, whatever the number of threads and whoever looks on.
+
+mod common;
+
+use common::{bits, blend, block, room, scene, vector};
+use sandbox::catalog::NAMES;
+use sandbox::profile::Override;
+use sandbox::scene::{Goal, Push, Region, Scene, Source};
+use sandbox::simulation::Simulation;
+
+/// A crowd in a small room with an exit; a row more every second, and a push. Large enough to be
+/// spread over eight threads.
+fn busy_room(profile: &str) -> Scene {
+    let mut scene = scene(vec![room(12.0, 1.2)], blend(profile));
+    scene.seed = 5;
+    scene.groups[0].removal_radius = Some(0.5);
+    let exit = vector(13.5, 6.0);
+    // Dense enough that blends blend.
+    scene.agents = block(vector(0.4, 0.4), 28, 22, 0.42, exit);
+    scene.sources = vec![Source {
+        name: "late".to_owned(),
+        grid: sandbox::placement::Grid {
+            min: vector(0.3, 10.0),
+            max: vector(11.0, 11.5),
+            columns: 12,
+            rows: 1,
+            jitter: 0.3,
+        },
+        group: 0,
+        goal: Goal::Point(exit),
+        start: 0.5,
+        every: 1.0,
+        times: Some(2),
+    }];
+    scene.pushes = vec![Push {
+        name: "push".to_owned(),
+        at: 0.6,
+        lasting: 0.5,
+        region: Region {
+            min: vector(2.0, 2.0),
+            max: vector(8.0, 8.0),
+        },
+        change: Override {
+            goal_scale: Some(3.0),
+            ignore_contact: true,
+            ignore_sph: true,
+        },
+    }];
+    scene
+}
+
+fn simulated(profile: &str, threads: usize, frames: u32) -> Simulation {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap();
+    pool.install(|| {
+        let mut simulation = Simulation::new(busy_room(profile)).unwrap();
+        for _ in 0..frames {
+            simulation.step().unwrap();
+        }
+        simulation
+    })
+}
+
+#[test]
+fn the_bits_do_not_depend_on_the_number_of_threads() {
+    for profile in NAMES {
+        let one = simulated(profile, 1, 60);
+        assert!(one.frame().agents.len() > 512);
+        for threads in [2, 3, 8] {
+            let many = simulated(profile, threads, 60);
+            assert!(bits(&one) == bits(&many), "{profile} on {threads} threads");
+            assert_eq!(one.outcome(), many.outcome());
+            assert_eq!(one.events(), many.events());
+        }
+    }
+}
+
+#[test]
+fn another_seed_gives_other_bits() {
+    let mut other = busy_room("sph");
+    other.seed = 6;
+    let mut other = Simulation::new(other).unwrap();
+    common::run(&mut other, 10);
+    assert!(bits(&other) != bits(&simulated("sph", 1, 10)));
+}
+
+/// Everybody's bits without the mean density, which is only there for who asks.
+fn motion(simulation: &Simulation) -> Vec<(u32, [u64; 4])> {
+    let all = bits(simulation).into_iter();
+    all.map(|(id, [x, y, u, v, _])| (id, [x, y, u, v]))
+        .collect()
+}
+
+#[test]
+fn asking_for_the_density_never_changes_the_motion() {
+    for profile in ["sf", "rvo", "sph"] {
+        for (asked_at, until) in [(0, 1), (0, 200), (3, 40), (31, 33), (40, 200)] {
+            let mut plain = Simulation::new(busy_room(profile)).unwrap();
+            let mut watched = Simulation::new(busy_room(profile)).unwrap();
+            for frame in 0..60 {
+                if frame == asked_at {
+                    watched.request_density_until(until);
+                }
+                plain.step().unwrap();
+                watched.step().unwrap();
+            }
+            let same = motion(&plain) == motion(&watched);
+            assert!(same, "{profile}, asked at {asked_at} until {until}");
+        }
+    }
+}
+
+#[test]
+fn looking_at_a_frame_twice_changes_nothing() {
+    let mut once = Simulation::new(busy_room("rvo->sph")).unwrap();
+    let mut often = Simulation::new(busy_room("rvo->sph")).unwrap();
+    for _ in 0..30 {
+        once.step().unwrap();
+        often.evaluate().unwrap();
+        often.evaluate().unwrap();
+        often.integrate().unwrap();
+    }
+    assert!(bits(&once) == bits(&often));
+}
+
+#[test]
+fn a_density_asked_for_between_coarse_frames_misses_nobody() {
+    for asked_at in 0..6 {
+        let mut simulation = Simulation::new(busy_room("sf")).unwrap();
+        common::run(&mut simulation, asked_at);
+        simulation.request_density_until(asked_at + 1);
+        simulation.evaluate().unwrap();
+        let frame = simulation.frame();
+        for i in (0..frame.agents.len()).step_by(7) {
+            let all = 0..frame.agents.len();
+            let expected: f64 = all
+                .map(|j| {
+                    let r_ij = frame.agents.position[i] - frame.agents.position[j];
+                    frame.agents.mass[j] * sandbox::kernel::density(r_ij.norm_squared(), 1.0)
+                })
+                .sum();
+            let found = frame.fields.density[i] - frame.fields.density_from_walls[i];
+            assert!(
+                (found - expected).abs() < 1e-9,
+                "asked at {asked_at}: {found} {expected}"
+            );
+        }
+    }
+}

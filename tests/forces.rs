@@ -1,0 +1,321 @@
+//! Symmetries and conservation laws of the forces, on evaluated frames.
+
+mod common;
+
+use common::{
+    acceleration, blend, blend_with, evaluated, laid_open, person, polygon, room, scene, vector,
+    walker,
+};
+use proptest::prelude::*;
+use sandbox::agents::NewAgent;
+use sandbox::boundary::WallMethod;
+use sandbox::catalog::{NAMES, Parameters};
+use sandbox::geometry::Polygon;
+use sandbox::math::Vector;
+use sandbox::profile::Terms;
+use sandbox::scene::Scene;
+use sandbox::simulation::Simulation;
+
+/// Everything in the plane turned, perhaps mirrored, and moved.
+#[derive(Debug, Clone, Copy)]
+struct Motion {
+    angle: f64,
+    mirrored: bool,
+    shift: Vector,
+}
+
+impl Motion {
+    fn turn(&self, v: Vector) -> Vector {
+        let v = if self.mirrored { vector(v.x, -v.y) } else { v };
+        let (sine, cosine) = self.angle.sin_cos();
+        vector(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y)
+    }
+
+    fn place(&self, p: Vector) -> Vector {
+        self.turn(p) + self.shift
+    }
+
+    fn polygon(&self, polygon: &Polygon) -> Polygon {
+        let points = polygon.points().iter().map(|&p| self.place(p));
+        Polygon::new(points.collect()).unwrap()
+    }
+
+    fn agent(&self, agent: &NewAgent) -> NewAgent {
+        NewAgent {
+            position: self.place(agent.position),
+            velocity: self.turn(agent.velocity),
+            goal: self.place(agent.goal),
+            ..*agent
+        }
+    }
+}
+
+/// Numbers in [0, 1) that fill it evenly, for crowds without pattern.
+fn spread(k: u32, of: u32) -> f64 {
+    (f64::from(k + 1) * [0.754_877_666_2, 0.569_840_290_9, 0.819_172_513_3][of as usize]).fract()
+}
+
+/// `count` people of different bodies and speeds in the square [0, side]².
+fn crowd(count: u32, side: f64) -> Vec<NewAgent> {
+    (0..count)
+        .map(|k| {
+            let heading = 40.0 * spread(k, 2);
+            NewAgent {
+                velocity: vector(heading.cos(), heading.sin()) * spread(k, 0),
+                radius: Some(0.215 + 0.05 * spread(k, 2)),
+                mass: Some(0.8 + 0.4 * spread(k, 1)),
+                mean_density: Some(1.0 + 4.0 * spread(k, 2)),
+                ..NewAgent::at(
+                    vector(spread(k, 0), spread(k, 1)) * side,
+                    vector(9.0, 4.0),
+                    0,
+                )
+            }
+        })
+        .collect()
+}
+
+fn sum_of(simulation: &Simulation, term: impl Fn(&Terms) -> Option<Vector>) -> Vector {
+    let ids = 0..simulation.frame().agents.len() as u32;
+    ids.map(|id| laid_open(simulation, id))
+        .map(|agent| term(&agent.profiles[0].accelerations).unwrap() * agent.mass)
+        .sum()
+}
+
+/// Two people whose rest density lags behind, so that both press.
+fn pressing_pair(distance: f64, angle: f64, masses: [f64; 2], means: [f64; 2]) -> Scene {
+    let parameters = Parameters {
+        viscosity: Some(5.0),
+        ..Parameters::default()
+    };
+    let mut scene = scene(Vec::new(), blend_with("sph", &parameters));
+    let places = [Vector::zeros(), vector(angle.cos(), angle.sin()) * distance];
+    scene.agents = (0..2)
+        .map(|k| NewAgent {
+            mass: Some(masses[k]),
+            mean_density: Some(means[k]),
+            velocity: vector(0.3 - k as f64, 0.7 * k as f64),
+            ..person(places[k], vector(9.0, 9.0))
+        })
+        .collect();
+    scene
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn two_agents_that_press_change_no_momentum(
+        distance in 0.001..0.999_f64,
+        angle in 0.0..6.3_f64,
+        masses in [0.5..2.0_f64, 0.5..2.0_f64],
+        means in [0.0..0.6_f64, 0.0..0.6_f64],
+    ) {
+        let simulation = evaluated(pressing_pair(distance, angle, masses, means));
+        let [first, second] = [0, 1].map(|id| laid_open(&simulation, id));
+        prop_assert!(first.pressure >= 0.0 && second.pressure >= 0.0);
+        let terms: [fn(&Terms) -> Option<Vector>; 3] =
+            [|t| t.pressure_agents, |t| t.viscosity, |t| t.contact_agents];
+        for (k, term) in terms.into_iter().enumerate() {
+            let [a, b] = [&first, &second].map(|agent| {
+                term(&agent.profiles[0].accelerations).unwrap() * agent.mass
+            });
+            prop_assert!((a + b).norm() <= 1e-12 * (1.0 + a.norm()), "{a:?} {b:?}");
+            prop_assert!(k == 1 || a.dot(&vector(angle.cos(), angle.sin())) <= 0.0, "they repel");
+        }
+    }
+
+    #[test]
+    fn no_term_between_agents_depends_on_a_common_velocity(x in -3.0..3.0_f64, y in -3.0..3.0_f64) {
+        let at_rest = pressing_crowd(Vector::zeros());
+        let moving = pressing_crowd(vector(x, y));
+        for id in 0..12 {
+            let [a, b] = [&at_rest, &moving].map(|s| laid_open(s, id).profiles[0].accelerations);
+            prop_assert_eq!(a.pressure_agents, b.pressure_agents);
+            prop_assert_eq!(a.contact_agents, b.contact_agents);
+            let difference = a.viscosity.unwrap() - b.viscosity.unwrap();
+            prop_assert!(difference.norm() < 1e-11);
+        }
+    }
+
+    #[test]
+    fn turning_mirroring_and_moving_everything_turns_the_accelerations(
+        angle in 0.0..6.3_f64,
+        mirrored: bool,
+        x in -300.0..300.0_f64,
+        y in -300.0..300.0_f64,
+        profile in proptest::sample::select(vec!["sf", "sph", "sf+sph", "sf->sph"]),
+        wall_method in proptest::sample::select(
+            vec![WallMethod::Representative, WallMethod::Exact, WallMethod::Union]
+        ),
+    ) {
+        let motion = Motion { angle, mirrored, shift: vector(x, y) };
+        let obstacles = [room(3.0, 0.8), polygon(&[[1.0, 1.0], [1.6, 1.2], [1.1, 1.7]])];
+        let parameters = Parameters { viscosity: Some(5.0), ..Parameters::default() };
+        let agents: Vec<NewAgent> = crowd(40, 3.0)
+            .into_iter()
+            .filter(|agent| obstacles.iter().all(|o| !o.contains(agent.position)))
+            .collect();
+        let evaluated = |motion: Motion| {
+            let obstacles = obstacles.iter().map(|o| motion.polygon(o)).collect();
+            let mut scene = scene(obstacles, blend_with(profile, &parameters));
+            scene.wall_method = wall_method;
+            scene.agents = agents.iter().map(|agent| motion.agent(agent)).collect();
+            evaluated(scene)
+        };
+        let still = evaluated(Motion { angle: 0.0, mirrored: false, shift: Vector::zeros() });
+        let moved = evaluated(motion);
+        for id in 0..agents.len() as u32 {
+            let expected = motion.turn(acceleration(&still, id));
+            let found = acceleration(&moved, id);
+            prop_assert!(
+                (found - expected).norm() < 1e-8 * (1.0 + expected.norm()),
+                "agent {id}: {found:?} {expected:?}"
+            );
+        }
+    }
+}
+
+/// A dozen people close together, all of whom press, with a velocity added to each.
+fn pressing_crowd(common: Vector) -> Simulation {
+    let parameters = Parameters {
+        viscosity: Some(5.0),
+        ..Parameters::default()
+    };
+    let mut scene = scene(Vec::new(), blend_with("sph", &parameters));
+    scene.agents = crowd(12, 1.5);
+    for agent in &mut scene.agents {
+        agent.mean_density = Some(0.0);
+        agent.velocity += common;
+    }
+    evaluated(scene)
+}
+
+#[test]
+fn a_crowd_that_presses_changes_no_momentum() {
+    let simulation = pressing_crowd(Vector::zeros());
+    let fields = simulation.frame().fields;
+    assert!(fields.pressure.iter().all(|&p| p > 0.0));
+    assert!(sum_of(&simulation, |terms| terms.pressure_agents).norm() < 1e-10);
+    assert!(sum_of(&simulation, |terms| terms.viscosity).norm() < 1e-10);
+    assert!(sum_of(&simulation, |terms| terms.contact_agents).norm() < 1e-10);
+}
+
+#[test]
+fn nobody_feels_pressure_below_the_own_rest_density_and_negative_neighbours_attract_less() {
+    let pair = |means: [f64; 2]| evaluated(pressing_pair(0.6, 0.0, [1.0, 1.0], means));
+    let pressed = |simulation: &Simulation, id| {
+        laid_open(simulation, id).profiles[0]
+            .accelerations
+            .pressure_agents
+            .unwrap()
+    };
+    let lopsided = pair([0.0, 5.0]);
+    assert!(laid_open(&lopsided, 1).pressure < 0.0);
+    assert_eq!(pressed(&lopsided, 1), Vector::zeros());
+    // The negative pressure stays in the sum: −Σ m_j (p_i + p_j) / (2ρ_j) ∇W.
+    let [a, b] = [0, 1].map(|id| laid_open(&lopsided, id));
+    let slope = -30.0 / std::f64::consts::PI * 0.16;
+    let expected = slope * (a.pressure + b.pressure) / (2.0 * b.density) / a.density;
+    assert!((pressed(&lopsided, 0).x - expected).abs() < 1e-11);
+    assert!(pressed(&lopsided, 0).x > pressed(&pair([0.0, 0.0]), 0).x);
+}
+
+#[test]
+fn a_lone_agent_feels_its_goal_force_alone() {
+    for name in NAMES.iter().filter(|name| !name.contains("rvo")) {
+        let mut scene = scene(vec![room(40.0, 0.8)], blend(name));
+        scene.agents = vec![NewAgent {
+            mass: Some(1.25),
+            mean_density: None,
+            ..walker(vector(20.0, 20.0), vector(0.5, -0.25), vector(20.0, 30.0))
+        }];
+        let simulation = evaluated(scene);
+        let expected = vector(0.0 - 0.5, 1.4 + 0.25) / 0.5 / 1.25;
+        assert!(
+            (acceleration(&simulation, 0) - expected).norm() < 1e-14,
+            "{name}"
+        );
+        let alone = 1.25 * 4.0 / std::f64::consts::PI;
+        let density = simulation.frame().fields.density[0];
+        assert!((density - alone).abs() < 1e-14, "{name}");
+    }
+}
+
+#[test]
+fn coincident_agents_get_no_direction_and_no_nan() {
+    for name in NAMES {
+        let mut scene = scene(Vec::new(), blend(name));
+        scene.agents = vec![person(vector(1.0, 2.0), vector(9.0, 2.0)); 3];
+        let simulation = evaluated(scene);
+        for id in 0..3 {
+            let found = acceleration(&simulation, id);
+            assert!(sandbox::math::is_finite(found), "{name}");
+            assert!(found.y.abs() < 40.0, "{name}");
+        }
+    }
+}
+
+#[test]
+fn pressure_viscosity_and_contact_end_strictly_at_their_ranges() {
+    let at = |distance: f64| {
+        let simulation = evaluated(pressing_pair(distance, 0.0, [1.0, 1.0], [0.0, 0.0]));
+        laid_open(&simulation, 0).profiles[0].accelerations
+    };
+    let [inside, outside] = [at(0.999_999), at(1.0)];
+    assert!(inside.viscosity.unwrap().norm() > 0.0 && inside.pressure_agents.unwrap().norm() > 0.0);
+    assert_eq!(outside.viscosity, Some(Vector::zeros()));
+    assert_eq!(outside.pressure_agents, Some(Vector::zeros()));
+    assert!(at(0.479_999).contact_agents.unwrap().norm() > 0.0);
+    assert_eq!(at(0.48).contact_agents, Some(Vector::zeros()));
+}
+
+#[test]
+fn a_corner_counts_twice_in_contact_and_once_in_the_social_force() {
+    let corner = vector(2.0, 2.0);
+    let obstacle = polygon(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]);
+    let away = vector(0.6, 0.8) * 0.2;
+    let mut scene = scene(vec![obstacle], blend("sf"));
+    scene.agents = vec![person(corner + away, vector(9.0, 9.0))];
+    let terms = laid_open(&evaluated(scene), 0).profiles[0].accelerations;
+    let social = vector(0.6, 0.8) * (2.1 / 0.1 * (-2.0_f64).exp());
+    assert!((terms.social_walls.unwrap() - social).norm() < 1e-11);
+    let contact = vector(0.6, 0.8) * (2.0 * 1000.0 * 0.04);
+    assert!((terms.contact_walls.unwrap() - contact).norm() < 1e-9);
+}
+
+#[test]
+fn contact_pushes_from_both_faces_and_social_force_from_the_free_one() {
+    let thin = polygon(&[[-3.0, 0.0], [3.0, 0.0], [3.0, 0.01], [-3.0, 0.01]]);
+    let mut scene = scene(vec![thin], blend("sf"));
+    scene.agents = vec![person(vector(0.0, 0.11), vector(0.0, 9.0))];
+    let terms = laid_open(&evaluated(scene), 0).profiles[0].accelerations;
+    let expected = 1000.0 * ((0.24 - 0.1) + (0.24 - 0.11));
+    assert!((terms.contact_walls.unwrap().y - expected).abs() < 1e-9);
+    let social = 2.1 / 0.1 * (-1.0_f64).exp();
+    assert!((terms.social_walls.unwrap().y - social).abs() < 1e-9);
+}
+
+#[test]
+fn a_wall_pushes_a_centre_that_stands_on_it_along_its_outward_normal() {
+    for k in 0..400 {
+        let (sine, cosine) = (0.0157 * f64::from(k)).sin_cos();
+        let start = vector(0.3, 0.7);
+        let along = vector(cosine, sine);
+        let outward = vector(sine, -cosine);
+        let triangle = vec![
+            start,
+            start + along * 4.0,
+            start + along * 2.0 - outward * 4.0,
+        ];
+        let place = start + along * (1.0 + 0.005 * f64::from(k));
+        let mut scene = scene(vec![Polygon::new(triangle).unwrap()], blend("sph"));
+        scene.agents = vec![person(place, place)];
+        let terms = laid_open(&evaluated(scene), 0).profiles[0].accelerations;
+        let push = terms.contact_walls.unwrap();
+        assert!(
+            (push - outward * 200.0 * 0.24).norm() < 1e-3,
+            "{k}: {push:?}"
+        );
+    }
+}

@@ -1,0 +1,349 @@
+//! RVO's choice against a slow, obvious search, and who takes part in it.
+
+mod common;
+
+use common::{
+    acceleration, blend, block, evaluated, laid_open, person, rectangle, run, scene, vector, walker,
+};
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use sandbox::agents::NewAgent;
+use sandbox::forces::rvo::{MovingDisc, Rvo, Situation};
+use sandbox::geometry::{Polygon, Wall, Walls};
+use sandbox::math::Vector;
+use sandbox::simulation::Simulation;
+
+/// When two discs meet, from the roots of |offset − velocity t|² = reach².
+fn meeting(offset: Vector, velocity: Vector, reach: f64) -> f64 {
+    if offset.norm() <= reach || velocity.norm() == 0.0 {
+        return f64::INFINITY;
+    }
+    let a = velocity.x * velocity.x + velocity.y * velocity.y;
+    let b = -2.0 * (offset.x * velocity.x + offset.y * velocity.y);
+    let c = offset.x * offset.x + offset.y * offset.y - reach * reach;
+    let roots = [-1.0, 1.0].map(|sign| (-b + sign * (b * b - 4.0 * a * c).sqrt()) / (2.0 * a));
+    let future = roots.into_iter().filter(|&time| time >= 0.0);
+    future.fold(f64::INFINITY, f64::min)
+}
+
+/// When a disc meets a wall: in the wall's own coordinates, s along it and d before it.
+fn meeting_wall(wall: &Wall, position: Vector, velocity: Vector, radius: f64) -> f64 {
+    let way = wall.end - wall.start;
+    let length = (way.x * way.x + way.y * way.y).sqrt();
+    let coordinates = |v: Vector| {
+        let s = (v.x * way.x + v.y * way.y) / length;
+        let d = (v.x * way.y - v.y * way.x) / length;
+        (s, d)
+    };
+    let ((s, d), (ds, dd)) = (coordinates(position - wall.start), coordinates(velocity));
+    let mut first = f64::INFINITY;
+    let time = (radius - d) / dd;
+    if dd < 0.0 && time >= 0.0 && s + ds * time >= 0.0 && s + ds * time <= length {
+        first = time;
+    }
+    for end in [wall.start, wall.end] {
+        first = first.min(meeting(end - position, velocity, radius));
+    }
+    first
+}
+
+/// Eq. 20 for every candidate, and the first of the cheapest.
+fn exhaustive(situation: &Situation, candidates: &[Vector], collision_weight: f64) -> Vector {
+    let mut costs = Vec::new();
+    for &candidate in candidates {
+        if candidate.norm() > situation.max_speed {
+            continue;
+        }
+        let velocity = 2.0 * candidate - situation.velocity;
+        let mut contact = f64::INFINITY;
+        for disc in &situation.discs {
+            contact = contact.min(meeting(disc.offset, velocity - disc.velocity, disc.reach));
+        }
+        for wall in &situation.walls {
+            let time = meeting_wall(wall, situation.position, velocity, situation.radius);
+            contact = contact.min(time);
+        }
+        let deviation = (candidate - situation.preferred_velocity).norm();
+        costs.push((deviation + collision_weight / contact, candidate));
+    }
+    let least = costs
+        .iter()
+        .map(|(cost, _)| *cost)
+        .fold(f64::INFINITY, f64::min);
+    let cheapest = costs.iter().find(|(cost, _)| *cost == least);
+    cheapest.map_or(Vector::zeros(), |(_, candidate)| *candidate)
+}
+
+fn disc_of(rng: &mut ChaCha8Rng, radius: f64) -> Vector {
+    let (angle, length) = (
+        rng.random_range(0.0..6.3_f64),
+        rng.random_range(0.0..radius),
+    );
+    vector(angle.cos(), angle.sin()) * length
+}
+
+fn random_situation(rng: &mut ChaCha8Rng) -> Situation {
+    let position = disc_of(rng, 50.0);
+    let radius = rng.random_range(0.215..0.265);
+    let discs = (0..rng.random_range(0..30)).map(|_| MovingDisc {
+        offset: disc_of(rng, 5.0),
+        velocity: disc_of(rng, 1.8),
+        reach: radius + 0.24,
+    });
+    let discs: Vec<MovingDisc> = discs
+        .filter(|disc| disc.offset.norm() > disc.reach)
+        .collect();
+    let boxes = (0..rng.random_range(0..4)).map(|_| {
+        let corner = position + disc_of(rng, 5.0);
+        let size = vector(rng.random_range(0.1..2.0), rng.random_range(0.1..2.0));
+        rectangle([corner.x, corner.x + size.x], [corner.y, corner.y + size.y])
+    });
+    let walls = Walls::new(boxes.collect());
+    let free = walls.iter().filter(|wall| {
+        wall.faces(position) && (wall.nearest_point(position).point - position).norm() > radius
+    });
+    Situation {
+        position,
+        velocity: disc_of(rng, 1.8),
+        preferred_velocity: disc_of(rng, 1.8),
+        radius,
+        max_speed: 1.8,
+        discs,
+        walls: free.copied().collect(),
+    }
+}
+
+#[test]
+fn the_choice_is_that_of_an_exhaustive_search() {
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    for round in 0..5000 {
+        let situation = random_situation(&mut rng);
+        let candidates: Vec<Vector> = (0..120)
+            .map(|_| situation.velocity + disc_of(&mut rng, 3.6))
+            .collect();
+        let weight = [1.0, 0.2, 5.0][round % 3];
+        let found = situation.best(candidates.iter().copied(), weight);
+        assert_eq!(
+            found,
+            exhaustive(&situation, &candidates, weight),
+            "{situation:?}"
+        );
+    }
+}
+
+fn open_field() -> Situation {
+    Situation {
+        position: Vector::zeros(),
+        velocity: Vector::zeros(),
+        preferred_velocity: Vector::zeros(),
+        radius: 0.24,
+        max_speed: 1.8,
+        discs: Vec::new(),
+        walls: Vec::new(),
+    }
+}
+
+#[test]
+fn of_equal_costs_the_first_is_chosen() {
+    let around = [vector(0.6, 0.8), vector(-1.0, 0.0), vector(0.0, 1.0)];
+    assert_eq!(open_field().best(around.into_iter(), 1.0), around[0]);
+    let turned = [around[2], around[0], around[1]];
+    assert_eq!(open_field().best(turned.into_iter(), 1.0), around[2]);
+}
+
+#[test]
+fn the_order_of_neighbours_does_not_change_the_choice() {
+    let mut rng = ChaCha8Rng::seed_from_u64(2);
+    for _ in 0..500 {
+        let situation = random_situation(&mut rng);
+        let candidates: Vec<Vector> = (0..60).map(|_| disc_of(&mut rng, 2.0)).collect();
+        let mut turned = situation.clone();
+        turned.discs.reverse();
+        turned.walls.reverse();
+        let [a, b] = [&situation, &turned].map(|s| s.best(candidates.iter().copied(), 1.0));
+        assert_eq!(a, b);
+    }
+}
+
+#[test]
+fn if_all_candidates_are_too_fast_the_agent_stops() {
+    let fast = [vector(1.9, 0.0), vector(0.0, -2.0)];
+    assert_eq!(open_field().best(fast.into_iter(), 1.0), Vector::zeros());
+    let mut scene = scene(Vec::new(), blend("rvo"));
+    // Candidates lie within 3.6 m/s of the current velocity.
+    let velocity = vector(5.0, -4.0);
+    scene.agents = vec![walker(Vector::zeros(), velocity, vector(9.0, 0.0))];
+    let simulation = evaluated(scene);
+    assert_eq!(acceleration(&simulation, 0), -velocity / (5.0 * 0.02));
+}
+
+/// The acceleration of somebody walking to the right, among others.
+fn among(profile: &str, others: &[NewAgent], obstacles: Vec<Polygon>) -> Vector {
+    let mut scene = scene(obstacles, blend(profile));
+    let own = walker(Vector::zeros(), vector(1.4, 0.0), vector(90.0, 0.0));
+    scene.agents = vec![own];
+    scene.agents.extend(others);
+    acceleration(&evaluated(scene), 0)
+}
+
+#[test]
+fn neighbours_count_just_inside_five_metres_and_not_outside() {
+    for profile in ["rvo", "sf"] {
+        let alone = among(profile, &[], Vec::new());
+        let with = |distance: f64, angle: f64| {
+            let place = vector(angle.cos(), angle.sin()) * distance;
+            among(
+                profile,
+                &[walker(place, -place * 0.2, vector(0.0, 9.0))],
+                Vec::new(),
+            )
+        };
+        for angle in [0.0, 0.05, -0.03] {
+            assert_ne!(with(4.999, angle), alone, "{profile} {angle}");
+            assert_eq!(with(5.001, angle), alone, "{profile} {angle}");
+        }
+        assert_eq!(with(5.0, 0.0), alone, "{profile}: the range is strict");
+    }
+}
+
+#[test]
+fn walls_count_just_inside_five_metres_and_not_outside() {
+    let facing = |profile: &str, x: f64, seed: u64| {
+        let mut scene = scene(vec![rectangle([x, x + 1.0], [-9.0, 9.0])], blend(profile));
+        scene.seed = seed;
+        // Fast, so that the wall is not far off in time; but a social force of e^(−50) shows only
+        // where there is no goal force.
+        let speed = if profile == "rvo" { 1.8 } else { 1.4 };
+        scene.agents = vec![walker(
+            Vector::zeros(),
+            vector(speed, 0.0),
+            vector(90.0, 0.0),
+        )];
+        acceleration(&evaluated(scene), 0)
+    };
+    for profile in ["rvo", "sf"] {
+        let differ = |a: f64, b: f64| {
+            let seeds = (0..40).filter(|&s| facing(profile, a, s) != facing(profile, b, s));
+            seeds.count()
+        };
+        assert!(differ(4.999, 900.0) > 0, "{profile}");
+        assert_eq!(differ(5.0, 900.0), 0, "{profile}");
+        assert_eq!(differ(5.001, 900.0), 0, "{profile}");
+    }
+}
+
+#[test]
+fn those_who_touch_already_are_ignored() {
+    let alone = among("rvo+sph", &[], Vec::new());
+    let with = |distance: f64| {
+        let other = person(vector(distance, 0.0), vector(0.0, 9.0));
+        let mut scene = scene(Vec::new(), blend("rvo+sph"));
+        scene.agents = vec![
+            walker(Vector::zeros(), vector(1.4, 0.0), vector(90.0, 0.0)),
+            other,
+        ];
+        laid_open(&evaluated(scene), 0).profiles[0]
+            .accelerations
+            .rvo
+            .unwrap()
+    };
+    assert_eq!(with(0.479), alone);
+    assert_ne!(with(0.481), alone);
+}
+
+#[test]
+fn a_wall_that_touches_already_is_ignored() {
+    let rvo = |x: f64| {
+        let mut scene = scene(vec![rectangle([x, x + 1.0], [-9.0, 9.0])], blend("rvo"));
+        scene.agents = vec![walker(Vector::zeros(), vector(1.4, 0.0), vector(90.0, 0.0))];
+        laid_open(&evaluated(scene), 0).profiles[0]
+            .accelerations
+            .rvo
+            .unwrap()
+    };
+    let alone = among("rvo", &[], Vec::new());
+    assert_eq!(rvo(0.239), alone);
+    assert_ne!(rvo(0.241), alone);
+}
+
+fn held(simulation: &Simulation, id: u32) -> Option<Vector> {
+    let agents = simulation.frame().agents;
+    agents.avoidance[agents.index_of(id).unwrap()]
+}
+
+#[test]
+fn a_choice_is_held_for_five_frames() {
+    let mut scene = scene(Vec::new(), blend("rvo"));
+    scene.agents = block(Vector::zeros(), 3, 3, 0.8, vector(9.0, 1.0));
+    let mut simulation = Simulation::new(scene).unwrap();
+    let mut before = None;
+    for frame in 0..30 {
+        simulation.evaluate().unwrap();
+        let now: Vec<Option<Vector>> = (0..9).map(|id| held(&simulation, id)).collect();
+        assert!(now.iter().all(Option::is_some));
+        match before {
+            Some(before) if frame % 5 != 0 => assert_eq!(now, before),
+            Some(before) => assert_ne!(now, before),
+            None => {}
+        }
+        before = Some(now);
+        simulation.integrate().unwrap();
+    }
+}
+
+#[test]
+fn the_choice_comes_when_its_weight_becomes_positive_and_goes_when_it_is_zero() {
+    // A dense block, at more than 4 P/m², that runs apart.
+    let mut scene = scene(Vec::new(), blend("rvo->sph"));
+    let centre = vector(1.8, 1.8);
+    scene.agents = block(Vector::zeros(), 10, 10, 0.4, centre);
+    for agent in &mut scene.agents {
+        agent.velocity = (agent.position - centre) * 0.6;
+        agent.goal = centre + (agent.position - centre) * 40.0;
+    }
+    let mut simulation = Simulation::new(scene).unwrap();
+    let (mut in_between, mut before) = (0, vec![None; 100]);
+    for frame in 0..100 {
+        simulation.evaluate().unwrap();
+        let view = simulation.frame();
+        for id in 0..100 {
+            let i = view.agents.index_of(id).unwrap();
+            let (now, last) = (view.agents.avoidance[i], before[id as usize]);
+            assert_eq!(now.is_some(), view.fields.density[i] < 4.0);
+            let chosen = Rvo::default().acceleration(&view, i, 1.8);
+            match (now, last) {
+                (Some(now), None) if frame % 5 != 0 => {
+                    in_between += 1;
+                    assert_eq!(now, chosen);
+                }
+                (Some(now), Some(last)) if frame % 5 != 0 => assert_eq!(now, last),
+                (Some(now), _) => assert_eq!(now, chosen),
+                (None, _) => {}
+            }
+            before[id as usize] = now;
+        }
+        simulation.integrate().unwrap();
+    }
+    assert!(in_between > 10, "{in_between}");
+}
+
+#[test]
+fn candidates_depend_on_the_coarse_frame() {
+    let mut scene = scene(Vec::new(), blend("rvo"));
+    scene.agents = vec![person(Vector::zeros(), vector(900.0, 0.0))];
+    let mut simulation = Simulation::new(scene).unwrap();
+    run(&mut simulation, 100);
+    let mut choices = Vec::new();
+    for _ in 0..10 {
+        simulation.evaluate().unwrap();
+        let (_, velocity) = common::state(&simulation, 0);
+        choices.push(held(&simulation, 0).unwrap() * 0.1 + velocity);
+        run(&mut simulation, 5);
+    }
+    // Alone on the way, the best of 250 candidates is close to the preferred velocity, never equal.
+    for (k, choice) in choices.iter().enumerate() {
+        assert!((choice - vector(1.4, 0.0)).norm() < 0.6);
+        assert!(choices[..k].iter().all(|other| other != choice));
+    }
+}

@@ -1,0 +1,200 @@
+//! Who enters, pushes and leaves, and when.
+
+mod common;
+
+use common::{acceleration, blend, block, laid_open, run, scene, state, vector, walker};
+use sandbox::math::Vector;
+use sandbox::placement::Grid;
+use sandbox::profile::Override;
+use sandbox::scene::{Goal, Push, Region, Scene, Source};
+use sandbox::simulation::{EventKind, Simulation};
+
+#[test]
+fn arrivals_are_timed_after_moving_and_leave_in_the_same_frame() {
+    let mut scene = scene(Vec::new(), blend("sph"));
+    scene.groups[0].removal_radius = Some(0.5);
+    // 1.4 m/s, 0.028 m per frame: within 0.5 m of the goal after 18 moves (0.504 m), not 17.
+    scene.agents = vec![
+        walker(Vector::zeros(), vector(1.4, 0.0), vector(1.0, 0.0)),
+        walker(vector(0.0, 40.0), vector(1.4, 0.0), vector(90.0, 40.0)),
+    ];
+    let mut simulation = Simulation::new(scene).unwrap();
+    run(&mut simulation, 17);
+    assert_eq!(simulation.frame().agents.len(), 2);
+    assert!(simulation.outcome().arrivals.is_empty());
+    run(&mut simulation, 1);
+    assert_eq!(simulation.frame().agents.id, [1]);
+    let arrival = simulation.outcome().arrivals[0];
+    assert_eq!((arrival.id, arrival.counted), (0, true));
+    assert!((arrival.time - 18.0 * 0.02).abs() < 1e-12);
+    run(&mut simulation, 10);
+    assert_eq!(simulation.outcome().arrivals.len(), 1);
+}
+
+fn row(start: f64, every: f64, times: Option<u32>) -> Source {
+    Source {
+        name: "row".to_owned(),
+        grid: Grid {
+            min: vector(0.0, 0.0),
+            max: vector(0.0, 5.0),
+            columns: 1,
+            rows: 5,
+            jitter: 0.0,
+        },
+        group: 0,
+        goal: Goal::Offset(vector(100.0, 0.0)),
+        start,
+        every,
+        times,
+    }
+}
+
+#[test]
+fn a_source_lets_its_rows_in_on_time_and_then_no_more() {
+    let mut scene = scene(Vec::new(), blend("sph"));
+    scene.sources = vec![row(0.25, 1.0, Some(3))];
+    let mut simulation = Simulation::new(scene).unwrap();
+    for frame in 0..200 {
+        simulation.evaluate().unwrap();
+        // Coarse frames only: 0.25, 1.25 and 2.25 s act at 0.3, 1.3 and 2.3 s.
+        let rows = [15, 65, 115].iter().filter(|&&due| due <= frame).count();
+        assert_eq!(simulation.frame().agents.len(), 5 * rows, "frame {frame}");
+        assert_eq!(simulation.expects_agents(), rows < 3);
+        simulation.integrate().unwrap();
+    }
+    let entries: Vec<(u64, EventKind)> = simulation
+        .events()
+        .iter()
+        .map(|event| (event.frame, event.kind))
+        .collect();
+    let five = EventKind::Entered(5);
+    assert_eq!(entries, [(15, five), (65, five), (115, five)]);
+    let agents = simulation.frame().agents;
+    for i in 0..15 {
+        let lane = f64::from(agents.id[i] % 5) + 0.5;
+        assert_eq!(agents.goal[i], vector(100.0, lane));
+    }
+}
+
+#[test]
+fn a_source_faster_than_the_coarse_step_catches_up() {
+    let mut scene = scene(Vec::new(), blend("sph"));
+    scene.sources = vec![row(0.0, 0.04, None)];
+    let mut simulation = Simulation::new(scene).unwrap();
+    simulation.evaluate().unwrap();
+    run(&mut simulation, 51);
+    assert_eq!(
+        simulation.frame().agents.entered(),
+        5 * 26,
+        "entries due at 0, 0.04, …, 1 s"
+    );
+    assert!(simulation.expects_agents());
+}
+
+fn push_scene(change: Override) -> Scene {
+    let mut scene = scene(Vec::new(), blend("sph"));
+    scene.agents = block(Vector::zeros(), 6, 4, 0.4, vector(80.0, 0.6));
+    scene.pushes = vec![Push {
+        name: "push".to_owned(),
+        at: 0.2,
+        lasting: 0.3,
+        region: Region {
+            min: vector(-1.0, -1.0),
+            max: vector(1.0, 3.0),
+        },
+        change,
+    }];
+    scene
+}
+
+#[test]
+fn a_push_changes_those_in_its_region_for_its_time_and_the_others_still_feel_them() {
+    let change = Override {
+        goal_scale: Some(2.5),
+        ignore_contact: true,
+        ignore_sph: true,
+    };
+    let mut simulation = Simulation::new(push_scene(change)).unwrap();
+    let mut pushing = Vec::new();
+    for frame in 0..40 {
+        simulation.evaluate().unwrap();
+        let region = simulation.scene().pushes[0].region;
+        if frame == 10 {
+            pushing = (0..24)
+                .filter(|&id| region.contains(state(&simulation, id).0))
+                .collect();
+            assert!(!pushing.is_empty() && pushing.len() < 24);
+        }
+        for id in 0..24 {
+            let agent = laid_open(&simulation, id);
+            let terms = agent.profiles[0].accelerations;
+            let active = (10..25).contains(&frame) && pushing.contains(&id);
+            assert_eq!(
+                terms.pressure_agents.is_none(),
+                active,
+                "frame {frame}, agent {id}"
+            );
+            assert_eq!(terms.contact_agents.is_none(), active);
+            assert_eq!(terms.contact_walls.is_none(), active);
+            let view = simulation.frame();
+            let i = view.agents.index_of(id).unwrap();
+            let wish = view.fields.preferred_velocity[i] - view.agents.velocity[i];
+            let scale = if active { 2.5 } else { 1.0 };
+            let expected = wish * (scale / 0.5 / agent.mass);
+            assert!((terms.goal.unwrap() - expected).norm() < 1e-12);
+            assert!(agent.neighbors.len() > 1);
+        }
+        if frame == 10 {
+            // Whoever does not push has all neighbours in its sum, the pushing ones too.
+            let agents = simulation.frame().agents;
+            let others = (0..24).filter(|id| !pushing.contains(id));
+            let feels = others.filter(|&id| {
+                let near = laid_open(&simulation, id).neighbors;
+                near.iter().any(|neighbor| pushing.contains(&neighbor.id))
+            });
+            assert!(feels.count() > 0 && agents.len() == 24);
+        }
+        simulation.integrate().unwrap();
+    }
+    let kinds: Vec<(u64, EventKind)> = simulation
+        .events()
+        .iter()
+        .map(|event| (event.frame, event.kind))
+        .collect();
+    assert_eq!(
+        kinds,
+        [
+            (10, EventKind::PushBegan(pushing.len())),
+            (25, EventKind::PushEnded)
+        ]
+    );
+}
+
+#[test]
+fn pushing_does_not_change_the_forces_on_the_others() {
+    let nothing = Override {
+        goal_scale: None,
+        ignore_contact: false,
+        ignore_sph: false,
+    };
+    let deaf = Override {
+        goal_scale: Some(9.0),
+        ignore_contact: true,
+        ignore_sph: true,
+    };
+    let [mut calm, mut pushed] = [nothing, deaf].map(|c| Simulation::new(push_scene(c)).unwrap());
+    for simulation in [&mut calm, &mut pushed] {
+        run(simulation, 10);
+        simulation.evaluate().unwrap();
+    }
+    let mut changed = 0;
+    for id in 0..24 {
+        let i = pushed.frame().agents.index_of(id).unwrap();
+        if pushed.change(i).is_some() {
+            changed += 1;
+        } else {
+            assert_eq!(acceleration(&calm, id), acceleration(&pushed, id));
+        }
+    }
+    assert!(changed > 0);
+}

@@ -1,0 +1,225 @@
+//! Time stepping, entries, pushes, arrivals and faults, through the public API.
+
+mod common;
+
+use common::{
+    blend, blend_with, block, laid_open, person, rectangle, room, run, scene, state, vector,
+};
+use proptest::prelude::*;
+use sandbox::agents::NewAgent;
+use sandbox::catalog::{NAMES, Parameters};
+use sandbox::clock::Clock;
+use sandbox::math::Vector;
+use sandbox::scene::Integrator;
+use sandbox::simulation::{Fault, Simulation};
+
+/// One agent from rest towards a goal far to the right, and how far the two integrators take it.
+fn alone(integrator: Integrator, time_step: f64) -> Simulation {
+    let mut scene = scene(Vec::new(), blend("sph"));
+    scene.integrator = integrator;
+    scene.clock = Clock::new(time_step, Clock::nearest_coarse_every(time_step));
+    scene.agents = vec![person(Vector::zeros(), vector(1000.0, 0.0))];
+    Simulation::new(scene).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(40) })]
+
+    #[test]
+    fn one_agent_follows_the_closed_form_of_its_integrator(frames in 1..200_u64) {
+        // v_n = 1.4 (1 − q^n), q = 1 − Δt/τ; r is the sum of the new or of the old velocities.
+        let (dt, q) = (0.02, 0.96_f64);
+        let n = frames as i32;
+        let speed = 1.4 * (1.0 - q.powi(n));
+        let new = 1.4 * dt * (f64::from(n) - q * (1.0 - q.powi(n)) / (1.0 - q));
+        let old = 1.4 * dt * (f64::from(n) - (1.0 - q.powi(n)) / (1.0 - q));
+        for (integrator, way) in [(Integrator::SemiImplicit, new), (Integrator::ForwardEuler, old)] {
+            let mut simulation = alone(integrator, dt);
+            run(&mut simulation, frames);
+            let (r, v) = state(&simulation, 0);
+            prop_assert!((r - vector(way, 0.0)).norm() < 1e-11);
+            prop_assert!((v - vector(speed, 0.0)).norm() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn both_integrators_are_of_first_order() {
+    let exact = 1.4 * (2.0 - 0.5 * (1.0 - (-4.0_f64).exp()));
+    for integrator in [Integrator::SemiImplicit, Integrator::ForwardEuler] {
+        let error = |dt: f64| {
+            let mut simulation = alone(integrator, dt);
+            run(&mut simulation, (2.0 / dt).round() as u64);
+            (state(&simulation, 0).0.x - exact).abs()
+        };
+        let order = (error(0.02) / error(0.01)).log2();
+        assert!((order - 1.0).abs() < 0.05, "{integrator:?}: {order}");
+    }
+}
+
+#[test]
+fn nobody_is_faster_than_the_maximum_speed_whatever_pushes() {
+    let mut scene = scene(Vec::new(), blend("sf"));
+    scene.agents = block(Vector::zeros(), 10, 10, 0.15, vector(50.0, 0.0));
+    let mut simulation = Simulation::new(scene).unwrap();
+    let mut fastest = 0.0_f64;
+    for _ in 0..100 {
+        let before: Vec<Vector> = (0..100).map(|id| state(&simulation, id).0).collect();
+        simulation.step().unwrap();
+        for id in 0..100 {
+            let (r, v) = state(&simulation, id);
+            fastest = fastest.max(v.norm());
+            assert!(v.norm() <= 1.8 * (1.0 + 1e-15));
+            assert!((r - before[id as usize]).norm() <= 0.036 + 1e-12);
+        }
+    }
+    assert!(fastest > 1.799, "the clamp was at work");
+}
+
+#[test]
+fn whoever_starts_in_an_obstacle_is_put_out_and_reported() {
+    let obstacles = vec![
+        rectangle([0.0, 4.0], [0.0, 4.0]),
+        rectangle([4.0, 8.0], [1.0, 3.0]),
+    ];
+    let mut scene = scene(obstacles, blend("sph"));
+    let goal = vector(20.0, 2.0);
+    scene.agents = vec![
+        person(vector(-1.0, 2.0), goal),
+        person(vector(1.0, 2.0), goal),
+        person(vector(6.0, 2.9), goal),
+    ];
+    let simulation = Simulation::new(scene).unwrap();
+    assert_eq!(simulation.outcome().displaced, [(1, 0), (2, 1)]);
+    for (id, expected) in [(0, [-1.0, 2.0]), (1, [0.0, 2.0]), (2, [6.0, 3.0])] {
+        assert!((state(&simulation, id).0 - Vector::from(expected)).norm() < 1e-5);
+    }
+}
+
+#[test]
+fn the_moving_average_starts_with_the_agents_alone() {
+    let mut scene = scene(vec![rectangle([-9.0, 9.0], [-1.0, 0.0])], blend("sph"));
+    scene.agents = vec![
+        person(vector(0.0, 0.4), vector(9.0, 9.0)),
+        person(vector(0.5, 0.4), vector(9.0, 9.0)),
+        NewAgent {
+            mean_density: Some(2.0),
+            ..person(vector(5.0, 0.4), vector(9.0, 9.0))
+        },
+    ];
+    let mut simulation = Simulation::new(scene).unwrap();
+    simulation.evaluate().unwrap();
+    for id in 0..3 {
+        let agent = laid_open(&simulation, id);
+        let before = if id == 2 {
+            2.0
+        } else {
+            agent.density_from_agents
+        };
+        assert!(agent.density_from_walls > 0.05);
+        let kernel: f64 = agent.walls.iter().map(|wall| wall.density).sum();
+        assert!((agent.density_from_walls - kernel).abs() < 1e-12);
+        assert!((agent.mean_density - (0.8 * before + 0.2 * agent.density)).abs() < 1e-12);
+        assert_eq!(agent.rest_density, agent.mean_density.min(5.0));
+    }
+    let first = laid_open(&simulation, 0);
+    simulation.integrate().unwrap();
+    simulation.evaluate().unwrap();
+    let second = laid_open(&simulation, 0);
+    let expected = 0.8 * first.mean_density + 0.2 * second.density;
+    assert!((second.mean_density - expected).abs() < 1e-12);
+}
+
+#[test]
+fn a_state_that_is_not_finite_is_reported_with_frame_agent_and_quantity() {
+    let broken = |name: &str, agent: NewAgent| {
+        let mut scene = scene(vec![room(9.0, 1.0)], blend(name));
+        scene.agents = vec![person(vector(3.0, 3.0), vector(10.0, 4.5)), agent];
+        let mut simulation = Simulation::new(scene).unwrap();
+        simulation.step().unwrap_err()
+    };
+    let healthy = person(vector(5.0, 5.0), vector(10.0, 4.5));
+    for name in NAMES {
+        for bad in [f64::NAN, f64::INFINITY] {
+            let cases = [
+                (
+                    "position",
+                    NewAgent {
+                        position: vector(bad, 5.0),
+                        ..healthy
+                    },
+                ),
+                (
+                    "velocity",
+                    NewAgent {
+                        velocity: vector(0.0, -bad),
+                        ..healthy
+                    },
+                ),
+            ];
+            for (expected, agent) in cases {
+                let Fault::NotFinite {
+                    frame,
+                    agent,
+                    quantity,
+                    ..
+                } = broken(name, agent)
+                else {
+                    panic!("another fault");
+                };
+                assert_eq!((frame, agent, quantity), (0, 1, expected), "{name} {bad}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_run_that_blows_up_stops_before_anybody_has_moved() {
+    let parameters = Parameters {
+        gas_constant: Some(1e308),
+        ..Parameters::default()
+    };
+    let mut scene = scene(Vec::new(), blend_with("sph", &parameters));
+    scene.agents = block(Vector::zeros(), 6, 6, 0.3, vector(9.0, 0.0));
+    let mut simulation = Simulation::new(scene).unwrap();
+    let before = (0..36).map(|id| state(&simulation, id)).collect::<Vec<_>>();
+    let fault = simulation.step().unwrap_err();
+    let Fault::NotFinite {
+        frame,
+        time,
+        quantity,
+        ..
+    } = &fault
+    else {
+        panic!("another fault");
+    };
+    assert_eq!((*frame, *time, *quantity), (0, 0.0, "acceleration"));
+    assert!(fault.to_string().contains("frame 0"), "{fault}");
+    assert_eq!(
+        before,
+        (0..36).map(|id| state(&simulation, id)).collect::<Vec<_>>()
+    );
+}
+
+#[test]
+fn a_room_of_a_hundred_empties_and_every_density_is_positive() {
+    let mut scene = scene(vec![room(10.0, 0.8)], blend("sph"));
+    scene.groups[0].removal_radius = Some(0.5);
+    scene.agents = block(vector(0.5, 0.5), 10, 10, 1.0, vector(12.0, 5.0));
+    let mut simulation = Simulation::new(scene).unwrap();
+    while !simulation.frame().agents.is_empty() && simulation.frame().clock.time() < 120.0 {
+        simulation.evaluate().unwrap();
+        let fields = simulation.frame().fields;
+        assert!(
+            fields
+                .density
+                .iter()
+                .all(|&density| density > 0.0 && density < 15.0)
+        );
+        simulation.integrate().unwrap();
+    }
+    let arrivals = &simulation.outcome().arrivals;
+    assert_eq!(arrivals.len(), 100);
+    assert!(arrivals.windows(2).all(|pair| pair[0].time <= pair[1].time));
+    assert_eq!(simulation.outcome().contained_moves, 0);
+}

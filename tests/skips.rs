@@ -1,0 +1,177 @@
+//! What a scene does not need is not computed, and shows as absent.
+
+mod common;
+
+use common::{blend, blend_with, block, person, room, scene, vector};
+use sandbox::boundary::WallMethod;
+use sandbox::catalog::Parameters;
+use sandbox::profile::Blend;
+use sandbox::scene::Needs;
+use sandbox::simulation::{Simulation, Stage};
+
+fn crowd(blend: Blend) -> Simulation {
+    let mut scene = scene(vec![room(8.0, 1.0)], blend);
+    scene.agents = block(vector(1.0, 1.0), 5, 5, 0.5, vector(9.0, 4.0));
+    Simulation::new(scene).unwrap()
+}
+
+fn stages(simulation: &Simulation) -> Vec<Stage> {
+    simulation
+        .stages()
+        .ms_per_frame()
+        .map(|(stage, _)| stage)
+        .collect()
+}
+
+#[test]
+fn stages_that_a_profile_does_not_need_never_run() {
+    for (name, density, rvo) in [
+        ("sf", false, false),
+        ("rvo", false, true),
+        ("sf+sph", true, false),
+        ("rvo+sph", true, true),
+        ("sph", true, false),
+        ("sf->sph", true, false),
+        ("rvo->sph", true, true),
+    ] {
+        let mut simulation = crowd(blend(name));
+        common::run(&mut simulation, 10);
+        let ran = stages(&simulation);
+        assert_eq!(ran.contains(&Stage::DensityAndPressure), density, "{name}");
+        assert_eq!(ran.contains(&Stage::Rvo), rvo, "{name}");
+        assert_eq!(
+            ran.len(),
+            5 + usize::from(density) + usize::from(rvo),
+            "{name}"
+        );
+        assert_eq!(
+            simulation.frame().fields.density.is_empty(),
+            !density,
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn needs_follow_from_the_profiles() {
+    let needs = |name: &str| *crowd(blend(name)).needs();
+    let goal_only = Needs {
+        density: true,
+        rvo: false,
+        contact: true,
+        avoidance: None,
+        removal: false,
+    };
+    assert_eq!(needs("sph"), goal_only);
+    let wide = Needs {
+        avoidance: Some(5.0),
+        ..goal_only
+    };
+    assert_eq!(needs("sf+sph"), wide);
+    assert_eq!(needs("sf->sph"), wide);
+    assert_eq!(
+        needs("sf"),
+        Needs {
+            density: false,
+            ..wide
+        }
+    );
+    assert_eq!(
+        needs("rvo"),
+        Needs {
+            density: false,
+            rvo: true,
+            ..wide
+        }
+    );
+    assert_eq!(needs("rvo+sph"), Needs { rvo: true, ..wide });
+    assert_eq!(needs("rvo->sph"), Needs { rvo: true, ..wide });
+}
+
+#[test]
+fn switched_off_terms_need_nothing() {
+    let none = Parameters {
+        gas_constant: Some(0.0),
+        agent_stiffness: Some(0.0),
+        ..Parameters::default()
+    };
+    let needs = *crowd(blend_with("sph", &none)).needs();
+    assert!(!needs.density && !needs.contact && needs.avoidance.is_none());
+    let viscous = Parameters {
+        viscosity: Some(5.0),
+        ..none
+    };
+    assert!(crowd(blend_with("sph", &viscous)).needs().density);
+}
+
+#[test]
+fn without_avoidance_nobody_looks_five_metres_far() {
+    let scene = crowd(blend("sph")).scene().clone();
+    assert_eq!(scene.ranges(&scene.needs()).avoidance, None);
+    let scene = crowd(blend("sf")).scene().clone();
+    assert_eq!(scene.ranges(&scene.needs()).avoidance, Some(5.0));
+}
+
+#[test]
+fn the_density_is_there_as_long_as_it_was_asked_for() {
+    for name in ["sf", "rvo"] {
+        let mut simulation = crowd(blend(name));
+        simulation.request_density_until(7);
+        for frame in 0..12 {
+            simulation.evaluate().unwrap();
+            let found = simulation.frame().fields.density.len();
+            assert_eq!(
+                found,
+                if frame < 7 { 25 } else { 0 },
+                "{name}, frame {frame}"
+            );
+            simulation.integrate().unwrap();
+        }
+        assert!(stages(&simulation).contains(&Stage::DensityAndPressure));
+        simulation.reset_stages();
+        common::run(&mut simulation, 3);
+        assert!(!stages(&simulation).contains(&Stage::DensityAndPressure));
+    }
+}
+
+#[test]
+fn agents_far_from_walls_have_no_walls_to_work_on() {
+    let mut scene = scene(vec![room(60.0, 1.0)], blend("sph"));
+    scene.wall_method = WallMethod::Union;
+    scene.agents = block(vector(25.0, 25.0), 5, 5, 0.5, vector(61.0, 30.0));
+    let mut simulation = Simulation::new(scene).unwrap();
+    simulation.evaluate().unwrap();
+    let frame = simulation.frame();
+    assert!((0..25).all(|i| frame.neighbors.near_walls(i).is_empty()));
+    assert!((0..25).all(|i| frame.neighbors.far_walls(i).is_empty()));
+    assert!(
+        frame
+            .fields
+            .density_from_walls
+            .iter()
+            .all(|&density| density == 0.0)
+    );
+}
+
+#[test]
+fn a_moving_average_that_was_interrupted_starts_anew() {
+    // Two who meet after the density was last asked for: the old average knows nothing of it.
+    let mut scene = scene(Vec::new(), blend("sf"));
+    scene.agents = vec![
+        person(vector(0.0, 0.0), vector(20.0, 0.0)),
+        person(vector(1.6, 0.0), vector(1.6, 0.0)),
+    ];
+    let mut simulation = Simulation::new(scene).unwrap();
+    simulation.request_density_until(10);
+    common::run(&mut simulation, 120);
+    simulation.request_density_until(121);
+    simulation.evaluate().unwrap();
+    for id in 0..2 {
+        let agent = common::laid_open(&simulation, id);
+        assert!(
+            agent.neighbors.len() == 1 && agent.density > 1.28,
+            "{agent:?}"
+        );
+        assert!((agent.mean_density - agent.density).abs() < 1e-12);
+    }
+}
