@@ -50,8 +50,9 @@ impl Clock {
 
     /// The first coarse frame that is not before a time in seconds.
     pub fn coarse_frame_at(&self, time: f64) -> u64 {
-        self.frame_at(time)
-            .next_multiple_of(u64::from(self.coarse_every))
+        // Decimal times are hardly ever whole multiples of the time step to the last bit.
+        let frame = (time / self.time_step - 1e-6).ceil() as u64;
+        frame.next_multiple_of(u64::from(self.coarse_every))
     }
 
     /// Δt_fine in seconds.
@@ -111,6 +112,14 @@ mod tests {
         let clock = Clock::default();
         assert_eq!(clock.coarse_frame_at(150.0), 7500);
         assert_eq!(clock.coarse_frame_at(0.12), 10);
+        assert_eq!(clock.coarse_frame_at(0.101), 10);
+        assert_eq!(clock.coarse_frame_at(0.1), 5);
+        for k in 0..10_000 {
+            assert_eq!(
+                clock.coarse_frame_at(0.1 * f64::from(k)),
+                5 * u64::from(k as u32)
+            );
+        }
         assert_eq!(clock.frame_at(15.0), 750);
     }
 

@@ -91,13 +91,14 @@ impl Metrics {
             let Measurement::Density { at, region } = measurement else {
                 continue;
             };
-            if frame.clock.frame() != frame.clock.frame_at(*at) {
+            let densities = &frame.fields.density;
+            if frame.clock.frame() != frame.clock.frame_at(*at) || densities.is_empty() {
                 continue;
             }
             let inside = |i: usize| region.is_none_or(|r| r.contains(frame.agents.position[i]));
             let densities: Vec<f64> = (0..frame.agents.len())
                 .filter(|&i| inside(i))
-                .map(|i| frame.fields.density[i])
+                .map(|i| densities[i])
                 .collect();
             *taken = mean_and_deviation(&densities);
         }

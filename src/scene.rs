@@ -55,13 +55,14 @@ pub struct Source {
     pub goal: Goal,
     /// First entry, seconds.
     pub start: f64,
-    /// Time between entries, seconds.
+    /// Time between entries, seconds, above 0.
     pub every: f64,
     /// How many entries; `None`: without end.
     pub times: Option<u32>,
 }
 
-/// For a while, everybody who is in a rectangle at one moment behaves differently.
+/// For a while, everybody who is in a rectangle at one moment behaves differently. Whoever two pushes
+/// get hold of follows the later one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Push {
     /// What it is called in reports.

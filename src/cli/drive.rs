@@ -14,11 +14,11 @@ use crate::simulation::{EventKind, Simulation};
 
 /// `sandbox evacuation|crossing|concert|run`.
 pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
-    let scenario = scenario(source, &options.scene)?;
+    let scenario = scenario(source, &options.scene, options.until)?;
     use_threads(options.scene.threads)?;
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     let mut metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
-    let duration = options.until.unwrap_or(scenario.duration_secs);
+    let duration = scenario.duration_secs;
     let mut output = Output::create(options, &scenario, &mut simulation)?;
     let progress = Progress::new(duration);
 

@@ -10,7 +10,7 @@ use crate::breakdown::Breakdown;
 use crate::simulation::Simulation;
 
 pub fn run(options: &InspectOptions) -> Result<(), Failure> {
-    let scenario = scenario(&Source::named(&options.scenario), &options.scene)?;
+    let scenario = scenario(&Source::named(&options.scenario), &options.scene, None)?;
     use_threads(options.scene.threads)?;
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     // The rest density follows the density's history, so every frame needs it.

@@ -67,11 +67,17 @@ fn run(command: Command) -> Result<(), Failure> {
 }
 
 /// Reads a scenario with the settings of the command line.
-fn scenario(source: &Source, scene: &arguments::SceneOptions) -> Result<Scenario, Failure> {
+fn scenario(
+    source: &Source,
+    scene: &arguments::SceneOptions,
+    until: Option<f64>,
+) -> Result<Scenario, Failure> {
     let profile = scene.profile.iter().map(|name| format!("profile={name}"));
     let seed = scene.seed.iter().map(|seed| format!("seed={seed}"));
+    let until = until.iter().map(|secs| format!("duration_secs={secs}"));
     let settings = profile
         .chain(seed)
+        .chain(until)
         .chain(scene.set.iter().cloned())
         .map(|text| {
             text.parse()

@@ -39,7 +39,7 @@ impl Grid {
     pub fn rebuild(&mut self, positions: &[Vector], cell: f64) -> Vec<u32> {
         let (low, high) = bounds(positions);
         self.origin = low;
-        self.cell = cell;
+        self.cell = cell.max(f64::MIN_POSITIVE); // so that doubling makes it grow
         let most = (positions.len() * CELLS_PER_AGENT).max(FEWEST_CELLS) as f64;
         let extent = high - low;
         let cells =
@@ -111,4 +111,23 @@ fn bounds(positions: &[Vector]) -> (Vector, Vector) {
     positions
         .iter()
         .fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_of_no_size_are_made_larger() {
+        for cell in [0.0, 5e-324, 1e-300] {
+            for positions in [
+                vec![Vector::zeros()],
+                vec![Vector::zeros(), Vector::new(9.0, 1e9)],
+            ] {
+                let mut grid = Grid::default();
+                assert_eq!(grid.rebuild(&positions, cell).len(), positions.len());
+                assert!(grid.cells() <= FEWEST_CELLS);
+            }
+        }
+    }
 }
