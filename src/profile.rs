@@ -3,6 +3,7 @@
 use crate::density::SphParameters;
 use crate::forces::contact::{self, Contact};
 use crate::forces::goal::GoalForce;
+use crate::forces::pairs::Wanted;
 use crate::forces::pressure;
 use crate::forces::rvo::Rvo;
 use crate::forces::social::SocialForce;
@@ -116,20 +117,25 @@ impl Profile {
             }
             Navigation::Rvo(_) => terms.rvo = frame.agents.avoidance[i],
         }
-        if !changed.is_some_and(|change| change.ignore_sph) {
+        let feels_sph = !changed.is_some_and(|change| change.ignore_sph);
+        let feels_contact = !changed.is_some_and(|change| change.ignore_contact);
+        let wanted = Wanted {
+            pressure: feels_sph && self.pressure && pressure::is_felt(frame, i),
+            viscosity: feels_sph && self.viscosity.is_some(),
+            contact: feels_contact && self.contact.agent_stiffness.is_some(),
+        };
+        let sums = wanted.sums(frame, i, h);
+        if feels_sph {
             if self.pressure {
-                terms.pressure_agents = Some(pressure::from_agents(frame, i, h));
+                terms.pressure_agents = Some(pressure::from_agents(frame, i, &sums));
                 terms.pressure_walls = Some(pressure::from_walls(frame, i));
             }
-            terms.viscosity = self.viscosity.map(|v| v.acceleration(frame, i, h));
+            terms.viscosity = self.viscosity.map(|v| v.acceleration(frame, i, &sums));
         }
-        if !changed.is_some_and(|change| change.ignore_contact) {
-            let Contact {
-                agent_stiffness,
-                wall_stiffness,
-            } = self.contact;
-            terms.contact_agents = agent_stiffness.map(|k| contact::from_agents(frame, i, k));
-            terms.contact_walls = wall_stiffness.map(|k| contact::from_walls(frame, i, k));
+        if feels_contact {
+            let (agents, walls) = (self.contact.agent_stiffness, self.contact.wall_stiffness);
+            terms.contact_agents = agents.map(|k| contact::from_agents(frame, i, k, &sums));
+            terms.contact_walls = walls.map(|k| contact::from_walls(frame, i, k));
         }
         terms
     }

@@ -1,5 +1,6 @@
 //! Contact between discs, and of discs with walls (§5.4, Eqs. 22 and 23).
 
+use super::pairs::PairSums;
 use crate::frame::Frame;
 use crate::math::{Vector, direction};
 
@@ -16,19 +17,16 @@ pub struct Contact {
     pub wall_stiffness: Option<f64>,
 }
 
-/// Eq. 22 over all agents in contact, over the mass; coincident agents push nowhere.
-pub fn from_agents(frame: &Frame, i: usize, stiffness: f64) -> Vector {
-    let agents = frame.agents;
-    let (r_i, radius) = (agents.position[i], &agents.radius);
-    let mut force = Vector::zeros();
-    for &j in frame.neighbors.near(i) {
-        let r_ij = r_i - agents.position[j as usize];
-        let reach = radius[i] + radius[j as usize];
-        if r_ij.norm_squared() < reach * reach {
-            force += direction(r_ij) * (reach - r_ij.norm());
-        }
-    }
-    force * (stiffness / agents.mass[i])
+/// Eq. 22, one neighbour, over K^ag: `reach` D_i + D_j; coincident agents push nowhere.
+#[inline]
+pub fn of_neighbor(r_ij: Vector, reach: f64) -> Vector {
+    // No branch on the overlap: in a dense crowd it would be a coin toss.
+    direction(r_ij) * (reach - r_ij.norm()).max(0.0)
+}
+
+/// Eq. 22 over all agents in contact, over the mass.
+pub fn from_agents(frame: &Frame, i: usize, stiffness: f64, sums: &PairSums) -> Vector {
+    sums.contact * (stiffness / frame.agents.mass[i])
 }
 
 /// Eq. 23 over every edge that overlaps the disc, both faces, a corner once for each of its edges,

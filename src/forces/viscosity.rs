@@ -1,5 +1,6 @@
 //! SPH viscosity (§3.3, Eq. 7, times μ and divided by the density as in Eq. 2).
 
+use super::pairs::PairSums;
 use crate::frame::Frame;
 use crate::kernel;
 use crate::math::Vector;
@@ -12,14 +13,14 @@ pub struct Viscosity {
 }
 
 impl Viscosity {
-    /// μ ∇²v_i / ρ_i, Eq. 7.
-    pub fn acceleration(&self, frame: &Frame, i: usize, h: f64) -> Vector {
-        let (fields, agents) = (frame.fields, frame.agents);
-        let v_i = agents.velocity[i];
-        let laplacian = frame.near(i, h).fold(Vector::zeros(), |sum, (j, r_ij)| {
-            let weight = kernel::viscosity_laplacian(r_ij.norm(), h) * fields.volume[j];
-            sum + (agents.velocity[j] - v_i) * weight
-        });
-        laplacian * (self.coefficient / fields.density[i])
+    /// μ ∇²v_i / ρ_i.
+    pub fn acceleration(&self, frame: &Frame, i: usize, sums: &PairSums) -> Vector {
+        sums.viscosity * (self.coefficient / frame.fields.density[i])
     }
+}
+
+/// Eq. 7, one neighbour: `volume` m_j/ρ_j, `dv` v_j − v_i.
+#[inline]
+pub fn of_neighbor(r_ij: Vector, volume: f64, dv: Vector, h: f64) -> Vector {
+    dv * (volume * kernel::viscosity_laplacian(r_ij.norm(), h))
 }
