@@ -59,8 +59,12 @@ pub mod breakdown;
 
 pub mod scenario;
 
+pub mod drive;
+
 #[cfg(feature = "recording")]
 pub mod recording;
+
+pub mod reproduce;
 
 #[cfg(feature = "cli")]
 pub mod cli;
