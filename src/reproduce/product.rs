@@ -4,7 +4,7 @@ use super::case::Case;
 use super::error::ReproduceError;
 use super::runner::{Listener, Results, run};
 use super::store::Store;
-use super::{table1, table2};
+use super::{questions, table1, table2};
 
 /// A table or a figure.
 pub struct Product {
@@ -35,7 +35,7 @@ impl Plan {
 }
 
 /// Everything that can be reproduced, in the paper's order.
-pub const PRODUCTS: &[Product] = &[table1::PRODUCT, table2::PRODUCT];
+pub const PRODUCTS: &[Product] = &[table1::PRODUCT, table2::PRODUCT, questions::PRODUCT];
 
 /// Computes what is missing for `products` and writes them; returns what to say about each.
 ///
