@@ -92,6 +92,7 @@ fn empty_scene(file: &File) -> Result<Scene, Problem> {
         clock: Clock::new(time_step, coarse_every),
         integrator: file.integrator,
         wall_method: file.wall_method,
+        precision: file.precision,
         preferred_speed: PREFERRED_SPEED.check("preferred_speed", preferred_speed)?,
         max_speed: MAX_SPEED.check("max_speed", max_speed)?,
         ..Scene::with_obstacles(obstacles)

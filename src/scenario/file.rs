@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::boundary::WallMethod;
 use crate::catalog::{NavigationKind, Parameters};
+use crate::pairs::Precision;
 use crate::scene::Integrator;
 
 /// Lower left and upper right corner.
@@ -51,6 +52,7 @@ pub(super) struct File {
     pub coarse_every: Option<u32>,
     pub integrator: Integrator,
     pub wall_method: WallMethod,
+    pub precision: Precision,
     pub preferred_speed: Option<f64>,
     pub max_speed: Option<f64>,
     pub profile: Option<ProfileChoice>,
