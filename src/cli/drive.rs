@@ -22,10 +22,13 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     let mut output = Output::create(options, &scenario, &mut simulation)?;
     let progress = Progress::new(duration);
 
-    let driven = drive(&mut simulation, &scenario, duration, |simulation, ms| {
-        metrics.observe(simulation);
-        progress.show(simulation);
-        output.log(simulation, ms)
+    // From a thread of the pool, parallel work starts without a detour.
+    let driven = rayon::scope(|_| {
+        drive(&mut simulation, &scenario, duration, |simulation, ms| {
+            metrics.observe(simulation);
+            progress.show(simulation);
+            output.log(simulation, ms)
+        })
     });
     progress.finish();
     // What was recorded is kept, whatever ended the run.

@@ -1,5 +1,7 @@
 //! Who is near whom, as runs of agents that are neighbours in memory.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::Grid;
@@ -34,7 +36,8 @@ struct Block {
 }
 
 impl Chunks {
-    /// Lists for everybody the cells of `grid` within `reach` metres.
+    /// Lists for everybody the cells of `grid` within `reach` metres; where cells had to be made
+    /// larger than that, the single agents within reach.
     pub fn rebuild(&mut self, grid: &Grid, positions: &[Vector], reach: f64) {
         let count = positions.len();
         self.blocks
@@ -42,12 +45,16 @@ impl Chunks {
         self.blocks
             .par_iter_mut()
             .zip(positions.par_chunks(BLOCK))
-            .for_each(|(block, positions)| {
+            .for_each(|(block, block_positions)| {
                 block.ends.clear();
                 block.chunks.clear();
-                for &p in positions {
+                for &p in block_positions {
                     for run in grid.near_rows(p, reach) {
-                        block.push(run);
+                        if grid.height() > reach {
+                            block.push_near(run, |j| (p - positions[j]).norm() < reach);
+                        } else {
+                            block.push(run);
+                        }
                     }
                     block.ends.push(block.chunks.len() as u32);
                 }
@@ -84,8 +91,15 @@ impl Chunks {
 }
 
 impl Block {
+    /// Makes a chunk of everybody in a run who is near.
+    fn push_near(&mut self, run: Range<u32>, is_near: impl Fn(usize) -> bool) {
+        let near = run.filter(|&j| is_near(j as usize));
+        self.chunks
+            .extend(near.map(|start| Chunk { start, count: 1.0 }));
+    }
+
     /// Cuts a run into chunks.
-    fn push(&mut self, run: std::ops::Range<u32>) {
+    fn push(&mut self, run: Range<u32>) {
         for start in run.clone().step_by(CHUNK) {
             self.chunks.push(Chunk {
                 start,

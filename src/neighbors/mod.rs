@@ -38,6 +38,8 @@ pub struct Ranges {
 #[derive(Debug, Clone, Default)]
 pub struct Neighbors {
     ranges: Ranges,
+    /// How far agents are listed as near, skin included, metres.
+    reach: f64,
     grid: Grid,
     near: Chunks,
     near_walls: Lists,
@@ -52,9 +54,8 @@ impl Neighbors {
         self.ranges = ranges;
         self.travelled = 0.0;
         self.near.clear();
-        let order = self
-            .grid
-            .rebuild(&agents.position, near_radius(agents, &ranges));
+        self.reach = near_radius(agents, &ranges);
+        let order = self.grid.rebuild(&agents.position, self.reach);
         agents.arrange(&order);
     }
 
@@ -64,8 +65,7 @@ impl Neighbors {
     /// depend on whether a density is due: whoever asks for it must not change the order of any sum,
     /// and so the motion, not even by rounding.
     pub fn list_agents(&mut self, agents: &Agents) {
-        let radius = near_radius(agents, &self.ranges);
-        self.near.rebuild(&self.grid, &agents.position, radius);
+        self.near.rebuild(&self.grid, &agents.position, self.reach);
     }
 
     /// Lists the walls near everybody: near ones for SPH and contact and for stopping moves, far ones
@@ -103,7 +103,7 @@ impl Neighbors {
 
     /// A distance within which everybody in a list is, metres, for choosing units.
     pub fn extent(&self) -> f64 {
-        4.0 * self.grid.height()
+        4.0 * self.reach
     }
 
     /// Candidates for avoidance within `radius` metres of `p`, as ranges of agents, some out of range
