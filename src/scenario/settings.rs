@@ -278,7 +278,7 @@ fn scalars() -> [SettingDoc; 11] {
             "profile",
             "",
             "sph",
-            &"a name (`sandbox list`), or a profile or blend in full",
+            &"a name (see `sandbox list`), or a profile or blend in full",
             "how agents behave that say nothing else",
         ),
     ]
@@ -342,7 +342,7 @@ fn containers() -> [SettingDoc; 11] {
         doc(
             "debug_agents",
             "a list of ids",
-            "agents that a recording lays open",
+            "agents that a recording lays open; without it a dozen",
         ),
     ]
 }
