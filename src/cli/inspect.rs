@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::arguments::{InspectOptions, Source};
-use super::drive::{Progress, drive};
+use super::drive::{Progress, Then, drive};
 use super::output;
 use super::{Failure, say, scenario, use_threads};
 use crate::breakdown::Breakdown;
@@ -16,9 +16,10 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     // The rest density follows the density's history, so every frame needs it.
     simulation.request_density_until(u64::MAX);
     let progress = Progress::new(options.at);
-    let driven = drive(&mut simulation, &scenario, options.at, |simulation, _| {
+    // On to the moment asked for, though the scenario may have come to its own end before.
+    let driven = drive(&mut simulation, options.at, |simulation, _| {
         progress.show(simulation);
-        Ok(())
+        Ok(Then::GoOn)
     });
     progress.finish();
     driven?;
