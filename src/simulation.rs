@@ -13,7 +13,7 @@ use crate::clock::Clock;
 use crate::frame::{Fields, Frame};
 use crate::math::Vector;
 use crate::neighbors::Neighbors;
-use crate::pairs::Packed;
+use crate::pairs::{Packed, Precision};
 use crate::profile::{Blend, Override};
 use crate::scene::{Needs, Scene};
 
@@ -155,6 +155,11 @@ impl Simulation {
     /// colour, a breakdown.
     pub fn request_density_until(&mut self, frame: u64) {
         self.density_until = self.density_until.max(frame);
+    }
+
+    /// Takes the sums over pairs of all later evaluations in another precision than the scene's.
+    pub fn set_precision(&mut self, precision: Precision) {
+        self.packed = Packed::new(precision);
     }
 
     /// The current frame; frozen and complete after [`evaluate`](Self::evaluate).

@@ -24,10 +24,15 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
 
     // From a thread of the pool, parallel work starts without a detour.
     let driven = rayon::scope(|_| {
-        drive(&mut simulation, &scenario, duration, |simulation, ms| {
+        drive(&mut simulation, duration, |simulation, ms| {
             metrics.observe(simulation);
             progress.show(simulation);
-            output.log(simulation, ms)
+            output.log(simulation, ms)?;
+            Ok(if is_over(simulation, &scenario) {
+                Then::Stop
+            } else {
+                Then::GoOn
+            })
         })
     });
     progress.finish();
@@ -39,13 +44,18 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     say(&Report::new(&scenario, &simulation, &metrics).render(options.scene.json))
 }
 
-/// Runs to `duration` seconds or the scenario's own end; `observe` sees every evaluated frame with
-/// the milliseconds that the frame before took.
+/// After a frame.
+pub enum Then {
+    GoOn,
+    Stop,
+}
+
+/// Runs to `duration` seconds, or until `observe` says to stop: it sees every evaluated frame with the
+/// milliseconds that the frame before took.
 pub fn drive(
     simulation: &mut Simulation,
-    scenario: &Scenario,
     duration: f64,
-    mut observe: impl FnMut(&Simulation, f64) -> Result<(), Failure>,
+    mut observe: impl FnMut(&Simulation, f64) -> Result<Then, Failure>,
 ) -> Result<(), Failure> {
     let last_frame = simulation.frame().clock.frame_at(duration);
     let mut ms = 0.0;
@@ -53,8 +63,8 @@ pub fn drive(
         let start = Instant::now();
         simulation.evaluate()?;
         let evaluated = start.elapsed();
-        observe(simulation, ms)?;
-        if simulation.frame().clock.frame() >= last_frame || is_over(simulation, scenario) {
+        let then = observe(simulation, ms)?;
+        if simulation.frame().clock.frame() >= last_frame || matches!(then, Then::Stop) {
             return Ok(());
         }
         let start = Instant::now();

@@ -66,7 +66,7 @@ pub(super) struct File {
     pub measurements: Vec<Measurement>,
     pub stop: Object<Stop>,
     pub view: Option<Object<View>>,
-    pub debug_agents: Vec<u32>,
+    pub debug_agents: Option<Vec<u32>>,
 }
 
 /// How agents behave, and what becomes of them.

@@ -263,9 +263,9 @@ fn scalars() -> [SettingDoc; 12] {
         doc(
             "precision",
             "",
-            "double",
-            &"double or mixed",
-            "numbers for sums over pairs; mixed is faster, with errors of 1e-5",
+            "mixed",
+            &"mixed or double",
+            "numbers for sums over pairs; mixed is faster and off by at most 1e-5",
         ),
         doc(
             "preferred_speed",
@@ -285,7 +285,7 @@ fn scalars() -> [SettingDoc; 12] {
             "profile",
             "",
             "sph",
-            &"a name (`sandbox list`), or a profile or blend in full",
+            &"a name (see `sandbox list`), or a profile or blend in full",
             "how agents behave that say nothing else",
         ),
     ]
@@ -349,7 +349,7 @@ fn containers() -> [SettingDoc; 11] {
         doc(
             "debug_agents",
             "a list of ids",
-            "agents that a recording lays open",
+            "agents that a recording lays open; without it a dozen",
         ),
     ]
 }
