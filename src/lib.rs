@@ -59,8 +59,14 @@ pub mod breakdown;
 
 pub mod scenario;
 
+#[cfg(any(feature = "recording", feature = "plot"))]
+pub mod colors;
+
 #[cfg(feature = "recording")]
 pub mod recording;
+
+#[cfg(feature = "plot")]
+pub mod plot;
 
 #[cfg(feature = "cli")]
 pub mod cli;
