@@ -57,6 +57,10 @@ pub mod metrics;
 
 pub mod breakdown;
 
+pub mod sound;
+
+pub mod wave;
+
 pub mod scenario;
 
 #[cfg(any(feature = "recording", feature = "plot"))]
