@@ -72,5 +72,7 @@ pub mod recording;
 #[cfg(feature = "plot")]
 pub mod plot;
 
+pub mod reproduce;
+
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -37,7 +37,7 @@ const BELOW: f64 = 28.0;
 /// Points between panels that have no numbers between them.
 const GAP: f64 = 7.0;
 /// Points above a panel for its title.
-const ABOVE: f64 = 13.0;
+const ABOVE: f64 = 18.0;
 /// Points for a colour bar with its numbers and its label.
 const BAR: f64 = 58.0;
 /// The colour bar itself, points.
@@ -258,6 +258,7 @@ fn draw_legend<DB: DrawingBackend>(
         Corner::LowerRight => y + height - 5.0 - LINE * entries.len() as f64,
     };
     let left = corner == Corner::UpperLeft;
+    draw_legend_box(frame, &entries, [top, LINE], left, canvas)?;
     let sample = if left { x + 6.0 } else { x + width - 24.0 };
     for (k, mark) in entries.into_iter().enumerate() {
         let Some(style) = style_of(mark) else {
@@ -276,6 +277,26 @@ fn draw_legend<DB: DrawingBackend>(
         canvas.text([at, middle], &style.label, anchor, TICK)?;
     }
     Ok(())
+}
+
+/// White behind a legend; plotters measures no text before it draws, so its width is a guess.
+fn draw_legend_box<DB: DrawingBackend>(
+    frame: &Frame,
+    entries: &[&Mark],
+    [top, line]: [f64; 2],
+    left: bool,
+    canvas: &Canvas<DB>,
+) -> Result<(), PlotError> {
+    const LETTER: f64 = 0.52;
+    let letters = |mark: &&Mark| style_of(mark).map_or(0, |style| style.label.chars().count());
+    let Some(most) = entries.iter().map(letters).max() else {
+        return Ok(());
+    };
+    let wide = 32.0 + LETTER * TICK.size * most as f64;
+    let [x, width] = [frame.corner[0], frame.size[0]];
+    let from = if left { x + 3.0 } else { x + width - 3.0 - wide };
+    let low = top + line * entries.len() as f64 + 2.0;
+    canvas.rectangle([[from, top - 2.0], [from + wide, low]], [255; 3])
 }
 
 fn style_of(mark: &Mark) -> Option<&Style> {

@@ -11,6 +11,22 @@ pub struct Estimate {
     pub error: f64,
 }
 
+impl Estimate {
+    /// Mean and standard error of the mean; `None` of nothing, and the error of a single value is 0.
+    pub fn of_mean(values: &[f64]) -> Option<Self> {
+        if values.is_empty() {
+            return None;
+        }
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let squares = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
+        Some(Self {
+            value: mean,
+            error: (squares / (count - 1.0).max(1.0) / count).sqrt(),
+        })
+    }
+}
+
 /// Neighbouring points err together, so whole blocks of them are left out for the jackknife.
 const BLOCKS: usize = 6;
 
@@ -42,20 +58,6 @@ impl Line {
             offset: mean_y - slope * mean_x,
         })
     }
-}
-
-/// Mean and standard error of the mean; the error of a single value is 0.
-pub fn mean(values: &[f64]) -> Option<Estimate> {
-    if values.is_empty() {
-        return None;
-    }
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let squares = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
-    Some(Estimate {
-        value: mean,
-        error: (squares / (count - 1.0).max(1.0) / count).sqrt(),
-    })
 }
 
 /// A function of points with its standard error by a jackknife over blocks of neighbouring points.
@@ -97,9 +99,9 @@ mod tests {
     #[test]
     fn the_jackknife_of_a_mean_is_its_standard_error() {
         let values = [1.0, 4.0, 2.0, 8.0, 5.0, 7.0];
-        let average = |v: &[f64]| mean(v).map(|m| m.value);
+        let average = |v: &[f64]| Estimate::of_mean(v).map(|m| m.value);
         let estimate = jackknife(&values, average).unwrap();
-        let expected = mean(&values).unwrap();
+        let expected = Estimate::of_mean(&values).unwrap();
         assert!((estimate.error - expected.error).abs() < 1e-12);
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::fit::{Estimate, Line, jackknife, mean};
+use super::fit::{Estimate, Line, jackknife};
 use super::space_time::SpaceTime;
 
 /// Speeds that a wave may have, m/s.
@@ -65,7 +65,7 @@ impl Ridge {
     fn amplitude(&self, [from, to]: [f64; 2]) -> Option<Estimate> {
         let inside = self.points.iter().filter(|p| (from..=to).contains(&p.x));
         let amplitudes: Vec<f64> = inside.map(|p| p.amplitude).collect();
-        mean(&amplitudes)
+        Estimate::of_mean(&amplitudes)
     }
 }
 

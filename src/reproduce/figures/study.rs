@@ -1,0 +1,88 @@
+//! The study's heat maps: a column for each quantity, a row for each pair of μ and K^ag.
+
+use crate::colors::{ColorMap, Rgb};
+use crate::plot::{Axis, BLACK, Cells, ColorBar, Mark, Panel, Sheet};
+use crate::reproduce::study::{Grid, Quantity, Result};
+
+const WHITE: Rgb = [255; 3];
+
+/// The sheet from the results in the order of [`Grid::cells`].
+pub fn sheet(grid: &Grid, results: &[Result]) -> Sheet {
+    let per_panel = grid.gas_constant.len() * grid.rest_density_max.len();
+    let mut panels = Vec::new();
+    for block in results.chunks(per_panel.max(1)) {
+        for quantity in Quantity::ALL {
+            panels.push(panel(grid, block, quantity, range(results, quantity)));
+        }
+    }
+    Sheet {
+        title: "The shockwave against k, ρ⁰max, μ and Kᵃᵍ: mean ± standard error over seeds"
+            .to_owned(),
+        columns: Quantity::ALL.len(),
+        panel_size: [170.0, 105.0],
+        shared_axes: false,
+        row_titles: Vec::new(),
+        bar: None,
+        panels,
+    }
+}
+
+/// Round ends for the colours of one quantity.
+fn range(results: &[Result], quantity: Quantity) -> [f32; 2] {
+    let values = || {
+        results
+            .iter()
+            .filter_map(|r| r.get(quantity))
+            .map(|e| e.value)
+    };
+    let most = values().fold(0.0, f64::max);
+    let step = if quantity == Quantity::Speed {
+        5.0
+    } else {
+        0.2
+    };
+    [0.0, (step * (most / step).ceil().max(1.0)) as f32]
+}
+
+fn panel(grid: &Grid, block: &[Result], quantity: Quantity, range: [f32; 2]) -> Panel {
+    let map = ColorMap::viridis(range);
+    let columns = grid.gas_constant.len();
+    let values = block.iter().map(|r| r.get(quantity).map(|e| e.value));
+    let rows = block.len().div_ceil(columns.max(1));
+    let mut marks = vec![Mark::Cells(Cells {
+        extent: [[0.0, 0.0], [columns as f64, rows as f64]],
+        columns,
+        values: values.collect(),
+        map: map.clone(),
+    })];
+    let digits = if quantity == Quantity::Speed { 1 } else { 2 };
+    for (k, result) in block.iter().enumerate() {
+        let at = [(k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5];
+        let (text, color) = match result.get(quantity) {
+            None => ("no wave".to_owned(), BLACK),
+            Some(e) => {
+                // White on the dark half of the colours.
+                let light = e.value > 0.6 * f64::from(range[1]);
+                let text = format!("{:.digits$} ± {:.digits$}", e.value, e.error);
+                (text, if light { BLACK } else { WHITE })
+            }
+        };
+        marks.push(Mark::Text(at, text, color));
+    }
+    let cell = block.first().map(|result| result.cell);
+    let title = cell.map_or(String::new(), |cell| {
+        format!("μ = {}, Kᵃᵍ = {}", cell.viscosity, cell.agent_stiffness)
+    });
+    let names = |values: &[f64]| values.iter().map(f64::to_string).collect::<Vec<_>>();
+    Panel {
+        title,
+        x: Axis::names("k", names(&grid.gas_constant)),
+        y: Axis::names("ρ⁰max [P/m²]", names(&grid.rest_density_max)),
+        marks,
+        bar: Some(ColorBar {
+            label: quantity.label().to_owned(),
+            map,
+        }),
+        legend: None,
+    }
+}
