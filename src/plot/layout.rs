@@ -294,7 +294,11 @@ fn draw_legend_box<DB: DrawingBackend>(
     };
     let wide = 32.0 + LETTER * TICK.size * most as f64;
     let [x, width] = [frame.corner[0], frame.size[0]];
-    let from = if left { x + 3.0 } else { x + width - 3.0 - wide };
+    let from = if left {
+        x + 3.0
+    } else {
+        x + width - 3.0 - wide
+    };
     let low = top + line * entries.len() as f64 + 2.0;
     canvas.rectangle([[from, top - 2.0], [from + wide, low]], [255; 3])
 }

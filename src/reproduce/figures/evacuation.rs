@@ -1,26 +1,43 @@
 //! Fig. 5: the room after 15 s, by density.
 
-use super::{Coloring, Stage, letter};
+use super::{Coloring, Stage, letter, save, scene};
 use crate::math::Vector;
 use crate::plot::Sheet;
+use crate::reproduce::case::Case;
+use crate::reproduce::error::ReproduceError;
+use crate::reproduce::product::Product;
 use crate::reproduce::snapshot::Snapshot;
 use crate::scene::{Region, Scene};
 
 /// When the paper looks, seconds.
-pub const AT_SECS: f64 = 15.0;
+const AT_SECS: f64 = 15.0;
+
+/// The figure.
+pub const PRODUCT: Product = Product {
+    name: "fig5",
+    about: "the evacuation after 15 s, by density, 24 profiles",
+    in_all: true,
+    cases: |_| Ok(panels().iter().map(Panel::case).collect()),
+    write: |_, results, store| {
+        let of = |panel: Panel| Ok((panel, results.of(&panel.case())?.snapshot(AT_SECS)?));
+        let snapshots: Result<Vec<_>, ReproduceError> = panels().into_iter().map(of).collect();
+        let room = scene(&Case::shipped("evacuation"))?;
+        save(&sheet(&room, &snapshots?), store, "fig5")
+    },
+};
 
 /// One panel: profile, and the one parameter that is set.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Panel {
+struct Panel {
     /// The profile's name (§5.5).
-    pub profile: &'static str,
+    profile: &'static str,
     /// The setting's key and value; `None`: the profile as it is.
-    pub setting: Option<(&'static str, f64)>,
+    setting: Option<(&'static str, f64)>,
 }
 
 /// (a)–(e) SF, (f) RVO, (g)–(l) SPH, (m)–(o) SF+SPH, (p)–(r) RVO+SPH, (s)–(u) SF→SPH, (v)–(x)
 /// RVO→SPH. Which three ρ⁰max the paper's (m)–(r) have it does not say; here those of (s)–(x).
-pub fn panels() -> Vec<Panel> {
+fn panels() -> Vec<Panel> {
     let with = |profile, key, values: &[f64]| -> Vec<Panel> {
         let panel = |&value| Panel {
             profile,
@@ -44,19 +61,17 @@ pub fn panels() -> Vec<Panel> {
 }
 
 impl Panel {
-    /// Its name in files.
-    pub fn key(&self) -> String {
+    /// The run, until the moment of the figure.
+    fn case(&self) -> Case {
+        let case = Case::shipped("evacuation")
+            .set("profile", self.profile)
+            .set("duration_secs", AT_SECS)
+            .snapshot(AT_SECS)
+            .taking(1.5);
         match self.setting {
-            Some((key, value)) => format!("{}-{key}-{value}", self.profile),
-            None => self.profile.to_owned(),
+            Some((key, value)) => case.set(key, value),
+            None => case,
         }
-    }
-
-    /// The scenario's settings.
-    pub fn settings(&self) -> Vec<String> {
-        let profile = format!("profile={}", self.profile);
-        let setting = self.setting.map(|(key, value)| format!("{key}={value}"));
-        std::iter::once(profile).chain(setting).collect()
     }
 
     fn title(&self) -> String {
@@ -70,7 +85,7 @@ impl Panel {
 }
 
 /// The sheet from the panels' snapshots.
-pub fn sheet(scene: &Scene, snapshots: &[(Panel, Snapshot)]) -> Sheet {
+fn sheet(scene: &Scene, snapshots: &[(Panel, Snapshot)]) -> Sheet {
     let region = Region {
         min: Vector::new(8.0, -1.0),
         max: Vector::new(23.0, 21.0),

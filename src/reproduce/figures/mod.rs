@@ -1,23 +1,62 @@
 //! What each figure of the paper shows, from what the runs have left.
 
-pub mod crossing;
-pub mod evacuation;
-pub mod pairs;
-pub mod performance;
-pub mod shockwave;
-pub mod speeds;
-pub mod study;
+mod concert;
+mod crossing;
+mod evacuation;
+mod frame_time;
+mod grid;
+mod pairs;
+mod performance;
+mod shockwave;
+mod speeds;
+mod study;
 
+use std::sync::LazyLock;
+
+use super::case::Case;
+use super::error::ReproduceError;
+use super::product::Product;
 use super::snapshot::Snapshot;
+use super::store::Store;
 use crate::colors::{self, ColorMap};
-use crate::plot::{Axis, ColorBar, Disc, GRAY, Mark, Panel};
+use crate::plot::{Axis, ColorBar, Disc, GRAY, Mark, Panel, Sheet};
 use crate::scene::{Region, Scene};
+
+/// All figures, in the paper's order, and what stands beside them.
+pub const PRODUCTS: [Product; 9] = [
+    evacuation::PRODUCT,
+    crossing::PRODUCT,
+    shockwave::FIG7_PRODUCT,
+    speeds::PRODUCT,
+    pairs::FIG8_PRODUCT,
+    shockwave::FIG9_PRODUCT,
+    pairs::FIG10_PRODUCT,
+    performance::PRODUCT,
+    study::PRODUCT,
+];
+
+/// Writes a picture into the store's folder, and says so.
+fn save(sheet: &Sheet, store: &Store, name: &str) -> Result<String, ReproduceError> {
+    let stem = store.path(name);
+    sheet.save(&stem)?;
+    Ok(format!("{0}.svg, {0}.png", stem.display()))
+}
+
+/// The scene of a case.
+fn scene(case: &Case) -> Result<Scene, ReproduceError> {
+    Ok(case.scenario()?.scene)
+}
+
+/// Inferno up to 1 m/s: the push itself reaches 0.9.
+static CROWD_SPEED: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::inferno([0.0, 1.0]));
 
 /// What the discs' colours say (Fig. 3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Coloring {
     /// |v_i|.
     Speed,
+    /// |v_i| in a crowd that hardly moves: the colours end where its waves do.
+    CrowdSpeed,
     /// ρ_i.
     Density,
 }
@@ -26,6 +65,7 @@ impl Coloring {
     fn map(self) -> &'static ColorMap {
         match self {
             Self::Speed => &colors::SPEED,
+            Self::CrowdSpeed => &CROWD_SPEED,
             Self::Density => &colors::DENSITY,
         }
     }
@@ -33,7 +73,7 @@ impl Coloring {
     /// What explains it.
     pub fn bar(self) -> ColorBar {
         let label = match self {
-            Self::Speed => "speed [m/s]",
+            Self::Speed | Self::CrowdSpeed => "speed [m/s]",
             Self::Density => "density [P/m²]",
         };
         ColorBar {
@@ -70,13 +110,13 @@ impl Stage {
     /// A snapshot as a panel.
     pub fn panel(&self, title: &str, snapshot: &Snapshot, coloring: Coloring) -> Panel {
         let values = match coloring {
-            Coloring::Speed => &snapshot.speed,
+            Coloring::Speed | Coloring::CrowdSpeed => &snapshot.speed,
             Coloring::Density => &snapshot.density,
         };
         let discs = values.iter().enumerate().map(|(i, &value)| Disc {
-            center: [f64::from(snapshot.x[i]), f64::from(snapshot.y[i])],
-            radius: f64::from(snapshot.radius[i]),
-            color: coloring.map().color(value),
+            center: [snapshot.x[i], snapshot.y[i]],
+            radius: snapshot.radius[i],
+            color: coloring.map().color(value as f32),
         });
         let mut marks = vec![Mark::Discs(discs.collect())];
         marks.extend(self.obstacles.iter().map(|c| Mark::Area(c.clone(), GRAY)));

@@ -1,42 +1,31 @@
 //! Fig. 11: frame time per task against the number of agents.
 
-use serde::{Deserialize, Serialize};
-
+use super::frame_time::{self, FrameTime, SIZES};
+use super::save;
 use crate::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Point, Sheet, Style};
-use crate::simulation::{Simulation, Stage};
+use crate::reproduce::error::ReproduceError;
+use crate::reproduce::product::Product;
+use crate::simulation::Stage;
+
+/// The figure.
+pub const PRODUCT: Product = Product {
+    name: "fig11",
+    about: "frame time per task against the number of agents; measured alone, on all threads",
+    in_all: true,
+    cases: |_| Ok(SIZES.into_iter().map(frame_time::case).collect()),
+    write: |_, results, store| {
+        let of = |agents| FrameTime::of(results.of(&frame_time::case(agents))?);
+        let times: Result<Vec<_>, ReproduceError> = SIZES.into_iter().map(of).collect();
+        let times = times?;
+        store.write("fig11.csv", frame_time::csv(&times).as_bytes())?;
+        let threads = times.first().map_or(0, |time| time.threads);
+        let machine = format!("{threads} threads of this machine");
+        save(&sheet(&times, &machine), store, "fig11")
+    },
+};
 
 /// The paper's totals, six threads of a laptop Core i7-7920HQ (§6.4): agents, ms per frame.
 const PAPER: [[f64; 2]; 2] = [[10_000.0, 4.94], [30_000.0, 18.57]];
-
-/// Mean frame time of one crowd.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct FrameTime {
-    /// How many people.
-    pub agents: usize,
-    /// Milliseconds per frame of every stage that ran, by [`Stage::name`].
-    pub stages: Vec<(String, f64)>,
-}
-
-impl FrameTime {
-    /// What a simulation has measured since its stages were last reset.
-    pub fn of(simulation: &Simulation) -> Self {
-        let stages = simulation.stages().ms_per_frame();
-        Self {
-            agents: simulation.frame().agents.len(),
-            stages: stages.map(|(s, ms)| (s.name().to_owned(), ms)).collect(),
-        }
-    }
-
-    /// All stages together, ms.
-    pub fn total(&self) -> f64 {
-        self.stages.iter().map(|(_, ms)| ms).sum()
-    }
-
-    fn of_stage(&self, stage: Stage) -> Option<f64> {
-        let found = self.stages.iter().find(|(name, _)| name == stage.name())?;
-        Some(found.1).filter(|&ms| ms > 0.0)
-    }
-}
 
 /// What the paper calls a stage.
 fn task(stage: Stage) -> &'static str {
@@ -52,7 +41,7 @@ fn task(stage: Stage) -> &'static str {
 }
 
 /// The sheet from measurements by rising number of agents; `machine` says on what.
-pub fn sheet(times: &[FrameTime], machine: &str) -> Sheet {
+fn sheet(times: &[FrameTime], machine: &str) -> Sheet {
     let order = [
         Stage::Sort,
         Stage::Neighbors,

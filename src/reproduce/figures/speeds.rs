@@ -1,8 +1,11 @@
 //! Beside Fig. 7: the wave over place and time for several k, and its speed against linear theory.
 
+use super::concert::{RUN, SPEEDS, Seen, Variant};
+use super::save;
 use crate::colors::ColorMap;
 use crate::plot::{Axis, Cells, ColorBar, Corner, LINES, Mark, Panel, Point, Sheet, Style};
-use crate::reproduce::concert::{RUN, Seen, Variant};
+use crate::reproduce::error::ReproduceError;
+use crate::reproduce::product::Product;
 use crate::sound;
 use crate::wave::{self, SpaceTime, Wave};
 
@@ -13,29 +16,51 @@ const REACH: f64 = 0.48;
 /// Mean speed that has the last colour, m/s.
 const FASTEST: f32 = 0.8;
 
+/// The diagrams.
+pub const PRODUCT: Product = Product {
+    name: "waves",
+    about: "space-time diagrams of the shockwave for five k, and its speed against linear theory",
+    in_all: true,
+    cases: |_| Ok(SPEEDS.iter().map(|(_, variant)| variant.case()).collect()),
+    write: |_, results, store| {
+        let of = |(k, variant): (f64, Variant)| Ok((k, variant, variant.seen(results)?));
+        let runs: Result<Vec<_>, ReproduceError> = SPEEDS.into_iter().map(of).collect();
+        let runs = runs?;
+        let speeds: Vec<Speed> = runs
+            .iter()
+            .map(|(k, _, seen)| Speed::of(*k, seen))
+            .collect();
+        store.write("waves.csv", csv(&speeds).as_bytes())?;
+        save(&sheet(&runs, &speeds), store, "waves")
+    },
+};
+
 /// One concert's wave and what theory says of it.
 #[derive(Debug, Clone)]
-pub struct Speed {
+struct Speed {
     /// k.
-    pub gas_constant: f64,
+    gas_constant: f64,
     /// What was measured; `None` if no wave stands out.
-    pub wave: Option<Wave>,
+    wave: Option<Wave>,
     /// √(k/2), m/s.
-    pub fluid: f64,
+    fluid: f64,
+    /// How many others a person touches before the push.
+    contacts: Option<f64>,
     /// √(k/2 + K^ag M) with the contacts of this crowd before the push, m/s.
-    pub with_contacts: Option<f64>,
+    with_contacts: Option<f64>,
     /// The same with every disc just touching six others, m/s.
-    pub all_touching: f64,
+    all_touching: f64,
 }
 
 impl Speed {
     /// Measures one run.
-    pub fn of(gas_constant: f64, seen: &Seen) -> Self {
+    fn of(gas_constant: f64, seen: &Seen) -> Self {
         let with = |modulus| sound::speed_with_contacts(gas_constant, AGENT_STIFFNESS, modulus);
         Self {
             gas_constant,
             wave: wave::measure(&seen.diagram, &RUN),
             fluid: sound::speed_of_fluid(gas_constant),
+            contacts: seen.contacts.map(|contacts| contacts.per_agent),
             with_contacts: seen.contacts.map(|contacts| with(contacts.modulus)),
             all_touching: with(sound::touching_modulus(REACH)),
         }
@@ -43,18 +68,14 @@ impl Speed {
 }
 
 /// The diagrams, and speed against k as the last panel.
-pub fn sheet(runs: &[(f64, Variant, &Seen)]) -> Sheet {
-    let speeds: Vec<Speed> = runs
-        .iter()
-        .map(|&(k, _, seen)| Speed::of(k, seen))
-        .collect();
+fn sheet(runs: &[(f64, Variant, Seen)], speeds: &[Speed]) -> Sheet {
     let map = ColorMap::inferno([0.0, FASTEST]);
     let mut panels: Vec<Panel> = runs
         .iter()
-        .zip(&speeds)
-        .map(|((_, variant, seen), speed)| diagram(variant.label, &seen.diagram, speed, &map))
+        .zip(speeds)
+        .map(|((_, _, seen), speed)| diagram(&seen.diagram, speed, &map))
         .collect();
-    panels.push(against_gas_constant(&speeds));
+    panels.push(against_gas_constant(speeds));
     Sheet {
         title: "The shockwave over place and time, and its speed against linear theory".to_owned(),
         columns: 3,
@@ -70,7 +91,7 @@ pub fn sheet(runs: &[(f64, Variant, &Seen)]) -> Sheet {
 }
 
 /// One run: mean speed, the fitted crests, and where theory has the first one.
-fn diagram(label: &str, seen: &SpaceTime, speed: &Speed, map: &ColorMap) -> Panel {
+fn diagram(seen: &SpaceTime, speed: &Speed, map: &ColorMap) -> Panel {
     let (first, last) = match seen.times[..] {
         [first, .., last] => (first, last),
         _ => (0.0, 1.0),
@@ -82,9 +103,9 @@ fn diagram(label: &str, seen: &SpaceTime, speed: &Speed, map: &ColorMap) -> Pane
         values: seen.speed.clone(),
         map: map.clone(),
     })];
-    let mut title = format!("{label}: no wave");
+    let mut title = format!("k = {}: no wave", speed.gas_constant);
     if let Some(wave) = &speed.wave {
-        title = format!("{label}: {}", summary(wave));
+        title = format!("k = {}: {}", speed.gas_constant, summary(wave));
         marks.extend(crests(wave, speed));
     }
     Panel {
@@ -99,9 +120,9 @@ fn diagram(label: &str, seen: &SpaceTime, speed: &Speed, map: &ColorMap) -> Pane
 
 fn summary(wave: &Wave) -> String {
     let there = wave.arriving.speed;
-    let mut text = format!("{:.1} ± {:.1} m/s there", there.value, there.error);
+    let mut text = format!("{:.2} ± {:.2} m/s there", there.value, there.error);
     if let Some(back) = wave.returning.as_ref().map(|ridge| ridge.speed) {
-        text += &format!(", {:.1} ± {:.1} back", back.value, back.error);
+        text += &format!(", {:.2} ± {:.2} back", back.value, back.error);
     }
     text
 }
@@ -124,15 +145,44 @@ fn crests(wave: &Wave, speed: &Speed) -> Vec<Mark> {
         let crossing = (RUN.obstacle - RUN.source) / theory;
         let there = [[RUN.source, begin], [RUN.obstacle, begin + crossing]];
         let back = [there[1], [RUN.source, begin + 2.0 * crossing]];
-        let style = Style::broken([255, 255, 255], 0.8, "theory");
-        // White lines show on the dark diagram; in the legend they would not.
-        let shown = Style {
-            label: String::new(),
-            ..style
-        };
-        marks.push(Mark::Line(vec![there[0], there[1], back[1]], shown));
+        let style = Style::broken(LINES[2], 1.0, "theory, discs in contact");
+        marks.push(Mark::Line(vec![there[0], there[1], back[1]], style));
     }
     marks
+}
+
+/// What was measured and what theory says, empty where there is nothing.
+fn csv(speeds: &[Speed]) -> String {
+    let mut text =
+        "gas_constant,arriving_m_per_s,arriving_error,returning_m_per_s,returning_error,\
+        amplitude_m_per_s,amplitude_error,reflection,reflection_error,contacts_per_agent,\
+        fluid_m_per_s,with_contacts_m_per_s,all_touching_m_per_s\n"
+            .to_owned();
+    let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:.4}"));
+    for speed in speeds {
+        let wave = speed.wave.as_ref();
+        let estimates = [
+            wave.map(|w| w.arriving.speed),
+            wave.and_then(|w| w.returning.as_ref()).map(|r| r.speed),
+            wave.map(|w| w.amplitude),
+            wave.and_then(|w| w.reflection),
+        ];
+        text += &speed.gas_constant.to_string();
+        for estimate in estimates {
+            let (value, error) = (estimate.map(|e| e.value), estimate.map(|e| e.error));
+            text += &format!(",{},{}", number(value), number(error));
+        }
+        for value in [
+            speed.contacts,
+            Some(speed.fluid),
+            speed.with_contacts,
+            Some(speed.all_touching),
+        ] {
+            text += &format!(",{}", number(value));
+        }
+        text.push('\n');
+    }
+    text
 }
 
 fn against_gas_constant(speeds: &[Speed]) -> Panel {

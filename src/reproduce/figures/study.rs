@@ -1,13 +1,43 @@
 //! The study's heat maps: a column for each quantity, a row for each pair of μ and K^ag.
 
+use super::concert::Seen;
+use super::grid::{self, Grid, Quantity, Result};
+use super::save;
 use crate::colors::{ColorMap, Rgb};
 use crate::plot::{Axis, BLACK, Cells, ColorBar, Mark, Panel, Sheet};
-use crate::reproduce::study::{Grid, Quantity, Result};
+use crate::reproduce::product::Product;
 
 const WHITE: Rgb = [255; 3];
 
+/// The study; not part of `all`.
+pub const PRODUCT: Product = Product {
+    name: "study",
+    about: "the shockwave against k, ρ⁰max, μ and K^ag, three seeds a cell",
+    in_all: false,
+    cases: |_| {
+        let cells = Grid::default().cells();
+        Ok(cells
+            .iter()
+            .flat_map(|cell| grid::SEEDS.map(|seed| cell.case(seed)))
+            .collect())
+    },
+    write: |_, results, store| {
+        let axes = Grid::default();
+        let mut table = Vec::new();
+        for cell in axes.cells() {
+            let mut diagrams = Vec::new();
+            for seed in grid::SEEDS {
+                diagrams.push(Seen::of(results.of(&cell.case(seed))?)?.diagram);
+            }
+            table.push(Result::of(cell, &diagrams));
+        }
+        store.write("study.csv", grid::csv(&table).as_bytes())?;
+        save(&sheet(&axes, &table), store, "study")
+    },
+};
+
 /// The sheet from the results in the order of [`Grid::cells`].
-pub fn sheet(grid: &Grid, results: &[Result]) -> Sheet {
+fn sheet(grid: &Grid, results: &[Result]) -> Sheet {
     let per_panel = grid.gas_constant.len() * grid.rest_density_max.len();
     let mut panels = Vec::new();
     for block in results.chunks(per_panel.max(1)) {

@@ -3,8 +3,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::concert::RUN;
+use super::concert::{self, RUN};
+use crate::reproduce::case::Case;
 use crate::wave::{self, Estimate, SpaceTime};
+
+/// Seeds of every cell.
+pub const SEEDS: [u64; 3] = [1, 2, 3];
 
 /// k, ρ⁰max in P/m², μ and K^ag of one cell.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -64,22 +68,14 @@ impl Grid {
 }
 
 impl Cell {
-    /// Its name in files.
-    pub fn key(&self) -> String {
-        format!(
-            "k-{}-rho-{}-mu-{}-contact-{}",
-            self.gas_constant, self.rest_density_max, self.viscosity, self.agent_stiffness
-        )
-    }
-
-    /// The concert's settings.
-    pub fn settings(&self) -> Vec<String> {
-        vec![
-            format!("gas_constant={}", self.gas_constant),
-            format!("rest_density_max={}", self.rest_density_max),
-            format!("viscosity={}", self.viscosity),
-            format!("agent_stiffness={}", self.agent_stiffness),
-        ]
+    /// One of its runs.
+    pub fn case(&self, seed: u64) -> Case {
+        concert::case()
+            .set("gas_constant", self.gas_constant)
+            .set("rest_density_max", self.rest_density_max)
+            .set("viscosity", self.viscosity)
+            .set("agent_stiffness", self.agent_stiffness)
+            .seed(seed)
     }
 }
 
@@ -197,12 +193,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_combination_is_a_cell_with_its_own_key() {
+    fn every_combination_is_one_cell() {
         let cells = Grid::default().cells();
-        let mut keys: Vec<String> = cells.iter().map(Cell::key).collect();
-        keys.sort();
-        keys.dedup();
-        assert_eq!((cells.len(), keys.len()), (36, 36));
+        assert_eq!(cells.len(), 36);
+        for (k, cell) in cells.iter().enumerate() {
+            assert!(cells[..k].iter().all(|other| other != cell));
+        }
     }
 
     #[test]
