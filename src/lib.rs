@@ -57,11 +57,13 @@ pub mod metrics;
 
 pub mod breakdown;
 
+pub mod scenario;
+
+pub mod drive;
+
 pub mod sound;
 
 pub mod wave;
-
-pub mod scenario;
 
 #[cfg(any(feature = "recording", feature = "plot"))]
 pub mod colors;

@@ -1,6 +1,4 @@
-//! The drive loop: a scenario from its first frame to its end.
-
-use std::time::Instant;
+//! A scenario from its first frame to its end, with a progress bar, a recording and a report.
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -8,8 +6,8 @@ use super::arguments::{RunOptions, Source};
 use super::output::Output;
 use super::report::Report;
 use super::{Failure, say, scenario, use_threads};
+use crate::drive::drive;
 use crate::metrics::Metrics;
-use crate::scenario::Scenario;
 use crate::simulation::{EventKind, Simulation};
 
 /// `sandbox evacuation|crossing|concert|run`.
@@ -34,44 +32,6 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     saved?;
     report_oddities(&simulation);
     say(&Report::new(&scenario, &simulation, &metrics).render(options.scene.json))
-}
-
-/// Runs to `duration` seconds or the scenario's own end; `observe` sees every evaluated frame with
-/// the milliseconds that the frame before took.
-pub fn drive(
-    simulation: &mut Simulation,
-    scenario: &Scenario,
-    duration: f64,
-    mut observe: impl FnMut(&Simulation, f64) -> Result<(), Failure>,
-) -> Result<(), Failure> {
-    let last_frame = simulation.frame().clock.frame_at(duration);
-    let mut ms = 0.0;
-    loop {
-        let start = Instant::now();
-        simulation.evaluate()?;
-        let evaluated = start.elapsed();
-        observe(simulation, ms)?;
-        if simulation.frame().clock.frame() >= last_frame || is_over(simulation, scenario) {
-            return Ok(());
-        }
-        let start = Instant::now();
-        simulation.integrate()?;
-        ms = 1e3 * (evaluated + start.elapsed()).as_secs_f64();
-    }
-}
-
-/// Has the scenario come to its own end?
-fn is_over(simulation: &Simulation, scenario: &Scenario) -> bool {
-    let frame = simulation.frame();
-    let empty = frame.agents.is_empty() && !simulation.expects_agents();
-    let arrivals = simulation.outcome().arrivals.iter().rev();
-    let last_arrival = arrivals
-        .filter(|arrival| arrival.counted)
-        .map(|arrival| arrival.time)
-        .next()
-        .unwrap_or(0.0);
-    let idle = frame.clock.time() - last_arrival;
-    (scenario.stop.when_empty && empty) || scenario.stop.idle_secs.is_some_and(|most| idle > most)
 }
 
 /// Says what a careful reader of the results should know.

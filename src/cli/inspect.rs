@@ -3,10 +3,11 @@
 use serde_json::json;
 
 use super::arguments::{InspectOptions, Source};
-use super::drive::{Progress, drive};
+use super::drive::Progress;
 use super::output;
 use super::{Failure, say, scenario, use_threads};
 use crate::breakdown::Breakdown;
+use crate::drive::drive;
 use crate::simulation::Simulation;
 
 pub fn run(options: &InspectOptions) -> Result<(), Failure> {
@@ -16,10 +17,11 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     // The rest density follows the density's history, so every frame needs it.
     simulation.request_density_until(u64::MAX);
     let progress = Progress::new(options.at);
-    let driven = drive(&mut simulation, &scenario, options.at, |simulation, _| {
-        progress.show(simulation);
-        Ok(())
-    });
+    let driven: Result<(), Failure> =
+        drive(&mut simulation, &scenario, options.at, |simulation, _| {
+            progress.show(simulation);
+            Ok(())
+        });
     progress.finish();
     driven?;
     let breakdowns = breakdowns(&simulation, options)?;

@@ -15,25 +15,19 @@ use std::sync::LazyLock;
 
 use super::case::Case;
 use super::error::ReproduceError;
-use super::product::Product;
 use super::snapshot::Snapshot;
 use super::store::Store;
 use crate::colors::{self, ColorMap};
 use crate::plot::{Axis, ColorBar, Disc, GRAY, Mark, Panel, Sheet};
 use crate::scene::{Region, Scene};
 
-/// All figures, in the paper's order, and what stands beside them.
-pub const PRODUCTS: [Product; 9] = [
-    evacuation::PRODUCT,
-    crossing::PRODUCT,
-    shockwave::FIG7_PRODUCT,
-    speeds::PRODUCT,
-    pairs::FIG8_PRODUCT,
-    shockwave::FIG9_PRODUCT,
-    pairs::FIG10_PRODUCT,
-    performance::PRODUCT,
-    study::PRODUCT,
-];
+pub use crossing::PRODUCT as FIG6;
+pub use evacuation::PRODUCT as FIG5;
+pub use pairs::{FIG8_PRODUCT as FIG8, FIG10_PRODUCT as FIG10};
+pub use performance::PRODUCT as FIG11;
+pub use shockwave::{FIG7_PRODUCT as FIG7, FIG9_PRODUCT as FIG9};
+pub use speeds::PRODUCT as WAVES;
+pub use study::PRODUCT as STUDY;
 
 /// Writes a picture into the store's folder, and says so.
 fn save(sheet: &Sheet, store: &Store, name: &str) -> Result<String, ReproduceError> {
