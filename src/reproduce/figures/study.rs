@@ -116,3 +116,43 @@ fn panel(grid: &Grid, block: &[Result], quantity: Quantity, range: [f32; 2]) -> 
         legend: None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wave::Estimate;
+
+    /// What a study may give; one cell has no wave.
+    fn results(grid: &Grid) -> Vec<Result> {
+        let estimate = |value: f64| {
+            Some(Estimate {
+                value,
+                error: 0.02 * value,
+            })
+        };
+        let result = |(k, cell): (usize, grid::Cell)| {
+            let wave = k != 0;
+            Result {
+                cell,
+                waves: if wave { 3 } else { 0 },
+                runs: 3,
+                speed: estimate((cell.gas_constant / 2.0).sqrt()).filter(|_| wave),
+                amplitude: estimate(0.5 - 0.0005 * cell.gas_constant).filter(|_| wave),
+                reflection: estimate(0.7 + 0.02 * cell.viscosity).filter(|_| wave),
+            }
+        };
+        grid.cells().into_iter().enumerate().map(result).collect()
+    }
+
+    #[test]
+    fn every_quantity_has_a_panel_for_every_pair_of_viscosity_and_contact() {
+        let grid = Grid::default();
+        let sheet = sheet(&grid, &results(&grid));
+        assert_eq!(sheet.panels.len(), 3 * 4);
+        assert!(sheet.panels.iter().all(|panel| panel.bar.is_some()));
+        let folder = tempfile::tempdir().unwrap();
+        sheet.save(&folder.path().join("study")).unwrap();
+        let svg = std::fs::read_to_string(folder.path().join("study.svg")).unwrap();
+        assert!(svg.contains("no wave") && svg.contains("ρ⁰max [P/m²]"));
+    }
+}
