@@ -5,17 +5,28 @@
 //! share is computed once.
 
 mod case;
+mod comparison;
 mod error;
 #[cfg(feature = "plot")]
 mod figures;
 mod product;
+mod published;
+mod ranking;
 mod runner;
 mod snapshot;
 mod store;
+mod table1;
+mod table2;
+mod text;
 
 pub use case::{Case, CaseResult, Key, Observer, Probe};
+pub use comparison::{Band, Comparison, Spread};
 pub use error::ReproduceError;
 pub use product::{PRODUCTS, Plan, Product, reproduce};
+pub use published::{CrossingRow, EvacuationRow, Published, Table, published};
+pub use ranking::{Ranked, Ranking, rankings};
 pub use runner::{Listener, Results, run};
 pub use snapshot::{Snapshot, SnapshotAt};
 pub use store::Store;
+pub use table1::Row;
+pub use table2::Table as CrossingTable;

@@ -6,6 +6,7 @@ use super::error::ReproduceError;
 use super::figures;
 use super::runner::{Listener, Results, run};
 use super::store::Store;
+use super::{table1, table2};
 
 /// A table or a figure.
 pub struct Product {
@@ -37,6 +38,8 @@ impl Plan {
 
 /// Everything that can be reproduced, in the paper's order.
 pub const PRODUCTS: &[Product] = &[
+    table1::PRODUCT,
+    table2::PRODUCT,
     #[cfg(feature = "plot")]
     figures::FIG5,
     #[cfg(feature = "plot")]
