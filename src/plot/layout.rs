@@ -5,7 +5,7 @@ use plotters::prelude::DrawingBackend;
 use super::canvas::{Anchor, Canvas, Font, Place};
 use super::marks::{self, Frame};
 use super::output::PlotError;
-use super::{BLACK, ColorBar, Corner, Mark, Sheet, Style};
+use super::{BLACK, ColorBar, Corner, Mark, Panel, Sheet, Style};
 
 const TITLE: Font = Font {
     size: 12.0,
@@ -40,6 +40,8 @@ const GAP: f64 = 7.0;
 const ABOVE: f64 = 18.0;
 /// Points for a colour bar with its numbers and its label.
 const BAR: f64 = 58.0;
+/// Points for a legend beside a panel.
+const LEGEND: f64 = 165.0;
 /// The colour bar itself, points.
 const BAR_WIDTH: f64 = 9.0;
 /// A tick's length, points.
@@ -53,9 +55,19 @@ fn pitch(sheet: &Sheet) -> [f64; 2] {
     if sheet.shared_axes {
         return [width + GAP, height + above];
     }
-    let barred = sheet.panels.iter().any(|panel| panel.bar.is_some());
-    let bar = if barred { BAR } else { GAP };
-    [LEFT + width + bar, above + height + BELOW]
+    let right = sheet.panels.iter().map(beside).fold(GAP, f64::max);
+    [LEFT + width + right, above + height + BELOW]
+}
+
+/// Points right of a panel for what explains it.
+fn beside(panel: &Panel) -> f64 {
+    if panel.legend == Some(Corner::Beside) {
+        LEGEND
+    } else if panel.bar.is_some() {
+        BAR
+    } else {
+        GAP
+    }
 }
 
 /// Left and upper edge of the first panel's axes.
@@ -82,15 +94,11 @@ pub fn size(sheet: &Sheet) -> [f64; 2] {
     let ([x, y], [dx, dy]) = (origin(sheet), pitch(sheet));
     let columns = sheet.columns.min(sheet.panels.len()).max(1);
     let [width, height] = sheet.panel_size;
-    let barred = sheet.panels.iter().any(|panel| panel.bar.is_some());
-    let bar = if sheet.bar.is_some() || barred {
-        BAR
-    } else {
-        GAP
-    };
+    let bar = if sheet.bar.is_some() { BAR } else { GAP };
+    let beside = sheet.panels.iter().map(beside).fold(bar, f64::max);
     let right = x + (columns - 1) as f64 * dx + width;
     let below = y + rows(sheet).saturating_sub(1) as f64 * dy + height;
-    [right + bar + MARGIN, below + BELOW + MARGIN]
+    [right + beside + MARGIN, below + BELOW + MARGIN]
 }
 
 /// Draws everything.
@@ -254,12 +262,16 @@ fn draw_legend<DB: DrawingBackend>(
         .collect();
     let ([x, y], [width, height]) = (frame.corner, frame.size);
     let top = match corner {
-        Corner::UpperLeft | Corner::UpperRight => y + 5.0,
+        Corner::UpperLeft | Corner::UpperRight | Corner::Beside => y + 5.0,
         Corner::LowerRight => y + height - 5.0 - LINE * entries.len() as f64,
     };
-    let left = corner == Corner::UpperLeft;
-    draw_legend_box(frame, &entries, [top, LINE], left, canvas)?;
-    let sample = if left { x + 6.0 } else { x + width - 24.0 };
+    let left = matches!(corner, Corner::UpperLeft | Corner::Beside);
+    draw_legend_box(frame, &entries, [top, LINE], corner, canvas)?;
+    let sample = match corner {
+        Corner::UpperLeft => x + 6.0,
+        Corner::UpperRight | Corner::LowerRight => x + width - 24.0,
+        Corner::Beside => x + width + 8.0,
+    };
     for (k, mark) in entries.into_iter().enumerate() {
         let Some(style) = style_of(mark) else {
             continue;
@@ -284,20 +296,20 @@ fn draw_legend_box<DB: DrawingBackend>(
     frame: &Frame,
     entries: &[&Mark],
     [top, line]: [f64; 2],
-    left: bool,
+    corner: Corner,
     canvas: &Canvas<DB>,
 ) -> Result<(), PlotError> {
-    const LETTER: f64 = 0.52;
+    const LETTER: f64 = 0.46;
     let letters = |mark: &&Mark| style_of(mark).map_or(0, |style| style.label.chars().count());
     let Some(most) = entries.iter().map(letters).max() else {
         return Ok(());
     };
     let wide = 32.0 + LETTER * TICK.size * most as f64;
     let [x, width] = [frame.corner[0], frame.size[0]];
-    let from = if left {
-        x + 3.0
-    } else {
-        x + width - 3.0 - wide
+    let from = match corner {
+        Corner::UpperLeft => x + 3.0,
+        Corner::UpperRight | Corner::LowerRight => x + width - 3.0 - wide,
+        Corner::Beside => return Ok(()),
     };
     let low = top + line * entries.len() as f64 + 2.0;
     canvas.rectangle([[from, top - 2.0], [from + wide, low]], [255; 3])

@@ -71,7 +71,7 @@ pub struct Panel {
     pub legend: Option<Corner>,
 }
 
-/// A corner of a panel.
+/// A place in or at a panel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Corner {
     /// Upper left.
@@ -80,6 +80,8 @@ pub enum Corner {
     UpperRight,
     /// Lower right.
     LowerRight,
+    /// Not inside, but beside the panel on the right.
+    Beside,
 }
 
 /// What colours mean.

@@ -82,7 +82,7 @@ fn sheet(times: &[FrameTime], machine: &str) -> Sheet {
         y: Axis::log("time per frame [ms]", [0.005, 200.0]),
         marks,
         bar: None,
-        legend: Some(Corner::LowerRight),
+        legend: Some(Corner::Beside),
     };
     Sheet {
         title: "Fig. 11: frame time per task, concert".to_owned(),

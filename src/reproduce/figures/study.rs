@@ -65,13 +65,20 @@ fn range(results: &[Result], quantity: Quantity) -> [f32; 2] {
             .filter_map(|r| r.get(quantity))
             .map(|e| e.value)
     };
-    let most = values().fold(0.0, f64::max);
+    let (least, most) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
+        (a.min(v), b.max(v))
+    });
+    if least > most {
+        return [0.0, 1.0];
+    }
     let step = if quantity == Quantity::Speed {
         5.0
     } else {
-        0.2
+        0.1
     };
-    [0.0, (step * (most / step).ceil().max(1.0)) as f32]
+    let lower = (least / step).floor();
+    let upper = (most / step).ceil().max(lower + 1.0);
+    [(step * lower) as f32, (step * upper) as f32]
 }
 
 fn panel(grid: &Grid, block: &[Result], quantity: Quantity, range: [f32; 2]) -> Panel {
@@ -92,7 +99,8 @@ fn panel(grid: &Grid, block: &[Result], quantity: Quantity, range: [f32; 2]) -> 
             None => ("no wave".to_owned(), BLACK),
             Some(e) => {
                 // White on the dark half of the colours.
-                let light = e.value > 0.6 * f64::from(range[1]);
+                let part = (e.value as f32 - range[0]) / (range[1] - range[0]);
+                let light = part > 0.6;
                 let text = format!("{:.digits$} ± {:.digits$}", e.value, e.error);
                 (text, if light { BLACK } else { WHITE })
             }
