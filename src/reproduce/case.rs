@@ -235,6 +235,8 @@ pub struct CaseResult {
     pub metrics: BTreeMap<String, Option<f64>>,
     /// When each counted arrival was, seconds, in order.
     pub arrivals: Vec<f64>,
+    /// How many arrivals did not count.
+    pub uncounted: usize,
     /// How many agents were still there at the end.
     pub remaining: usize,
     /// What the probes kept, by their names.

@@ -6,7 +6,7 @@ use super::error::ReproduceError;
 use super::figures;
 use super::runner::{Listener, Results, run};
 use super::store::Store;
-use super::{table1, table2};
+use super::{questions, table1, table2};
 
 /// A table or a figure.
 pub struct Product {
@@ -58,6 +58,7 @@ pub const PRODUCTS: &[Product] = &[
     figures::FIG11,
     #[cfg(feature = "plot")]
     figures::STUDY,
+    questions::PRODUCT,
 ];
 
 /// Computes what is missing for `products` and writes them; returns what to say about each.

@@ -226,7 +226,9 @@ fn compute(
         Ok::<(), Fault>(())
     })?;
     let kept = probes.iter().zip(observers);
-    let counted = simulation.outcome().arrivals.iter().filter(|a| a.counted);
+    let arrivals = &simulation.outcome().arrivals;
+    let counted = arrivals.iter().filter(|arrival| arrival.counted);
+    let times: Vec<f64> = counted.map(|arrival| arrival.time).collect();
     Ok(CaseResult {
         case: case.name(),
         computed_in_secs: start.elapsed().as_secs_f64(),
@@ -236,7 +238,8 @@ fn compute(
             .into_iter()
             .map(|metric| (metric.name, metric.value))
             .collect(),
-        arrivals: counted.map(|arrival| arrival.time).collect(),
+        uncounted: arrivals.len() - times.len(),
+        arrivals: times,
         remaining: simulation.frame().agents.len(),
         kept: kept
             .map(|(probe, observer)| (probe.name(), observer.finish()))

@@ -125,15 +125,16 @@ impl Row {
             missed => format!("**missed**: {}", missed.join(", ")),
         }
     }
+}
 
-    fn setting_written(&self) -> String {
-        let symbol = match self.setting.as_str() {
-            "agent_stiffness" => "K^ag",
-            "rest_density_max" => "ρ⁰max",
-            other => other,
-        };
-        format!("{symbol} = {}", self.value)
-    }
+/// A parameter and its value in the paper's letters.
+pub fn setting_written(key: &str, value: f64) -> String {
+    let symbol = match key {
+        "agent_stiffness" => "K^ag",
+        "rest_density_max" => "ρ⁰max",
+        other => other,
+    };
+    format!("{symbol} = {value}")
 }
 
 fn write(plan: &Plan, results: &Results, store: &Store) -> Result<String, ReproduceError> {
@@ -192,7 +193,7 @@ fn markdown(rows: &[Row]) -> String {
         let evacuated = row.evacuated.ours.map_or(0.0, |ours| ours.mean);
         table.add([
             written(&row.profile),
-            row.setting_written(),
+            setting_written(&row.setting, row.value),
             row.evacuated.paper.to_string(),
             format!("{evacuated:.0}"),
             format!("{:.2}", row.density.paper),
