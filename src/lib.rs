@@ -63,8 +63,18 @@ pub mod scenario;
 
 pub mod drive;
 
+pub mod sound;
+
+pub mod wave;
+
+#[cfg(any(feature = "recording", feature = "plot"))]
+pub mod colors;
+
 #[cfg(feature = "recording")]
 pub mod recording;
+
+#[cfg(feature = "plot")]
+pub mod plot;
 
 pub mod reproduce;
 

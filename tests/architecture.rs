@@ -173,6 +173,8 @@ fn each_foreign_crate_has_one_home() {
         ("parry2d", "geometry"),
         ("rerun", "recording"),
         ("clap", "cli"),
+        ("plotters", "plot"),
+        ("colorgrad", "colors"),
     ] {
         assert_eq!(strays(krate, &[home]), Vec::<String>::new());
     }

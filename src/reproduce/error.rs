@@ -38,6 +38,10 @@ pub enum ReproduceError {
         /// What was asked for.
         what: String,
     },
+    /// A picture cannot be made.
+    #[cfg(feature = "plot")]
+    #[error(transparent)]
+    Picture(#[from] crate::plot::PlotError),
     /// Data that comes with the program makes no sense.
     #[error("{0}")]
     Data(String),

@@ -7,6 +7,8 @@
 mod case;
 mod comparison;
 mod error;
+#[cfg(feature = "plot")]
+mod figures;
 mod product;
 mod published;
 mod questions;
@@ -25,7 +27,7 @@ pub use product::{PRODUCTS, Plan, Product, reproduce};
 pub use published::{CrossingRow, EvacuationRow, Published, Table, published};
 pub use ranking::{Ranked, Ranking, rankings};
 pub use runner::{Listener, Results, run};
-pub use snapshot::{Body, Snapshot, SnapshotAt};
+pub use snapshot::{Snapshot, SnapshotAt};
 pub use store::Store;
 pub use table1::{Row, case as table1_case};
 pub use table2::Table as CrossingTable;

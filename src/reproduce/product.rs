@@ -2,6 +2,8 @@
 
 use super::case::Case;
 use super::error::ReproduceError;
+#[cfg(feature = "plot")]
+use super::figures;
 use super::runner::{Listener, Results, run};
 use super::store::Store;
 use super::{questions, table1, table2};
@@ -35,7 +37,29 @@ impl Plan {
 }
 
 /// Everything that can be reproduced, in the paper's order.
-pub const PRODUCTS: &[Product] = &[table1::PRODUCT, table2::PRODUCT, questions::PRODUCT];
+pub const PRODUCTS: &[Product] = &[
+    table1::PRODUCT,
+    table2::PRODUCT,
+    #[cfg(feature = "plot")]
+    figures::FIG5,
+    #[cfg(feature = "plot")]
+    figures::FIG6,
+    #[cfg(feature = "plot")]
+    figures::FIG7,
+    #[cfg(feature = "plot")]
+    figures::WAVES,
+    #[cfg(feature = "plot")]
+    figures::FIG8,
+    #[cfg(feature = "plot")]
+    figures::FIG9,
+    #[cfg(feature = "plot")]
+    figures::FIG10,
+    #[cfg(feature = "plot")]
+    figures::FIG11,
+    #[cfg(feature = "plot")]
+    figures::STUDY,
+    questions::PRODUCT,
+];
 
 /// Computes what is missing for `products` and writes them; returns what to say about each.
 ///

@@ -153,7 +153,7 @@ fn side_by_side(
             let mut finished = finished.lock().unwrap_or_else(|broken| broken.into_inner());
             finished.push((job.key.clone(), result?));
         }
-        Ok(())
+        Ok::<(), ReproduceError>(())
     };
     // Threads of their own: one of rayon's would take up a second case while it waits for the first.
     std::thread::scope(|scope| {

@@ -6,28 +6,21 @@ use serde_json::Value;
 use super::case::{Observer, Probe};
 use crate::simulation::Simulation;
 
-/// One agent at one moment; the digits of `f32` are enough for a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Body {
-    /// The agent's id.
-    pub id: u32,
-    /// Position, metres.
-    pub position: [f32; 2],
-    /// Velocity, m/s.
-    pub velocity: [f32; 2],
-    /// ρ_i, P/m².
-    pub density: f32,
-    /// D_i, metres.
-    pub radius: f32,
-}
-
-/// Everybody at one moment, by rising id.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Everybody at one moment, to the millimetre; one list per quantity, in the same order.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     /// The moment, seconds.
     pub time_secs: f64,
-    /// Everybody.
-    pub bodies: Vec<Body>,
+    /// Positions, metres.
+    pub x: Vec<f64>,
+    /// Positions, metres.
+    pub y: Vec<f64>,
+    /// D_i, metres.
+    pub radius: Vec<f64>,
+    /// |v_i|, m/s.
+    pub speed: Vec<f64>,
+    /// ρ_i, P/m².
+    pub density: Vec<f64>,
 }
 
 /// Keeps a [`Snapshot`] at a time in seconds.
@@ -69,19 +62,16 @@ impl Snapshot {
     pub fn of(simulation: &Simulation) -> Self {
         let frame = simulation.frame();
         let agents = frame.agents;
-        let mut bodies: Vec<Body> = (0..agents.len())
-            .map(|i| Body {
-                id: agents.id[i],
-                position: [agents.position[i].x as f32, agents.position[i].y as f32],
-                velocity: [agents.velocity[i].x as f32, agents.velocity[i].y as f32],
-                density: frame.fields.density.get(i).copied().unwrap_or_default() as f32,
-                radius: agents.radius[i] as f32,
-            })
-            .collect();
-        bodies.sort_by_key(|body| body.id);
+        // More digits would only make the files longer.
+        let rounded = |value: f64| (1e3 * value).round() / 1e3;
+        let all = |values: &[f64]| values.iter().map(|&v| rounded(v)).collect();
         Self {
             time_secs: frame.clock.time(),
-            bodies,
+            x: agents.position.iter().map(|r| rounded(r.x)).collect(),
+            y: agents.position.iter().map(|r| rounded(r.y)).collect(),
+            radius: all(&agents.radius),
+            speed: agents.velocity.iter().map(|v| rounded(v.norm())).collect(),
+            density: all(&frame.fields.density),
         }
     }
 }
