@@ -4,7 +4,10 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::Answer;
-use super::geometry::Room;
+use super::variant::{
+    AVOIDING, EULER, FINE, JITTER, ROUND, SHIPPED, SOFT_WALLS, THIN_TWICE, THRICE, TWICE, Variant,
+    WALLS,
+};
 use crate::reproduce::case::{Case, CaseResult};
 use crate::reproduce::comparison::Spread;
 use crate::reproduce::error::ReproduceError;
@@ -17,80 +20,6 @@ use crate::reproduce::text::TextTable;
 /// A pause between two arrivals, seconds: a clog.
 const PAUSE: f64 = 2.0;
 
-/// What is changed in the room.
-#[derive(Debug, Clone, Copy)]
-struct Variant {
-    name: &'static str,
-    /// Another wall, if any.
-    room: Option<Room>,
-    /// Other settings.
-    settings: &'static [(&'static str, &'static str)],
-}
-
-/// Nothing is changed.
-const SHIPPED: Variant = set("as in Table 1", &[]);
-/// Both edges of a corner repel, as far as a parameter can say it.
-const TWICE: Variant = set("walls repel twice as much (U₀ = 4.2)", &[U0_TWICE]);
-const U0_TWICE: (&str, &str) = ("wall_strength", "4.2");
-/// Three times.
-const THRICE: Variant = set("three times (U₀ = 6.3)", &[("wall_strength", "6.3")]);
-/// Both, with next to no doorway to stand in.
-const THIN_TWICE: Variant = Variant {
-    settings: &[U0_TWICE],
-    ..room("wall 0.1 m thick and U₀ = 4.2", 0.1, 0.0)
-};
-/// Starts off the grid.
-const JITTER: Variant = set(
-    "starts ± 0.25 m off the grid",
-    &[("grids.0.jitter", "0.25")],
-);
-/// The paper's words.
-const EULER: Variant = set("forward Euler", &[("integrator", "forward-euler")]);
-/// Half the time step.
-const FINE: Variant = set("Δt = 0.01 s", &[("time_step_secs", "0.01")]);
-/// Weaker contact with walls.
-const SOFT_WALLS: Variant = set("K^obs = 250", &[("wall_stiffness", "250")]);
-/// Rounded jambs.
-const ROUND: Variant = room("jambs rounded with 0.5 m", 1.0, 0.5);
-/// Walls of other thickness.
-const WALLS: [Variant; 3] = [
-    room("wall 0.1 m thick", 0.1, 0.0),
-    room("wall 0.3 m thick", 0.3, 0.0),
-    room("wall 2 m thick", 2.0, 0.0),
-];
-
-const fn set(name: &'static str, settings: &'static [(&'static str, &'static str)]) -> Variant {
-    Variant {
-        name,
-        room: None,
-        settings,
-    }
-}
-
-const fn room(name: &'static str, thickness: f64, rounding: f64) -> Variant {
-    Variant {
-        name,
-        room: Some(Room {
-            thickness,
-            rounding,
-        }),
-        settings: &[],
-    }
-}
-
-impl Variant {
-    /// The case with the changes.
-    fn of(&self, mut case: Case) -> Case {
-        if let Some(room) = self.room {
-            case = case
-                .set("obstacles", json!(room.obstacles()))
-                .set("goal", json!(room.goal()));
-        }
-        let changes = self.settings.iter();
-        changes.fold(case, |case, (key, value)| case.set(key, value))
-    }
-}
-
 /// Some rows of Table 1 under some variants.
 struct Question {
     title: &'static str,
@@ -101,19 +30,6 @@ struct Question {
     /// The runs end here, seconds; `None`: at their own end.
     until: Option<f64>,
 }
-
-/// What might make RVO denser or looser.
-const AVOIDING: [Variant; 9] = [
-    SHIPPED,
-    set("1000 candidates", &[("candidates", "1000")]),
-    set("50 candidates", &[("candidates", "50")]),
-    set("w = 0.5", &[("collision_weight", "0.5")]),
-    set("neighbours within 2.5 m", &[("avoidance_radius", "2.5")]),
-    set("RVO in every fine frame", &[("coarse_every", "1")]),
-    EULER,
-    WALLS[0],
-    JITTER,
-];
 
 const QUESTIONS: [Question; 4] = [
     Question {
