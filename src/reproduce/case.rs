@@ -117,15 +117,21 @@ impl Case {
         self
     }
 
-    /// The settings as on the command line, behind the scenario's name.
+    /// The settings as on the command line, behind the scenario's name; long ones are cut.
     pub fn name(&self) -> String {
+        /// More letters of a setting tell nobody anything.
+        const LONGEST: usize = 40;
         let name = match &self.source {
             Source::Shipped(name) => name,
             Source::Text { name, .. } => name.as_str(),
         };
         let mut text = name.to_owned();
         for setting in &self.settings {
-            text = text + " " + setting;
+            text.push(' ');
+            text.extend(setting.chars().take(LONGEST));
+            if setting.chars().count() > LONGEST {
+                text.push('…');
+            }
         }
         text
     }

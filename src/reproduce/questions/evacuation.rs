@@ -51,14 +51,19 @@ const QUESTIONS: [Question; 4] = [
             ("rvo->sph", 5.0),
             ("sf", 50.0),
         ],
-        variants: &[SHIPPED, WALLS[0], WALLS[1], WALLS[2], ROUND, JITTER],
+        variants: &[SHIPPED, WALLS[0], WALLS[1], WALLS[3], ROUND, JITTER],
         until: None,
     },
     Question {
         title: "Can the last two SF agents stay behind, as in the paper?",
-        text: "In the paper 398 of 400 leave in all eleven rows with SF or SF+SPH.",
-        rows: &[("sf", 50.0), ("sf", 250.0), ("sf+sph", 5.0)],
-        variants: &[SHIPPED, TWICE, THRICE],
+        text: "In the paper 398 of 400 leave in all eleven rows with SF or SF+SPH, and 400 in all others.",
+        rows: &[
+            ("sf", 50.0),
+            ("sf", 250.0),
+            ("sf+sph", 5.0),
+            ("sf->sph", 5.0),
+        ],
+        variants: &[SHIPPED, TWICE, THRICE, WALLS[2], WALLS[3]],
         until: None,
     },
     Question {
@@ -224,7 +229,8 @@ impl Outcome {
 /// The sum of the pauses between arrivals, seconds.
 fn paused(times: &[f64]) -> f64 {
     let gaps = times.windows(2).map(|pair| pair[1] - pair[0]);
-    gaps.filter(|&gap| gap >= PAUSE).sum()
+    gaps.filter(|&gap| gap >= PAUSE)
+        .fold(0.0, |sum, gap| sum + gap)
 }
 
 /// The cases of all questions.

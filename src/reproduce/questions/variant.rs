@@ -42,9 +42,10 @@ pub const SOFT_WALLS: Variant = set("K^obs = 250", &[("wall_stiffness", "250")])
 /// Rounded jambs.
 pub const ROUND: Variant = room("jambs rounded with 0.5 m", 1.0, 0.5);
 /// Walls of other thickness.
-pub const WALLS: [Variant; 3] = [
+pub const WALLS: [Variant; 4] = [
     room("wall 0.1 m thick", 0.1, 0.0),
     room("wall 0.3 m thick", 0.3, 0.0),
+    room("wall 1.5 m thick", 1.5, 0.0),
     room("wall 2 m thick", 2.0, 0.0),
 ];
 
