@@ -45,9 +45,10 @@ fn write(
         let Answer {
             title, text, table, ..
         } = answer;
-        format!("## {title}\n\n{text}\n\n{table}\n")
+        format!("### {title}\n\n{text}\n\n{table}\n")
     });
-    let markdown: String = sections.collect();
+    let seeds = format!("Over {} seed(s).\n\n", plan.seeds);
+    let markdown: String = std::iter::once(seeds).chain(sections).collect();
     let data: Vec<_> = answers
         .iter()
         .map(|answer| json!({ "question": answer.title, "rows": answer.data }))
