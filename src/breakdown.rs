@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use crate::boundary::WallShare;
-use crate::density;
 use crate::math::Vector;
 use crate::profile::Terms;
 use crate::simulation::Simulation;
@@ -94,12 +93,13 @@ impl Breakdown {
         let blend = simulation.blend(i);
         let h = blend.sph.support_radius;
         let changed = simulation.change(i);
+        let sums = frame.pair_sums(i, h);
         let profiles = blend
             .acting(&frame, i)
             .map(|(profile, weight)| ProfileShare {
                 name: profile.name.clone(),
                 weight,
-                accelerations: profile.terms(&frame, i, h, changed),
+                accelerations: profile.terms(&frame, i, &sums, changed),
             });
         let mut neighbors: Vec<Neighbor> = frame
             .near(i, h)
@@ -117,7 +117,7 @@ impl Breakdown {
             mass: agents.mass[i],
             goal: agents.goal[i].into(),
             density,
-            density_from_agents: density::density_from_agents(&frame, i, h),
+            density_from_agents: frame.density_from_agents(i, h),
             density_from_walls: fields.density_from_walls[i],
             mean_density: fields.mean_density[i],
             rest_density: fields.rest_density[i],

@@ -2,7 +2,6 @@
 
 use crate::boundary::WallMethod;
 use crate::frame::Frame;
-use crate::kernel;
 use crate::math::Vector;
 
 /// What an agent's SPH density and pressure depend on; one set for all profiles of a blend.
@@ -63,26 +62,21 @@ pub struct SphState {
     pub rest_density_before: f64,
     /// ρ_i⁰.
     pub rest_density: f64,
-    /// m_i / ρ_i.
-    pub volume: f64,
     /// p_i.
     pub pressure: f64,
     /// Σ_k ∫ ∇W over P_k.
     pub wall_gradient: Vector,
 }
 
-/// Eq. 9, the agents' part: Σ_j m_j W(r_i − r_j), j = i included, in P/m².
-pub fn density_from_agents(frame: &Frame, i: usize, h: f64) -> f64 {
-    let own = frame.agents.mass[i] * kernel::density(0.0, h);
-    frame.near(i, h).fold(own, |sum, (j, r_ij)| {
-        sum + frame.agents.mass[j] * kernel::density(r_ij.norm_squared(), h)
-    })
-}
-
-/// Eqs. 9, 10, 8 and 5, in this order; the walls use the rest density of the frame before.
-pub fn sph_state(frame: &Frame, i: usize, sph: &SphParameters, walls: WallMethod) -> SphState {
-    let h = sph.support_radius;
-    let from_agents = density_from_agents(frame, i, h);
+/// Eqs. 9, 10, 8 and 5, in this order, after the sum `from_agents` of Eq. 9 in P/m²; the walls use the
+/// rest density of the frame before.
+pub fn sph_state(
+    frame: &Frame,
+    i: usize,
+    from_agents: f64,
+    sph: &SphParameters,
+    walls: WallMethod,
+) -> SphState {
     let mean_before = if frame.agents.newcomer[i] {
         from_agents
     } else {
@@ -95,7 +89,7 @@ pub fn sph_state(frame: &Frame, i: usize, sph: &SphParameters, walls: WallMethod
             frame.walls,
             near_walls,
             frame.agents.position[i],
-            h,
+            sph.support_radius,
             |share| {
                 kernel += share.kernel;
                 wall_gradient += share.gradient;
@@ -113,7 +107,6 @@ pub fn sph_state(frame: &Frame, i: usize, sph: &SphParameters, walls: WallMethod
         mean_density,
         rest_density_before,
         rest_density,
-        volume: frame.agents.mass[i] / density,
         pressure: sph.pressure(density, rest_density),
         wall_gradient,
     }

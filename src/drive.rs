@@ -5,16 +5,24 @@ use std::time::Instant;
 use crate::scenario::Scenario;
 use crate::simulation::{Fault, Simulation};
 
-/// Runs to `duration` seconds or the scenario's own end; `observe` sees every evaluated frame with
-/// the milliseconds that the frame before took.
+/// After a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Then {
+    /// On to the next.
+    GoOn,
+    /// This was the last.
+    Stop,
+}
+
+/// Runs to `duration` seconds, or until `observe` says to stop: it sees every evaluated frame with the
+/// milliseconds that the frame before took.
 ///
 /// # Errors
-/// The simulation cannot go on, or `observe` does not want to.
+/// The simulation cannot go on, or `observe` fails.
 pub fn drive<E: From<Fault>>(
     simulation: &mut Simulation,
-    scenario: &Scenario,
     duration: f64,
-    mut observe: impl FnMut(&Simulation, f64) -> Result<(), E>,
+    mut observe: impl FnMut(&Simulation, f64) -> Result<Then, E>,
 ) -> Result<(), E> {
     let last_frame = simulation.frame().clock.frame_at(duration);
     let mut ms = 0.0;
@@ -22,8 +30,8 @@ pub fn drive<E: From<Fault>>(
         let start = Instant::now();
         simulation.evaluate()?;
         let evaluated = start.elapsed();
-        observe(simulation, ms)?;
-        if simulation.frame().clock.frame() >= last_frame || is_over(simulation, scenario) {
+        let then = observe(simulation, ms)?;
+        if simulation.frame().clock.frame() >= last_frame || then == Then::Stop {
             return Ok(());
         }
         let start = Instant::now();
@@ -32,8 +40,8 @@ pub fn drive<E: From<Fault>>(
     }
 }
 
-/// Has the scenario come to its own end?
-fn is_over(simulation: &Simulation, scenario: &Scenario) -> bool {
+/// Stops when the scenario has come to its own end.
+pub fn unless_over(simulation: &Simulation, scenario: &Scenario) -> Then {
     let frame = simulation.frame();
     let empty = frame.agents.is_empty() && !simulation.expects_agents();
     let arrivals = simulation.outcome().arrivals.iter().rev();
@@ -43,5 +51,10 @@ fn is_over(simulation: &Simulation, scenario: &Scenario) -> bool {
         .next()
         .unwrap_or(0.0);
     let idle = frame.clock.time() - last_arrival;
-    (scenario.stop.when_empty && empty) || scenario.stop.idle_secs.is_some_and(|most| idle > most)
+    let is_idle = scenario.stop.idle_secs.is_some_and(|most| idle > most);
+    if (scenario.stop.when_empty && empty) || is_idle {
+        Then::Stop
+    } else {
+        Then::GoOn
+    }
 }

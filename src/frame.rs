@@ -5,6 +5,7 @@ use crate::clock::Clock;
 use crate::geometry::Walls;
 use crate::math::Vector;
 use crate::neighbors::Neighbors;
+use crate::pairs::{Packed, PairSums};
 
 /// What a frame derives from the state, one array per quantity; the step that writes it in brackets.
 #[derive(Debug, Clone, Default)]
@@ -19,8 +20,6 @@ pub struct Fields {
     pub rest_density_before: Vec<f64>,
     /// ρ_i⁰, P/m² (1B).
     pub rest_density: Vec<f64>,
-    /// m_i / ρ_i, m² (1B): the agent's volume in the plane.
-    pub volume: Vec<f64>,
     /// p_i (1B).
     pub pressure: Vec<f64>,
     /// Σ_k ∫ ∇W over P_k, 1/m (1B): times −p_i it is the walls' pressure force.
@@ -41,7 +40,6 @@ impl Fields {
         self.mean_density.resize(sph, 0.0);
         self.rest_density_before.resize(sph, 0.0);
         self.rest_density.resize(sph, 0.0);
-        self.volume.resize(sph, 0.0);
         self.pressure.resize(sph, 0.0);
         self.wall_gradient.resize(sph, Vector::zeros());
         self.preferred_velocity.resize(count, Vector::zeros());
@@ -64,6 +62,8 @@ pub struct Frame<'a> {
     pub fields: &'a Fields,
     /// Who is near whom.
     pub neighbors: &'a Neighbors,
+    /// Bodies and fields as sums over pairs read them.
+    pub packed: &'a Packed,
     /// Seed of the scene's random numbers.
     pub seed: u64,
 }
@@ -72,12 +72,27 @@ impl Frame<'_> {
     /// The near neighbours j of agent `i` strictly within `radius` metres, with r_ij = r_i − r_j.
     pub fn near(&self, i: usize, radius: f64) -> impl Iterator<Item = (usize, Vector)> + '_ {
         let position = &self.agents.position;
-        let r_i = position[i];
-        self.neighbors.near(i).iter().filter_map(move |&j| {
-            let j = j as usize;
-            let r_ij = r_i - position[j];
-            (r_ij.norm_squared() < radius * radius).then_some((j, r_ij))
-        })
+        let candidates = self.neighbors.near().agents(i).filter(move |&j| j != i);
+        candidates
+            .map(move |j| (j, position[i] - position[j]))
+            .filter(move |(_, r_ij)| r_ij.norm_squared() < radius * radius)
+    }
+
+    /// Eq. 9 without walls, P/m², for agent `i` with support radius `h` in metres.
+    pub fn density_from_agents(&self, i: usize, h: f64) -> f64 {
+        let mut density = [0.0];
+        let chunks = self.neighbors.near();
+        self.packed
+            .densities(chunks, (i..i + 1, &[h]), &mut density);
+        density[0]
+    }
+
+    /// The sums of all forces between agents, for agent `i` with support radius `h` in metres.
+    pub fn pair_sums(&self, i: usize, h: f64) -> PairSums {
+        let mut sums = [PairSums::default()];
+        let chunks = self.neighbors.near();
+        self.packed.forces(chunks, (i..i + 1, &[h]), &mut sums);
+        sums[0]
     }
 
     /// Everybody else j strictly within an avoidance `radius` of agent `i`, with r_ij = r_i − r_j.

@@ -35,6 +35,8 @@ pub mod agents;
 
 pub mod neighbors;
 
+pub mod pairs;
+
 pub mod boundary;
 
 pub mod frame;

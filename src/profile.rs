@@ -3,13 +3,13 @@
 use crate::density::SphParameters;
 use crate::forces::contact::{self, Contact};
 use crate::forces::goal::GoalForce;
-use crate::forces::pairs::Wanted;
 use crate::forces::pressure;
 use crate::forces::rvo::Rvo;
 use crate::forces::social::SocialForce;
 use crate::forces::viscosity::Viscosity;
 use crate::frame::Frame;
 use crate::math::Vector;
+use crate::pairs::PairSums;
 
 /// Steps 3, 3B and 4 for one agent: how it navigates, and which interactions it feels.
 #[derive(Debug, Clone, PartialEq)]
@@ -100,13 +100,27 @@ impl Terms {
 
     /// The profile's acceleration, m/s².
     pub fn sum(&self) -> Vector {
-        self.named().iter().filter_map(|(_, term)| *term).sum()
+        let [mut sum, none] = [Vector::zeros(); 2];
+        // One by one: no array of names where every agent passes in every frame.
+        sum += self.goal.unwrap_or(none);
+        sum += self.social_agents.unwrap_or(none) + self.social_walls.unwrap_or(none);
+        sum += self.rvo.unwrap_or(none);
+        sum += self.pressure_agents.unwrap_or(none) + self.pressure_walls.unwrap_or(none);
+        sum += self.viscosity.unwrap_or(none);
+        sum + self.contact_agents.unwrap_or(none) + self.contact_walls.unwrap_or(none)
     }
 }
 
 impl Profile {
-    /// Every term of this profile for agent `i` of a frozen frame; `h` is the support radius.
-    pub fn terms(&self, frame: &Frame, i: usize, h: f64, changed: Option<&Override>) -> Terms {
+    /// Every term of this profile for agent `i` of a frozen frame.
+    #[inline]
+    pub fn terms(
+        &self,
+        frame: &Frame,
+        i: usize,
+        sums: &PairSums,
+        changed: Option<&Override>,
+    ) -> Terms {
         let mut terms = Terms::default();
         match self.navigation {
             Navigation::Goal(goal) => terms.goal = Some(goal_term(goal, frame, i, changed)),
@@ -119,22 +133,16 @@ impl Profile {
         }
         let feels_sph = !changed.is_some_and(|change| change.ignore_sph);
         let feels_contact = !changed.is_some_and(|change| change.ignore_contact);
-        let wanted = Wanted {
-            pressure: feels_sph && self.pressure && pressure::is_felt(frame, i),
-            viscosity: feels_sph && self.viscosity.is_some(),
-            contact: feels_contact && self.contact.agent_stiffness.is_some(),
-        };
-        let sums = wanted.sums(frame, i, h);
         if feels_sph {
             if self.pressure {
-                terms.pressure_agents = Some(pressure::from_agents(frame, i, &sums));
+                terms.pressure_agents = Some(pressure::from_agents(frame, i, sums));
                 terms.pressure_walls = Some(pressure::from_walls(frame, i));
             }
-            terms.viscosity = self.viscosity.map(|v| v.acceleration(frame, i, &sums));
+            terms.viscosity = self.viscosity.map(|v| v.acceleration(frame, i, sums));
         }
         if feels_contact {
             let (agents, walls) = (self.contact.agent_stiffness, self.contact.wall_stiffness);
-            terms.contact_agents = agents.map(|k| contact::from_agents(frame, i, k, &sums));
+            terms.contact_agents = agents.map(|k| contact::from_agents(frame, i, k, sums));
             terms.contact_walls = walls.map(|k| contact::from_walls(frame, i, k));
         }
         terms
@@ -237,6 +245,7 @@ impl Blend {
     }
 
     /// The profiles that act on agent `i` of a frozen frame, with their weights, which sum to 1.
+    #[inline]
     pub fn acting(&self, frame: &Frame, i: usize) -> impl Iterator<Item = (&Profile, f64)> {
         let density = if self.depends_on_density() {
             frame.fields.density[i]
@@ -247,24 +256,23 @@ impl Blend {
     }
 
     /// The profiles with a weight above zero at a density in P/m² (§4.4).
+    #[inline]
     pub fn weights(&self, density: f64) -> impl Iterator<Item = (&Profile, f64)> {
-        let above = self
-            .steps
-            .iter()
-            .position(|step| density <= step.at_density)
-            .unwrap_or(self.steps.len());
-        let low = above.saturating_sub(1);
-        let high = above.min(self.steps.len() - 1);
+        let last = self.steps.len() - 1;
+        let above = |step: &BlendStep| density <= step.at_density;
+        let high = self.steps.iter().position(above).unwrap_or(last);
+        let low = high.saturating_sub(1);
+        let (from, to) = (self.steps[low].at_density, self.steps[high].at_density);
+        // Alone at its own density, and at the ends beyond it.
         let kappa = if low < high {
-            let (from, to) = (self.steps[low].at_density, self.steps[high].at_density);
-            (density - from) / (to - from)
+            ((density - from) / (to - from)).min(1.0)
         } else {
-            0.0
+            1.0
         };
-        [(low, 1.0 - kappa), (high, kappa)]
+        let lower = (kappa < 1.0).then(|| (&self.steps[low].profile, 1.0 - kappa));
+        lower
             .into_iter()
-            .filter(|&(_, weight)| weight > 0.0)
-            .map(|(step, weight)| (&self.steps[step].profile, weight))
+            .chain([(&self.steps[high].profile, kappa)])
     }
 
     /// Does RVO act on agent `i` of a frozen frame?
@@ -274,11 +282,18 @@ impl Blend {
     }
 
     /// The blended acceleration of agent `i` of a frozen frame, m/s².
-    pub fn acceleration(&self, frame: &Frame, i: usize, changed: Option<&Override>) -> Vector {
-        let h = self.sph.support_radius;
-        self.acting(frame, i)
-            .map(|(profile, weight)| profile.terms(frame, i, h, changed).sum() * weight)
-            .sum()
+    pub fn acceleration(
+        &self,
+        frame: &Frame,
+        i: usize,
+        sums: &PairSums,
+        changed: Option<&Override>,
+    ) -> Vector {
+        let mut blended = Vector::zeros();
+        for (profile, weight) in self.acting(frame, i) {
+            blended += profile.terms(frame, i, sums, changed).sum() * weight;
+        }
+        blended
     }
 }
 

@@ -6,6 +6,7 @@ use crate::clock::Clock;
 use crate::geometry::{Polygon, Walls};
 use crate::math::Vector;
 use crate::neighbors::Ranges;
+use crate::pairs::Precision;
 use crate::placement::Grid;
 use crate::profile::{Blend, Override};
 
@@ -104,6 +105,8 @@ pub struct Scene {
     pub integrator: Integrator,
     /// How walls enter SPH.
     pub wall_method: WallMethod,
+    /// The numbers for sums over pairs.
+    pub precision: Precision,
     /// s_pref, m/s (§5.6).
     pub preferred_speed: f64,
     /// s_max, m/s (§5.6).
@@ -128,6 +131,7 @@ impl Default for Scene {
             clock: Clock::default(),
             integrator: Integrator::default(),
             wall_method: WallMethod::default(),
+            precision: Precision::default(),
             preferred_speed: 1.4,
             max_speed: 1.8,
             walls: Walls::new(Vec::new()),
@@ -167,10 +171,12 @@ impl Scene {
             .groups
             .iter()
             .any(|group| group.blend.depends_on_density());
+        let contact = profiles().any(|profile| profile.contact.agent_stiffness.is_some());
         Needs {
             density: sph || blending,
+            pairs: sph || contact,
             rvo: self.groups.iter().any(|group| group.blend.rvo().is_some()),
-            contact: profiles().any(|profile| profile.contact.agent_stiffness.is_some()),
+            contact,
             avoidance: profiles()
                 .filter_map(|profile| profile.navigation.avoidance_radius())
                 .reduce(f64::max),
@@ -187,12 +193,11 @@ impl Scene {
             .groups
             .iter()
             .map(|group| group.blend.sph.support_radius)
-            .reduce(f64::max);
+            .fold(0.0, f64::max);
         Ranges {
             support,
-            contact: needs.contact,
             avoidance: needs.avoidance,
-            drift: self.max_speed * self.clock.coarse_step(),
+            longest_step: self.max_speed * self.clock.time_step(),
         }
     }
 }
@@ -202,6 +207,8 @@ impl Scene {
 pub struct Needs {
     /// SPH forces or blending read the density in every frame.
     pub density: bool,
+    /// Some profile sums over near neighbours: SPH forces or contact.
+    pub pairs: bool,
     /// Some profile avoids by RVO.
     pub rvo: bool,
     /// Discs push each other.

@@ -1,5 +1,6 @@
 //! The loop (§4.1).
 
+mod evaluate;
 mod integrate;
 mod schedule;
 mod stages;
@@ -7,20 +8,14 @@ mod stages;
 pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};
 
-use rayon::prelude::*;
-
 use crate::agents::Agents;
 use crate::clock::Clock;
-use crate::density;
-use crate::forces::goal;
 use crate::frame::{Fields, Frame};
 use crate::math::Vector;
 use crate::neighbors::Neighbors;
+use crate::pairs::{Packed, Precision};
 use crate::profile::{Blend, Override};
 use crate::scene::{Needs, Scene};
-
-/// Agents per task at least: below this a task costs more than it saves.
-const TASK: usize = 128;
 
 /// A crowd in a scene, one frame after the other.
 ///
@@ -35,12 +30,12 @@ pub struct Simulation {
     agents: Agents,
     fields: Fields,
     neighbors: Neighbors,
+    packed: Packed,
     schedule: schedule::Schedule,
     outcome: Outcome,
     stages: StageTimes,
     evaluated: bool,
     crowd_changed: bool,
-    density_listed: bool,
 }
 
 /// What has happened so far.
@@ -109,12 +104,12 @@ impl Simulation {
             agents: Agents::default(),
             fields: Fields::default(),
             neighbors: Neighbors::default(),
+            packed: Packed::new(scene.precision),
             schedule: schedule::Schedule::default(),
             outcome: Outcome::default(),
             stages: StageTimes::default(),
             evaluated: false,
             crowd_changed: true,
-            density_listed: false,
             scene,
         };
         for agent in simulation.scene.agents.clone() {
@@ -143,160 +138,13 @@ impl Simulation {
         if self.clock.is_coarse() {
             self.follow_schedule()?;
         }
-        if self.clock.is_coarse() || self.crowd_changed {
-            self.sort_agents(); // 1
-            self.list_neighbors();
-        } else if self.density_is_due() && !self.density_listed {
-            self.list_neighbors(); // somebody has just asked for the density
-        }
+        self.update_neighbors(); // 1
         self.update_density_and_pressure(); // 1B
         self.update_preferred_velocity(); // 2
         self.update_rvo(); // 3, coarse
         self.update_acceleration(); // 3, 3B, 4
         self.evaluated = true;
         Ok(())
-    }
-
-    /// Step 1: cells.
-    fn sort_agents(&mut self) {
-        let ranges = self.scene.ranges(&self.needs);
-        let (agents, neighbors) = (&mut self.agents, &mut self.neighbors);
-        self.stages
-            .time(Stage::Sort, || neighbors.sort(agents, ranges));
-        self.crowd_changed = false;
-    }
-
-    /// Step 1: lists.
-    fn list_neighbors(&mut self) {
-        let density = self.density_is_due();
-        let (agents, neighbors) = (&self.agents, &mut self.neighbors);
-        self.stages.time(Stage::Neighbors, || {
-            neighbors.list_agents(agents, density);
-            neighbors.list_walls(agents, &self.scene.walls, density);
-        });
-        self.density_listed = density;
-    }
-
-    /// Step 1B.
-    fn update_density_and_pressure(&mut self) {
-        let due = self.density_is_due();
-        if !due && !self.fields.density.is_empty() {
-            self.agents.newcomer.fill(true); // when asked for again, ρ̂ starts anew
-        }
-        self.fields.resize(self.agents.len(), due);
-        if !due {
-            self.neighbors.widen();
-            return;
-        }
-        let (agents, neighbors) = (&self.agents, &mut self.neighbors);
-        self.stages
-            .time(Stage::Neighbors, || neighbors.narrow(agents));
-        let mut fields = std::mem::take(&mut self.fields);
-        let frame = frozen(
-            &self.clock,
-            &self.scene,
-            &self.agents,
-            &self.fields,
-            &self.neighbors,
-        );
-        self.stages.time(Stage::DensityAndPressure, || {
-            (
-                &mut fields.density,
-                &mut fields.density_from_walls,
-                &mut fields.mean_density,
-                &mut fields.rest_density_before,
-                &mut fields.rest_density,
-                &mut fields.volume,
-                &mut fields.pressure,
-                &mut fields.wall_gradient,
-            )
-                .into_par_iter()
-                .enumerate()
-                .with_min_len(TASK)
-                .for_each(
-                    |(i, (density, from_walls, mean, before, rest, volume, pressure, gradient))| {
-                        let sph = &blend_of(&self.scene, &self.agents, i).sph;
-                        let state = density::sph_state(&frame, i, sph, self.scene.wall_method);
-                        *density = state.density;
-                        *from_walls = state.density_from_walls;
-                        *mean = state.mean_density;
-                        *before = state.rest_density_before;
-                        *rest = state.rest_density;
-                        *volume = state.volume;
-                        *pressure = state.pressure;
-                        *gradient = state.wall_gradient;
-                    },
-                );
-        });
-        self.fields = fields;
-        self.agents
-            .mean_density
-            .copy_from_slice(&self.fields.mean_density);
-        self.agents.newcomer.fill(false);
-    }
-
-    /// Step 2.
-    fn update_preferred_velocity(&mut self) {
-        let (agents, speed) = (&self.agents, self.scene.preferred_speed);
-        let preferred = &mut self.fields.preferred_velocity;
-        self.stages.time(Stage::PreferredVelocity, || {
-            preferred.iter_mut().enumerate().for_each(|(i, v)| {
-                *v = goal::preferred_velocity(agents.position[i], agents.goal[i], speed);
-            });
-        });
-    }
-
-    /// Step 3, the coarse part: RVO where it acts and no earlier choice is held.
-    fn update_rvo(&mut self) {
-        if !self.needs.rvo {
-            return;
-        }
-        let mut avoidance = self.agents.avoidance.clone();
-        let frame = frozen(
-            &self.clock,
-            &self.scene,
-            &self.agents,
-            &self.fields,
-            &self.neighbors,
-        );
-        let coarse = self.clock.is_coarse();
-        self.stages.time(Stage::Rvo, || {
-            avoidance.par_iter_mut().enumerate().for_each(|(i, held)| {
-                let blend = blend_of(&self.scene, &self.agents, i);
-                match blend.rvo().filter(|_| blend.rvo_acts(&frame, i)) {
-                    None => *held = None,
-                    Some(rvo) if coarse || held.is_none() => {
-                        *held = Some(rvo.acceleration(&frame, i, self.scene.max_speed));
-                    }
-                    Some(_) => {}
-                }
-            });
-        });
-        self.agents.avoidance = avoidance;
-    }
-
-    /// Steps 3, 3B and 4.
-    fn update_acceleration(&mut self) {
-        let mut acceleration = std::mem::take(&mut self.fields.acceleration);
-        let frame = frozen(
-            &self.clock,
-            &self.scene,
-            &self.agents,
-            &self.fields,
-            &self.neighbors,
-        );
-        self.stages.time(Stage::Acceleration, || {
-            acceleration
-                .par_iter_mut()
-                .enumerate()
-                .with_min_len(TASK)
-                .for_each(|(i, a)| {
-                    let blend = blend_of(&self.scene, &self.agents, i);
-                    let changed = change_of(&self.scene, &self.agents, i);
-                    *a = blend.acceleration(&frame, i, changed);
-                });
-        });
-        self.fields.acceleration = acceleration;
     }
 
     fn density_is_due(&self) -> bool {
@@ -309,15 +157,22 @@ impl Simulation {
         self.density_until = self.density_until.max(frame);
     }
 
+    /// Takes the sums over pairs of all later evaluations in another precision than the scene's.
+    pub fn set_precision(&mut self, precision: Precision) {
+        self.packed = Packed::new(precision);
+    }
+
     /// The current frame; frozen and complete after [`evaluate`](Self::evaluate).
     pub fn frame(&self) -> Frame<'_> {
-        frozen(
-            &self.clock,
-            &self.scene,
-            &self.agents,
-            &self.fields,
-            &self.neighbors,
-        )
+        Frame {
+            clock: &self.clock,
+            walls: &self.scene.walls,
+            agents: &self.agents,
+            fields: &self.fields,
+            neighbors: &self.neighbors,
+            packed: &self.packed,
+            seed: self.scene.seed,
+        }
     }
 
     /// What the simulation was made from.
@@ -363,23 +218,6 @@ impl Simulation {
     /// Starts measuring anew.
     pub fn reset_stages(&mut self) {
         self.stages = StageTimes::default();
-    }
-}
-
-fn frozen<'a>(
-    clock: &'a Clock,
-    scene: &'a Scene,
-    agents: &'a Agents,
-    fields: &'a Fields,
-    neighbors: &'a Neighbors,
-) -> Frame<'a> {
-    Frame {
-        clock,
-        walls: &scene.walls,
-        agents,
-        fields,
-        neighbors,
-        seed: scene.seed,
     }
 }
 

@@ -62,7 +62,7 @@ fn a_run_reports_its_metrics_and_only_the_stages_it_needed() {
     assert_eq!(report["threads"], 2);
     assert_eq!(report["frames"], 50);
     assert_eq!(report["agents"], 400);
-    assert_eq!(report["metrics"]["evacuated"], 0.0);
+    assert_eq!(report["metrics"]["evacuated"], 0);
     assert!(report["metrics"]["density_mean_15s"].is_null());
     assert!(report["ms_per_frame"].as_f64().unwrap() > 0.0);
     assert!(report["stages_ms"]["density_and_pressure"].is_number());
@@ -112,6 +112,38 @@ fn an_inspection_at_zero_lays_open_the_state_as_given() {
 }
 
 #[test]
+fn an_inspection_goes_on_to_its_moment_beyond_the_scenarios_own_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("idle.json");
+    let text = r#"{"goal": [10, 0], "stop": {"idle_secs": 0.5}, "agents": [{"position": [0, 0]}]}"#;
+    std::fs::write(&path, text).unwrap();
+    let file = path.to_str().unwrap();
+    assert_eq!(json(&["run", file, "--json"])["frames"], 26);
+    let moment = json(&["inspect", file, "--agent", "0", "--at", "2", "--json"]);
+    assert_eq!(moment["time_secs"], 2.0);
+    assert_eq!(moment["frame"], 100);
+}
+
+#[test]
+fn help_and_lists_name_what_there_is() {
+    let text = |arguments: &[&str]| String::from_utf8(sandbox(arguments).stdout).unwrap();
+    for command in [
+        "evacuation",
+        "crossing",
+        "concert",
+        "run",
+        "inspect",
+        "list",
+    ] {
+        let example = format!("sandbox {command} ");
+        assert!(text(&["--help"]).contains(&example));
+        assert!(text(&[command, "--help"]).contains(&format!("Example: {example}")));
+    }
+    assert!(text(&["list"]).contains("rvo->sph"));
+    assert!(text(&["list", "--settings"]).contains("remove_within"));
+}
+
+#[test]
 fn bad_input_is_refused_with_its_place_and_exit_code_2() {
     refused(&["run", "no/such/file.json"], 2, &["no/such/file.json"]);
     refused(
@@ -120,8 +152,14 @@ fn bad_input_is_refused_with_its_place_and_exit_code_2() {
         &["viscocity", "viscosity"],
     );
     refused(&["evacuation", "--set", "viscosity=-1"], 2, &["viscosity"]);
-    refused(&["evacuation", "--profile", "fs"], 2, &["profile"]);
+    refused(&["evacuation", "--profile", "fs"], 2, &["--profile fs: "]);
     refused(&["evacuation", "--until=-3"], 2, &["--until"]);
+    refused(
+        &["evacuation", "--until", "1e8"],
+        2,
+        &["--until 100000000: "],
+    );
+    refused(&["evacuation", "--debug-agents", "all"], 2, &["--save"]);
     refused(&["evacuation", "--threads", "0"], 2, &["--threads"]);
     refused(
         &["inspect", "evacuation", "--agent", "400"],
@@ -144,6 +182,35 @@ fn bad_input_is_refused_with_its_place_and_exit_code_2() {
 
 #[cfg(feature = "recording")]
 #[test]
+fn a_run_that_is_saved_reads_back_with_everybody_and_a_dozen_laid_open() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    let path = file.to_str().unwrap();
+    let run = ["evacuation", "--until", "0.2", "--save", path, "--json"];
+    assert_eq!(json(&run)["frames"], 10);
+    let recording = sandbox::recording::Recording::read(&file).unwrap();
+    let crowd = recording.pairs("/world/agents", "Points2D:positions");
+    let frames: Vec<_> = crowd
+        .iter()
+        .map(|(frame, all)| (*frame, all.len()))
+        .collect();
+    assert_eq!(frames, [(0, 400), (5, 400), (10, 400)]);
+    let kernels = recording.pairs("/world/debug/kernels", "Ellipses2D:centers");
+    assert!(kernels.iter().all(|(_, circles)| circles.len() == 12));
+    for entity in [
+        "/world/geometry/walls",
+        "/world/geometry/obstacles",
+        "/world/geometry/goals",
+        "/world/debug/forces/total",
+        "/stats/density/mean",
+        "/info/scenario",
+    ] {
+        assert!(recording.entities().contains(entity), "{entity}");
+    }
+}
+
+#[cfg(feature = "recording")]
+#[test]
 fn an_existing_file_is_replaced_only_by_force() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("kept.rrd");
@@ -151,7 +218,7 @@ fn an_existing_file_is_replaced_only_by_force() {
     let path = file.to_str().unwrap();
     refused(
         &["evacuation", "--until", "0.1", "--save", path],
-        1,
+        2,
         &[path, "--force"],
     );
     assert_eq!(std::fs::read(&file).unwrap(), b"precious");

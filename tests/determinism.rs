@@ -4,6 +4,7 @@ mod common;
 
 use common::{bits, blend, block, room, scene, vector};
 use sandbox::catalog::NAMES;
+use sandbox::pairs::Precision;
 use sandbox::profile::Override;
 use sandbox::scene::{Goal, Push, Region, Scene, Source};
 use sandbox::simulation::Simulation;
@@ -13,6 +14,7 @@ use sandbox::simulation::Simulation;
 fn busy_room(profile: &str) -> Scene {
     let mut scene = scene(vec![room(12.0, 1.2)], blend(profile));
     scene.seed = 5;
+    scene.precision = Precision::Mixed;
     scene.groups[0].removal_radius = Some(0.5);
     let exit = vector(13.5, 6.0);
     // Dense enough that blends blend.
@@ -49,13 +51,13 @@ fn busy_room(profile: &str) -> Scene {
     scene
 }
 
-fn simulated(profile: &str, threads: usize, frames: u32) -> Simulation {
+fn simulated(scene: Scene, threads: usize, frames: u32) -> Simulation {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .unwrap();
     pool.install(|| {
-        let mut simulation = Simulation::new(busy_room(profile)).unwrap();
+        let mut simulation = Simulation::new(scene).unwrap();
         for _ in 0..frames {
             simulation.step().unwrap();
         }
@@ -66,14 +68,21 @@ fn simulated(profile: &str, threads: usize, frames: u32) -> Simulation {
 #[test]
 fn the_bits_do_not_depend_on_the_number_of_threads() {
     for profile in NAMES {
-        let one = simulated(profile, 1, 60);
-        assert!(one.frame().agents.len() > 512);
-        for threads in [2, 3, 8] {
-            let many = simulated(profile, threads, 60);
-            assert!(bits(&one) == bits(&many), "{profile} on {threads} threads");
-            assert_eq!(one.outcome(), many.outcome());
-            assert_eq!(one.events(), many.events());
-        }
+        assert_same_bits(profile, Precision::Mixed);
+    }
+    assert_same_bits("sph", Precision::Double);
+}
+
+fn assert_same_bits(profile: &str, precision: Precision) {
+    let mut scene = busy_room(profile);
+    scene.precision = precision;
+    let one = simulated(scene.clone(), 1, 60);
+    assert!(one.frame().agents.len() > 512);
+    for threads in [2, 3, 8] {
+        let many = simulated(scene.clone(), threads, 60);
+        assert!(bits(&one) == bits(&many), "{profile} on {threads} threads");
+        assert_eq!(one.outcome(), many.outcome());
+        assert_eq!(one.events(), many.events());
     }
 }
 
@@ -83,7 +92,7 @@ fn another_seed_gives_other_bits() {
     other.seed = 6;
     let mut other = Simulation::new(other).unwrap();
     common::run(&mut other, 10);
-    assert!(bits(&other) != bits(&simulated("sph", 1, 10)));
+    assert!(bits(&other) != bits(&simulated(busy_room("sph"), 1, 10)));
 }
 
 /// Everybody's bits without the mean density, which is only there for who asks.

@@ -40,12 +40,14 @@ fn scene(profile: &str) -> Scene {
 fn options(debug: DebugAgents) -> RecordingOptions {
     RecordingOptions {
         title: "a test".to_owned(),
-        document: "# A test".to_owned(),
+        description: "Small".to_owned(),
+        document: "A test".to_owned(),
         view: Region {
             min: Vector::new(-1.0, -1.0),
             max: Vector::new(8.0, 5.0),
         },
         opens_at: 0.1,
+        ends_at: 1.0,
         debug,
     }
 }

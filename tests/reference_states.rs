@@ -7,6 +7,7 @@ use sandbox::breakdown::Breakdown;
 use sandbox::catalog::{self, Parameters};
 use sandbox::geometry::Polygon;
 use sandbox::math::Vector;
+use sandbox::pairs::Precision;
 use sandbox::scene::{Group, Scene};
 use sandbox::simulation::Simulation;
 use serde::Deserialize;
@@ -68,6 +69,7 @@ fn evaluated(state: &State) -> Simulation {
     };
     let mut scene = Scene::with_obstacles(state.obstacles.iter().map(polygon).collect());
     scene.wall_method = state.wall_method;
+    scene.precision = Precision::Double;
     let parameters = Parameters {
         viscosity: Some(state.viscosity),
         ..Parameters::default()

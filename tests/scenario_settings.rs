@@ -1,7 +1,7 @@
 //! What is documented about settings is what the program does.
 
 use sandbox::catalog::{self, NAMES, Parameters};
-use sandbox::scenario::{Scenario, Setting, settings};
+use sandbox::scenario::{NESTED, Scenario, Setting, settings};
 use sandbox::scene::Scene;
 use serde_json::{Value, json};
 
@@ -37,6 +37,25 @@ fn every_key_of_a_file_and_every_parameter_is_documented_once() {
     let mut documented: Vec<&str> = settings().iter().map(|doc| doc.key).collect();
     documented.sort();
     assert_eq!(documented, known);
+}
+
+#[test]
+fn the_keys_of_nested_objects_are_documented() {
+    let nested = |list: &str| NESTED.iter().find(|(name, _)| *name == list).unwrap().1;
+    for list in ["agents", "grids", "sources", "events"] {
+        let text = format!("{{\"{list}\": [{{\"?\": 0}}]}}");
+        let error = Scenario::parse(&text, "f", &[]).unwrap_err().to_string();
+        let known: Vec<&str> = error.split('`').skip(3).step_by(2).collect();
+        assert!(known.len() > 5, "{error}");
+        let documented = match list {
+            "sources" => format!("{}, {}", nested("grids"), nested(list)),
+            _ => nested(list).to_owned(),
+        };
+        let words: Vec<&str> = documented.split([' ', ',', '?']).collect();
+        for key in known {
+            assert!(words.contains(&key), "{list}: {key}");
+        }
+    }
 }
 
 #[test]
@@ -130,4 +149,19 @@ fn a_smaller_step_keeps_the_coarse_step_unless_told_otherwise() {
     );
     let both = parse(&["time_step_secs=0.01", "coarse_every=3"]);
     assert_eq!(both.scene.clock.coarse_every(), 3);
+}
+
+#[test]
+fn a_scenario_that_names_nobody_to_lay_open_gets_a_dozen_from_first_to_last() {
+    let sources = r#"sources=[{"min": [0, 0], "max": [0, 9], "columns": 1, "rows": 10,
+        "every_secs": 1, "times": 12}]"#;
+    let chosen = parse(&["goal=[9, 5]", sources]).debug_agents;
+    assert_eq!(chosen, [5, 15, 25, 35, 45, 55, 65, 75, 85, 95, 105, 115]);
+    let few = parse(&["goal=[9, 5]", r#"agents=[{"position": [0, 0]}]"#]);
+    assert_eq!(few.debug_agents, [0]);
+    assert!(
+        parse(&["debug_agents=[]", "goal=[9, 5]", sources])
+            .debug_agents
+            .is_empty()
+    );
 }

@@ -57,6 +57,7 @@ fn needs_follow_from_the_profiles() {
     let needs = |name: &str| *crowd(blend(name)).needs();
     let goal_only = Needs {
         density: true,
+        pairs: true,
         rvo: false,
         contact: true,
         avoidance: None,

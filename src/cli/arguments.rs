@@ -8,9 +8,18 @@ use clap::{Args, Parser, Subcommand};
 use super::reproduce;
 use crate::scenario::SHIPPED;
 
+const EXAMPLES: &str = "\
+Examples:
+  sandbox evacuation --profile 'sf->sph' --set rest_density_max=6 --json
+  sandbox crossing --profile rvo --save crossing.rrd
+  sandbox concert --record-from 149 --save recordings/concert.rrd --force
+  sandbox run my_station.json --until 60 --threads 2 --json
+  sandbox inspect evacuation --agent 17 --at 15 --json
+  sandbox list --settings";
+
 /// Simulate, measure and inspect dense crowds (SPH crowds, van Toll et al. 2021).
 #[derive(Parser)]
-#[command(version, arg_required_else_help = true)]
+#[command(version, arg_required_else_help = true, after_help = EXAMPLES)]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -47,10 +56,10 @@ pub enum Command {
         after_help = format!("{}Example: sandbox reproduce table1 fig5 --seeds 3", reproduce::about())
     )]
     Reproduce(ReproduceOptions),
-    /// List the scenarios, or the settings that --set takes
+    /// List the scenarios and profiles, or the settings that --set takes
     #[command(after_help = "Example: sandbox list --settings")]
     List {
-        /// List what --set takes instead of the scenarios
+        /// List what --set takes instead of the scenarios and profiles
         #[arg(long)]
         settings: bool,
     },
@@ -59,7 +68,7 @@ pub enum Command {
 /// What changes a scenario, and how it is computed.
 #[derive(Args)]
 pub struct SceneOptions {
-    /// Profile of all agents: sf, rvo, sf+sph, rvo+sph, sph, sf->sph or rvo->sph (quote the arrow)
+    /// Profile of all agents that name none of their own: sf, rvo, sf+sph, rvo+sph, sph, sf->sph or rvo->sph (quote the arrow)
     #[arg(long, value_name = "NAME")]
     pub profile: Option<String>,
     /// Seed of all random numbers
@@ -97,16 +106,26 @@ pub struct RecordOptions {
     #[arg(long, value_name = "FILE.rrd")]
     pub save: Option<PathBuf>,
     /// Record every so many frames
-    #[arg(long, value_name = "FRAMES", default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "FRAMES", default_value_t = 5, requires = "save", value_parser = clap::value_parser!(u64).range(1..))]
     pub record_every: u64,
     /// Record from this time on, seconds
-    #[arg(long, value_name = "SECS", default_value_t = 0.0, value_parser = seconds)]
+    #[arg(long, value_name = "SECS", default_value_t = 0.0, requires = "save", value_parser = seconds)]
     pub record_from: f64,
     /// Lay these agents open in the recording: ids, all or none [default: the scenario's choice]
-    #[arg(long, value_name = "17,42|all|none", conflicts_with = "debug_region")]
+    #[arg(
+        long,
+        value_name = "17,42|all|none",
+        requires = "save",
+        conflicts_with = "debug_region"
+    )]
     pub debug_agents: Option<String>,
     /// Lay open the agents that are in this rectangle at each recorded frame
-    #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "X0,Y0,X1,Y1",
+        requires = "save",
+        allow_hyphen_values = true
+    )]
     pub debug_region: Option<String>,
 }
 

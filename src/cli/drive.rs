@@ -6,7 +6,7 @@ use super::arguments::{RunOptions, Source};
 use super::output::Output;
 use super::report::Report;
 use super::{Failure, say, scenario, use_threads};
-use crate::drive::drive;
+use crate::drive::{Then, drive, unless_over};
 use crate::metrics::Metrics;
 use crate::simulation::{EventKind, Simulation};
 
@@ -20,10 +20,14 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     let mut output = Output::create(options, &scenario, &mut simulation)?;
     let progress = Progress::new(duration);
 
-    let driven = drive(&mut simulation, &scenario, duration, |simulation, ms| {
-        metrics.observe(simulation);
-        progress.show(simulation);
-        output.log(simulation, ms)
+    // From a thread of the pool, parallel work starts without a detour.
+    let driven = rayon::scope(|_| {
+        drive(&mut simulation, duration, |simulation, ms| {
+            metrics.observe(simulation);
+            progress.show(simulation);
+            output.log(simulation, ms)?;
+            Ok::<Then, Failure>(unless_over(simulation, &scenario))
+        })
     });
     progress.finish();
     // What was recorded is kept, whatever ended the run.

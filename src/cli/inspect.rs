@@ -7,7 +7,7 @@ use super::drive::Progress;
 use super::output;
 use super::{Failure, say, scenario, use_threads};
 use crate::breakdown::Breakdown;
-use crate::drive::drive;
+use crate::pairs::Precision;
 use crate::simulation::Simulation;
 
 pub fn run(options: &InspectOptions) -> Result<(), Failure> {
@@ -17,13 +17,9 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     // The rest density follows the density's history, so every frame needs it.
     simulation.request_density_until(u64::MAX);
     let progress = Progress::new(options.at);
-    let driven: Result<(), Failure> =
-        drive(&mut simulation, &scenario, options.at, |simulation, _| {
-            progress.show(simulation);
-            Ok(())
-        });
+    let went = rayon::scope(|_| go_to(options.at, &mut simulation, &progress));
     progress.finish();
-    driven?;
+    went?;
     let breakdowns = breakdowns(&simulation, options)?;
     if let Some(path) = &options.save {
         let ids = breakdowns.iter().map(|breakdown| breakdown.id).collect();
@@ -37,6 +33,18 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     }
     let tables: String = breakdowns.iter().map(table).collect();
     say(&format!("t = {time:.2} s, frame {frame}\n{tables}"))
+}
+
+/// On to a moment in seconds, though the scenario may have come to its own end before. The state is
+/// that of a run; only the last frame is computed in double precision throughout.
+fn go_to(at: f64, simulation: &mut Simulation, progress: &Progress) -> Result<(), Failure> {
+    let last = simulation.frame().clock.frame_at(at);
+    while simulation.frame().clock.frame() < last {
+        progress.show(simulation);
+        simulation.step()?;
+    }
+    simulation.set_precision(Precision::Double);
+    Ok(simulation.evaluate()?)
 }
 
 fn breakdowns(

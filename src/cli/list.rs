@@ -1,7 +1,8 @@
-//! `sandbox list`: the scenarios, or what `--set` takes.
+//! `sandbox list`: the scenarios and profiles, or what `--set` takes.
 
 use super::{Failure, say};
-use crate::scenario::{SHIPPED, settings};
+use crate::catalog::NAMES;
+use crate::scenario::{NESTED, SHIPPED, settings};
 
 pub fn run(list_settings: bool) -> Result<(), Failure> {
     let mut text = String::new();
@@ -17,12 +18,17 @@ pub fn run(list_settings: bool) -> Result<(), Failure> {
                 setting.range,
             );
         }
+        text += "\nKeys of the objects in these lists (metres, seconds; ? = may be left out):\n";
+        for (list, keys) in NESTED {
+            text += &format!("{list:<20} {keys}\n");
+        }
         text += "\nA dotted path reaches into the scenario's own lists: --set sources.0.rows=50\n\
                  Parameters of profiles hold for every profile of the scenario.\n";
     } else {
         for scenario in SHIPPED {
             text += &format!("{:<12} {}\n", scenario.name, scenario.description());
         }
+        text += &format!("\nprofiles: {}\n", NAMES.join(", "));
     }
     say(&text)
 }

@@ -78,23 +78,33 @@ fn scenario(
     scene: &arguments::SceneOptions,
     until: Option<f64>,
 ) -> Result<Scenario, Failure> {
-    let profile = scene.profile.iter().map(|name| format!("profile={name}"));
-    let seed = scene.seed.iter().map(|seed| format!("seed={seed}"));
-    let until = until.iter().map(|secs| format!("duration_secs={secs}"));
-    let settings = profile
-        .chain(seed)
-        .chain(until)
-        .chain(scene.set.iter().cloned())
-        .map(|text| {
-            text.parse()
-                .map_err(|error| Failure::Input(format!("--set {text}: {error}")))
-        })
-        .collect::<Result<Vec<Setting>, Failure>>()?;
+    let until = until.map(|secs| secs.to_string());
+    let seed = scene.seed.map(|seed| seed.to_string());
+    let flags = [
+        ("--profile", "profile", scene.profile.clone()),
+        ("--seed", "seed", seed),
+        ("--until", "duration_secs", until),
+    ];
+    let mut settings = Vec::new();
+    for (flag, key, value) in flags {
+        if let Some(value) = value {
+            let setting = setting(&format!("{key}={value}"))?;
+            settings.push(setting.typed_as(format!("{flag} {value}")));
+        }
+    }
+    for text in &scene.set {
+        settings.push(setting(text)?);
+    }
     let scenario = match source {
         Source::Shipped(name) => Scenario::shipped(name, &settings)?,
         Source::File(path) => Scenario::load(path, &settings)?,
     };
     Ok(scenario)
+}
+
+fn setting(text: &str) -> Result<Setting, Failure> {
+    text.parse()
+        .map_err(|error| Failure::Input(format!("--set {text}: {error}")))
 }
 
 /// Writes results to stdout; a reader that has gone (`| head`) is no failure.

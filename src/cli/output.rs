@@ -11,8 +11,8 @@ use crate::simulation::Simulation;
 fn check_free(path: &Path, force: bool) -> Result<(), Failure> {
     if path.exists() && !force {
         let path = path.display();
-        return Err(Failure::Output(format!(
-            "{path} exists already; give --force to replace it"
+        return Err(Failure::Input(format!(
+            "--save {path}: exists already; give --force to replace it"
         )));
     }
     Ok(())
@@ -48,7 +48,7 @@ mod with_recording {
                 Some(path) => {
                     check_free(path, options.scene.force)?;
                     simulation.request_density_until(u64::MAX);
-                    let view = recording_options(scenario, debug);
+                    let view = recording_options(scenario, debug, record.record_from);
                     Some(Recorder::create(path, simulation, &view)?)
                 }
             };
@@ -87,23 +87,31 @@ mod with_recording {
         ids: Vec<u32>,
     ) -> Result<(), Failure> {
         check_free(path, force)?;
-        let mut options = recording_options(scenario, DebugAgents::Ids(ids));
-        options.opens_at = simulation.frame().clock.time();
+        let now = simulation.frame().clock.time();
+        let mut options = recording_options(scenario, DebugAgents::Ids(ids), now);
+        options.opens_at = now;
+        options.ends_at = now;
         let mut recorder = Recorder::create(path, simulation, &options)?;
         recorder.log(simulation, 0.0)?;
         Ok(recorder.finish()?)
     }
 
-    fn recording_options(scenario: &Scenario, debug: DebugAgents) -> RecordingOptions {
+    /// What a recording from the time `from` on says and shows.
+    fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> RecordingOptions {
         let seed = scenario.scene.seed;
+        let opens_at = scenario.view.opens_at_secs;
+        let recorded = from..scenario.duration_secs;
         RecordingOptions {
             title: format!("{} {} seed {seed}", scenario.name, scenario.profile_name),
-            document: format!(
-                "# {}\n{}\n```json\n{:#}\n```\n",
-                scenario.name, scenario.description, scenario.document
-            ),
+            description: scenario.description.clone(),
+            document: format!("## Scenario\n```json\n{}\n```\n", scenario.to_text()),
             view: scenario.view.region,
-            opens_at: scenario.view.opens_at_secs,
+            opens_at: if recorded.contains(&opens_at) {
+                opens_at
+            } else {
+                from
+            },
+            ends_at: scenario.duration_secs,
             debug,
         }
     }
@@ -195,7 +203,7 @@ mod without_recording {
 
     fn unavailable(path: &Path) -> Failure {
         let path = path.display();
-        Failure::Output(format!(
+        Failure::Input(format!(
             "--save {path}: this program was built without the feature `recording`"
         ))
     }

@@ -35,7 +35,7 @@ impl<'a> Report<'a> {
         let metrics: Map<String, Value> = self
             .metrics
             .iter()
-            .map(|metric| (metric.name.clone(), json!(metric.value)))
+            .map(|metric| (metric.name.clone(), value(metric)))
             .collect();
         let stages: Map<String, Value> = self
             .simulation
@@ -74,9 +74,11 @@ impl<'a> Report<'a> {
             frame.clock.frame(),
         );
         for metric in &self.metrics {
-            let value = metric
-                .value
-                .map_or("–".to_owned(), |value| format!("{value:.3}"));
+            let value = match (value(metric), metric.value) {
+                (Value::Number(count), _) if count.is_u64() => count.to_string(),
+                (_, Some(value)) => format!("{value:.3}"),
+                (_, None) => "–".to_owned(),
+            };
             text += &format!("  {:<24} {value:>10} {}\n", metric.name, metric.unit);
         }
         let threads = rayon::current_num_threads();
@@ -98,5 +100,13 @@ impl<'a> Report<'a> {
 
     fn real_time_factor(&self) -> f64 {
         1e3 * self.simulation.frame().clock.time_step() / self.ms_per_frame()
+    }
+}
+
+/// A metric's value; counts of agents are whole numbers.
+fn value(metric: &Metric) -> Value {
+    match metric.value {
+        Some(count) if metric.unit == "agents" => json!(count as u64),
+        value => json!(value),
     }
 }

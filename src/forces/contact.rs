@@ -1,8 +1,8 @@
 //! Contact between discs, and of discs with walls (§5.4, Eqs. 22 and 23).
 
-use super::pairs::PairSums;
 use crate::frame::Frame;
-use crate::math::{Vector, direction};
+use crate::math::Vector;
+use crate::pairs::PairSums;
 
 /// A centre this near to a wall stands on it, metres: the rounding of coordinates up to 10⁶ m, which
 /// would otherwise decide where the wall pushes.
@@ -15,13 +15,6 @@ pub struct Contact {
     pub agent_stiffness: Option<f64>,
     /// K^obs.
     pub wall_stiffness: Option<f64>,
-}
-
-/// Eq. 22, one neighbour, over K^ag: `reach` D_i + D_j; coincident agents push nowhere.
-#[inline]
-pub fn of_neighbor(r_ij: Vector, reach: f64) -> Vector {
-    // No branch on the overlap: in a dense crowd it would be a coin toss.
-    direction(r_ij) * (reach - r_ij.norm()).max(0.0)
 }
 
 /// Eq. 22 over all agents in contact, over the mass.

@@ -5,7 +5,6 @@
 
 pub mod contact;
 pub mod goal;
-pub mod pairs;
 pub mod pressure;
 pub mod rvo;
 pub mod social;

@@ -1,5 +1,5 @@
-//! A uniform grid over the crowd; agents sorted by cell, row by row, so that a row of cells is a
-//! contiguous range of agents.
+//! A uniform grid over the crowd; agents sorted by cell, row by row, so that a run of cells in a row
+//! is a run of agents in memory.
 
 use std::ops::Range;
 
@@ -10,11 +10,16 @@ use crate::math::Vector;
 const CELLS_PER_AGENT: usize = 4;
 const FEWEST_CELLS: usize = 1024;
 
-/// Cells of a bounding box and the range of agents in each.
+/// Cells in a row are so much narrower than the row is high: runs then end near the circle they are
+/// to cover.
+const NARROWNESS: f64 = 4.0;
+
+/// Cells of a bounding box, with an empty row below and above, and the range of agents in each.
 #[derive(Debug, Clone)]
 pub struct Grid {
     origin: Vector,
-    cell: f64,
+    height: f64,
+    width: f64,
     columns: usize,
     rows: usize,
     /// First agent of every cell, row by row, and the number of agents at the end.
@@ -25,30 +30,22 @@ impl Default for Grid {
     fn default() -> Self {
         Self {
             origin: Vector::zeros(),
-            cell: 1.0,
+            height: 1.0,
+            width: 1.0,
             columns: 1,
-            rows: 1,
-            start: vec![0, 0],
+            rows: 3,
+            start: vec![0; 4],
         }
     }
 }
 
 impl Grid {
-    /// Lays a grid of about `cell` metres over `positions` and returns the order that sorts them by
-    /// cell; agents of one cell keep their order.
-    pub fn rebuild(&mut self, positions: &[Vector], cell: f64) -> Vec<u32> {
+    /// Lays a grid with rows of at least `height` metres over `positions` and returns the order that
+    /// sorts them by cell; agents of one cell keep their order.
+    pub fn rebuild(&mut self, positions: &[Vector], height: f64) -> Vec<u32> {
         let (low, high) = bounds(positions);
-        self.origin = low;
-        self.cell = cell.max(f64::MIN_POSITIVE); // so that doubling makes it grow
-        let most = (positions.len() * CELLS_PER_AGENT).max(FEWEST_CELLS) as f64;
-        let extent = high - low;
-        let cells =
-            |cell: f64| ((extent.x / cell).floor() + 1.0) * ((extent.y / cell).floor() + 1.0);
-        while cells(self.cell) > most {
-            self.cell *= 2.0;
-        }
-        self.columns = (extent.x / self.cell) as usize + 1;
-        self.rows = (extent.y / self.cell) as usize + 1;
+        self.size_cells(high - low, positions.len(), height);
+        self.origin = low - Vector::new(0.0, self.height);
 
         let cell_of: Vec<u32> = positions.iter().map(|&p| self.cell_of(p) as u32).collect();
         self.start.clear();
@@ -69,36 +66,81 @@ impl Grid {
         order
     }
 
+    /// Chooses the smallest cells that are not too many for so many agents.
+    fn size_cells(&mut self, extent: Vector, agents: usize, height: f64) {
+        let most = (agents * CELLS_PER_AGENT).max(FEWEST_CELLS) as f64;
+        self.height = height.max(f64::MIN_POSITIVE); // so that doubling makes it grow
+        self.width = (self.height / NARROWNESS).max(f64::MIN_POSITIVE);
+        // One cell for a crowd whose extent is no number: the fault is found later, and named.
+        let columns = |width: f64| ((extent.x / width).floor() + 1.0).max(1.0);
+        let rows = |height: f64| ((extent.y / height).floor() + 3.0).max(3.0);
+        while columns(self.width) * rows(self.height) > most {
+            if self.width < self.height {
+                self.width *= 2.0;
+            } else {
+                self.width *= 2.0;
+                self.height *= 2.0;
+            }
+        }
+        self.columns = columns(self.width) as usize;
+        self.rows = rows(self.height) as usize;
+    }
+
     /// The number of cells.
     pub fn cells(&self) -> usize {
         self.columns * self.rows
     }
 
+    /// The height of the rows, metres.
+    pub fn height(&self) -> f64 {
+        self.height
+    }
+
     fn cell_of(&self, p: Vector) -> usize {
-        let offset = (p - self.origin) / self.cell;
-        let column = (offset.x as usize).min(self.columns - 1);
-        let row = (offset.y as usize).min(self.rows - 1);
+        let offset = p - self.origin;
+        let column = ((offset.x / self.width) as usize).min(self.columns - 1);
+        let row = ((offset.y / self.height) as usize).min(self.rows - 2);
         row * self.columns + column
     }
 
-    /// For every row of cells that the square of half side `radius` round `p` meets: its agents.
+    /// The agents in cells that a circle round `p` meets, in three rows; its `radius` is at most the
+    /// height of a row. Agents may be counted in though they are out of reach, never left out.
+    pub fn near_rows(&self, p: Vector, radius: f64) -> [Range<u32>; 3] {
+        let offset = p - self.origin;
+        // Who has left the grid since it was laid is not far from it.
+        let row = ((offset.y / self.height) as usize).clamp(1, self.rows - 2);
+        let above_floor = offset.y - row as f64 * self.height;
+        [
+            (row - 1, above_floor),
+            (row, 0.0),
+            (row + 1, self.height - above_floor),
+        ]
+        .map(|(row, gap)| {
+            // √(radius² − gap²) is at most this.
+            let half = radius - gap * gap / (2.0 * radius);
+            self.run(row, offset.x - half, offset.x + half)
+        })
+    }
+
+    /// The agents in the cells of a row between two places, metres from its left end.
+    fn run(&self, row: usize, from: f64, to: f64) -> Range<u32> {
+        let column = |x: f64| ((x / self.width) as usize).min(self.columns - 1);
+        let first = row * self.columns;
+        self.start[first + column(from)]..self.start[first + column(to) + 1]
+    }
+
+    /// The agents in cells that a circle round `p` meets, row by row; some are out of reach.
     pub fn rows(&self, p: Vector, radius: f64) -> impl Iterator<Item = Range<usize>> + '_ {
-        let half = Vector::new(radius, radius);
-        // Conversions to usize saturate, so what lies left of or below the grid becomes 0; what lies
-        // wholly outside is an empty range of columns or rows.
-        let low = (p - half - self.origin) / self.cell;
-        let high = (p + half - self.origin) / self.cell;
-        let outside = high.x < 0.0 || high.y < 0.0;
-        let columns = low.x as usize..((high.x as usize).saturating_add(1)).min(self.columns);
-        let rows = low.y as usize..((high.y as usize).saturating_add(1)).min(self.rows);
-        let rows = if outside || columns.is_empty() {
-            0..0
-        } else {
-            rows
-        };
-        rows.map(move |row| {
-            let first = row * self.columns;
-            self.start[first + columns.start] as usize..self.start[first + columns.end] as usize
+        let offset = p - self.origin;
+        let row = move |y: f64| ((y / self.height) as usize).min(self.rows - 1);
+        (row(offset.y - radius)..=row(offset.y + radius)).map(move |row| {
+            let floor = row as f64 * self.height;
+            let gap = (floor - offset.y)
+                .max(offset.y - floor - self.height)
+                .max(0.0);
+            let half = (radius * radius - gap * gap).max(0.0).sqrt();
+            let run = self.run(row, offset.x - half, offset.x + half);
+            run.start as usize..run.end as usize
         })
     }
 }
@@ -118,14 +160,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cells_of_no_size_are_made_larger() {
-        for cell in [0.0, 5e-324, 1e-300] {
+    fn strange_sizes_and_extents_make_small_grids() {
+        for height in [0.0, 5e-324, 1e-300] {
             for positions in [
                 vec![Vector::zeros()],
                 vec![Vector::zeros(), Vector::new(9.0, 1e9)],
+                vec![Vector::zeros(), Vector::new(f64::INFINITY, 1e9)],
+                vec![Vector::new(f64::NAN, 0.0); 3],
             ] {
                 let mut grid = Grid::default();
-                assert_eq!(grid.rebuild(&positions, cell).len(), positions.len());
+                assert_eq!(grid.rebuild(&positions, height).len(), positions.len());
                 assert!(grid.cells() <= FEWEST_CELLS);
             }
         }

@@ -2,8 +2,7 @@
 
 use rayon::prelude::*;
 
-/// Agents whose lists share a block: enough to be worth a task, few enough to spread.
-const BLOCK: usize = 128;
+use super::BLOCK;
 
 /// Lists in blocks of consecutive agents, so that blocks are filled side by side and nothing is
 /// copied together afterwards; memory is kept between rebuilds.
@@ -54,11 +53,6 @@ impl Lists {
     /// Forgets all lists.
     pub fn clear(&mut self) {
         self.blocks.clear();
-    }
-
-    /// Are there no lists?
-    pub fn is_empty(&self) -> bool {
-        self.blocks.is_empty()
     }
 
     /// The list of agent `i`; empty after [`clear`](Self::clear).

@@ -1,12 +1,15 @@
 //! Step 1: who is near whom, and which walls are near.
 //!
-//! Agents are sorted into the cells of a [`Grid`]; near neighbours (SPH, contact) are listed once
-//! per coarse frame with a margin, the *skin*, so that nobody is missed in between; the wide circle
-//! of the avoidance methods is read from the grid's rows, without lists.
+//! Agents are sorted into the cells of a [`Grid`]; near neighbours (SPH, contact) are listed as
+//! [`Chunks`] of agents that are neighbours in memory, with a margin, the *skin*, so that the lists
+//! hold until somebody has moved half of it: nobody is ever missed in between. The wide circle of the
+//! avoidance methods is read from the grid's rows, without lists.
 
+mod chunks;
 mod grid;
 mod lists;
 
+pub use chunks::{BLOCK, CHUNK, Chunk, Chunks};
 pub use grid::Grid;
 pub use lists::Lists;
 
@@ -16,125 +19,97 @@ use crate::agents::Agents;
 use crate::geometry::Walls;
 use crate::math::Vector;
 
-/// How far neighbours are looked for; a range that nobody needs is `None`, and costs nothing.
+/// Margin of all lists, metres: half of it may be walked before they are made anew. More of it makes
+/// rarer but longer lists.
+pub const SKIN: f64 = 0.2;
+
+/// How far neighbours are looked for; avoidance that nobody needs is `None`, and costs nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ranges {
-    /// Support radius h of SPH, metres; lists go so far only while the density is due.
-    pub support: Option<f64>,
-    /// Do discs in contact matter?
-    pub contact: bool,
+    /// Support radius h of SPH, metres.
+    pub support: f64,
     /// Radius of the avoidance methods, metres.
     pub avoidance: Option<f64>,
-    /// The most that anybody walks between two rebuilds, s_max Δt_coarse, metres.
-    pub drift: f64,
+    /// The longest step that anybody makes in a frame, s_max Δt, metres.
+    pub longest_step: f64,
 }
 
-/// Neighbours as of the last coarse frame.
+/// Neighbours as of the last sort.
 #[derive(Debug, Clone, Default)]
 pub struct Neighbors {
     ranges: Ranges,
+    /// How far agents are listed as near, skin included, metres.
+    reach: f64,
     grid: Grid,
-    /// Near agents with the skin, as of the last coarse frame.
-    candidates: Lists,
-    /// Those in range now; no lists where candidates are good enough.
-    in_range: Lists,
+    near: Chunks,
     near_walls: Lists,
     far_walls: Lists,
+    /// The most that anybody has moved since the last sort, metres.
+    travelled: f64,
 }
 
 impl Neighbors {
     /// Sorts the agents into the cells of a new grid. Invalidates all lists.
-    ///
-    /// The cells, and with them the order of all sums, do not depend on whether the density is due:
-    /// whoever asks for it must not change the motion, not even by rounding.
     pub fn sort(&mut self, agents: &mut Agents, ranges: Ranges) {
         self.ranges = ranges;
-        let near = near_radius(agents, &ranges, true);
-        let cell = 0.5 * near.unwrap_or(2.0);
-        let order = self.grid.rebuild(&agents.position, cell);
+        self.travelled = 0.0;
+        self.near.clear();
+        self.reach = near_radius(agents, &ranges);
+        let order = self.grid.rebuild(&agents.position, self.reach);
         agents.arrange(&order);
     }
 
-    /// Lists everybody's near neighbours, for SPH too if the `density` is due.
+    /// Lists everybody's near neighbours, as far as SPH and contact reach.
     ///
-    /// May come some frames after the sort: who has drifted out of the cells searched here is too
-    /// far away to come back before the next rebuild.
-    pub fn list_agents(&mut self, agents: &Agents, density: bool) {
-        self.in_range.clear();
-        let Some(radius) = near_radius(agents, &self.ranges, density) else {
-            self.candidates.clear();
-            return;
-        };
-        let (grid, position) = (&self.grid, &agents.position);
-        self.candidates.rebuild(agents.len(), |i, found| {
-            let r_i = position[i];
-            for row in grid.rows(r_i, radius) {
-                found.extend(row.filter_map(|j| {
-                    let near = (r_i - position[j]).norm_squared() < radius * radius;
-                    (near && j != i).then_some(j as u32)
-                }));
-            }
-        });
-    }
-
-    /// Narrows the lists to who is within the interaction radius in this frame. It pays where several
-    /// sums follow, as in SPH: half of the candidates are skin.
-    pub fn narrow(&mut self, agents: &Agents) {
-        let radius = interaction_radius(agents, &self.ranges, true);
-        let (candidates, position) = (&self.candidates, &agents.position);
-        self.in_range
-            .rebuild_unless(radius.is_none(), agents.len(), |i, found| {
-                let r_i = position[i];
-                let reach = radius.unwrap_or(0.0).powi(2);
-                let mut end = found.len();
-                found.resize(end + candidates.of(i).len(), 0);
-                // Written first, kept if in range: a branch here would be a coin toss.
-                for &j in candidates.of(i) {
-                    found[end] = j;
-                    end += usize::from((r_i - position[j as usize]).norm_squared() < reach);
-                }
-                found.truncate(end);
-            });
-    }
-
-    /// Undoes [`narrow`](Self::narrow): all candidates again.
-    pub fn widen(&mut self) {
-        self.in_range.clear();
+    /// May come some frames after the sort, as long as the lists would not be stale. They do not
+    /// depend on whether a density is due: whoever asks for it must not change the order of any sum,
+    /// and so the motion, not even by rounding.
+    pub fn list_agents(&mut self, agents: &Agents) {
+        self.near.rebuild(&self.grid, &agents.position, self.reach);
     }
 
     /// Lists the walls near everybody: near ones for SPH and contact and for stopping moves, far ones
     /// for avoidance.
-    pub fn list_walls(&mut self, agents: &Agents, walls: &Walls, density: bool) {
-        let drift = self.ranges.drift;
-        let support = self.ranges.support.filter(|_| density).unwrap_or(0.0);
+    pub fn list_walls(&mut self, agents: &Agents, walls: &Walls) {
+        let least = self.ranges.support.max(self.ranges.longest_step);
         let position = &agents.position;
         self.near_walls
             .rebuild_unless(walls.is_empty(), agents.len(), |i, found| {
-                // A move that a wall stops begins at most one drift away from it.
-                let reach = support.max(agents.radius[i]).max(drift) + drift;
+                let reach = least.max(agents.radius[i]) + 0.5 * SKIN;
                 walls.near(position[i], reach, found);
             });
         let avoidance = self.ranges.avoidance.filter(|_| !walls.is_empty());
         self.far_walls
             .rebuild_unless(avoidance.is_none(), agents.len(), |i, found| {
-                let reach = avoidance.unwrap_or(0.0) + drift;
+                let reach = avoidance.unwrap_or(0.0) + 0.5 * SKIN;
                 walls.near(position[i], reach, found);
             });
     }
 
-    /// Candidates for SPH and contact with agent `i`, rising, without `i`; some are out of range.
-    pub fn near(&self, i: usize) -> &[u32] {
-        if self.in_range.is_empty() {
-            self.candidates.of(i)
-        } else {
-            self.in_range.of(i)
-        }
+    /// Notes that everybody has moved, by at most `step` metres.
+    pub fn moved(&mut self, step: f64) {
+        self.travelled += step;
+    }
+
+    /// Could somebody be missed?
+    pub fn are_stale(&self) -> bool {
+        self.travelled > 0.5 * SKIN
+    }
+
+    /// All that are near, for SPH and contact, and some that are out of range.
+    pub fn near(&self) -> &Chunks {
+        &self.near
+    }
+
+    /// A distance within which everybody in a list is, metres, for choosing units.
+    pub fn extent(&self) -> f64 {
+        4.0 * self.reach
     }
 
     /// Candidates for avoidance within `radius` metres of `p`, as ranges of agents, some out of range
     /// and agent `i` itself among them.
     pub fn around(&self, p: Vector, radius: f64) -> impl Iterator<Item = Range<usize>> + '_ {
-        self.grid.rows(p, radius + self.ranges.drift)
+        self.grid.rows(p, radius + 0.5 * SKIN)
     }
 
     /// Walls that may be within reach of agent `i` for SPH and contact, rising.
@@ -148,18 +123,10 @@ impl Neighbors {
     }
 }
 
-/// How far agents act on each other by contact and, if the `density` is due, by SPH; `None` where
-/// neither is needed.
-fn interaction_radius(agents: &Agents, ranges: &Ranges, density: bool) -> Option<f64> {
+/// How far agents act on each other by SPH and contact, and the skin.
+fn near_radius(agents: &Agents, ranges: &Ranges) -> f64 {
     let widest = agents.radius.iter().copied().fold(0.0, f64::max);
-    let contact = ranges.contact.then_some(2.0 * widest);
-    let support = ranges.support.filter(|_| density);
-    support.into_iter().chain(contact).reduce(f64::max)
-}
-
-/// The list radius of near neighbours: interaction radius + skin, 2 s_max Δt_coarse.
-fn near_radius(agents: &Agents, ranges: &Ranges, density: bool) -> Option<f64> {
-    Some(interaction_radius(agents, ranges, density)? + 2.0 * ranges.drift)
+    ranges.support.max(2.0 * widest) + SKIN
 }
 
 #[cfg(test)]
@@ -179,78 +146,82 @@ mod tests {
         agents
     }
 
-    fn ranges() -> Ranges {
-        Ranges {
-            support: Some(1.0),
-            contact: true,
+    fn listed(agents: &mut Agents) -> Neighbors {
+        let mut neighbors = Neighbors::default();
+        let ranges = Ranges {
+            support: 1.0,
             avoidance: Some(5.0),
-            drift: 0.18,
-        }
+            longest_step: 0.036,
+        };
+        neighbors.sort(agents, ranges);
+        neighbors.list_agents(agents);
+        neighbors
+    }
+
+    fn near(neighbors: &Neighbors, i: usize) -> Vec<usize> {
+        neighbors.near().agents(i).collect()
     }
 
     #[test]
-    fn near_lists_are_what_brute_force_finds() {
-        for (count, side) in [(0, 1.0), (1, 1.0), (300, 6.0), (300, 300.0)] {
+    fn whom_brute_force_finds_near_is_listed_once() {
+        for (count, side) in [(0, 1.0), (1, 1.0), (300, 6.0), (300, 300.0), (300, 0.1)] {
             let mut agents = crowd(count, side);
-            let mut neighbors = Neighbors::default();
-            neighbors.sort(&mut agents, ranges());
-            neighbors.list_agents(&agents, true);
+            let neighbors = listed(&mut agents);
             for i in 0..agents.len() {
-                let expected: Vec<u32> = (0..agents.len())
-                    .filter(|&j| j != i)
-                    .filter(|&j| (agents.position[i] - agents.position[j]).norm() < 1.36)
-                    .map(|j| j as u32)
-                    .collect();
-                assert_eq!(neighbors.near(i), expected);
+                let found = near(&neighbors, i);
+                assert!(found.is_sorted_by(|a, b| a < b) && found.contains(&i));
+                for j in 0..agents.len() {
+                    let distance = (agents.position[i] - agents.position[j]).norm();
+                    assert!(distance >= 1.2 || found.contains(&j));
+                }
             }
         }
     }
 
     #[test]
-    fn narrowed_lists_hold_exactly_who_is_in_range() {
-        let mut agents = crowd(300, 6.0);
-        let mut neighbors = Neighbors::default();
-        neighbors.sort(&mut agents, ranges());
-        neighbors.list_agents(&agents, true);
-        neighbors.narrow(&agents);
-        for i in 0..agents.len() {
-            let distance = |j: usize| (agents.position[i] - agents.position[j]).norm();
-            let expected = (0..agents.len()).filter(|&j| j != i && distance(j) < 1.0);
-            let expected: Vec<u32> = expected.map(|j| j as u32).collect();
-            assert_eq!(neighbors.near(i), expected);
-        }
+    fn fewer_are_listed_than_three_by_three_cells_hold() {
+        let mut agents = crowd(2000, 20.0);
+        let neighbors = listed(&mut agents);
+        let listed: usize = (0..2000).map(|i| near(&neighbors, i).len()).sum();
+        let area = listed as f64 / 2000.0 / 5.0;
+        assert!(area < 0.7 * (3.0 * 1.2_f64).powi(2), "{area} m²");
     }
 
     #[test]
-    fn nobody_is_missed_until_the_next_rebuild() {
+    fn nobody_is_missed_until_the_lists_are_stale() {
         let mut agents = crowd(400, 12.0);
-        let mut neighbors = Neighbors::default();
-        neighbors.sort(&mut agents, ranges());
-        neighbors.list_agents(&agents, true);
-        for (i, r) in agents.position.iter_mut().enumerate() {
-            let angle = i as f64;
-            *r += Vector::new(angle.cos(), angle.sin()) * 0.18;
-        }
-        for i in 0..agents.len() {
-            let r_i = agents.position[i];
-            let around: Vec<usize> = neighbors.around(r_i, 5.0).flatten().collect();
-            for j in (0..agents.len()).filter(|&j| j != i) {
-                let distance = (r_i - agents.position[j]).norm();
-                assert!(distance >= 1.0 || neighbors.near(i).contains(&(j as u32)));
-                assert!(distance >= 5.0 || around.contains(&j));
+        let mut neighbors = listed(&mut agents);
+        for _ in 0..2 {
+            assert!(!neighbors.are_stale());
+            for (i, r) in agents.position.iter_mut().enumerate() {
+                let angle = i as f64;
+                *r += Vector::new(angle.cos(), angle.sin()) * 0.05;
             }
+            neighbors.moved(0.05);
+            for i in 0..agents.len() {
+                let r_i = agents.position[i];
+                let around: Vec<usize> = neighbors.around(r_i, 5.0).flatten().collect();
+                let near = near(&neighbors, i);
+                for j in (0..agents.len()).filter(|&j| j != i) {
+                    let distance = (r_i - agents.position[j]).norm();
+                    assert!(distance >= 1.0 || near.contains(&j));
+                    assert!(distance >= 5.0 || around.contains(&j));
+                }
+            }
+            // Lists made anew on the old cells hold as long.
+            neighbors.list_agents(&agents);
         }
+        neighbors.moved(1e-6);
+        assert!(neighbors.are_stale());
     }
 
     #[test]
     fn the_grid_stays_small_when_somebody_is_far_away() {
         let mut agents = crowd(50, 5.0);
         agents.enter(NewAgent::at(Vector::new(1e9, -1e9), Vector::zeros(), 0), 0);
-        let mut neighbors = Neighbors::default();
-        neighbors.sort(&mut agents, ranges());
-        neighbors.list_agents(&agents, true);
+        let neighbors = listed(&mut agents);
         assert!(neighbors.grid.cells() < 10_000);
         let loner = agents.index_of(50).unwrap();
-        assert!(neighbors.near(loner).is_empty());
+        assert_eq!(near(&neighbors, loner), [loner]);
     }
 }

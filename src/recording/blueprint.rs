@@ -15,15 +15,11 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 use rerun::{AsComponents, Color, EntityPath, Points2D, RecordingStream, RecordingStreamBuilder};
 
 use super::error::RecordingError;
-use super::layers::Layers;
-use super::{APPLICATION, RecordingOptions, SIM_TIME, crowd, geometry, text};
-use crate::math::Vector;
+use super::{APPLICATION, DebugAgents, RecordingOptions, SIM_TIME, crowd, geometry, text};
 use crate::scene::Region;
 
-/// Half the side of the part of the plane that the debug view shows round an agent, metres.
-const FOCUS: f64 = 3.0;
-/// Length of the marked stretch of time, seconds.
-const MARKED: f64 = 10.0;
+/// Length of the loop that plays first, seconds.
+const LOOP: f64 = 10.0;
 const BACKGROUND: [u8; 3] = [22, 23, 29];
 /// Light enough for agents at rest, which are black.
 const SPEED_BACKGROUND: [u8; 3] = [72, 75, 88];
@@ -33,17 +29,26 @@ const DIM: [u8; 3] = [64, 68, 84];
 /// A property of a view that rerun's blueprint has no setter for: its entity and its value.
 type Property = (EntityPath, Box<dyn AsComponents>);
 
-/// Sends the default blueprint; the debug view shows the surroundings of `focus`.
+/// What the layout depends on besides the options.
+#[derive(Debug, Clone, Copy)]
+pub enum Opening {
+    /// Nothing is there yet: everything stands still at the start.
+    Empty,
+    /// All is there: the seconds to look at first play, and the debug view shows this, or as much as the
+    /// crowd views. The viewer would not go to a time that it has not read yet.
+    Whole(Option<Region>),
+}
+
+/// Sends the default blueprint.
 pub fn send(
     stream: &RecordingStream,
     options: &RecordingOptions,
-    layers: &Layers,
-    focus: Option<Vector>,
+    opening: Opening,
 ) -> Result<(), RecordingError> {
     if !stream.is_enabled() {
         return Ok(()); // Sending would panic.
     }
-    let (blueprint, properties) = layout(options, layers, focus);
+    let (blueprint, properties) = layout(options, opening);
     let (memory, storage) = RecordingStreamBuilder::new(APPLICATION)
         .send_properties(false)
         .memory()?;
@@ -78,11 +83,7 @@ pub fn send(
     Ok(())
 }
 
-fn layout(
-    options: &RecordingOptions,
-    layers: &Layers,
-    focus: Option<Vector>,
-) -> (Blueprint, Vec<Property>) {
+fn layout(options: &RecordingOptions, opening: Opening) -> (Blueprint, Vec<Property>) {
     let geometry = "+ /world/geometry/**";
     let agents = format!("+ /{}", crowd::ENTITY);
     let crowd = |name: &str| {
@@ -98,14 +99,17 @@ fn layout(
     add_properties(&mut properties, &by_density, &options.view, BACKGROUND);
     add_properties(&mut properties, &by_speed, &options.view, SPEED_BACKGROUND);
     let mut below = Vec::new();
-    if !layers.is_empty() {
+    if options.debug != DebugAgents::None {
         let forces = Spatial2DView::new("Forces")
             .with_origin("/")
             .with_contents([geometry, agents.as_str(), "+ /world/debug/**"])
             .with_overrides(crowd::ENTITY, [dim_colors()])
             .into();
-        let around = focus.map_or(options.view, around);
-        add_properties(&mut properties, &forces, &around, BACKGROUND);
+        let shown = match opening {
+            Opening::Whole(Some(focus)) => focus,
+            Opening::Whole(None) | Opening::Empty => options.view,
+        };
+        add_properties(&mut properties, &forces, &shown, BACKGROUND);
         below.push(forces);
     }
     below.extend([plots(), texts()]);
@@ -119,19 +123,26 @@ fn layout(
         .with_auto_layout(false)
         .with_blueprint_panel(BlueprintPanel::from_state(PanelState::Collapsed))
         .with_selection_panel(SelectionPanel::from_state(PanelState::Collapsed))
-        .with_time_panel(time_panel(options.opens_at));
+        .with_time_panel(time_panel(options, opening));
     (blueprint, properties)
 }
 
-/// The seconds to look at first are marked: opening there is beyond a blueprint of rerun 0.36.
-fn time_panel(opens_at: f64) -> TimePanel {
-    let marked = [opens_at, opens_at + MARKED].map(TimeInt::from_secs);
-    TimePanel::new()
+/// A blueprint of rerun 0.36 has no current time, but a loop that plays begins where it is told to:
+/// the seconds to look at first.
+fn time_panel(options: &RecordingOptions, opening: Opening) -> TimePanel {
+    let panel = TimePanel::new()
         .with_state(PanelState::Collapsed)
-        .with_timeline(SIM_TIME)
-        .with_time_selection(marked[0]..=marked[1])
-        .with_loop_mode(LoopMode::Off)
-        .with_play_state(PlayState::Paused)
+        .with_timeline(SIM_TIME);
+    let start = options.opens_at;
+    let end = (start + LOOP).min(options.ends_at);
+    if matches!(opening, Opening::Empty) || end <= start {
+        return panel.with_play_state(PlayState::Paused);
+    }
+    let [start, end] = [start, end].map(TimeInt::from_secs);
+    panel
+        .with_time_selection(start..=end)
+        .with_loop_mode(LoopMode::Selection)
+        .with_play_state(PlayState::Playing)
 }
 
 /// The crowd's points with the second colouring.
@@ -206,12 +217,4 @@ fn add_properties(
         at(format!("ViewContents/overrides/{obstacles}/visualizers")),
         Box::new(EntityBehavior::new().with_interactive(false)),
     ));
-}
-
-fn around(center: Vector) -> Region {
-    let half = Vector::repeat(FOCUS);
-    Region {
-        min: center - half,
-        max: center + half,
-    }
 }

@@ -9,6 +9,10 @@ use crate::simulation::Simulation;
 
 /// Parts of an arc in the outline of a hidden region.
 const ARC_STEPS: usize = 24;
+/// What the debug view shows round an agent, metres.
+const FOCUS: f64 = 3.0;
+/// What it shows round a rectangle, as a share of its sides.
+const MARGIN: f64 = 0.05;
 
 /// Who is laid open.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,14 +69,30 @@ impl Debug {
         chosen.filter_map(|i| Open::of(simulation, i)).collect()
     }
 
-    /// Where the first debug agent is now; of several ids, the first given.
-    pub fn focus(&self, simulation: &Simulation) -> Option<Vector> {
+    /// The part of the plane to look at: the rectangle asked for, or the surroundings of the first id
+    /// given that is there now.
+    pub fn focus(&self, simulation: &Simulation) -> Option<Region> {
         let agents = simulation.frame().agents;
-        let first = match &self.who {
-            DebugAgents::Ids(ids) => ids.iter().find_map(|&id| agents.index_of(id)),
-            _ => self.among(simulation).first().copied(),
-        };
-        Some(agents.position[first?])
+        match &self.who {
+            DebugAgents::Region(region) => {
+                let margin = (region.max - region.min) * MARGIN;
+                Some(grown(*region, margin))
+            }
+            DebugAgents::Ids(ids) => {
+                let first = ids.iter().find_map(|&id| agents.index_of(id))?;
+                let (min, max) = (agents.position[first], agents.position[first]);
+                Some(grown(Region { min, max }, Vector::repeat(FOCUS)))
+            }
+            DebugAgents::All | DebugAgents::None => None,
+        }
+    }
+}
+
+/// `region` with `margin` more on every side.
+fn grown(region: Region, margin: Vector) -> Region {
+    Region {
+        min: region.min - margin,
+        max: region.max + margin,
     }
 }
 

@@ -1,6 +1,6 @@
 //! What stands still: walls, obstacles and goals, logged once.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rerun::components::ImageFormat;
 use rerun::{
@@ -133,17 +133,35 @@ fn log_goals(stream: &RecordingStream, scene: &Scene) -> Result<(), RecordingErr
         .with_colors([GOAL])
         .with_draw_order(6.0);
     if goals.len() <= NAMED_GOALS {
-        let label = |group: u16| match scene.groups.get(usize::from(group)) {
-            Some(group) if scene.groups.len() > 1 => format!("goal of {}", group.name),
-            _ => "goal".to_owned(),
-        };
-        points = points.with_labels(goals.iter().map(|&(_, group)| label(group)));
+        points = points.with_labels(labels(scene, &goals));
     }
     Ok(stream.log_static("world/geometry/goals", &points)?)
 }
 
+/// One name for all goals of the same groups, at the first of them.
+fn labels(scene: &Scene, goals: &[(Vector, BTreeSet<u16>)]) -> Vec<String> {
+    let mut named = BTreeSet::new();
+    let label = |(_, groups): &(Vector, BTreeSet<u16>)| match named.insert(groups.clone()) {
+        true => label(scene, groups),
+        false => String::new(),
+    };
+    goals.iter().map(label).collect()
+}
+
+/// What a goal is called.
+fn label(scene: &Scene, of: &BTreeSet<u16>) -> String {
+    if of.len() == scene.groups.len() {
+        return "goal".to_owned();
+    }
+    let groups = of
+        .iter()
+        .filter_map(|&group| scene.groups.get(usize::from(group)));
+    let names: BTreeSet<&str> = groups.map(|group| group.name.as_str()).collect();
+    format!("goal of {}", Vec::from_iter(names).join(", "))
+}
+
 /// The different goals and whose they are; of a source with a goal for each those of its first entry.
-fn goals(scene: &Scene) -> Vec<(Vector, u16)> {
+fn goals(scene: &Scene) -> Vec<(Vector, BTreeSet<u16>)> {
     let own = scene.agents.iter().map(|agent| (agent.goal, agent.group));
     let entering = scene.sources.iter().flat_map(|source| {
         let goals: Vec<Vector> = match source.goal {
@@ -156,10 +174,12 @@ fn goals(scene: &Scene) -> Vec<(Vector, u16)> {
         goals.into_iter().map(|goal| (goal, source.group))
     });
     let millimetres = |x: f64| (x * 1000.0).round() as i64;
-    let different: BTreeMap<_, _> = own
-        .chain(entering)
-        .map(|(goal, group)| ((millimetres(goal.x), millimetres(goal.y)), (goal, group)))
-        .collect();
+    let mut different = BTreeMap::new();
+    for (goal, group) in own.chain(entering) {
+        let place = (millimetres(goal.x), millimetres(goal.y));
+        let (_, groups) = different.entry(place).or_insert((goal, BTreeSet::new()));
+        groups.insert(group);
+    }
     different.into_values().take(GOALS).collect()
 }
 

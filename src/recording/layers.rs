@@ -15,6 +15,8 @@ use crate::scene::Scene;
 
 /// Length of the arrow of a goal force that acts on somebody at rest, metres, before rounding.
 const GOAL_ARROW: f64 = 0.5;
+/// With more agents laid open at once their ids would hide everything; a click still tells them.
+const MOST_LABELS: usize = 40;
 
 /// Length of an arrow in metres for an acceleration of 1 m/s²: such that the weakest goal force of
 /// `scene` can be seen.
@@ -102,11 +104,6 @@ impl Layers {
             layers: layers.collect(),
             metres_per_acceleration: metres_per_acceleration(scene),
         }
-    }
-
-    /// Is there nothing to show?
-    pub fn is_empty(&self) -> bool {
-        self.layers.is_empty()
     }
 
     pub fn log_style(&self, stream: &RecordingStream) -> Result<(), RecordingError> {
@@ -225,6 +222,8 @@ impl Kind {
             Self::Labels => {
                 let labels = open.iter().map(|agent| agent.breakdown.id.to_string());
                 let points = Points2D::update_fields().with_positions(positions(open));
+                let readable = open.len() <= MOST_LABELS;
+                let labels = labels.filter(|_| readable);
                 (Box::new(points.with_labels(labels)), open.len())
             }
             Self::Kernels => {

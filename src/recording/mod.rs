@@ -38,6 +38,7 @@ use rerun::{RecordingStream, RecordingStreamBuilder};
 
 use crate::scene::Region;
 use crate::simulation::{Event, Simulation};
+use blueprint::Opening;
 use debug::Debug;
 use writer::Writer;
 
@@ -51,12 +52,16 @@ const SIM_TIME: &str = "sim_time";
 pub struct RecordingOptions {
     /// What it is called in the viewer, for example the scenario's name.
     pub title: String,
+    /// What it shows, in a line; may be empty.
+    pub description: String,
     /// The scenario as text, in Markdown.
     pub document: String,
     /// The part of the plane that the crowd views show.
     pub view: Region,
     /// The time to look at first, seconds.
     pub opens_at: f64,
+    /// The end of the run, as far as it is known; what is played first does not go beyond it.
+    pub ends_at: f64,
     /// Who is laid open.
     pub debug: DebugAgents,
 }
@@ -70,9 +75,11 @@ pub struct Recorder {
     stream: RecordingStream,
     writer: Writer,
     debug: Debug,
-    opens_at: f64,
-    /// Is the time to look at first over, and the debug view in its place?
+    options: RecordingOptions,
+    /// Has the time to look at first come?
     opened: bool,
+    /// What the debug view shows.
+    focus: Option<Region>,
     progress: Progress,
 }
 
@@ -95,7 +102,7 @@ impl Recorder {
         stream.set_log_time_enabled(false);
         stream.send_recording_name(options.title.clone())?;
         let layers = layers::Layers::new(scene, &options.debug);
-        blueprint::send(&stream, options, &layers, None)?;
+        blueprint::send(&stream, options, Opening::Empty)?;
         text::log_document(&stream, scene, options)?;
         geometry::log(&stream, scene)?;
         crowd::log_style(&stream)?;
@@ -104,11 +111,12 @@ impl Recorder {
         stream.flush_blocking()?;
         Ok(Self {
             path: path.to_owned(),
-            writer: Writer::start(stream.clone(), options.clone(), layers)?,
+            writer: Writer::start(stream.clone(), layers)?,
             stream,
             debug: Debug::new(options.debug.clone()),
-            opens_at: options.opens_at,
+            options: options.clone(),
             opened: false,
+            focus: None,
             progress: Progress::default(),
         })
     }
@@ -130,11 +138,12 @@ impl Recorder {
         snapshot.ms_per_frame = ms_per_frame;
         snapshot.evacuated = self.progress.count_arrivals(simulation);
         snapshot.events = self.progress.new_events(simulation);
-        snapshot.opens_here = !self.opened && snapshot.time >= self.opens_at;
-        if snapshot.opens_here {
-            self.opened = true;
-            snapshot.focus = self.debug.focus(simulation);
+        snapshot.opens_here = !self.opened && snapshot.time >= self.options.opens_at;
+        // A run may end before that time; then the debug view shows somebody who was there first.
+        if snapshot.opens_here || self.focus.is_none() {
+            self.focus = self.debug.focus(simulation).or(self.focus);
         }
+        self.opened |= snapshot.opens_here;
         self.writer.write(snapshot)
     }
 
@@ -144,6 +153,8 @@ impl Recorder {
     /// Something could not be written: the disk is full, for example.
     pub fn finish(mut self) -> Result<(), RecordingError> {
         self.writer.finish()?;
+        self.stream.flush_blocking()?;
+        blueprint::send(&self.stream, &self.options, Opening::Whole(self.focus))?;
         self.stream.flush_blocking()?;
         drop(self.stream); // Joins rerun's writer, which adds the footer and only logs its failure.
         read::check_footer(&self.path)

@@ -27,8 +27,6 @@ pub struct Snapshot {
     pub open: Vec<Open>,
     /// Is this the frame to look at first?
     pub opens_here: bool,
-    /// Where the debug view then shows somebody.
-    pub focus: Option<Vector>,
 }
 
 impl Snapshot {

@@ -93,8 +93,7 @@ pub fn log_events(stream: &RecordingStream, events: &[(f64, Event)]) -> Result<(
     Ok(())
 }
 
-/// Marks the current time in the log of events; a click there leads to it. The viewer itself always
-/// opens at the first frame: its blueprint has no time.
+/// Marks the current time in the log of events; a click there leads to it.
 pub fn log_bookmark(stream: &RecordingStream) -> Result<(), RecordingError> {
     let bookmark = TextLog::new("Look here first.").with_level(TextLogLevel::INFO);
     Ok(stream.log("log", &bookmark)?)

@@ -20,9 +20,11 @@ pub fn log_document(
     options: &RecordingOptions,
 ) -> Result<(), RecordingError> {
     let text = format!(
-        "{}\n\n{}",
+        "# {}\n\n{}\n\n{}\n{}\n",
+        options.title,
+        options.description,
+        legend(scene, options),
         options.document.trim_end(),
-        legend(scene, options)
     );
     stream.log_static(DOCUMENT, &TextDocument::from_markdown(text))?;
     let profiles: Vec<&str> = scene
@@ -51,7 +53,7 @@ fn legend(scene: &Scene, options: &RecordingOptions) -> String {
          * Speed colours (inferno): black 0, red {:.1}, pale yellow {SPEED_RANGE} m/s and more.\n\
          * Click an agent: `agent:id`, `agent:density` ρ and `agent:rest_density` ρ⁰ in P/m² (three \
          digits), `agent:pressure` p = k (ρ − ρ⁰).\n\
-         * Look first at t = {} s.\n",
+         * Look first at t = {} s, where the marked loop begins.\n",
         0.6 * DENSITY_RANGE,
         0.5 * SPEED_RANGE,
         options.opens_at,

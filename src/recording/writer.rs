@@ -7,7 +7,7 @@ use rerun::RecordingStream;
 
 use super::error::RecordingError;
 use super::snapshot::Snapshot;
-use super::{RecordingOptions, blueprint, crowd, layers, set_time, stats};
+use super::{crowd, layers, set_time, stats};
 
 /// Snapshots under way at most; with more the simulation waits.
 const QUEUE: usize = 4;
@@ -24,23 +24,17 @@ pub struct Writer {
 /// The thread's end.
 struct Rows {
     stream: RecordingStream,
-    options: RecordingOptions,
     crowd: crowd::Crowd,
     layers: layers::Layers,
 }
 
 impl Writer {
     /// Starts the thread.
-    pub fn start(
-        stream: RecordingStream,
-        options: RecordingOptions,
-        layers: layers::Layers,
-    ) -> Result<Self, RecordingError> {
+    pub fn start(stream: RecordingStream, layers: layers::Layers) -> Result<Self, RecordingError> {
         let (snapshots, queue) = sync_channel(QUEUE);
         let (give_back, used) = channel();
         let rows = Rows {
             stream,
-            options,
             crowd: crowd::Crowd::default(),
             layers,
         };
@@ -101,8 +95,6 @@ impl Rows {
         stats::log(&self.stream, snapshot)?;
         if snapshot.opens_here {
             stats::log_bookmark(&self.stream)?;
-            let layers = &self.layers;
-            blueprint::send(&self.stream, &self.options, layers, snapshot.focus)?;
         }
         Ok(())
     }

@@ -9,7 +9,7 @@ use std::time::Instant;
 use super::case::{Case, CaseResult, Key};
 use super::error::ReproduceError;
 use super::store::{Found, Store};
-use crate::drive::drive;
+use crate::drive::{Then, drive, unless_over};
 use crate::metrics::Metrics;
 use crate::scenario::Scenario;
 use crate::simulation::{Fault, Simulation};
@@ -217,13 +217,13 @@ fn compute(
     let probes = case.probes();
     let mut observers: Vec<_> = probes.iter().map(|p| p.begin(&mut simulation)).collect();
     let duration = scenario.duration_secs;
-    drive(&mut simulation, scenario, duration, |simulation, _| {
+    drive(&mut simulation, duration, |simulation, _| {
         metrics.observe(simulation);
         for observer in &mut observers {
             observer.observe(simulation);
         }
         tell(simulation.frame().clock.time() / duration.max(f64::MIN_POSITIVE));
-        Ok::<(), Fault>(())
+        Ok::<Then, Fault>(unless_over(simulation, scenario))
     })?;
     let kept = probes.iter().zip(observers);
     let arrivals = &simulation.outcome().arrivals;

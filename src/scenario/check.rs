@@ -46,7 +46,7 @@ pub(super) fn scenario(document: &Value, fallback_name: &str) -> Result<Scenario
     let choice = choice.unwrap_or_else(|| ProfileChoice::Named(DEFAULT_PROFILE.to_owned()));
     let blend = profiles::blend(&choice, &file.parameters.0).under("profile")?;
     file.goal.map(|goal| point("goal", goal)).transpose()?;
-    Crowd::new(&file, &blend, &mut scene, duration_secs).enter()?;
+    let entering = Crowd::new(&file, &blend, &mut scene, duration_secs).enter()?;
     scene.pushes = pushes(&file.events)?;
     Ok(Scenario {
         name,
@@ -55,7 +55,10 @@ pub(super) fn scenario(document: &Value, fallback_name: &str) -> Result<Scenario
         stop: stop(&file.stop.0).under("stop")?,
         measurements: measurements(&file.measurements)?,
         view: view(file.view.as_ref(), &scene).under("view")?,
-        debug_agents: without_repetition(&file.debug_agents)?,
+        debug_agents: match &file.debug_agents {
+            Some(ids) => without_repetition(ids)?,
+            None => spread(entering),
+        },
         profile_name: blend.name,
         document: document.clone(),
         scene,
@@ -92,6 +95,7 @@ fn empty_scene(file: &File) -> Result<Scene, Problem> {
         clock: Clock::new(time_step, coarse_every),
         integrator: file.integrator,
         wall_method: file.wall_method,
+        precision: file.precision,
         preferred_speed: PREFERRED_SPEED.check("preferred_speed", preferred_speed)?,
         max_speed: MAX_SPEED.check("max_speed", max_speed)?,
         ..Scene::with_obstacles(obstacles)
@@ -227,6 +231,14 @@ fn surroundings(scene: &Scene) -> Region {
         min: low - margin,
         max: high + margin,
     }
+}
+
+/// A dozen ids evenly among `entering` agents, all if there are fewer.
+fn spread(entering: u64) -> Vec<u32> {
+    const DOZEN: u64 = 12;
+    let count = entering.min(DOZEN);
+    let ids = (0..count).map(|k| (2 * k + 1) * entering / (2 * count));
+    ids.map(|id| id as u32).collect() // at most MOST_AGENTS
 }
 
 fn without_repetition(ids: &[u32]) -> Result<Vec<u32>, Problem> {

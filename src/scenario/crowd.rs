@@ -58,8 +58,8 @@ impl<'a> Crowd<'a> {
         }
     }
 
-    /// Single agents, then grids, then sources.
-    pub(super) fn enter(mut self) -> Result<(), Problem> {
+    /// Single agents, then grids, then sources; returns how many enter in the whole run.
+    pub(super) fn enter(mut self) -> Result<u64, Problem> {
         for (k, Object(agent)) in self.file.agents.iter().enumerate() {
             self.agent(agent).under(&format!("agents[{k}]"))?;
         }
@@ -71,7 +71,7 @@ impl<'a> Crowd<'a> {
             let name = format!("sources[{k}]");
             self.source(source, &name).under(&name)?;
         }
-        Ok(())
+        Ok(self.entering)
     }
 
     fn agent(&mut self, agent: &file::Agent) -> Result<(), Problem> {

@@ -23,6 +23,57 @@ pub(super) fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
     })
 }
 
+/// Writes a document for people: what fits into a line stands in one.
+pub(super) fn write(value: &Value) -> String {
+    indented(value, 0)
+}
+
+fn indented(value: &Value, indent: usize) -> String {
+    /// Characters in a line at most.
+    const WIDTH: usize = 76;
+    let line = in_a_line(value);
+    if indent + line.chars().count() <= WIDTH {
+        return line;
+    }
+    let (open, close, items) = match value {
+        Value::Array(list) => {
+            let items = list.iter().map(|item| indented(item, indent + 2));
+            ('[', ']', items.collect::<Vec<_>>())
+        }
+        Value::Object(object) => {
+            let entry = |(key, value): (&String, &Value)| {
+                format!(
+                    "{}: {}",
+                    Value::from(key.as_str()),
+                    indented(value, indent + 2)
+                )
+            };
+            ('{', '}', object.iter().map(entry).collect())
+        }
+        _ => return line,
+    };
+    let [outer, inner] = [indent, indent + 2].map(|n| " ".repeat(n));
+    let items = items.join(&format!(",\n{inner}"));
+    format!("{open}\n{inner}{items}\n{outer}{close}")
+}
+
+fn in_a_line(value: &Value) -> String {
+    match value {
+        Value::Array(list) => {
+            let items: Vec<String> = list.iter().map(in_a_line).collect();
+            format!("[{}]", items.join(", "))
+        }
+        Value::Object(object) => {
+            let entry = |(key, value): (&String, &Value)| {
+                format!("{}: {}", Value::from(key.as_str()), in_a_line(value))
+            };
+            let items: Vec<String> = object.iter().map(entry).collect();
+            format!("{{{}}}", items.join(", "))
+        }
+        scalar => scalar.to_string(),
+    }
+}
+
 /// A JSON value whose objects have every key once.
 struct Document(Value);
 
@@ -98,6 +149,17 @@ mod tests {
         let text = r#"{"a": [1, -2, 0.5, "x", null, true, {"b": {}}]}"#;
         let expected: Value = serde_json::from_str(text).unwrap();
         assert_eq!(read(text, "f").unwrap(), expected);
+    }
+
+    #[test]
+    fn what_is_written_reads_back_and_lists_of_numbers_stay_together() {
+        for shipped in super::super::SHIPPED {
+            let document = read(shipped.text, "f").unwrap();
+            let written = write(&document);
+            assert_eq!(read(&written, "f").unwrap(), document);
+            assert!(written.lines().count() <= shipped.text.lines().count() + 40);
+            assert!(written.lines().all(|line| line.chars().count() < 120));
+        }
     }
 
     #[test]

@@ -32,9 +32,9 @@ pub enum ScenarioError {
         problem: Problem,
     },
     /// The same, put there by a setting.
-    #[error("--set {setting}: {problem}")]
+    #[error("{setting}: {problem}")]
     Setting {
-        /// The setting as given.
+        /// The setting as given: `--set viscosity=-1`.
         setting: String,
         /// Where below the setting's own key, and why.
         problem: Problem,

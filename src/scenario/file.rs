@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::boundary::WallMethod;
 use crate::catalog::{NavigationKind, Parameters};
+use crate::pairs::Precision;
 use crate::scene::Integrator;
 
 /// Lower left and upper right corner.
@@ -51,6 +52,7 @@ pub(super) struct File {
     pub coarse_every: Option<u32>,
     pub integrator: Integrator,
     pub wall_method: WallMethod,
+    pub precision: Precision,
     pub preferred_speed: Option<f64>,
     pub max_speed: Option<f64>,
     pub profile: Option<ProfileChoice>,
@@ -64,7 +66,7 @@ pub(super) struct File {
     pub measurements: Vec<Measurement>,
     pub stop: Object<Stop>,
     pub view: Option<Object<View>>,
-    pub debug_agents: Vec<u32>,
+    pub debug_agents: Option<Vec<u32>>,
 }
 
 /// How agents behave, and what becomes of them.

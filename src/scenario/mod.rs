@@ -24,6 +24,7 @@ mod crowd;
 mod document;
 mod error;
 mod file;
+mod nested;
 mod profiles;
 mod range;
 mod setting;
@@ -31,6 +32,7 @@ mod settings;
 mod shipped;
 
 pub use error::{Problem, ScenarioError};
+pub use nested::NESTED;
 pub use setting::{Setting, SettingError};
 pub use settings::{SettingDoc, settings};
 pub use shipped::{SHIPPED, Shipped};
@@ -90,6 +92,11 @@ pub struct View {
 }
 
 impl Scenario {
+    /// The file with the settings in it, to be read by people and by [`parse`](Self::parse).
+    pub fn to_text(&self) -> String {
+        document::write(&self.document)
+    }
+
     /// Reads a scenario from JSON; `file` is what messages call it.
     ///
     /// # Errors
@@ -117,7 +124,7 @@ impl Scenario {
             let mut source = file.to_owned();
             if check::scenario(&given, &stem).is_ok() {
                 source.push_str(" with");
-                source.extend(settings.iter().map(|setting| format!(" --set {setting}")));
+                source.extend(settings.iter().map(|setting| format!(" {setting}")));
             }
             invalid(source, problem)
         })

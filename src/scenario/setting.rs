@@ -10,6 +10,7 @@ use super::settings::{self, TEXTS, settings};
 /// One change: `viscosity=5`, `seed=7`, `profile=sf`, `sources.0.rows=50`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setting {
+    /// What messages call it: `--set viscosity=5`.
     text: String,
     path: Vec<String>,
     value: Value,
@@ -56,7 +57,7 @@ impl FromStr for Setting {
             serde_json::from_str(value).unwrap_or_else(|_| as_text())
         };
         Ok(Self {
-            text: text.to_owned(),
+            text: format!("--set {text}"),
             path,
             value,
         })
@@ -70,6 +71,12 @@ impl std::fmt::Display for Setting {
 }
 
 impl Setting {
+    /// The same setting, which messages call `text`: `--seed 5`.
+    #[must_use]
+    pub fn typed_as(self, text: String) -> Self {
+        Self { text, ..self }
+    }
+
     /// The error for a problem at or below the changed value.
     pub(super) fn refused(&self, problem: Problem) -> ScenarioError {
         ScenarioError::Setting {

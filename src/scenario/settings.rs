@@ -195,7 +195,7 @@ pub fn settings() -> Vec<SettingDoc> {
         .collect()
 }
 
-fn scalars() -> [SettingDoc; 11] {
+fn scalars() -> [SettingDoc; 12] {
     let doc = |key, unit, default, range: &dyn ToString, description| SettingDoc {
         key,
         unit,
@@ -244,7 +244,7 @@ fn scalars() -> [SettingDoc; 11] {
             "frames",
             "Δt_coarse nearest to 0.1 s",
             &range::COARSE_EVERY,
-            "Δt_coarse: neighbours, RVO, sources and events; a whole number",
+            "Δt_coarse: RVO, sources and events; a whole number",
         ),
         doc(
             "integrator",
@@ -259,6 +259,13 @@ fn scalars() -> [SettingDoc; 11] {
             "representative",
             &"representative, exact or union",
             "how walls enter SPH",
+        ),
+        doc(
+            "precision",
+            "",
+            "mixed",
+            &"mixed or double",
+            "numbers for sums over pairs; mixed is faster and off by at most 1e-5",
         ),
         doc(
             "preferred_speed",
@@ -278,7 +285,7 @@ fn scalars() -> [SettingDoc; 11] {
             "profile",
             "",
             "sph",
-            &"a name (`sandbox list`), or a profile or blend in full",
+            &"a name (see `sandbox list`), or a profile or blend in full",
             "how agents behave that say nothing else",
         ),
     ]
@@ -342,7 +349,7 @@ fn containers() -> [SettingDoc; 11] {
         doc(
             "debug_agents",
             "a list of ids",
-            "agents that a recording lays open",
+            "agents that a recording lays open; without it a dozen",
         ),
     ]
 }

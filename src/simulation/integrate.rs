@@ -1,12 +1,11 @@
 //! Step 5: moving, stopping at walls, leaving at the goal.
 
-use std::sync::atomic::{AtomicU64, Ordering};
-
 use rayon::prelude::*;
 
-use super::{Arrival, Fault, Simulation, Stage, TASK};
+use super::{Arrival, Fault, Simulation, Stage};
 use crate::math::{Vector, clamp_length, is_finite};
-use crate::scene::Integrator;
+use crate::neighbors::BLOCK;
+use crate::scene::{Integrator, Scene};
 
 impl Simulation {
     /// Step 5: moves everybody by one frame and removes who has arrived.
@@ -38,36 +37,28 @@ impl Simulation {
     }
 
     fn move_agents(&mut self) {
-        let contained = AtomicU64::new(0);
         let dt = self.clock.time_step();
         let (scene, neighbors) = (&self.scene, &self.neighbors);
         let agents = &mut self.agents;
-        (
-            &mut agents.position,
-            &mut agents.velocity,
-            &self.fields.acceleration,
+        let total = (
+            agents.position.par_chunks_mut(BLOCK),
+            agents.velocity.par_chunks_mut(BLOCK),
+            self.fields.acceleration.par_chunks(BLOCK),
         )
             .into_par_iter()
             .enumerate()
-            .with_min_len(TASK)
-            .for_each(|(i, (position, velocity, acceleration))| {
-                let before = *velocity;
-                *velocity = clamp_length(before + acceleration * dt, scene.max_speed);
-                let step = match scene.integrator {
-                    Integrator::SemiImplicit => *velocity,
-                    // A velocity that an agent enters with may be too fast.
-                    Integrator::ForwardEuler => clamp_length(before, scene.max_speed),
-                };
-                let target = *position + step * dt;
-                let stopped = scene.walls.stop(*position, target, neighbors.near_walls(i));
-                *position = stopped.map_or(target, |(point, _)| point);
-                if let Some((_, wall)) = stopped {
-                    let normal = scene.walls.wall(wall).normal;
-                    *velocity -= normal * velocity.dot(&normal).min(0.0);
-                    contained.fetch_add(1, Ordering::Relaxed);
+            .map(|(b, (positions, velocities, accelerations))| {
+                let mut moves = Moves::default();
+                let motions = positions.iter_mut().zip(velocities).zip(accelerations);
+                for (k, ((position, velocity), &acceleration)) in motions.enumerate() {
+                    let walls = neighbors.near_walls(b * BLOCK + k);
+                    moves.make(scene, walls, dt, position, velocity, acceleration);
                 }
-            });
-        self.outcome.contained_moves += contained.into_inner();
+                moves
+            })
+            .reduce(Moves::default, Moves::and);
+        self.outcome.contained_moves += total.contained;
+        self.neighbors.moved(total.longest);
     }
 
     /// The first quantity that is no number, and whose it is.
@@ -116,6 +107,52 @@ impl Simulation {
             self.outcome.arrivals.append(&mut arrivals);
             self.agents.arrange(&staying);
             self.crowd_changed = true;
+        }
+    }
+}
+
+/// What happened in the moves of some agents.
+#[derive(Default)]
+struct Moves {
+    /// How many ended at a wall.
+    contained: u64,
+    /// The longest step, metres.
+    longest: f64,
+}
+
+impl Moves {
+    /// Moves one agent by one frame of `dt` seconds.
+    fn make(
+        &mut self,
+        scene: &Scene,
+        walls: &[u32],
+        dt: f64,
+        position: &mut Vector,
+        velocity: &mut Vector,
+        acceleration: Vector,
+    ) {
+        let (before, start) = (*velocity, *position);
+        *velocity = clamp_length(before + acceleration * dt, scene.max_speed);
+        let step = match scene.integrator {
+            Integrator::SemiImplicit => *velocity,
+            // A velocity that an agent enters with may be too fast.
+            Integrator::ForwardEuler => clamp_length(before, scene.max_speed),
+        };
+        let target = start + step * dt;
+        let stopped = scene.walls.stop(start, target, walls);
+        *position = stopped.map_or(target, |(point, _)| point);
+        if let Some((_, wall)) = stopped {
+            let normal = scene.walls.wall(wall).normal;
+            *velocity -= normal * velocity.dot(&normal).min(0.0);
+            self.contained += 1;
+        }
+        self.longest = self.longest.max((*position - start).norm());
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self {
+            contained: self.contained + other.contained,
+            longest: self.longest.max(other.longest),
         }
     }
 }

@@ -8,6 +8,7 @@ use sandbox::breakdown::Breakdown;
 use sandbox::catalog::{self, Parameters};
 use sandbox::geometry::Polygon;
 use sandbox::math::Vector;
+use sandbox::pairs::Precision;
 use sandbox::profile::Blend;
 use sandbox::scene::{Group, Scene};
 use sandbox::simulation::Simulation;
@@ -52,9 +53,10 @@ pub fn blend_with(name: &str, parameters: &Parameters) -> Blend {
     catalog::named(name, parameters).unwrap().unwrap()
 }
 
-/// A scene with one group, number 0, whose agents stay for ever.
+/// A scene in double precision with one group, number 0, whose agents stay for ever.
 pub fn scene(obstacles: Vec<Polygon>, blend: Blend) -> Scene {
     let mut scene = Scene::with_obstacles(obstacles);
+    scene.precision = Precision::Double;
     scene.add_group(Group {
         name: "all".to_owned(),
         blend,

@@ -1,0 +1,29 @@
+//! The keys of the objects inside a file's lists, for the list of settings.
+
+/// The keys of the objects that stand in a file's lists, in words; `?` marks those that may be missing.
+pub const NESTED: [(&str, &str); 9] = [
+    (
+        "agents",
+        "position, velocity?, radius?, mass?, goal?, mean_density?, profile?, remove_within?, counted?",
+    ),
+    (
+        "grids",
+        "min, max, columns, rows, name?, jitter?, goal? or goal_offset?, profile?, remove_within?, counted?",
+    ),
+    ("sources", "those of grids, every_secs, start_secs?, times?"),
+    (
+        "events",
+        "at_secs, for_secs, region, name?, goal_scale?, ignore_contact?, ignore_sph?",
+    ),
+    (
+        "measurements",
+        "density (at_secs, region?), flow_of_first (arrivals), flow_until (until_secs), evacuated ()",
+    ),
+    ("stop", "when_empty?, idle_secs?"),
+    ("view", "region, opens_at_secs?"),
+    (
+        "profile",
+        "base, or navigation (goal, social or rvo) and sph?, or blend; name?, parameters?",
+    ),
+    ("profile.blend", "at_density, profile"),
+];

@@ -1,0 +1,108 @@
+//! Mixed precision against double, on the same frozen states.
+
+mod common;
+
+use common::{blend_with, room, scene, vector};
+use proptest::prelude::*;
+use sandbox::agents::NewAgent;
+use sandbox::catalog::Parameters;
+use sandbox::kernel;
+use sandbox::math::{Vector, direction};
+use sandbox::pairs::Precision;
+use sandbox::scene::Scene;
+use sandbox::simulation::Simulation;
+
+/// The largest error of an acceleration, over the sum of the magnitudes of what it is a sum of.
+const BOUND: f64 = 1e-5;
+
+/// 300 people at random in a room of 8 m × 8 m whose lower left corner is at `corner`, some of them
+/// almost in one place.
+fn crowd(corner: Vector, stretch: f64, seed: u64) -> Scene {
+    let parameters = Parameters {
+        viscosity: Some(5.0),
+        ..Parameters::default()
+    };
+    let mut scene = scene(vec![room(8.0, 1.0)], blend_with("sph", &parameters));
+    if corner != Vector::zeros() || stretch != 1.0 {
+        scene.walls = Scene::default().walls;
+    }
+    scene.seed = seed;
+    let mut runner = sandbox::random::stream(seed, sandbox::random::Purpose::Placement, 0, 0);
+    let mut next = || rand::Rng::random_range(&mut runner, 0.0..1.0_f64);
+    for k in 0..300 {
+        let place = corner + vector(8.0 * next(), 8.0 * next()) * stretch;
+        let near = scene.agents.last().filter(|_| k % 10 == 9);
+        let position = near.map_or(place, |other: &NewAgent| {
+            other.position + vector(next(), next()) * 1e-3
+        });
+        scene.agents.push(NewAgent {
+            velocity: vector(next() - 0.5, next() - 0.5) * 3.0,
+            mean_density: Some(8.0 * next()),
+            ..NewAgent::at(position, corner + vector(9.0, 4.0), 0)
+        });
+    }
+    scene
+}
+
+fn evaluated(mut scene: Scene, precision: Precision) -> Simulation {
+    scene.precision = precision;
+    common::evaluated(scene)
+}
+
+/// Σ_j |a_ij| over all forces between agents, pair by pair, with the walls' and the goal's.
+fn magnitude(simulation: &Simulation, i: usize) -> f64 {
+    let frame = simulation.frame();
+    let (agents, fields) = (frame.agents, frame.fields);
+    let volume = |j: usize| agents.mass[j] / fields.density[j];
+    let pairs = frame.near(i, 1.0).map(|(j, r_ij)| {
+        let p = 0.5 * (fields.pressure[i].abs() + fields.pressure[j].abs());
+        let pressure = volume(j) * p * kernel::pressure_gradient(r_ij, 1.0).norm();
+        let dv = (agents.velocity[j] - agents.velocity[i]).norm();
+        let viscosity = 5.0 * volume(j) * dv * kernel::viscosity_laplacian(r_ij.norm(), 1.0);
+        let overlap = (agents.radius[i] + agents.radius[j] - r_ij.norm()).max(0.0);
+        let contact = (direction(r_ij) * overlap).norm() * 50.0 / agents.mass[i];
+        (pressure + viscosity) / fields.density[i] + contact
+    });
+    let rest = Simulation::blend(simulation, i).steps().len() as f64;
+    pairs.sum::<f64>() + rest
+}
+
+fn largest_error(scene: &Scene) -> f64 {
+    let double = evaluated(scene.clone(), Precision::Double);
+    let mixed = evaluated(scene.clone(), Precision::Mixed);
+    assert_eq!(double.frame().agents.id, mixed.frame().agents.id);
+    let error = |i: usize| {
+        let acceleration = |s: &Simulation| s.frame().fields.acceleration[i];
+        let difference = (acceleration(&double) - acceleration(&mixed)).norm();
+        difference / magnitude(&double, i)
+    };
+    (0..double.frame().agents.len())
+        .map(error)
+        .fold(0.0, f64::max)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn mixed_precision_stays_within_its_bound(seed in 0_u64..1_000_000) {
+        let error = largest_error(&crowd(Vector::zeros(), 1.0, seed));
+        prop_assert!(error < BOUND, "{error:e}");
+    }
+
+    #[test]
+    fn the_bound_holds_far_from_the_origin_and_for_a_strewn_crowd(
+        x in -1e6..1e6_f64,
+        y in -1e6..1e6_f64,
+        stretch in 0.3..1000.0_f64,
+    ) {
+        let error = largest_error(&crowd(vector(x, y), stretch, 1));
+        prop_assert!(error < BOUND, "{error:e} at ({x}, {y})");
+    }
+}
+
+#[test]
+fn mixed_precision_is_not_double() {
+    let error = largest_error(&crowd(Vector::zeros(), 1.0, 3));
+    assert!(error > 1e-9, "{error:e}");
+}
