@@ -27,10 +27,20 @@ fn main() -> io::Result<()> {
     let mut hasher = DefaultHasher::new();
     for file in files.iter().filter(|file| file.is_file()) {
         file.hash(&mut hasher);
-        fs::read(file)?.hash(&mut hasher);
+        for line in code(&fs::read_to_string(file)?) {
+            line.hash(&mut hasher);
+        }
     }
     println!("cargo::rustc-env=SANDBOX_ENGINE={:016x}", hasher.finish());
     Ok(())
+}
+
+/// What is left of a file without lines of comment and without its tests, which are its last module.
+fn code(text: &str) -> impl Iterator<Item = &str> {
+    let lines = text.lines().map(str::trim);
+    lines
+        .take_while(|line| *line != "#[cfg(test)]")
+        .filter(|line| !line.is_empty() && !line.starts_with("//"))
 }
 
 /// All files under `folder`, if there is one.

@@ -137,7 +137,9 @@ fn looking_at_a_frame_twice_changes_nothing() {
 #[test]
 fn a_density_asked_for_between_coarse_frames_misses_nobody() {
     for asked_at in 0..6 {
-        let mut simulation = Simulation::new(busy_room("sf")).unwrap();
+        let mut scene = busy_room("sf");
+        scene.precision = Precision::Double;
+        let mut simulation = Simulation::new(scene).unwrap();
         common::run(&mut simulation, asked_at);
         simulation.request_density_until(asked_at + 1);
         simulation.evaluate().unwrap();

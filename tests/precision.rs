@@ -16,7 +16,7 @@ use sandbox::simulation::Simulation;
 const BOUND: f64 = 1e-5;
 
 /// 300 people at random in a room of 8 m × 8 m whose lower left corner is at `corner`, some of them
-/// almost in one place.
+/// a millimetre apart.
 fn crowd(corner: Vector, stretch: f64, seed: u64) -> Scene {
     let parameters = Parameters {
         viscosity: Some(5.0),
@@ -33,7 +33,7 @@ fn crowd(corner: Vector, stretch: f64, seed: u64) -> Scene {
         let place = corner + vector(8.0 * next(), 8.0 * next()) * stretch;
         let near = scene.agents.last().filter(|_| k % 10 == 9);
         let position = near.map_or(place, |other: &NewAgent| {
-            other.position + vector(next(), next()) * 1e-3
+            other.position + vector(0.5 + next(), 0.5 + next()) * 1e-3
         });
         scene.agents.push(NewAgent {
             velocity: vector(next() - 0.5, next() - 0.5) * 3.0,

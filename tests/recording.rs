@@ -8,7 +8,7 @@ use sandbox::catalog::{self, Parameters};
 use sandbox::geometry::Polygon;
 use sandbox::math::Vector;
 use sandbox::recording::{
-    DebugAgents, Recorder, Recording, RecordingError, RecordingOptions, metres_per_acceleration,
+    DebugAgents, METRES_PER_ACCELERATION, Recorder, Recording, RecordingError, RecordingOptions,
 };
 use sandbox::scene::{Group, Region, Scene};
 use sandbox::simulation::Simulation;
@@ -133,7 +133,7 @@ fn ids_and_radii_are_logged_whenever_the_crowd_changes() {
 fn the_arrows_of_every_agent_laid_open_sum_to_their_total() {
     for profile in ["sf->sph", "rvo+sph"] {
         let (recording, _) = record(profile, DebugAgents::All, true, 20);
-        let unit = metres_per_acceleration(&scene(profile));
+        let unit = METRES_PER_ACCELERATION;
         let folder = "/world/debug/forces/";
         let mut sums: BTreeMap<(i64, [u64; 2]), Vector> = BTreeMap::new();
         let mut totals = sums.clone();

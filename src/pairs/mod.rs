@@ -28,7 +28,8 @@ pub enum Precision {
     /// All in double precision.
     Double,
     /// Distances from fixed-point coordinates, exact to some 10⁻⁹ m, products and sums in single
-    /// precision: an acceleration is off by at most 10⁻⁵ of the magnitudes that it is a sum of.
+    /// precision: an acceleration is off by at most 10⁻⁵ of the magnitudes that it is a sum of, as long
+    /// as agents are half a millimetre apart.
     #[default]
     Mixed,
 }

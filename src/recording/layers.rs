@@ -8,39 +8,16 @@ use super::debug::{DebugAgents, Open};
 use super::error::RecordingError;
 use super::geometry::xy;
 use crate::boundary::WallMethod;
-use crate::forces::goal::GoalForce;
 use crate::math::Vector;
 use crate::profile::Navigation;
 use crate::scene::Scene;
 
-/// Length of the arrow of a goal force that acts on somebody at rest, metres, before rounding.
-const GOAL_ARROW: f64 = 0.5;
 /// With more agents laid open at once their ids would hide everything; a click still tells them.
 const MOST_LABELS: usize = 40;
 
-/// Length of an arrow in metres for an acceleration of 1 m/s²: such that the weakest goal force of
-/// `scene` can be seen.
-pub fn metres_per_acceleration(scene: &Scene) -> f64 {
-    let steps = scene.groups.iter().flat_map(|group| group.blend.steps());
-    let scales = steps.filter_map(|step| match step.profile.navigation {
-        Navigation::Goal(goal) | Navigation::Social(goal, _) => Some(goal),
-        Navigation::Rvo(_) => None,
-    });
-    let from_rest =
-        |goal: GoalForce| goal.goal_scale * scene.preferred_speed / goal.relaxation_time;
-    let weakest = scales.map(from_rest).filter(|a| *a > 0.0).reduce(f64::min);
-    let usual = from_rest(GoalForce::default());
-    rounded(GOAL_ARROW / weakest.unwrap_or(usual).max(0.01 * usual))
-}
-
-/// The nearest of 1, 2 and 5 times a power of ten.
-fn rounded(x: f64) -> f64 {
-    let power = 10_f64.powf(x.log10().floor());
-    let digit = [1.0, 2.0, 5.0, 10.0].into_iter();
-    let distance = |digit: &f64| (digit * power / x).ln().abs();
-    let nearest = digit.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    nearest.map_or(x, |digit| digit * power)
-}
+/// Length of an arrow in metres for an acceleration of 1 m/s²: half a metre for the goal force of an
+/// average person at rest.
+pub const METRES_PER_ACCELERATION: f64 = 0.2;
 
 /// One entity under `world/debug`.
 struct Layer {
@@ -84,7 +61,6 @@ pub fn force_colors() -> impl Iterator<Item = (&'static str, &'static str)> {
 /// Logs the debug agents.
 pub struct Layers {
     layers: Vec<Layer>,
-    metres_per_acceleration: f64,
 }
 
 impl Layers {
@@ -102,7 +78,6 @@ impl Layers {
         });
         Self {
             layers: layers.collect(),
-            metres_per_acceleration: metres_per_acceleration(scene),
         }
     }
 
@@ -116,7 +91,7 @@ impl Layers {
     /// Logs one frame; what has just become empty is logged as empty, so that it goes out of sight.
     pub fn log(&mut self, stream: &RecordingStream, open: &[Open]) -> Result<(), RecordingError> {
         for layer in &mut self.layers {
-            let (data, count) = layer.kind.data(open, self.metres_per_acceleration);
+            let (data, count) = layer.kind.data(open, METRES_PER_ACCELERATION);
             if count > 0 || layer.shown {
                 stream.log(layer.entity.as_str(), data.as_ref())?;
             }
@@ -300,17 +275,4 @@ fn arrows(
         .with_origins(origins)
         .with_vectors(vectors);
     (Box::new(arrows), count)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn arrow_scales_are_round() {
-        assert_eq!(rounded(0.18), 0.2);
-        assert_eq!(rounded(1.79), 2.0);
-        assert_eq!(rounded(8.0), 10.0);
-        assert_eq!(metres_per_acceleration(&Scene::default()), 0.2);
-    }
 }

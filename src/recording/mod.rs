@@ -27,7 +27,7 @@ mod writer;
 
 pub use debug::DebugAgents;
 pub use error::RecordingError;
-pub use layers::metres_per_acceleration;
+pub use layers::METRES_PER_ACCELERATION;
 pub use read::Recording;
 
 use std::path::{Path, PathBuf};

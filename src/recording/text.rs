@@ -6,7 +6,7 @@ use rerun::external::arrow::array::{ArrayRef, Float64Array, StringArray, UInt64A
 use rerun::{AnyValues, RecordingStream, TextDocument};
 
 use super::error::RecordingError;
-use super::layers::{force_colors, metres_per_acceleration};
+use super::layers::{METRES_PER_ACCELERATION, force_colors};
 use super::{DebugAgents, RecordingOptions};
 use crate::colors::{DENSITY_RANGE, SPEED_RANGE};
 use crate::scene::Scene;
@@ -23,7 +23,7 @@ pub fn log_document(
         "# {}\n\n{}\n\n{}\n{}\n",
         options.title,
         options.description,
-        legend(scene, options),
+        legend(options),
         options.document.trim_end(),
     );
     stream.log_static(DOCUMENT, &TextDocument::from_markdown(text))?;
@@ -44,7 +44,7 @@ pub fn log_document(
     Ok(stream.send_property("run", &properties)?)
 }
 
-fn legend(scene: &Scene, options: &RecordingOptions) -> String {
+fn legend(options: &RecordingOptions) -> String {
     let mut legend = format!(
         "## Legend\n\
          * Metres, seconds, y up; mass 1 = an average person. (The viewer's own *hover position* counts \
@@ -62,9 +62,8 @@ fn legend(scene: &Scene, options: &RecordingOptions) -> String {
         legend += &format!(
             "* Agents laid open (`world/debug`): circle = kernel of radius h; tinted outline = hidden \
              region P_k behind a wall; dots at walls = nearest point r*, between = representative point \
-             r°. Arrows: each force's weighted acceleration, {} m long per m/s²; \
-             white = their sum.\n",
-            metres_per_acceleration(scene)
+             r°. Arrows: each force's weighted acceleration, {METRES_PER_ACCELERATION} m long per m/s²; \
+             white = their sum.\n"
         );
         for (name, color) in force_colors() {
             legend += &format!("  * `{name}`: {color}\n");

@@ -62,12 +62,13 @@ pub fn case(profile: &str, seed: u64) -> Case {
 /// Roughly, on one core.
 pub fn expected_secs(profile: &str) -> f64 {
     match profile {
-        "sph" => 0.6,
-        "sf->sph" => 2.5,
-        "rvo->sph" => 3.5,
-        "sf+sph" => 5.0,
-        "sf" => 9.0,
-        _ => 7.0,
+        "sph" => 0.5,
+        "sf->sph" => 3.0,
+        "rvo->sph" => 5.0,
+        "sf" => 6.0,
+        "sf+sph" => 7.5,
+        "rvo" => 8.5,
+        _ => 11.0,
     }
 }
 
