@@ -61,8 +61,22 @@ pub mod breakdown;
 
 pub mod scenario;
 
+pub mod drive;
+
+pub mod sound;
+
+pub mod wave;
+
+#[cfg(any(feature = "recording", feature = "plot"))]
+pub mod colors;
+
 #[cfg(feature = "recording")]
 pub mod recording;
+
+#[cfg(feature = "plot")]
+pub mod plot;
+
+pub mod reproduce;
 
 #[cfg(feature = "cli")]
 pub mod cli;

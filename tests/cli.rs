@@ -245,3 +245,15 @@ fn an_existing_file_is_replaced_only_by_force() {
         &["folder.rrd"],
     );
 }
+
+#[test]
+fn what_cannot_be_reproduced_is_told_in_plain_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    std::fs::write(&file, "").unwrap();
+    let out = file.to_str().unwrap();
+    refused(&["reproduce", "table3"], 2, &["table3", "table1"]);
+    refused(&["reproduce"], 2, &["WHAT"]);
+    refused(&["reproduce", "table1", "--seeds", "0"], 2, &["--seeds"]);
+    refused(&["reproduce", "table1", "--out", out], 1, &[out]);
+}

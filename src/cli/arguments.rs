@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 
+use super::reproduce;
 use crate::scenario::SHIPPED;
 
 const EXAMPLES: &str = "\
@@ -49,6 +51,11 @@ pub enum Command {
     /// Lay open the forces on single agents at one moment
     #[command(after_help = "Example: sandbox inspect evacuation --agent 17 --at 15 --json")]
     Inspect(InspectOptions),
+    /// Regenerate the paper's tables and figures (§6) beside the published ones
+    #[command(
+        after_help = format!("{}Example: sandbox reproduce table1 fig5 --seeds 3", reproduce::about())
+    )]
+    Reproduce(ReproduceOptions),
     /// List the scenarios and profiles, or the settings that --set takes
     #[command(after_help = "Example: sandbox list --settings")]
     List {
@@ -141,6 +148,22 @@ pub struct InspectOptions {
     /// Write the same as a recording for the Rerun viewer
     #[arg(long, value_name = "FILE.rrd")]
     pub save: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct ReproduceOptions {
+    /// Tables and figures, or all
+    #[arg(required = true, value_parser = PossibleValuesParser::new(reproduce::names()))]
+    pub what: Vec<String>,
+    /// Seeds per row of a table: 1, 2, …
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub seeds: u64,
+    /// Folder for the results; finished cases in it are not run again
+    #[arg(long, value_name = "DIR", default_value = "reproduction")]
+    pub out: PathBuf,
+    /// Cases to compute at once, each on one thread [default: all cores]
+    #[arg(long, value_parser = threads)]
+    pub threads: Option<usize>,
 }
 
 /// Where a scenario comes from.

@@ -1,6 +1,4 @@
-//! The drive loop: a scenario from its first frame to its end.
-
-use std::time::Instant;
+//! A scenario from its first frame to its end, with a progress bar, a recording and a report.
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -8,8 +6,8 @@ use super::arguments::{RunOptions, Source};
 use super::output::Output;
 use super::report::Report;
 use super::{Failure, say, scenario, use_threads};
+use crate::drive::{Then, drive, unless_over};
 use crate::metrics::Metrics;
-use crate::scenario::Scenario;
 use crate::simulation::{EventKind, Simulation};
 
 /// `sandbox evacuation|crossing|concert|run`.
@@ -28,11 +26,7 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
             metrics.observe(simulation);
             progress.show(simulation);
             output.log(simulation, ms)?;
-            Ok(if is_over(simulation, &scenario) {
-                Then::Stop
-            } else {
-                Then::GoOn
-            })
+            Ok::<Then, Failure>(unless_over(simulation, &scenario))
         })
     });
     progress.finish();
@@ -42,49 +36,6 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     saved?;
     report_oddities(&simulation);
     say(&Report::new(&scenario, &simulation, &metrics).render(options.scene.json))
-}
-
-/// After a frame.
-pub enum Then {
-    GoOn,
-    Stop,
-}
-
-/// Runs to `duration` seconds, or until `observe` says to stop: it sees every evaluated frame with the
-/// milliseconds that the frame before took.
-pub fn drive(
-    simulation: &mut Simulation,
-    duration: f64,
-    mut observe: impl FnMut(&Simulation, f64) -> Result<Then, Failure>,
-) -> Result<(), Failure> {
-    let last_frame = simulation.frame().clock.frame_at(duration);
-    let mut ms = 0.0;
-    loop {
-        let start = Instant::now();
-        simulation.evaluate()?;
-        let evaluated = start.elapsed();
-        let then = observe(simulation, ms)?;
-        if simulation.frame().clock.frame() >= last_frame || matches!(then, Then::Stop) {
-            return Ok(());
-        }
-        let start = Instant::now();
-        simulation.integrate()?;
-        ms = 1e3 * (evaluated + start.elapsed()).as_secs_f64();
-    }
-}
-
-/// Has the scenario come to its own end?
-fn is_over(simulation: &Simulation, scenario: &Scenario) -> bool {
-    let frame = simulation.frame();
-    let empty = frame.agents.is_empty() && !simulation.expects_agents();
-    let arrivals = simulation.outcome().arrivals.iter().rev();
-    let last_arrival = arrivals
-        .filter(|arrival| arrival.counted)
-        .map(|arrival| arrival.time)
-        .next()
-        .unwrap_or(0.0);
-    let idle = frame.clock.time() - last_arrival;
-    (scenario.stop.when_empty && empty) || scenario.stop.idle_secs.is_some_and(|most| idle > most)
 }
 
 /// Says what a careful reader of the results should know.

@@ -6,12 +6,14 @@ mod inspect;
 mod list;
 mod output;
 mod report;
+mod reproduce;
 
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
 
+use crate::reproduce::ReproduceError;
 use crate::scenario::{Scenario, ScenarioError, Setting};
 use crate::simulation::Fault;
 use arguments::{Arguments, Command, Source};
@@ -31,13 +33,16 @@ enum Failure {
     /// A file cannot be written: exit code 1.
     #[error("{0}")]
     Output(String),
+    /// Something cannot be reproduced: exit code 1.
+    #[error(transparent)]
+    Reproduce(#[from] ReproduceError),
 }
 
 impl Failure {
     fn exit_code(&self) -> u8 {
         match self {
             Self::Scenario(_) | Self::Input(_) => 2,
-            Self::Fault(_) | Self::Output(_) => 1,
+            Self::Fault(_) | Self::Output(_) | Self::Reproduce(_) => 1,
         }
     }
 }
@@ -62,6 +67,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Concert(options) => drive::run(&Source::Shipped("concert"), &options),
         Command::Run { file, options } => drive::run(&Source::File(file), &options),
         Command::Inspect(options) => inspect::run(&options),
+        Command::Reproduce(options) => reproduce::run(&options),
         Command::List { settings } => list::run(settings),
     }
 }

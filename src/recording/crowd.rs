@@ -9,9 +9,9 @@ use rerun::external::arrow::array::{ArrayRef, Float16Array, Float32Array, UInt32
 use rerun::external::arrow::datatypes::{ArrowPrimitiveType, Float16Type};
 use rerun::{AsComponents, Color, DynamicArchetype, Points2D, Radius, RecordingStream};
 
-use super::colors;
 use super::error::RecordingError;
 use super::snapshot::Snapshot;
+use crate::colors::{self, ColorMap};
 
 type F16 = <Float16Type as ArrowPrimitiveType>::Native;
 
@@ -27,6 +27,11 @@ pub const SPEED_COLORS: &str = "agent:speed_colors";
 pub struct Crowd {
     logged_ids: Vec<u32>,
     rows: Rows,
+}
+
+fn color(map: &ColorMap, value: f32) -> Color {
+    let [r, g, b] = map.color(value);
+    Color::from_rgb(r, g, b)
 }
 
 pub fn log_style(stream: &RecordingStream) -> Result<(), RecordingError> {
@@ -47,14 +52,14 @@ impl Crowd {
         let mut points = Points2D::update_fields().with_positions(positions);
         let speed = |&i: &usize| {
             let [x, y] = snapshot.velocities[i];
-            colors::SPEED.color(x.hypot(y))
+            color(&colors::SPEED, x.hypot(y))
         };
         let mut values = DynamicArchetype::new(ARCHETYPE)
             .with_component::<rerun::components::Color>("speed_colors", rows.iter().map(speed));
         if snapshot.densities.is_empty() {
             points = points.with_colors([Color::from_rgb(128, 128, 128)]);
         } else {
-            let density = |&i: &usize| colors::DENSITY.color(snapshot.densities[i]);
+            let density = |&i: &usize| color(&colors::DENSITY, snapshot.densities[i]);
             points = points.with_colors(rows.iter().map(density));
             let pressure = rows.iter().map(|&i| snapshot.pressures[i]);
             let pressure = Arc::new(Float32Array::from_iter_values(pressure)) as ArrayRef;

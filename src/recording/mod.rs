@@ -14,7 +14,6 @@
 //! | `log` | entries and pushes |
 
 mod blueprint;
-mod colors;
 mod crowd;
 mod debug;
 mod error;

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use rerun::external::arrow::array::{ArrayRef, Float64Array, StringArray, UInt64Array};
 use rerun::{AnyValues, RecordingStream, TextDocument};
 
-use super::colors::{DENSITY_RANGE, SPEED_RANGE};
 use super::error::RecordingError;
 use super::layers::{METRES_PER_ACCELERATION, force_colors};
 use super::{DebugAgents, RecordingOptions};
+use crate::colors::{DENSITY_RANGE, SPEED_RANGE};
 use crate::scene::Scene;
 
 pub const DOCUMENT: &str = "info/scenario";

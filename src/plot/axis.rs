@@ -1,0 +1,163 @@
+//! Axes: what a value's place is, and which values get a tick.
+
+/// How values are spread.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Scale {
+    /// Evenly.
+    #[default]
+    Linear,
+    /// By their logarithms; for positive values.
+    Log,
+}
+
+/// One axis of a panel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// Quantity and unit.
+    pub label: String,
+    /// The values at its ends.
+    pub range: [f64; 2],
+    /// How the values between are spread.
+    pub scale: Scale,
+    /// Where to put ticks and what to write there; empty: chosen by the range.
+    pub ticks: Vec<(f64, String)>,
+}
+
+impl Axis {
+    /// Evenly spread values.
+    pub fn linear(label: &str, range: [f64; 2]) -> Self {
+        Self {
+            label: label.to_owned(),
+            range,
+            scale: Scale::Linear,
+            ticks: Vec::new(),
+        }
+    }
+
+    /// Values spread by their logarithms.
+    pub fn log(label: &str, range: [f64; 2]) -> Self {
+        Self {
+            scale: Scale::Log,
+            ..Self::linear(label, range)
+        }
+    }
+
+    /// Names at 0.5, 1.5, … on an axis from 0 to their number.
+    pub fn names(label: &str, names: impl IntoIterator<Item = String>) -> Self {
+        let ticks: Vec<_> = names
+            .into_iter()
+            .enumerate()
+            .map(|(k, name)| (k as f64 + 0.5, name))
+            .collect();
+        Self {
+            ticks: ticks.clone(),
+            ..Self::linear(label, [0.0, ticks.len() as f64])
+        }
+    }
+
+    /// The place of a value: 0 at the first end, 1 at the second.
+    pub(super) fn place(&self, value: f64) -> f64 {
+        let [first, last] = self.range;
+        match self.scale {
+            Scale::Linear => (value - first) / (last - first),
+            Scale::Log => (value / first).ln() / (last / first).ln(),
+        }
+    }
+
+    /// Values with a tick and what is written there; `most` fit.
+    pub(super) fn ticks(&self, most: usize) -> Vec<(f64, String)> {
+        if !self.ticks.is_empty() {
+            return self.ticks.clone();
+        }
+        match self.scale {
+            Scale::Linear => linear_ticks(self.range, most),
+            Scale::Log => log_ticks(self.range),
+        }
+    }
+}
+
+/// Multiples of 1, 2 or 5 times a power of ten.
+fn linear_ticks([first, last]: [f64; 2], most: usize) -> Vec<(f64, String)> {
+    let rough = (last - first) / most.max(1) as f64;
+    let decade = 10_f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0]
+        .map(|factor| factor * decade)
+        .into_iter()
+        .find(|&step| step >= rough * (1.0 - 1e-9))
+        .unwrap_or(rough);
+    let digits = (-step.log10()).ceil().clamp(0.0, 9.0) as usize;
+    let (from, to) = ((first / step - 1e-6).ceil(), (last / step + 1e-6).floor());
+    (from as i64..=to as i64)
+        .map(|k| k as f64 * step)
+        .map(|value| (value, grouped(value, digits)))
+        .collect()
+}
+
+/// 1, 2 and 5 times every power of ten.
+fn log_ticks([first, last]: [f64; 2]) -> Vec<(f64, String)> {
+    let mut ticks = Vec::new();
+    for exponent in first.log10().floor() as i32..=last.log10().ceil() as i32 {
+        for factor in [1.0, 2.0, 5.0] {
+            let value = factor * 10_f64.powi(exponent);
+            if (first * (1.0 - 1e-9)..=last * (1.0 + 1e-9)).contains(&value) {
+                ticks.push((value, grouped(value, (-exponent).max(0) as usize)));
+            }
+        }
+    }
+    ticks
+}
+
+/// A number with so many digits after the point and commas between thousands.
+fn grouped(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    let (whole, rest) = text.split_at(text.find('.').unwrap_or(text.len()));
+    let (sign, whole) = whole.split_at(usize::from(whole.starts_with('-')));
+    let count = whole.len();
+    let mut out = sign.replace('-', "\u{2212}");
+    for (k, digit) in whole.chars().enumerate() {
+        if k > 0 && (count - k).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(digit);
+    }
+    out + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(ticks: Vec<(f64, String)>) -> Vec<f64> {
+        ticks.into_iter().map(|(value, _)| value).collect()
+    }
+
+    #[test]
+    fn ticks_are_round_numbers_inside_the_range() {
+        assert_eq!(
+            values(linear_ticks([0.0, 8.0], 5)),
+            [0.0, 2.0, 4.0, 6.0, 8.0]
+        );
+        assert_eq!(values(linear_ticks([-25.0, 25.0], 3)), [-20.0, 0.0, 20.0]);
+        assert_eq!(
+            values(log_ticks([2_500.0, 100_000.0])),
+            [5e3, 1e4, 2e4, 5e4, 1e5]
+        );
+    }
+
+    #[test]
+    fn labels_are_as_long_as_they_must_be() {
+        let labels: Vec<String> = linear_ticks([0.0, 0.6], 3)
+            .into_iter()
+            .map(|t| t.1)
+            .collect();
+        assert_eq!(labels, ["0.0", "0.2", "0.4", "0.6"]);
+        assert_eq!(grouped(100_000.0, 0), "100,000");
+        assert_eq!(grouped(-1234.5, 1), "\u{2212}1,234.5");
+    }
+
+    #[test]
+    fn a_logarithmic_axis_has_equal_factors_at_equal_distances() {
+        let axis = Axis::log("n", [10.0, 1000.0]);
+        assert!((axis.place(100.0) - 0.5).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,58 @@
+//! What the paper leaves open, answered with runs: its tables again, with one thing changed.
+
+mod crossing;
+mod evacuation;
+mod geometry;
+
+use serde_json::json;
+
+use super::error::ReproduceError;
+use super::product::{Plan, Product};
+use super::store::Store;
+
+/// All questions.
+pub const PRODUCT: Product = Product {
+    name: "questions",
+    about: "what walls, doorways, starts and guesses change in Tables 1 and 2",
+    in_all: false,
+    cases: |plan| {
+        let mut cases = evacuation::cases(plan)?;
+        cases.append(&mut crossing::cases(plan)?);
+        Ok(cases)
+    },
+    write,
+};
+
+/// A question with what the runs say.
+struct Answer {
+    title: &'static str,
+    /// What was varied, and how to read the table.
+    text: &'static str,
+    /// Markdown.
+    table: String,
+    data: serde_json::Value,
+}
+
+fn write(
+    plan: &Plan,
+    results: &super::runner::Results,
+    store: &Store,
+) -> Result<String, ReproduceError> {
+    let mut answers = evacuation::answers(plan, results)?;
+    answers.push(crossing::answer(plan, results)?);
+    let sections = answers.iter().map(|answer| {
+        let Answer {
+            title, text, table, ..
+        } = answer;
+        format!("## {title}\n\n{text}\n\n{table}\n")
+    });
+    let markdown: String = sections.collect();
+    let data: Vec<_> = answers
+        .iter()
+        .map(|answer| json!({ "question": answer.title, "rows": answer.data }))
+        .collect();
+    let json = json!({ "seeds": plan.seeds, "questions": data });
+    store.write("questions.md", markdown.as_bytes())?;
+    store.write("questions.json", format!("{json:#}\n").as_bytes())?;
+    Ok(markdown)
+}

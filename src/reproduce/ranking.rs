@@ -1,0 +1,117 @@
+//! Which of two rows is the higher, in the paper and here.
+
+use serde::Serialize;
+
+/// Rows closer than this in the paper, as a part of the lower, are not ranked.
+pub const LEAST_DIFFERENCE: f64 = 0.1;
+
+/// Two rows of which the paper has one well above the other.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Ranking {
+    /// What is compared.
+    pub quantity: &'static str,
+    /// The higher in the paper.
+    pub higher: String,
+    /// The lower in the paper.
+    pub lower: String,
+    /// The paper's two values.
+    pub paper: [f64; 2],
+    /// Our two means.
+    pub ours: Option<[f64; 2]>,
+    /// In how many seeds the order is the paper's, and how many there are.
+    pub seeds: [usize; 2],
+}
+
+/// What ranks a row: its name, the paper's value, ours by seed.
+#[derive(Debug, Clone)]
+pub struct Ranked {
+    /// The row.
+    pub name: String,
+    /// The paper's value.
+    pub paper: f64,
+    /// Ours, seed by seed in the same order for all rows.
+    pub ours: Vec<Option<f64>>,
+}
+
+impl Ranking {
+    /// Is the order of the means the paper's?
+    pub fn is_kept(&self) -> bool {
+        self.ours.is_some_and(|[higher, lower]| higher > lower)
+    }
+}
+
+/// All rankings of rows that differ enough in the paper.
+pub fn rankings(quantity: &'static str, rows: &[Ranked]) -> Vec<Ranking> {
+    let pairs = rows
+        .iter()
+        .enumerate()
+        .flat_map(|(k, a)| rows[k + 1..].iter().map(move |b| (a, b)));
+    pairs
+        .map(|(a, b)| if a.paper >= b.paper { (a, b) } else { (b, a) })
+        .filter(|(a, b)| a.paper > b.paper * (1.0 + LEAST_DIFFERENCE))
+        .map(|(a, b)| ranking(quantity, a, b))
+        .collect()
+}
+
+fn ranking(quantity: &'static str, higher: &Ranked, lower: &Ranked) -> Ranking {
+    let by_seed = higher.ours.iter().zip(&lower.ours);
+    let kept = by_seed.clone().filter(|(a, b)| a.is_some() && a > b);
+    Ranking {
+        quantity,
+        higher: higher.name.clone(),
+        lower: lower.name.clone(),
+        paper: [higher.paper, lower.paper],
+        ours: mean(&higher.ours)
+            .zip(mean(&lower.ours))
+            .map(|(a, b)| [a, b]),
+        seeds: [kept.count(), by_seed.count()],
+    }
+}
+
+fn mean(values: &[Option<f64>]) -> Option<f64> {
+    let all: Option<Vec<f64>> = values.iter().copied().collect();
+    let all = all.filter(|all| !all.is_empty())?;
+    Some(all.iter().sum::<f64>() / all.len() as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(name: &str, paper: f64, ours: &[f64]) -> Ranked {
+        Ranked {
+            name: name.to_owned(),
+            paper,
+            ours: ours.iter().copied().map(Some).collect(),
+        }
+    }
+
+    #[test]
+    fn only_rows_more_than_a_tenth_apart_are_ranked() {
+        let rows = [
+            row("a", 1.0, &[1.0, 3.0]),
+            row("b", 1.1, &[1.0, 1.0]),
+            row("c", 1.2, &[1.5, 0.5]),
+        ];
+        let found = rankings("flow", &rows);
+        assert_eq!(found.len(), 1);
+        let ranking = &found[0];
+        assert_eq!(
+            (ranking.higher.as_str(), ranking.lower.as_str()),
+            ("c", "a")
+        );
+        assert_eq!(ranking.ours, Some([1.0, 2.0]));
+        assert_eq!(ranking.seeds, [1, 2]);
+        assert!(!ranking.is_kept());
+    }
+
+    #[test]
+    fn a_row_without_a_value_keeps_no_ranking() {
+        let mut lost = row("high", 2.0, &[2.0, 2.0]);
+        lost.ours[1] = None;
+        let found = rankings("flow", &[lost, row("low", 1.0, &[1.0, 1.0])]);
+        assert_eq!(found[0].ours, None);
+        assert_eq!(found[0].seeds, [1, 2]);
+        assert!(!found[0].is_kept());
+    }
+}

@@ -1,0 +1,125 @@
+//! Finished cases on disk: one file each, whole or not there.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::case::{Case, CaseResult, Key};
+use super::error::ReproduceError;
+
+/// A folder with finished cases in `cases/`, and beside it what was made of them.
+#[derive(Debug, Clone)]
+pub struct Store {
+    folder: PathBuf,
+}
+
+/// What a case's file says.
+#[derive(Serialize, Deserialize)]
+struct Kept {
+    /// The engine and the whole document, to be sure of what this is.
+    identity: String,
+    result: CaseResult,
+}
+
+/// What the store knows of a case.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Found {
+    /// Everything.
+    Whole(CaseResult),
+    /// The run, but not all that is to be kept of it.
+    Part(CaseResult),
+    /// Nothing.
+    Nothing,
+    /// A file that cannot be read: why.
+    Damaged(String),
+}
+
+impl Store {
+    /// Opens `folder`, and makes it if there is none.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn open(folder: &Path) -> Result<Self, ReproduceError> {
+        let store = Self {
+            folder: folder.to_owned(),
+        };
+        let cases = store.cases();
+        fs::create_dir_all(&cases).map_err(|error| unwritable(folder, &error))?;
+        Ok(store)
+    }
+
+    /// Where a file of this name belongs.
+    pub fn path(&self, file: &str) -> PathBuf {
+        self.folder.join(file)
+    }
+
+    /// Writes a file, whole or not at all, and returns its path.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn write(&self, file: &str, contents: &[u8]) -> Result<PathBuf, ReproduceError> {
+        let path = self.path(file);
+        let folder = path.parent().unwrap_or(&self.folder);
+        let written = tempfile::NamedTempFile::new_in(folder).and_then(|mut temporary| {
+            temporary.write_all(contents)?;
+            temporary.persist(&path).map_err(|error| error.error)
+        });
+        written.map_err(|error| unwritable(&path, &error))?;
+        Ok(path)
+    }
+
+    /// What is known of a case.
+    pub fn find(&self, case: &Case, key: &Key) -> Found {
+        let text = match fs::read(self.case_path(key)) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Found::Nothing,
+            Err(error) => return Found::Damaged(error.to_string()),
+        };
+        match serde_json::from_slice::<Kept>(&text) {
+            Err(error) => Found::Damaged(error.to_string()),
+            Ok(kept) if kept.identity != key.identity => {
+                Found::Damaged("it is about another case".to_owned())
+            }
+            Ok(Kept { result, .. }) => {
+                let mut names = case.probes().iter().map(|probe| probe.name());
+                if names.all(|name| result.kept.contains_key(&name)) {
+                    Found::Whole(result)
+                } else {
+                    Found::Part(result)
+                }
+            }
+        }
+    }
+
+    /// Keeps a finished case.
+    ///
+    /// # Errors
+    /// Its file cannot be written.
+    pub fn keep(&self, key: &Key, result: &CaseResult) -> Result<(), ReproduceError> {
+        let kept = Kept {
+            identity: key.identity.clone(),
+            result: result.clone(),
+        };
+        let text = serde_json::to_vec(&kept)
+            .map_err(|error| ReproduceError::Data(format!("{key}: {error}")))?;
+        self.write(&format!("cases/{key}.json"), &text).map(|_| ())
+    }
+
+    /// The file of a case.
+    pub fn case_path(&self, key: &Key) -> PathBuf {
+        self.cases().join(format!("{key}.json"))
+    }
+
+    fn cases(&self) -> PathBuf {
+        self.folder.join("cases")
+    }
+}
+
+fn unwritable(path: &Path, error: &std::io::Error) -> ReproduceError {
+    ReproduceError::Unwritable {
+        path: path.display().to_string(),
+        reason: error.to_string(),
+    }
+}

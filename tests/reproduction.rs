@@ -1,0 +1,304 @@
+//! Tables at one command: what is finished is kept, and four rows of Table 1 stay in their bands.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use sandbox::reproduce::{
+    Case, CaseResult, EvacuationRow, Key, Listener, PRODUCTS, Plan, ReproduceError, Row, Store,
+    published, reproduce, run, table1_case,
+};
+use tempfile::TempDir;
+
+/// Writes down what a run says.
+#[derive(Default)]
+struct Ear {
+    begun: Mutex<Vec<[usize; 2]>>,
+    finished: Mutex<Vec<String>>,
+    notes: Mutex<Vec<String>>,
+    seconds: Mutex<[f64; 2]>,
+}
+
+impl Listener for Ear {
+    fn begins(&self, cases: usize, kept: usize, seconds: f64) {
+        self.begun.lock().unwrap().push([cases, kept]);
+        self.seconds.lock().unwrap()[0] += seconds;
+    }
+    fn advances(&self, seconds: f64) {
+        self.seconds.lock().unwrap()[1] += seconds;
+    }
+    fn finishes(&self, result: &CaseResult) {
+        self.finished.lock().unwrap().push(result.case.clone());
+    }
+    fn notes(&self, text: &str) {
+        self.notes.lock().unwrap().push(text.to_owned());
+    }
+}
+
+/// A room of the evacuation for half a second.
+fn short(seed: u64) -> Case {
+    Case::shipped("evacuation")
+        .set("duration_secs", 0.5)
+        .seed(seed)
+        .taking(0.1)
+}
+
+fn store() -> (TempDir, Store) {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path()).unwrap();
+    (folder, store)
+}
+
+fn kept_files(store: &Store) -> Vec<PathBuf> {
+    let files = fs::read_dir(store.path("cases")).unwrap();
+    let mut files: Vec<PathBuf> = files.map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+/// Runs cases and returns how many were computed and how many kept, and what was noted.
+fn computed(store: &Store, cases: &[Case]) -> ([usize; 2], Vec<String>) {
+    let ear = Ear::default();
+    let results = run(store, cases, &ear).unwrap();
+    for case in cases {
+        results.of(case).unwrap();
+    }
+    let begun = ear.begun.lock().unwrap()[0];
+    assert_eq!(ear.finished.lock().unwrap().len(), begun[0]);
+    let [expected, told] = *ear.seconds.lock().unwrap();
+    assert!((expected - told).abs() < 1e-9, "{told} of {expected}");
+    (begun, ear.notes.into_inner().unwrap())
+}
+
+#[test]
+fn finished_cases_are_not_run_again_and_new_ones_are() {
+    let (_folder, store) = store();
+    assert_eq!(computed(&store, &[short(1), short(2)]).0, [2, 0]);
+    let before: Vec<_> = kept_files(&store)
+        .iter()
+        .map(|file| fs::metadata(file).unwrap().modified().unwrap())
+        .collect();
+    assert_eq!(computed(&store, &[short(1), short(2), short(3)]).0, [1, 2]);
+    let untouched = kept_files(&store)
+        .iter()
+        .filter(|file| before.contains(&fs::metadata(file).unwrap().modified().unwrap()))
+        .count();
+    assert_eq!(untouched, 2);
+    // A file that was left half written under its temporary name is in nobody's way.
+    fs::write(store.path("cases/.tmp1234"), "{").unwrap();
+    assert_eq!(computed(&store, &[short(1), short(2), short(3)]).0, [0, 3]);
+}
+
+#[test]
+fn what_is_kept_is_what_was_computed() {
+    let (_folder, store) = store();
+    let case = short(4).snapshot(0.2);
+    let first = run(&store, &[case.clone()], &()).unwrap();
+    let second = run(&store, &[case.clone()], &()).unwrap();
+    assert_eq!(first.of(&case).unwrap(), second.of(&case).unwrap());
+    let snapshot = second.of(&case).unwrap().snapshot(0.2).unwrap();
+    assert_eq!(snapshot.time_secs, 0.2);
+    let missing = second.of(&case).unwrap().snapshot(0.3).unwrap_err();
+    assert!(
+        missing.to_string().contains("snapshot at 0.3 s"),
+        "{missing}"
+    );
+    assert!(
+        second
+            .of(&short(5))
+            .unwrap_err()
+            .to_string()
+            .contains("seed=5")
+    );
+}
+
+#[test]
+fn a_damaged_file_is_noted_and_computed_again() {
+    let (_folder, store) = store();
+    computed(&store, &[short(1)]);
+    let file = kept_files(&store).remove(0);
+    let whole = fs::read(&file).unwrap();
+    fs::write(&file, &whole[..whole.len() / 2]).unwrap();
+    let (begun, notes) = computed(&store, &[short(1)]);
+    assert_eq!(begun, [1, 0]);
+    assert!(notes[0].contains("computed again"), "{notes:?}");
+    assert!(notes[0].contains(file.to_str().unwrap()), "{notes:?}");
+    assert_eq!(computed(&store, &[short(1)]), ([0, 1], Vec::new()));
+}
+
+#[test]
+fn a_file_of_another_case_is_not_believed() {
+    let (_folder, store) = store();
+    computed(&store, &[short(1), short(2)]);
+    let files = kept_files(&store);
+    fs::copy(&files[0], &files[1]).unwrap();
+    let (begun, notes) = computed(&store, &[short(1), short(2)]);
+    assert_eq!(begun, [1, 1]);
+    assert!(notes[0].contains("another case"), "{notes:?}");
+}
+
+#[test]
+fn the_same_run_is_run_once_and_keeps_all_that_is_asked_of_it() {
+    let (_folder, store) = store();
+    let (early, late) = (short(1).snapshot(0.1), short(1).snapshot(0.4));
+    assert_eq!(computed(&store, &[early.clone(), late.clone()]).0, [1, 0]);
+    assert_eq!(computed(&store, &[late.clone()]).0, [0, 1]);
+    // Something new to keep makes a new run, and loses nothing of the old one.
+    assert_eq!(computed(&store, &[short(1).snapshot(0.3)]).0, [1, 0]);
+    assert_eq!(computed(&store, &[early, late]).0, [0, 1]);
+    assert_eq!(kept_files(&store).len(), 1);
+}
+
+fn key(case: &Case) -> Key {
+    case.key().unwrap()
+}
+
+#[test]
+fn a_key_tells_settings_seeds_and_company_apart_and_is_readable() {
+    let case = || short(1).set("profile", "rvo->sph").set("gas_constant", 100);
+    let others = [
+        short(1),
+        case().seed(2),
+        case().set("gas_constant", 101),
+        case().set("obstacles", "[]"),
+        case().alone(),
+    ];
+    assert_eq!(key(&case()), key(&case().snapshot(0.1).taking(9.0)));
+    for other in &others {
+        assert_ne!(key(&case()).to_string(), key(other).to_string());
+    }
+    let name = key(&case()).to_string();
+    assert!(name.starts_with("evacuation-duration_secs-0.5-seed-1-profile-rvo-to-sph"));
+    assert!(!name.contains(['/', ' ', '>', '=']), "{name}");
+}
+
+#[test]
+fn a_case_that_makes_no_sense_is_refused_before_anything_runs() {
+    let (_folder, store) = store();
+    let wrong = [short(1), short(1).set("gas_constant", -1)];
+    let error = run(&store, &wrong, &()).err().unwrap();
+    assert!(matches!(error, ReproduceError::Scenario { .. }), "{error}");
+    assert!(error.to_string().contains("gas_constant"), "{error}");
+    assert!(kept_files(&store).is_empty());
+}
+
+#[test]
+fn a_result_that_cannot_be_kept_is_named_and_those_before_it_are_kept() {
+    let (_folder, store) = store();
+    // The longest begin first: with one thread or more, the first case is done by then.
+    let (first, last) = (short(1).taking(1.0), short(2));
+    let place = store.case_path(&key(&last));
+    fs::create_dir(&place).unwrap();
+    let error = run(&store, &[last, first.clone()], &()).err().unwrap();
+    assert!(
+        matches!(error, ReproduceError::Unwritable { .. }),
+        "{error}"
+    );
+    assert!(
+        error.to_string().contains(place.to_str().unwrap()),
+        "{error}"
+    );
+    assert_eq!(computed(&store, &[first]).0, [0, 1]);
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "").unwrap();
+    for place in [file.clone(), file.join("below")] {
+        let error = Store::open(&place).unwrap_err().to_string();
+        assert!(error.contains(place.to_str().unwrap()), "{error}");
+    }
+}
+
+#[test]
+fn every_product_has_a_name_of_its_own_and_only_cases_that_make_sense() {
+    let mut names: Vec<&str> = PRODUCTS.iter().map(|product| product.name).collect();
+    names.sort_unstable();
+    let count = names.len();
+    names.dedup();
+    assert_eq!(names.len(), count);
+    for product in PRODUCTS {
+        assert!(!product.about.is_empty());
+        for case in (product.cases)(&Plan { seeds: 1 }).unwrap() {
+            case.key().unwrap();
+            assert!(case.expected_secs() > 0.0);
+        }
+    }
+}
+
+/// The row of Table 1 with that profile and value.
+fn row(profile: &str, value: f64) -> EvacuationRow {
+    let rows = published().unwrap().table1.rows;
+    let mut found = rows
+        .into_iter()
+        .filter(|row| row.profile == profile && row.value == value);
+    found.next().unwrap()
+}
+
+#[test]
+fn four_rows_of_table_1_stay_inside_their_bands() {
+    let (_folder, store) = store();
+    let rows = [
+        row("sph", 3.0),
+        row("sph", 5.0),
+        row("sf+sph", 3.0),
+        row("rvo->sph", 4.0),
+    ];
+    let cases: Vec<Case> = rows.iter().map(|row| table1_case(row, 1)).collect();
+    let results = run(&store, &cases, &()).unwrap();
+    for row in &rows {
+        let row = Row::new(row, 1..=1, &results).unwrap();
+        assert_eq!(row.missed(), Vec::<&str>::new(), "{row:#?}");
+    }
+}
+
+#[test]
+fn tables_are_written_in_three_forms_from_what_is_kept() {
+    let (folder, store) = store();
+    let table2 = PRODUCTS.iter().find(|p| p.name == "table2").unwrap();
+    let plan = Plan { seeds: 1 };
+    // Results as a run leaves them, with the paper's own numbers in them.
+    let paper = published().unwrap().table2.rows;
+    let cases = (table2.cases)(&plan).unwrap();
+    for (case, row) in cases.iter().zip(&paper) {
+        let metric = |name: &str, value: f64| (name.to_owned(), Some(value));
+        let result = CaseResult {
+            case: case.name(),
+            computed_in_secs: 1.0,
+            ended_at_secs: 60.0,
+            metrics: [
+                metric("density_mean_45s", row.density),
+                metric("density_std_45s", row.deviation),
+                metric("flow_first_60s_per_s", row.flow),
+            ]
+            .into(),
+            arrivals: Vec::new(),
+            uncounted: 0,
+            remaining: 0,
+            kept: Default::default(),
+        };
+        store.keep(&key(case), &result).unwrap();
+    }
+    let said = reproduce(&[table2], &plan, &store, &()).unwrap();
+    assert!(
+        said[0].contains("| RVO→SPH | 3.83 | 3.83 | +0.0 % |"),
+        "{}",
+        said[0]
+    );
+    assert!(!said[0].contains("broken"), "{}", said[0]);
+    let read = |file: &str| fs::read_to_string(folder.path().join(file)).unwrap();
+    assert_eq!(read("table2.md"), said[0]);
+    assert_eq!(read("table2.csv").lines().count(), 1 + 7 * 3);
+    let json: serde_json::Value = serde_json::from_str(&read("table2.json")).unwrap();
+    assert_eq!(json["rows"].as_array().unwrap().len(), 7);
+    assert!(
+        json["rankings"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .all(|r| r["kept"] == true)
+    );
+    assert!(Path::new(&folder.path().join("cases")).is_dir());
+}

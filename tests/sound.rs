@@ -1,0 +1,110 @@
+//! The linear theory of sound against the engine itself: a patch of a hexagonal lattice is displaced
+//! by a small plane wave, and the acceleration of its middle read.
+
+mod common;
+
+use common::{acceleration, blend_with, evaluated, person, scene, vector};
+use sandbox::agents::NewAgent;
+use sandbox::catalog::Parameters;
+use sandbox::density::SphParameters;
+use sandbox::scene::Region;
+use sandbox::sound::{self, Lattice};
+
+/// Who the middle feels, and whom those feel.
+const PATCH: f64 = 2.6;
+
+fn lattice(spacing: f64, gas_constant: f64, agent_stiffness: f64) -> Lattice {
+    Lattice {
+        spacing,
+        reach: 0.48,
+        sph: SphParameters {
+            gas_constant,
+            ..SphParameters::default()
+        },
+        agent_stiffness,
+    }
+}
+
+/// The patch, its middle first, displaced by `amplitude` · cos(q x) along x; ρ⁰ is at its maximum.
+fn displaced(lattice: &Lattice, q: f64, amplitude: f64) -> Vec<NewAgent> {
+    let rows = (PATCH / lattice.spacing).ceil() as i32 + 1;
+    let cells = (-rows..=rows).flat_map(|row| (-2 * rows..=2 * rows).map(move |c| (row, c)));
+    let place = |(row, column): (i32, i32)| {
+        let x = f64::from(column) + 0.5 * f64::from(row.rem_euclid(2));
+        vector(x, 0.75_f64.sqrt() * f64::from(row)) * lattice.spacing
+    };
+    let mut places: Vec<_> = cells.map(place).filter(|r| r.norm() < PATCH).collect();
+    places.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
+    let moved = places
+        .into_iter()
+        .map(|r| r + vector(amplitude * (q * r.x).cos(), 0.0));
+    moved
+        .map(|r| NewAgent {
+            mean_density: Some(100.0),
+            ..person(r, r)
+        })
+        .collect()
+}
+
+/// ω² by the engine: −∂a/∂u of the middle.
+fn frequency_squared(lattice: &Lattice, q: f64) -> f64 {
+    let parameters = Parameters {
+        gas_constant: Some(lattice.sph.gas_constant),
+        agent_stiffness: Some(lattice.agent_stiffness),
+        ..Parameters::default()
+    };
+    let at = |amplitude: f64| {
+        let mut scene = scene(Vec::new(), blend_with("sph", &parameters));
+        scene.agents = displaced(lattice, q, amplitude);
+        acceleration(&evaluated(scene), 0).x
+    };
+    let step = 1e-6;
+    -(at(step) - at(-step)) / (2.0 * step)
+}
+
+#[test]
+fn the_lattice_sums_are_the_engine_linearised() {
+    for (gas_constant, agent_stiffness) in [(50.0, 0.0), (200.0, 50.0), (800.0, 1000.0)] {
+        let lattice = lattice(0.465, gas_constant, agent_stiffness);
+        for q in [0.3, 1.0, 3.0] {
+            let (theory, engine) = (lattice.frequency_squared(q), frequency_squared(&lattice, q));
+            assert!(
+                (engine / theory - 1.0).abs() < 1e-4,
+                "k = {gas_constant}, q = {q}: {engine} for {theory}"
+            );
+        }
+    }
+}
+
+#[test]
+fn long_waves_run_at_the_root_of_half_k_plus_contacts() {
+    let (apart, touching) = (lattice(0.465, 200.0, 0.0), lattice(0.465, 200.0, 50.0));
+    let q = 0.3;
+    let engine = frequency_squared(&apart, q).sqrt() / q;
+    assert!(
+        (engine / sound::speed_of_fluid(200.0) - 1.0).abs() < 0.05,
+        "{engine}"
+    );
+    let engine = frequency_squared(&touching, q).sqrt() / q;
+    let modulus = sound::touching_modulus(0.465);
+    let theory = sound::speed_with_contacts(200.0, 50.0, modulus);
+    assert!(
+        (engine / theory - 1.0).abs() < 0.05,
+        "{engine} for {theory}"
+    );
+}
+
+#[test]
+fn the_modulus_of_a_lattice_is_measured_as_computed() {
+    let lattice = lattice(0.4799, 200.0, 50.0);
+    let mut scene = scene(Vec::new(), blend_with("sph", &Parameters::default()));
+    scene.agents = displaced(&lattice, 0.0, 0.0);
+    let simulation = evaluated(scene);
+    let inside = Region {
+        min: vector(-1.0, -1.0),
+        max: vector(1.0, 1.0),
+    };
+    let contacts = sound::contacts(&simulation.frame(), &inside).unwrap();
+    assert_eq!(contacts.per_agent, 6.0);
+    assert!((contacts.modulus / sound::touching_modulus(0.48) - 1.0).abs() < 1e-3);
+}
