@@ -256,4 +256,7 @@ fn what_cannot_be_reproduced_is_told_in_plain_words() {
     refused(&["reproduce"], 2, &["WHAT"]);
     refused(&["reproduce", "table1", "--seeds", "0"], 2, &["--seeds"]);
     refused(&["reproduce", "table1", "--out", out], 1, &[out]);
+    let missing = folder.path().join("missing.md");
+    let missing = missing.to_str().unwrap();
+    refused(&["reproduce", "table1", "--update", missing], 1, &[missing]);
 }

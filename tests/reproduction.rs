@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::slice;
 use std::sync::Mutex;
 
 use sandbox::reproduce::{
@@ -93,8 +94,8 @@ fn finished_cases_are_not_run_again_and_new_ones_are() {
 fn what_is_kept_is_what_was_computed() {
     let (_folder, store) = store();
     let case = short(4).snapshot(0.2);
-    let first = run(&store, &[case.clone()], &()).unwrap();
-    let second = run(&store, &[case.clone()], &()).unwrap();
+    let first = run(&store, slice::from_ref(&case), &()).unwrap();
+    let second = run(&store, slice::from_ref(&case), &()).unwrap();
     assert_eq!(first.of(&case).unwrap(), second.of(&case).unwrap());
     let snapshot = second.of(&case).unwrap().snapshot(0.2).unwrap();
     assert_eq!(snapshot.time_secs, 0.2);
@@ -142,7 +143,7 @@ fn the_same_run_is_run_once_and_keeps_all_that_is_asked_of_it() {
     let (_folder, store) = store();
     let (early, late) = (short(1).snapshot(0.1), short(1).snapshot(0.4));
     assert_eq!(computed(&store, &[early.clone(), late.clone()]).0, [1, 0]);
-    assert_eq!(computed(&store, &[late.clone()]).0, [0, 1]);
+    assert_eq!(computed(&store, slice::from_ref(&late)).0, [0, 1]);
     // Something new to keep makes a new run, and loses nothing of the old one.
     assert_eq!(computed(&store, &[short(1).snapshot(0.3)]).0, [1, 0]);
     assert_eq!(computed(&store, &[early, late]).0, [0, 1]);

@@ -161,6 +161,9 @@ pub struct ReproduceOptions {
     /// Folder for the results; finished cases in it are not run again
     #[arg(long, value_name = "DIR", default_value = "reproduction")]
     pub out: PathBuf,
+    /// Put what is said about each table also between the lines <!-- NAME --> and <!-- /NAME --> of a file
+    #[arg(long, value_name = "FILE.md")]
+    pub update: Option<PathBuf>,
     /// Cases to compute at once, each on one thread [default: all cores]
     #[arg(long, value_parser = threads)]
     pub threads: Option<usize>,

@@ -1,13 +1,17 @@
 //! `sandbox reproduce`: the paper's tables and figures.
 
-use std::io::IsTerminal;
+use std::fs;
+use std::io::{self, IsTerminal};
+use std::path::Path;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::arguments::ReproduceOptions;
 use super::{Failure, say, use_threads};
-use crate::reproduce::{CaseResult, Listener, PRODUCTS, Plan, Product, Store, reproduce};
+use crate::reproduce::{
+    CaseResult, Listener, PRODUCTS, Plan, Product, Store, put_between, reproduce,
+};
 
 /// The name for everything that has `in_all`.
 const ALL: &str = "all";
@@ -38,6 +42,10 @@ pub fn about() -> String {
 
 pub fn run(options: &ReproduceOptions) -> Result<(), Failure> {
     use_threads(options.threads)?;
+    if let Some(file) = &options.update {
+        // Better told before hours of computing than after.
+        fs::metadata(file).map_err(|error| failed(file, &error))?;
+    }
     let store = Store::open(&options.out)?;
     let plan = Plan {
         seeds: options.seeds,
@@ -50,7 +58,27 @@ pub fn run(options: &ReproduceOptions) -> Result<(), Failure> {
     let watch = Watch::new();
     let said = reproduce(&products, &plan, &store, &watch);
     watch.bar.finish_and_clear();
-    said?.iter().try_for_each(|text| say(text))
+    let said = said?;
+    if let Some(file) = &options.update {
+        let names = products.iter().map(|product| product.name);
+        update(file, names.zip(said.iter().map(String::as_str)))?;
+    }
+    said.iter().try_for_each(|text| say(text))
+}
+
+/// Puts texts into the places that a file has for them.
+fn update<'a>(file: &Path, texts: impl Iterator<Item = (&'a str, &'a str)>) -> Result<(), Failure> {
+    let mut document = fs::read_to_string(file).map_err(|error| failed(file, &error))?;
+    for (name, text) in texts {
+        if let Some(changed) = put_between(&document, name, text) {
+            document = changed;
+        }
+    }
+    fs::write(file, document).map_err(|error| failed(file, &error))
+}
+
+fn failed(file: &Path, error: &io::Error) -> Failure {
+    Failure::Output(format!("{}: {error}", file.display()))
 }
 
 /// A progress bar on stderr; where that is no terminal, a line for every finished case.

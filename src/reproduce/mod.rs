@@ -31,3 +31,4 @@ pub use snapshot::{Snapshot, SnapshotAt};
 pub use store::Store;
 pub use table1::{Row, case as table1_case};
 pub use table2::Table as CrossingTable;
+pub use text::put_between;

@@ -4,7 +4,10 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::Answer;
-use super::geometry::Room;
+use super::variant::{
+    AVOIDING, EULER, FINE, JITTER, ROUND, SHIPPED, SOFT_WALLS, THIN_TWICE, THRICE, TWICE, Variant,
+    WALLS,
+};
 use crate::reproduce::case::{Case, CaseResult};
 use crate::reproduce::comparison::Spread;
 use crate::reproduce::error::ReproduceError;
@@ -17,80 +20,6 @@ use crate::reproduce::text::TextTable;
 /// A pause between two arrivals, seconds: a clog.
 const PAUSE: f64 = 2.0;
 
-/// What is changed in the room.
-#[derive(Debug, Clone, Copy)]
-struct Variant {
-    name: &'static str,
-    /// Another wall, if any.
-    room: Option<Room>,
-    /// Other settings.
-    settings: &'static [(&'static str, &'static str)],
-}
-
-/// Nothing is changed.
-const SHIPPED: Variant = set("as in Table 1", &[]);
-/// Both edges of a corner repel, as far as a parameter can say it.
-const TWICE: Variant = set("walls repel twice as much (U₀ = 4.2)", &[U0_TWICE]);
-const U0_TWICE: (&str, &str) = ("wall_strength", "4.2");
-/// Three times.
-const THRICE: Variant = set("three times (U₀ = 6.3)", &[("wall_strength", "6.3")]);
-/// Both, with next to no doorway to stand in.
-const THIN_TWICE: Variant = Variant {
-    settings: &[U0_TWICE],
-    ..room("wall 0.1 m thick and U₀ = 4.2", 0.1, 0.0)
-};
-/// Starts off the grid.
-const JITTER: Variant = set(
-    "starts ± 0.25 m off the grid",
-    &[("grids.0.jitter", "0.25")],
-);
-/// The paper's words.
-const EULER: Variant = set("forward Euler", &[("integrator", "forward-euler")]);
-/// Half the time step.
-const FINE: Variant = set("Δt = 0.01 s", &[("time_step_secs", "0.01")]);
-/// Weaker contact with walls.
-const SOFT_WALLS: Variant = set("K^obs = 250", &[("wall_stiffness", "250")]);
-/// Rounded jambs.
-const ROUND: Variant = room("jambs rounded with 0.5 m", 1.0, 0.5);
-/// Walls of other thickness.
-const WALLS: [Variant; 3] = [
-    room("wall 0.1 m thick", 0.1, 0.0),
-    room("wall 0.3 m thick", 0.3, 0.0),
-    room("wall 2 m thick", 2.0, 0.0),
-];
-
-const fn set(name: &'static str, settings: &'static [(&'static str, &'static str)]) -> Variant {
-    Variant {
-        name,
-        room: None,
-        settings,
-    }
-}
-
-const fn room(name: &'static str, thickness: f64, rounding: f64) -> Variant {
-    Variant {
-        name,
-        room: Some(Room {
-            thickness,
-            rounding,
-        }),
-        settings: &[],
-    }
-}
-
-impl Variant {
-    /// The case with the changes.
-    fn of(&self, mut case: Case) -> Case {
-        if let Some(room) = self.room {
-            case = case
-                .set("obstacles", json!(room.obstacles()))
-                .set("goal", json!(room.goal()));
-        }
-        let changes = self.settings.iter();
-        changes.fold(case, |case, (key, value)| case.set(key, value))
-    }
-}
-
 /// Some rows of Table 1 under some variants.
 struct Question {
     title: &'static str,
@@ -98,9 +27,11 @@ struct Question {
     /// Profile and value of the row.
     rows: &'static [(&'static str, f64)],
     variants: &'static [Variant],
+    /// The runs end here, seconds; `None`: at their own end.
+    until: Option<f64>,
 }
 
-const QUESTIONS: [Question; 3] = [
+const QUESTIONS: [Question; 4] = [
     Question {
         title: "Why is SF's flow at K^ag ≥ 500 above the paper's?",
         text: "Each line changes one thing. *Locked* runs never reach the 350th arrival; pauses are gaps of 2 s and more \
@@ -109,6 +40,7 @@ const QUESTIONS: [Question; 3] = [
         variants: &[
             SHIPPED, TWICE, EULER, FINE, SOFT_WALLS, ROUND, WALLS[0], THIN_TWICE,
         ],
+        until: None,
     },
     Question {
         title: "What do wall thickness, doorway shape and start positions do?",
@@ -120,12 +52,21 @@ const QUESTIONS: [Question; 3] = [
             ("sf", 50.0),
         ],
         variants: &[SHIPPED, WALLS[0], WALLS[1], WALLS[2], ROUND, JITTER],
+        until: None,
     },
     Question {
         title: "Can the last two SF agents stay behind, as in the paper?",
         text: "In the paper 398 of 400 leave in all eleven rows with SF or SF+SPH.",
         rows: &[("sf", 50.0), ("sf", 250.0), ("sf+sph", 5.0)],
         variants: &[SHIPPED, TWICE, THRICE],
+        until: None,
+    },
+    Question {
+        title: "Why is plain RVO less dense than the paper's?",
+        text: "These runs end after 16 s, when the density has been taken.",
+        rows: &[("rvo", 1000.0)],
+        variants: &AVOIDING,
+        until: Some(16.0),
     },
 ];
 
@@ -145,11 +86,26 @@ impl Question {
         for &(profile, value) in self.rows {
             let row = row(profile, value)?;
             for &variant in self.variants {
-                let case = |seed| variant.of(table1::case(&row, seed));
+                let case = |seed| self.shortened(variant.of(table1::case(&row, seed)));
                 runs.push((row.clone(), variant, plan.seeds().map(case).collect()));
             }
         }
         Ok(runs)
+    }
+
+    /// What only a whole run tells.
+    fn at_the_end(&self, text: String) -> String {
+        match self.until {
+            Some(_) => "–".to_owned(),
+            None => text,
+        }
+    }
+
+    fn shortened(&self, case: Case) -> Case {
+        match self.until {
+            Some(secs) => case.set("duration_secs", secs).taking(2.0),
+            None => case,
+        }
     }
 
     fn answer(&self, plan: &Plan, results: &Results) -> Result<Answer, ReproduceError> {
@@ -171,8 +127,8 @@ impl Question {
             table.add([
                 profile,
                 variant.name.to_owned(),
-                outcome.evacuated_written(),
-                format!("{} of {}", outcome.locked, cases.len()),
+                self.at_the_end(outcome.evacuated_written()),
+                self.at_the_end(format!("{} of {}", outcome.locked, cases.len())),
                 Outcome::written(outcome.density),
                 Outcome::written(outcome.flow),
                 Outcome::written(outcome.pauses),

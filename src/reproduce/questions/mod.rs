@@ -3,6 +3,7 @@
 mod crossing;
 mod evacuation;
 mod geometry;
+mod variant;
 
 use serde_json::json;
 
