@@ -54,7 +54,7 @@ pub struct Situation {
     pub radius: f64,
     /// s_max, m/s.
     pub max_speed: f64,
-    /// Agents in range, not touching, the nearest first.
+    /// Agents in range, not touching.
     pub discs: Vec<MovingDisc>,
     /// Walls in range, on their free side, not touching.
     pub walls: Vec<Wall>,
@@ -85,20 +85,14 @@ impl Situation {
     pub fn of(frame: &Frame, i: usize, radius: f64, max_speed: f64) -> Self {
         let agents = frame.agents;
         let position = agents.position[i];
-        let mut discs: Vec<MovingDisc> = frame
+        let discs = frame
             .around(i, radius)
             .map(|(j, r_ij)| MovingDisc {
                 offset: -r_ij,
                 velocity: agents.velocity[j],
                 reach: agents.radius[i] + agents.radius[j],
             })
-            .filter(|disc| disc.offset.norm_squared() > disc.reach * disc.reach)
-            .collect();
-        // A near neighbour rules out most candidates; the order does not change the choice.
-        discs.sort_by(|a, b| {
-            let gap = |disc: &MovingDisc| disc.offset.norm_squared();
-            gap(a).total_cmp(&gap(b))
-        });
+            .filter(|disc| disc.offset.norm_squared() > disc.reach * disc.reach);
         let walls = frame.neighbors.far_walls(i).iter();
         let walls = walls.map(|&k| *frame.walls.wall(k)).filter(|wall| {
             let distance = (wall.nearest_point(position).point - position).norm();
@@ -110,51 +104,41 @@ impl Situation {
             preferred_velocity: frame.fields.preferred_velocity[i],
             radius: agents.radius[i],
             max_speed,
-            discs,
+            discs: discs.collect(),
             walls: walls.collect(),
         }
     }
 
     /// The cheapest of `candidates` (Eq. 20), the first of equals; zero if all are too fast.
     ///
-    /// A candidate is dropped as soon as what is known of it costs no less than the best so far:
-    /// every further neighbour could only raise its cost.
+    /// Branch and bound, with the answer of an exhaustive search: candidates in order of what they cost
+    /// at least, until that is more than the best so far; neighbours in order of their gaps, until no
+    /// later one could be met before the earliest contact found.
     pub fn best(&self, candidates: impl Iterator<Item = Vector>, collision_weight: f64) -> Vector {
-        let mut best = Vector::zeros();
+        let mut candidates: Vec<(f64, usize, Vector)> = candidates
+            .enumerate()
+            .filter(|(_, candidate)| candidate.norm() <= self.max_speed)
+            .map(|(k, candidate)| ((candidate - self.preferred_velocity).norm(), k, candidate))
+            .collect();
+        candidates.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let around = Surroundings::of(self);
+        let (mut best, mut first) = (Vector::zeros(), usize::MAX);
         let mut best_cost = f64::INFINITY;
-        for candidate in candidates.filter(|c| c.norm() <= self.max_speed) {
-            if let Some(cost) = self.cost_below(candidate, collision_weight, best_cost) {
-                best = candidate;
-                best_cost = cost;
+        for (deviation, k, candidate) in candidates {
+            if deviation > best_cost {
+                break;
+            }
+            // Agent i moves at 2v′ − v_i.
+            let velocity = candidate * 2.0 - self.velocity;
+            let cost = |time: f64| deviation + collision_weight / time;
+            let Some(time) = around.first_contact(velocity, |time| cost(time) > best_cost) else {
+                continue;
+            };
+            if cost(time) < best_cost || k < first {
+                (best, first, best_cost) = (candidate, k, cost(time));
             }
         }
         best
-    }
-
-    /// Eq. 20, or `None` if it is not below `limit`.
-    fn cost_below(&self, candidate: Vector, collision_weight: f64, limit: f64) -> Option<f64> {
-        let deviation = (candidate - self.preferred_velocity).norm();
-        // Agent i moves at 2v′ − v_i.
-        let velocity = candidate * 2.0 - self.velocity;
-        let discs = self
-            .discs
-            .iter()
-            .map(|disc| time_to_contact(disc.offset, velocity - disc.velocity, disc.reach));
-        let walls = self
-            .walls
-            .iter()
-            .map(|wall| self.time_to_wall(wall, velocity));
-        let mut cost = deviation;
-        if cost >= limit {
-            return None;
-        }
-        for time in discs.chain(walls) {
-            cost = cost.max(deviation + collision_weight / time);
-            if cost >= limit {
-                return None;
-            }
-        }
-        Some(cost)
     }
 
     /// When the disc, moving at `velocity`, first touches a wall: its offset edge or an end point.
@@ -172,6 +156,62 @@ impl Situation {
             }
         }
         edge.min(ends[0]).min(ends[1])
+    }
+}
+
+/// Far more than rounding makes of gaps and times: it must never leave anybody out.
+const ROUNDING: f64 = 1e-9;
+
+/// Everything that can be met, the nearest first.
+struct Surroundings<'a> {
+    situation: &'a Situation,
+    /// Discs with their gaps |offset| − reach in metres, rising.
+    discs: Vec<(f64, MovingDisc)>,
+    /// Nobody moves faster, m/s.
+    fastest: f64,
+}
+
+impl<'a> Surroundings<'a> {
+    fn of(situation: &'a Situation) -> Self {
+        let gap = |disc: &MovingDisc| disc.offset.norm() - disc.reach;
+        let mut discs: Vec<(f64, MovingDisc)> = situation
+            .discs
+            .iter()
+            .map(|disc| (gap(disc), *disc))
+            .collect();
+        discs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let speeds = situation.discs.iter().map(|disc| disc.velocity.norm());
+        Self {
+            situation,
+            discs,
+            fastest: speeds.fold(0.0, f64::max),
+        }
+    }
+
+    /// The earliest contact on the way at `velocity`, seconds, infinite if there is none; or `None` as
+    /// soon as one is found that is too early.
+    fn first_contact(&self, velocity: Vector, too_early: impl Fn(f64) -> bool) -> Option<f64> {
+        let approach = velocity.norm() + self.fastest;
+        let mut first = f64::INFINITY;
+        for wall in &self.situation.walls {
+            first = first.min(self.situation.time_to_wall(wall, velocity));
+        }
+        if too_early(first) {
+            return None;
+        }
+        for (gap, disc) in &self.discs {
+            if *gap > approach * first * (1.0 + ROUNDING) + ROUNDING {
+                break;
+            }
+            let time = time_to_contact(disc.offset, velocity - disc.velocity, disc.reach);
+            if time < first {
+                first = time;
+                if too_early(first) {
+                    return None;
+                }
+            }
+        }
+        Some(first)
     }
 }
 

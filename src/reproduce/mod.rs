@@ -1,7 +1,7 @@
 //! The paper's tables and figures (§6) at one command.
 //!
 //! A [`Product`] is a table or a figure: it lists the [`Case`]s that it needs, and writes files from
-//! their results. The [`runner`] computes what the [`Store`] does not have yet; what two products
+//! their results. [`run`] computes what the [`Store`] does not have yet; what two products
 //! share is computed once.
 
 mod case;

@@ -127,7 +127,7 @@ pub fn case() -> Case {
     Case::shipped("concert")
         .set("duration_secs", UNTIL)
         .keep(WaveProbe)
-        .taking(25.0)
+        .taking(12.0)
 }
 
 /// What is kept of a concert's wave.

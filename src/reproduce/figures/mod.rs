@@ -33,7 +33,7 @@ pub use study::PRODUCT as STUDY;
 fn save(sheet: &Sheet, store: &Store, name: &str) -> Result<String, ReproduceError> {
     let stem = store.path(name);
     sheet.save(&stem)?;
-    Ok(format!("{0}.svg, {0}.png", stem.display()))
+    Ok(format!("{0}.svg, {0}.png\n", stem.display()))
 }
 
 /// The scene of a case.
