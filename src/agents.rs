@@ -60,7 +60,7 @@ pub struct Agents {
     pub radius: Vec<f64>,
     /// m_i, 1 = an average person.
     pub mass: Vec<f64>,
-    /// ρ̂_i, P/m², unclamped (§4.2).
+    /// ρ̂_i of the frame before, P/m², unclamped (§4.2).
     pub mean_density: Vec<f64>,
     /// Has ρ̂_i not been set yet? Then the next frame starts it.
     pub newcomer: Vec<bool>,

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::boundary::WallShare;
+use crate::density::mean_density_before;
 use crate::math::Vector;
 use crate::profile::Terms;
 use crate::simulation::Simulation;
@@ -93,13 +94,12 @@ impl Breakdown {
         let blend = simulation.blend(i);
         let h = blend.sph.support_radius;
         let changed = simulation.change(i);
-        let sums = frame.pair_sums(i, h);
         let profiles = blend
             .acting(&frame, i)
             .map(|(profile, weight)| ProfileShare {
                 name: profile.name.clone(),
                 weight,
-                accelerations: profile.terms(&frame, i, &sums, changed),
+                accelerations: profile.terms(&frame, i, changed),
             });
         let mut neighbors: Vec<Neighbor> = frame
             .near(i, h)
@@ -117,7 +117,7 @@ impl Breakdown {
             mass: agents.mass[i],
             goal: agents.goal[i].into(),
             density,
-            density_from_agents: frame.density_from_agents(i, h),
+            density_from_agents: density - fields.density_from_walls[i],
             density_from_walls: fields.density_from_walls[i],
             mean_density: fields.mean_density[i],
             rest_density: fields.rest_density[i],
@@ -141,7 +141,9 @@ impl Breakdown {
 fn wall_terms(simulation: &Simulation, i: usize) -> Vec<WallTerm> {
     let frame = simulation.frame();
     let (fields, r_i) = (frame.fields, frame.agents.position[i]);
-    let h = simulation.blend(i).sph.support_radius;
+    let from_agents = fields.density[i] - fields.density_from_walls[i];
+    let sph = &simulation.blend(i).sph;
+    let rest_density_before = sph.rest_density(mean_density_before(&frame, i, from_agents));
     let feels_pressure = fields.density[i] >= fields.rest_density[i];
     let mut terms = Vec::new();
     let take = |share: WallShare| {
@@ -151,7 +153,7 @@ fn wall_terms(simulation: &Simulation, i: usize) -> Vec<WallTerm> {
             nearest_point: frame.walls.wall(share.wall).nearest_point(r_i).point.into(),
             representative_point: share.representative_point.map(Into::into),
             hidden_area: share.hidden_area,
-            density: fields.rest_density_before[i] * share.kernel,
+            density: rest_density_before * share.kernel,
             pressure_acceleration: if feels_pressure {
                 force.into()
             } else {
@@ -161,7 +163,7 @@ fn wall_terms(simulation: &Simulation, i: usize) -> Vec<WallTerm> {
     };
     let candidates = frame.neighbors.near_walls(i);
     let method = simulation.scene().wall_method;
-    method.shares(frame.walls, candidates, r_i, h, take);
+    method.shares(frame.walls, candidates, r_i, sph.support_radius, take);
     terms
 }
 

@@ -49,66 +49,86 @@ impl SphParameters {
     }
 }
 
-/// Everything that step 1B knows of one agent; units as in [`Fields`](crate::frame::Fields).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SphState {
-    /// ρ_i.
-    pub density: f64,
+/// What step 1B finds out of some agents in order; units as in [`Fields`](crate::frame::Fields).
+pub struct SphStates<'a> {
+    /// In: Eq. 9 without walls. Out: ρ_i.
+    pub density: &'a mut [f64],
     /// The walls' part of it.
-    pub density_from_walls: f64,
+    pub density_from_walls: &'a mut [f64],
     /// ρ̂_i, one step on.
-    pub mean_density: f64,
-    /// ρ_i⁰ of the frame before.
-    pub rest_density_before: f64,
+    pub mean_density: &'a mut [f64],
     /// ρ_i⁰.
-    pub rest_density: f64,
+    pub rest_density: &'a mut [f64],
     /// p_i.
-    pub pressure: f64,
+    pub pressure: &'a mut [f64],
     /// Σ_k ∫ ∇W over P_k.
-    pub wall_gradient: Vector,
+    pub wall_gradient: &'a mut [Vector],
 }
 
-/// Eqs. 9, 10, 8 and 5, in this order, after the sum `from_agents` of Eq. 9 in P/m²; the walls use the
-/// rest density of the frame before.
-pub fn sph_state(
-    frame: &Frame,
-    i: usize,
-    from_agents: f64,
-    sph: &SphParameters,
-    walls: WallMethod,
-) -> SphState {
-    let mean_before = if frame.agents.newcomer[i] {
+/// ρ̂ of the frame before, P/m²; of a newcomer, the sum `from_agents` of Eq. 9.
+pub fn mean_density_before(frame: &Frame, i: usize, from_agents: f64) -> f64 {
+    if frame.agents.newcomer[i] {
         from_agents
     } else {
         frame.agents.mean_density[i]
-    };
-    let (mut kernel, mut wall_gradient) = (0.0, Vector::zeros());
-    let near_walls = frame.neighbors.near_walls(i);
-    if !near_walls.is_empty() {
-        walls.shares(
-            frame.walls,
-            near_walls,
-            frame.agents.position[i],
-            sph.support_radius,
-            |share| {
-                kernel += share.kernel;
-                wall_gradient += share.gradient;
-            },
-        );
     }
-    let rest_density_before = sph.rest_density(mean_before);
-    let density_from_walls = rest_density_before * kernel;
-    let density = from_agents + density_from_walls;
-    let mean_density = sph.averaged(mean_before, density, frame.clock.time_step());
-    let rest_density = sph.rest_density(mean_density);
-    SphState {
-        density,
-        density_from_walls,
-        mean_density,
-        rest_density_before,
-        rest_density,
-        pressure: sph.pressure(density, rest_density),
-        wall_gradient,
+}
+
+impl SphStates<'_> {
+    /// Eqs. 9, 10, 8 and 5, in this order, for agents `from` and up; the walls use the rest density of
+    /// the frame before. `sph` is their parameters where all have the same, `sph_of` those of one.
+    pub fn update<'s>(
+        &mut self,
+        frame: &Frame,
+        from: usize,
+        walls: WallMethod,
+        sph: Option<SphParameters>,
+        sph_of: impl Fn(usize) -> &'s SphParameters,
+    ) {
+        self.see_walls(frame, from, walls, &sph_of);
+        let to = from + self.density.len();
+        let newcomer = &frame.agents.newcomer[from..to];
+        let before = &frame.agents.mean_density[from..to];
+        let dt = frame.clock.time_step();
+        for k in 0..to - from {
+            let sph = sph.unwrap_or_else(|| *sph_of(from + k));
+            let before = if newcomer[k] {
+                self.density[k]
+            } else {
+                before[k]
+            };
+            let from_walls = self.density_from_walls[k] * sph.rest_density(before);
+            let density = self.density[k] + from_walls;
+            let mean_density = sph.averaged(before, density, dt);
+            let rest_density = sph.rest_density(mean_density);
+            self.density_from_walls[k] = from_walls;
+            self.density[k] = density;
+            self.mean_density[k] = mean_density;
+            self.rest_density[k] = rest_density;
+            self.pressure[k] = sph.pressure(density, rest_density);
+        }
+    }
+
+    /// Leaves Σ_k ∫ W over P_k in place of the walls' part of the density.
+    fn see_walls<'s>(
+        &mut self,
+        frame: &Frame,
+        from: usize,
+        walls: WallMethod,
+        sph_of: impl Fn(usize) -> &'s SphParameters,
+    ) {
+        self.density_from_walls.fill(0.0);
+        self.wall_gradient.fill(Vector::zeros());
+        for (i, near) in frame
+            .neighbors
+            .agents_near_walls(from..from + self.density.len())
+        {
+            let (r_i, h) = (frame.agents.position[i], sph_of(i).support_radius);
+            walls.shares(frame.walls, near, r_i, h, |share| {
+                self.density_from_walls[i - from] += share.kernel;
+                self.wall_gradient[i - from] += share.gradient;
+            });
+        }
     }
 }
 

@@ -4,8 +4,8 @@ use crate::agents::Agents;
 use crate::clock::Clock;
 use crate::geometry::Walls;
 use crate::math::Vector;
-use crate::neighbors::Neighbors;
-use crate::pairs::{Packed, PairSums};
+use crate::neighbors::{BLOCK, Neighbors};
+use crate::pairs::{Packed, PairCoefficients, Wanted};
 
 /// What a frame derives from the state, one array per quantity; the step that writes it in brackets.
 #[derive(Debug, Clone, Default)]
@@ -16,8 +16,6 @@ pub struct Fields {
     pub density_from_walls: Vec<f64>,
     /// ρ̂_i, P/m², before it is clamped (1B).
     pub mean_density: Vec<f64>,
-    /// ρ_i⁰ of the frame before, which the wall terms use, P/m² (1B).
-    pub rest_density_before: Vec<f64>,
     /// ρ_i⁰, P/m² (1B).
     pub rest_density: Vec<f64>,
     /// p_i (1B).
@@ -38,7 +36,6 @@ impl Fields {
         self.density.resize(sph, 0.0);
         self.density_from_walls.resize(sph, 0.0);
         self.mean_density.resize(sph, 0.0);
-        self.rest_density_before.resize(sph, 0.0);
         self.rest_density.resize(sph, 0.0);
         self.pressure.resize(sph, 0.0);
         self.wall_gradient.resize(sph, Vector::zeros());
@@ -64,6 +61,8 @@ pub struct Frame<'a> {
     pub neighbors: &'a Neighbors,
     /// Bodies and fields as sums over pairs read them.
     pub packed: &'a Packed,
+    /// Which of them some profile reads.
+    pub wanted: Wanted,
     /// Seed of the scene's random numbers.
     pub seed: u64,
 }
@@ -72,27 +71,19 @@ impl Frame<'_> {
     /// The near neighbours j of agent `i` strictly within `radius` metres, with r_ij = r_i − r_j.
     pub fn near(&self, i: usize, radius: f64) -> impl Iterator<Item = (usize, Vector)> + '_ {
         let position = &self.agents.position;
-        let candidates = self.neighbors.near().agents(i).filter(move |&j| j != i);
+        let candidates = self.neighbors.near().near(i).filter(move |&j| j != i);
         candidates
             .map(move |j| (j, position[i] - position[j]))
             .filter(move |(_, r_ij)| r_ij.norm_squared() < radius * radius)
     }
 
-    /// Eq. 9 without walls, P/m², for agent `i` with support radius `h` in metres.
-    pub fn density_from_agents(&self, i: usize, h: f64) -> f64 {
-        let mut density = [0.0];
-        let chunks = self.neighbors.near();
+    /// What the agents near agent `i` do to it, m/s².
+    pub fn from_near_agents(&self, i: usize, coefficients: &PairCoefficients) -> Vector {
+        let mut accelerations = [Vector::zeros(); BLOCK];
+        let block = self.neighbors.near().block(i / BLOCK);
         self.packed
-            .densities(chunks, (i..i + 1, &[h]), &mut density);
-        density[0]
-    }
-
-    /// The sums of all forces between agents, for agent `i` with support radius `h` in metres.
-    pub fn pair_sums(&self, i: usize, h: f64) -> PairSums {
-        let mut sums = [PairSums::default()];
-        let chunks = self.neighbors.near();
-        self.packed.forces(chunks, (i..i + 1, &[h]), &mut sums);
-        sums[0]
+            .accelerations(block, coefficients, self.wanted, &mut accelerations);
+        accelerations[i % BLOCK]
     }
 
     /// Everybody else j strictly within an avoidance `radius` of agent `i`, with r_ij = r_i − r_j.

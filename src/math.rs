@@ -20,9 +20,9 @@ pub fn direction(v: Vector) -> Vector {
 
 /// `v`, shortened to length `limit` if it is longer.
 pub fn clamp_length(v: Vector, limit: f64) -> Vector {
-    let length = v.norm();
-    if length > limit {
-        v * (limit / length)
+    let squared = v.norm_squared();
+    if squared > limit * limit {
+        v * (limit / squared.sqrt())
     } else {
         v
     }

@@ -1,6 +1,11 @@
-//! Profiles and their blending by density (§4.4, §5.5).
+//! Profiles (§5.5) and their blending by density (§4.4).
 
-use crate::density::SphParameters;
+mod blend;
+
+pub use blend::{Blend, BlendError, BlendStep};
+
+use std::ops::Range;
+
 use crate::forces::contact::{self, Contact};
 use crate::forces::goal::GoalForce;
 use crate::forces::pressure;
@@ -9,7 +14,8 @@ use crate::forces::social::SocialForce;
 use crate::forces::viscosity::Viscosity;
 use crate::frame::Frame;
 use crate::math::Vector;
-use crate::pairs::PairSums;
+use crate::neighbors::BLOCK;
+use crate::pairs::PairCoefficients;
 
 /// Steps 3, 3B and 4 for one agent: how it navigates, and which interactions it feels.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,193 +119,133 @@ impl Terms {
 
 impl Profile {
     /// Every term of this profile for agent `i` of a frozen frame.
-    #[inline]
-    pub fn terms(
-        &self,
-        frame: &Frame,
-        i: usize,
-        sums: &PairSums,
-        changed: Option<&Override>,
-    ) -> Terms {
+    pub fn terms(&self, frame: &Frame, i: usize, changed: Option<&Override>) -> Terms {
         let mut terms = Terms::default();
-        match self.navigation {
-            Navigation::Goal(goal) => terms.goal = Some(goal_term(goal, frame, i, changed)),
-            Navigation::Social(goal, social) => {
-                terms.goal = Some(goal_term(goal, frame, i, changed));
-                terms.social_agents = Some(social.from_agents(frame, i));
-                terms.social_walls = Some(social.from_walls(frame, i));
-            }
-            Navigation::Rvo(_) => terms.rvo = frame.agents.avoidance[i],
-        }
-        let feels_sph = !changed.is_some_and(|change| change.ignore_sph);
-        let feels_contact = !changed.is_some_and(|change| change.ignore_contact);
-        if feels_sph {
+        self.each_term(frame, i..i + 1, changed, |place, _, term| {
+            *place(&mut terms) = Some(term);
+        });
+        let mut all = PairCoefficients::default();
+        self.add_pair_coefficients(frame, i..i + 1, changed, 1.0, &mut all);
+        let alone = |coefficients| frame.from_near_agents(i, &coefficients);
+        let PairCoefficients {
+            pressure,
+            viscosity,
+            contact,
+        } = all;
+        let none = PairCoefficients::default;
+        if feels_sph(changed) {
             if self.pressure {
-                terms.pressure_agents = Some(pressure::from_agents(frame, i, sums));
-                terms.pressure_walls = Some(pressure::from_walls(frame, i));
+                terms.pressure_agents = Some(alone(PairCoefficients { pressure, ..none() }));
+                terms.pressure_walls.get_or_insert(Vector::zeros());
             }
-            terms.viscosity = self.viscosity.map(|v| v.acceleration(frame, i, sums));
+            terms.viscosity = self.viscosity.map(|_| {
+                alone(PairCoefficients {
+                    viscosity,
+                    ..none()
+                })
+            });
         }
-        if feels_contact {
-            let (agents, walls) = (self.contact.agent_stiffness, self.contact.wall_stiffness);
-            terms.contact_agents = agents.map(|k| contact::from_agents(frame, i, k, sums));
-            terms.contact_walls = walls.map(|k| contact::from_walls(frame, i, k));
+        if feels_contact(changed) {
+            if self.contact.agent_stiffness.is_some() {
+                terms.contact_agents = Some(alone(PairCoefficients { contact, ..none() }));
+            }
+            if self.contact.wall_stiffness.is_some() {
+                terms.contact_walls.get_or_insert(Vector::zeros());
+            }
         }
         terms
     }
-}
 
-fn goal_term(goal: GoalForce, frame: &Frame, i: usize, changed: Option<&Override>) -> Vector {
-    let goal_scale = changed
-        .and_then(|change| change.goal_scale)
-        .unwrap_or(goal.goal_scale);
-    GoalForce { goal_scale, ..goal }.acceleration(frame, i)
-}
-
-/// A sequence {(Π^j, ρ^j)} of profiles in rising order of density, and the SPH parameters they share.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Blend {
-    /// What the whole is called.
-    pub name: String,
-    /// Density and pressure of an agent with this blend.
-    pub sph: SphParameters,
-    steps: Vec<BlendStep>,
-}
-
-/// One profile of a blend.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BlendStep {
-    /// ρ^j, P/m²: where this profile acts alone.
-    pub at_density: f64,
-    /// Π^j.
-    pub profile: Profile,
-}
-
-/// Why a sequence of profiles is not a blend.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum BlendError {
-    /// There is no profile.
-    #[error("a blend needs at least one profile")]
-    Empty,
-    /// Two densities in the wrong order.
-    #[error("densities must rise: {1} P/m² follows {0} P/m²")]
-    NotRising(f64, f64),
-    /// Two profiles avoid by RVO, each in its own way.
-    #[error("profiles of one blend share one velocity of RVO: give them the same RVO parameters")]
-    DifferentRvo,
-}
-
-impl Blend {
-    /// Puts profiles together.
-    ///
-    /// # Errors
-    /// No profile, densities that do not rise, or profiles with different RVO parameters.
-    pub fn new(
-        name: String,
-        sph: SphParameters,
-        steps: Vec<BlendStep>,
-    ) -> Result<Self, BlendError> {
-        if steps.is_empty() {
-            return Err(BlendError::Empty);
-        }
-        for pair in steps.windows(2) {
-            let (low, high) = (pair[0].at_density, pair[1].at_density);
-            if low.partial_cmp(&high) != Some(std::cmp::Ordering::Less) {
-                return Err(BlendError::NotRising(low, high));
-            }
-        }
-        let mut rvos = steps.iter().filter_map(|step| rvo_of(&step.profile));
-        if let Some(first) = rvos.next()
-            && rvos.any(|other| other != first)
-        {
-            return Err(BlendError::DifferentRvo);
-        }
-        Ok(Self { name, sph, steps })
-    }
-
-    /// One profile at all densities.
-    pub fn single(profile: Profile, sph: SphParameters) -> Self {
-        Self {
-            name: profile.name.clone(),
-            sph,
-            steps: vec![BlendStep {
-                at_density: 0.0,
-                profile,
-            }],
-        }
-    }
-
-    /// The profiles in rising order of density.
-    pub fn steps(&self) -> &[BlendStep] {
-        &self.steps
-    }
-
-    /// Does the behaviour depend on the density?
-    pub fn depends_on_density(&self) -> bool {
-        self.steps.len() > 1
-    }
-
-    /// The RVO parameters of this blend, if any of its profiles avoids by RVO.
-    pub fn rvo(&self) -> Option<Rvo> {
-        self.steps.iter().find_map(|step| rvo_of(&step.profile))
-    }
-
-    /// The profiles that act on agent `i` of a frozen frame, with their weights, which sum to 1.
-    #[inline]
-    pub fn acting(&self, frame: &Frame, i: usize) -> impl Iterator<Item = (&Profile, f64)> {
-        let density = if self.depends_on_density() {
-            frame.fields.density[i]
-        } else {
-            0.0
-        };
-        self.weights(density)
-    }
-
-    /// The profiles with a weight above zero at a density in P/m² (§4.4).
-    #[inline]
-    pub fn weights(&self, density: f64) -> impl Iterator<Item = (&Profile, f64)> {
-        let last = self.steps.len() - 1;
-        let above = |step: &BlendStep| density <= step.at_density;
-        let high = self.steps.iter().position(above).unwrap_or(last);
-        let low = high.saturating_sub(1);
-        let (from, to) = (self.steps[low].at_density, self.steps[high].at_density);
-        // Alone at its own density, and at the ends beyond it.
-        let kappa = if low < high {
-            ((density - from) / (to - from)).min(1.0)
-        } else {
-            1.0
-        };
-        let lower = (kappa < 1.0).then(|| (&self.steps[low].profile, 1.0 - kappa));
-        lower
-            .into_iter()
-            .chain([(&self.steps[high].profile, kappa)])
-    }
-
-    /// Does RVO act on agent `i` of a frozen frame?
-    pub fn rvo_acts(&self, frame: &Frame, i: usize) -> bool {
-        self.acting(frame, i)
-            .any(|(profile, _)| rvo_of(profile).is_some())
-    }
-
-    /// The blended acceleration of agent `i` of a frozen frame, m/s².
-    pub fn acceleration(
+    /// Adds how much `agents` of one block of a frozen frame feel of the agents near them, times
+    /// `weight`.
+    fn add_pair_coefficients(
         &self,
         frame: &Frame,
-        i: usize,
-        sums: &PairSums,
+        agents: Range<usize>,
         changed: Option<&Override>,
-    ) -> Vector {
-        let mut blended = Vector::zeros();
-        for (profile, weight) in self.acting(frame, i) {
-            blended += profile.terms(frame, i, sums, changed).sum() * weight;
+        weight: f64,
+        coefficients: &mut PairCoefficients,
+    ) {
+        let first = agents.start % BLOCK;
+        let places = first..first + agents.len();
+        if feels_sph(changed) && self.pressure {
+            let coefficients = &mut coefficients.pressure[places.clone()];
+            pressure::add_coefficients(frame, agents.clone(), weight, coefficients);
         }
-        blended
+        if let Some(viscosity) = self.viscosity
+            && feels_sph(changed)
+        {
+            let coefficients = &mut coefficients.viscosity[places.clone()];
+            viscosity.add_coefficients(frame, agents.clone(), weight, coefficients);
+        }
+        if let Some(stiffness) = self.contact.agent_stiffness
+            && feels_contact(changed)
+        {
+            let coefficients = &mut coefficients.contact[places];
+            contact::add_coefficients(frame, agents, weight * stiffness, coefficients);
+        }
+    }
+
+    /// All terms of `agents` but what the agents near them do: where each belongs, whose it is, and how
+    /// large, m/s²; no walls' terms of those without walls near.
+    #[inline]
+    fn each_term(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+        changed: Option<&Override>,
+        mut take: impl FnMut(fn(&mut Terms) -> &mut Option<Vector>, usize, Vector),
+    ) {
+        match self.navigation {
+            Navigation::Goal(goal) => {
+                let goal = changed_goal(goal, changed);
+                goal.accelerations(frame, agents.clone(), |i, a| take(|t| &mut t.goal, i, a));
+            }
+            Navigation::Social(goal, social) => {
+                let goal = changed_goal(goal, changed);
+                goal.accelerations(frame, agents.clone(), |i, a| take(|t| &mut t.goal, i, a));
+                for i in agents.clone() {
+                    take(|t| &mut t.social_agents, i, social.from_agents(frame, i));
+                    take(|t| &mut t.social_walls, i, social.from_walls(frame, i));
+                }
+            }
+            Navigation::Rvo(_) => {
+                for i in agents.clone() {
+                    if let Some(held) = frame.agents.avoidance[i] {
+                        take(|t| &mut t.rvo, i, held);
+                    }
+                }
+            }
+        }
+        if self.pressure && feels_sph(changed) {
+            for (i, _) in frame.neighbors.agents_near_walls(agents.clone()) {
+                take(|t| &mut t.pressure_walls, i, pressure::from_walls(frame, i));
+            }
+        }
+        if let Some(stiffness) = self.contact.wall_stiffness
+            && feels_contact(changed)
+        {
+            for (i, near) in frame.neighbors.agents_near_walls(agents) {
+                let push = contact::from_walls(frame, i, near, stiffness);
+                take(|t| &mut t.contact_walls, i, push);
+            }
+        }
     }
 }
 
-fn rvo_of(profile: &Profile) -> Option<Rvo> {
-    match profile.navigation {
-        Navigation::Rvo(rvo) => Some(rvo),
-        _ => None,
+/// The goal force with the K^goal that a push gives.
+fn changed_goal(goal: GoalForce, changed: Option<&Override>) -> GoalForce {
+    let goal_scale = changed.and_then(|change| change.goal_scale);
+    GoalForce {
+        goal_scale: goal_scale.unwrap_or(goal.goal_scale),
+        ..goal
     }
+}
+
+fn feels_sph(changed: Option<&Override>) -> bool {
+    !changed.is_some_and(|change| change.ignore_sph)
+}
+
+fn feels_contact(changed: Option<&Override>) -> bool {
+    !changed.is_some_and(|change| change.ignore_contact)
 }

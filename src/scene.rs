@@ -6,7 +6,7 @@ use crate::clock::Clock;
 use crate::geometry::{Polygon, Walls};
 use crate::math::Vector;
 use crate::neighbors::Ranges;
-use crate::pairs::Precision;
+use crate::pairs::{Precision, Wanted};
 use crate::placement::Grid;
 use crate::profile::{Blend, Override};
 
@@ -166,17 +166,19 @@ impl Scene {
                 .flat_map(|group| group.blend.steps())
                 .map(|step| &step.profile)
         };
-        let sph = profiles().any(|profile| profile.pressure || profile.viscosity.is_some());
+        let pairs = Wanted {
+            pressure: profiles().any(|profile| profile.pressure),
+            viscosity: profiles().any(|profile| profile.viscosity.is_some()),
+            contact: profiles().any(|profile| profile.contact.agent_stiffness.is_some()),
+        };
         let blending = self
             .groups
             .iter()
             .any(|group| group.blend.depends_on_density());
-        let contact = profiles().any(|profile| profile.contact.agent_stiffness.is_some());
         Needs {
-            density: sph || blending,
-            pairs: sph || contact,
+            density: pairs.pressure || pairs.viscosity || blending,
+            pairs,
             rvo: self.groups.iter().any(|group| group.blend.rvo().is_some()),
-            contact,
             avoidance: profiles()
                 .filter_map(|profile| profile.navigation.avoidance_radius())
                 .reduce(f64::max),
@@ -207,12 +209,10 @@ impl Scene {
 pub struct Needs {
     /// SPH forces or blending read the density in every frame.
     pub density: bool,
-    /// Some profile sums over near neighbours: SPH forces or contact.
-    pub pairs: bool,
+    /// Sums over near neighbours that some profile reads.
+    pub pairs: Wanted,
     /// Some profile avoids by RVO.
     pub rvo: bool,
-    /// Discs push each other.
-    pub contact: bool,
     /// The widest avoidance radius, metres.
     pub avoidance: Option<f64>,
     /// Some agents leave at their goal.

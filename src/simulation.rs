@@ -35,8 +35,13 @@ pub struct Simulation {
     outcome: Outcome,
     stages: StageTimes,
     evaluated: bool,
+    /// Is every number of the evaluated frame finite?
+    finite: bool,
     crowd_changed: bool,
 }
+
+/// Blocks of agents that are worth another thread.
+const TASK: usize = 8;
 
 /// What has happened so far.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -109,6 +114,7 @@ impl Simulation {
             outcome: Outcome::default(),
             stages: StageTimes::default(),
             evaluated: false,
+            finite: true,
             crowd_changed: true,
             scene,
         };
@@ -139,8 +145,8 @@ impl Simulation {
             self.follow_schedule()?;
         }
         self.update_neighbors(); // 1
-        self.update_density_and_pressure(); // 1B
         self.update_preferred_velocity(); // 2
+        self.update_density_and_pressure(); // 1B
         self.update_rvo(); // 3, coarse
         self.update_acceleration(); // 3, 3B, 4
         self.evaluated = true;
@@ -171,6 +177,7 @@ impl Simulation {
             fields: &self.fields,
             neighbors: &self.neighbors,
             packed: &self.packed,
+            wanted: self.needs.pairs,
             seed: self.scene.seed,
         }
     }

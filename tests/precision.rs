@@ -63,8 +63,10 @@ fn magnitude(simulation: &Simulation, i: usize) -> f64 {
         let contact = (direction(r_ij) * overlap).norm() * 50.0 / agents.mass[i];
         (pressure + viscosity) / fields.density[i] + contact
     });
-    let rest = Simulation::blend(simulation, i).steps().len() as f64;
-    pairs.sum::<f64>() + rest
+    let share = common::laid_open(simulation, agents.id[i]).profiles[0].accelerations;
+    let others = [share.goal, share.pressure_walls, share.contact_walls];
+    let others = others.map(|term| term.map_or(0.0, |term| term.norm()));
+    pairs.sum::<f64>() + others.iter().sum::<f64>()
 }
 
 fn largest_error(scene: &Scene) -> f64 {

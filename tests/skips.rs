@@ -5,6 +5,7 @@ mod common;
 use common::{blend, blend_with, block, person, room, scene, vector};
 use sandbox::boundary::WallMethod;
 use sandbox::catalog::Parameters;
+use sandbox::pairs::Wanted;
 use sandbox::profile::Blend;
 use sandbox::scene::Needs;
 use sandbox::simulation::{Simulation, Stage};
@@ -55,11 +56,15 @@ fn stages_that_a_profile_does_not_need_never_run() {
 #[test]
 fn needs_follow_from_the_profiles() {
     let needs = |name: &str| *crowd(blend(name)).needs();
+    let sph = Wanted {
+        pressure: true,
+        viscosity: false,
+        contact: true,
+    };
     let goal_only = Needs {
         density: true,
-        pairs: true,
+        pairs: sph,
         rvo: false,
-        contact: true,
         avoidance: None,
         removal: false,
     };
@@ -70,21 +75,16 @@ fn needs_follow_from_the_profiles() {
     };
     assert_eq!(needs("sf+sph"), wide);
     assert_eq!(needs("sf->sph"), wide);
-    assert_eq!(
-        needs("sf"),
-        Needs {
-            density: false,
-            ..wide
-        }
-    );
-    assert_eq!(
-        needs("rvo"),
-        Needs {
-            density: false,
-            rvo: true,
-            ..wide
-        }
-    );
+    let apart = Needs {
+        density: false,
+        pairs: Wanted {
+            pressure: false,
+            ..sph
+        },
+        ..wide
+    };
+    assert_eq!(needs("sf"), apart);
+    assert_eq!(needs("rvo"), Needs { rvo: true, ..apart });
     assert_eq!(needs("rvo+sph"), Needs { rvo: true, ..wide });
     assert_eq!(needs("rvo->sph"), Needs { rvo: true, ..wide });
 }
@@ -97,12 +97,28 @@ fn switched_off_terms_need_nothing() {
         ..Parameters::default()
     };
     let needs = *crowd(blend_with("sph", &none)).needs();
-    assert!(!needs.density && !needs.contact && needs.avoidance.is_none());
+    assert!(!needs.density && !needs.pairs.contact && needs.avoidance.is_none());
     let viscous = Parameters {
         viscosity: Some(5.0),
         ..none
     };
     assert!(crowd(blend_with("sph", &viscous)).needs().density);
+}
+
+#[test]
+fn who_feels_nobody_still_walks() {
+    let none = Parameters {
+        gas_constant: Some(0.0),
+        agent_stiffness: Some(0.0),
+        ..Parameters::default()
+    };
+    let mut simulation = crowd(blend_with("sph", &none));
+    for _ in 0..50 {
+        simulation.step().unwrap();
+    }
+    for velocity in &simulation.frame().agents.velocity {
+        assert!(velocity.norm() > 1.0, "{velocity}");
+    }
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! Contact between discs, and of discs with walls (§5.4, Eqs. 22 and 23).
 
+use std::ops::Range;
+
 use crate::frame::Frame;
 use crate::math::Vector;
-use crate::pairs::PairSums;
 
 /// A centre this near to a wall stands on it, metres: the rounding of coordinates up to 10⁶ m, which
 /// would otherwise decide where the wall pushes.
@@ -17,18 +18,26 @@ pub struct Contact {
     pub wall_stiffness: Option<f64>,
 }
 
-/// Eq. 22 over all agents in contact, over the mass.
-pub fn from_agents(frame: &Frame, i: usize, stiffness: f64, sums: &PairSums) -> Vector {
-    sums.contact * (stiffness / frame.agents.mass[i])
+/// Adds what each of `agents` multiplies the sum of Eq. 22 over all agents in contact with: `stiffness`
+/// over the mass.
+pub fn add_coefficients(
+    frame: &Frame,
+    agents: Range<usize>,
+    stiffness: f64,
+    coefficients: &mut [f64],
+) {
+    for (sum, &mass) in coefficients.iter_mut().zip(&frame.agents.mass[agents]) {
+        *sum += stiffness / mass;
+    }
 }
 
-/// Eq. 23 over every edge that overlaps the disc, both faces, a corner once for each of its edges,
-/// over the mass; a centre on a wall is pushed along the outward normal.
-pub fn from_walls(frame: &Frame, i: usize, stiffness: f64) -> Vector {
+/// Eq. 23 over every edge of `walls` that overlaps the disc, both faces, a corner once for each of its
+/// edges, over the mass; a centre on a wall is pushed along the outward normal.
+pub fn from_walls(frame: &Frame, i: usize, walls: &[u32], stiffness: f64) -> Vector {
     let agents = frame.agents;
     let (r_i, radius) = (agents.position[i], agents.radius[i]);
     let mut force = Vector::zeros();
-    for &k in frame.neighbors.near_walls(i) {
+    for &k in walls {
         let wall = frame.walls.wall(k);
         let away = r_i - wall.nearest_point(r_i).point;
         let distance = away.norm();

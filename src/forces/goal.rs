@@ -1,5 +1,7 @@
 //! The goal force (§5.3.1, Eq. 17) and the preferred velocity.
 
+use std::ops::Range;
+
 use crate::frame::Frame;
 use crate::math::{Vector, direction};
 
@@ -22,10 +24,21 @@ impl Default for GoalForce {
 }
 
 impl GoalForce {
-    /// Eq. 17 over the mass.
-    pub fn acceleration(&self, frame: &Frame, i: usize) -> Vector {
-        let change = frame.fields.preferred_velocity[i] - frame.agents.velocity[i];
-        change * (self.goal_scale / self.relaxation_time / frame.agents.mass[i])
+    /// Eq. 17 over the mass for each of `agents`.
+    #[inline]
+    pub fn accelerations(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+        mut take: impl FnMut(usize, Vector),
+    ) {
+        let rate = self.goal_scale / self.relaxation_time;
+        let preferred = &frame.fields.preferred_velocity[agents.clone()];
+        let velocity = &frame.agents.velocity[agents.clone()];
+        let mass = &frame.agents.mass[agents.clone()];
+        for (((i, wish), v), m) in agents.zip(preferred).zip(velocity).zip(mass) {
+            take(i, (wish - v) * (rate / m));
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! SPH viscosity (§3.3, Eq. 7, times μ and divided by the density as in Eq. 2).
 
+use std::ops::Range;
+
 use crate::frame::Frame;
-use crate::math::Vector;
-use crate::pairs::PairSums;
 
 /// The viscosity force of one profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,8 +12,17 @@ pub struct Viscosity {
 }
 
 impl Viscosity {
-    /// μ ∇²v_i / ρ_i, Eq. 7.
-    pub fn acceleration(&self, frame: &Frame, i: usize, sums: &PairSums) -> Vector {
-        sums.viscosity * (self.coefficient / frame.fields.density[i])
+    /// Adds what each of `agents` multiplies the sum of Eq. 7 with, times `weight`: μ/ρ_i.
+    pub fn add_coefficients(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+        weight: f64,
+        coefficients: &mut [f64],
+    ) {
+        let density = &frame.fields.density[agents];
+        for (sum, &density) in coefficients.iter_mut().zip(density) {
+            *sum += self.coefficient * weight / density;
+        }
     }
 }

@@ -12,7 +12,18 @@ const FEWEST_CELLS: usize = 1024;
 
 /// Cells in a row are so much narrower than the row is high: runs then end near the circle they are
 /// to cover.
-const NARROWNESS: f64 = 4.0;
+const NARROWNESS: f64 = 8.0;
+
+/// A place in a grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// The row, neither the first nor the last.
+    pub row: usize,
+    /// Metres from the left end of the row.
+    pub x: f64,
+    /// Metres above the floor of the row.
+    pub y: f64,
+}
 
 /// Cells of a bounding box, with an empty row below and above, and the range of agents in each.
 #[derive(Debug, Clone)]
@@ -103,27 +114,19 @@ impl Grid {
         row * self.columns + column
     }
 
-    /// The agents in cells that a circle round `p` meets, in three rows; its `radius` is at most the
-    /// height of a row. Agents may be counted in though they are out of reach, never left out.
-    pub fn near_rows(&self, p: Vector, radius: f64) -> [Range<u32>; 3] {
+    /// Where `p` is, one of those that the grid was laid over.
+    pub fn place(&self, p: Vector) -> Place {
         let offset = p - self.origin;
-        // Who has left the grid since it was laid is not far from it.
         let row = ((offset.y / self.height) as usize).clamp(1, self.rows - 2);
-        let above_floor = offset.y - row as f64 * self.height;
-        [
-            (row - 1, above_floor),
-            (row, 0.0),
-            (row + 1, self.height - above_floor),
-        ]
-        .map(|(row, gap)| {
-            // √(radius² − gap²) is at most this.
-            let half = radius - gap * gap / (2.0 * radius);
-            self.run(row, offset.x - half, offset.x + half)
-        })
+        Place {
+            row,
+            x: offset.x,
+            y: offset.y - row as f64 * self.height,
+        }
     }
 
     /// The agents in the cells of a row between two places, metres from its left end.
-    fn run(&self, row: usize, from: f64, to: f64) -> Range<u32> {
+    pub fn run(&self, row: usize, from: f64, to: f64) -> Range<u32> {
         let column = |x: f64| ((x / self.width) as usize).min(self.columns - 1);
         let first = row * self.columns;
         self.start[first + column(from)]..self.start[first + column(to) + 1]

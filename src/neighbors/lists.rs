@@ -1,5 +1,7 @@
 //! One list of indices per agent, filled in parallel, stored contiguously.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::BLOCK;
@@ -55,11 +57,24 @@ impl Lists {
         self.blocks.clear();
     }
 
+    /// Those of `agents`, all of one block, whose lists are not empty, with their lists.
+    pub fn listed(&self, agents: Range<usize>) -> impl Iterator<Item = (usize, &[u32])> {
+        let block = self.blocks.get(agents.start / BLOCK);
+        let any = block.is_some_and(|block| !block.indices.is_empty());
+        let agents = if any { agents } else { 0..0 };
+        agents
+            .map(|i| (i, self.of(i)))
+            .filter(|(_, list)| !list.is_empty())
+    }
+
     /// The list of agent `i`; empty after [`clear`](Self::clear).
     pub fn of(&self, i: usize) -> &[u32] {
         let Some(block) = self.blocks.get(i / BLOCK) else {
             return &[];
         };
+        if block.indices.is_empty() {
+            return &[];
+        }
         let k = i % BLOCK;
         let start = if k == 0 { 0 } else { block.ends[k - 1] };
         &block.indices[start as usize..block.ends[k] as usize]

@@ -1,16 +1,17 @@
 //! Step 1: who is near whom, and which walls are near.
 //!
 //! Agents are sorted into the cells of a [`Grid`]; near neighbours (SPH, contact) are listed as
-//! [`Chunks`] of agents that are neighbours in memory, with a margin, the *skin*, so that the lists
-//! hold until somebody has moved half of it: nobody is ever missed in between. The wide circle of the
-//! avoidance methods is read from the grid's rows, without lists.
+//! runs of agents in memory, for [`Clusters`] of agents who stand together, with a margin, the *skin*,
+//! so that the lists hold until somebody is half of it away from where they were made: nobody is ever
+//! missed in between. The wide circle of the avoidance methods is read from the grid's rows, without
+//! lists.
 
-mod chunks;
+mod clusters;
 mod grid;
 mod lists;
 
-pub use chunks::{BLOCK, CHUNK, Chunk, Chunks};
-pub use grid::Grid;
+pub use clusters::{BLOCK, CLUSTER, ClusterBlock, Clusters};
+pub use grid::{Grid, Place};
 pub use lists::Lists;
 
 use std::ops::Range;
@@ -19,9 +20,9 @@ use crate::agents::Agents;
 use crate::geometry::Walls;
 use crate::math::Vector;
 
-/// Margin of all lists, metres: half of it may be walked before they are made anew. More of it makes
-/// rarer but longer lists.
-pub const SKIN: f64 = 0.2;
+/// Margin of all lists, metres: who is half of it away from where they were made has them made anew.
+/// More of it makes rarer but longer lists.
+pub const SKIN: f64 = 0.14;
 
 /// How far neighbours are looked for; avoidance that nobody needs is `None`, and costs nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -41,10 +42,12 @@ pub struct Neighbors {
     /// How far agents are listed as near, skin included, metres.
     reach: f64,
     grid: Grid,
-    near: Chunks,
+    near: Clusters,
     near_walls: Lists,
     far_walls: Lists,
-    /// The most that anybody has moved since the last sort, metres.
+    /// Where everybody was at the last sort, metres.
+    sorted_at: Vec<Vector>,
+    /// The farthest that anybody is from there, metres.
     travelled: f64,
 }
 
@@ -57,6 +60,7 @@ impl Neighbors {
         self.reach = near_radius(agents, &ranges);
         let order = self.grid.rebuild(&agents.position, self.reach);
         agents.arrange(&order);
+        self.sorted_at.clone_from(&agents.position);
     }
 
     /// Lists everybody's near neighbours, as far as SPH and contact reach.
@@ -64,8 +68,8 @@ impl Neighbors {
     /// May come some frames after the sort, as long as the lists would not be stale. They do not
     /// depend on whether a density is due: whoever asks for it must not change the order of any sum,
     /// and so the motion, not even by rounding.
-    pub fn list_agents(&mut self, agents: &Agents) {
-        self.near.rebuild(&self.grid, &agents.position, self.reach);
+    pub fn list_agents(&mut self) {
+        self.near.rebuild(&self.grid, &self.sorted_at, self.reach);
     }
 
     /// Lists the walls near everybody: near ones for SPH and contact and for stopping moves, far ones
@@ -86,9 +90,14 @@ impl Neighbors {
             });
     }
 
-    /// Notes that everybody has moved, by at most `step` metres.
-    pub fn moved(&mut self, step: f64) {
-        self.travelled += step;
+    /// Where everybody was at the last sort, metres.
+    pub fn sorted_at(&self) -> &[Vector] {
+        &self.sorted_at
+    }
+
+    /// Notes how far, in metres, anybody is from there now.
+    pub fn travelled(&mut self, farthest: f64) {
+        self.travelled = farthest;
     }
 
     /// Could somebody be missed?
@@ -97,13 +106,13 @@ impl Neighbors {
     }
 
     /// All that are near, for SPH and contact, and some that are out of range.
-    pub fn near(&self) -> &Chunks {
+    pub fn near(&self) -> &Clusters {
         &self.near
     }
 
-    /// A distance within which everybody in a list is, metres, for choosing units.
+    /// Who is in a list is nearer than this in either direction, metres, for choosing units.
     pub fn extent(&self) -> f64 {
-        4.0 * self.reach
+        Clusters::extent(self.reach)
     }
 
     /// Candidates for avoidance within `radius` metres of `p`, as ranges of agents, some out of range
@@ -115,6 +124,12 @@ impl Neighbors {
     /// Walls that may be within reach of agent `i` for SPH and contact, rising.
     pub fn near_walls(&self, i: usize) -> &[u32] {
         self.near_walls.of(i)
+    }
+
+    /// Those of `agents`, all of one block, that may have walls in reach for SPH and contact, with those
+    /// walls.
+    pub fn agents_near_walls(&self, agents: Range<usize>) -> impl Iterator<Item = (usize, &[u32])> {
+        self.near_walls.listed(agents)
     }
 
     /// Walls that may be within reach of agent `i` for avoidance, rising.
@@ -154,12 +169,12 @@ mod tests {
             longest_step: 0.036,
         };
         neighbors.sort(agents, ranges);
-        neighbors.list_agents(agents);
+        neighbors.list_agents();
         neighbors
     }
 
     fn near(neighbors: &Neighbors, i: usize) -> Vec<usize> {
-        neighbors.near().agents(i).collect()
+        neighbors.near().near(i).collect()
     }
 
     #[test]
@@ -172,32 +187,48 @@ mod tests {
                 assert!(found.is_sorted_by(|a, b| a < b) && found.contains(&i));
                 for j in 0..agents.len() {
                     let distance = (agents.position[i] - agents.position[j]).norm();
-                    assert!(distance >= 1.2 || found.contains(&j));
+                    assert!(distance >= 1.0 + SKIN || found.contains(&j));
                 }
             }
         }
     }
 
     #[test]
-    fn fewer_are_listed_than_three_by_three_cells_hold() {
-        let mut agents = crowd(2000, 20.0);
+    fn few_are_listed_beyond_the_reach_of_a_cluster() {
+        let mut agents = crowd(8000, 40.0);
         let neighbors = listed(&mut agents);
-        let listed: usize = (0..2000).map(|i| near(&neighbors, i).len()).sum();
-        let area = listed as f64 / 2000.0 / 5.0;
-        assert!(area < 0.7 * (3.0 * 1.2_f64).powi(2), "{area} m²");
+        let listed: usize = (0..8000).map(|i| near(&neighbors, i).len()).sum();
+        let area = listed as f64 / 8000.0 / 5.0;
+        // Eight in a row 1.2 m high take 1.33 m; circles round them reach 13.3 m² at most.
+        assert!(area < 13.3, "{area} m²");
+    }
+
+    #[test]
+    fn clusters_hold_everybody_once_in_order() {
+        for (count, side) in [(0, 1.0), (1, 1.0), (300, 6.0), (300, 300.0), (300, 0.1)] {
+            let mut agents = crowd(count, side);
+            let neighbors = listed(&mut agents);
+            let blocks = (0..agents.len().div_ceil(BLOCK)).map(|b| neighbors.near().block(b));
+            let members: Vec<usize> = blocks
+                .flat_map(|block| block.clusters())
+                .inspect(|(agents, _)| assert!(agents.len() <= CLUSTER))
+                .flat_map(|(agents, _)| agents)
+                .collect();
+            assert_eq!(members, (0..agents.len()).collect::<Vec<_>>());
+        }
     }
 
     #[test]
     fn nobody_is_missed_until_the_lists_are_stale() {
         let mut agents = crowd(400, 12.0);
         let mut neighbors = listed(&mut agents);
-        for _ in 0..2 {
+        for step in 1..=2 {
             assert!(!neighbors.are_stale());
             for (i, r) in agents.position.iter_mut().enumerate() {
                 let angle = i as f64;
                 *r += Vector::new(angle.cos(), angle.sin()) * 0.05;
             }
-            neighbors.moved(0.05);
+            neighbors.travelled(0.05 * f64::from(step));
             for i in 0..agents.len() {
                 let r_i = agents.position[i];
                 let around: Vec<usize> = neighbors.around(r_i, 5.0).flatten().collect();
@@ -209,10 +240,24 @@ mod tests {
                 }
             }
             // Lists made anew on the old cells hold as long.
-            neighbors.list_agents(&agents);
+            neighbors.list_agents();
         }
-        neighbors.moved(1e-6);
+        neighbors.travelled(0.1 + 1e-6);
         assert!(neighbors.are_stale());
+    }
+
+    #[test]
+    fn who_is_listed_is_nearer_than_the_extent() {
+        for (count, side) in [(300, 6.0), (300, 60.0), (40, 300.0)] {
+            let mut agents = crowd(count, side);
+            let neighbors = listed(&mut agents);
+            for i in 0..agents.len() {
+                for j in near(&neighbors, i) {
+                    let offset = (agents.position[i] - agents.position[j]).abs();
+                    assert!(offset.max() < neighbors.extent() - 2.0 * SKIN, "{offset}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -1,13 +1,16 @@
 //! What sums over pairs read, packed.
 
+use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 
 use super::real::{LANES, Real};
+use super::{PairCoefficients, Wanted, kernels};
 use crate::agents::Agents;
-use crate::neighbors::BLOCK;
+use crate::math::Vector;
+use crate::neighbors::{BLOCK, ClusterBlock};
 
-/// One array per quantity in the agents' order, longer by [`LANES`] so that a whole chunk can always
-/// be read.
+/// One array per quantity in the agents' order, longer by [`LANES`] so that the last agents can be
+/// read together with whom there is not.
 #[derive(Debug, Clone)]
 pub struct Columns<R: Real> {
     /// Metres per unit of the coordinates.
@@ -18,6 +21,8 @@ pub struct Columns<R: Real> {
     pub(super) mass: Vec<R>,
     /// D_j, metres.
     pub(super) radius: Vec<R>,
+    /// 1/h of the agent, 1/m.
+    pub(super) per_support: Vec<R>,
     /// v_j, m/s.
     pub(super) velocity_x: Vec<R>,
     pub(super) velocity_y: Vec<R>,
@@ -35,6 +40,7 @@ impl<R: Real> Default for Columns<R> {
             y: Vec::new(),
             mass: Vec::new(),
             radius: Vec::new(),
+            per_support: Vec::new(),
             velocity_x: Vec::new(),
             velocity_y: Vec::new(),
             volume: Vec::new(),
@@ -44,45 +50,125 @@ impl<R: Real> Default for Columns<R> {
 }
 
 impl<R: Real> Columns<R> {
-    /// Packs everybody's body and motion; `unit` metres is one unit of the coordinates.
-    pub fn take_bodies(&mut self, agents: &Agents, unit: f64) {
+    /// Makes room for the crowd and packs its bodies; `unit` metres is one unit of the coordinates,
+    /// `support` the h of an agent in metres.
+    pub fn take_bodies(&mut self, agents: &Agents, unit: f64, support: impl Fn(usize) -> f64) {
         self.unit = unit;
-        let count = agents.len();
-        let position = |i: usize| agents.position[i];
-        fill(&mut self.x, count, |i| R::coordinate(position(i).x, unit));
-        fill(&mut self.y, count, |i| R::coordinate(position(i).y, unit));
-        fill(&mut self.mass, count, |i| R::of(agents.mass[i]));
-        fill(&mut self.radius, count, |i| R::of(agents.radius[i]));
-        let velocity = |i: usize| agents.velocity[i];
-        fill(&mut self.velocity_x, count, |i| R::of(velocity(i).x));
-        fill(&mut self.velocity_y, count, |i| R::of(velocity(i).y));
-        // Zero until a density is known, so that sums that are not wanted stay finite.
-        fill(&mut self.volume, count, |_| R::default());
-        fill(&mut self.pressure, count, |_| R::default());
+        let padded = agents.len() + LANES;
+        self.x.resize(padded, R::Coordinate::default());
+        self.y.resize(padded, R::Coordinate::default());
+        let numbers = [
+            &mut self.mass,
+            &mut self.radius,
+            &mut self.per_support,
+            &mut self.velocity_x,
+            &mut self.velocity_y,
+            &mut self.volume,
+            &mut self.pressure,
+        ];
+        for column in numbers {
+            column.resize(padded, R::default());
+        }
+        for i in 0..agents.len() {
+            self.mass[i] = R::of(agents.mass[i]);
+            self.radius[i] = R::of(agents.radius[i]);
+            self.per_support[i] = R::of(1.0 / support(i));
+        }
     }
 
-    /// Packs m_j/ρ_j and p_j.
-    pub fn take_pressures(&mut self, mass: &[f64], density: &[f64], pressure: &[f64]) {
-        let count = mass.len();
-        fill(&mut self.volume, count, |i| R::of(mass[i] / density[i]));
-        fill(&mut self.pressure, count, |i| R::of(pressure[i]));
+    /// Has nobody been packed?
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
+    /// A place to put the motion of each block of agents.
+    pub fn motions(&mut self) -> impl IndexedParallelIterator<Item = Motion<'_, R>> {
+        let unit = self.unit;
+        (
+            self.x.par_chunks_mut(BLOCK),
+            self.y.par_chunks_mut(BLOCK),
+            self.velocity_x.par_chunks_mut(BLOCK),
+            self.velocity_y.par_chunks_mut(BLOCK),
+        )
+            .into_par_iter()
+            .map(move |(x, y, velocity_x, velocity_y)| Motion {
+                unit,
+                x,
+                y,
+                velocity_x,
+                velocity_y,
+            })
+    }
+
+    /// What the density is a sum of, and for each block of agents a place to put m/ρ in m² and p.
+    pub fn pressures(
+        &mut self,
+    ) -> (
+        Bodies<'_, R>,
+        impl IndexedParallelIterator<Item = (&mut [R], &mut [R])>,
+    ) {
+        let bodies = Bodies {
+            unit: self.unit,
+            x: &self.x,
+            y: &self.y,
+            mass: &self.mass,
+            per_support: &self.per_support,
+        };
+        let places = (
+            self.volume.par_chunks_mut(BLOCK),
+            self.pressure.par_chunks_mut(BLOCK),
+        );
+        (bodies, places.into_par_iter())
+    }
+
+    /// What the agents near each agent of a block do to it, m/s².
+    pub fn accelerations(
+        &self,
+        block: &ClusterBlock,
+        coefficients: &PairCoefficients,
+        wanted: Wanted,
+        out: &mut [Vector],
+    ) {
+        dispatch!(Level::new(), simd => {
+            kernels::accelerations(simd, self, block, coefficients, wanted, out);
+        });
     }
 }
 
-/// `column[i] = value(i)` for i < `count`, and [`LANES`] zeros.
-fn fill<T: Copy + Default + Send>(
-    column: &mut Vec<T>,
-    count: usize,
-    value: impl Fn(usize) -> T + Sync,
-) {
-    column.resize(count + LANES, T::default());
-    column[count..].fill(T::default());
-    column[..count]
-        .par_chunks_mut(BLOCK)
-        .enumerate()
-        .for_each(|(b, block)| {
-            for (k, place) in block.iter_mut().enumerate() {
-                *place = value(b * BLOCK + k);
-            }
-        });
+/// Where everybody is, and how heavy.
+#[derive(Clone, Copy)]
+pub struct Bodies<'a, R: Real> {
+    pub(super) unit: f64,
+    pub(super) x: &'a [R::Coordinate],
+    pub(super) y: &'a [R::Coordinate],
+    pub(super) mass: &'a [R],
+    pub(super) per_support: &'a [R],
+}
+
+impl<R: Real> Bodies<'_, R> {
+    /// Eq. 9 without walls: Σ_j m_j W(r_ij) with j = i, P/m², for each agent of a block.
+    pub fn densities(&self, block: &ClusterBlock, out: &mut [f64]) {
+        dispatch!(Level::new(), simd => kernels::densities(simd, self, block, out));
+    }
+}
+
+/// Positions and velocities of some agents.
+pub struct Motion<'a, R: Real> {
+    unit: f64,
+    x: &'a mut [R::Coordinate],
+    y: &'a mut [R::Coordinate],
+    velocity_x: &'a mut [R],
+    velocity_y: &'a mut [R],
+}
+
+impl<R: Real> Motion<'_, R> {
+    /// Packs the positions in metres and the velocities in m/s of these agents.
+    pub fn take(&mut self, positions: &[Vector], velocities: &[Vector]) {
+        for (k, (r, v)) in positions.iter().zip(velocities).enumerate() {
+            self.x[k] = R::coordinate(r.x, self.unit);
+            self.y[k] = R::coordinate(r.y, self.unit);
+            self.velocity_x[k] = R::of(v.x);
+            self.velocity_y[k] = R::of(v.y);
+        }
+    }
 }

@@ -1,25 +1,21 @@
 //! Sums over pairs of near agents: density (Eq. 9), pressure (Eq. 11), viscosity (Eq. 7) and contact
 //! (Eq. 22). The only place that names fearless_simd.
 //!
-//! Nearly all of the time of a dense scene goes here. Neighbours are neighbours in memory too (see
-//! [`Chunks`]), so they are read eight at a time, in whatever vectors the processor has; lanes are
-//! eight everywhere, and the bits the same. An agent is in its own sums, where it adds what it should:
-//! its own density, and no force.
+//! Nearly all of the time of a dense scene goes here. Agents who stand together (see
+//! [`Clusters`](crate::neighbors::Clusters)) share their neighbours, so the sums of eight are taken at
+//! a time, in whatever vectors the processor has. An agent is in its own sums, where it adds what it
+//! should: its own density, and no force.
 
 mod columns;
 mod kernels;
 mod real;
 
-pub use columns::Columns;
+pub use columns::{Columns, Motion};
 pub use real::{LANES, Real};
-
-use std::ops::Range;
-
-use fearless_simd::{Level, dispatch};
 
 use crate::agents::Agents;
 use crate::math::Vector;
-use crate::neighbors::Chunks;
+use crate::neighbors::{BLOCK, ClusterBlock};
 
 /// The numbers in which sums over pairs are taken; everything else is double.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -34,23 +30,24 @@ pub enum Precision {
     Mixed,
 }
 
-/// Sums over the near neighbours of one agent, before they are scaled to accelerations.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PairSums {
-    /// Eq. 11: Σ_j m_j (p_i + p_j)/(2ρ_j) ∇W.
-    pub pressure: Vector,
-    /// Eq. 7: ∇²v_i = Σ_j m_j (v_j − v_i)/ρ_j ∇²W.
-    pub viscosity: Vector,
-    /// Eq. 22 over K^ag: Σ_j max(0, D_i + D_j − |r_ij|) r̂_ij, metres.
-    pub contact: Vector,
+/// What the sums over the near neighbours of the agents of a block are multiplied with to make
+/// accelerations; 0 where an agent feels nothing of the kind.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairCoefficients {
+    /// Of −Σ_j m_j (p_i + p_j)/(2ρ_j) ∇W, Eq. 11: 1/ρ_i.
+    pub pressure: [f64; BLOCK],
+    /// Of Σ_j m_j (v_j − v_i)/ρ_j ∇²W, Eq. 7: μ/ρ_i.
+    pub viscosity: [f64; BLOCK],
+    /// Of Σ_j max(0, D_i + D_j − |r_ij|) r̂_ij, Eq. 22: K^ag/m_i.
+    pub contact: [f64; BLOCK],
 }
 
-impl Default for PairSums {
+impl Default for PairCoefficients {
     fn default() -> Self {
         Self {
-            pressure: Vector::zeros(),
-            viscosity: Vector::zeros(),
-            contact: Vector::zeros(),
+            pressure: [0.0; BLOCK],
+            viscosity: [0.0; BLOCK],
+            contact: [0.0; BLOCK],
         }
     }
 }
@@ -64,6 +61,24 @@ pub enum Packed {
     Mixed(Columns<f32>),
 }
 
+/// Which sums some profile of a scene reads; the others are not taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Wanted {
+    /// Eq. 11.
+    pub pressure: bool,
+    /// Eq. 7.
+    pub viscosity: bool,
+    /// Eq. 22.
+    pub contact: bool,
+}
+
+impl Wanted {
+    /// Is any?
+    pub fn any(self) -> bool {
+        self.pressure || self.viscosity || self.contact
+    }
+}
+
 /// `$columns => $body` for whichever columns there are.
 macro_rules! each {
     ($packed:expr, $columns:ident => $body:expr) => {
@@ -72,6 +87,12 @@ macro_rules! each {
             Packed::Mixed($columns) => $body,
         }
     };
+}
+
+impl Default for Packed {
+    fn default() -> Self {
+        Self::new(Precision::default())
+    }
 }
 
 impl Packed {
@@ -83,33 +104,35 @@ impl Packed {
         }
     }
 
-    /// Packs everybody's body and motion; who is in one list is less than `extent` metres apart.
-    pub fn take_bodies(&mut self, agents: &Agents, extent: f64) {
+    /// Nobody has been packed.
+    pub fn is_empty(&self) -> bool {
+        each!(self, columns => columns.is_empty())
+    }
+
+    /// Forgets everybody.
+    pub fn clear(&mut self) {
+        each!(self, columns => *columns = Columns::default());
+    }
+
+    /// Packs everybody's body; who is in one list is less than `extent` metres apart, and `support` is
+    /// the h of an agent in metres.
+    pub fn take_bodies(&mut self, agents: &Agents, extent: f64, support: impl Fn(usize) -> f64) {
         match self {
-            Self::Double(columns) => columns.take_bodies(agents, 1.0),
-            Self::Mixed(columns) => columns.take_bodies(agents, extent / f64::from(1_u32 << 31)),
+            Self::Double(columns) => columns.take_bodies(agents, 1.0, support),
+            Self::Mixed(columns) => {
+                columns.take_bodies(agents, extent / f64::from(1_u32 << 31), support);
+            }
         }
     }
 
-    /// Packs m_j/ρ_j and p_j, from m, ρ in P/m² and p.
-    pub fn take_pressures(&mut self, mass: &[f64], density: &[f64], pressure: &[f64]) {
-        each!(self, columns => columns.take_pressures(mass, density, pressure));
-    }
-
-    /// Eq. 9 without walls: Σ_j m_j W(r_ij) with j = i, P/m², for each agent of
-    /// a block, with h in metres for each.
-    pub fn densities(&self, chunks: &Chunks, block: (Range<usize>, &[f64]), out: &mut [f64]) {
-        each!(self, columns => dispatch!(
-            Level::new(),
-            simd => kernels::densities(simd, columns, chunks, block, out)
-        ));
-    }
-
-    /// The sums for each agent of a block, with h in metres for each.
-    pub fn forces(&self, chunks: &Chunks, block: (Range<usize>, &[f64]), out: &mut [PairSums]) {
-        each!(self, columns => dispatch!(
-            Level::new(),
-            simd => kernels::forces(simd, columns, chunks, block, out)
-        ));
+    /// What the agents near each agent of a block do to it, m/s².
+    pub fn accelerations(
+        &self,
+        block: &ClusterBlock,
+        coefficients: &PairCoefficients,
+        wanted: Wanted,
+        out: &mut [Vector],
+    ) {
+        each!(self, columns => columns.accelerations(block, coefficients, wanted, out));
     }
 }

@@ -2,7 +2,7 @@
 
 use fearless_simd::{Simd, f32x8, f64x8, i32x8, prelude::*};
 
-/// Neighbours that are looked at together. The same on every processor, and so are the bits.
+/// Agents whose sums are taken together. The same on every processor, and so are the bits.
 pub const LANES: usize = 8;
 
 /// A number for sums over pairs, and how it holds coordinates.
@@ -11,8 +11,10 @@ pub trait Real: SimdFloatElement + Copy + Default + Send + Sync + 'static {
     type Coordinate: Copy + Default + Send + Sync + 'static;
     /// [`LANES`] numbers.
     type Lanes<S: Simd>: SimdFloat<S, Element = Self>;
+    /// [`LANES`] coordinates.
+    type Places<S: Simd>: Copy;
 
-    /// A squared distance (in units of h²) that divides without overflow, far below all real ones.
+    /// A squared distance in units² that divides without overflow, far below all real ones.
     const TINY: f64;
 
     /// The nearest number.
@@ -24,17 +26,18 @@ pub trait Real: SimdFloatElement + Copy + Default + Send + Sync + 'static {
     /// `metres` in units of `unit` metres.
     fn coordinate(metres: f64, unit: f64) -> Self::Coordinate;
 
-    /// `from` minus each of the first [`LANES`] of `to`.
-    fn differences<S: Simd>(
-        simd: S,
-        from: Self::Coordinate,
-        to: &[Self::Coordinate],
-    ) -> Self::Lanes<S>;
+    /// The first [`LANES`] of `places`.
+    fn places<S: Simd>(simd: S, places: &[Self::Coordinate]) -> Self::Places<S>;
+
+    /// Each of `from`, minus `to`.
+    fn differences<S: Simd>(simd: S, from: Self::Places<S>, to: Self::Coordinate)
+    -> Self::Lanes<S>;
 }
 
 impl Real for f64 {
     type Coordinate = f64;
     type Lanes<S: Simd> = f64x8<S>;
+    type Places<S: Simd> = f64x8<S>;
 
     const TINY: f64 = 1e-200;
 
@@ -51,8 +54,13 @@ impl Real for f64 {
     }
 
     #[inline(always)]
-    fn differences<S: Simd>(simd: S, from: f64, to: &[f64]) -> f64x8<S> {
-        f64x8::splat(simd, from) - f64x8::from_slice(simd, to)
+    fn places<S: Simd>(simd: S, places: &[f64]) -> f64x8<S> {
+        f64x8::from_slice(simd, &places[..LANES])
+    }
+
+    #[inline(always)]
+    fn differences<S: Simd>(simd: S, from: f64x8<S>, to: f64) -> f64x8<S> {
+        from - f64x8::splat(simd, to)
     }
 }
 
@@ -61,8 +69,9 @@ impl Real for f64 {
 impl Real for f32 {
     type Coordinate = i32;
     type Lanes<S: Simd> = f32x8<S>;
+    type Places<S: Simd> = i32x8<S>;
 
-    const TINY: f64 = 1e-30;
+    const TINY: f64 = 1e-6;
 
     fn of(value: f64) -> Self {
         value as f32
@@ -77,7 +86,12 @@ impl Real for f32 {
     }
 
     #[inline(always)]
-    fn differences<S: Simd>(simd: S, from: i32, to: &[i32]) -> f32x8<S> {
-        (i32x8::splat(simd, from) - i32x8::from_slice(simd, to)).to_float()
+    fn places<S: Simd>(simd: S, places: &[i32]) -> i32x8<S> {
+        i32x8::from_slice(simd, &places[..LANES])
+    }
+
+    #[inline(always)]
+    fn differences<S: Simd>(simd: S, from: i32x8<S>, to: i32) -> f32x8<S> {
+        (from - i32x8::splat(simd, to)).to_float()
     }
 }

@@ -1,14 +1,17 @@
 //! Steps 1–4: from the state to the accelerations, moving nobody.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use super::{Simulation, Stage, blend_of, change_of};
-use crate::density;
+use super::{Simulation, Stage, TASK, blend_of, change_of};
+use crate::density::SphStates;
 use crate::forces::goal;
+use crate::math::Vector;
 use crate::neighbors::BLOCK;
-use crate::pairs::PairSums;
+use crate::pairs::{Columns, Packed, PairCoefficients, Real};
+use crate::profile::{Blend, Override};
 
 impl Simulation {
     /// Step 1.
@@ -17,13 +20,16 @@ impl Simulation {
             self.sort_agents();
             self.list_walls();
         }
-        if self.needs.pairs || self.density_is_due() {
-            let (agents, neighbors, packed) = (&self.agents, &mut self.neighbors, &mut self.packed);
+        if !(self.needs.pairs.any() || self.density_is_due()) {
+            return;
+        }
+        let (agents, neighbors, packed) = (&self.agents, &mut self.neighbors, &mut self.packed);
+        if neighbors.near().is_empty() || packed.is_empty() {
             self.stages.time(Stage::Neighbors, || {
-                if neighbors.near().is_empty() {
-                    neighbors.list_agents(agents);
-                }
-                packed.take_bodies(agents, neighbors.extent());
+                neighbors.list_agents();
+                packed.take_bodies(agents, neighbors.extent(), |i| {
+                    blend_of(&self.scene, agents, i).sph.support_radius
+                });
             });
         }
     }
@@ -33,6 +39,7 @@ impl Simulation {
         let (agents, neighbors) = (&mut self.agents, &mut self.neighbors);
         self.stages
             .time(Stage::Sort, || neighbors.sort(agents, ranges));
+        self.packed.clear();
         self.crowd_changed = false;
     }
 
@@ -40,6 +47,46 @@ impl Simulation {
         let (agents, neighbors) = (&self.agents, &mut self.neighbors);
         self.stages.time(Stage::Neighbors, || {
             neighbors.list_walls(agents, &self.scene.walls);
+        });
+    }
+
+    /// Step 2, and packing what the sums over pairs read.
+    pub(super) fn update_preferred_velocity(&mut self) {
+        let mut packed = std::mem::take(&mut self.packed);
+        match &mut packed {
+            Packed::Double(columns) => self.prepare(columns),
+            Packed::Mixed(columns) => self.prepare(columns),
+        }
+        self.packed = packed;
+    }
+
+    fn prepare<R: Real>(&mut self, columns: &mut Columns<R>) {
+        let (agents, speed) = (&self.agents, self.scene.preferred_speed);
+        let preferred = &mut self.fields.preferred_velocity;
+        preferred.resize(agents.len(), Vector::zeros());
+        self.stages.time(Stage::PreferredVelocity, || {
+            let blocks = (
+                preferred.par_chunks_mut(BLOCK),
+                agents.position.par_chunks(BLOCK),
+                agents.goal.par_chunks(BLOCK),
+            );
+            blocks
+                .into_par_iter()
+                .with_min_len(TASK)
+                .for_each(|(preferred, positions, goals)| {
+                    for ((v, &r), &g) in preferred.iter_mut().zip(positions).zip(goals) {
+                        *v = goal::preferred_velocity(r, g, speed);
+                    }
+                });
+            let states = (
+                columns.motions(), // none where nothing is summed
+                agents.position.par_chunks(BLOCK),
+                agents.velocity.par_chunks(BLOCK),
+            );
+            states
+                .into_par_iter()
+                .with_min_len(TASK)
+                .for_each(|(mut motion, positions, velocities)| motion.take(positions, velocities));
         });
     }
 
@@ -53,77 +100,66 @@ impl Simulation {
         if !due {
             return;
         }
+        let mut packed = std::mem::take(&mut self.packed);
+        match &mut packed {
+            Packed::Double(columns) => self.compress(columns),
+            Packed::Mixed(columns) => self.compress(columns),
+        }
+        self.packed = packed;
+    }
+
+    fn compress<R: Real>(&mut self, columns: &mut Columns<R>) {
         let mut fields = std::mem::take(&mut self.fields);
         let mut stages = std::mem::take(&mut self.stages);
         let frame = self.frame();
+        let walls = self.scene.wall_method;
         stages.time(Stage::DensityAndPressure, || {
-            (
+            let (bodies, pressures) = columns.pressures();
+            let blocks = (
+                pressures,
                 fields.density.par_chunks_mut(BLOCK),
                 fields.density_from_walls.par_chunks_mut(BLOCK),
                 fields.mean_density.par_chunks_mut(BLOCK),
-                fields.rest_density_before.par_chunks_mut(BLOCK),
                 fields.rest_density.par_chunks_mut(BLOCK),
                 fields.pressure.par_chunks_mut(BLOCK),
                 fields.wall_gradient.par_chunks_mut(BLOCK),
-            )
+            );
+            blocks
                 .into_par_iter()
+                .with_min_len(TASK)
                 .enumerate()
-                .for_each(
-                    |(b, (density, from_walls, mean, before, rest, pressure, gradient))| {
-                        let block = b * BLOCK..b * BLOCK + density.len();
-                        let chunks = self.neighbors.near();
-                        let support = self.support_radii(block.clone());
-                        self.packed
-                            .densities(chunks, (block.clone(), &support), density);
-                        for (k, i) in block.enumerate() {
-                            let (sph, walls) = (&self.blend(i).sph, self.scene.wall_method);
-                            let state = density::sph_state(&frame, i, density[k], sph, walls);
-                            density[k] = state.density;
-                            from_walls[k] = state.density_from_walls;
-                            mean[k] = state.mean_density;
-                            before[k] = state.rest_density_before;
-                            rest[k] = state.rest_density;
-                            pressure[k] = state.pressure;
-                            gradient[k] = state.wall_gradient;
-                        }
-                    },
-                );
-        });
-        let agents = &mut self.agents;
-        stages.time(Stage::DensityAndPressure, || {
-            self.packed
-                .take_pressures(&agents.mass, &fields.density, &fields.pressure);
-            agents.mean_density.copy_from_slice(&fields.mean_density);
-            agents.newcomer.fill(false);
-        });
-        self.fields = fields;
-        self.stages = stages;
-    }
-
-    /// h of every agent of a block, metres.
-    fn support_radii(&self, block: Range<usize>) -> [f64; BLOCK] {
-        let mut radii = [0.0; BLOCK];
-        for (radius, i) in radii.iter_mut().zip(block) {
-            *radius = self.blend(i).sph.support_radius;
-        }
-        radii
-    }
-
-    /// Step 2.
-    pub(super) fn update_preferred_velocity(&mut self) {
-        let (agents, speed) = (&self.agents, self.scene.preferred_speed);
-        let preferred = &mut self.fields.preferred_velocity;
-        self.stages.time(Stage::PreferredVelocity, || {
-            preferred
-                .par_chunks_mut(BLOCK)
-                .enumerate()
-                .for_each(|(b, preferred)| {
-                    for (k, v) in preferred.iter_mut().enumerate() {
-                        let i = b * BLOCK + k;
-                        *v = goal::preferred_velocity(agents.position[i], agents.goal[i], speed);
+                .for_each(|(b, block)| {
+                    let (
+                        (volumes, pressures),
+                        density,
+                        density_from_walls,
+                        mean_density,
+                        rest_density,
+                        pressure,
+                        wall_gradient,
+                    ) = block;
+                    bodies.densities(frame.neighbors.near().block(b), density);
+                    let mut states = SphStates {
+                        density,
+                        density_from_walls,
+                        mean_density,
+                        rest_density,
+                        pressure,
+                        wall_gradient,
+                    };
+                    let from = b * BLOCK;
+                    let to = from + states.density.len();
+                    let same = self.same_group(from..to).map(|blend| blend.sph);
+                    states.update(&frame, from, walls, same, |i| &self.blend(i).sph);
+                    let mass = &frame.agents.mass[from..to];
+                    for k in 0..mass.len() {
+                        volumes[k] = R::of(mass[k] / states.density[k]);
+                        pressures[k] = R::of(states.pressure[k]);
                     }
                 });
         });
+        self.fields = fields;
+        self.stages = stages;
     }
 
     /// Step 3, the coarse part: RVO where it acts and no earlier choice is held.
@@ -156,26 +192,78 @@ impl Simulation {
         let mut acceleration = std::mem::take(&mut self.fields.acceleration);
         let mut stages = std::mem::take(&mut self.stages);
         let frame = self.frame();
+        let task = if self.needs.avoidance.is_some() {
+            1 // looking 5 m around is work enough
+        } else {
+            TASK
+        };
+        let finite = AtomicBool::new(true);
         stages.time(Stage::Acceleration, || {
             acceleration
                 .par_chunks_mut(BLOCK)
+                .with_min_len(task)
                 .enumerate()
                 .for_each(|(b, acceleration)| {
-                    let block = b * BLOCK..b * BLOCK + acceleration.len();
-                    let mut sums = [PairSums::default(); BLOCK];
-                    if self.needs.pairs {
-                        let chunks = self.neighbors.near();
-                        let support = self.support_radii(block.clone());
-                        self.packed
-                            .forces(chunks, (block.clone(), &support), &mut sums);
+                    let from = b * BLOCK;
+                    let to = from + acceleration.len();
+                    let mut felt = PairCoefficients::default();
+                    self.each_span(from..to, |span, blend, changed| {
+                        blend.add_pair_coefficients(&frame, span, changed, &mut felt);
+                    });
+                    let clusters = frame.neighbors.near().block(b);
+                    frame
+                        .packed
+                        .accelerations(clusters, &felt, frame.wanted, acceleration);
+                    self.each_span(from..to, |span, blend, changed| {
+                        let acceleration = &mut acceleration[span.start - from..span.end - from];
+                        blend.add_accelerations(&frame, span, changed, acceleration);
+                    });
+                    let mut zero = Vector::zeros();
+                    let positions = &self.agents.position[from..to];
+                    let velocities = &self.agents.velocity[from..to];
+                    for ((a, r), v) in acceleration.iter().zip(positions).zip(velocities) {
+                        zero += (a + r + v) * 0.0;
                     }
-                    for ((i, a), sums) in block.zip(acceleration).zip(&sums) {
-                        let changed = change_of(&self.scene, &self.agents, i);
-                        *a = self.blend(i).acceleration(&frame, i, sums, changed);
+                    let density = &frame.fields.density;
+                    if !density.is_empty() {
+                        zero.x += density[from..to].iter().map(|d| d * 0.0).sum::<f64>();
+                    }
+                    let zero = zero.x + zero.y;
+                    if zero != 0.0 {
+                        finite.store(false, Ordering::Relaxed);
                     }
                 });
         });
+        self.finite = finite.into_inner();
         self.fields.acceleration = acceleration;
         self.stages = stages;
+    }
+
+    /// The blend of `agents` if all have the same.
+    fn same_group(&self, agents: Range<usize>) -> Option<&Blend> {
+        let groups = &self.agents.group[agents];
+        let first = *groups.first()?;
+        let same = groups.iter().all(|&group| group == first);
+        same.then(|| &self.scene.groups[usize::from(first)].blend)
+    }
+
+    /// Cuts a block of agents where their behaviour changes.
+    #[inline]
+    fn each_span(
+        &self,
+        agents: Range<usize>,
+        mut take: impl FnMut(Range<usize>, &Blend, Option<&Override>),
+    ) {
+        let behaviour = |i: usize| (self.agents.group[i], self.agents.push[i]);
+        let mut start = agents.start;
+        while start < agents.end {
+            let same = |&i: &usize| behaviour(i) == behaviour(start);
+            let end = (start + 1..agents.end)
+                .find(|i| !same(i))
+                .unwrap_or(agents.end);
+            let changed = change_of(&self.scene, &self.agents, start);
+            take(start..end, self.blend(start), changed);
+            start = end;
+        }
     }
 }

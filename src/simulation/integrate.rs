@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{Arrival, Fault, Simulation, Stage};
+use super::{Arrival, Fault, Simulation, Stage, TASK};
 use crate::math::{Vector, clamp_length, is_finite};
 use crate::neighbors::BLOCK;
 use crate::scene::{Integrator, Scene};
@@ -17,7 +17,8 @@ impl Simulation {
         self.evaluate()?;
         let mut stages = std::mem::take(&mut self.stages);
         let moved = stages.time(Stage::Integration, || {
-            self.find_fault().map_or_else(
+            let fault = if self.finite { None } else { self.find_fault() };
+            fault.map_or_else(
                 || {
                     self.move_agents();
                     Ok(())
@@ -29,6 +30,10 @@ impl Simulation {
         moved?;
         self.clock.advance();
         self.evaluated = false;
+        if !self.fields.density.is_empty() {
+            std::mem::swap(&mut self.agents.mean_density, &mut self.fields.mean_density);
+            self.agents.newcomer.fill(false);
+        }
         if self.needs.removal {
             self.remove_arrivals();
         }
@@ -44,21 +49,29 @@ impl Simulation {
             agents.position.par_chunks_mut(BLOCK),
             agents.velocity.par_chunks_mut(BLOCK),
             self.fields.acceleration.par_chunks(BLOCK),
+            neighbors.sorted_at().par_chunks(BLOCK),
         )
             .into_par_iter()
+            .with_min_len(TASK)
             .enumerate()
-            .map(|(b, (positions, velocities, accelerations))| {
+            .map(|(b, (positions, velocities, accelerations, sorted_at))| {
                 let mut moves = Moves::default();
-                let motions = positions.iter_mut().zip(velocities).zip(accelerations);
-                for (k, ((position, velocity), &acceleration)) in motions.enumerate() {
-                    let walls = neighbors.near_walls(b * BLOCK + k);
+                let from = b * BLOCK;
+                let walled = neighbors.agents_near_walls(from..from + positions.len());
+                let mut walled = walled.peekable();
+                let motions = positions.iter_mut().zip(velocities);
+                let motions = motions.zip(accelerations).zip(sorted_at);
+                for (k, (((position, velocity), &acceleration), start)) in motions.enumerate() {
+                    let walls = walled.next_if(|&(i, _)| i == from + k);
+                    let walls = walls.map_or(&[][..], |(_, walls)| walls);
                     moves.make(scene, walls, dt, position, velocity, acceleration);
+                    moves.farthest = moves.farthest.max((*position - start).norm_squared());
                 }
                 moves
             })
             .reduce(Moves::default, Moves::and);
         self.outcome.contained_moves += total.contained;
-        self.neighbors.moved(total.longest);
+        self.neighbors.travelled(total.farthest.sqrt());
     }
 
     /// The first quantity that is no number, and whose it is.
@@ -116,12 +129,13 @@ impl Simulation {
 struct Moves {
     /// How many ended at a wall.
     contained: u64,
-    /// The longest step, metres.
-    longest: f64,
+    /// The squared distance from where they were sorted, of who is farthest from there, metres².
+    farthest: f64,
 }
 
 impl Moves {
     /// Moves one agent by one frame of `dt` seconds.
+    #[inline]
     fn make(
         &mut self,
         scene: &Scene,
@@ -139,6 +153,10 @@ impl Moves {
             Integrator::ForwardEuler => clamp_length(before, scene.max_speed),
         };
         let target = start + step * dt;
+        if walls.is_empty() {
+            *position = target;
+            return;
+        }
         let stopped = scene.walls.stop(start, target, walls);
         *position = stopped.map_or(target, |(point, _)| point);
         if let Some((_, wall)) = stopped {
@@ -146,13 +164,12 @@ impl Moves {
             *velocity -= normal * velocity.dot(&normal).min(0.0);
             self.contained += 1;
         }
-        self.longest = self.longest.max((*position - start).norm());
     }
 
     fn and(self, other: Self) -> Self {
         Self {
             contained: self.contained + other.contained,
-            longest: self.longest.max(other.longest),
+            farthest: self.farthest.max(other.farthest),
         }
     }
 }
