@@ -1,8 +1,10 @@
 //! Random numbers by counter: what an agent draws depends on the seed, its id, the purpose and the
 //! frame, and on nothing else; neither threads nor the order of agents can change it.
 
-use rand::SeedableRng;
+use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+
+use crate::math::Vector;
 
 /// What a stream is for; streams of different purposes are independent.
 #[derive(Debug, Clone, Copy)]
@@ -26,10 +28,37 @@ pub fn stream(seed: u64, purpose: Purpose, agent: u32, frame: u64) -> ChaCha8Rng
     rng
 }
 
+/// A unit vector in any direction, all equally likely: points of a square until one is in its circle.
+pub fn direction(rng: &mut ChaCha8Rng) -> Vector {
+    loop {
+        let point = Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0));
+        let squared = point.norm_squared();
+        if 0.0 < squared && squared <= 1.0 {
+            return point / squared.sqrt();
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::Rng;
+
+    #[test]
+    fn all_directions_are_equally_likely() {
+        let mut rng = stream(1, Purpose::Candidates, 0, 0);
+        let mut counts = [0; 36];
+        for _ in 0..36_000 {
+            let v = direction(&mut rng);
+            assert!((v.norm() - 1.0).abs() < 1e-15);
+            let angle = v.y.atan2(v.x) + std::f64::consts::PI;
+            counts[(angle / std::f64::consts::TAU * 36.0) as usize % 36] += 1;
+        }
+        // Five standard deviations.
+        assert!(
+            counts.iter().all(|&c: &i32| (c - 1000).abs() < 158),
+            "{counts:?}"
+        );
+    }
 
     #[test]
     fn every_key_has_its_own_stream_and_repeats_it() {

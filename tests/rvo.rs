@@ -9,7 +9,7 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sandbox::agents::NewAgent;
-use sandbox::forces::rvo::{MovingDisc, Rvo, Situation};
+use sandbox::forces::rvo::{MovingDisc, Rvo, Search, Situation};
 use sandbox::geometry::{Polygon, Wall, Walls};
 use sandbox::math::Vector;
 use sandbox::simulation::Simulation;
@@ -117,19 +117,24 @@ fn random_situation(rng: &mut ChaCha8Rng) -> Situation {
 #[test]
 fn the_choice_is_that_of_an_exhaustive_search() {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let mut search = Search::default();
     for round in 0..5000 {
         let situation = random_situation(&mut rng);
         let candidates: Vec<Vector> = (0..120)
             .map(|_| situation.velocity + disc_of(&mut rng, 3.6))
             .collect();
         let weight = [1.0, 0.2, 5.0][round % 3];
-        let found = situation.best(candidates.iter().copied(), weight);
+        let found = search.best(&situation, candidates.iter().copied(), weight);
         assert_eq!(
             found,
             exhaustive(&situation, &candidates, weight),
             "{situation:?}"
         );
     }
+}
+
+fn best(situation: &Situation, candidates: &[Vector]) -> Vector {
+    Search::default().best(situation, candidates.iter().copied(), 1.0)
 }
 
 fn open_field() -> Situation {
@@ -147,9 +152,9 @@ fn open_field() -> Situation {
 #[test]
 fn of_equal_costs_the_first_is_chosen() {
     let around = [vector(0.6, 0.8), vector(-1.0, 0.0), vector(0.0, 1.0)];
-    assert_eq!(open_field().best(around.into_iter(), 1.0), around[0]);
+    assert_eq!(best(&open_field(), &around), around[0]);
     let turned = [around[2], around[0], around[1]];
-    assert_eq!(open_field().best(turned.into_iter(), 1.0), around[2]);
+    assert_eq!(best(&open_field(), &turned), around[2]);
 }
 
 #[test]
@@ -161,7 +166,7 @@ fn the_order_of_neighbours_does_not_change_the_choice() {
         let mut turned = situation.clone();
         turned.discs.reverse();
         turned.walls.reverse();
-        let [a, b] = [&situation, &turned].map(|s| s.best(candidates.iter().copied(), 1.0));
+        let [a, b] = [&situation, &turned].map(|s| best(s, &candidates));
         assert_eq!(a, b);
     }
 }
@@ -169,7 +174,7 @@ fn the_order_of_neighbours_does_not_change_the_choice() {
 #[test]
 fn if_all_candidates_are_too_fast_the_agent_stops() {
     let fast = [vector(1.9, 0.0), vector(0.0, -2.0)];
-    assert_eq!(open_field().best(fast.into_iter(), 1.0), Vector::zeros());
+    assert_eq!(best(&open_field(), &fast), Vector::zeros());
     let mut scene = scene(Vec::new(), blend("rvo"));
     // Candidates lie within 3.6 m/s of the current velocity.
     let velocity = vector(5.0, -4.0);
@@ -311,7 +316,7 @@ fn the_choice_comes_when_its_weight_becomes_positive_and_goes_when_it_is_zero() 
             let i = view.agents.index_of(id).unwrap();
             let (now, last) = (view.agents.avoidance[i], before[id as usize]);
             assert_eq!(now.is_some(), view.fields.density[i] < 4.0);
-            let chosen = Rvo::default().acceleration(&view, i, 1.8);
+            let chosen = Rvo::default().acceleration(&view, i, 1.8, &mut Search::default());
             match (now, last) {
                 (Some(now), None) if frame % 5 != 0 => {
                     in_between += 1;

@@ -1,6 +1,8 @@
 //! Reciprocal velocity obstacles (§5.3.2, Eqs. 20 and 21).
 
-use std::f64::consts::TAU;
+mod search;
+
+pub use search::Search;
 
 use rand::Rng;
 
@@ -62,7 +64,13 @@ pub struct Situation {
 
 impl Rvo {
     /// Eq. 21: the acceleration to hold until the next coarse frame.
-    pub fn acceleration(&self, frame: &Frame, i: usize, max_speed: f64) -> Vector {
+    pub fn acceleration(
+        &self,
+        frame: &Frame,
+        i: usize,
+        max_speed: f64,
+        search: &mut Search,
+    ) -> Vector {
         let situation = Situation::of(frame, i, self.avoidance_radius, max_speed);
         let mut rng = random::stream(
             frame.seed,
@@ -70,12 +78,13 @@ impl Rvo {
             frame.agents.id[i],
             frame.clock.coarse_frame(),
         );
-        let candidates = (0..self.candidates).map(|_| {
-            let angle = TAU * rng.random::<f64>();
+        // Who is farther from the current velocity than this is too fast in every direction.
+        let farthest = situation.velocity.norm() + max_speed;
+        let candidates = (0..self.candidates).filter_map(|_| {
             let length = 2.0 * max_speed * rng.random::<f64>();
-            situation.velocity + Vector::new(angle.cos(), angle.sin()) * length
+            (length <= farthest).then(|| situation.velocity + random::direction(&mut rng) * length)
         });
-        let best = situation.best(candidates, self.collision_weight);
+        let best = search.best(&situation, candidates, self.collision_weight);
         (best - situation.velocity) / frame.clock.coarse_step()
     }
 }
@@ -109,38 +118,6 @@ impl Situation {
         }
     }
 
-    /// The cheapest of `candidates` (Eq. 20), the first of equals; zero if all are too fast.
-    ///
-    /// Branch and bound, with the answer of an exhaustive search: candidates in order of what they cost
-    /// at least, until that is more than the best so far; neighbours in order of their gaps, until no
-    /// later one could be met before the earliest contact found.
-    pub fn best(&self, candidates: impl Iterator<Item = Vector>, collision_weight: f64) -> Vector {
-        let mut candidates: Vec<(f64, usize, Vector)> = candidates
-            .enumerate()
-            .filter(|(_, candidate)| candidate.norm() <= self.max_speed)
-            .map(|(k, candidate)| ((candidate - self.preferred_velocity).norm(), k, candidate))
-            .collect();
-        candidates.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let around = Surroundings::of(self);
-        let (mut best, mut first) = (Vector::zeros(), usize::MAX);
-        let mut best_cost = f64::INFINITY;
-        for (deviation, k, candidate) in candidates {
-            if deviation > best_cost {
-                break;
-            }
-            // Agent i moves at 2v′ − v_i.
-            let velocity = candidate * 2.0 - self.velocity;
-            let cost = |time: f64| deviation + collision_weight / time;
-            let Some(time) = around.first_contact(velocity, |time| cost(time) > best_cost) else {
-                continue;
-            };
-            if cost(time) < best_cost || k < first {
-                (best, first, best_cost) = (candidate, k, cost(time));
-            }
-        }
-        best
-    }
-
     /// When the disc, moving at `velocity`, first touches a wall: its offset edge or an end point.
     fn time_to_wall(&self, wall: &Wall, velocity: Vector) -> f64 {
         let ends = [wall.start, wall.end]
@@ -156,62 +133,6 @@ impl Situation {
             }
         }
         edge.min(ends[0]).min(ends[1])
-    }
-}
-
-/// Far more than rounding makes of gaps and times: it must never leave anybody out.
-const ROUNDING: f64 = 1e-9;
-
-/// Everything that can be met, the nearest first.
-struct Surroundings<'a> {
-    situation: &'a Situation,
-    /// Discs with their gaps |offset| − reach in metres, rising.
-    discs: Vec<(f64, MovingDisc)>,
-    /// Nobody moves faster, m/s.
-    fastest: f64,
-}
-
-impl<'a> Surroundings<'a> {
-    fn of(situation: &'a Situation) -> Self {
-        let gap = |disc: &MovingDisc| disc.offset.norm() - disc.reach;
-        let mut discs: Vec<(f64, MovingDisc)> = situation
-            .discs
-            .iter()
-            .map(|disc| (gap(disc), *disc))
-            .collect();
-        discs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        let speeds = situation.discs.iter().map(|disc| disc.velocity.norm());
-        Self {
-            situation,
-            discs,
-            fastest: speeds.fold(0.0, f64::max),
-        }
-    }
-
-    /// The earliest contact on the way at `velocity`, seconds, infinite if there is none; or `None` as
-    /// soon as one is found that is too early.
-    fn first_contact(&self, velocity: Vector, too_early: impl Fn(f64) -> bool) -> Option<f64> {
-        let approach = velocity.norm() + self.fastest;
-        let mut first = f64::INFINITY;
-        for wall in &self.situation.walls {
-            first = first.min(self.situation.time_to_wall(wall, velocity));
-        }
-        if too_early(first) {
-            return None;
-        }
-        for (gap, disc) in &self.discs {
-            if *gap > approach * first * (1.0 + ROUNDING) + ROUNDING {
-                break;
-            }
-            let time = time_to_contact(disc.offset, velocity - disc.velocity, disc.reach);
-            if time < first {
-                first = time;
-                if too_early(first) {
-                    return None;
-                }
-            }
-        }
-        Some(first)
     }
 }
 

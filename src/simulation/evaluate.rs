@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::{Simulation, Stage, TASK, blend_of, change_of};
 use crate::density::SphStates;
 use crate::forces::goal;
+use crate::forces::rvo::Search;
 use crate::math::Vector;
 use crate::neighbors::BLOCK;
 use crate::pairs::{Columns, Packed, PairCoefficients, Real};
@@ -172,16 +173,20 @@ impl Simulation {
         let frame = self.frame();
         let coarse = self.clock.is_coarse();
         stages.time(Stage::Rvo, || {
-            avoidance.par_iter_mut().enumerate().for_each(|(i, held)| {
-                let blend = blend_of(&self.scene, &self.agents, i);
-                match blend.rvo().filter(|_| blend.rvo_acts(&frame, i)) {
-                    None => *held = None,
-                    Some(rvo) if coarse || held.is_none() => {
-                        *held = Some(rvo.acceleration(&frame, i, self.scene.max_speed));
+            avoidance.par_iter_mut().enumerate().for_each_init(
+                Search::default,
+                |search, (i, held)| {
+                    let blend = blend_of(&self.scene, &self.agents, i);
+                    match blend.rvo().filter(|_| blend.rvo_acts(&frame, i)) {
+                        None => *held = None,
+                        Some(rvo) if coarse || held.is_none() => {
+                            let max_speed = self.scene.max_speed;
+                            *held = Some(rvo.acceleration(&frame, i, max_speed, search));
+                        }
+                        Some(_) => {}
                     }
-                    Some(_) => {}
-                }
-            });
+                },
+            );
         });
         self.agents.avoidance = avoidance;
         self.stages = stages;
