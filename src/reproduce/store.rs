@@ -62,7 +62,7 @@ impl Store {
     pub fn write(&self, file: &str, contents: &[u8]) -> Result<PathBuf, ReproduceError> {
         let path = self.path(file);
         let folder = path.parent().unwrap_or(&self.folder);
-        let written = tempfile::NamedTempFile::new_in(folder).and_then(|mut temporary| {
+        let written = temporary_in(folder).and_then(|mut temporary| {
             temporary.write_all(contents)?;
             temporary.persist(&path).map_err(|error| error.error)
         });
@@ -122,4 +122,14 @@ fn unwritable(path: &Path, error: &std::io::Error) -> ReproduceError {
         path: path.display().to_string(),
         reason: error.to_string(),
     }
+}
+/// A file to be renamed when it is whole, as readable as any other new one.
+fn temporary_in(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666)); // less what the umask takes
+    }
+    builder.tempfile_in(folder)
 }

@@ -164,7 +164,7 @@ impl<T: Copy> Buckets<T> {
                 let things = &self.items[start as usize..end as usize];
                 start = end;
                 (!things.is_empty())
-                    .then(|| (bucket as f64 * self.width * (1.0 - ROUNDING), things))
+                    .then_some((bucket as f64 * self.width * (1.0 - ROUNDING), things))
             })
     }
 }

@@ -121,11 +121,11 @@ pub struct Result {
     pub waves: usize,
     /// How many runs there were.
     pub runs: usize,
-    /// Mean and standard error over seeds; `None` if no run showed a wave.
+    /// Mean and standard error over seeds; `None` if not two runs showed a wave.
     pub speed: Option<Estimate>,
     /// The same of the amplitude.
     pub amplitude: Option<Estimate>,
-    /// The same of the reflection.
+    /// The same of the reflection; `None` if not two runs showed one.
     pub reflection: Option<Estimate>,
 }
 
@@ -138,7 +138,8 @@ impl Result {
             .collect();
         let over_seeds = |value: &dyn Fn(&wave::Wave) -> Option<f64>| {
             let values: Vec<f64> = waves.iter().flatten().filter_map(value).collect();
-            Estimate::of_mean(&values)
+            // One value has no error.
+            (values.len() > 1).then(|| Estimate::of_mean(&values))?
         };
         Self {
             cell,

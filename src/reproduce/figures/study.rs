@@ -96,6 +96,7 @@ fn panel(grid: &Grid, block: &[Result], quantity: Quantity, range: [f32; 2]) -> 
     for (k, result) in block.iter().enumerate() {
         let at = [(k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5];
         let (text, color) = match result.get(quantity) {
+            None if result.waves > 1 => ("not clear".to_owned(), BLACK),
             None => ("no wave".to_owned(), BLACK),
             Some(e) => {
                 // White on the dark half of the colours.

@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 
 use super::Answer;
 use super::variant::{
-    AVOIDING, EULER, FINE, JITTER, ROUND, SHIPPED, SOFT_WALLS, THIN_TWICE, THRICE, TWICE, Variant,
-    WALLS,
+    AVOIDING, BLENDING, EULER, FINE, JITTER, ROUND, SHIPPED, SOFT_WALLS, THIN_TWICE, THRICE, TWICE,
+    Variant, WALLS,
 };
 use crate::reproduce::case::{Case, CaseResult};
 use crate::reproduce::comparison::Spread;
@@ -31,7 +31,7 @@ struct Question {
     until: Option<f64>,
 }
 
-const QUESTIONS: [Question; 4] = [
+const QUESTIONS: [Question; 5] = [
     Question {
         title: "Why is SF's flow at K^ag ≥ 500 above the paper's?",
         text: "Each line changes one thing. *Locked* runs never reach the 350th arrival; pauses are gaps of 2 s and more \
@@ -72,6 +72,13 @@ const QUESTIONS: [Question; 4] = [
         rows: &[("rvo", 1000.0)],
         variants: &AVOIDING,
         until: Some(16.0),
+    },
+    Question {
+        title: "Why does the density of SF→SPH at ρ⁰max = 6 vary more than the paper's?",
+        text: "Each line changes one thing.",
+        rows: &[("sf->sph", 6.0), ("sf->sph", 4.0)],
+        variants: &BLENDING,
+        until: None,
     },
 ];
 
@@ -163,11 +170,12 @@ impl Question {
 /// What the paper has for a row.
 fn paper(row: &EvacuationRow) -> String {
     format!(
-        "{}, {}: {} evacuated, {:.2} P/m², {:.2} P/s",
+        "{}, {}: {} evacuated, {:.2} [{:.2}] P/m², {:.2} P/s",
         written(&row.profile),
         table1::setting_written(&row.setting, row.value),
         row.evacuated,
         row.density,
+        row.deviation,
         row.flow
     )
 }

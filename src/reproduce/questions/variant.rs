@@ -93,3 +93,20 @@ pub const AVOIDING: [Variant; 9] = [
     WALLS[0],
     JITTER,
 ];
+
+/// What might make the blend of SF and SPH more even.
+pub const BLENDING: [Variant; 9] = [
+    SHIPPED,
+    set("K^ag = 100", &[("agent_stiffness", "100")]),
+    set("K^ag = 200", &[("agent_stiffness", "200")]),
+    set("SF alone up to 1 P/m², not 2", &[("profile", SF_TO_1)]),
+    set("SPH alone from 3 P/m², not 4", &[("profile", SPH_FROM_3)]),
+    set("looks 1 s ahead, not 2", &[("anticipation_time", "1")]),
+    set("T^ρ = 0.5 s", &[("averaging_time", "0.5")]),
+    set("exact walls", &[("wall_method", "exact")]),
+    EULER,
+];
+const SF_TO_1: &str =
+    r#"{"blend": [{"at_density": 1, "profile": "sf"}, {"at_density": 4, "profile": "sph"}]}"#;
+const SPH_FROM_3: &str =
+    r#"{"blend": [{"at_density": 2, "profile": "sf"}, {"at_density": 3, "profile": "sph"}]}"#;
