@@ -1,6 +1,7 @@
 //! The state of the crowd: one array per quantity, in the order of the neighbour grid's cells.
 
 use rand::Rng;
+use rayon::prelude::*;
 
 use crate::math::Vector;
 use crate::random::{self, Purpose};
@@ -133,8 +134,12 @@ impl Agents {
     }
 }
 
-fn arrange<T: Copy>(values: &mut Vec<T>, order: &[u32]) {
-    *values = order.iter().map(|&i| values[i as usize]).collect();
+/// Values that are worth another thread.
+const SOME: usize = 4096;
+
+fn arrange<T: Copy + Send + Sync>(values: &mut Vec<T>, order: &[u32]) {
+    let arranged = order.par_iter().with_min_len(SOME);
+    *values = arranged.map(|&i| values[i as usize]).collect();
 }
 
 #[cfg(test)]

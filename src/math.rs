@@ -32,3 +32,33 @@ pub fn clamp_length(v: Vector, limit: f64) -> Vector {
 pub fn is_finite(v: Vector) -> bool {
     v.x.is_finite() && v.y.is_finite()
 }
+
+/// Are all coordinates finite?
+pub fn are_finite(vectors: &[Vector]) -> bool {
+    // Zero times anything else is no number, and stays it: one comparison for all.
+    let zero: Vector = vectors.iter().map(|v| v * 0.0).sum();
+    zero == Vector::zeros()
+}
+
+/// Are all numbers finite?
+pub fn numbers_are_finite(numbers: &[f64]) -> bool {
+    numbers.iter().map(|number| number * 0.0).sum::<f64>() == 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_number_that_is_none_is_seen_among_many() {
+        let mut numbers = vec![1e300; 99];
+        assert!(numbers_are_finite(&numbers) && numbers_are_finite(&[]));
+        let mut vectors = vec![Vector::new(-1e300, 0.0); 99];
+        assert!(are_finite(&vectors) && are_finite(&[]));
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            numbers[57] = bad;
+            vectors[57].y = bad;
+            assert!(!numbers_are_finite(&numbers) && !are_finite(&vectors));
+        }
+    }
+}

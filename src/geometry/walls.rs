@@ -1,6 +1,6 @@
 //! All obstacles of a scene and the spatial index of their walls.
 
-use parry2d::bounding_volume::Aabb;
+use parry2d::bounding_volume::{Aabb, BoundingVolume};
 use parry2d::partitioning::{Bvh, BvhBuildStrategy};
 
 use super::{Polygon, Wall, to_parry};
@@ -77,6 +77,16 @@ impl Walls {
             (nearest - p).norm_squared() < radius * radius
         }));
         found[first..].sort_unstable();
+    }
+
+    /// The walls that may have a point less than `radius` metres from some of `points`, in rising order;
+    /// some have not.
+    pub fn near_any(&self, points: &[Vector], radius: f64) -> Vec<u32> {
+        let points = points.iter().map(|&p| to_parry(p));
+        let reach = Aabb::from_points(points).loosened(radius);
+        let mut found: Vec<u32> = self.index.intersect_aabb(&reach).collect();
+        found.sort_unstable();
+        found
     }
 
     /// The fraction of the move `from` → `to` at which it first meets one of `candidates` from its

@@ -3,7 +3,12 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use crate::math::Vector;
+
+/// Agents whose cells are worth another thread.
+const SOME: usize = 4096;
 
 /// At most this many cells per agent (and this many for an empty crowd): a crowd strewn over a wide
 /// area gets larger cells instead of a larger grid.
@@ -58,7 +63,11 @@ impl Grid {
         self.size_cells(high - low, positions.len(), height);
         self.origin = low - Vector::new(0.0, self.height);
 
-        let cell_of: Vec<u32> = positions.iter().map(|&p| self.cell_of(p) as u32).collect();
+        let cell_of: Vec<u32> = positions
+            .par_iter()
+            .with_min_len(SOME)
+            .map(|&p| self.cell_of(p) as u32)
+            .collect();
         self.start.clear();
         self.start.resize(self.cells() + 1, 0);
         for &cell in &cell_of {

@@ -21,8 +21,14 @@ struct Block {
 }
 
 impl Lists {
-    /// Fills the lists of agents 0..`count`: `find(i, found)` appends what belongs to agent i.
-    pub fn rebuild(&mut self, count: usize, find: impl Fn(usize, &mut Vec<u32>) + Sync) {
+    /// Fills the lists of agents 0..`count`: `among` finds what may belong to any of some agents, and
+    /// `find` appends what of that belongs to one.
+    pub fn rebuild(
+        &mut self,
+        count: usize,
+        among: impl Fn(Range<usize>) -> Vec<u32> + Sync,
+        find: impl Fn(usize, &[u32], &mut Vec<u32>) + Sync,
+    ) {
         self.blocks
             .resize_with(count.div_ceil(BLOCK), Block::default);
         self.blocks
@@ -31,25 +37,16 @@ impl Lists {
             .for_each(|(b, block)| {
                 block.ends.clear();
                 block.indices.clear();
-                for i in b * BLOCK..((b + 1) * BLOCK).min(count) {
-                    find(i, &mut block.indices);
+                let agents = b * BLOCK..((b + 1) * BLOCK).min(count);
+                let candidates = among(agents.clone());
+                if candidates.is_empty() {
+                    return;
+                }
+                for i in agents {
+                    find(i, &candidates, &mut block.indices);
                     block.ends.push(block.indices.len() as u32);
                 }
             });
-    }
-
-    /// As [`rebuild`](Self::rebuild), but all lists are empty, at no cost, where `skip` holds.
-    pub fn rebuild_unless(
-        &mut self,
-        skip: bool,
-        count: usize,
-        find: impl Fn(usize, &mut Vec<u32>) + Sync,
-    ) {
-        if skip {
-            self.clear();
-        } else {
-            self.rebuild(count, find);
-        }
     }
 
     /// Forgets all lists.

@@ -76,18 +76,13 @@ impl Neighbors {
     /// for avoidance.
     pub fn list_walls(&mut self, agents: &Agents, walls: &Walls) {
         let least = self.ranges.support.max(self.ranges.longest_step);
-        let position = &agents.position;
-        self.near_walls
-            .rebuild_unless(walls.is_empty(), agents.len(), |i, found| {
-                let reach = least.max(agents.radius[i]) + 0.5 * SKIN;
-                walls.near(position[i], reach, found);
-            });
-        let avoidance = self.ranges.avoidance.filter(|_| !walls.is_empty());
-        self.far_walls
-            .rebuild_unless(avoidance.is_none(), agents.len(), |i, found| {
-                let reach = avoidance.unwrap_or(0.0) + 0.5 * SKIN;
-                walls.near(position[i], reach, found);
-            });
+        list_walls(&mut self.near_walls, agents, walls, |radius| {
+            least.max(radius)
+        });
+        match self.ranges.avoidance {
+            Some(radius) => list_walls(&mut self.far_walls, agents, walls, |_| radius),
+            None => self.far_walls.clear(),
+        }
     }
 
     /// Where everybody was at the last sort, metres.
@@ -136,6 +131,41 @@ impl Neighbors {
     pub fn far_walls(&self, i: usize) -> &[u32] {
         self.far_walls.of(i)
     }
+}
+
+/// So many walls are looked at one by one rather than searched.
+const FEW_WALLS: usize = 16;
+
+/// Lists the walls within reach of everybody, by the radius of the body, and half the skin.
+fn list_walls(
+    lists: &mut Lists,
+    agents: &Agents,
+    walls: &Walls,
+    reach: impl Fn(f64) -> f64 + Sync,
+) {
+    if walls.is_empty() {
+        lists.clear();
+        return;
+    }
+    let reach = |i: usize| reach(agents.radius[i]) + 0.5 * SKIN;
+    lists.rebuild(
+        agents.len(),
+        |some| {
+            let widest = some.clone().map(reach).fold(0.0, f64::max);
+            walls.near_any(&agents.position[some], widest)
+        },
+        |i, candidates, found| {
+            let (p, radius) = (agents.position[i], reach(i));
+            if candidates.len() > FEW_WALLS {
+                walls.near(p, radius, found);
+                return;
+            }
+            found.extend(candidates.iter().filter(|&&k| {
+                let nearest = walls.wall(k).nearest_point(p).point;
+                (nearest - p).norm_squared() < radius * radius
+            }));
+        },
+    );
 }
 
 /// How far agents act on each other by SPH and contact, and the skin.

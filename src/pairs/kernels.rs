@@ -1,7 +1,6 @@
 //! The sums themselves, for [`LANES`] agents at a time: a neighbour is read once for all of them.
 //!
-//! Lengths are taken in units of h, so that single precision neither over- nor underflows. Who is out
-//! of reach adds zero.
+//! Distances are in units of the coordinates. Who is out of reach adds zero.
 //!
 //! No closures here: they would not be compiled for the vectors that the function is.
 

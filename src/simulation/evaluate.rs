@@ -9,7 +9,7 @@ use super::{Simulation, Stage, TASK, blend_of, change_of};
 use crate::density::SphStates;
 use crate::forces::goal;
 use crate::forces::rvo::Search;
-use crate::math::Vector;
+use crate::math::{Vector, are_finite, numbers_are_finite};
 use crate::neighbors::BLOCK;
 use crate::pairs::{Columns, Packed, PairCoefficients, Real};
 use crate::profile::{Blend, Override};
@@ -223,18 +223,13 @@ impl Simulation {
                         let acceleration = &mut acceleration[span.start - from..span.end - from];
                         blend.add_accelerations(&frame, span, changed, acceleration);
                     });
-                    let mut zero = Vector::zeros();
-                    let positions = &self.agents.position[from..to];
-                    let velocities = &self.agents.velocity[from..to];
-                    for ((a, r), v) in acceleration.iter().zip(positions).zip(velocities) {
-                        zero += (a + r + v) * 0.0;
-                    }
-                    let density = &frame.fields.density;
-                    if !density.is_empty() {
-                        zero.x += density[from..to].iter().map(|d| d * 0.0).sum::<f64>();
-                    }
-                    let zero = zero.x + zero.y;
-                    if zero != 0.0 {
+                    let density = frame.fields.density.get(from..to).unwrap_or(&[]);
+                    let vectors = [
+                        &*acceleration,
+                        &self.agents.position[from..to],
+                        &self.agents.velocity[from..to],
+                    ];
+                    if !(vectors.into_iter().all(are_finite) && numbers_are_finite(density)) {
                         finite.store(false, Ordering::Relaxed);
                     }
                 });
