@@ -83,7 +83,7 @@ impl<R: Real> Columns<R> {
 
     /// A place to put the motion of each block of agents.
     pub fn motions(&mut self) -> impl IndexedParallelIterator<Item = Motion<'_, R>> {
-        let unit = self.unit;
+        let per_metre = 1.0 / self.unit;
         (
             self.x.par_chunks_mut(BLOCK),
             self.y.par_chunks_mut(BLOCK),
@@ -92,7 +92,7 @@ impl<R: Real> Columns<R> {
         )
             .into_par_iter()
             .map(move |(x, y, velocity_x, velocity_y)| Motion {
-                unit,
+                per_metre,
                 x,
                 y,
                 velocity_x,
@@ -154,7 +154,7 @@ impl<R: Real> Bodies<'_, R> {
 
 /// Positions and velocities of some agents.
 pub struct Motion<'a, R: Real> {
-    unit: f64,
+    per_metre: f64,
     x: &'a mut [R::Coordinate],
     y: &'a mut [R::Coordinate],
     velocity_x: &'a mut [R],
@@ -165,8 +165,8 @@ impl<R: Real> Motion<'_, R> {
     /// Packs the positions in metres and the velocities in m/s of these agents.
     pub fn take(&mut self, positions: &[Vector], velocities: &[Vector]) {
         for (k, (r, v)) in positions.iter().zip(velocities).enumerate() {
-            self.x[k] = R::coordinate(r.x, self.unit);
-            self.y[k] = R::coordinate(r.y, self.unit);
+            self.x[k] = R::coordinate(r.x, self.per_metre);
+            self.y[k] = R::coordinate(r.y, self.per_metre);
             self.velocity_x[k] = R::of(v.x);
             self.velocity_y[k] = R::of(v.y);
         }

@@ -83,11 +83,13 @@ impl Wanted {
 macro_rules! each {
     ($packed:expr, $columns:ident => $body:expr) => {
         match $packed {
-            Packed::Double($columns) => $body,
-            Packed::Mixed($columns) => $body,
+            $crate::pairs::Packed::Double($columns) => $body,
+            $crate::pairs::Packed::Mixed($columns) => $body,
         }
     };
 }
+
+pub(crate) use each;
 
 impl Default for Packed {
     fn default() -> Self {

@@ -23,8 +23,8 @@ pub trait Real: SimdFloatElement + Copy + Default + Send + Sync + 'static {
     /// The number as it is.
     fn double(self) -> f64;
 
-    /// `metres` in units of `unit` metres.
-    fn coordinate(metres: f64, unit: f64) -> Self::Coordinate;
+    /// `metres` in units, of which there are `per_metre` in a metre.
+    fn coordinate(metres: f64, per_metre: f64) -> Self::Coordinate;
 
     /// The first [`LANES`] of `places`.
     fn places<S: Simd>(simd: S, places: &[Self::Coordinate]) -> Self::Places<S>;
@@ -49,8 +49,8 @@ impl Real for f64 {
         self
     }
 
-    fn coordinate(metres: f64, unit: f64) -> f64 {
-        metres / unit
+    fn coordinate(metres: f64, per_metre: f64) -> f64 {
+        metres * per_metre
     }
 
     #[inline(always)]
@@ -81,8 +81,8 @@ impl Real for f32 {
         f64::from(self)
     }
 
-    fn coordinate(metres: f64, unit: f64) -> i32 {
-        (metres / unit) as i64 as i32
+    fn coordinate(metres: f64, per_metre: f64) -> i32 {
+        (metres * per_metre) as i64 as i32
     }
 
     #[inline(always)]

@@ -11,7 +11,7 @@ use crate::forces::goal;
 use crate::forces::rvo::Search;
 use crate::math::{Vector, are_finite, numbers_are_finite};
 use crate::neighbors::BLOCK;
-use crate::pairs::{Columns, Packed, PairCoefficients, Real};
+use crate::pairs::{Columns, PairCoefficients, Real, each};
 use crate::profile::{Blend, Override};
 
 impl Simulation {
@@ -54,10 +54,7 @@ impl Simulation {
     /// Step 2, and packing what the sums over pairs read.
     pub(super) fn update_preferred_velocity(&mut self) {
         let mut packed = std::mem::take(&mut self.packed);
-        match &mut packed {
-            Packed::Double(columns) => self.prepare(columns),
-            Packed::Mixed(columns) => self.prepare(columns),
-        }
+        each!(&mut packed, columns => self.prepare(columns));
         self.packed = packed;
     }
 
@@ -102,10 +99,7 @@ impl Simulation {
             return;
         }
         let mut packed = std::mem::take(&mut self.packed);
-        match &mut packed {
-            Packed::Double(columns) => self.compress(columns),
-            Packed::Mixed(columns) => self.compress(columns),
-        }
+        each!(&mut packed, columns => self.compress(columns));
         self.packed = packed;
     }
 
