@@ -106,14 +106,7 @@ impl Terms {
 
     /// The profile's acceleration, m/s².
     pub fn sum(&self) -> Vector {
-        let [mut sum, none] = [Vector::zeros(); 2];
-        // One by one: no array of names where every agent passes in every frame.
-        sum += self.goal.unwrap_or(none);
-        sum += self.social_agents.unwrap_or(none) + self.social_walls.unwrap_or(none);
-        sum += self.rvo.unwrap_or(none);
-        sum += self.pressure_agents.unwrap_or(none) + self.pressure_walls.unwrap_or(none);
-        sum += self.viscosity.unwrap_or(none);
-        sum + self.contact_agents.unwrap_or(none) + self.contact_walls.unwrap_or(none)
+        self.named().into_iter().filter_map(|(_, term)| term).sum()
     }
 }
 

@@ -37,9 +37,9 @@ struct Cluster {
 }
 
 impl Clusters {
-    /// No two agents of whom one is in a list of the other are farther apart, in either direction, when
-    /// lists reach `reach` metres and nobody moves by more than half of that: a cluster's width, the
-    /// reach, two cells' widths and two moves.
+    /// A length for coordinates that wrap at twice of it, metres, when lists reach `reach` metres: nobody
+    /// in a list is so far away, in either direction, that he would seem near. That is a cluster's width,
+    /// the reach, two cells, of `reach` at most, and two moves: 6 `reach`, of the 8 that are allowed.
     pub fn extent(reach: f64) -> f64 {
         (WIDEST + 2.5) * reach
     }

@@ -116,8 +116,9 @@ impl Packed {
         each!(self, columns => *columns = Columns::default());
     }
 
-    /// Packs everybody's body; who is in one list is less than `extent` metres apart, and `support` is
-    /// the h of an agent in metres.
+    /// Packs everybody's body; coordinates may wrap at twice `extent` metres (see
+    /// [`Clusters::extent`](crate::neighbors::Clusters::extent)), and `support` is the h of an agent in
+    /// metres.
     pub fn take_bodies(&mut self, agents: &Agents, extent: f64, support: impl Fn(usize) -> f64) {
         match self {
             Self::Double(columns) => columns.take_bodies(agents, 1.0, support),

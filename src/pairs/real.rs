@@ -2,8 +2,8 @@
 
 use fearless_simd::{Simd, f32x8, f64x8, i32x8, prelude::*};
 
-/// Agents whose sums are taken together. The same on every processor, and so are the bits.
-pub const LANES: usize = 8;
+/// Agents whose sums are taken together: a cluster, on every processor.
+pub const LANES: usize = crate::neighbors::CLUSTER;
 
 /// A number for sums over pairs, and how it holds coordinates.
 pub trait Real: SimdFloatElement + Copy + Default + Send + Sync + 'static {
@@ -65,7 +65,7 @@ impl Real for f64 {
 }
 
 /// Coordinates are whole numbers modulo 2³²: differences are exact wherever in the plane they are
-/// taken, as long as they are shorter than 2³¹ units.
+/// taken, as long as they are shorter than 2³¹ units, and longer ones wrap.
 impl Real for f32 {
     type Coordinate = i32;
     type Lanes<S: Simd> = f32x8<S>;

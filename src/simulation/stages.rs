@@ -11,7 +11,7 @@ pub enum Stage {
     Neighbors,
     /// Step 1B.
     DensityAndPressure,
-    /// Step 2.
+    /// Step 2, and packing what the sums over pairs read.
     PreferredVelocity,
     /// Velocity obstacles, coarse.
     Rvo,
