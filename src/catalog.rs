@@ -50,6 +50,8 @@ pub struct Parameters {
     pub wall_range: Option<f64>,
     /// Range of the avoidance methods, metres.
     pub avoidance_radius: Option<f64>,
+    /// Forces of the social force below this are left out, m/s².
+    pub avoidance_tolerance: Option<f64>,
     /// w, metres.
     pub collision_weight: Option<f64>,
     /// Candidate velocities of RVO.
@@ -84,6 +86,7 @@ impl Parameters {
             wall_strength: self.wall_strength.or(fallback.wall_strength),
             wall_range: self.wall_range.or(fallback.wall_range),
             avoidance_radius: self.avoidance_radius.or(fallback.avoidance_radius),
+            avoidance_tolerance: self.avoidance_tolerance.or(fallback.avoidance_tolerance),
             collision_weight: self.collision_weight.or(fallback.collision_weight),
             candidates: self.candidates.or(fallback.candidates),
             viscosity: self.viscosity.or(fallback.viscosity),
@@ -145,6 +148,9 @@ impl Parameters {
                     wall_strength: self.wall_strength.unwrap_or(paper.wall_strength),
                     wall_range: self.wall_range.unwrap_or(paper.wall_range),
                     avoidance_radius: self.avoidance_radius.unwrap_or(paper.avoidance_radius),
+                    avoidance_tolerance: self
+                        .avoidance_tolerance
+                        .unwrap_or(paper.avoidance_tolerance),
                 };
                 Navigation::Social(goal, social)
             }

@@ -1,10 +1,12 @@
 //! The frozen frame: what every force reads and no force writes.
 
+use std::ops::Range;
+
 use crate::agents::Agents;
 use crate::clock::Clock;
 use crate::geometry::Walls;
 use crate::math::Vector;
-use crate::neighbors::{BLOCK, Neighbors};
+use crate::neighbors::{BLOCK, CLUSTER, Neighbors};
 use crate::pairs::{Packed, PairCoefficients, Wanted};
 
 /// What a frame derives from the state, one array per quantity; the step that writes it in brackets.
@@ -24,6 +26,9 @@ pub struct Fields {
     pub wall_gradient: Vec<Vector>,
     /// v_i^pref, m/s (2).
     pub preferred_velocity: Vec<Vector>,
+    /// The lowest and highest components of the velocities of every [`CLUSTER`] consecutive agents, m/s
+    /// (3); empty where no social force has a tolerance.
+    pub velocity_ranges: Vec<[Vector; 2]>,
     /// a_i, m/s² (3, 3B, 4).
     pub acceleration: Vec<Vector>,
 }
@@ -42,6 +47,12 @@ impl Fields {
         self.preferred_velocity.resize(count, Vector::zeros());
         self.acceleration.resize(count, Vector::zeros());
     }
+}
+
+/// The smallest and largest components of some lowest and highest ones; zero of none.
+pub fn range(of: impl Iterator<Item = [Vector; 2]>) -> [Vector; 2] {
+    of.reduce(|[low, high], [lower, higher]| [low.inf(&lower), high.sup(&higher)])
+        .unwrap_or([Vector::zeros(); 2])
 }
 
 /// One frame, frozen between [`evaluate`](crate::simulation::Simulation::evaluate) and
@@ -75,6 +86,18 @@ impl Frame<'_> {
         candidates
             .map(move |j| (j, position[i] - position[j]))
             .filter(move |(_, r_ij)| r_ij.norm_squared() < radius * radius)
+    }
+
+    /// No two velocities of `agents` and of `others` differ by more than this, m/s.
+    pub fn relative_speed(&self, agents: Range<usize>, others: &[Range<u32>]) -> f64 {
+        let velocities = &self.agents.velocity[agents];
+        let [low, high] = range(velocities.iter().map(|&v| [v, v]));
+        let ranges = others.iter().flat_map(|run| {
+            let cells = run.start as usize / CLUSTER..(run.end as usize).div_ceil(CLUSTER);
+            &self.fields.velocity_ranges[cells]
+        });
+        let [lowest, highest] = range(ranges.copied());
+        (high - lowest).sup(&(highest - low)).norm()
     }
 
     /// What the agents near agent `i` do to it, m/s².

@@ -44,6 +44,14 @@ pub enum Navigation {
 }
 
 impl Navigation {
+    /// Its social force, if it is one that has one.
+    pub fn social(&self) -> Option<SocialForce> {
+        match *self {
+            Self::Social(_, social) => Some(social),
+            _ => None,
+        }
+    }
+
     /// How far this way of avoiding others looks, metres.
     pub fn avoidance_radius(&self) -> Option<f64> {
         match self {
@@ -138,6 +146,9 @@ impl Profile {
                 })
             });
         }
+        if let Some(social) = self.navigation.social() {
+            terms.social_agents = Some(social.from_agents(frame, i));
+        }
         if feels_contact(changed) {
             if self.contact.agent_stiffness.is_some() {
                 terms.contact_agents = Some(alone(PairCoefficients { contact, ..none() }));
@@ -198,7 +209,6 @@ impl Profile {
                 let goal = changed_goal(goal, changed);
                 goal.accelerations(frame, agents.clone(), |i, a| take(|t| &mut t.goal, i, a));
                 for i in agents.clone() {
-                    take(|t| &mut t.social_agents, i, social.from_agents(frame, i));
                     take(|t| &mut t.social_walls, i, social.from_walls(frame, i));
                 }
             }

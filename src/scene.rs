@@ -3,6 +3,7 @@
 use crate::agents::NewAgent;
 use crate::boundary::WallMethod;
 use crate::clock::Clock;
+use crate::forces::social::SocialForce;
 use crate::geometry::{Polygon, Walls};
 use crate::math::Vector;
 use crate::neighbors::Ranges;
@@ -179,6 +180,7 @@ impl Scene {
             density: pairs.pressure || pairs.viscosity || blending,
             pairs,
             rvo: self.groups.iter().any(|group| group.blend.rvo().is_some()),
+            social: self.social_forces().next().is_some(),
             avoidance: profiles()
                 .filter_map(|profile| profile.navigation.avoidance_radius())
                 .reduce(f64::max),
@@ -187,6 +189,12 @@ impl Scene {
                 .iter()
                 .any(|group| group.removal_radius.is_some()),
         }
+    }
+
+    /// The social forces of all profiles, some more than once.
+    pub fn social_forces(&self) -> impl Iterator<Item = SocialForce> + '_ {
+        let steps = self.groups.iter().flat_map(|group| group.blend.steps());
+        steps.filter_map(|step| step.profile.navigation.social())
     }
 
     /// How far neighbours must be looked for.
@@ -199,6 +207,10 @@ impl Scene {
         Ranges {
             support,
             avoidance: needs.avoidance,
+            social: self
+                .social_forces()
+                .map(|social| social.avoidance_radius)
+                .reduce(f64::max),
             longest_step: self.max_speed * self.clock.time_step(),
         }
     }
@@ -213,6 +225,8 @@ pub struct Needs {
     pub pairs: Wanted,
     /// Some profile avoids by RVO.
     pub rvo: bool,
+    /// Some profile avoids by social forces.
+    pub social: bool,
     /// The widest avoidance radius, metres.
     pub avoidance: Option<f64>,
     /// Some agents leave at their goal.

@@ -65,6 +65,7 @@ fn needs_follow_from_the_profiles() {
         density: true,
         pairs: sph,
         rvo: false,
+        social: false,
         avoidance: None,
         removal: false,
     };
@@ -73,8 +74,13 @@ fn needs_follow_from_the_profiles() {
         avoidance: Some(5.0),
         ..goal_only
     };
-    assert_eq!(needs("sf+sph"), wide);
-    assert_eq!(needs("sf->sph"), wide);
+    let social = |needs: Needs| Needs {
+        social: true,
+        ..needs
+    };
+    let rvo = |needs: Needs| Needs { rvo: true, ..needs };
+    assert_eq!(needs("sf+sph"), social(wide));
+    assert_eq!(needs("sf->sph"), social(wide));
     let apart = Needs {
         density: false,
         pairs: Wanted {
@@ -83,10 +89,10 @@ fn needs_follow_from_the_profiles() {
         },
         ..wide
     };
-    assert_eq!(needs("sf"), apart);
-    assert_eq!(needs("rvo"), Needs { rvo: true, ..apart });
-    assert_eq!(needs("rvo+sph"), Needs { rvo: true, ..wide });
-    assert_eq!(needs("rvo->sph"), Needs { rvo: true, ..wide });
+    assert_eq!(needs("sf"), social(apart));
+    assert_eq!(needs("rvo"), rvo(apart));
+    assert_eq!(needs("rvo+sph"), rvo(wide));
+    assert_eq!(needs("rvo->sph"), rvo(wide));
 }
 
 #[test]

@@ -3,6 +3,8 @@
 use crate::frame::Frame;
 use crate::geometry::WallPart;
 use crate::math::{Vector, direction};
+use crate::neighbors::BLOCK;
+use crate::pairs::SocialLaw;
 
 /// Parameters of Eqs. 18 and 19 and of the field of view.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +21,9 @@ pub struct SocialForce {
     pub wall_range: f64,
     /// Nobody farther away counts, metres.
     pub avoidance_radius: f64,
+    /// Nobody counts who is so far away that his force on a person of mass 1 is certainly below this,
+    /// m/s²; at 0 everybody does.
+    pub avoidance_tolerance: f64,
 }
 
 impl Default for SocialForce {
@@ -30,6 +35,7 @@ impl Default for SocialForce {
             wall_strength: 2.1,
             wall_range: 0.1,
             avoidance_radius: 5.0,
+            avoidance_tolerance: 0.0,
         }
     }
 }
@@ -42,15 +48,72 @@ const UNSEEN_WEIGHT: f64 = 0.5;
 impl SocialForce {
     /// Eq. 18 over all agents in range, over the mass.
     pub fn from_agents(&self, frame: &Frame, i: usize) -> Vector {
-        let v_i = frame.agents.velocity[i];
-        let seen = FieldOfView::new(v_i);
-        let force: Vector = frame
-            .around(i, self.avoidance_radius)
-            .map(|(j, r_ij)| {
-                self.agent_force(r_ij, v_i - frame.agents.velocity[j]) * seen.weight(-r_ij)
-            })
-            .sum();
-        force / frame.agents.mass[i]
+        let mut coefficients = [0.0; BLOCK];
+        coefficients[i % BLOCK] = 1.0 / frame.agents.mass[i];
+        let mut accelerations = [Vector::zeros(); BLOCK];
+        self.add_from_agents(frame, i / BLOCK, &coefficients, &mut accelerations);
+        accelerations[i % BLOCK]
+    }
+
+    /// Adds Eq. 18 over all agents in range, times their coefficients, to the accelerations of the agents
+    /// of block `b`.
+    pub fn add_from_agents(
+        &self,
+        frame: &Frame,
+        b: usize,
+        coefficients: &[f64; BLOCK],
+        accelerations: &mut [Vector],
+    ) {
+        let law = self.law();
+        let mut runs = Vec::new();
+        for (agents, _) in frame.neighbors.near().block(b).clusters() {
+            let own = agents.start % BLOCK..agents.start % BLOCK + agents.len();
+            let coefficients = &coefficients[own.clone()];
+            if coefficients.iter().all(|&coefficient| coefficient == 0.0) {
+                continue;
+            }
+            let around = |radius, runs: &mut Vec<_>| {
+                let positions = &frame.agents.position;
+                let neighbors = frame.neighbors;
+                neighbors.around_cluster(agents.clone(), positions, radius, runs);
+            };
+            around(self.avoidance_radius, &mut runs);
+            if self.avoidance_tolerance > 0.0 {
+                let radius = self.reach(frame.relative_speed(agents.clone(), &runs));
+                if radius < self.avoidance_radius {
+                    around(radius, &mut runs);
+                }
+            }
+            frame
+                .packed
+                .add_social(&law, (agents, &runs), coefficients, &mut accelerations[own]);
+        }
+    }
+
+    /// How far away somebody can be, metres, whose force need not be below the tolerance, when nobody
+    /// moves faster relative to the observer than `relative_speed`, m/s.
+    ///
+    /// With S = T times that speed and r = |r_ij|, |r_ij + s| is within S of r. So b² ≥ r (r − S), and the
+    /// force, V₀/σ e^(−b/σ) (√q + 1/√q)/2 with q = |r_ij + s|/r, is at most 1.25 V₀/σ e^(−b/σ) where
+    /// S ≤ ¾ r.
+    pub fn reach(&self, relative_speed: f64) -> f64 {
+        let ratio = 1.25 * self.agent_strength / (self.agent_range * self.avoidance_tolerance);
+        let b = self.agent_range * ratio.max(1.0).ln();
+        let s = self.anticipation_time * relative_speed;
+        let beyond = 0.5 * (s + (s * s + 4.0 * b * b).sqrt());
+        beyond.max(s / 0.75).min(self.avoidance_radius)
+    }
+
+    /// Eq. 18 as sums over pairs take it.
+    fn law(&self) -> SocialLaw {
+        SocialLaw {
+            strength: self.agent_strength / self.agent_range,
+            range: self.agent_range,
+            anticipation_time: self.anticipation_time,
+            radius: self.avoidance_radius,
+            field_of_view: FIELD_OF_VIEW.cos(),
+            unseen_weight: UNSEEN_WEIGHT,
+        }
     }
 
     /// Eq. 19 over the walls in range on whose free side the agent stands, over the mass.
@@ -81,29 +144,6 @@ impl SocialForce {
             })
             .sum();
         force / frame.agents.mass[i]
-    }
-
-    /// V₀ e^(−b/σ): the potential whose negative gradient over r_ij is Eq. 18.
-    pub fn agent_potential(&self, r_ij: Vector, v_ij: Vector) -> f64 {
-        let s = v_ij * self.anticipation_time;
-        let l = r_ij.norm() + (r_ij + s).norm();
-        let b = 0.5 * (l * l - s.norm_squared()).max(0.0).sqrt();
-        self.agent_strength * (-b / self.agent_range).exp()
-    }
-
-    /// Eq. 18 in closed form; zero where the ellipse degenerates (L² ≤ |s|²).
-    pub fn agent_force(&self, r_ij: Vector, v_ij: Vector) -> Vector {
-        let s = v_ij * self.anticipation_time;
-        let ahead = r_ij + s;
-        let l = r_ij.norm() + ahead.norm();
-        let twice_b_squared = l * l - s.norm_squared();
-        if twice_b_squared <= 0.0 {
-            return Vector::zeros();
-        }
-        let b = 0.5 * twice_b_squared.sqrt();
-        let strength =
-            self.agent_strength / self.agent_range * (-b / self.agent_range).exp() * l / (4.0 * b);
-        (direction(r_ij) + direction(ahead)) * strength
     }
 
     /// Eq. 19 for `away` = r_i − r_k*.
@@ -141,25 +181,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_agent_force_is_the_gradient_of_its_potential() {
-        let social = SocialForce::default();
-        let step = 1e-6;
-        for k in 0..200 {
-            let angle = f64::from(k) * 0.7;
-            let r_ij = Vector::new(angle.cos(), angle.sin()) * (0.3 + 0.02 * f64::from(k % 50));
-            let v_ij = Vector::new((1.3 * angle).sin(), (0.4 * angle).cos()) * 1.5;
-            let slope = |along: Vector| {
-                (social.agent_potential(r_ij + along * step, v_ij)
-                    - social.agent_potential(r_ij - along * step, v_ij))
-                    / (2.0 * step)
-            };
-            let expected = -Vector::new(slope(Vector::x()), slope(Vector::y()));
-            let force = social.agent_force(r_ij, v_ij);
-            assert!((force - expected).norm() < 1e-7 * (1.0 + expected.norm()));
-        }
-    }
-
-    #[test]
     fn the_wall_force_is_the_gradient_of_its_potential() {
         let social = SocialForce::default();
         let potential = |d: f64| social.wall_strength * (-d / social.wall_range).exp();
@@ -168,15 +189,6 @@ mod tests {
             let force = social.wall_force(Vector::new(0.0, d));
             assert!((force - Vector::new(0.0, -slope)).norm() < 1e-7);
         }
-    }
-
-    #[test]
-    fn a_degenerate_ellipse_gives_no_force() {
-        let social = SocialForce::default();
-        let force = social.agent_force(Vector::zeros(), Vector::new(1.0, 0.0));
-        assert_eq!(force, Vector::zeros());
-        let passing = social.agent_force(Vector::new(-1.0, 0.0), Vector::new(1.0, 0.0));
-        assert!(crate::math::is_finite(passing));
     }
 
     #[test]

@@ -157,6 +157,40 @@ impl Grid {
     }
 }
 
+impl Grid {
+    /// Appends the agents in cells that a circle round any of `places`, not none, meets, row by row;
+    /// some are out of reach.
+    pub fn runs(&self, places: &[Vector], radius: f64, found: &mut Vec<Range<u32>>) {
+        let heights = places.iter().map(|p| p.y - self.origin.y);
+        let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| {
+            (low.min(y), high.max(y))
+        });
+        let per_diameter = 0.5 / radius;
+        let row = |y: f64| ((y / self.height) as usize).min(self.rows - 1);
+        for row in row(low - radius)..=row(high + radius) {
+            let floor = row as f64 * self.height;
+            let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
+            for place in places {
+                let offset = place - self.origin;
+                let gap = (floor - offset.y)
+                    .max(offset.y - floor - self.height)
+                    .max(0.0);
+                if gap <= radius {
+                    let half = radius - gap * gap * per_diameter; // √(radius² − gap²) at least
+                    from = from.min(offset.x - half);
+                    to = to.max(offset.x + half);
+                }
+            }
+            if from <= to {
+                let run = self.run(row, from, to);
+                if !run.is_empty() {
+                    found.push(run);
+                }
+            }
+        }
+    }
+}
+
 /// The corners of the bounding box; the origin twice for nobody.
 fn bounds(positions: &[Vector]) -> (Vector, Vector) {
     let Some(&first) = positions.first() else {

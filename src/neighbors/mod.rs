@@ -31,6 +31,8 @@ pub struct Ranges {
     pub support: f64,
     /// Radius of the avoidance methods, metres.
     pub avoidance: Option<f64>,
+    /// Radius of social forces, metres.
+    pub social: Option<f64>,
     /// The longest step that anybody makes in a frame, s_max Δt, metres.
     pub longest_step: f64,
 }
@@ -105,15 +107,45 @@ impl Neighbors {
         &self.near
     }
 
-    /// Coordinates may wrap at twice this length, metres: see [`Clusters::extent`].
+    /// Coordinates may wrap at twice this length, metres: nobody whom a cluster is given is so far away
+    /// that he would seem near. See [`Clusters::extent`]; far ones are a cluster's width, a cell and the
+    /// avoidance radius away at most, not counting their moves.
     pub fn extent(&self) -> f64 {
-        Clusters::extent(self.reach)
+        let far = self
+            .ranges
+            .social
+            .map_or(0.0, |radius| radius + 2.5 * self.reach);
+        Clusters::extent(self.reach).max(far)
     }
 
     /// Candidates for avoidance within `radius` metres of `p`, as ranges of agents, some out of range
     /// and agent `i` itself among them.
     pub fn around(&self, p: Vector, radius: f64) -> impl Iterator<Item = Range<usize>> + '_ {
         self.grid.rows(p, radius + 0.5 * SKIN)
+    }
+
+    /// Replaces `found` by runs of agents with all that are within `radius` metres of any of `agents`, of
+    /// one cluster, and some that are not.
+    pub fn around_cluster(
+        &self,
+        agents: Range<usize>,
+        positions: &[Vector],
+        radius: f64,
+        found: &mut Vec<Range<u32>>,
+    ) {
+        found.clear();
+        let reach = radius + 0.5 * SKIN;
+        if self.grid.height() <= self.reach {
+            self.grid.runs(&positions[agents], reach, found);
+            return;
+        }
+        // Cells had to be made larger than lists reach: one agent each, and only who is near.
+        for i in agents {
+            let p = positions[i];
+            let near = self.grid.rows(p, reach).flatten();
+            let near = near.filter(|&j| (p - positions[j]).norm() < radius);
+            found.extend(near.map(|j| j as u32..j as u32 + 1));
+        }
     }
 
     /// Walls that may be within reach of agent `i` for SPH and contact, rising.
@@ -196,6 +228,7 @@ mod tests {
         let ranges = Ranges {
             support: 1.0,
             avoidance: Some(5.0),
+            social: Some(5.0),
             longest_step: 0.036,
         };
         neighbors.sort(agents, ranges);
@@ -274,6 +307,34 @@ mod tests {
         }
         neighbors.travelled(0.1 + 1e-6);
         assert!(neighbors.are_stale());
+    }
+
+    #[test]
+    fn whom_brute_force_finds_around_a_cluster_is_found_once() {
+        for (count, side) in [(1, 1.0), (300, 6.0), (300, 60.0), (300, 3000.0)] {
+            let mut agents = crowd(count, side);
+            let neighbors = listed(&mut agents);
+            let mut runs = Vec::new();
+            let blocks = (0..agents.len().div_ceil(BLOCK)).map(|b| neighbors.near().block(b));
+            for (cluster, _) in blocks.flat_map(|block| block.clusters()) {
+                for radius in [0.5, 2.7, 5.0] {
+                    neighbors.around_cluster(cluster.clone(), &agents.position, radius, &mut runs);
+                    let found: Vec<usize> =
+                        runs.iter().cloned().flatten().map(|j| j as usize).collect();
+                    assert!(found.is_sorted_by(|a, b| a < b) || cluster.len() == 1);
+                    for (i, j) in cluster
+                        .clone()
+                        .flat_map(|i| (0..agents.len()).map(move |j| (i, j)))
+                    {
+                        let offset = agents.position[i] - agents.position[j];
+                        assert!(offset.norm() >= radius || found.contains(&j));
+                        // Nor does somebody who is found seem near when coordinates wrap.
+                        let wrapped = 2.0 * neighbors.extent() - offset.amax() - SKIN;
+                        assert!(!found.contains(&j) || wrapped > radius + SKIN, "{offset}");
+                    }
+                }
+            }
+        }
     }
 
     #[test]

@@ -1,10 +1,12 @@
 //! What sums over pairs read, packed.
 
+use std::ops::Range;
+
 use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 
 use super::real::{LANES, Real};
-use super::{PairCoefficients, Wanted, kernels};
+use super::{PairCoefficients, SocialLaw, Wanted, kernels, social};
 use crate::agents::Agents;
 use crate::math::Vector;
 use crate::neighbors::{BLOCK, ClusterBlock};
@@ -131,6 +133,22 @@ impl<R: Real> Columns<R> {
     ) {
         dispatch!(Level::new(), simd => {
             kernels::accelerations(simd, self, block, coefficients, wanted, out);
+        });
+    }
+}
+
+impl<R: Real> Columns<R> {
+    /// Adds the social forces on `agents`, of one cluster, times their coefficients, m/s²; `runs` have
+    /// everybody in reach, and some who are not.
+    pub fn add_social(
+        &self,
+        law: &SocialLaw,
+        (agents, runs): (Range<usize>, &[Range<u32>]),
+        coefficients: &[f64],
+        out: &mut [Vector],
+    ) {
+        dispatch!(Level::new(), simd => {
+            social::add_social(simd, self, law, (agents, runs), coefficients, out);
         });
     }
 }

@@ -15,17 +15,17 @@ use crate::math::Vector;
 use crate::neighbors::{BLOCK, ClusterBlock};
 
 #[inline(always)]
-fn splat<R: Real, S: Simd>(simd: S, value: f64) -> R::Lanes<S> {
+pub(super) fn splat<R: Real, S: Simd>(simd: S, value: f64) -> R::Lanes<S> {
     R::Lanes::splat(simd, R::of(value))
 }
 
 #[inline(always)]
-fn load<R: Real, S: Simd>(simd: S, column: &[R], start: usize) -> R::Lanes<S> {
+pub(super) fn load<R: Real, S: Simd>(simd: S, column: &[R], start: usize) -> R::Lanes<S> {
     R::Lanes::from_slice(simd, &column[start..start + LANES])
 }
 
 #[inline(always)]
-fn store<R: Real, S: Simd>(lanes: R::Lanes<S>) -> [R; LANES] {
+pub(super) fn store<R: Real, S: Simd>(lanes: R::Lanes<S>) -> [R; LANES] {
     let mut numbers = [R::default(); LANES];
     lanes.store_slice(&mut numbers);
     numbers

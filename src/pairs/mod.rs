@@ -1,5 +1,6 @@
-//! Sums over pairs of near agents: density (Eq. 9), pressure (Eq. 11), viscosity (Eq. 7) and contact
-//! (Eq. 22). The only place that names fearless_simd.
+//! Sums over pairs of agents: of near ones density (Eq. 9), pressure (Eq. 11), viscosity (Eq. 7) and
+//! contact (Eq. 22), of those farther away social forces (Eq. 18). The only place that names
+//! fearless_simd.
 //!
 //! Nearly all of the time of a dense scene goes here. Agents who stand together (see
 //! [`Clusters`](crate::neighbors::Clusters)) share their neighbours, so the sums of eight are taken at
@@ -9,9 +10,13 @@
 mod columns;
 mod kernels;
 mod real;
+mod social;
 
 pub use columns::{Columns, Motion};
 pub use real::{LANES, Real};
+pub use social::SocialLaw;
+
+use std::ops::Range;
 
 use crate::agents::Agents;
 use crate::math::Vector;
@@ -137,5 +142,17 @@ impl Packed {
         out: &mut [Vector],
     ) {
         each!(self, columns => columns.accelerations(block, coefficients, wanted, out));
+    }
+
+    /// Adds the social forces on `agents`, of one cluster, times their coefficients, m/s²; `runs` have
+    /// everybody in reach, and some who are not.
+    pub fn add_social(
+        &self,
+        law: &SocialLaw,
+        (agents, runs): (Range<usize>, &[Range<u32>]),
+        coefficients: &[f64],
+        out: &mut [Vector],
+    ) {
+        each!(self, columns => columns.add_social(law, (agents, runs), coefficients, out));
     }
 }

@@ -5,8 +5,10 @@ use std::ops::Range;
 use super::{Navigation, Override, Profile};
 use crate::density::SphParameters;
 use crate::forces::rvo::Rvo;
+use crate::forces::social::SocialForce;
 use crate::frame::Frame;
 use crate::math::Vector;
+use crate::neighbors::BLOCK;
 use crate::pairs::PairCoefficients;
 
 /// A sequence {(Π^j, ρ^j)} of profiles in rising order of density, and the SPH parameters they share.
@@ -145,6 +147,24 @@ impl Blend {
     ) {
         self.each_share(frame, agents, |profile, agents, weight| {
             profile.add_pair_coefficients(frame, agents, changed, weight, coefficients);
+        });
+    }
+
+    /// Adds how much `agents` of one block of a frozen frame, all with this blend, feel of a social force:
+    /// their weights of it over their masses.
+    pub fn add_social_coefficients(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+        social: &SocialForce,
+        coefficients: &mut [f64; BLOCK],
+    ) {
+        self.each_share(frame, agents, |profile, agents, weight| {
+            if profile.navigation.social().as_ref() == Some(social) {
+                for i in agents {
+                    coefficients[i % BLOCK] += weight / frame.agents.mass[i];
+                }
+            }
         });
     }
 

@@ -37,7 +37,7 @@ const STRENGTH: Range = Range::at_least(0.0, 1e9);
 /// Densities, P/m².
 pub(super) const DENSITY: Range = Range::at_least(0.0, 1000.0);
 
-const PARAMETERS: [ParameterDoc; 18] = [
+const PARAMETERS: [ParameterDoc; 19] = [
     parameter(
         "goal_scale",
         "",
@@ -93,6 +93,13 @@ const PARAMETERS: [ParameterDoc; 18] = [
         "5",
         REACH,
         "social force and RVO look this far",
+    ),
+    parameter(
+        "avoidance_tolerance",
+        "m/s²",
+        "0",
+        STRENGTH,
+        "social forces that are certainly below this, on a person of mass 1, are left out",
     ),
     parameter(
         "collision_weight",

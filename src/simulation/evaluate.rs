@@ -9,8 +9,10 @@ use super::{Simulation, Stage, TASK, blend_of, change_of};
 use crate::density::SphStates;
 use crate::forces::goal;
 use crate::forces::rvo::Search;
+use crate::forces::social::SocialForce;
+use crate::frame::range;
 use crate::math::{Vector, are_finite, numbers_are_finite};
-use crate::neighbors::BLOCK;
+use crate::neighbors::{BLOCK, CLUSTER};
 use crate::pairs::{Columns, PairCoefficients, Real, each};
 use crate::profile::{Blend, Override};
 
@@ -21,7 +23,7 @@ impl Simulation {
             self.sort_agents();
             self.list_walls();
         }
-        if !(self.needs.pairs.any() || self.density_is_due()) {
+        if !(self.needs.pairs.any() || self.needs.social || self.density_is_due()) {
             return;
         }
         let (agents, neighbors, packed) = (&self.agents, &mut self.neighbors, &mut self.packed);
@@ -188,6 +190,17 @@ impl Simulation {
 
     /// Steps 3, 3B and 4.
     pub(super) fn update_acceleration(&mut self) {
+        let social_forces = self.social_forces();
+        let velocities = &self.agents.velocity;
+        let ranges = &mut self.fields.velocity_ranges;
+        ranges.clear();
+        if social_forces
+            .iter()
+            .any(|social| social.avoidance_tolerance > 0.0)
+        {
+            let some = velocities.par_chunks(CLUSTER).with_min_len(TASK * BLOCK);
+            ranges.par_extend(some.map(|v| range(v.iter().map(|&v| [v, v]))));
+        }
         let mut acceleration = std::mem::take(&mut self.fields.acceleration);
         let mut stages = std::mem::take(&mut self.stages);
         let frame = self.frame();
@@ -213,6 +226,13 @@ impl Simulation {
                     frame
                         .packed
                         .accelerations(clusters, &felt, frame.wanted, acceleration);
+                    for social in &social_forces {
+                        let mut felt = [0.0; BLOCK];
+                        self.each_span(from..to, |span, blend, _| {
+                            blend.add_social_coefficients(&frame, span, social, &mut felt);
+                        });
+                        social.add_from_agents(&frame, b, &felt, acceleration);
+                    }
                     self.each_span(from..to, |span, blend, changed| {
                         let acceleration = &mut acceleration[span.start - from..span.end - from];
                         blend.add_accelerations(&frame, span, changed, acceleration);
@@ -231,6 +251,17 @@ impl Simulation {
         self.finite = finite.into_inner();
         self.fields.acceleration = acceleration;
         self.stages = stages;
+    }
+
+    /// The different social forces of the scene.
+    fn social_forces(&self) -> Vec<SocialForce> {
+        let mut different = Vec::new();
+        for social in self.scene.social_forces() {
+            if !different.contains(&social) {
+                different.push(social);
+            }
+        }
+        different
     }
 
     /// The blend of `agents` if all have the same.

@@ -2,6 +2,7 @@
 #![allow(dead_code)]
 
 pub mod quadrature;
+pub mod social;
 
 use sandbox::agents::NewAgent;
 use sandbox::breakdown::Breakdown;

@@ -1,0 +1,255 @@
+//! Social forces between agents (Eq. 18): sums over crowds against the equation, pair by pair.
+
+mod common;
+
+use common::social::{condition, force, potential, weight};
+use common::{blend, blend_with, scene, vector, walker};
+use proptest::prelude::*;
+use rand::Rng;
+use sandbox::agents::NewAgent;
+use sandbox::catalog::Parameters;
+use sandbox::forces::social::SocialForce;
+use sandbox::math::Vector;
+use sandbox::pairs::Precision;
+use sandbox::random::{Purpose, stream};
+use sandbox::scene::{Group, Scene};
+use sandbox::simulation::Simulation;
+
+/// The largest error of a sum of social forces in mixed precision, over the sum of their magnitudes.
+const BOUND: f64 = 1e-5;
+
+fn random(seed: u64) -> impl FnMut() -> f64 {
+    let mut rng = stream(seed, Purpose::Placement, 0, 0);
+    move || rng.random_range(-1.0..1.0)
+}
+
+/// Eq. 18 on agent `i` of an evaluated frame, pair by pair: accelerations, and how uncertain these are.
+fn felt(simulation: &Simulation, i: usize) -> Vec<(Vector, f64)> {
+    let social = SocialForce::default();
+    let agents = simulation.frame().agents;
+    let others = (0..agents.len()).filter(|&j| j != i);
+    let pairs = others.filter_map(|j| {
+        let r_ij = agents.position[i] - agents.position[j];
+        let v_ij = agents.velocity[i] - agents.velocity[j];
+        let near = r_ij.norm() < social.avoidance_radius;
+        let share = weight(agents.velocity[i], r_ij) / agents.mass[i];
+        near.then(|| {
+            let force = force(&social, r_ij, v_ij) * share;
+            let noise = 4.0 * f64::EPSILON * condition(&social, r_ij, v_ij);
+            (force, force.norm() * noise)
+        })
+    });
+    pairs.collect()
+}
+
+/// What the engine makes of it.
+fn summed(simulation: &Simulation, i: usize) -> Vector {
+    let frame = simulation.frame();
+    let laid_open = common::laid_open(simulation, frame.agents.id[i]);
+    let terms = laid_open.profiles[0].accelerations;
+    terms.social_agents.unwrap()
+}
+
+/// 300 people at random in a square of `side` metres from `corner` on, at up to 1.8 m/s.
+fn crowd(corner: Vector, side: f64, seed: u64, parameters: &Parameters) -> Scene {
+    let mut scene = scene(vec![], blend_with("sf", parameters));
+    let mut next = random(seed);
+    for _ in 0..300 {
+        let position = corner + vector(next(), next()) * (0.5 * side);
+        let velocity = vector(next(), next()) * 1.2;
+        scene.agents.push(NewAgent {
+            velocity,
+            ..NewAgent::at(position, corner, 0)
+        });
+    }
+    scene
+}
+
+/// The largest error over all agents, over the sum of the magnitudes.
+fn largest_error(scene: Scene) -> f64 {
+    let simulation = common::evaluated(scene);
+    let error = |i: usize| {
+        let pairs = felt(&simulation, i);
+        let magnitude: f64 = pairs.iter().map(|(pair, _)| pair.norm()).sum();
+        let noise: f64 = pairs.iter().map(|(_, noise)| noise).sum();
+        let sum: Vector = pairs.iter().map(|(pair, _)| pair).sum();
+        let difference = (summed(&simulation, i) - sum).norm() - noise;
+        if difference > 0.0 {
+            difference / magnitude
+        } else {
+            0.0
+        }
+    };
+    (0..simulation.frame().agents.len())
+        .map(error)
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn the_force_is_the_gradient_of_its_potential() {
+    let social = SocialForce::default();
+    let step = 1e-6;
+    for k in 0..200 {
+        let angle = f64::from(k) * 0.7;
+        let r_ij = vector(angle.cos(), angle.sin()) * (0.3 + 0.02 * f64::from(k % 50));
+        let v_ij = vector((1.3 * angle).sin(), (0.4 * angle).cos()) * 1.5;
+        let slope = |along: Vector| {
+            (potential(&social, r_ij + along * step, v_ij)
+                - potential(&social, r_ij - along * step, v_ij))
+                / (2.0 * step)
+        };
+        let expected = -Vector::new(slope(Vector::x()), slope(Vector::y()));
+        let force = force(&social, r_ij, v_ij);
+        assert!((force - expected).norm() < 1e-7 * (1.0 + expected.norm()));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn sums_over_crowds_are_those_of_the_equation(
+        seed in 0_u64..1_000_000,
+        side in 3.0..60.0_f64,
+        x in -1e4..1e4_f64,
+    ) {
+        let error = largest_error(crowd(vector(x, -x), side, seed, &Parameters::default()));
+        prop_assert!(error < 1e-10, "{error:e}");
+    }
+
+    #[test]
+    fn mixed_precision_stays_within_its_bound(
+        seed in 0_u64..1_000_000,
+        side in 3.0..3000.0_f64,
+        x in -1e6..1e6_f64,
+    ) {
+        let mut scene = crowd(vector(x, -x), side, seed, &Parameters::default());
+        scene.precision = Precision::Mixed;
+        let error = largest_error(scene);
+        prop_assert!(error < BOUND, "{error:e}");
+    }
+
+    #[test]
+    fn only_forces_below_the_tolerance_are_left_out(
+        seed in 0_u64..1_000_000,
+        side in 10.0..30.0_f64,
+        slowness in 1.0..50.0_f64,
+    ) {
+        let tolerance = 1e-3;
+        let parameters = Parameters { avoidance_tolerance: Some(tolerance), ..Parameters::default() };
+        let mut scene = crowd(vector(0.0, 0.0), side, seed, &parameters);
+        for agent in &mut scene.agents {
+            agent.velocity /= slowness;
+        }
+        let simulation = common::evaluated(scene);
+        for i in 0..300 {
+            let mass = simulation.frame().agents.mass[i];
+            let pairs = felt(&simulation, i);
+            let sum: Vector = pairs.iter().map(|(pair, _)| pair).sum();
+            let noise: f64 = pairs.iter().map(|(_, noise)| noise).sum();
+            let sizes = pairs.iter().map(|(pair, _)| pair.norm());
+            let small: f64 = sizes.filter(|a| a * mass < tolerance).sum();
+            let allowed = small + noise + 1e-12 * sum.norm();
+            let left_out = (summed(&simulation, i) - sum).norm();
+            prop_assert!(left_out <= allowed, "{left_out:e} of {allowed:e}");
+        }
+    }
+}
+
+#[test]
+fn a_tolerance_leaves_somebody_out_and_mixed_precision_is_not_double() {
+    let still = |tolerance| {
+        let parameters = Parameters {
+            avoidance_tolerance: Some(tolerance),
+            ..Parameters::default()
+        };
+        let mut scene = crowd(vector(0.0, 0.0), 15.0, 3, &parameters);
+        for agent in &mut scene.agents {
+            agent.velocity = Vector::zeros();
+        }
+        largest_error(scene)
+    };
+    assert!(still(0.0) < 1e-12);
+    assert!(still(1e-3) > 1e-7);
+    let mut scene = crowd(vector(0.0, 0.0), 15.0, 3, &Parameters::default());
+    scene.precision = Precision::Mixed;
+    assert!(largest_error(scene) > 1e-9);
+}
+
+#[test]
+fn nobody_beyond_the_reach_of_a_tolerance_exerts_more_than_it() {
+    let social = SocialForce {
+        avoidance_radius: 50.0,
+        avoidance_tolerance: 1e-3,
+        ..SocialForce::default()
+    };
+    let mut next = random(5);
+    for _ in 0..20_000 {
+        let relative_speed = 2.0 * next().abs();
+        let reach = social.reach(relative_speed);
+        let towards = vector(next(), next()).normalize();
+        // Most dangerous is who comes straight on.
+        let turn = next() * 0.1;
+        let v_ij = -(towards + vector(-towards.y, towards.x) * turn).normalize() * relative_speed;
+        let r_ij = towards * reach * (1.0 + 0.2 * next().abs());
+        assert!(force(&social, r_ij, v_ij).norm() <= social.avoidance_tolerance);
+    }
+}
+
+#[test]
+fn two_who_meet_head_on_feel_nothing_and_nearly_so_nearly_all() {
+    let pair = |aside: f64| {
+        let mut scene = scene(vec![], blend("sf"));
+        scene.agents = vec![
+            walker(vector(0.0, 0.0), vector(1.0, 0.0), vector(9.0, 0.0)),
+            walker(vector(2.0, aside), vector(-1.0, 0.0), vector(-9.0, 0.0)),
+        ];
+        summed(&common::evaluated(scene), 0)
+    };
+    // r_ij and r_ij + s are opposite: b = 0, where the potential has its edge, and no direction.
+    assert_eq!(pair(0.0), Vector::zeros());
+    // Beside the edge, |d| = |a| = 2: V₀/σ (2 + 2)/(2 · 2), across.
+    for aside in [1e-9, 1e-6] {
+        let [left, right] = [pair(aside), pair(-aside)];
+        assert!((left - vector(0.0, -7.0)).norm() < 1e-4, "{left}");
+        assert!((left + right).norm() < 1e-4);
+    }
+}
+
+#[test]
+fn who_stands_in_the_same_place_gives_no_force() {
+    for velocity in [vector(0.0, 0.0), vector(1.0, 0.0)] {
+        let mut scene = scene(vec![], blend("sf"));
+        scene.agents = vec![
+            walker(vector(0.0, 0.0), vector(0.0, 0.0), vector(9.0, 0.0)),
+            walker(vector(0.0, 0.0), velocity, vector(9.0, 0.0)),
+        ];
+        assert_eq!(summed(&common::evaluated(scene), 0), Vector::zeros());
+    }
+}
+
+#[test]
+fn groups_follow_their_own_laws_side_by_side() {
+    let strong = Parameters {
+        agent_strength: Some(4.2),
+        ..Parameters::default()
+    };
+    let mut scene = scene(vec![], blend("sf"));
+    let group = scene.add_group(Group {
+        name: "strong".to_owned(),
+        blend: blend_with("sf", &strong),
+        removal_radius: None,
+        counted: true,
+    });
+    scene.agents = vec![
+        walker(vector(0.0, 0.0), vector(0.0, 0.0), vector(9.0, 0.0)),
+        NewAgent {
+            group,
+            ..walker(vector(1.0, 0.0), vector(0.0, 0.0), vector(9.0, 0.0))
+        },
+    ];
+    let simulation = common::evaluated(scene);
+    let agents = simulation.frame().agents;
+    let [plain, strong] = [0, 1].map(|id| summed(&simulation, agents.index_of(id).unwrap()));
+    assert!(plain.norm() > 0.1 && (strong + plain * 2.0).norm() < 1e-12);
+}
