@@ -158,34 +158,19 @@ impl Grid {
 }
 
 impl Grid {
-    /// Appends the agents in cells that a circle round any of `places`, not none, meets, row by row;
-    /// some are out of reach.
+    /// Appends the agents in cells within `radius` of the bounding box of `places`, row by row; some are
+    /// out of reach.
     pub fn runs(&self, places: &[Vector], radius: f64, found: &mut Vec<Range<u32>>) {
-        let heights = places.iter().map(|p| p.y - self.origin.y);
-        let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| {
-            (low.min(y), high.max(y))
-        });
-        let per_diameter = 0.5 / radius;
+        let (low, high) = bounds(places);
+        let (low, high) = (low - self.origin, high - self.origin);
         let row = |y: f64| ((y / self.height) as usize).min(self.rows - 1);
-        for row in row(low - radius)..=row(high + radius) {
+        for row in row(low.y - radius)..=row(high.y + radius) {
             let floor = row as f64 * self.height;
-            let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
-            for place in places {
-                let offset = place - self.origin;
-                let gap = (floor - offset.y)
-                    .max(offset.y - floor - self.height)
-                    .max(0.0);
-                if gap <= radius {
-                    let half = radius - gap * gap * per_diameter; // √(radius² − gap²) at least
-                    from = from.min(offset.x - half);
-                    to = to.max(offset.x + half);
-                }
-            }
-            if from <= to {
-                let run = self.run(row, from, to);
-                if !run.is_empty() {
-                    found.push(run);
-                }
+            let gap = (floor - high.y).max(low.y - floor - self.height).max(0.0);
+            let half = (radius * radius - gap * gap).max(0.0).sqrt();
+            let run = self.run(row, low.x - half, high.x + half);
+            if !run.is_empty() {
+                found.push(run);
             }
         }
     }

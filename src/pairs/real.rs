@@ -125,7 +125,7 @@ impl Real for f32 {
 #[expect(clippy::excessive_precision, reason = "rounded by the compiler")]
 const SERIES: [f32; 7] = [
     1.0,
-    0.693_147_180_559_945,
+    std::f32::consts::LN_2,
     0.240_226_506_959_101,
     0.055_504_108_664_821_6,
     0.009_618_129_107_628_48,
