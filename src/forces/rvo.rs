@@ -9,6 +9,7 @@ use rand::Rng;
 use crate::frame::Frame;
 use crate::geometry::Wall;
 use crate::math::Vector;
+pub use crate::pairs::MovingDisc;
 use crate::random::{self, Purpose};
 
 /// Parameters of Eq. 20 and of its sampling.
@@ -32,19 +33,8 @@ impl Default for Rvo {
     }
 }
 
-/// Another disc as agent i sees it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MovingDisc {
-    /// r_j − r_i, metres.
-    pub offset: Vector,
-    /// v_j, m/s.
-    pub velocity: Vector,
-    /// D_i + D_j, metres.
-    pub reach: f64,
-}
-
 /// Everything that the choice of a velocity depends on.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Situation {
     /// r_i, metres.
     pub position: Vector,
@@ -69,52 +59,96 @@ impl Rvo {
         frame: &Frame,
         i: usize,
         max_speed: f64,
-        search: &mut Search,
+        scratch: &mut Scratch,
     ) -> Vector {
-        let situation = Situation::of(frame, i, self.avoidance_radius, max_speed);
-        let mut rng = random::stream(
+        let Scratch {
+            situation,
+            candidates,
+            search,
+        } = scratch;
+        situation.see(frame, i, self.avoidance_radius, max_speed);
+        let rng = random::stream(
             frame.seed,
             Purpose::Candidates,
             frame.agents.id[i],
             frame.clock.coarse_frame(),
         );
-        // Who is farther from the current velocity than this is too fast in every direction.
-        let farthest = situation.velocity.norm() + max_speed;
-        let candidates = (0..self.candidates).filter_map(|_| {
-            let length = 2.0 * max_speed * rng.random::<f64>();
-            (length <= farthest).then(|| situation.velocity + random::direction(&mut rng) * length)
-        });
-        let best = search.best(&situation, candidates, self.collision_weight);
+        candidates.draw(self.candidates, situation, rng);
+        let best = search.best(situation, &candidates.velocities, self.collision_weight);
         (best - situation.velocity) / frame.clock.coarse_step()
     }
 }
 
+/// Memory for choices one after the other.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    situation: Situation,
+    candidates: Candidates,
+    search: Search,
+}
+
+#[derive(Debug, Default)]
+struct Candidates {
+    /// How far from the current velocity, m/s, and in which direction.
+    drawn: Vec<(f64, u32)>,
+    /// Those of them that may be slow enough, m/s.
+    velocities: Vec<Vector>,
+}
+
+impl Candidates {
+    /// Draws `count` velocities, in all directions and as far as 2 s_max from the current one alike.
+    fn draw(&mut self, count: u32, situation: &Situation, mut rng: impl Rng) {
+        // Who is farther from the current velocity than this is too fast in every direction.
+        let farthest = situation.velocity.norm() + situation.max_speed;
+        let per_step = 2.0 * situation.max_speed / f64::from(u32::MAX);
+        self.drawn.resize(count as usize, (0.0, 0));
+        let mut len = 0;
+        for _ in 0..count {
+            let bits: u64 = rng.random();
+            let length = per_step * f64::from((bits >> 32) as u32);
+            self.drawn[len] = (length, bits as u32);
+            len += usize::from(length <= farthest); // nobody can foresee this branch
+        }
+        self.velocities.clear();
+        let drawn = self.drawn[..len].iter();
+        self.velocities.extend(
+            drawn.map(|&(length, turn)| situation.velocity + random::direction(turn) * length),
+        );
+    }
+}
+
 impl Situation {
-    /// What agent `i` of a frozen frame sees within `radius` metres.
-    pub fn of(frame: &Frame, i: usize, radius: f64, max_speed: f64) -> Self {
+    /// Becomes what agent `i` of a frozen frame sees within `radius` metres.
+    pub fn see(&mut self, frame: &Frame, i: usize, radius: f64, max_speed: f64) {
         let agents = frame.agents;
-        let position = agents.position[i];
-        let discs = frame
-            .around(i, radius)
-            .map(|(j, r_ij)| MovingDisc {
-                offset: -r_ij,
-                velocity: agents.velocity[j],
-                reach: agents.radius[i] + agents.radius[j],
-            })
-            .filter(|disc| disc.offset.norm_squared() > disc.reach * disc.reach);
-        let walls = frame.neighbors.far_walls(i).iter();
-        let walls = walls.map(|&k| *frame.walls.wall(k)).filter(|wall| {
-            let distance = (wall.nearest_point(position).point - position).norm();
-            wall.faces(position) && distance < radius && distance > agents.radius[i]
-        });
-        Self {
-            position,
-            velocity: agents.velocity[i],
-            preferred_velocity: frame.fields.preferred_velocity[i],
-            radius: agents.radius[i],
-            max_speed,
-            discs: discs.collect(),
-            walls: walls.collect(),
+        self.position = agents.position[i];
+        self.velocity = agents.velocity[i];
+        self.preferred_velocity = frame.fields.preferred_velocity[i];
+        self.radius = agents.radius[i];
+        self.max_speed = max_speed;
+        self.discs.clear();
+        for run in frame.neighbors.around(self.position, radius) {
+            for j in run {
+                let offset = agents.position[j] - self.position;
+                let reach = self.radius + agents.radius[j];
+                let squared = offset.norm_squared();
+                // Whoever touches is ignored; the agent itself does.
+                if squared < radius * radius && squared > reach * reach {
+                    self.discs.push(MovingDisc {
+                        offset,
+                        velocity: agents.velocity[j],
+                        reach,
+                    });
+                }
+            }
+        }
+        self.walls.clear();
+        for &k in frame.neighbors.far_walls(i) {
+            let wall = frame.walls.wall(k);
+            let distance = (wall.nearest_point(self.position).point - self.position).norm();
+            if wall.faces(self.position) && distance < radius && distance > self.radius {
+                self.walls.push(*wall);
+            }
         }
     }
 

@@ -9,10 +9,12 @@
 
 mod columns;
 mod kernels;
+mod meeting;
 mod real;
 mod social;
 
 pub use columns::{Columns, Motion};
+pub use meeting::{MovingDisc, Rings};
 pub use real::{LANES, Real};
 pub use social::SocialLaw;
 

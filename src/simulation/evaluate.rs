@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::{Simulation, Stage, TASK, blend_of, change_of};
 use crate::density::SphStates;
 use crate::forces::goal;
-use crate::forces::rvo::Search;
+use crate::forces::rvo::Scratch;
 use crate::forces::social::SocialForce;
 use crate::frame::range;
 use crate::math::{Vector, are_finite, numbers_are_finite};
@@ -170,14 +170,14 @@ impl Simulation {
         let coarse = self.clock.is_coarse();
         stages.time(Stage::Rvo, || {
             avoidance.par_iter_mut().enumerate().for_each_init(
-                Search::default,
-                |search, (i, held)| {
+                Scratch::default,
+                |scratch, (i, held)| {
                     let blend = blend_of(&self.scene, &self.agents, i);
                     match blend.rvo().filter(|_| blend.rvo_acts(&frame, i)) {
                         None => *held = None,
                         Some(rvo) if coarse || held.is_none() => {
                             let max_speed = self.scene.max_speed;
-                            *held = Some(rvo.acceleration(&frame, i, max_speed, search));
+                            *held = Some(rvo.acceleration(&frame, i, max_speed, scratch));
                         }
                         Some(_) => {}
                     }

@@ -1,64 +1,71 @@
 //! The cheapest candidate by branch and bound, with the answer of an exhaustive search.
 
-use super::{MovingDisc, Situation, time_to_contact};
+use super::{Situation, time_to_contact};
 use crate::math::Vector;
+use crate::pairs::Rings;
 
-/// Candidates whose deviations, in m/s, and discs whose gaps, in metres, differ by less than this are
-/// in no order.
-const DEVIATION_WIDTH: f64 = 0.05;
-const GAP_WIDTH: f64 = 0.1;
+/// Candidates whose squared deviations differ by less than this are in no order, m²/s².
+const WIDTH: f64 = 0.1;
 
-/// Far more than rounding makes of gaps and times: it must never leave anybody out.
+/// Far more than rounding makes of deviations and times: it must never leave anybody out.
 const ROUNDING: f64 = 1e-9;
 
 /// Memory for searches one after the other.
 #[derive(Debug, Default)]
 pub struct Search {
-    /// Candidates with their numbers and |v′ − v^pref|, by the latter.
-    candidates: Buckets<(u32, f64, Vector)>,
-    /// Discs by |offset| − reach.
-    discs: Buckets<MovingDisc>,
+    /// Candidates with their numbers, by |v′ − v^pref|².
+    candidates: Buckets<(u32, Vector)>,
+    rings: Rings,
+    /// Numbers of discs.
+    perhaps: Vec<u32>,
 }
 
 impl Search {
     /// The cheapest of `candidates` (Eq. 20), the first of equals; zero if all are too fast.
     ///
-    /// Candidates come in order of what they cost at least, until that is more than the best so far;
-    /// discs in order of their gaps, until no later one could be met before the earliest contact found.
+    /// Candidates come in order of what they cost at least, until that is more than the best so far.
+    /// What is left of the best cost is a time before which no contact may come: most candidates are
+    /// out by a look at the nearest discs, eight at a time. The others' first contacts are looked for from
+    /// the inside out, until no disc farther away could be met before the earliest found.
     pub fn best(
         &mut self,
         situation: &Situation,
-        candidates: impl Iterator<Item = Vector>,
+        candidates: &[Vector],
         collision_weight: f64,
     ) -> Vector {
         let max_squared = situation.max_speed * situation.max_speed;
         let slow = (0..).zip(candidates);
         let slow = slow.filter(|(_, candidate)| candidate.norm_squared() <= max_squared);
-        let deviation = |candidate: Vector| (candidate - situation.preferred_velocity).norm();
-        let deviating = slow.map(|(k, v)| (k, deviation(v), v));
-        self.candidates
-            .sort(DEVIATION_WIDTH, deviating.map(|slow| (slow.1, slow)));
-        let discs = situation.discs.iter();
-        self.discs
-            .sort(GAP_WIDTH, discs.map(|d| (d.offset.norm() - d.reach, *d)));
-        let fastest = situation.discs.iter().map(|d| d.velocity.norm_squared());
-        let fastest = fastest.fold(0.0, f64::max).sqrt();
+        let squared = |v: &Vector| (v - situation.preferred_velocity).norm_squared();
+        let Self {
+            candidates: sorted,
+            rings,
+            perhaps,
+        } = self;
+        sorted.sort(WIDTH, slow.map(|(k, v)| (squared(v), (k, *v))));
+        rings.sort(&situation.discs);
 
         let (mut best, mut first) = (Vector::zeros(), u32::MAX);
         let mut best_cost = f64::INFINITY;
-        for (least, candidates) in self.candidates.iter() {
-            if least > best_cost {
+        for (least, candidates) in sorted.iter() {
+            if least.sqrt() > best_cost {
                 break;
             }
-            for &(k, deviation, candidate) in candidates {
+            for &(k, candidate) in candidates {
+                let deviation = (candidate - situation.preferred_velocity).norm();
                 if deviation > best_cost {
                     continue;
                 }
                 // Agent i moves at 2v′ − v_i.
                 let velocity = candidate * 2.0 - situation.velocity;
+                let latest = collision_weight / (best_cost - deviation);
+                if rings.certainly_met(velocity, latest * (1.0 - ROUNDING)) {
+                    continue;
+                }
                 let cost = |time: f64| deviation + collision_weight / time;
                 let too_early = |time: f64| cost(time) > best_cost;
-                let Some(time) = self.first_contact(situation, velocity, fastest, too_early) else {
+                let Some(time) = first_contact(situation, rings, perhaps, velocity, too_early)
+                else {
                     continue;
                 };
                 if cost(time) < best_cost || k < first {
@@ -68,37 +75,39 @@ impl Search {
         }
         best
     }
+}
 
-    /// The earliest contact on the way at `velocity`, seconds, infinite if there is none; or `None` as
-    /// soon as one is found that is too early.
-    fn first_contact(
-        &self,
-        situation: &Situation,
-        velocity: Vector,
-        fastest: f64,
-        too_early: impl Fn(f64) -> bool,
-    ) -> Option<f64> {
-        let approach = velocity.norm() + fastest;
-        let mut first = f64::INFINITY;
-        for (gap, discs) in self.discs.iter() {
-            if gap > approach * first * (1.0 + ROUNDING) + ROUNDING {
-                break;
-            }
-            for disc in discs {
-                let time = time_to_contact(disc.offset, velocity - disc.velocity, disc.reach);
-                if time < first {
-                    first = time;
-                    if too_early(first) {
-                        return None;
-                    }
+/// The earliest contact on the way at `velocity`, seconds, infinite if there is none; or `None` as soon as
+/// one is found that is too early. `rings` has the discs of the situation.
+fn first_contact(
+    situation: &Situation,
+    rings: &Rings,
+    perhaps: &mut Vec<u32>,
+    velocity: Vector,
+    too_early: impl Fn(f64) -> bool,
+) -> Option<f64> {
+    let walls = situation.walls.iter();
+    let walls = walls.map(|wall| situation.time_to_wall(wall, velocity));
+    let mut first = walls.fold(f64::INFINITY, f64::min);
+    if too_early(first) {
+        return None;
+    }
+    let mut ring = 0;
+    while ring < rings.within(velocity, first) {
+        rings.perhaps_met(ring, velocity, first, perhaps);
+        for &k in perhaps.iter() {
+            let disc = &situation.discs[k as usize];
+            let time = time_to_contact(disc.offset, velocity - disc.velocity, disc.reach);
+            if time < first {
+                first = time;
+                if too_early(first) {
+                    return None;
                 }
             }
         }
-        for wall in &situation.walls {
-            first = first.min(situation.time_to_wall(wall, velocity));
-        }
-        (!too_early(first)).then_some(first)
+        ring += 1;
     }
+    Some(first)
 }
 
 /// Things sorted by a key, roughly: bucket by bucket, in no order within one.
@@ -132,11 +141,11 @@ impl<T: Copy> Buckets<T> {
         let per_width = 1.0 / width;
         let mut counts = [0_u32; BUCKETS];
         self.arrivals.clear();
-        self.arrivals.extend(things.map(|(key, thing)| {
+        for (key, thing) in things {
             let bucket = ((key * per_width) as usize).min(BUCKETS - 1);
             counts[bucket] += 1;
-            (bucket as u32, thing)
-        }));
+            self.arrivals.push((bucket as u32, thing));
+        }
         let mut start = 0;
         for count in &mut counts {
             start += std::mem::replace(count, start);
