@@ -22,6 +22,7 @@ use crate::scene::{Needs, Scene};
 /// Each frame is [`evaluate`](Self::evaluate), then [`integrate`](Self::integrate); in between the
 /// frame is frozen, and positions agree with everything computed from them. The bits do not depend on
 /// the number of threads: every agent reads the frozen frame and writes its own slot.
+#[derive(Clone)]
 pub struct Simulation {
     scene: Scene,
     needs: Needs,
@@ -166,6 +167,13 @@ impl Simulation {
     /// Takes the sums over pairs of all later evaluations in another precision than the scene's.
     pub fn set_precision(&mut self, precision: Precision) {
         self.packed = Packed::new(precision);
+    }
+
+    /// Computes from the next frame on also what `more` asks for, though nothing reads it: to measure
+    /// what is saved by not computing it. The crowd is sorted anew, and else moves as before, bit by bit.
+    pub fn pay_for(&mut self, more: &Needs) {
+        self.needs = self.needs.with(more);
+        self.crowd_changed = true; // lists as far as is now asked for
     }
 
     /// The current frame; frozen and complete after [`evaluate`](Self::evaluate).

@@ -9,9 +9,11 @@
 mod columns;
 mod kernels;
 mod real;
+mod vectors;
 
 pub use columns::{Columns, Motion};
 pub use real::{LANES, Real};
+pub use vectors::Vectors;
 
 use crate::agents::Agents;
 use crate::math::Vector;
@@ -76,6 +78,15 @@ impl Wanted {
     /// Is any?
     pub fn any(self) -> bool {
         self.pressure || self.viscosity || self.contact
+    }
+
+    /// What either wants.
+    pub fn with(self, other: Self) -> Self {
+        Self {
+            pressure: self.pressure || other.pressure,
+            viscosity: self.viscosity || other.viscosity,
+            contact: self.contact || other.contact,
+        }
     }
 }
 
