@@ -14,6 +14,8 @@ use super::spread::{Spread, ratios};
 use super::timing::{Contender, GoingOn, alternate, pool};
 use super::{Benchmark, Plan};
 use crate::agents::Agents;
+use crate::pairs::Precision;
+use crate::scene::Scene;
 use crate::simulation::Simulation;
 
 pub const BENCHMARK: Benchmark = Benchmark {
@@ -24,6 +26,8 @@ pub const BENCHMARK: Benchmark = Benchmark {
 
 /// The paper's radius of social forces, metres.
 const WIDE: f64 = 5.0;
+/// Steps of a turn; as many come before the first that counts.
+const STEPS: u64 = 10;
 
 /// One engine with one setting.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -46,11 +50,8 @@ struct Entry {
 
 /// What an engine can be given: where everybody is, how wide, and where to.
 struct Start<'a> {
+    scene: &'a Scene,
     agents: &'a Agents,
-    /// m/s.
-    preferred_speed: f64,
-    /// m/s.
-    max_speed: f64,
     /// All threads of the machine.
     threads: usize,
 }
@@ -69,9 +70,8 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, BenchError> {
     let agents = plan.choose(10_000, 400);
     let crowd = Crowd::streams(agents, "sf").settled(0)?;
     let start = Start {
+        scene: crowd.scene(),
         agents: crowd.frame().agents,
-        preferred_speed: crowd.scene().preferred_speed,
-        max_speed: crowd.scene().max_speed,
         threads: Machine::here().hardware_threads,
     };
     let mut notes = vec![differences(agents)];
@@ -82,35 +82,11 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, BenchError> {
     ] {
         match joined {
             Ok(mut entries) => others.append(&mut entries),
-            Err(missing) => {
-                say(&format!("without {engine}: {missing}"));
-                notes.push(format!("{engine} is missing: {missing}"));
-            }
+            Err(missing) => notes.push(format!("{engine} is missing: {missing}")),
         }
     }
-    let mut entries = ours(agents, &others, start.threads)?;
-    let own = entries.len();
-    entries.append(&mut others);
-    let (descriptions, mut contenders): (Vec<_>, Vec<_>) = entries
-        .into_iter()
-        .map(|entry| (entry.description, entry.contender))
-        .unzip();
-    say(&format!(
-        "{agents} agents, {} engines and settings",
-        contenders.len()
-    ));
-    alternate(&mut contenders, 1, plan.choose(10, 2))?;
-    let times = alternate(&mut contenders, plan.repeats, plan.choose(10, 2))?;
-    let base = |of: &Description| {
-        let same = |d: &Description| (d.radius, d.threads) == (of.radius, of.threads);
-        descriptions[..own].iter().position(same).unwrap_or(0)
-    };
-    let row = |(description, ms): (&Description, &Vec<f64>)| Row {
-        description: description.clone(),
-        ms_per_step: Spread::of(ms),
-        ratio: Spread::of(&ratios(ms, &times[base(description)])),
-    };
-    let rows: Vec<Row> = descriptions.iter().zip(&times).map(row).collect();
+    let ours = ours(agents, &others, start.threads)?;
+    let rows = race(ours, others, plan, say)?;
     Ok(Findings {
         table: table(&rows),
         rows: json!(rows),
@@ -118,6 +94,36 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, BenchError> {
         #[cfg(feature = "plot")]
         sheet: picture::sheet(&rows),
     })
+}
+
+/// Lets all take turns; others are compared with the one of `ours` that is set alike.
+fn race(
+    ours: Vec<Entry>,
+    others: Vec<Entry>,
+    plan: &Plan,
+    say: &dyn Fn(&str),
+) -> Result<Vec<Row>, BenchError> {
+    let own = ours.len();
+    let entries = ours.into_iter().chain(others);
+    let (descriptions, mut contenders): (Vec<Description>, Vec<_>) = entries
+        .map(|entry| (entry.description, entry.contender))
+        .unzip();
+    say(&format!("{} engines and settings", contenders.len()));
+    let steps = plan.choose(STEPS, 2);
+    alternate(&mut contenders, 1, steps)?; // all have their memory
+    let times = alternate(&mut contenders, plan.repeats, steps)?;
+    let row = |(description, ms): (&Description, &Vec<f64>)| {
+        let alike = |ours: &Description| {
+            (ours.radius, ours.threads) == (description.radius, description.threads)
+        };
+        let base = descriptions[..own].iter().position(alike).unwrap_or(0);
+        Row {
+            description: description.clone(),
+            ms_per_step: Spread::of(ms),
+            ratio: Spread::of(&ratios(ms, &times[base])),
+        }
+    };
+    Ok(descriptions.iter().zip(&times).map(row).collect())
 }
 
 /// This engine with the paper's radius on one and on all threads, and as the others are set.
@@ -139,7 +145,10 @@ fn ours(agents: u32, others: &[Entry], all: usize) -> Result<Vec<Entry>, BenchEr
                 engine: "sandbox".to_owned(),
                 model: "social force, elliptical, anticipating, with contact",
                 radius,
-                precision: "f64, contact f32",
+                precision: match simulation.scene().precision {
+                    Precision::Double => "f64",
+                    Precision::Mixed => "mixed",
+                },
                 time_step: simulation.frame().clock.time_step(),
                 threads,
             },
@@ -155,8 +164,8 @@ fn ours(agents: u32, others: &[Entry], all: usize) -> Result<Vec<Entry>, BenchEr
 fn differences(agents: u32) -> String {
     format!(
         "The same {agents} people with the same radii from the same places at 4 P/m², half of them on their way to the right \
-         and half to the left, no walls; ten steps before the first that count. A step is a step of the engine's own length. \
-         What differs: the models. Here (§5.3.1) a force depends on the relative velocity, in the field of view only, and \
+         and half to the left, no walls; {STEPS} steps come before the first that count. A step is a step of the engine's own length. \
+         What differs: the models, and the numbers (mixed: f64, with sums over near pairs in f32). Here (§5.3.1) a force depends on the relative velocity, in the field of view only, and \
          people who touch push; rustsim-crowd has Helbing's circular exponential force without contact; JuPedSim adds \
          Helbing's body force and friction. The radius cuts each force off; rustsim-crowd's follows from the range B of its \
          force (8 B + 1 m), of which 5 m makes 0.5 m. JuPedSim's is fixed, and it runs on one thread. A ratio is to this \

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::scenario::ScenarioError;
+use crate::scenario::{ScenarioError, SettingError};
 use crate::simulation::Fault;
 
 /// Why something could not be measured.
@@ -14,6 +14,9 @@ pub enum BenchError {
     /// A scenario cannot be read.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
+    /// A scenario has no such setting.
+    #[error(transparent)]
+    Setting(#[from] SettingError),
     /// There is no such profile.
     #[error("there is no profile {0}; `sandbox list` names all")]
     Profile(String),

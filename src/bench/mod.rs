@@ -59,6 +59,9 @@ impl Plan {
     }
 }
 
+/// Measures something, and says on the way what it is at.
+type Measure = fn(&Plan, &dyn Fn(&str)) -> Result<Findings, BenchError>;
+
 /// Something to measure.
 pub struct Benchmark {
     /// Its name on the command line.

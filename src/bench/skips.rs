@@ -13,11 +13,10 @@ use self::work::{KeptLists, RvoByBlend, WallsByBlocks, Work, ms_per_frame};
 use super::error::BenchError;
 use super::report::{Findings, Table};
 use super::spread::{Spread, ratios};
-use super::stages::{BUSIEST, Started};
+use super::stages::{BUSIEST, Started, Stretch};
 use super::timing::{ms_of, replay};
 use super::{Benchmark, Plan};
 use crate::pairs::Wanted;
-use crate::scenario::Setting;
 use crate::scene::Needs;
 use crate::simulation::{Simulation, Stage};
 
@@ -171,37 +170,39 @@ struct Row {
 fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, BenchError> {
     let mut rows = Vec::new();
     for stretch in &BUSIEST {
-        // Nobody reads the density of a crowd of social forces.
-        let others: &[&str] = match stretch.scenario {
-            "concert" => &[],
-            _ => &["profile=sf"],
-        };
-        for change in std::iter::once(None).chain(others.iter().map(Some)) {
-            let setting = change.map(|text| text.parse::<Setting>());
-            let settings: Vec<Setting> = setting.into_iter().flatten().collect();
-            let started = stretch.begin(plan, &settings)?;
+        for profile in profiles(stretch) {
+            let started = stretch.begin(plan, *profile)?;
             say(&format!("{} ({})", started.name, started.profile));
             rows.append(&mut measure(&started, plan)?);
         }
     }
-    let mut notes: Vec<String> = SKIPS
-        .iter()
-        .map(|skip| format!("{}: {}", skip.name, skip.about))
-        .collect();
-    notes = vec![notes.join("\n")];
-    notes.push(
-        "Both times are of the same frames with the same motion, bit by bit. The first four are undone by telling the engine \
-         that more is needed; of the others the work itself is done beside the engine, on the same frames, and takes the \
-         place of the engine's own. – : the scene needs it, or has none of it."
-            .to_owned(),
-    );
     Ok(Findings {
         table: table(&rows),
         rows: json!(rows),
-        notes,
+        notes: notes(),
         #[cfg(feature = "plot")]
         sheet: picture::sheet(&rows),
     })
+}
+
+/// As shipped; and the small scenes with social forces alone, where nobody reads a density.
+fn profiles(stretch: &Stretch) -> &'static [Option<&'static str>] {
+    if stretch.scenario == "concert" {
+        &[None]
+    } else {
+        &[None, Some("sf")]
+    }
+}
+
+fn notes() -> Vec<String> {
+    let skips = SKIPS.iter();
+    let skips: Vec<String> = skips
+        .map(|skip| format!("{}: {}", skip.name, skip.about))
+        .collect();
+    let how = "Both times are of the same frames with the same motion, bit by bit. The first four are undone by telling the \
+               engine that more is needed; of the others the work itself is done beside the engine, on the same frames, and \
+               takes the place of the engine's own. – : the scene needs it, or has none of it.";
+    vec![skips.join("\n"), how.to_owned()]
 }
 
 /// Why there is nothing to skip, if so.

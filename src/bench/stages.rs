@@ -48,12 +48,15 @@ pub const BUSIEST: [Stretch; 3] = [
 ];
 
 impl Stretch {
-    /// The scenario where the stretch starts, and how many frames it has.
+    /// The scenario where the stretch starts, as shipped or with another profile, and how many frames it
+    /// has.
     ///
     /// # Errors
-    /// A setting is refused, or the crowd cannot go on.
-    pub fn begin(&self, plan: &Plan, settings: &[Setting]) -> Result<Started, BenchError> {
-        let scenario = Scenario::shipped(self.scenario, settings)?;
+    /// The profile is refused, or the crowd cannot go on.
+    pub fn begin(&self, plan: &Plan, profile: Option<&str>) -> Result<Started, BenchError> {
+        let setting = profile.map(|name| format!("profile={name}").parse::<Setting>());
+        let settings: Vec<Setting> = setting.into_iter().collect::<Result<_, _>>()?;
+        let scenario = Scenario::shipped(self.scenario, &settings)?;
         let mut simulation = Simulation::new(scenario.scene)?;
         let (from, lasting) = plan.choose((self.from, self.lasting), (0.1, 0.2));
         let clock = *simulation.frame().clock;
@@ -92,7 +95,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, BenchError> {
     let mut rows = Vec::new();
     for stretch in &BUSIEST {
         say(stretch.scenario);
-        rows.push(measure(&stretch.begin(plan, &[])?, plan)?);
+        rows.push(measure(&stretch.begin(plan, None)?, plan)?);
     }
     for profile in ["sf", "rvo"] {
         let agents = plan.choose(10_000, 400);
@@ -108,12 +111,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, BenchError> {
     Ok(Findings {
         table: table(&rows),
         rows: rows.iter().map(Row::json).collect(),
-        notes: vec![
-            "Medians over the repeats, in ms per frame. Scenarios as shipped: evacuation 10–20 s, crossing 40–50 s, concert \
-             150–160 s, the same frames in every repeat; streams: 10,000 people, half of them on their way to either side, \
-             0.5 s of their frames after the first second. A stage that never runs is –."
-                .to_owned(),
-        ],
+        notes: vec![note(&rows)],
         #[cfg(feature = "plot")]
         sheet: picture::sheet(&rows),
     })
@@ -160,6 +158,16 @@ impl Row {
             "stages_ms": stages,
         })
     }
+}
+
+fn note(rows: &[Row]) -> String {
+    let stretch = |s: &Stretch| format!("{} {}–{} s", s.scenario, s.from, s.from + s.lasting);
+    let stretches = BUSIEST.each_ref().map(stretch).join(", ");
+    let most = rows.iter().map(|row| row.agents).max().unwrap_or(0);
+    format!(
+        "Stages are medians, in ms per frame; every repeat takes the same frames. Scenarios as shipped: {stretches}. Streams: \
+         {most} people, half of them on their way to either side, after their first second. A stage that never runs is –."
+    )
 }
 
 fn table(rows: &[Row]) -> Table {

@@ -68,7 +68,7 @@ impl Walking {
         let mut child = Command::new(python)
             .args(["-c", SCRIPT])
             .arg(people.path())
-            .arg(start.preferred_speed.to_string())
+            .arg(start.scene.preferred_speed.to_string())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()

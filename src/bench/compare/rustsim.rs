@@ -77,14 +77,14 @@ mod present {
             let agents = start.agents;
             let person = |i: usize| {
                 let (r, v, goal) = (agents.position[i], agents.velocity[i], agents.goal[i]);
-                let speed = start.preferred_speed;
+                let speed = start.scene.preferred_speed;
                 Pedestrian::new(r.into(), v.into(), agents.radius[i], speed, goal.into())
             };
             let cell = recommended_cell_size(social_force::neighbor_cutoff(&params));
             Self {
                 people: (0..agents.len()).map(person).collect(),
                 params: Params {
-                    max_speed: start.max_speed,
+                    max_speed: start.scene.max_speed,
                     ..params
                 },
                 scratch: Scratch::with_capacity(agents.len(), cell),
