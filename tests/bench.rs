@@ -85,7 +85,14 @@ fn every_report_says_what_was_measured_with_and_the_spread_of_every_time() {
             (&json["repeats"], &json["quick"]),
             (&3.into(), &true.into())
         );
-        for key in ["cpu", "cores", "hardware_threads", "memory_bytes", "system"] {
+        for key in [
+            "cpu",
+            "cores",
+            "hardware_threads",
+            "memory_bytes",
+            "load",
+            "system",
+        ] {
             assert!(!json["machine"][key].is_null(), "{name}: {key}");
         }
         assert!(json["vectors"]["lanes"].as_u64().unwrap() >= 1);

@@ -18,6 +18,9 @@ pub struct Machine {
     pub memory_bytes: u64,
     /// The system and its kernel.
     pub system: String,
+    /// How many threads wanted to run at once over the last minute, before anything was measured: what
+    /// else the machine does.
+    pub load: f64,
 }
 
 impl Machine {
@@ -42,6 +45,7 @@ impl Machine {
             hardware_threads,
             memory_bytes: system.total_memory(),
             system: format!("{}, {}", named(name.trim()), System::kernel_long_version()),
+            load: System::load_average().one,
         }
     }
 }
@@ -51,8 +55,8 @@ impl fmt::Display for Machine {
         let gibibytes = self.memory_bytes as f64 / f64::from(1 << 30);
         write!(
             f,
-            "{}, {} core(s), {} thread(s) at once, {gibibytes:.1} GiB, {}",
-            self.cpu, self.cores, self.hardware_threads, self.system
+            "{}, {} core(s), {} thread(s) at once, {gibibytes:.1} GiB, {}, load {:.1}",
+            self.cpu, self.cores, self.hardware_threads, self.system, self.load
         )
     }
 }

@@ -68,7 +68,7 @@ pub struct Benchmark {
     pub name: &'static str,
     /// What it measures, in a line.
     pub about: &'static str,
-    run: fn(&Plan, &dyn Fn(&str)) -> Result<Findings, BenchError>,
+    run: Measure,
 }
 
 impl Benchmark {

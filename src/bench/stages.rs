@@ -227,7 +227,7 @@ mod picture {
                 marks.push(bar([middle - 0.35, middle + 0.35], [foot, head], color(k)));
                 foot = head;
             }
-            let total = format!("{:.3} ms", row.total.median);
+            let total = short(row.total.median);
             marks.push(Mark::Text([middle, 105.0], total, BLACK));
         }
         let stages = Stage::ALL.iter().enumerate().rev();
@@ -235,11 +235,17 @@ mod picture {
         let names = rows
             .iter()
             .map(|row| format!("{} ({})", row.name, row.profile));
-        pictures::sheet(
-            "Where the time of a frame goes".to_owned(),
-            Axis::names("", names),
-            Axis::linear("share of the frame [%]", [0.0, 110.0]),
-            marks,
-        )
+        let mut share = Axis::linear("share of the frame [%]", [0.0, 110.0]);
+        share.ticks = (0..=5)
+            .map(|k| (20.0 * f64::from(k), format!("{}", 20 * k)))
+            .collect();
+        let title = "Where the time of a frame goes".to_owned();
+        pictures::sheet(title, Axis::names("", names), share, marks)
+    }
+
+    /// Milliseconds with some three digits.
+    fn short(ms: f64) -> String {
+        let digits = (2.0 - ms.log10().floor()).clamp(0.0, 3.0) as usize;
+        format!("{ms:.digits$} ms")
     }
 }
