@@ -191,18 +191,16 @@ fn walls(criterion: &mut Criterion) {
 
 /// On one thread: a loop is measured, not how it is shared out.
 fn hot_loops(criterion: &mut Criterion) {
-    let pool = rayon::ThreadPoolBuilder::new()
+    rayon::ThreadPoolBuilder::new()
         .num_threads(1)
-        .build()
+        .build_global()
         .unwrap();
-    pool.install(|| {
-        density(criterion);
-        pair_forces(criterion);
-        social_forces(criterion);
-        rvo(criterion);
-        neighbors(criterion);
-        walls(criterion);
-    });
+    density(criterion);
+    pair_forces(criterion);
+    social_forces(criterion);
+    rvo(criterion);
+    neighbors(criterion);
+    walls(criterion);
 }
 
 criterion_group!(benches, hot_loops);

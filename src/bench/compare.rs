@@ -209,7 +209,7 @@ fn table(rows: &[Row]) -> Table {
 #[cfg(feature = "plot")]
 mod picture {
     use super::Row;
-    use crate::bench::pictures::{self, around, color};
+    use crate::bench::pictures::{self, around, color, range};
     use crate::plot::{Axis, Mark, Point, Sheet, Style};
 
     pub fn sheet(rows: &[Row]) -> Sheet {
@@ -225,6 +225,11 @@ mod picture {
             let own = rows.iter().filter(|row| {
                 (row.description.engine.as_str(), row.description.threads) == (engine, threads)
             });
+            marks.extend(own.clone().map(|row| {
+                let spread = row.ms_per_step;
+                let ends = [spread.minimum, spread.maximum];
+                range(row.description.radius, ends, color(k))
+            }));
             let points = own.map(|row| Point {
                 x: row.description.radius,
                 y: row.ms_per_step.median,
@@ -236,11 +241,12 @@ mod picture {
                 Style::full(color(k), 3.0, &label),
             ));
         }
-        let times = rows.iter().map(|row| row.ms_per_step.median);
+        let spreads = rows.iter().map(|row| row.ms_per_step);
+        let times = spreads.flat_map(|spread| [spread.minimum, spread.maximum]);
         pictures::sheet(
             "Social forces at 4 P/m², time per step".to_owned(),
             Axis::linear("radius [m]", [0.0, 6.0]),
-            Axis::log("time per step [ms]", around(times, 1.5)),
+            Axis::log("time per step [ms]", around(times, 1.3)),
             marks,
         )
     }
