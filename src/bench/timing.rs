@@ -62,7 +62,7 @@ impl Contender for GoingOn {
 
 /// The stages of the same `frames` frames from a start on, whenever it is called.
 pub fn replay(start: &Simulation, frames: u64) -> Result<StageTimes, Fault> {
-    let mut simulation = warmed(start)?;
+    let mut simulation = warmed(start.clone())?;
     simulation.reset_stages();
     for _ in 0..frames {
         simulation.step()?;
@@ -70,9 +70,8 @@ pub fn replay(start: &Simulation, frames: u64) -> Result<StageTimes, Fault> {
     Ok(simulation.stages().clone())
 }
 
-/// A copy, some frames on.
-pub fn warmed(start: &Simulation) -> Result<Simulation, Fault> {
-    let mut simulation = start.clone();
+/// Some frames on.
+pub fn warmed(mut simulation: Simulation) -> Result<Simulation, Fault> {
     for _ in 0..WARMING {
         simulation.step()?;
     }

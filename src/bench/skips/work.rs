@@ -10,7 +10,8 @@ use crate::bench::timing::warmed;
 use crate::forces::rvo::Search;
 use crate::neighbors::{Lists, Neighbors, SKIN};
 use crate::pairs::Packed;
-use crate::simulation::{Fault, Simulation};
+use crate::scene::Needs;
+use crate::simulation::{Fault, Simulation, StageTimes};
 
 /// Something to do in every evaluated frame.
 pub trait Work {
@@ -24,16 +25,56 @@ pub trait Work {
     }
 }
 
-/// Milliseconds per frame that the work takes beside the same `frames` frames from a start on.
-pub fn ms_per_frame(start: &Simulation, frames: u64, work: &mut dyn Work) -> Result<f64, Fault> {
-    let mut simulation = warmed(start)?;
-    let mut seconds = 0.0;
-    for _ in 0..frames {
-        simulation.evaluate()?;
-        seconds += work.seconds(&simulation);
-        simulation.integrate()?;
+/// A crowd that moves on, perhaps with work beside it.
+pub struct Course {
+    simulation: Simulation,
+    work: Option<Box<dyn Work>>,
+    /// That the work took.
+    seconds: f64,
+    frames: u64,
+}
+
+impl Course {
+    /// A copy that pays for more, some frames on. All copies are sorted in the same frame.
+    pub fn new(
+        start: &Simulation,
+        more: &Needs,
+        work: Option<Box<dyn Work>>,
+    ) -> Result<Self, Fault> {
+        let mut simulation = start.clone();
+        simulation.pay_for(more);
+        let mut simulation = warmed(simulation)?;
+        simulation.reset_stages();
+        Ok(Self {
+            simulation,
+            work,
+            seconds: 0.0,
+            frames: 0,
+        })
     }
-    Ok(1e3 * seconds / frames as f64)
+
+    /// Goes on for so many frames.
+    pub fn advance(&mut self, frames: u64) -> Result<(), Fault> {
+        for _ in 0..frames {
+            self.simulation.evaluate()?;
+            if let Some(work) = &mut self.work {
+                self.seconds += work.seconds(&self.simulation);
+            }
+            self.simulation.integrate()?;
+        }
+        self.frames += frames;
+        Ok(())
+    }
+
+    /// What the crowd itself took.
+    pub fn times(&self) -> &StageTimes {
+        self.simulation.stages()
+    }
+
+    /// What the work took.
+    pub fn work_ms_per_frame(&self) -> f64 {
+        1e3 * self.seconds / self.frames as f64
+    }
 }
 
 fn seconds(work: impl FnOnce()) -> f64 {
