@@ -333,7 +333,8 @@ mod picture {
             for (k, row) in scene.iter().enumerate() {
                 let left = s as f64 + 0.05 + width * k as f64;
                 let Some(ratio) = ratio(row) else {
-                    marks.push(Mark::Text([left + 0.5 * width, 0.88], "–".to_owned(), GRAY));
+                    let below = [left + 0.5 * width, 1.0 - 0.03 * most];
+                    marks.push(Mark::Text(below, "–".to_owned(), GRAY));
                     continue;
                 };
                 let ends = [ratio.min(1.0), ratio.max(1.0)];
@@ -350,7 +351,7 @@ mod picture {
         pictures::sheet(
             "What each skip saves".to_owned(),
             Axis::names("", names),
-            Axis::log("time without the skip over time with it", [0.8, 1.2 * most]),
+            Axis::linear("time without the skip over time with it", [0.0, 1.1 * most]),
             marks,
         )
     }
