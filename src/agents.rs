@@ -45,7 +45,7 @@ impl NewAgent {
     }
 }
 
-/// Everybody's state. All arrays have the same length; index i is an agent until the next frame in
+/// Everybody's state. All arrays but `avoidance` have the same length; index i is an agent until the next frame in
 /// which the neighbour lists are rebuilt, `id` is one for ever.
 #[derive(Debug, Clone, Default)]
 pub struct Agents {
@@ -69,7 +69,8 @@ pub struct Agents {
     pub group: Vec<u16>,
     /// The push that the agent takes part in now, as its index in the scene.
     pub push: Vec<Option<u16>>,
-    /// The RVO acceleration held since the last coarse frame, m/s²; `None` where none is due.
+    /// The RVO acceleration held since the last coarse frame, m/s²; `None` where none is due. Empty
+    /// where nobody avoids by RVO.
     pub avoidance: Vec<Option<Vector>>,
     next_id: u32,
 }
@@ -114,8 +115,12 @@ impl Agents {
         self.newcomer.push(new.mean_density.is_none());
         self.group.push(new.group);
         self.push.push(None);
-        self.avoidance.push(None);
         id
+    }
+
+    /// From now on every agent has a place for an RVO acceleration.
+    pub fn make_room_for_avoidance(&mut self) {
+        self.avoidance.resize(self.len(), None);
     }
 
     /// Puts agent `order[k]` at place k; agents that `order` does not name are gone.
@@ -130,7 +135,10 @@ impl Agents {
         arrange(&mut self.newcomer, order);
         arrange(&mut self.group, order);
         arrange(&mut self.push, order);
-        arrange(&mut self.avoidance, order);
+        if !self.avoidance.is_empty() {
+            self.make_room_for_avoidance();
+            arrange(&mut self.avoidance, order);
+        }
     }
 }
 

@@ -53,7 +53,7 @@ impl SphParameters {
 pub struct SphStates<'a> {
     /// In: Eq. 9 without walls. Out: ρ_i.
     pub density: &'a mut [f64],
-    /// The walls' part of it.
+    /// The walls' part of it, zero where there are none near.
     pub density_from_walls: &'a mut [f64],
     /// ρ̂_i, one step on.
     pub mean_density: &'a mut [f64],
@@ -85,7 +85,7 @@ impl SphStates<'_> {
         sph: Option<SphParameters>,
         sph_of: impl Fn(usize) -> &'s SphParameters,
     ) {
-        self.see_walls(frame, from, walls, &sph_of);
+        let walled = self.see_walls(frame, from, walls, &sph_of);
         let to = from + self.density.len();
         let newcomer = &frame.agents.newcomer[from..to];
         let before = &frame.agents.mean_density[from..to];
@@ -97,11 +97,13 @@ impl SphStates<'_> {
             } else {
                 before[k]
             };
-            let from_walls = self.density_from_walls[k] * sph.rest_density(before);
-            let density = self.density[k] + from_walls;
+            let mut density = self.density[k];
+            if walled {
+                self.density_from_walls[k] *= sph.rest_density(before);
+                density += self.density_from_walls[k];
+            }
             let mean_density = sph.averaged(before, density, dt);
             let rest_density = sph.rest_density(mean_density);
-            self.density_from_walls[k] = from_walls;
             self.density[k] = density;
             self.mean_density[k] = mean_density;
             self.rest_density[k] = rest_density;
@@ -109,26 +111,30 @@ impl SphStates<'_> {
         }
     }
 
-    /// Leaves Σ_k ∫ W over P_k in place of the walls' part of the density.
+    /// Leaves Σ_k ∫ W over P_k in place of the walls' part of the density; does nothing, and says so,
+    /// where there are no walls near.
     fn see_walls<'s>(
         &mut self,
         frame: &Frame,
         from: usize,
         walls: WallMethod,
         sph_of: impl Fn(usize) -> &'s SphParameters,
-    ) {
+    ) -> bool {
+        let agents = from..from + self.density.len();
+        let mut near_walls = frame.neighbors.agents_near_walls(agents).peekable();
+        if near_walls.peek().is_none() {
+            return false;
+        }
         self.density_from_walls.fill(0.0);
         self.wall_gradient.fill(Vector::zeros());
-        for (i, near) in frame
-            .neighbors
-            .agents_near_walls(from..from + self.density.len())
-        {
+        for (i, near) in near_walls {
             let (r_i, h) = (frame.agents.position[i], sph_of(i).support_radius);
             walls.shares(frame.walls, near, r_i, h, |share| {
                 self.density_from_walls[i - from] += share.kernel;
                 self.wall_gradient[i - from] += share.gradient;
             });
         }
+        true
     }
 }
 

@@ -34,6 +34,12 @@ pub struct Fields {
 }
 
 impl Fields {
+    /// Nobody has been near a wall yet: what walls give to an agent is zero until a frame says otherwise.
+    pub fn forget_walls(&mut self) {
+        self.density_from_walls.clear();
+        self.wall_gradient.clear();
+    }
+
     /// Makes room for `count` agents; where `density` is not computed in this frame its arrays are
     /// empty, so that nobody can read an old one.
     pub fn resize(&mut self, count: usize, density: bool) {

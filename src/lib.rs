@@ -78,5 +78,8 @@ pub mod plot;
 
 pub mod reproduce;
 
+#[cfg(feature = "bench")]
+pub mod bench;
+
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -232,3 +232,18 @@ pub struct Needs {
     /// Some agents leave at their goal.
     pub removal: bool,
 }
+
+impl Needs {
+    /// What either asks for.
+    pub fn with(&self, other: &Self) -> Self {
+        let radii = self.avoidance.into_iter().chain(other.avoidance);
+        Self {
+            density: self.density || other.density,
+            pairs: self.pairs.with(other.pairs),
+            rvo: self.rvo || other.rvo,
+            social: self.social || other.social,
+            avoidance: radii.reduce(f64::max),
+            removal: self.removal || other.removal,
+        }
+    }
+}

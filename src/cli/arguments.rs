@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 
-use super::reproduce;
+use super::{bench, reproduce};
 use crate::scenario::SHIPPED;
 
 const EXAMPLES: &str = "\
@@ -15,7 +15,16 @@ Examples:
   sandbox concert --record-from 149 --save recordings/concert.rrd --force
   sandbox run my_station.json --until 60 --threads 2 --json
   sandbox inspect evacuation --agent 17 --at 15 --json
+  sandbox bench scaling --largest 100000
   sandbox list --settings";
+
+const BENCH_EXAMPLES: &str = "\
+Examples:
+  sandbox bench scaling --largest 100000
+  sandbox bench stages --out bench --force
+  sandbox bench threads --repeats 15 --json
+  sandbox bench skips --quick
+  sandbox bench compare --python jps/bin/python";
 
 /// Simulate, measure and inspect dense crowds (SPH crowds, van Toll et al. 2021).
 #[derive(Parser)]
@@ -56,6 +65,9 @@ pub enum Command {
         after_help = format!("{}Example: sandbox reproduce table1 fig5 --seeds 3", reproduce::about())
     )]
     Reproduce(ReproduceOptions),
+    /// Measure how fast it is on this machine: a table, one JSON object, a picture
+    #[command(after_help = format!("{}{BENCH_EXAMPLES}", bench::about()))]
+    Bench(BenchOptions),
     /// List the scenarios and profiles, or the settings that --set takes
     #[command(after_help = "Example: sandbox list --settings")]
     List {
@@ -169,6 +181,37 @@ pub struct ReproduceOptions {
     pub threads: Option<usize>,
 }
 
+#[derive(Args)]
+pub struct BenchOptions {
+    /// What to measure
+    #[arg(value_parser = PossibleValuesParser::new(bench::names()))]
+    pub what: String,
+    /// Folder for the results as JSON, SVG and PNG
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace existing results
+    #[arg(long)]
+    pub force: bool,
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    pub json: bool,
+    /// How often to measure the same [default: 7, or 2 with --quick]
+    #[arg(long, value_name = "N", value_parser = repeats)]
+    pub repeats: Option<usize>,
+    /// Small crowds and few steps, in seconds: shows that it works, not how fast it is
+    #[arg(long)]
+    pub quick: bool,
+    /// Threads to compute on, where the benchmark does not choose them itself [default: all cores]
+    #[arg(long, value_parser = threads)]
+    pub threads: Option<usize>,
+    /// scaling: the largest crowd
+    #[arg(long, value_name = "AGENTS", default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(1_000..))]
+    pub largest: u32,
+    /// compare: the Python that has JuPedSim
+    #[arg(long, value_name = "PATH", default_value = "python3")]
+    pub python: PathBuf,
+}
+
 /// Where a scenario comes from.
 pub enum Source {
     Shipped(&'static str),
@@ -197,5 +240,12 @@ fn threads(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(count @ 1..=1024) => Ok(count),
         _ => Err("not a number of threads between 1 and 1024".to_owned()),
+    }
+}
+
+fn repeats(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count @ 1..=1000) => Ok(count),
+        _ => Err("not a number of repeats between 1 and 1000".to_owned()),
     }
 }

@@ -1,6 +1,7 @@
 //! What was typed and what it means. The only place that names clap.
 
 mod arguments;
+mod bench;
 mod drive;
 mod inspect;
 mod list;
@@ -68,6 +69,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Run { file, options } => drive::run(&Source::File(file), &options),
         Command::Inspect(options) => inspect::run(&options),
         Command::Reproduce(options) => reproduce::run(&options),
+        Command::Bench(options) => bench::run(&options),
         Command::List { settings } => list::run(settings),
     }
 }

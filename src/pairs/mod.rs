@@ -12,11 +12,13 @@ mod kernels;
 mod meeting;
 mod real;
 mod social;
+mod vectors;
 
 pub use columns::{Columns, Motion};
 pub use meeting::{MovingDisc, Rings};
 pub use real::{LANES, Real};
 pub use social::SocialLaw;
+pub use vectors::Vectors;
 
 use std::ops::Range;
 
@@ -83,6 +85,15 @@ impl Wanted {
     /// Is any?
     pub fn any(self) -> bool {
         self.pressure || self.viscosity || self.contact
+    }
+
+    /// What either wants.
+    pub fn with(self, other: Self) -> Self {
+        Self {
+            pressure: self.pressure || other.pressure,
+            viscosity: self.viscosity || other.viscosity,
+            contact: self.contact || other.contact,
+        }
     }
 }
 

@@ -9,6 +9,7 @@ use rerun::{
 };
 
 use super::error::RecordingError;
+use crate::agents::Agents;
 use crate::geometry::Polygon;
 use crate::math::Vector;
 use crate::scene::{Goal, Scene};
@@ -26,7 +27,8 @@ const NAMED_GOALS: usize = 8;
 const WALL: Color = Color(Rgba32::from_rgb(214, 214, 222));
 const GOAL: Color = Color(Rgba32::from_rgb(95, 211, 120));
 
-pub fn log(stream: &RecordingStream, scene: &Scene) -> Result<(), RecordingError> {
+/// What stands still: walls, and where the scene's agents go.
+pub fn log(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result<(), RecordingError> {
     // Y up: 2D views have it down.
     stream.log_static("world", &Transform3D::from_scale([1.0, -1.0, 1.0]))?;
     let obstacles = scene.walls.obstacles();
@@ -34,7 +36,7 @@ pub fn log(stream: &RecordingStream, scene: &Scene) -> Result<(), RecordingError
         log_walls(stream, obstacles)?;
         log_obstacles(stream, obstacles)?;
     }
-    log_goals(stream, scene)
+    log_goals(stream, scene, agents)
 }
 
 fn log_walls(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), RecordingError> {
@@ -123,8 +125,12 @@ impl Raster {
     }
 }
 
-fn log_goals(stream: &RecordingStream, scene: &Scene) -> Result<(), RecordingError> {
-    let goals = goals(scene);
+fn log_goals(
+    stream: &RecordingStream,
+    scene: &Scene,
+    agents: &Agents,
+) -> Result<(), RecordingError> {
+    let goals = goals(scene, agents);
     if goals.is_empty() {
         return Ok(());
     }
@@ -160,9 +166,10 @@ fn label(scene: &Scene, of: &BTreeSet<u16>) -> String {
     format!("goal of {}", Vec::from_iter(names).join(", "))
 }
 
-/// The different goals and whose they are; of a source with a goal for each those of its first entry.
-fn goals(scene: &Scene) -> Vec<(Vector, BTreeSet<u16>)> {
-    let own = scene.agents.iter().map(|agent| (agent.goal, agent.group));
+/// The different goals of those who are there and whose they are; of a source with a goal for each those of its first entry.
+fn goals(scene: &Scene, agents: &Agents) -> Vec<(Vector, BTreeSet<u16>)> {
+    let own = agents.goal.iter().zip(&agents.group);
+    let own = own.map(|(&goal, &group)| (goal, group));
     let entering = scene.sources.iter().flat_map(|source| {
         let goals: Vec<Vector> = match source.goal {
             Goal::Point(goal) => vec![goal],

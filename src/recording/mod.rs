@@ -104,7 +104,7 @@ impl Recorder {
         let layers = layers::Layers::new(scene, &options.debug);
         blueprint::send(&stream, options, Opening::Empty)?;
         text::log_document(&stream, scene, options)?;
-        geometry::log(&stream, scene)?;
+        geometry::log(&stream, scene, simulation.frame().agents)?;
         crowd::log_style(&stream)?;
         layers.log_style(&stream)?;
         stats::log_style(&stream)?;

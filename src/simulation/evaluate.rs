@@ -43,6 +43,7 @@ impl Simulation {
         self.stages
             .time(Stage::Sort, || neighbors.sort(agents, ranges));
         self.packed.clear();
+        self.fields.forget_walls();
         self.crowd_changed = false;
     }
 
@@ -164,6 +165,7 @@ impl Simulation {
         if !self.needs.rvo {
             return;
         }
+        self.agents.make_room_for_avoidance();
         let mut avoidance = std::mem::take(&mut self.agents.avoidance);
         let mut stages = std::mem::take(&mut self.stages);
         let frame = self.frame();

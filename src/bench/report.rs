@@ -1,0 +1,215 @@
+//! What was measured: as text, as JSON, as files.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::Plan;
+use super::error::BenchError;
+use super::machine::Machine;
+use crate::pairs::Vectors;
+#[cfg(feature = "plot")]
+use crate::plot::Sheet;
+
+/// What everything was measured with.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Setting {
+    /// What was measured on.
+    pub machine: Machine,
+    /// The vectors that sums over pairs are taken in.
+    pub vectors: Vectors,
+    /// Threads, where a row does not say otherwise.
+    pub threads: usize,
+    /// How often the same was measured.
+    pub repeats: usize,
+    /// Small crowds and few steps: these times say nothing.
+    pub quick: bool,
+}
+
+impl Setting {
+    /// Here and now.
+    pub fn of(plan: &Plan) -> Self {
+        Self {
+            machine: Machine::here(),
+            vectors: Vectors::here(),
+            threads: rayon::current_num_threads(),
+            repeats: plan.repeats,
+            quick: plan.quick,
+        }
+    }
+}
+
+/// A table whose cells are written already.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Table {
+    /// So many columns at the left are words, the others numbers.
+    pub words: usize,
+    /// The names of the columns.
+    pub head: Vec<String>,
+    /// The rows.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// An empty table.
+    pub fn new(words: usize, head: &[&str]) -> Self {
+        Self {
+            words,
+            head: head.iter().map(|&name| name.to_owned()).collect(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// In columns as wide as they must be: words from the left, numbers to the right.
+    pub fn text(&self) -> String {
+        let lines = || std::iter::once(&self.head).chain(&self.rows);
+        let length =
+            |line: &Vec<String>, k: usize| line.get(k).map_or(0, |cell| cell.chars().count());
+        let widths: Vec<usize> = (0..self.head.len())
+            .map(|k| lines().map(|line| length(line, k)).max().unwrap_or(0))
+            .collect();
+        let mut text = String::new();
+        for line in lines() {
+            let cells = line.iter().zip(&widths).enumerate();
+            let padded = cells.map(|(k, (cell, &width))| {
+                if k < self.words {
+                    format!("{cell:<width$}")
+                } else {
+                    format!("{cell:>width$}")
+                }
+            });
+            let padded: Vec<String> = padded.collect();
+            text += &format!("{}\n", padded.join("  ").trim_end());
+        }
+        text
+    }
+}
+
+/// What a benchmark itself has to say.
+#[derive(Debug, Clone)]
+pub struct Findings {
+    /// For people.
+    pub table: Table,
+    /// For programs: one object a row.
+    pub rows: Value,
+    /// What must be known to read them.
+    pub notes: Vec<String>,
+    /// The picture.
+    #[cfg(feature = "plot")]
+    pub sheet: Sheet,
+}
+
+/// What a benchmark has found, and with what.
+#[derive(Debug, Clone)]
+pub struct Report {
+    /// The benchmark.
+    pub name: &'static str,
+    /// What it measures, in a line.
+    pub about: &'static str,
+    /// What was measured with.
+    pub setting: Setting,
+    /// What was found.
+    pub findings: Findings,
+}
+
+impl Report {
+    /// For people.
+    pub fn text(&self) -> String {
+        let Setting {
+            machine,
+            vectors,
+            threads,
+            repeats,
+            quick,
+        } = &self.setting;
+        let quick = if *quick {
+            "; quick: these times say nothing"
+        } else {
+            ""
+        };
+        let mut text = format!(
+            "{}: {}\n{machine}\n{vectors}, {threads} thread(s), {repeats} repeat(s){quick}\n\n{}",
+            self.name,
+            self.about,
+            self.findings.table.text()
+        );
+        for note in &self.findings.notes {
+            text += &format!("\n{note}\n");
+        }
+        text
+    }
+
+    /// For programs.
+    pub fn json(&self) -> Value {
+        json!({
+            "benchmark": self.name,
+            "about": self.about,
+            "machine": self.setting.machine,
+            "vectors": self.setting.vectors,
+            "threads": self.setting.threads,
+            "repeats": self.setting.repeats,
+            "quick": self.setting.quick,
+            "rows": self.findings.rows,
+            "notes": self.findings.notes,
+        })
+    }
+
+    /// Writes the JSON, and the picture as SVG and PNG, and returns the paths.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn save(&self, folder: &Path) -> Result<Vec<PathBuf>, BenchError> {
+        let written = files(self.name, folder);
+        let unwritable = |path: &Path| {
+            let path = path.to_owned();
+            move |reason: String| BenchError::Unwritable { path, reason }
+        };
+        fs::create_dir_all(folder).map_err(|error| unwritable(folder)(error.to_string()))?;
+        let path = &written[0];
+        fs::write(path, format!("{:#}\n", self.json()))
+            .map_err(|error| unwritable(path)(error.to_string()))?;
+        #[cfg(feature = "plot")]
+        self.findings
+            .sheet
+            .save(&folder.join(self.name))
+            .map_err(|error| unwritable(folder)(error.to_string()))?;
+        Ok(written)
+    }
+}
+
+/// The files that a benchmark writes into a folder, the JSON first.
+fn files(name: &str, folder: &Path) -> Vec<PathBuf> {
+    let extensions: &[&str] = if cfg!(feature = "plot") {
+        &["json", "svg", "png"]
+    } else {
+        &["json"]
+    };
+    let file = |extension: &&str| folder.join(format!("{name}.{extension}"));
+    extensions.iter().map(file).collect()
+}
+
+/// Refuses to replace the results of a benchmark, before anything is measured.
+///
+/// # Errors
+/// One of its files is there.
+pub fn check_free(name: &str, folder: &Path) -> Result<(), BenchError> {
+    match files(name, folder).into_iter().find(|path| path.exists()) {
+        Some(path) => Err(BenchError::Exists(path)),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_stand_left_and_numbers_right() {
+        let mut table = Table::new(1, &["crowd", "ms"]);
+        table.rows.push(vec!["sf".to_owned(), "12.5".to_owned()]);
+        table.rows.push(vec!["rvo".to_owned(), "1".to_owned()]);
+        assert_eq!(table.text(), "crowd    ms\nsf     12.5\nrvo       1\n");
+    }
+}

@@ -1,0 +1,309 @@
+//! The benchmarks: what they report, and that paying for more changes nothing but the time.
+//!
+//! No test here looks at how long something took.
+#![cfg(feature = "bench")]
+
+mod common;
+
+use std::path::{Path, PathBuf};
+
+use common::{blend, block, room, scene, vector};
+use sandbox::bench::{BENCHMARKS, Plan, Report, SKIPS, everything};
+use sandbox::catalog::NAMES;
+use sandbox::simulation::Simulation;
+use serde_json::Value;
+
+fn quick() -> Plan {
+    Plan {
+        repeats: 3,
+        quick: true,
+        python: PathBuf::from("no/such/python"),
+        ..Plan::default()
+    }
+}
+
+fn measure(name: &str, plan: &Plan) -> Report {
+    let benchmark = BENCHMARKS.iter().find(|benchmark| benchmark.name == name);
+    benchmark.unwrap().measure(plan, &|_| ()).unwrap()
+}
+
+fn rows(report: &Report) -> Vec<Value> {
+    report.json()["rows"].as_array().unwrap().clone()
+}
+
+fn assert_is_spread(value: &Value) {
+    let [low, middle, high] =
+        ["minimum", "median", "maximum"].map(|key| value[key].as_f64().unwrap());
+    assert!(0.0 < low && low <= middle && middle <= high, "{value}");
+}
+
+#[test]
+fn every_report_says_what_was_measured_with_and_the_spread_of_every_time() {
+    for (name, keys, times) in [
+        (
+            "scaling",
+            &[
+                "agents",
+                "frames",
+                "ratio_to_10000",
+                "resident_bytes_per_agent",
+            ][..],
+            &["ns_per_agent_frame", "ms_per_frame"][..],
+        ),
+        (
+            "stages",
+            &["crowd", "profile", "agents", "stages_ms"],
+            &["ms_per_frame"],
+        ),
+        (
+            "threads",
+            &["agents", "threads", "efficiency"],
+            &["ms_per_frame", "speed_up"],
+        ),
+        (
+            "skips",
+            &["scenario", "profile", "skip", "nothing_to_skip"],
+            &["with_skip_ms"],
+        ),
+        (
+            "compare",
+            &[
+                "engine",
+                "model",
+                "radius",
+                "precision",
+                "time_step",
+                "threads",
+            ],
+            &["ms_per_step", "ratio"],
+        ),
+    ] {
+        let report = measure(name, &quick());
+        let json = report.json();
+        assert_eq!(json["benchmark"], name);
+        assert_eq!(
+            (&json["repeats"], &json["quick"]),
+            (&3.into(), &true.into())
+        );
+        for key in [
+            "cpu",
+            "cores",
+            "hardware_threads",
+            "memory_bytes",
+            "load",
+            "system",
+        ] {
+            assert!(!json["machine"][key].is_null(), "{name}: {key}");
+        }
+        assert!(json["vectors"]["lanes"].as_u64().unwrap() >= 1);
+        let text = report.text();
+        assert!(text.contains(json["machine"]["cpu"].as_str().unwrap()));
+        assert!(text.contains(json["vectors"]["level"].as_str().unwrap()));
+        let rows = rows(&report);
+        assert!(!rows.is_empty() && report.findings.table.rows.len() == rows.len());
+        for row in rows {
+            for key in keys {
+                assert!(row.get(key).is_some(), "{name}: no {key} in {row}");
+            }
+            times.iter().for_each(|key| assert_is_spread(&row[key]));
+        }
+    }
+}
+
+#[test]
+fn ratios_are_to_what_they_say() {
+    let scaling = rows(&measure("scaling", &quick()));
+    let agents: Vec<_> = scaling
+        .iter()
+        .map(|row| row["agents"].as_u64().unwrap())
+        .collect();
+    assert_eq!(agents, [1_000, 3_000, 10_000]);
+    let median = |row: &Value| row["ns_per_agent_frame"]["median"].as_f64().unwrap();
+    for row in &scaling {
+        let per_frame = row["ms_per_frame"]["median"].as_f64().unwrap();
+        let per_agent = 1e6 * per_frame / row["agents"].as_f64().unwrap();
+        assert!((per_agent / median(row) - 1.0).abs() < 1e-12);
+        let ratio = median(row) / median(&scaling[2]);
+        assert_eq!(row["ratio_to_10000"].as_f64().unwrap(), ratio);
+    }
+    let threads = rows(&measure("threads", &quick()));
+    assert_eq!(threads[0]["threads"], 1);
+    assert_eq!(threads[0]["speed_up"]["maximum"], 1.0);
+    for row in threads {
+        let threads = row["threads"].as_f64().unwrap();
+        let speed_up = row["speed_up"]["median"].as_f64().unwrap();
+        assert_eq!(row["efficiency"].as_f64().unwrap(), speed_up / threads);
+    }
+}
+
+#[test]
+fn a_crowd_smaller_than_the_largest_has_no_ratio_to_one_that_was_not_measured() {
+    let plan = Plan {
+        largest: 3_000,
+        ..quick()
+    };
+    let rows = rows(&measure("scaling", &plan));
+    assert_eq!(rows.len(), 2);
+    assert!(rows.iter().all(|row| row["ratio_to_10000"].is_null()));
+}
+
+#[test]
+fn a_skip_is_measured_exactly_where_there_is_something_to_skip() {
+    let rows = rows(&measure("skips", &quick()));
+    assert_eq!(rows.len() % SKIPS.len(), 0);
+    let mut measured: Vec<(String, String, String)> = Vec::new();
+    for row in &rows {
+        let known = row["nothing_to_skip"].is_null();
+        assert_eq!(known, !row["ratio"].is_null(), "{row}");
+        assert_eq!(known, !row["without_skip_ms"].is_null(), "{row}");
+        if known {
+            let text = |key: &str| row[key].as_str().unwrap().to_owned();
+            measured.push((text("scenario"), text("profile"), text("skip")));
+        }
+    }
+    let has = |scenario: &str, profile: &str, skip: &str| {
+        let wanted = [scenario, profile, skip].map(str::to_owned);
+        measured.contains(&wanted.into())
+    };
+    assert!(has("evacuation", "sf", "density") && !has("evacuation", "sph", "density"));
+    assert!(has("concert", "sph", "far walls") && !has("evacuation", "sf", "far walls"));
+    assert!(has("concert", "sph", "arrivals") && !has("crossing", "rvo->sph", "arrivals"));
+    assert!(has("crossing", "rvo->sph", "RVO by blend") && !has("crossing", "sf", "RVO by blend"));
+    for skip in &SKIPS {
+        assert!(
+            measured.iter().any(|(.., name)| name == skip.name),
+            "{}",
+            skip.name
+        );
+    }
+}
+
+#[test]
+fn paying_for_everything_changes_no_bit_of_the_motion() {
+    for name in NAMES {
+        let mut scene = scene(vec![room(8.0, 1.0)], blend(name));
+        scene.agents = block(vector(1.0, 1.0), 12, 12, 0.45, vector(9.0, 4.0));
+        let mut needed = Simulation::new(scene.clone()).unwrap();
+        let mut paying = Simulation::new(scene).unwrap();
+        let needs = *needed.needs();
+        needed.pay_for(&needs);
+        paying.pay_for(&everything());
+        assert_ne!(
+            paying.needs(),
+            needed.needs(),
+            "{name}: something to pay for"
+        );
+        for frame in 0..100 {
+            needed.step().unwrap();
+            paying.step().unwrap();
+            assert_eq!(motion(&needed), motion(&paying), "{name}, frame {frame}");
+        }
+        let stages = |simulation: &Simulation| simulation.stages().ms_per_frame().count();
+        assert_eq!(stages(&paying), 7, "{name}: everything was computed");
+        assert!(stages(&needed) <= 7);
+    }
+}
+
+/// Everybody's id, position and velocity, bit by bit.
+fn motion(simulation: &Simulation) -> Vec<(u32, [u64; 4])> {
+    let numbers = |(id, bits): (u32, [u64; 5])| (id, [bits[0], bits[1], bits[2], bits[3]]);
+    common::bits(simulation).into_iter().map(numbers).collect()
+}
+
+#[test]
+fn an_engine_that_is_missing_is_named_with_how_to_have_it() {
+    let report = measure("compare", &quick());
+    let text = report.text();
+    for words in [
+        "JuPedSim is missing",
+        "no/such/python",
+        "pip install jupedsim",
+        "--python",
+    ] {
+        assert!(text.contains(words), "no {words:?} in {text}");
+    }
+    let engines: Vec<String> = rows(&report)
+        .iter()
+        .map(|row| row["engine"].as_str().unwrap().to_owned())
+        .collect();
+    assert!(engines.contains(&"sandbox".to_owned()));
+    let with_rustsim = engines
+        .iter()
+        .any(|engine| engine.contains("rustsim-crowd"));
+    assert_eq!(with_rustsim, cfg!(feature = "compare"));
+    assert_eq!(text.contains("--features compare"), !with_rustsim);
+}
+
+/// A Python that has a JuPedSim of version 9.9, which takes half a second for any number of steps.
+#[cfg(unix)]
+fn pretender(folder: &Path) -> PathBuf {
+    use std::os::unix::fs::PermissionsExt;
+    let path = folder.join("python");
+    let script = "#!/bin/sh\n[ $# -gt 2 ] || exit 0\nwc -l < \"$3\" > \"$(dirname \"$0\")/people\"\n\
+                  echo ready 9.9 0.01\nwhile read -r steps; do echo 0.5; done\n";
+    std::fs::write(&path, script).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+    path
+}
+
+#[cfg(unix)]
+#[test]
+fn jupedsim_gets_everybody_and_is_compared_with_the_same_radius_on_one_thread() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = Plan {
+        python: pretender(folder.path()),
+        ..quick()
+    };
+    let rows = rows(&measure("compare", &plan));
+    let people = std::fs::read_to_string(folder.path().join("people")).unwrap();
+    assert_eq!(people.trim(), "400");
+    let found = |engine: &str, radius: f64| {
+        let same = |row: &&Value| row["engine"] == engine && row["radius"] == radius;
+        rows.iter().find(same).unwrap()
+    };
+    let theirs = found("JuPedSim 9.9", 2.5);
+    assert_eq!(
+        theirs["ms_per_step"]["median"], 250.0,
+        "two steps in half a second"
+    );
+    let ours = found("sandbox", 2.5);
+    assert_eq!(ours["threads"], 1);
+    let fastest = ours["ms_per_step"]["minimum"].as_f64().unwrap();
+    let ratio = theirs["ratio"]["maximum"].as_f64().unwrap();
+    assert!((ratio * fastest / 250.0 - 1.0).abs() < 1e-12);
+}
+
+#[cfg(feature = "cli")]
+#[test]
+fn results_are_written_once_and_replaced_only_by_force() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("results");
+    let out = out.to_str().unwrap();
+    let run = |more: &[&str]| {
+        std::process::Command::new(env!("CARGO_BIN_EXE_sandbox"))
+            .args(["bench", "threads", "--quick", "--json", "--out", out])
+            .args(more)
+            .output()
+            .unwrap()
+    };
+    let first = run(&[]);
+    assert_eq!(first.status.code(), Some(0));
+    let printed: Value = serde_json::from_slice(&first.stdout).unwrap();
+    let file = Path::new(out).join("threads.json");
+    let read = || serde_json::from_slice::<Value>(&std::fs::read(&file).unwrap()).unwrap();
+    assert_eq!(read(), printed);
+    for extension in ["svg", "png"] {
+        let picture = file.with_extension(extension);
+        assert_eq!(picture.exists(), cfg!(feature = "plot"), "{extension}");
+    }
+    let second = run(&[]);
+    assert_eq!(second.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&second.stderr).into_owned();
+    assert!(
+        said.contains("threads.json") && said.contains("--force"),
+        "{said}"
+    );
+    assert_eq!(read(), printed);
+    assert_eq!(run(&["--force", "--repeats", "4"]).status.code(), Some(0));
+    assert_eq!(read()["repeats"], 4);
+}
