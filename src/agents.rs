@@ -125,6 +125,10 @@ impl Agents {
 
     /// Puts agent `order[k]` at place k; agents that `order` does not name are gone.
     pub fn arrange(&mut self, order: &[u32]) {
+        if !self.avoidance.is_empty() {
+            self.make_room_for_avoidance(); // for who entered since
+            arrange(&mut self.avoidance, order);
+        }
         arrange(&mut self.id, order);
         arrange(&mut self.position, order);
         arrange(&mut self.velocity, order);
@@ -135,10 +139,6 @@ impl Agents {
         arrange(&mut self.newcomer, order);
         arrange(&mut self.group, order);
         arrange(&mut self.push, order);
-        if !self.avoidance.is_empty() {
-            self.make_room_for_avoidance();
-            arrange(&mut self.avoidance, order);
-        }
     }
 }
 
