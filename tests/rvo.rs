@@ -9,7 +9,7 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sandbox::agents::NewAgent;
-use sandbox::forces::rvo::{MovingDisc, Rvo, Scratch, Search, Situation};
+use sandbox::forces::rvo::{Candidate, MovingDisc, Rvo, Scratch, Search, Situation};
 use sandbox::geometry::{Polygon, Wall, Walls};
 use sandbox::math::Vector;
 use sandbox::simulation::Simulation;
@@ -49,9 +49,10 @@ fn meeting_wall(wall: &Wall, position: Vector, velocity: Vector, radius: f64) ->
 }
 
 /// Eq. 20 for every candidate, and the first of the cheapest.
-fn exhaustive(situation: &Situation, candidates: &[Vector], collision_weight: f64) -> Vector {
+fn exhaustive(situation: &Situation, candidates: &[Candidate], collision_weight: f64) -> Vector {
     let mut costs = Vec::new();
-    for &candidate in candidates {
+    for candidate in candidates {
+        let candidate = candidate.velocity(situation.velocity);
         if candidate.norm() > situation.max_speed {
             continue;
         }
@@ -132,9 +133,7 @@ fn the_choice_is_that_of_an_exhaustive_search() {
     let mut search = Search::default();
     for round in 0..100_000 {
         let situation = random_situation(&mut rng);
-        let candidates: Vec<Vector> = (0..120)
-            .map(|_| situation.velocity + disc_of(&mut rng, 3.6))
-            .collect();
+        let candidates = candidates(&mut rng, 120);
         let weight = [1.0, 0.2, 5.0][round % 3];
         let found = search.best(&situation, &candidates, weight);
         assert_eq!(
@@ -145,7 +144,15 @@ fn the_choice_is_that_of_an_exhaustive_search() {
     }
 }
 
-fn best(situation: &Situation, candidates: &[Vector]) -> Vector {
+fn candidates(rng: &mut ChaCha8Rng, count: usize) -> Vec<Candidate> {
+    let any = |_| Candidate {
+        length: rng.random_range(0.0..3.6),
+        turn: rng.random(),
+    };
+    (0..count).map(any).collect()
+}
+
+fn best(situation: &Situation, candidates: &[Candidate]) -> Vector {
     Search::default().best(situation, candidates, 1.0)
 }
 
@@ -163,10 +170,15 @@ fn open_field() -> Situation {
 
 #[test]
 fn of_equal_costs_the_first_is_chosen() {
-    let around = [vector(0.6, 0.8), vector(-1.0, 0.0), vector(0.0, 1.0)];
-    assert_eq!(best(&open_field(), &around), around[0]);
-    let turned = [around[2], around[0], around[1]];
-    assert_eq!(best(&open_field(), &turned), around[2]);
+    let quarter = |number: u32| Candidate {
+        length: 1.0,
+        turn: number << 30,
+    };
+    for first in 0..4 {
+        let around = [first, first + 1, first + 2].map(|number| quarter(number % 4));
+        let velocity = around[0].velocity(Vector::zeros());
+        assert_eq!(best(&open_field(), &around), velocity);
+    }
 }
 
 #[test]
@@ -174,7 +186,7 @@ fn the_order_of_neighbours_does_not_change_the_choice() {
     let mut rng = ChaCha8Rng::seed_from_u64(2);
     for _ in 0..500 {
         let situation = random_situation(&mut rng);
-        let candidates: Vec<Vector> = (0..60).map(|_| disc_of(&mut rng, 2.0)).collect();
+        let candidates = candidates(&mut rng, 60);
         let mut turned = situation.clone();
         turned.discs.reverse();
         turned.walls.reverse();
@@ -185,7 +197,7 @@ fn the_order_of_neighbours_does_not_change_the_choice() {
 
 #[test]
 fn if_all_candidates_are_too_fast_the_agent_stops() {
-    let fast = [vector(1.9, 0.0), vector(0.0, -2.0)];
+    let fast = [1.9, 2.0].map(|length| Candidate { length, turn: 0 });
     assert_eq!(best(&open_field(), &fast), Vector::zeros());
     let mut scene = scene(Vec::new(), blend("rvo"));
     // Candidates lie within 3.6 m/s of the current velocity.

@@ -73,8 +73,8 @@ impl Rvo {
             frame.agents.id[i],
             frame.clock.coarse_frame(),
         );
-        candidates.draw(self.candidates, situation, rng);
-        let best = search.best(situation, &candidates.velocities, self.collision_weight);
+        draw(self.candidates, situation, rng, candidates);
+        let best = search.best(situation, candidates, self.collision_weight);
         (best - situation.velocity) / frame.clock.coarse_step()
     }
 }
@@ -83,38 +83,42 @@ impl Rvo {
 #[derive(Debug, Default)]
 pub struct Scratch {
     situation: Situation,
-    candidates: Candidates,
+    candidates: Vec<Candidate>,
     search: Search,
 }
 
-#[derive(Debug, Default)]
-struct Candidates {
-    /// How far from the current velocity, m/s, and in which direction.
-    drawn: Vec<(f64, u32)>,
-    /// Those of them that may be slow enough, m/s.
-    velocities: Vec<Vector>,
+/// A candidate velocity, as seen from the current one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// How far away, m/s.
+    pub length: f64,
+    /// In which direction, 2³²ths of a turn.
+    pub turn: u32,
 }
 
-impl Candidates {
-    /// Draws `count` velocities, in all directions and as far as 2 s_max from the current one alike.
-    fn draw(&mut self, count: u32, situation: &Situation, mut rng: impl Rng) {
-        // Who is farther from the current velocity than this is too fast in every direction.
-        let farthest = situation.velocity.norm() + situation.max_speed;
-        let per_step = 2.0 * situation.max_speed / f64::from(u32::MAX);
-        self.drawn.resize(count as usize, (0.0, 0));
-        let mut len = 0;
-        for _ in 0..count {
-            let bits: u64 = rng.random();
-            let length = per_step * f64::from((bits >> 32) as u32);
-            self.drawn[len] = (length, bits as u32);
-            len += usize::from(length <= farthest); // nobody can foresee this branch
-        }
-        self.velocities.clear();
-        let drawn = self.drawn[..len].iter();
-        self.velocities.extend(
-            drawn.map(|&(length, turn)| situation.velocity + random::direction(turn) * length),
-        );
+impl Candidate {
+    /// The velocity itself, m/s, when the current one is `from`.
+    pub fn velocity(self, from: Vector) -> Vector {
+        from + random::direction(self.turn) * self.length
     }
+}
+
+/// Replaces `candidates` by `count` velocities, in all directions and as far as 2 s_max from the current
+/// one alike, without those that no direction could make slow enough.
+fn draw(count: u32, situation: &Situation, mut rng: impl Rng, candidates: &mut Vec<Candidate>) {
+    let farthest = situation.velocity.norm() + situation.max_speed;
+    let per_step = 2.0 * situation.max_speed / f64::from(u32::MAX);
+    let (length, turn) = (0.0, 0);
+    candidates.resize(count as usize, Candidate { length, turn });
+    let mut kept = 0;
+    for _ in 0..count {
+        let bits: u64 = rng.random();
+        let length = per_step * f64::from((bits >> 32) as u32);
+        let turn = bits as u32;
+        candidates[kept] = Candidate { length, turn };
+        kept += usize::from(length <= farthest); // nobody could foresee a branch
+    }
+    candidates.truncate(kept);
 }
 
 impl Situation {

@@ -1,10 +1,10 @@
 //! The cheapest candidate by branch and bound, with the answer of an exhaustive search.
 
-use super::{Situation, time_to_contact};
+use super::{Candidate, Situation, time_to_contact};
 use crate::math::Vector;
 use crate::pairs::Rings;
 
-/// Candidates whose squared deviations differ by less than this are in no order, m²/s².
+/// Candidates whose least deviations differ by less than this are in no order, m/s.
 const WIDTH: f64 = 0.1;
 
 /// Far more than rounding makes of deviations and times: it must never leave anybody out.
@@ -13,8 +13,10 @@ const ROUNDING: f64 = 1e-9;
 /// Memory for searches one after the other.
 #[derive(Debug, Default)]
 pub struct Search {
-    /// Candidates with their numbers, by |v′ − v^pref|².
-    candidates: Buckets<(u32, Vector)>,
+    /// Candidates with their numbers, by what they deviate from the preferred velocity at least.
+    candidates: Buckets<(u32, Candidate)>,
+    /// Those of them that are looked at, with their numbers, m/s.
+    velocities: Vec<(u32, Vector)>,
     rings: Rings,
     /// Numbers of discs.
     perhaps: Vec<u32>,
@@ -23,35 +25,48 @@ pub struct Search {
 impl Search {
     /// The cheapest of `candidates` (Eq. 20), the first of equals; zero if all are too fast.
     ///
-    /// Candidates come in order of what they cost at least, until that is more than the best so far.
-    /// What is left of the best cost is a time before which no contact may come: most candidates are
+    /// Candidates come in order of what they cost at least, until that is more than the best so far:
+    /// | |v′ − v| − |v^pref − v| |, for which nobody needs to know their directions. What is left of the best cost is a time before which no contact may come: most candidates are
     /// out by a look at the nearest discs, eight at a time. The others' first contacts are looked for from
     /// the inside out, until no disc farther away could be met before the earliest found.
     pub fn best(
         &mut self,
         situation: &Situation,
-        candidates: &[Vector],
+        candidates: &[Candidate],
         collision_weight: f64,
     ) -> Vector {
         let max_squared = situation.max_speed * situation.max_speed;
-        let slow = (0..).zip(candidates);
-        let slow = slow.filter(|(_, candidate)| candidate.norm_squared() <= max_squared);
-        let squared = |v: &Vector| (v - situation.preferred_velocity).norm_squared();
+        let preferred = (situation.preferred_velocity - situation.velocity).norm();
+        let numbered = (0..).zip(candidates.iter().copied());
         let Self {
             candidates: sorted,
             rings,
             perhaps,
+            velocities,
         } = self;
-        sorted.sort(WIDTH, slow.map(|(k, v)| (squared(v), (k, *v))));
+        sorted.sort(
+            WIDTH,
+            numbered.map(|(k, candidate)| ((candidate.length - preferred).abs(), (k, candidate))),
+        );
         rings.sort(&situation.discs);
 
         let (mut best, mut first) = (Vector::zeros(), u32::MAX);
         let mut best_cost = f64::INFINITY;
         for (least, candidates) in sorted.iter() {
-            if least.sqrt() > best_cost {
+            if least - ROUNDING > best_cost {
                 break;
             }
-            for &(k, candidate) in candidates {
+            // All of them first: one direction need not wait for the verdict on another.
+            velocities.clear();
+            velocities.extend(
+                candidates
+                    .iter()
+                    .map(|(k, candidate)| (*k, candidate.velocity(situation.velocity))),
+            );
+            for &(k, candidate) in velocities.iter() {
+                if candidate.norm_squared() > max_squared {
+                    continue;
+                }
                 let deviation = (candidate - situation.preferred_velocity).norm();
                 if deviation > best_cost {
                     continue;
