@@ -78,5 +78,7 @@ pub mod plot;
 
 pub mod reproduce;
 
+pub mod stress;
+
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -32,7 +32,7 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     progress.finish();
     // What was recorded is kept, whatever ended the run.
     let saved = output.finish();
-    driven?;
+    driven.map_err(|failure| failure.laid_open(&mut simulation))?;
     saved?;
     report_oddities(&simulation);
     say(&Report::new(&scenario, &simulation, &metrics).render(options.scene.json))
@@ -54,6 +54,12 @@ fn report_oddities(simulation: &Simulation) {
             "note: {} move(s) would have crossed a wall and were stopped there",
             outcome.contained_moves
         );
+    }
+    if outcome.clamped_speeds > 0 {
+        let frame = simulation.frame();
+        let (count, most) = (outcome.clamped_speeds, simulation.scene().max_speed);
+        let frames = frame.clock.frame();
+        eprintln!("note: a speed was cut to {most} m/s {count} time(s) in {frames} frames");
     }
     for event in simulation.events() {
         if event.kind == EventKind::PushBegan(0) {

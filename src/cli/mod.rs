@@ -13,9 +13,10 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
+use crate::breakdown::Breakdown;
 use crate::reproduce::ReproduceError;
 use crate::scenario::{Scenario, ScenarioError, Setting};
-use crate::simulation::Fault;
+use crate::simulation::{Fault, Simulation};
 use arguments::{Arguments, Command, Source};
 
 /// Why a command did not do what was asked.
@@ -30,6 +31,14 @@ enum Failure {
     /// The run cannot go on: exit code 1.
     #[error(transparent)]
     Fault(#[from] Fault),
+    /// The same, and somebody laid open in the frame where it ended: exit code 1.
+    #[error("{fault}\n{agent}")]
+    LaidOpen {
+        /// What happened.
+        fault: Fault,
+        /// To whom.
+        agent: Box<Breakdown>,
+    },
     /// A file cannot be written: exit code 1.
     #[error("{0}")]
     Output(String),
@@ -42,7 +51,23 @@ impl Failure {
     fn exit_code(&self) -> u8 {
         match self {
             Self::Scenario(_) | Self::Input(_) => 2,
-            Self::Fault(_) | Self::Output(_) | Self::Reproduce(_) => 1,
+            Self::Fault(_) | Self::LaidOpen { .. } | Self::Output(_) | Self::Reproduce(_) => 1,
+        }
+    }
+}
+
+impl Failure {
+    /// With every force on whom it happened to.
+    fn laid_open(self, simulation: &mut Simulation) -> Self {
+        match self {
+            Self::Fault(fault) => match Breakdown::of_fault(simulation, &fault) {
+                Some(agent) => Self::LaidOpen {
+                    fault,
+                    agent: Box::new(agent),
+                },
+                None => Self::Fault(fault),
+            },
+            other => other,
         }
     }
 }
