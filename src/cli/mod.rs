@@ -7,6 +7,9 @@ mod list;
 mod output;
 mod report;
 mod reproduce;
+mod stress;
+mod update;
+mod watch;
 
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
@@ -93,6 +96,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Run { file, options } => drive::run(&Source::File(file), &options),
         Command::Inspect(options) => inspect::run(&options),
         Command::Reproduce(options) => reproduce::run(&options),
+        Command::Stress(options) => stress::run(&options),
         Command::List { settings } => list::run(settings),
     }
 }
@@ -109,6 +113,7 @@ fn scenario(
         ("--profile", "profile", scene.profile.clone()),
         ("--seed", "seed", seed),
         ("--until", "duration_secs", until),
+        ("--time-step", "time_step_secs", scene.time_step.clone()),
     ];
     let mut settings = Vec::new();
     for (flag, key, value) in flags {

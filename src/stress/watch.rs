@@ -148,7 +148,7 @@ pub fn mean_square_speed(simulation: &Simulation) -> f64 {
 }
 
 /// The least distance of two centres, in parts of the sum of their radii; at most 1.
-fn closest(simulation: &Simulation) -> f64 {
+pub fn closest(simulation: &Simulation) -> f64 {
     let frame = simulation.frame();
     let agents = frame.agents;
     let widest = agents.radius.iter().copied().fold(0.0, f64::max);
