@@ -11,7 +11,8 @@ use sandbox::breakdown::Breakdown;
 use sandbox::catalog::{NAMES, Parameters};
 use sandbox::scenario::{Scenario, Setting};
 use sandbox::simulation::{Fault, Simulation};
-use sandbox::stress::{Found, HARD, Hard, Watch};
+use sandbox::stability;
+use sandbox::stress::{Cell, Detail, Found, HARD, Hard, Rest, Watch};
 
 /// Runs a file of `scenarios/stress` with some settings; fails unless it survives.
 fn survives(name: &str, settings: &[&str]) -> Found {
@@ -224,4 +225,82 @@ fn a_run_that_cannot_go_on_lays_open_whom_it_happened_to() {
         assert!(text.contains("contact_agents"), "{text}");
         assert!(text.contains("total (weighted)"), "{text}");
     }
+}
+
+#[test]
+fn an_automatic_step_is_stable_and_no_less_than_seven_tenths_of_the_largest() {
+    let paper = Rest::default();
+    for crowd in [
+        paper,
+        Rest {
+            agent_stiffness: 1000.0,
+            ..paper
+        },
+        Rest {
+            viscosity: 100.0,
+            ..paper
+        },
+        Rest {
+            gas_constant: 3200.0,
+            ..paper
+        },
+    ] {
+        let cell = Cell::find(crowd, Detail { quick: true }).unwrap();
+        assert!(cell.auto_is_stable, "{cell:?}");
+        assert!((0.7..=1.0).contains(&cell.ratio()), "{cell:?}");
+    }
+}
+
+#[test]
+fn a_step_of_twice_the_largest_shakes_a_crowd_at_rest() {
+    let crowd = Rest {
+        agent_stiffness: 1000.0,
+        ..Rest::default()
+    };
+    let step = stability::time_step(&crowd.scene(5.5, 1.0));
+    let unrest = crowd.unrest(0.2 * step).unwrap();
+    assert!(unrest.into_iter().all(|speed| speed < 0.05), "{unrest:?}");
+    assert!(crowd.is_stable(step, unrest).unwrap());
+    assert!(!crowd.is_stable(2.0 * step, unrest).unwrap());
+}
+
+#[test]
+fn a_scenario_takes_the_automatic_step_and_says_where_it_is_unknown() {
+    let parse = |text: &str| Scenario::parse(text, "f.json", &[]);
+    let step = |text| parse(text).unwrap().scene.clock.time_step();
+    let soft =
+        step(r#"{"time_step_secs": "auto", "goal": [9, 0], "agents": [{"position": [0, 0]}]}"#);
+    let stiff = step(
+        r#"{"time_step_secs": "auto", "goal": [9, 0], "agents": [{"position": [0, 0]}],
+            "parameters": {"gas_constant": 12800}}"#,
+    );
+    assert!(soft > 0.03 && stiff < 0.012, "{soft} {stiff}");
+    assert_eq!(step(r#"{"time_step_secs": 0.01}"#), 0.01);
+    assert_eq!(step(r#"{"time_step_secs": 1}"#), 1.0);
+    let refused = |text| parse(text).unwrap_err().to_string();
+    let euler = refused(r#"{"time_step_secs": "auto", "integrator": "forward-euler"}"#);
+    assert!(euler.contains("time_step_secs: `auto`"), "{euler}");
+    let word = refused(r#"{"time_step_secs": "fast"}"#);
+    assert!(
+        word.contains("time_step_secs") && word.contains("auto"),
+        "{word}"
+    );
+}
+
+#[cfg(feature = "cli")]
+#[test]
+fn a_step_that_is_too_long_is_warned_of_with_its_number() {
+    let stderr = |step: &str| {
+        let arguments = ["evacuation", "--until", "1", "--time-step", step];
+        let program = env!("CARGO_BIN_EXE_sandbox");
+        let output = std::process::Command::new(program)
+            .args(arguments)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(0));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(stderr("0.25").contains("warning: time_step_secs 0.25 is "));
+    assert!(!stderr("auto").contains("warning"));
+    assert!(!stderr("0.02").contains("warning"));
 }

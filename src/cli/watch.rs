@@ -84,9 +84,7 @@ impl stress::Listener for Watch {
     }
 
     fn finishes(&self, job: &str, expected: f64, seconds: f64) {
-        const LONGEST: usize = 100;
         self.bar.inc(steps(expected));
-        let short: String = job.chars().take(LONGEST).collect();
-        self.finish(&short, seconds);
+        self.finish(job, seconds);
     }
 }

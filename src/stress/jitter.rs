@@ -103,8 +103,8 @@ impl Variant {
         } else {
             1.5
         };
-        let name = format!("jitter {} {:?} {CONCERT}", self.label, WINDOWS);
-        Job::new(name, expected, move || self.measure())
+        let name = format!("jitter {}", self.label);
+        Job::new(name, expected, move || self.measure()).depending_on(CONCERT)
     }
 
     /// Runs it and measures.
@@ -167,10 +167,11 @@ fn add_energies(simulation: &Simulation, [all, inside, rim]: &mut [Mean; 3]) {
     let Some(&dense) = sorted.get((RIM * sorted.len() as f64) as usize) else {
         return;
     };
-    for i in 0..agents.len() {
-        let energy = 0.5 * agents.mass[i] * agents.velocity[i].norm_squared();
+    let bodies = agents.mass.iter().zip(&agents.velocity);
+    for ((mass, velocity), &density) in bodies.zip(density) {
+        let energy = 0.5 * mass * velocity.norm_squared();
         all.add(energy);
-        if density[i] >= dense {
+        if density >= dense {
             inside.add(energy);
         } else {
             rim.add(energy);

@@ -16,7 +16,7 @@ use crate::reproduce::{ReproduceError, Store};
 /// The engine's sources, in 16 letters: what another engine did is not taken for this one's.
 const ENGINE: &str = env!("SANDBOX_ENGINE");
 /// To be raised with whatever changes a job's result and is no part of the engine.
-const VERSION: u32 = 1;
+const VERSION: u32 = 4;
 
 /// Who is told how it goes.
 pub trait Listener: Sync {
@@ -34,8 +34,10 @@ impl Listener for () {
 
 /// A piece of work and what it gives.
 pub struct Job {
-    /// A readable name, with everything that the result depends on.
+    /// A readable name, different from that of any other job.
     pub name: String,
+    /// What else the result depends on.
+    input: &'static str,
     /// Roughly how long it takes on one core, seconds.
     pub expected_secs: f64,
     /// Does it.
@@ -61,13 +63,20 @@ impl Job {
         };
         Self {
             name,
+            input: "",
             expected_secs,
             work: Box::new(value),
         }
     }
 
+    /// The same job, with a text that its result depends on.
+    #[must_use]
+    pub fn depending_on(self, input: &'static str) -> Self {
+        Self { input, ..self }
+    }
+
     fn identity(&self) -> String {
-        format!("{ENGINE} {VERSION} {}", self.name)
+        format!("{ENGINE} {VERSION} {} {}", self.name, self.input)
     }
 
     /// The file of its result in the store.

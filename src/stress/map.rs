@@ -5,12 +5,13 @@ use serde::{Deserialize, Serialize};
 
 use super::job::Job;
 use super::rest::Rest;
+use crate::clock::PAPER_COARSE_STEP;
 use crate::reproduce::ReproduceError;
 use crate::simulation::Fault;
 use crate::stability::{self, FITTED, Mode};
 
-/// No step is longer, seconds.
-const LONGEST: f64 = 0.3;
+/// No step is longer, seconds: Δt_fine never is longer than Δt_coarse.
+const LONGEST: f64 = PAPER_COARSE_STEP;
 /// A step so much shorter than the formula's shows what the model does by itself.
 const FINE: f64 = 0.2;
 /// The search begins so far below and above the formula's step, as factors.
@@ -124,6 +125,9 @@ impl Cell {
         while !crowd.is_stable(low, unrest)? && low > 1e-3 * guess {
             (low, high) = (low / WIDTH, low);
         }
+        if crowd.is_stable(high, unrest)? {
+            low = high;
+        }
         for _ in 0..detail.bisections() {
             let middle = (low * high).sqrt();
             if crowd.is_stable(middle, unrest)? {
@@ -144,9 +148,12 @@ impl Cell {
     /// The job of finding it.
     pub fn job(crowd: Rest, detail: Detail) -> Job {
         let steps = detail.bisections();
-        let name = format!("map {crowd:?} {steps} bisections");
-        // Frames of 8 s, in two rooms, the fine steps foremost.
-        let frames = 16.0 * (1.0 / FINE + f64::from(steps) + 4.0);
+        let name = format!(
+            "map k={} ρ⁰max={} K^ag={} μ={}, {steps} bisections",
+            crowd.gas_constant, crowd.rest_density_max, crowd.agent_stiffness, crowd.viscosity
+        );
+        // Frames of 8 s, in two rooms, with three crowds, the fine steps foremost.
+        let frames = 48.0 * (1.0 / FINE + f64::from(steps) + 4.0);
         let expected = 5e-5 * frames / crowd.mode().largest_step(&FITTED);
         Job::new(name, expected, move || {
             Self::find(crowd, detail).map_err(|fault| ReproduceError::Fault {

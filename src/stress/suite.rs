@@ -59,9 +59,8 @@ impl Hard {
             settings.map_err(|error| ReproduceError::Data(format!("{}: {error}", self.name)))?;
         let scenario = self.scenario(&settings).map_err(invalid)?;
         let frames = scenario.duration_secs / scenario.scene.clock.time_step();
-        let name = format!("hard {} {frames} frames {}", self.name, scenario.document);
-        Ok(Job::new(name, 0.3 + 1.5e-5 * frames, move || {
-            Ok(Self::survive(&scenario))
-        }))
+        let name = format!("hard {}, {frames} frames", self.name);
+        let work = move || Ok(Self::survive(&scenario));
+        Ok(Job::new(name, 0.3 + 1.5e-5 * frames, work).depending_on(self.text))
     }
 }
