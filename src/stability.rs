@@ -37,7 +37,8 @@ pub struct Constants {
     pub margin: f64,
 }
 
-/// Fitted to the maps.
+/// Set by hand from the maps, between which places allow least and which must not get too little; what least
+/// squares give for all places alike stands under the maps.
 pub const FITTED: Constants = Constants {
     pressure: 2.5,
     contact: 4.8,
