@@ -1,12 +1,14 @@
 //! One agent, term by term: the engine's own force functions on the frozen frame, laid open.
 
+mod text;
+
 use serde::Serialize;
 
 use crate::boundary::WallShare;
 use crate::density::mean_density_before;
 use crate::math::Vector;
 use crate::profile::Terms;
-use crate::simulation::Simulation;
+use crate::simulation::{Fault, Simulation};
 
 /// Everything that acts on one agent in one frame. Accelerations in m/s², each term's own share
 /// (already divided by mass or density, not yet weighted).
@@ -127,6 +129,17 @@ impl Breakdown {
             neighbors,
             walls: wall_terms(simulation, i),
         })
+    }
+
+    /// Lays open the agent that a fault names, in the frame that cannot be left; `None` if the fault names
+    /// nobody who is there.
+    pub fn of_fault(simulation: &mut Simulation, fault: &Fault) -> Option<Self> {
+        let &Fault::NotFinite { agent, .. } = fault else {
+            return None;
+        };
+        simulation.evaluate_with_density().ok()?;
+        let i = simulation.frame().agents.index_of(agent)?;
+        Self::of(simulation, i)
     }
 
     /// Σ weight × term over all profiles: [`acceleration`](Self::acceleration) to rounding.

@@ -53,6 +53,10 @@ pub mod placement;
 
 pub mod scene;
 
+pub mod sound;
+
+pub mod stability;
+
 pub mod simulation;
 
 pub mod metrics;
@@ -62,8 +66,6 @@ pub mod breakdown;
 pub mod scenario;
 
 pub mod drive;
-
-pub mod sound;
 
 pub mod wave;
 
@@ -80,6 +82,8 @@ pub mod reproduce;
 
 #[cfg(feature = "bench")]
 pub mod bench;
+
+pub mod stress;
 
 #[cfg(feature = "cli")]
 pub mod cli;

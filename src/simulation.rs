@@ -51,6 +51,8 @@ pub struct Outcome {
     pub arrivals: Vec<Arrival>,
     /// How many moves ended at a wall that they would have crossed.
     pub contained_moves: u64,
+    /// How often a speed was cut to the highest allowed.
+    pub clamped_speeds: u64,
     /// Agents that were put out of an obstacle when they entered: id and obstacle.
     pub displaced: Vec<(u32, usize)>,
 }
@@ -62,6 +64,8 @@ pub struct Arrival {
     pub id: u32,
     /// When, seconds: after the move that led there.
     pub time: f64,
+    /// Where that move ended, metres.
+    pub position: Vector,
     /// Does it count as evacuated?
     pub counted: bool,
 }
@@ -162,6 +166,16 @@ impl Simulation {
     /// colour, a breakdown.
     pub fn request_density_until(&mut self, frame: u64) {
         self.density_until = self.density_until.max(frame);
+    }
+
+    /// Evaluates the frame once more, with the density in it, for whoever lays open what is wrong there.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate).
+    pub fn evaluate_with_density(&mut self) -> Result<(), Fault> {
+        self.request_density_until(self.clock.frame() + 1);
+        self.evaluated = false;
+        self.evaluate()
     }
 
     /// Takes the sums over pairs of all later evaluations in another precision than the scene's.

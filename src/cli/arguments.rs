@@ -68,6 +68,9 @@ pub enum Command {
     /// Measure how fast it is on this machine: a table, one JSON object, a picture
     #[command(after_help = format!("{}{BENCH_EXAMPLES}", bench::about()))]
     Bench(BenchOptions),
+    /// Run hard cases, map the largest stable time step, measure jitter
+    #[command(after_help = "Example: sandbox stress --quick")]
+    Stress(StressOptions),
     /// List the scenarios and profiles, or the settings that --set takes
     #[command(after_help = "Example: sandbox list --settings")]
     List {
@@ -86,6 +89,9 @@ pub struct SceneOptions {
     /// Seed of all random numbers
     #[arg(long)]
     pub seed: Option<u64>,
+    /// Δt_fine in seconds, or `auto`: the largest step at which the crowd is sure to come to rest
+    #[arg(long, value_name = "SECS|auto")]
+    pub time_step: Option<String>,
     /// Change a setting of the scenario (see `sandbox list --settings`); may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
@@ -210,6 +216,22 @@ pub struct BenchOptions {
     /// compare: the Python that has JuPedSim
     #[arg(long, value_name = "PATH", default_value = "python3")]
     pub python: PathBuf,
+}
+
+#[derive(Args)]
+pub struct StressOptions {
+    /// Fewer places on the maps and a shorter soak: less than a minute
+    #[arg(long)]
+    pub quick: bool,
+    /// Folder for the results; what is finished in it is not done again
+    #[arg(long, value_name = "DIR", default_value = "stress")]
+    pub out: PathBuf,
+    /// Put the tables also between the lines <!-- NAME --> and <!-- /NAME --> of a file
+    #[arg(long, value_name = "FILE.md")]
+    pub update: Option<PathBuf>,
+    /// Cases to compute at once, each on one thread [default: all cores]
+    #[arg(long, value_parser = threads)]
+    pub threads: Option<usize>,
 }
 
 /// Where a scenario comes from.

@@ -8,12 +8,15 @@ use super::report::Report;
 use super::{Failure, say, scenario, use_threads};
 use crate::drive::{Then, drive, unless_over};
 use crate::metrics::Metrics;
+use crate::scene::{Integrator, Scene};
 use crate::simulation::{EventKind, Simulation};
+use crate::stability::{self, FITTED, Mode};
 
 /// `sandbox evacuation|crossing|concert|run`.
 pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     let scenario = scenario(source, &options.scene, options.until)?;
     use_threads(options.scene.threads)?;
+    warn_of_the_step(&scenario.scene);
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     let mut metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
     let duration = scenario.duration_secs;
@@ -32,10 +35,26 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     progress.finish();
     // What was recorded is kept, whatever ended the run.
     let saved = output.finish();
-    driven?;
+    driven.map_err(|failure| failure.laid_open(&mut simulation))?;
     saved?;
     report_oddities(&simulation);
     say(&Report::new(&scenario, &simulation, &metrics).render(options.scene.json))
+}
+
+/// Says by how much a step is longer than a crowd at rest bears.
+fn warn_of_the_step(scene: &Scene) {
+    let (step, largest) = (
+        scene.clock.time_step(),
+        Mode::of(scene).largest_step(&FITTED),
+    );
+    if scene.integrator == Integrator::SemiImplicit && step > largest {
+        eprintln!(
+            "warning: time_step_secs {step} is {:.1} times {largest:.4}, the longest at which a crowd comes to \
+             rest; --time-step auto takes {}",
+            step / largest,
+            stability::time_step(scene),
+        );
+    }
 }
 
 /// Says what a careful reader of the results should know.
@@ -54,6 +73,12 @@ fn report_oddities(simulation: &Simulation) {
             "note: {} move(s) would have crossed a wall and were stopped there",
             outcome.contained_moves
         );
+    }
+    if outcome.clamped_speeds > 0 {
+        let frame = simulation.frame();
+        let (count, most) = (outcome.clamped_speeds, simulation.scene().max_speed);
+        let frames = frame.clock.frame();
+        eprintln!("note: a speed was cut to {most} m/s {count} time(s) in {frames} frames");
     }
     for event in simulation.events() {
         if event.kind == EventKind::PushBegan(0) {

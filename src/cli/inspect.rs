@@ -19,7 +19,7 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     let progress = Progress::new(options.at);
     let went = rayon::scope(|_| go_to(options.at, &mut simulation, &progress));
     progress.finish();
-    went?;
+    went.map_err(|failure| failure.laid_open(&mut simulation))?;
     let breakdowns = breakdowns(&simulation, options)?;
     if let Some(path) = &options.save {
         let ids = breakdowns.iter().map(|breakdown| breakdown.id).collect();
@@ -31,7 +31,10 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
         let object = json!({"time_secs": time, "frame": frame, "agents": breakdowns});
         return say(&format!("{object}\n"));
     }
-    let tables: String = breakdowns.iter().map(table).collect();
+    let tables: String = breakdowns
+        .iter()
+        .map(|agent| format!("\n{agent}"))
+        .collect();
     say(&format!("t = {time:.2} s, frame {frame}\n{tables}"))
 }
 
@@ -78,57 +81,4 @@ fn absent(simulation: &Simulation, id: u32) -> Failure {
         "it has left".to_owned()
     };
     Failure::Input(format!("--agent {id}: not there at {time:.2} s: {reason}"))
-}
-
-/// A breakdown to be read by people.
-fn table(agent: &Breakdown) -> String {
-    let vector = |[x, y]: [f64; 2]| format!("({x:>10.4}, {y:>10.4})");
-    let mut text = format!(
-        "\nagent {}: position {} m, velocity {} m/s, radius {:.4} m, mass {:.4}\n",
-        agent.id,
-        vector(agent.position),
-        vector(agent.velocity),
-        agent.radius,
-        agent.mass
-    );
-    text += &format!(
-        "  density {:.4} P/m² ({:.4} agents + {:.4} walls), mean {:.4}, rest {:.4}, pressure {:.4}\n",
-        agent.density,
-        agent.density_from_agents,
-        agent.density_from_walls,
-        agent.mean_density,
-        agent.rest_density,
-        agent.pressure
-    );
-    for share in &agent.profiles {
-        text += &format!(
-            "  {} × {:.4}: accelerations, m/s²\n",
-            share.name, share.weight
-        );
-        for (name, term) in share.accelerations.named() {
-            if let Some(term) = term {
-                text += &format!("    {name:<18} {}\n", vector(term.into()));
-            }
-        }
-    }
-    text += &format!(
-        "    {:<18} {}\n",
-        "total (weighted)",
-        vector(agent.acceleration)
-    );
-    for wall in &agent.walls {
-        text += &format!(
-            "  wall {}: nearest point {} m, hidden area {:.5} m², density {:.5} P/m²\n",
-            wall.wall,
-            vector(wall.nearest_point),
-            wall.hidden_area,
-            wall.density
-        );
-    }
-    let near: Vec<String> = agent
-        .neighbors
-        .iter()
-        .map(|neighbor| format!("{} ({:.3} m)", neighbor.id, neighbor.distance))
-        .collect();
-    text + &format!("  {} neighbours: {}\n", near.len(), near.join(", "))
 }

@@ -8,15 +8,19 @@ mod list;
 mod output;
 mod report;
 mod reproduce;
+mod stress;
+mod update;
+mod watch;
 
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
 
+use crate::breakdown::Breakdown;
 use crate::reproduce::ReproduceError;
 use crate::scenario::{Scenario, ScenarioError, Setting};
-use crate::simulation::Fault;
+use crate::simulation::{Fault, Simulation};
 use arguments::{Arguments, Command, Source};
 
 /// Why a command did not do what was asked.
@@ -31,6 +35,14 @@ enum Failure {
     /// The run cannot go on: exit code 1.
     #[error(transparent)]
     Fault(#[from] Fault),
+    /// The same, and somebody laid open in the frame where it ended: exit code 1.
+    #[error("{fault}\n{agent}")]
+    LaidOpen {
+        /// What happened.
+        fault: Fault,
+        /// To whom.
+        agent: Box<Breakdown>,
+    },
     /// A file cannot be written: exit code 1.
     #[error("{0}")]
     Output(String),
@@ -43,7 +55,23 @@ impl Failure {
     fn exit_code(&self) -> u8 {
         match self {
             Self::Scenario(_) | Self::Input(_) => 2,
-            Self::Fault(_) | Self::Output(_) | Self::Reproduce(_) => 1,
+            Self::Fault(_) | Self::LaidOpen { .. } | Self::Output(_) | Self::Reproduce(_) => 1,
+        }
+    }
+}
+
+impl Failure {
+    /// With every force on whom it happened to.
+    fn laid_open(self, simulation: &mut Simulation) -> Self {
+        match self {
+            Self::Fault(fault) => match Breakdown::of_fault(simulation, &fault) {
+                Some(agent) => Self::LaidOpen {
+                    fault,
+                    agent: Box::new(agent),
+                },
+                None => Self::Fault(fault),
+            },
+            other => other,
         }
     }
 }
@@ -70,6 +98,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Inspect(options) => inspect::run(&options),
         Command::Reproduce(options) => reproduce::run(&options),
         Command::Bench(options) => bench::run(&options),
+        Command::Stress(options) => stress::run(&options),
         Command::List { settings } => list::run(settings),
     }
 }
@@ -86,6 +115,7 @@ fn scenario(
         ("--profile", "profile", scene.profile.clone()),
         ("--seed", "seed", seed),
         ("--until", "duration_secs", until),
+        ("--time-step", "time_step_secs", scene.time_step.clone()),
     ];
     let mut settings = Vec::new();
     for (flag, key, value) in flags {

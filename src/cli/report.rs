@@ -55,6 +55,7 @@ impl<'a> Report<'a> {
             "agents": frame.agents.entered(),
             "metrics": metrics,
             "contained_moves": outcome.contained_moves,
+            "clamped_speeds": outcome.clamped_speeds,
             "displaced_agents": outcome.displaced.len(),
             "ms_per_frame": self.ms_per_frame(),
             "real_time_factor": self.real_time_factor(),

@@ -91,6 +91,20 @@ impl Wall {
         }
     }
 
+    /// The point `clearance` metres before both this wall and another at the place where they cross; `None`
+    /// where they do not.
+    pub fn corner_with(&self, other: &Self, clearance: f64) -> Option<Vector> {
+        let sine = self.tangent.perp(&other.tangent);
+        let along = (other.start - self.start).perp(&other.tangent) / sine;
+        let point = self.start + self.tangent * along;
+        let there = (point - other.start).dot(&other.tangent);
+        let crosses =
+            (0.0..=self.length()).contains(&along) && (0.0..=other.length()).contains(&there);
+        let cosine = self.normal.dot(&other.normal);
+        let out = (self.normal + other.normal) * (clearance / (1.0 + cosine));
+        (crosses && out.norm().is_finite()).then_some(point + out)
+    }
+
     /// The fraction of the way from `from` (on the free side) to `to` at which this wall is crossed
     /// inwards, its ends included; `None` for a move that stays free.
     pub fn crossing(&self, from: Vector, to: Vector) -> Option<f64> {

@@ -113,17 +113,38 @@ impl Walls {
         Some((from + (to - from) * free, k))
     }
 
-    /// The nearest point to `p` on a wall, a hair outside, that lies in no obstacle.
+    /// The nearest point to `p`, a hair outside of walls, that lies in no obstacle: on a wall, or where two
+    /// walls of overlapping obstacles cross.
     pub fn free_point_near(&self, p: Vector) -> Option<Vector> {
-        let mut exits: Vec<Vector> = self
+        let feet = self.walls.iter();
+        let feet = feet.map(|wall| wall.nearest_point(p).point + wall.normal * CLEARANCE);
+        let foot = self.nearest_free(p, feet.collect());
+        let reach = foot.map_or(f64::INFINITY, |(distance, _)| distance);
+        let near: Vec<&Wall> = self
             .walls
             .iter()
-            .map(|wall| wall.nearest_point(p).point + wall.normal * CLEARANCE)
+            .filter(|wall| (wall.nearest_point(p).point - p).norm() < reach)
             .collect();
-        exits.sort_by(|a, b| (a - p).norm_squared().total_cmp(&(b - p).norm_squared()));
+        let mut corners = Vec::new();
+        for (k, a) in near.iter().enumerate() {
+            let others = near[..k].iter().filter(|b| b.obstacle != a.obstacle);
+            corners.extend(others.filter_map(|b| a.corner_with(b, CLEARANCE)));
+        }
+        let corner = self.nearest_free(p, corners);
+        let nearest = [foot, corner].into_iter().flatten();
+        nearest
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, exit)| exit)
+    }
+
+    /// The one of `exits` nearest to `p` that lies in no obstacle, after its distance in metres.
+    fn nearest_free(&self, p: Vector, exits: Vec<Vector>) -> Option<(f64, Vector)> {
+        let distance = |exit: Vector| ((exit - p).norm(), exit);
+        let mut exits: Vec<(f64, Vector)> = exits.into_iter().map(distance).collect();
+        exits.sort_by(|a, b| a.0.total_cmp(&b.0));
         exits
             .into_iter()
-            .find(|&exit| self.obstacle_at(exit).is_none())
+            .find(|&(_, exit)| self.obstacle_at(exit).is_none())
     }
 
     /// The first obstacle that contains `p`.
@@ -238,5 +259,18 @@ mod tests {
         let free = walls.free_point_near(inside).unwrap();
         assert!((free - Vector::new(1.9, 0.0)).norm() < 1e-5);
         assert_eq!(walls.obstacle_at(free), None);
+    }
+
+    #[test]
+    fn where_obstacles_overlap_the_nearest_free_point_may_be_a_corner_between_two() {
+        // A cross of two bars: every wall's nearest point to the middle lies in the other bar, but for
+        // the far ends. People were put out there, 10 m away, with a free corner at 1.41 m.
+        let cross = Walls::new(vec![
+            rectangle([-10.0, 10.0], [-1.0, 1.0]),
+            rectangle([-1.0, 1.0], [-10.0, 10.0]),
+        ]);
+        let free = cross.free_point_near(Vector::new(0.1, 0.2)).unwrap();
+        assert!((free - Vector::new(1.0, 1.0)).norm() < 1e-5, "{free}");
+        assert_eq!(cross.obstacle_at(free), None);
     }
 }

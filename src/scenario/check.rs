@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::crowd::{Crowd, MOST_NUMBERED};
 use super::error::{Problem, Under, in_plain_words};
-use super::file::{self, File, Object, ProfileChoice};
+use super::file::{self, File, Object, ProfileChoice, TimeStep};
 use super::range::{COARSE_EVERY, MAX_SPEED, PREFERRED_SPEED, Range, TIME, TIME_STEP};
 use super::range::{point, region};
 use super::{Scenario, Stop, View, profiles, settings};
@@ -15,7 +15,8 @@ use crate::geometry::Polygon;
 use crate::math::Vector;
 use crate::metrics::Measurement;
 use crate::profile::Override;
-use crate::scene::{Push, Region, Scene};
+use crate::scene::{Integrator, Push, Region, Scene};
+use crate::stability;
 
 /// How long a run lasts that says nothing, seconds.
 const DEFAULT_DURATION: f64 = 60.0;
@@ -48,6 +49,9 @@ pub(super) fn scenario(document: &Value, fallback_name: &str) -> Result<Scenario
     file.goal.map(|goal| point("goal", goal)).transpose()?;
     let entering = Crowd::new(&file, &blend, &mut scene, duration_secs).enter()?;
     scene.pushes = pushes(&file.events)?;
+    if file.time_step_secs == Some(TimeStep::Auto) {
+        scene.clock = automatic_clock(&file, &scene)?;
+    }
     Ok(Scenario {
         name,
         description: file.description.clone().unwrap_or_default(),
@@ -78,12 +82,10 @@ fn read(document: &Value) -> Result<File, Problem> {
 /// Everything but the people.
 fn empty_scene(file: &File) -> Result<Scene, Problem> {
     let paper = Scene::default();
-    let time_step = file.time_step_secs.unwrap_or(PAPER_TIME_STEP);
-    let time_step = TIME_STEP.check("time_step_secs", time_step)?;
-    let coarse_every = file
-        .coarse_every
-        .unwrap_or_else(|| Clock::nearest_coarse_every(time_step));
-    COARSE_EVERY.check("coarse_every", f64::from(coarse_every))?;
+    let clock = match file.time_step_secs {
+        Some(TimeStep::Given(step)) => clock(file, step)?,
+        Some(TimeStep::Auto) | None => clock(file, PAPER_TIME_STEP)?,
+    };
     let preferred_speed = file.preferred_speed.unwrap_or(paper.preferred_speed);
     let max_speed = file.max_speed.unwrap_or(paper.max_speed);
     let mut obstacles = Vec::with_capacity(file.obstacles.len());
@@ -92,7 +94,7 @@ fn empty_scene(file: &File) -> Result<Scene, Problem> {
     }
     Ok(Scene {
         seed: file.seed.unwrap_or(paper.seed),
-        clock: Clock::new(time_step, coarse_every),
+        clock,
         integrator: file.integrator,
         wall_method: file.wall_method,
         precision: file.precision,
@@ -100,6 +102,24 @@ fn empty_scene(file: &File) -> Result<Scene, Problem> {
         max_speed: MAX_SPEED.check("max_speed", max_speed)?,
         ..Scene::with_obstacles(obstacles)
     })
+}
+
+fn clock(file: &File, time_step: f64) -> Result<Clock, Problem> {
+    let time_step = TIME_STEP.check("time_step_secs", time_step)?;
+    let coarse_every = file
+        .coarse_every
+        .unwrap_or_else(|| Clock::nearest_coarse_every(time_step));
+    COARSE_EVERY.check("coarse_every", f64::from(coarse_every))?;
+    Ok(Clock::new(time_step, coarse_every))
+}
+
+/// The clock of a scene that is complete but for its step.
+fn automatic_clock(file: &File, scene: &Scene) -> Result<Clock, Problem> {
+    if scene.integrator != Integrator::SemiImplicit {
+        let reason = "`auto` is known for the semi-implicit integrator alone; give a number";
+        return Err(Problem::new("time_step_secs", reason));
+    }
+    clock(file, stability::time_step(scene))
 }
 
 fn obstacle(corners: &[[f64; 2]]) -> Result<Polygon, Problem> {

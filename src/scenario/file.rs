@@ -4,7 +4,7 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, MapAccess, Visitor};
+use serde::de::{Deserializer, Error, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Serialize};
 
 use crate::boundary::WallMethod;
@@ -48,7 +48,7 @@ pub(super) struct File {
     pub description: Option<String>,
     pub seed: Option<u64>,
     pub duration_secs: Option<f64>,
-    pub time_step_secs: Option<f64>,
+    pub time_step_secs: Option<TimeStep>,
     pub coarse_every: Option<u32>,
     pub integrator: Integrator,
     pub wall_method: WallMethod,
@@ -67,6 +67,51 @@ pub(super) struct File {
     pub stop: Object<Stop>,
     pub view: Option<Object<View>>,
     pub debug_agents: Option<Vec<u32>>,
+}
+
+/// Δt_fine as given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum TimeStep {
+    /// Seconds.
+    Given(f64),
+    /// The largest that is stable.
+    Auto,
+}
+
+impl<'de> Deserialize<'de> for TimeStep {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(TimeStepVisitor)
+    }
+}
+
+struct TimeStepVisitor;
+
+impl Visitor<'_> for TimeStepVisitor {
+    type Value = TimeStep;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a number or \"auto\"")
+    }
+
+    fn visit_f64<E>(self, seconds: f64) -> Result<TimeStep, E> {
+        Ok(TimeStep::Given(seconds))
+    }
+
+    fn visit_u64<E>(self, seconds: u64) -> Result<TimeStep, E> {
+        Ok(TimeStep::Given(seconds as f64))
+    }
+
+    fn visit_i64<E>(self, seconds: i64) -> Result<TimeStep, E> {
+        Ok(TimeStep::Given(seconds as f64))
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<TimeStep, E> {
+        if text == "auto" {
+            Ok(TimeStep::Auto)
+        } else {
+            Err(E::invalid_value(Unexpected::Str(text), &self))
+        }
+    }
 }
 
 /// How agents behave, and what becomes of them.

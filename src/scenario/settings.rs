@@ -243,8 +243,8 @@ fn scalars() -> [SettingDoc; 12] {
             "time_step_secs",
             "s",
             "0.02",
-            &range::TIME_STEP,
-            "Δt_fine, one frame",
+            &format!("{}, or auto", range::TIME_STEP),
+            "Δt_fine, one frame; auto: the largest at which a crowd is sure to come to rest",
         ),
         doc(
             "coarse_every",

@@ -71,6 +71,7 @@ impl Simulation {
             })
             .reduce(Moves::default, Moves::and);
         self.outcome.contained_moves += total.contained;
+        self.outcome.clamped_speeds += total.clamped;
         self.neighbors.travelled(total.farthest.sqrt());
     }
 
@@ -109,6 +110,7 @@ impl Simulation {
                 arrivals.push(Arrival {
                     id: agents.id[i],
                     time,
+                    position: agents.position[i],
                     counted: group.counted,
                 });
             } else {
@@ -129,6 +131,8 @@ impl Simulation {
 struct Moves {
     /// How many ended at a wall.
     contained: u64,
+    /// How many were too fast.
+    clamped: u64,
     /// The squared distance from where they were sorted, of who is farthest from there, metres².
     farthest: f64,
 }
@@ -146,7 +150,9 @@ impl Moves {
         acceleration: Vector,
     ) {
         let (before, start) = (*velocity, *position);
-        *velocity = clamp_length(before + acceleration * dt, scene.max_speed);
+        let wish = before + acceleration * dt;
+        *velocity = clamp_length(wish, scene.max_speed);
+        self.clamped += u64::from(*velocity != wish);
         let step = match scene.integrator {
             Integrator::SemiImplicit => *velocity,
             // A velocity that an agent enters with may be too fast.
@@ -169,6 +175,7 @@ impl Moves {
     fn and(self, other: Self) -> Self {
         Self {
             contained: self.contained + other.contained,
+            clamped: self.clamped + other.clamped,
             farthest: self.farthest.max(other.farthest),
         }
     }

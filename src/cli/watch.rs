@@ -1,0 +1,90 @@
+//! How far long work has come.
+
+use std::io::IsTerminal;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::reproduce::{self, CaseResult};
+use crate::stress;
+
+/// A progress bar on stderr; where that is no terminal, a line for every finished case.
+pub struct Watch {
+    bar: ProgressBar,
+    lines: bool,
+}
+
+impl Watch {
+    pub fn new() -> Self {
+        let bar = ProgressBar::new(0);
+        let template = "{bar:30} {percent} % of the work, {eta} left; {msg}";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        Self {
+            bar,
+            lines: !std::io::stderr().is_terminal(),
+        }
+    }
+
+    /// Nothing is left to be done.
+    pub fn ends(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    fn begin(&self, cases: usize, kept: usize, seconds: f64) {
+        self.note(&format!("{cases} case(s) to run, {kept} kept from before"));
+        self.bar.set_length(steps(seconds));
+        self.bar.enable_steady_tick(Duration::from_secs(1));
+    }
+
+    fn finish(&self, case: &str, seconds: f64) {
+        let text = format!("{case}: {seconds:.1} s");
+        if self.lines {
+            let (done, all) = (self.bar.position(), self.bar.length().unwrap_or_default());
+            let left = self.bar.eta().as_secs();
+            let percent = 100 * done / all.max(1);
+            eprintln!("{percent:>3} %, {left} s left; {text}");
+        } else {
+            self.bar.set_message(text);
+        }
+    }
+
+    fn note(&self, text: &str) {
+        self.bar.suspend(|| eprintln!("note: {text}"));
+    }
+}
+
+/// Expected seconds → steps of the bar.
+fn steps(seconds: f64) -> u64 {
+    (seconds * 1e3).round() as u64
+}
+
+impl reproduce::Listener for Watch {
+    fn begins(&self, cases: usize, kept: usize, seconds: f64) {
+        self.begin(cases, kept, seconds);
+    }
+
+    fn advances(&self, seconds: f64) {
+        self.bar.inc(steps(seconds));
+    }
+
+    fn finishes(&self, result: &CaseResult) {
+        self.finish(&result.case, result.computed_in_secs);
+    }
+
+    fn notes(&self, text: &str) {
+        self.note(text);
+    }
+}
+
+impl stress::Listener for Watch {
+    fn begins(&self, jobs: usize, kept: usize, seconds: f64) {
+        self.begin(jobs, kept, seconds);
+    }
+
+    fn finishes(&self, job: &str, expected: f64, seconds: f64) {
+        self.bar.inc(steps(expected));
+        self.finish(job, seconds);
+    }
+}

@@ -1,0 +1,178 @@
+//! What `sandbox stress` says and writes.
+
+use std::fmt::Write;
+
+use super::fit::LEAST;
+use super::hard::Survival;
+use super::jitter::{Jitter, Variant};
+use super::map::Cell;
+use crate::reproduce::{ReproduceError, Store};
+use crate::stability::{Constants, FITTED};
+
+/// Everything that was found.
+#[derive(Debug, Clone)]
+pub struct Report {
+    /// The hard cases by name.
+    pub hard: Vec<(&'static str, Survival)>,
+    /// The maps.
+    pub cells: Vec<Cell>,
+    /// The constants that these maps give.
+    pub fitted: Constants,
+    /// Crowds at rest.
+    pub jitter: Vec<(Variant, Jitter)>,
+}
+
+impl Report {
+    /// What is not as it must be; empty if all is well.
+    pub fn failures(&self) -> Vec<String> {
+        let hard = self
+            .hard
+            .iter()
+            .filter(|(_, survival)| !survival.is_passed());
+        let hard = hard.map(|(name, survival)| match &survival.fault {
+            Some(fault) => format!("{name}: {fault}"),
+            None => format!("{name}: {} through a wall", survival.found.passed),
+        });
+        let unstable = self.cells.iter().filter(|cell| !cell.auto_is_stable);
+        let unstable = unstable.map(|cell| format!("auto is not stable: {cell:?}"));
+        let short = self.cells.iter().filter(|cell| cell.ratio() < LEAST);
+        let short = short.map(|cell| format!("auto is only {:.2}: {cell:?}", cell.ratio()));
+        hard.chain(unstable).chain(short).collect()
+    }
+
+    /// Everything as Markdown: (name, text).
+    pub fn parts(&self) -> [(&'static str, String); 3] {
+        [
+            ("hard", hard_table(&self.hard)),
+            ("maps", self.maps()),
+            ("jitter", jitter_table(&self.jitter)),
+        ]
+    }
+
+    /// Writes the tables into the store's folder.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn write(&self, store: &Store) -> Result<(), ReproduceError> {
+        let text: String = self.parts().map(|(_, text)| text + "\n").concat();
+        store.write("report.md", text.as_bytes())?;
+        store.write("maps.csv", csv(&self.cells).as_bytes())?;
+        let json = serde_json::json!({
+            "hard": self.hard,
+            "maps": self.cells,
+            "jitter": self.jitter.iter().map(|(v, j)| (v.label, j)).collect::<Vec<_>>(),
+        });
+        let json = format!("{json}\n");
+        store.write("stress.json", json.as_bytes())?;
+        Ok(())
+    }
+
+    fn maps(&self) -> String {
+        let ratios = || self.cells.iter().map(Cell::ratio);
+        let least = ratios().fold(f64::INFINITY, f64::min);
+        let most = ratios().fold(0.0, f64::max);
+        let stable = self.cells.iter().filter(|cell| cell.auto_is_stable).count();
+        let constants = |c: &Constants| {
+            format!(
+                "C₁ = {:.2}, C₂ = {:.2}, C₃ = {:.2}, margin {:.2}",
+                c.pressure, c.contact, c.drag, c.margin
+            )
+        };
+        let mut text = "| k | ρ⁰max | K^ag | μ | largest stable Δt [s] | auto [s] | auto / largest | \
+                        auto is stable | unrest, full and loose room [m/s] |\n|---|---|---|---|---|---|---|---|---|\n"
+            .to_owned();
+        for cell in &self.cells {
+            let crowd = cell.crowd;
+            let _ = writeln!(
+                text,
+                "| {} | {} | {} | {} | {:.4} | {} | {:.2} | {} | {:.3}, {:.3} |",
+                crowd.gas_constant,
+                crowd.rest_density_max,
+                crowd.agent_stiffness,
+                crowd.viscosity,
+                cell.largest,
+                cell.auto,
+                cell.ratio(),
+                if cell.auto_is_stable { "yes" } else { "**no**" },
+                cell.unrest[0],
+                cell.unrest[1],
+            );
+        }
+        let _ = write!(
+            text,
+            "\nauto is stable at {stable} of {} places, at {least:.2} to {most:.2} of the largest stable step. \
+             Constants of the engine: {}. Fitted to these maps: {}.\n",
+            self.cells.len(),
+            constants(&FITTED),
+            constants(&self.fitted),
+        );
+        text
+    }
+}
+
+fn hard_table(hard: &[(&str, Survival)]) -> String {
+    let mut text = "| case | what it is | passed | agents | frames | through a wall | stopped at a wall | speeds cut | \
+                    put out of obstacles | nearest centres [D_i + D_j] |\n|---|---|---|---|---|---|---|---|---|---|\n"
+        .to_owned();
+    for (name, survival) in hard {
+        let found = &survival.found;
+        let _ = writeln!(
+            text,
+            "| {name} | {} | {} | {} | {} | {} | {} | {} | {} | {:.2} |",
+            survival.description,
+            if survival.is_passed() {
+                "yes"
+            } else {
+                "**no**"
+            },
+            found.entered,
+            found.frames,
+            found.passed,
+            found.contained_moves,
+            found.clamped_speeds,
+            found.displaced,
+            found.closest,
+        );
+    }
+    text
+}
+
+fn jitter_table(jitter: &[(Variant, Jitter)]) -> String {
+    let mut text =
+        "| crowd | energy before the push [m²/s²] | after it | inside | rim | density [P/m²] | \
+                    nearest centres [D_i + D_j] |\n|---|---|---|---|---|---|---|\n"
+            .to_owned();
+    for (variant, jitter) in jitter {
+        let _ = writeln!(
+            text,
+            "| {} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.2} | {:.2} |",
+            variant.label,
+            jitter.energy[0],
+            jitter.energy[1],
+            jitter.inside_and_rim[0],
+            jitter.inside_and_rim[1],
+            jitter.density,
+            jitter.closest,
+        );
+    }
+    text
+}
+
+fn csv(cells: &[Cell]) -> String {
+    let head = "gas_constant,rest_density_max,agent_stiffness,viscosity,largest_secs,auto_secs,\
+                auto_is_stable,unrest_full,unrest_loose\n";
+    let row = |cell: &Cell| {
+        let (crowd, [full, loose]) = (cell.crowd, cell.unrest);
+        format!(
+            "{},{},{},{},{:.5},{},{},{full:.4},{loose:.4}\n",
+            crowd.gas_constant,
+            crowd.rest_density_max,
+            crowd.agent_stiffness,
+            crowd.viscosity,
+            cell.largest,
+            cell.auto,
+            cell.auto_is_stable,
+        )
+    };
+    head.to_owned() + &cells.iter().map(row).collect::<String>()
+}

@@ -1,0 +1,306 @@
+//! The hard cases: no panic, nothing that is not finite, nobody through a wall, and what was clipped is
+//! told.
+
+mod common;
+
+use std::path::Path;
+
+use common::{blend, blend_with, block, person, rectangle, scene, vector};
+use sandbox::agents::NewAgent;
+use sandbox::breakdown::Breakdown;
+use sandbox::catalog::{NAMES, Parameters};
+use sandbox::scenario::{Scenario, Setting};
+use sandbox::simulation::{Fault, Simulation};
+use sandbox::stability;
+use sandbox::stress::{Cell, Detail, Found, HARD, Hard, Rest, Watch};
+
+/// Runs a file of `scenarios/stress` with some settings; fails unless it survives.
+fn survives(name: &str, settings: &[&str]) -> Found {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenarios/stress/{name}.json"));
+    let settings: Vec<Setting> = settings.iter().map(|s| s.parse().unwrap()).collect();
+    let survival = Hard::survive(&Scenario::load(&path, &settings).unwrap());
+    assert!(survival.is_passed(), "{name} {settings:?}: {survival:?}");
+    survival.found
+}
+
+#[test]
+fn four_hundred_people_in_twenty_square_metres_push_each_other_apart() {
+    let found = survives("packed", &[]);
+    assert_eq!(found.entered, 400);
+    assert!(found.closest < 0.5, "they began deep in each other");
+    assert!(found.clamped_speeds > 0);
+}
+
+#[test]
+fn sixty_people_on_one_point_come_apart() {
+    let found = survives("one_point", &[]);
+    assert_eq!((found.entered, found.closest), (60, 0.0));
+    let scenario = HARD.iter().find(|hard| hard.name == "one_point").unwrap();
+    let mut simulation = Simulation::new(scenario.scenario(&[]).unwrap().scene).unwrap();
+    common::run(&mut simulation, 250);
+    let positions = &simulation.frame().agents.position;
+    for (i, a) in positions.iter().enumerate() {
+        assert!(positions[..i].iter().all(|b| (a - b).norm() > 0.05));
+    }
+}
+
+#[test]
+fn two_who_are_the_same_in_everything_stay_one_and_harm_nobody() {
+    let found = survives("two_as_one", &[]);
+    assert_eq!((found.entered, found.closest), (3, 0.0));
+}
+
+#[test]
+fn whoever_starts_inside_walls_is_put_out_and_counted() {
+    let found = survives("inside_walls", &[]);
+    assert_eq!((found.entered, found.displaced), (11, 10));
+}
+
+#[test]
+fn nobody_gets_through_a_corridor_that_is_narrower_than_a_person_by_a_wall() {
+    survives("narrow_corridor", &[]);
+}
+
+#[test]
+fn a_thousand_people_press_through_a_doorway_of_thirty_centimetres_one_by_one() {
+    let found = survives("narrow_door", &[]);
+    assert_eq!(found.entered, 1000);
+    assert!(found.arrived < 50);
+}
+
+#[test]
+fn nobody_is_pressed_through_the_tip_of_a_corner_of_five_degrees() {
+    survives("wedge", &[]);
+    survives("wedge", &["goal_scale=100"]);
+}
+
+#[test]
+fn a_wall_of_ten_thousand_edges_is_a_wall() {
+    survives("many_edges", &[]);
+    let file = HARD.iter().find(|hard| hard.name == "many_edges").unwrap();
+    assert!(file.scenario(&[]).unwrap().scene.walls.len() > 9_900);
+}
+
+#[test]
+fn a_wall_of_one_centimetre_holds_whatever_presses_against_it() {
+    survives("thin_wall", &[]);
+    // Without contact and SPH only the containment holds them.
+    let bare = ["gas_constant=0", "wall_stiffness=0", "duration_secs=5"];
+    assert!(survives("thin_wall", &bare).contained_moves > 1000);
+}
+
+#[test]
+fn children_and_giants_stand_side_by_side() {
+    survives("radii", &[]);
+    survives("radii", &["profile=sf"]);
+}
+
+#[test]
+fn a_crowd_a_million_metres_away_is_as_dense_as_one_at_home() {
+    let far = survives("far_away", &[]);
+    assert_eq!(far.contained_moves, 0);
+    let scenario = HARD.iter().find(|hard| hard.name == "far_away").unwrap();
+    let density = |shift: f64| {
+        let mut scene = scenario.scenario(&[]).unwrap().scene;
+        let home = vector(999_980.0, -999_980.0) * shift;
+        let obstacles = scene.walls.obstacles().iter().map(|polygon| {
+            let points = polygon.points().iter().map(|p| p - home).collect();
+            sandbox::geometry::Polygon::new(points).unwrap()
+        });
+        scene.walls = sandbox::geometry::Walls::new(obstacles.collect());
+        for agent in &mut scene.agents {
+            agent.position -= home;
+            agent.goal -= home;
+        }
+        let mut simulation = Simulation::new(scene).unwrap();
+        common::run(&mut simulation, 50);
+        simulation.evaluate().unwrap();
+        let density = &simulation.frame().fields.density;
+        density.iter().sum::<f64>() / density.len() as f64
+    };
+    let (far, home) = (density(0.0), density(1.0));
+    assert!((far / home - 1.0).abs() < 1e-4, "{far} {home}");
+}
+
+#[test]
+fn stiff_gas_and_stiff_contact_shake_but_hold() {
+    for name in ["stiff_gas", "stiff_contact"] {
+        assert!(survives(name, &[]).clamped_speeds > 1000, "{name}");
+    }
+}
+
+#[test]
+fn frames_of_half_a_second_take_nobody_through_a_wall_of_one_centimetre() {
+    let found = survives("long_step", &[]);
+    assert!(found.contained_moves > 100);
+    let fast = ["time_step_secs=1", "max_speed=100", "preferred_speed=100"];
+    survives("long_step", &fast);
+}
+
+#[test]
+fn a_full_room_takes_in_everybody_who_comes() {
+    let found = survives("full_room", &[]);
+    assert_eq!(found.entered, 144 + 13 * 25);
+}
+
+#[test]
+fn goals_inside_an_obstacle_are_pressed_against_but_never_reached() {
+    let found = survives("goals_inside", &[]);
+    assert!(found.entered == 260 && found.arrived <= 20, "{found:?}");
+}
+
+#[test]
+fn a_crowd_at_rest_stays_at_rest_for_a_hundred_thousand_frames() {
+    let found = survives("soak", &["duration_secs=2000"]);
+    assert_eq!(found.frames, 100_001);
+    assert_eq!(found.contained_moves, 0);
+    assert!(found.speed_at_end < 1e-3, "{found:?}");
+}
+
+#[test]
+fn every_hard_case_is_survived_by_every_profile_wall_method_and_integrator() {
+    for hard in HARD {
+        for profile in NAMES {
+            let profile = format!("profile={profile}");
+            survives(hard.name, &["duration_secs=0.3", &profile]);
+        }
+        for setting in [
+            "wall_method=exact",
+            "wall_method=union",
+            "integrator=forward-euler",
+            "precision=double",
+            "gas_constant=1e9",
+            "support_radius=0.05",
+        ] {
+            survives(hard.name, &["duration_secs=0.5", setting]);
+        }
+    }
+}
+
+#[test]
+fn the_bystander_sees_who_goes_through_a_wall() {
+    let wall = rectangle([1.0, 1.01], [-9.0, 9.0]);
+    let walled = Simulation::new(scene(vec![wall], blend("sph"))).unwrap();
+    let mut free = scene(Vec::new(), blend("sph"));
+    free.agents = vec![person(vector(0.0, 0.0), vector(9.0, 0.0))];
+    let mut free = Simulation::new(free).unwrap();
+    let mut watch = Watch::new(&walled);
+    for _ in 0..200 {
+        free.evaluate().unwrap();
+        watch.look(&free);
+        free.integrate().unwrap();
+    }
+    assert_eq!(watch.found(&free).passed, 1);
+}
+
+#[test]
+fn a_run_that_cannot_go_on_lays_open_whom_it_happened_to() {
+    for profile in ["sph", "sf", "rvo->sph"] {
+        let huge = Parameters {
+            gas_constant: Some(1e308),
+            agent_stiffness: Some(1e308),
+            wall_stiffness: Some(1e308),
+            ..Parameters::default()
+        };
+        let mut scene = scene(
+            vec![rectangle([2.1, 3.0], [0.0, 9.0])],
+            blend_with(profile, &huge),
+        );
+        scene.agents = block(vector(0.0, 0.0), 6, 6, 0.3, vector(9.0, 0.0));
+        let heavy = NewAgent {
+            mass: Some(1e-6),
+            ..person(vector(0.01, 0.01), vector(9.0, 0.0))
+        };
+        scene.agents.push(heavy);
+        let mut simulation = Simulation::new(scene).unwrap();
+        let fault = simulation.step().unwrap_err();
+        let Fault::NotFinite { agent, .. } = fault else {
+            panic!("{profile}: {fault}");
+        };
+        let breakdown = Breakdown::of_fault(&mut simulation, &fault).unwrap();
+        assert_eq!(breakdown.id, agent);
+        assert!(breakdown.density.is_finite() && breakdown.density > 0.0);
+        let text = breakdown.to_string();
+        assert!(text.contains(&format!("agent {agent}: position")), "{text}");
+        assert!(text.contains("contact_agents"), "{text}");
+        assert!(text.contains("total (weighted)"), "{text}");
+    }
+}
+
+#[test]
+fn an_automatic_step_is_stable_and_no_less_than_seven_tenths_of_the_largest() {
+    let paper = Rest::default();
+    for crowd in [
+        paper,
+        Rest {
+            agent_stiffness: 1000.0,
+            ..paper
+        },
+        Rest {
+            viscosity: 100.0,
+            ..paper
+        },
+        Rest {
+            gas_constant: 3200.0,
+            ..paper
+        },
+    ] {
+        let cell = Cell::find(crowd, Detail { quick: true }).unwrap();
+        assert!(cell.auto_is_stable, "{cell:?}");
+        assert!((0.7..=1.0).contains(&cell.ratio()), "{cell:?}");
+    }
+}
+
+#[test]
+fn a_step_of_twice_the_largest_shakes_a_crowd_at_rest() {
+    let crowd = Rest {
+        agent_stiffness: 1000.0,
+        ..Rest::default()
+    };
+    let step = stability::time_step(&crowd.scene(5.5, 1.0));
+    let unrest = crowd.unrest(0.2 * step).unwrap();
+    assert!(unrest.into_iter().all(|speed| speed < 0.05), "{unrest:?}");
+    assert!(crowd.is_stable(step, unrest).unwrap());
+    assert!(!crowd.is_stable(2.0 * step, unrest).unwrap());
+}
+
+#[test]
+fn a_scenario_takes_the_automatic_step_and_says_where_it_is_unknown() {
+    let parse = |text: &str| Scenario::parse(text, "f.json", &[]);
+    let step = |text| parse(text).unwrap().scene.clock.time_step();
+    let soft =
+        step(r#"{"time_step_secs": "auto", "goal": [9, 0], "agents": [{"position": [0, 0]}]}"#);
+    let stiff = step(
+        r#"{"time_step_secs": "auto", "goal": [9, 0], "agents": [{"position": [0, 0]}],
+            "parameters": {"gas_constant": 12800}}"#,
+    );
+    assert!(soft > 0.03 && stiff < 0.012, "{soft} {stiff}");
+    assert_eq!(step(r#"{"time_step_secs": 0.01}"#), 0.01);
+    assert_eq!(step(r#"{"time_step_secs": 1}"#), 1.0);
+    let refused = |text| parse(text).unwrap_err().to_string();
+    let euler = refused(r#"{"time_step_secs": "auto", "integrator": "forward-euler"}"#);
+    assert!(euler.contains("time_step_secs: `auto`"), "{euler}");
+    let word = refused(r#"{"time_step_secs": "fast"}"#);
+    assert!(
+        word.contains("time_step_secs") && word.contains("auto"),
+        "{word}"
+    );
+}
+
+#[cfg(feature = "cli")]
+#[test]
+fn a_step_that_is_too_long_is_warned_of_with_its_number() {
+    let stderr = |step: &str| {
+        let arguments = ["evacuation", "--until", "1", "--time-step", step];
+        let program = env!("CARGO_BIN_EXE_sandbox");
+        let output = std::process::Command::new(program)
+            .args(arguments)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(0));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(stderr("0.25").contains("warning: time_step_secs 0.25 is "));
+    assert!(!stderr("auto").contains("warning"));
+    assert!(!stderr("0.02").contains("warning"));
+}
