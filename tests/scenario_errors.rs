@@ -177,6 +177,6 @@ fn a_file_that_is_not_there_is_named() {
     let error = Scenario::shipped("concerto", &[]).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "no scenario is called `concerto`; there are evacuation, crossing, concert"
+        "no scenario is called `concerto`; there are evacuation, crossing, concert, plaza"
     );
 }

@@ -135,6 +135,28 @@ fn the_concert_is_a_hundred_rows_of_a_hundred_and_a_push() {
 }
 
 #[test]
+fn the_plaza_is_50_000_people_in_queues_and_in_streams() {
+    let scenario = shipped("plaza", &[]);
+    assert_eq!(scenario.profile_name, "rvo->sph");
+    let agents = &scenario.scene.agents;
+    assert!((49_500..50_500).contains(&agents.len()));
+    // Each lane is 14 m high; queues begin at x = 139.2 m, streams 50 m before.
+    let within = |x: [f64; 2], y: f64| {
+        let inside = agents.iter().filter(|agent| {
+            (x[0]..x[1]).contains(&agent.position.x) && (y..y + 15.0).contains(&agent.position.y)
+        });
+        inside.count() as f64
+    };
+    for lane in 0..10 {
+        let y = 15.0 * f64::from(lane);
+        let queue = within([139.2, 199.5], y) / (60.3 * 14.0);
+        let stream = within([88.0, 138.0], y) / (50.0 * 14.0);
+        assert!((4.0..6.0).contains(&queue), "{queue} P/m²");
+        assert!((0.45..2.1).contains(&stream), "{stream} P/m²");
+    }
+}
+
+#[test]
 fn settings_reach_every_profile_and_any_place() {
     let scenario = shipped(
         "concert",

@@ -29,7 +29,7 @@ pub struct Stretch {
 
 /// Before the door of the evacuation all have come together; in the crossing both streams meet; at the
 /// concert somebody pushes.
-pub const BUSIEST: [Stretch; 3] = [
+pub const BUSIEST: [Stretch; 4] = [
     Stretch {
         scenario: "evacuation",
         from: 10.0,
@@ -44,6 +44,11 @@ pub const BUSIEST: [Stretch; 3] = [
         scenario: "concert",
         from: 150.0,
         lasting: 10.0,
+    },
+    Stretch {
+        scenario: "plaza",
+        from: 10.0,
+        lasting: 2.0,
     },
 ];
 

@@ -49,6 +49,9 @@ pub enum Command {
         after_help = "Example: sandbox concert --record-from 149 --save recordings/concert.rrd --force"
     )]
     Concert(RunOptions),
+    /// 50,000 people stream over a square into the queues before ten gates (§7)
+    #[command(after_help = "Example: sandbox plaza --until 30 --save plaza.rrd --record-every 25")]
+    Plaza(RunOptions),
     /// Run a scenario file
     #[command(after_help = "Example: sandbox run my_station.json --until 60 --threads 2 --json")]
     Run {

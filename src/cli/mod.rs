@@ -94,6 +94,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Evacuation(options) => drive::run(&Source::Shipped("evacuation"), &options),
         Command::Crossing(options) => drive::run(&Source::Shipped("crossing"), &options),
         Command::Concert(options) => drive::run(&Source::Shipped("concert"), &options),
+        Command::Plaza(options) => drive::run(&Source::Shipped("plaza"), &options),
         Command::Run { file, options } => drive::run(&Source::File(file), &options),
         Command::Inspect(options) => inspect::run(&options),
         Command::Reproduce(options) => reproduce::run(&options),

@@ -11,8 +11,8 @@ pub struct Shipped {
     pub text: &'static str,
 }
 
-/// The paper's three scenarios (§6).
-pub const SHIPPED: [Shipped; 3] = [
+/// The paper's three scenarios (§6), and its open challenge (§7).
+pub const SHIPPED: [Shipped; 4] = [
     Shipped {
         name: "evacuation",
         text: include_str!("../../scenarios/evacuation.json"),
@@ -24,6 +24,10 @@ pub const SHIPPED: [Shipped; 3] = [
     Shipped {
         name: "concert",
         text: include_str!("../../scenarios/concert.json"),
+    },
+    Shipped {
+        name: "plaza",
+        text: include_str!("../../scenarios/plaza.json"),
     },
 ];
 
