@@ -8,7 +8,6 @@ use std::hint::black_box;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use sandbox::bench::Crowd;
 use sandbox::boundary::WallMethod;
-use sandbox::catalog::{self, Parameters};
 use sandbox::forces::rvo::{Rvo, Scratch};
 use sandbox::forces::social::SocialForce;
 use sandbox::geometry::{Polygon, Walls};

@@ -41,9 +41,6 @@ pub struct Simulation {
     crowd_changed: bool,
 }
 
-/// Blocks of agents that are worth another thread.
-const TASK: usize = 8;
-
 /// What has happened so far.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Outcome {

@@ -128,8 +128,7 @@ fn notes(memory: Option<Memory>) -> Vec<String> {
     let mut notes = vec![crowd.to_owned()];
     notes.push(match memory {
         Some(_) => "Memory is what the process holds with the crowd running, and at its peak, less what it held before the \
-                    first crowd, program and threads included: below some 100,000 agents it says little. The scene \
-                    keeps who was there at the start."
+                    first crowd, program and threads included: below some 100,000 agents it says little."
             .to_owned(),
         None => "How much memory a process holds is read from /proc/self/status, which this system does not have.".to_owned(),
     });

@@ -13,7 +13,7 @@ use self::work::{Course, KeptLists, RvoByBlend, WallsByBlocks, Work};
 use super::error::BenchError;
 use super::report::{Findings, Table};
 use super::spread::{Spread, ratios};
-use super::stages::{BUSIEST, Started, Stretch};
+use super::stages::{Started, Stretch, busiest};
 use super::timing::ms_of;
 use super::{Benchmark, Plan};
 use crate::pairs::Wanted;
@@ -174,7 +174,7 @@ struct Row {
 
 fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, BenchError> {
     let mut rows = Vec::new();
-    for stretch in &BUSIEST {
+    for stretch in busiest(plan) {
         for profile in profiles(stretch) {
             let started = stretch.begin(plan, *profile)?;
             say(&format!("{} ({})", started.name, started.profile));
@@ -192,7 +192,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, BenchError> {
 
 /// As shipped; and the small scenes with social forces alone, where nobody reads a density.
 fn profiles(stretch: &Stretch) -> &'static [Option<&'static str>] {
-    if stretch.scenario == "concert" {
+    if matches!(stretch.scenario, "concert" | "plaza") {
         &[None]
     } else {
         &[None, Some("sf")]

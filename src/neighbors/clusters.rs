@@ -10,6 +10,9 @@ use crate::math::Vector;
 /// Agents that are worked on in one go, and whose lists share memory.
 pub const BLOCK: usize = 128;
 
+/// Blocks that are worth another thread.
+pub const TASK: usize = 8;
+
 /// The most agents in a cluster.
 pub const CLUSTER: usize = 8;
 
@@ -52,6 +55,7 @@ impl Clusters {
             .resize_with(count.div_ceil(BLOCK), ClusterBlock::default);
         self.blocks
             .par_iter_mut()
+            .with_min_len(TASK)
             .enumerate()
             .for_each(|(b, block)| {
                 let agents = b * BLOCK..((b + 1) * BLOCK).min(count);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::BLOCK;
+use super::{BLOCK, TASK};
 
 /// Lists in blocks of consecutive agents, so that blocks are filled side by side and nothing is
 /// copied together afterwards; memory is kept between rebuilds.
@@ -33,6 +33,7 @@ impl Lists {
             .resize_with(count.div_ceil(BLOCK), Block::default);
         self.blocks
             .par_iter_mut()
+            .with_min_len(TASK)
             .enumerate()
             .for_each(|(b, block)| {
                 block.ends.clear();

@@ -10,7 +10,7 @@ mod clusters;
 mod grid;
 mod lists;
 
-pub use clusters::{BLOCK, CLUSTER, ClusterBlock, Clusters};
+pub use clusters::{BLOCK, CLUSTER, ClusterBlock, Clusters, TASK};
 pub use grid::{Grid, Place};
 pub use lists::Lists;
 

@@ -5,14 +5,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use super::{Simulation, Stage, TASK, blend_of, change_of};
+use super::{Simulation, Stage, blend_of, change_of};
 use crate::density::SphStates;
 use crate::forces::goal;
 use crate::forces::rvo::Scratch;
 use crate::forces::social::SocialForce;
 use crate::frame::range;
 use crate::math::{Vector, are_finite, numbers_are_finite};
-use crate::neighbors::{BLOCK, CLUSTER};
+use crate::neighbors::{BLOCK, CLUSTER, TASK};
 use crate::pairs::{Columns, PairCoefficients, Real, each};
 use crate::profile::{Blend, Override};
 

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::{Arrival, Fault, Simulation, Stage, TASK};
+use super::{Arrival, Fault, Simulation, Stage};
 use crate::math::{Vector, clamp_length, is_finite};
-use crate::neighbors::BLOCK;
+use crate::neighbors::{BLOCK, TASK};
 use crate::scene::{Integrator, Scene};
 
 impl Simulation {
