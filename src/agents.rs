@@ -45,8 +45,8 @@ impl NewAgent {
     }
 }
 
-/// Everybody's state. All arrays but `avoidance` have the same length; index i is an agent until the next frame in
-/// which the neighbour lists are rebuilt, `id` is one for ever.
+/// Everybody's state. All arrays but `avoidance` have the same length; index i is an agent until the next
+/// frame in which the neighbour lists are rebuilt, `id` is one for ever.
 #[derive(Debug, Clone, Default)]
 pub struct Agents {
     /// Unique number, in the order of entry from 0.

@@ -53,7 +53,8 @@ impl SphParameters {
 pub struct SphStates<'a> {
     /// In: Eq. 9 without walls. Out: ρ_i.
     pub density: &'a mut [f64],
-    /// The walls' part of it, zero where there are none near.
+    /// The walls' part of it; zero before the first frame after a sort, and left so where no walls are near
+    /// (see [`Fields::forget_walls`](crate::frame::Fields::forget_walls)).
     pub density_from_walls: &'a mut [f64],
     /// ρ̂_i, one step on.
     pub mean_density: &'a mut [f64],
@@ -61,7 +62,7 @@ pub struct SphStates<'a> {
     pub rest_density: &'a mut [f64],
     /// p_i.
     pub pressure: &'a mut [f64],
-    /// Σ_k ∫ ∇W over P_k.
+    /// Σ_k ∫ ∇W over P_k; as the walls' part.
     pub wall_gradient: &'a mut [Vector],
 }
 

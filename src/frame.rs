@@ -56,7 +56,7 @@ impl Fields {
 }
 
 /// The smallest and largest components of some lowest and highest ones; zero of none.
-pub fn range(of: impl Iterator<Item = [Vector; 2]>) -> [Vector; 2] {
+pub fn velocity_range(of: impl Iterator<Item = [Vector; 2]>) -> [Vector; 2] {
     of.reduce(|[low, high], [lower, higher]| [low.inf(&lower), high.sup(&higher)])
         .unwrap_or([Vector::zeros(); 2])
 }
@@ -94,15 +94,16 @@ impl Frame<'_> {
             .filter(move |(_, r_ij)| r_ij.norm_squared() < radius * radius)
     }
 
-    /// No two velocities of `agents` and of `others` differ by more than this, m/s.
-    pub fn relative_speed(&self, agents: Range<usize>, others: &[Range<u32>]) -> f64 {
+    /// No two velocities of `agents` and of `others` differ by more than this, m/s; in scenes where some
+    /// social force has a tolerance.
+    pub(crate) fn relative_speed(&self, agents: Range<usize>, others: &[Range<u32>]) -> f64 {
         let velocities = &self.agents.velocity[agents];
-        let [low, high] = range(velocities.iter().map(|&v| [v, v]));
+        let [low, high] = velocity_range(velocities.iter().map(|&v| [v, v]));
         let ranges = others.iter().flat_map(|run| {
             let cells = run.start as usize / CLUSTER..(run.end as usize).div_ceil(CLUSTER);
             &self.fields.velocity_ranges[cells]
         });
-        let [lowest, highest] = range(ranges.copied());
+        let [lowest, highest] = velocity_range(ranges.copied());
         (high - lowest).sup(&(highest - low)).norm()
     }
 
@@ -113,16 +114,5 @@ impl Frame<'_> {
         self.packed
             .accelerations(block, coefficients, self.wanted, &mut accelerations);
         accelerations[i % BLOCK]
-    }
-
-    /// Everybody else j strictly within an avoidance `radius` of agent `i`, with r_ij = r_i − r_j.
-    pub fn around(&self, i: usize, radius: f64) -> impl Iterator<Item = (usize, Vector)> + '_ {
-        let position = &self.agents.position;
-        let r_i = position[i];
-        let rows = self.neighbors.around(r_i, radius);
-        rows.flatten().filter_map(move |j| {
-            let r_ij = r_i - position[j];
-            (r_ij.norm_squared() < radius * radius && j != i).then_some((j, r_ij))
-        })
     }
 }

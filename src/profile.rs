@@ -190,7 +190,7 @@ impl Profile {
         }
     }
 
-    /// All terms of `agents` but what the agents near them do: where each belongs, whose it is, and how
+    /// All terms of `agents` but what other agents do: where each belongs, whose it is, and how
     /// large, m/s²; no walls' terms of those without walls near.
     #[inline]
     fn each_term(

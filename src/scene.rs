@@ -180,7 +180,7 @@ impl Scene {
             density: pairs.pressure || pairs.viscosity || blending,
             pairs,
             rvo: self.groups.iter().any(|group| group.blend.rvo().is_some()),
-            social: self.social_forces().next().is_some(),
+            social: !self.social_forces().is_empty(),
             avoidance: profiles()
                 .filter_map(|profile| profile.navigation.avoidance_radius())
                 .reduce(f64::max),
@@ -191,10 +191,16 @@ impl Scene {
         }
     }
 
-    /// The social forces of all profiles, some more than once.
-    pub fn social_forces(&self) -> impl Iterator<Item = SocialForce> + '_ {
+    /// The different social forces of all profiles.
+    pub fn social_forces(&self) -> Vec<SocialForce> {
         let steps = self.groups.iter().flat_map(|group| group.blend.steps());
-        steps.filter_map(|step| step.profile.navigation.social())
+        let mut different = Vec::new();
+        for social in steps.filter_map(|step| step.profile.navigation.social()) {
+            if !different.contains(&social) {
+                different.push(social);
+            }
+        }
+        different
     }
 
     /// How far neighbours must be looked for.
@@ -207,10 +213,12 @@ impl Scene {
         Ranges {
             support,
             avoidance: needs.avoidance,
-            social: self
-                .social_forces()
-                .map(|social| social.avoidance_radius)
-                .reduce(f64::max),
+            social: needs.social.then(|| {
+                self.social_forces()
+                    .iter()
+                    .map(|social| social.avoidance_radius)
+                    .fold(0.0, f64::max)
+            }),
             longest_step: self.max_speed * self.clock.time_step(),
         }
     }

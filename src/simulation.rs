@@ -10,6 +10,7 @@ pub use stages::{Stage, StageTimes};
 
 use crate::agents::Agents;
 use crate::clock::Clock;
+use crate::forces::social::SocialForce;
 use crate::frame::{Fields, Frame};
 use crate::math::Vector;
 use crate::neighbors::Neighbors;
@@ -26,6 +27,8 @@ use crate::scene::{Needs, Scene};
 pub struct Simulation {
     scene: Scene,
     needs: Needs,
+    /// The different ones of the scene.
+    social_forces: Vec<SocialForce>,
     density_until: u64,
     clock: Clock,
     agents: Agents,
@@ -106,6 +109,7 @@ impl Simulation {
     pub fn new(scene: Scene) -> Result<Self, Fault> {
         let mut simulation = Self {
             needs: scene.needs(),
+            social_forces: scene.social_forces(),
             density_until: 0,
             clock: scene.clock,
             agents: Agents::default(),

@@ -183,6 +183,23 @@ fn settings_reach_every_profile_and_any_place() {
 }
 
 #[test]
+fn profiles_of_a_blend_have_their_own_tolerances() {
+    let scenario = parse(
+        r#"{"profile": {"blend": [
+            {"at_density": 2, "profile": {"base": "sf", "parameters": {"avoidance_tolerance": 0.001}}},
+            {"at_density": 4, "profile": {"base": "sf+sph", "parameters": {"avoidance_tolerance": 0.01}}},
+            {"at_density": 6, "profile": "sf"}
+        ]}, "agents": [{"position": [0, 0]}], "goal": [1, 0]}"#,
+    );
+    let steps = scenario.scene.groups[0].blend.steps();
+    let social = steps.iter().map(|step| step.profile.navigation.social());
+    let tolerances: Vec<f64> = social
+        .map(|social| social.unwrap().avoidance_tolerance)
+        .collect();
+    assert_eq!(tolerances, [0.001, 0.01, 0.0]);
+}
+
+#[test]
 fn a_blend_in_full_is_the_papers_blend() {
     let scenario = parse(
         r#"{"profile": {"name": "sf->sph", "blend": [

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{blend, blend_with, block, person, room, scene, vector};
+use common::{blend, blend_with, block, person, rectangle, room, scene, vector};
 use sandbox::boundary::WallMethod;
 use sandbox::catalog::Parameters;
 use sandbox::pairs::Wanted;
@@ -197,4 +197,35 @@ fn a_moving_average_that_was_interrupted_starts_anew() {
         );
         assert!((agent.mean_density - agent.density).abs() < 1e-12);
     }
+}
+
+#[test]
+fn who_walks_away_from_a_wall_feels_no_more_of_it_than_who_has_always_stood_there() {
+    let obstacle = || vec![rectangle([-1.0, 0.0], [-20.0, 20.0])];
+    let crowd = |x: f64| block(vector(x, 0.0), 6, 6, 0.6, vector(30.0, 1.5));
+    let mut walking = scene(obstacle(), blend("sph"));
+    walking.agents = crowd(0.4);
+    let mut walking = Simulation::new(walking).unwrap();
+    let mut touched = false;
+    for _ in 0..200 {
+        walking.step().unwrap();
+        walking.evaluate().unwrap();
+        let frame = walking.frame();
+        let (agents, fields) = (frame.agents, frame.fields);
+        for i in 0..agents.len() {
+            let away = agents.position[i].x >= 1.0;
+            let nothing =
+                fields.density_from_walls[i] == 0.0 && fields.wall_gradient[i].norm() == 0.0;
+            touched |= !nothing;
+            assert!(!away || nothing, "{}", agents.position[i]);
+        }
+    }
+    let last = walking
+        .frame()
+        .agents
+        .position
+        .iter()
+        .map(|p| p.x)
+        .fold(f64::INFINITY, f64::min);
+    assert!(touched && last > 1.0, "{last}");
 }

@@ -8,7 +8,7 @@ use rand::Rng;
 
 use crate::frame::Frame;
 use crate::geometry::Wall;
-use crate::math::Vector;
+use crate::math::{Vector, unit_vector};
 pub use crate::pairs::MovingDisc;
 use crate::random::{self, Purpose};
 
@@ -99,7 +99,7 @@ pub struct Candidate {
 impl Candidate {
     /// The velocity itself, m/s, when the current one is `from`.
     pub fn velocity(self, from: Vector) -> Vector {
-        from + random::direction(self.turn) * self.length
+        from + unit_vector(self.turn) * self.length
     }
 }
 

@@ -150,9 +150,9 @@ impl ClusterBlock {
     ) {
         for i in agents {
             let p = positions[i];
-            for run in grid.rows(p, reach) {
-                let near = run.filter(|&j| (p - positions[j]).norm() < reach);
-                self.runs.extend(near.map(|j| j as u32..j as u32 + 1));
+            for run in grid.rows([p; 2], reach) {
+                let near = run.filter(|&j| (p - positions[j as usize]).norm() < reach);
+                self.runs.extend(near.map(|j| j..j + 1));
             }
             self.close(i..i + 1);
         }

@@ -59,7 +59,7 @@ impl Grid {
     /// Lays a grid with rows of at least `height` metres over `positions` and returns the order that
     /// sorts them by cell; agents of one cell keep their order.
     pub fn rebuild(&mut self, positions: &[Vector], height: f64) -> Vec<u32> {
-        let (low, high) = bounds(positions);
+        let [low, high] = bounds(positions);
         self.size_cells(high - low, positions.len(), height);
         self.origin = low - Vector::new(0.0, self.height);
 
@@ -141,49 +141,32 @@ impl Grid {
         self.start[first + column(from)]..self.start[first + column(to) + 1]
     }
 
-    /// The agents in cells that a circle round `p` meets, row by row; some are out of reach.
-    pub fn rows(&self, p: Vector, radius: f64) -> impl Iterator<Item = Range<usize>> + '_ {
-        let offset = p - self.origin;
+    /// The agents in cells within `radius` of a box, from its lower left to its upper right corner, row by
+    /// row; some are out of reach.
+    pub fn rows(
+        &self,
+        [low, high]: [Vector; 2],
+        radius: f64,
+    ) -> impl Iterator<Item = Range<u32>> + '_ {
+        let (low, high) = (low - self.origin, high - self.origin);
         let row = move |y: f64| ((y / self.height) as usize).min(self.rows - 1);
-        (row(offset.y - radius)..=row(offset.y + radius)).map(move |row| {
+        (row(low.y - radius)..=row(high.y + radius)).map(move |row| {
             let floor = row as f64 * self.height;
-            let gap = (floor - offset.y)
-                .max(offset.y - floor - self.height)
-                .max(0.0);
+            let gap = (floor - high.y).max(low.y - floor - self.height).max(0.0);
             let half = (radius * radius - gap * gap).max(0.0).sqrt();
-            let run = self.run(row, offset.x - half, offset.x + half);
-            run.start as usize..run.end as usize
+            self.run(row, low.x - half, high.x + half)
         })
     }
 }
 
-impl Grid {
-    /// Appends the agents in cells within `radius` of the bounding box of `places`, row by row; some are
-    /// out of reach.
-    pub fn runs(&self, places: &[Vector], radius: f64, found: &mut Vec<Range<u32>>) {
-        let (low, high) = bounds(places);
-        let (low, high) = (low - self.origin, high - self.origin);
-        let row = |y: f64| ((y / self.height) as usize).min(self.rows - 1);
-        for row in row(low.y - radius)..=row(high.y + radius) {
-            let floor = row as f64 * self.height;
-            let gap = (floor - high.y).max(low.y - floor - self.height).max(0.0);
-            let half = (radius * radius - gap * gap).max(0.0).sqrt();
-            let run = self.run(row, low.x - half, high.x + half);
-            if !run.is_empty() {
-                found.push(run);
-            }
-        }
-    }
-}
-
 /// The corners of the bounding box; the origin twice for nobody.
-fn bounds(positions: &[Vector]) -> (Vector, Vector) {
+pub fn bounds(positions: &[Vector]) -> [Vector; 2] {
     let Some(&first) = positions.first() else {
-        return (Vector::zeros(), Vector::zeros());
+        return [Vector::zeros(); 2];
     };
     positions
         .iter()
-        .fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)))
+        .fold([first; 2], |[low, high], p| [low.inf(p), high.sup(p)])
 }
 
 #[cfg(test)]

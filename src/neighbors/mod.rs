@@ -11,6 +11,7 @@ mod grid;
 mod lists;
 
 pub use clusters::{BLOCK, CLUSTER, ClusterBlock, Clusters, TASK};
+use grid::bounds;
 pub use grid::{Grid, Place};
 pub use lists::Lists;
 
@@ -108,20 +109,18 @@ impl Neighbors {
     }
 
     /// Coordinates may wrap at twice this length, metres: nobody whom a cluster is given is so far away
-    /// that he would seem near. See [`Clusters::extent`]; far ones are a cluster's width, a cell and the
-    /// avoidance radius away at most, not counting their moves.
+    /// that he would seem near. See [`Clusters::extent`]; in social forces that is a cluster's width, two
+    /// cells, the radius and two moves.
     pub fn extent(&self) -> f64 {
-        let far = self
-            .ranges
-            .social
-            .map_or(0.0, |radius| radius + 2.5 * self.reach);
-        Clusters::extent(self.reach).max(far)
+        let far = |radius: f64| radius + 2.5 * self.reach + SKIN;
+        Clusters::extent(self.reach).max(self.ranges.social.map_or(0.0, far))
     }
 
     /// Candidates for avoidance within `radius` metres of `p`, as ranges of agents, some out of range
-    /// and agent `i` itself among them.
+    /// and whoever stands at `p` among them.
     pub fn around(&self, p: Vector, radius: f64) -> impl Iterator<Item = Range<usize>> + '_ {
-        self.grid.rows(p, radius + 0.5 * SKIN)
+        let rows = self.grid.rows([p; 2], radius + 0.5 * SKIN);
+        rows.map(|run| run.start as usize..run.end as usize)
     }
 
     /// Replaces `found` by runs of agents with all that are within `radius` metres of any of `agents`, of
@@ -136,15 +135,15 @@ impl Neighbors {
         found.clear();
         let reach = radius + 0.5 * SKIN;
         if self.grid.height() <= self.reach {
-            self.grid.runs(&positions[agents], reach, found);
+            found.extend(self.grid.rows(bounds(&positions[agents]), reach));
             return;
         }
         // Cells had to be made larger than lists reach: one agent each, and only who is near.
         for i in agents {
             let p = positions[i];
-            let near = self.grid.rows(p, reach).flatten();
-            let near = near.filter(|&j| (p - positions[j]).norm() < radius);
-            found.extend(near.map(|j| j as u32..j as u32 + 1));
+            let near = self.grid.rows([p; 2], reach).flatten();
+            let near = near.filter(|&j| (p - positions[j as usize]).norm() < radius);
+            found.extend(near.map(|j| j..j + 1));
         }
     }
 
@@ -296,10 +295,14 @@ mod tests {
                 let r_i = agents.position[i];
                 let around: Vec<usize> = neighbors.around(r_i, 5.0).flatten().collect();
                 let near = near(&neighbors, i);
+                let mut runs = Vec::new();
+                let alone = i..i + 1;
+                neighbors.around_cluster(alone, &agents.position, 5.0, &mut runs);
                 for j in (0..agents.len()).filter(|&j| j != i) {
                     let distance = (r_i - agents.position[j]).norm();
                     assert!(distance >= 1.0 || near.contains(&j));
                     assert!(distance >= 5.0 || around.contains(&j));
+                    assert!(distance >= 5.0 || runs.iter().any(|run| run.contains(&(j as u32))));
                 }
             }
             // Lists made anew on the old cells hold as long.
@@ -321,7 +324,7 @@ mod tests {
                     neighbors.around_cluster(cluster.clone(), &agents.position, radius, &mut runs);
                     let found: Vec<usize> =
                         runs.iter().cloned().flatten().map(|j| j as usize).collect();
-                    assert!(found.is_sorted_by(|a, b| a < b) || cluster.len() == 1);
+                    assert!(found.is_sorted_by(|a, b| a < b));
                     for (i, j) in cluster
                         .clone()
                         .flat_map(|i| (0..agents.len()).map(move |j| (i, j)))

@@ -135,9 +135,7 @@ impl<R: Real> Columns<R> {
             kernels::accelerations(simd, self, block, coefficients, wanted, out);
         });
     }
-}
 
-impl<R: Real> Columns<R> {
     /// Adds the social forces on `agents`, of one cluster, times their coefficients, m/s²; `runs` have
     /// everybody in reach, and some who are not.
     pub fn add_social(

@@ -20,7 +20,7 @@ pub struct MovingDisc {
 const RINGS: usize = 16;
 const RING_AREA: f64 = 1.5;
 
-/// Far more than single precision makes of lengths in a ring and of speeds, relative to their bounds.
+/// Far more than single precision makes of lengths and of speeds, relative to the greatest.
 const ROUNDING: f64 = 4e-6;
 
 /// Discs in rings round an agent, from the inside out, by the distances of their centres.
@@ -65,7 +65,8 @@ struct Ring {
     len: usize,
 }
 
-/// Discs in single precision, and what is never met in the places that are left.
+/// Discs in single precision; in the places that are left, what is never certainly met. Where it is perhaps
+/// met it stands for the first disc, who is then looked at once more.
 #[derive(Debug, Clone, Copy)]
 struct Eight {
     x: [f32; LANES],

@@ -1,5 +1,6 @@
-//! Sums over pairs of agents: of near ones density (Eq. 9), pressure (Eq. 11), viscosity (Eq. 7) and
-//! contact (Eq. 22), of those farther away social forces (Eq. 18). The only place that names
+//! What is worked out for eight pairs of agents at a time: density (Eq. 9), pressure (Eq. 11), viscosity
+//! (Eq. 7) and contact (Eq. 22) of near ones, social forces (Eq. 18) and whom RVO may meet of those
+//! farther away. The only place that names
 //! fearless_simd.
 //!
 //! Nearly all of the time of a dense scene goes here. Agents who stand together (see
@@ -34,7 +35,8 @@ pub enum Precision {
     Double,
     /// Distances from fixed-point coordinates, exact to some 10⁻⁹ m, products and sums in single
     /// precision: an acceleration is off by at most 10⁻⁵ of the magnitudes that it is a sum of, as long
-    /// as agents are half a millimetre apart.
+    /// as agents are half a millimetre apart and, for social forces, nobody comes within a centimetre of
+    /// the other's place in T seconds.
     #[default]
     Mixed,
 }

@@ -108,7 +108,7 @@ impl<R: Real, S: Simd> Observers<R, S> {
         let h = (product + dot.abs()).sqrt(); // √2 h
         let per_h_product = one / (h * product);
         let facing = dot.simd_ge(zero);
-        let b = facing.select(h, cross.abs() * product * per_h_product);
+        let b = facing.select(h, cross.abs() * (product * per_h_product));
 
         // |a| d ± |d| a, turned by a right angle where they are nearly opposite.
         let side = one.copysign(cross);
@@ -174,7 +174,7 @@ pub fn add_social<R: Real, S: Simd>(
     let size = R::exp2(simd, last.b * falling) * last.size;
     let sum_x = store::<R, S>(size.mul_add(last.along_x, sum_x));
     let sum_y = store::<R, S>(size.mul_add(last.along_y, sum_y));
-    let scale = law.strength * SQRT_2 / 4.0;
+    let scale = law.strength * SQRT_2 / 4.0; // 1/(4h) of the force, with √2 h in its place
     for (k, (sum, coefficient)) in out.iter_mut().zip(coefficients).enumerate() {
         let force = Vector::new(sum_x[k].double(), sum_y[k].double());
         *sum += force * (scale * coefficient);

@@ -168,8 +168,8 @@ impl Blend {
         });
     }
 
-    /// Adds the accelerations of `agents` of a frozen frame, all with this blend, by all but the agents
-    /// near them, m/s².
+    /// Adds the accelerations of `agents` of a frozen frame, all with this blend, by all but other
+    /// agents, m/s².
     pub fn add_accelerations(
         &self,
         frame: &Frame,

@@ -157,7 +157,8 @@ mod tests {
             let document = read(shipped.text, "f").unwrap();
             let written = write(&document);
             assert_eq!(read(&written, "f").unwrap(), document);
-            assert!(written.lines().count() <= shipped.text.lines().count() + 40);
+            let is_number = |line: &str| line.trim().trim_end_matches(',').parse::<f64>().is_ok();
+            assert!(!written.lines().any(is_number));
             assert!(written.lines().all(|line| line.chars().count() < 120));
         }
     }

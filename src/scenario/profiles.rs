@@ -168,7 +168,6 @@ fn sph_only(parameters: &Parameters) -> Parameters {
         gas_constant: parameters.gas_constant,
         rest_density_min: parameters.rest_density_min,
         rest_density_max: parameters.rest_density_max,
-        avoidance_tolerance: parameters.avoidance_tolerance,
         averaging_time: parameters.averaging_time,
         ..Parameters::default()
     }

@@ -10,7 +10,7 @@ use crate::density::SphStates;
 use crate::forces::goal;
 use crate::forces::rvo::Scratch;
 use crate::forces::social::SocialForce;
-use crate::frame::range;
+use crate::frame::{Frame, velocity_range};
 use crate::math::{Vector, are_finite, numbers_are_finite};
 use crate::neighbors::{BLOCK, CLUSTER, TASK};
 use crate::pairs::{Columns, PairCoefficients, Real, each};
@@ -192,20 +192,9 @@ impl Simulation {
 
     /// Steps 3, 3B and 4.
     pub(super) fn update_acceleration(&mut self) {
-        let social_forces = self.social_forces();
-        let velocities = &self.agents.velocity;
-        let ranges = &mut self.fields.velocity_ranges;
-        ranges.clear();
-        if social_forces
-            .iter()
-            .any(|social| social.avoidance_tolerance > 0.0)
-        {
-            let some = velocities.par_chunks(CLUSTER).with_min_len(TASK * BLOCK);
-            ranges.par_extend(some.map(|v| range(v.iter().map(|&v| [v, v]))));
-        }
-        let mut acceleration = std::mem::take(&mut self.fields.acceleration);
+        let mut fields = std::mem::take(&mut self.fields);
         let mut stages = std::mem::take(&mut self.stages);
-        let frame = self.frame();
+        let mut acceleration = std::mem::take(&mut fields.acceleration);
         let task = if self.needs.avoidance.is_some() {
             1 // looking 5 m around is work enough
         } else {
@@ -213,57 +202,73 @@ impl Simulation {
         };
         let finite = AtomicBool::new(true);
         stages.time(Stage::Acceleration, || {
+            self.update_velocity_ranges(&mut fields.velocity_ranges);
+            let frame = Frame {
+                fields: &fields,
+                ..self.frame()
+            };
             acceleration
                 .par_chunks_mut(BLOCK)
                 .with_min_len(task)
                 .enumerate()
                 .for_each(|(b, acceleration)| {
-                    let from = b * BLOCK;
-                    let to = from + acceleration.len();
-                    let mut felt = PairCoefficients::default();
-                    self.each_span(from..to, |span, blend, changed| {
-                        blend.add_pair_coefficients(&frame, span, changed, &mut felt);
-                    });
-                    let clusters = frame.neighbors.near().block(b);
-                    frame
-                        .packed
-                        .accelerations(clusters, &felt, frame.wanted, acceleration);
-                    for social in &social_forces {
-                        let mut felt = [0.0; BLOCK];
-                        self.each_span(from..to, |span, blend, _| {
-                            blend.add_social_coefficients(&frame, span, social, &mut felt);
-                        });
-                        social.add_from_agents(&frame, b, &felt, acceleration);
-                    }
-                    self.each_span(from..to, |span, blend, changed| {
-                        let acceleration = &mut acceleration[span.start - from..span.end - from];
-                        blend.add_accelerations(&frame, span, changed, acceleration);
-                    });
-                    let density = frame.fields.density.get(from..to).unwrap_or(&[]);
-                    let vectors = [
-                        &*acceleration,
-                        &self.agents.position[from..to],
-                        &self.agents.velocity[from..to],
-                    ];
-                    if !(vectors.into_iter().all(are_finite) && numbers_are_finite(density)) {
+                    self.accelerate(&frame, b, acceleration);
+                    if !self.block_is_finite(&frame, b, acceleration) {
                         finite.store(false, Ordering::Relaxed);
                     }
                 });
         });
         self.finite = finite.into_inner();
-        self.fields.acceleration = acceleration;
+        fields.acceleration = acceleration;
+        self.fields = fields;
         self.stages = stages;
     }
 
-    /// The different social forces of the scene.
-    fn social_forces(&self) -> Vec<SocialForce> {
-        let mut different = Vec::new();
-        for social in self.scene.social_forces() {
-            if !different.contains(&social) {
-                different.push(social);
-            }
+    /// How different velocities are nearby, where some social force has a tolerance.
+    fn update_velocity_ranges(&self, ranges: &mut Vec<[Vector; 2]>) {
+        ranges.clear();
+        let tolerant = |social: &SocialForce| social.avoidance_tolerance > 0.0;
+        if self.social_forces.iter().any(tolerant) {
+            let some = self.agents.velocity.par_chunks(CLUSTER);
+            let some = some.with_min_len(TASK * BLOCK);
+            ranges.par_extend(some.map(|v| velocity_range(v.iter().map(|&v| [v, v]))));
         }
-        different
+    }
+
+    /// The accelerations of the agents of block `b`.
+    fn accelerate(&self, frame: &Frame, b: usize, acceleration: &mut [Vector]) {
+        let from = b * BLOCK;
+        let to = from + acceleration.len();
+        let mut felt = PairCoefficients::default();
+        self.each_span(from..to, |span, blend, changed| {
+            blend.add_pair_coefficients(frame, span, changed, &mut felt);
+        });
+        let clusters = frame.neighbors.near().block(b);
+        frame
+            .packed
+            .accelerations(clusters, &felt, frame.wanted, acceleration);
+        for social in &self.social_forces {
+            let mut felt = [0.0; BLOCK];
+            self.each_span(from..to, |span, blend, _| {
+                blend.add_social_coefficients(frame, span, social, &mut felt);
+            });
+            social.add_from_agents(frame, b, &felt, acceleration);
+        }
+        self.each_span(from..to, |span, blend, changed| {
+            let acceleration = &mut acceleration[span.start - from..span.end - from];
+            blend.add_accelerations(frame, span, changed, acceleration);
+        });
+    }
+
+    fn block_is_finite(&self, frame: &Frame, b: usize, acceleration: &[Vector]) -> bool {
+        let agents = b * BLOCK..b * BLOCK + acceleration.len();
+        let density = frame.fields.density.get(agents.clone()).unwrap_or(&[]);
+        let vectors = [
+            acceleration,
+            &self.agents.position[agents.clone()],
+            &self.agents.velocity[agents],
+        ];
+        vectors.into_iter().all(are_finite) && numbers_are_finite(density)
     }
 
     /// The blend of `agents` if all have the same.

@@ -26,9 +26,10 @@ impl Search {
     /// The cheapest of `candidates` (Eq. 20), the first of equals; zero if all are too fast.
     ///
     /// Candidates come in order of what they cost at least, until that is more than the best so far:
-    /// | |v′ − v| − |v^pref − v| |, for which nobody needs to know their directions. What is left of the best cost is a time before which no contact may come: most candidates are
-    /// out by a look at the nearest discs, eight at a time. The others' first contacts are looked for from
-    /// the inside out, until no disc farther away could be met before the earliest found.
+    /// | |v′ − v| − |v^pref − v| |, for which nobody needs to know their directions. What is left of the
+    /// best cost is a time before which no contact may come: most candidates are out by a look at the
+    /// nearest discs, eight at a time. The others' first contacts are looked for from the inside out, until
+    /// no disc farther away could be met before the earliest found.
     pub fn best(
         &mut self,
         situation: &Situation,
@@ -73,7 +74,9 @@ impl Search {
                 }
                 // Agent i moves at 2v′ − v_i.
                 let velocity = candidate * 2.0 - situation.velocity;
-                let latest = collision_weight / (best_cost - deviation);
+                // Costs this near to the best may be equal to it when rounded.
+                let left = best_cost - deviation + f64::EPSILON * best_cost;
+                let latest = collision_weight / left;
                 if rings.certainly_met(velocity, latest * (1.0 - ROUNDING)) {
                     continue;
                 }
