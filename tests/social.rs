@@ -40,9 +40,10 @@ fn felt_by(social: &SocialForce, simulation: &Simulation, i: usize) -> Vec<(Vect
         near.then(|| {
             let force = force(social, r_ij, v_ij) * share;
             let noise = 4.0 * f64::EPSILON * condition(social, r_ij, v_ij);
-            // Who comes within a centimetre of the other's place is no part of the promise.
+            // Who comes within 5 cm of the other's place is no part of the promise: |r_ij + T v_ij| is then
+            // known to some 10⁻⁵ of itself.
             let ahead = r_ij + v_ij * social.anticipation_time;
-            let noise = if ahead.norm() < 0.01 { 1.0 } else { noise };
+            let noise = if ahead.norm() < 0.05 { 1.0 } else { noise };
             (force, force.norm() * noise)
         })
     });

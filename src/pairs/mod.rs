@@ -35,8 +35,8 @@ pub enum Precision {
     Double,
     /// Distances from fixed-point coordinates, exact to some 10⁻⁹ m, products and sums in single
     /// precision: an acceleration is off by at most 10⁻⁵ of the magnitudes that it is a sum of, as long
-    /// as agents are half a millimetre apart and, for social forces, nobody comes within a centimetre of
-    /// the other's place in T seconds.
+    /// as agents are half a millimetre apart and, for social forces, nobody comes within 5 cm of the
+    /// other's place in T seconds.
     #[default]
     Mixed,
 }
