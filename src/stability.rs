@@ -10,7 +10,7 @@
 //! decides:
 //!
 //! - people pressed together: ω² = (C₁ c/h)² + C₂ K/m, c = √(k/2) the speed of sound
-//!   ([`sound`](crate::sound)), K/m the stiffest contact of the lightest person: the Courant condition of
+//!   ([`crate::sound`]), K/m the stiffest contact of the lightest person: the Courant condition of
 //!   SPH, and that of springs;
 //! - people who drag each other along: γ = C₃ μ. A person's drag is μ ∇²W/ρ² for every neighbour; it is
 //!   largest in a loose crowd, where the density is hardly more than the own ~ 1/h², and h drops out.
