@@ -49,7 +49,9 @@ impl Polygon {
         if let Some(i) = points.iter().position(|&p| !is_finite(p)) {
             return Err(PolygonError::NotFinite(i));
         }
-        if let Some(i) = (0..count).find(|&i| points[i] == points[(i + 1) % count]) {
+        // Nor may an edge be so short that the square of its length is nothing: it has no direction.
+        let edge = |i: usize| points[(i + 1) % count] - points[i];
+        if let Some(i) = (0..count).find(|&i| edge(i).norm_squared() < f64::MIN_POSITIVE) {
             return Err(PolygonError::RepeatedPoint(i, (i + 1) % count));
         }
         if let Some((i, j)) = first_crossing(&points) {
@@ -167,6 +169,10 @@ mod tests {
         );
         assert_eq!(
             polygon(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0]]),
+            Err(PolygonError::RepeatedPoint(3, 0))
+        );
+        assert_eq!(
+            polygon(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [1e-200, 0.0]]),
             Err(PolygonError::RepeatedPoint(3, 0))
         );
         assert!(polygon(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).is_err());
