@@ -85,9 +85,9 @@ const NOBODY: Eight = Eight {
     gap: [1.0; LANES],
 };
 
-/// Where a ring begins, metres.
-fn ring_start(ring: usize) -> f64 {
-    (ring as f64 * RING_AREA).sqrt() * (1.0 - ROUNDING)
+/// Does a ring begin farther away than `seen` metres?
+fn is_beyond(ring: usize, seen: f64) -> bool {
+    ring as f64 * RING_AREA * (1.0 - ROUNDING) > seen * seen
 }
 
 #[inline(always)]
@@ -148,7 +148,7 @@ impl Rings {
     fn certainly_met_by<S: Simd>(&self, simd: S, velocity: Vector, before: f64) -> bool {
         let way = Way::new(simd, self, velocity, before, ROUNDING);
         for (number, ring) in self.rings.iter().enumerate() {
-            if ring_start(number) > way.seen {
+            if is_beyond(number, way.seen) {
                 return false;
             }
             for eight in self.eights(ring) {
@@ -164,7 +164,7 @@ impl Rings {
     pub fn within(&self, velocity: Vector, before: f64) -> usize {
         let seen = self.seen(velocity, before);
         (0..RINGS)
-            .take_while(|&ring| ring_start(ring) <= seen)
+            .take_while(|&ring| !is_beyond(ring, seen))
             .count()
     }
 

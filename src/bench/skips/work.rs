@@ -159,7 +159,7 @@ impl Work for KeptLists {
         seconds(|| {
             neighbors.sort(&mut agents, scene.ranges(needs));
             neighbors.list_walls(&agents, frame.walls);
-            if needs.pairs.any() || needs.density {
+            if needs.pairs.any() || needs.social || needs.density {
                 neighbors.list_agents();
                 packed.take_bodies(&agents, neighbors.extent(), |i| {
                     let group = &scene.groups[usize::from(agents.group[i])];
