@@ -45,7 +45,7 @@ impl NewAgent {
     }
 }
 
-/// Everybody's state. All arrays but `avoidance` have the same length; index i is an agent until the next
+/// Everybody's state. All arrays but the last two have the same length; index i is an agent until the next
 /// frame in which the neighbour lists are rebuilt, `id` is one for ever.
 #[derive(Debug, Clone, Default)]
 pub struct Agents {
@@ -72,6 +72,9 @@ pub struct Agents {
     /// The RVO acceleration held since the last coarse frame, m/s²; `None` where none is due. Empty
     /// where nobody avoids by RVO.
     pub avoidance: Vec<Option<Vector>>,
+    /// The acceleration of the frame before, m/s²; `None` for who was not there. Empty but for velocity
+    /// Verlet.
+    pub acceleration_before: Vec<Option<Vector>>,
     next_id: u32,
 }
 
@@ -128,6 +131,10 @@ impl Agents {
         if !self.avoidance.is_empty() {
             self.make_room_for_avoidance(); // for who entered since
             arrange(&mut self.avoidance, order);
+        }
+        if !self.acceleration_before.is_empty() {
+            self.acceleration_before.resize(self.len(), None);
+            arrange(&mut self.acceleration_before, order);
         }
         arrange(&mut self.id, order);
         arrange(&mut self.position, order);

@@ -76,11 +76,13 @@ pub fn mean_density_before(frame: &Frame, i: usize, from_agents: f64) -> f64 {
 }
 
 impl SphStates<'_> {
-    /// Eqs. 9, 10, 8 and 5, in this order, for agents `from` and up; the walls use the rest density of
+    /// Eqs. 9, 10, 8 and 5, in this order, for agents `from` and up, `dt` seconds after the moving average
+    /// was last kept; the walls use the rest density of
     /// the frame before. `sph` is their parameters where all have the same, `sph_of` those of one.
     pub fn update<'s>(
         &mut self,
         frame: &Frame,
+        dt: f64,
         from: usize,
         walls: WallMethod,
         sph: Option<SphParameters>,
@@ -90,7 +92,6 @@ impl SphStates<'_> {
         let to = from + self.density.len();
         let newcomer = &frame.agents.newcomer[from..to];
         let before = &frame.agents.mean_density[from..to];
-        let dt = frame.clock.time_step();
         for k in 0..to - from {
             let sph = sph.unwrap_or_else(|| *sph_of(from + k));
             let before = if newcomer[k] {

@@ -6,7 +6,7 @@ use crate::clock::Clock;
 use crate::forces::social::SocialForce;
 use crate::geometry::{Polygon, Walls};
 use crate::math::Vector;
-use crate::neighbors::Ranges;
+use crate::neighbors::{ListPolicy, Ranges, SKIN};
 use crate::pairs::{Precision, Wanted};
 use crate::placement::Grid;
 use crate::profile::{Blend, Override};
@@ -20,6 +20,22 @@ pub enum Integrator {
     SemiImplicit,
     /// r moves with the old v.
     ForwardEuler,
+    /// r ← r + v Δt + a Δt²/2, and v by the mean of the accelerations at both ends. Forces that depend on
+    /// the velocity see a predicted one, v + a Δt: the velocity of a frame, off by some Δt².
+    VelocityVerlet,
+    /// The second-order Runge-Kutta method that evaluates all forces but RVO a second time, half a frame
+    /// on, and takes the whole step with what it finds there.
+    Midpoint,
+}
+
+impl Integrator {
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::SemiImplicit,
+        Self::ForwardEuler,
+        Self::VelocityVerlet,
+        Self::Midpoint,
+    ];
 }
 
 /// Agents that share their behaviour and their fate.
@@ -108,6 +124,8 @@ pub struct Scene {
     pub wall_method: WallMethod,
     /// The numbers for sums over pairs.
     pub precision: Precision,
+    /// When neighbours are listed anew.
+    pub neighbor_lists: ListPolicy,
     /// s_pref, m/s (§5.6).
     pub preferred_speed: f64,
     /// s_max, m/s (§5.6).
@@ -133,6 +151,7 @@ impl Default for Scene {
             integrator: Integrator::default(),
             wall_method: WallMethod::default(),
             precision: Precision::default(),
+            neighbor_lists: ListPolicy::default(),
             preferred_speed: 1.4,
             max_speed: 1.8,
             walls: Walls::new(Vec::new()),
@@ -210,6 +229,18 @@ impl Scene {
             .iter()
             .map(|group| group.blend.sph.support_radius)
             .fold(0.0, f64::max);
+        let longest_step = self.max_speed * self.clock.time_step();
+        let ahead = match self.integrator {
+            Integrator::Midpoint => 0.5 * longest_step, // forces are evaluated there, too
+            _ => 0.0,
+        };
+        let (drift, margin) = match self.neighbor_lists {
+            ListPolicy::Complete => (0.5 * SKIN + ahead, 0.5 * SKIN + ahead),
+            ListPolicy::Coarse => {
+                let frames = f64::from(self.clock.coarse_every());
+                (frames * longest_step + ahead, 0.0)
+            }
+        };
         Ranges {
             support,
             avoidance: needs.avoidance,
@@ -219,7 +250,9 @@ impl Scene {
                     .map(|social| social.avoidance_radius)
                     .fold(0.0, f64::max)
             }),
-            longest_step: self.max_speed * self.clock.time_step(),
+            longest_step,
+            drift,
+            margin,
         }
     }
 }

@@ -152,7 +152,7 @@ impl Simulation {
         }
         self.update_neighbors(); // 1
         self.update_preferred_velocity(); // 2
-        self.update_density_and_pressure(); // 1B
+        self.update_density_and_pressure(self.clock.time_step()); // 1B
         self.update_rvo(); // 3, coarse
         self.update_acceleration(); // 3, 3B, 4
         self.evaluated = true;

@@ -202,7 +202,7 @@ fn nobody_slips_through_where_walls_meet_in_line() {
 
 #[test]
 fn a_velocity_above_the_maximum_cannot_jump_a_wall() {
-    for integrator in [Integrator::SemiImplicit, Integrator::ForwardEuler] {
+    for integrator in Integrator::ALL {
         for speed in [1.8, 20.0, 400.0] {
             let mut scene = scene(vec![rectangle([2.0, 2.01], [-9.0, 9.0])], blend("sph"));
             scene.integrator = integrator;

@@ -1,8 +1,9 @@
 //! What is documented about settings is what the program does.
 
+use sandbox::boundary::WallMethod;
 use sandbox::catalog::{self, NAMES, Parameters};
-use sandbox::scenario::{NESTED, Scenario, Setting, settings};
-use sandbox::scene::Scene;
+use sandbox::scenario::{NESTED, Preset, Scenario, Setting, settings};
+use sandbox::scene::{Integrator, Scene};
 use serde_json::{Value, json};
 
 fn parameter_keys() -> Vec<String> {
@@ -115,6 +116,8 @@ fn the_documented_defaults_of_scenarios_are_those_of_the_engine() {
     assert_eq!(bare.scene.clock, engine.clock);
     assert_eq!(bare.scene.integrator, engine.integrator);
     assert_eq!(bare.scene.wall_method, engine.wall_method);
+    assert_eq!(bare.scene.precision, engine.precision);
+    assert_eq!(bare.scene.neighbor_lists, engine.neighbor_lists);
     assert_eq!(bare.scene.preferred_speed, engine.preferred_speed);
     assert_eq!(bare.scene.max_speed, engine.max_speed);
     assert_eq!(bare.name, "nameless");
@@ -125,6 +128,8 @@ fn the_documented_defaults_of_scenarios_are_those_of_the_engine() {
         "time_step_secs",
         "integrator",
         "wall_method",
+        "precision",
+        "neighbor_lists",
         "preferred_speed",
         "max_speed",
         "profile",
@@ -136,6 +141,8 @@ fn the_documented_defaults_of_scenarios_are_those_of_the_engine() {
     assert_eq!(given.scene.clock, bare.scene.clock);
     assert_eq!(given.scene.integrator, bare.scene.integrator);
     assert_eq!(given.scene.wall_method, bare.scene.wall_method);
+    assert_eq!(given.scene.precision, bare.scene.precision);
+    assert_eq!(given.scene.neighbor_lists, bare.scene.neighbor_lists);
     assert_eq!(given.scene.preferred_speed, bare.scene.preferred_speed);
     assert_eq!(given.scene.max_speed, bare.scene.max_speed);
     assert_eq!(given.profile_name, bare.profile_name);
@@ -164,4 +171,29 @@ fn a_scenario_that_names_nobody_to_lay_open_gets_a_dozen_from_first_to_last() {
             .debug_agents
             .is_empty()
     );
+}
+
+#[test]
+fn a_preset_fills_in_what_is_not_said_otherwise() {
+    let paper = parse(&["preset=paper"]).scene;
+    let bare = parse(&[]).scene;
+    assert_eq!(
+        (paper.clock, paper.integrator),
+        (bare.clock, bare.integrator)
+    );
+    assert_eq!(
+        (paper.wall_method, paper.precision),
+        (bare.wall_method, bare.precision)
+    );
+
+    for (name, preset) in Preset::ALL {
+        let scenario = parse(&[&format!("preset={name}")]);
+        let filled = &scenario.document;
+        for (key, value) in preset.document().as_object().unwrap() {
+            assert_eq!(filled[key], *value, "{name}: {key}");
+        }
+    }
+    let accurate = parse(&["preset=accurate", "wall_method=exact"]).scene;
+    assert_eq!(accurate.integrator, Integrator::VelocityVerlet);
+    assert_eq!(accurate.wall_method, WallMethod::Exact);
 }

@@ -44,20 +44,6 @@ proptest! {
 }
 
 #[test]
-fn both_integrators_are_of_first_order() {
-    let exact = 1.4 * (2.0 - 0.5 * (1.0 - (-4.0_f64).exp()));
-    for integrator in [Integrator::SemiImplicit, Integrator::ForwardEuler] {
-        let error = |dt: f64| {
-            let mut simulation = alone(integrator, dt);
-            run(&mut simulation, (2.0 / dt).round() as u64);
-            (state(&simulation, 0).0.x - exact).abs()
-        };
-        let order = (error(0.02) / error(0.01)).log2();
-        assert!((order - 1.0).abs() < 0.05, "{integrator:?}: {order}");
-    }
-}
-
-#[test]
 fn nobody_is_faster_than_the_maximum_speed_whatever_pushes() {
     let mut scene = scene(Vec::new(), blend("sf"));
     scene.agents = block(Vector::zeros(), 10, 10, 0.15, vector(50.0, 0.0));

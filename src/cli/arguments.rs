@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 
 use super::{bench, reproduce};
-use crate::scenario::SHIPPED;
+use crate::scenario::{Preset, SHIPPED};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -92,6 +92,9 @@ pub struct SceneOptions {
     /// Seed of all random numbers
     #[arg(long)]
     pub seed: Option<u64>,
+    /// Numerics: the paper's, cheaper ones, or nearer to the model's own limit (see docs/accuracy.md)
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Preset::ALL.map(|(name, _)| name)))]
+    pub preset: Option<String>,
     /// Δt_fine in seconds, or `auto`: the largest step at which the crowd is sure to come to rest
     #[arg(long, value_name = "SECS|auto")]
     pub time_step: Option<String>,

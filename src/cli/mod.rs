@@ -114,6 +114,7 @@ fn scenario(
     let seed = scene.seed.map(|seed| seed.to_string());
     let flags = [
         ("--profile", "profile", scene.profile.clone()),
+        ("--preset", "preset", scene.preset.clone()),
         ("--seed", "seed", seed),
         ("--until", "duration_secs", until),
         ("--time-step", "time_step_secs", scene.time_step.clone()),

@@ -25,6 +25,17 @@ use crate::math::Vector;
 /// More of it makes rarer but longer lists.
 pub const SKIN: f64 = 0.14;
 
+/// When lists of near agents are made anew, and whether anybody can be missed in between.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ListPolicy {
+    /// As often as needed, with a margin: nobody is ever missed.
+    #[default]
+    Complete,
+    /// In every coarse frame, without a margin (§5.1): whoever comes near in between is missed.
+    Coarse,
+}
+
 /// How far neighbours are looked for; avoidance that nobody needs is `None`, and costs nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ranges {
@@ -36,6 +47,10 @@ pub struct Ranges {
     pub social: Option<f64>,
     /// The longest step that anybody makes in a frame, s_max Δt, metres.
     pub longest_step: f64,
+    /// How far anybody may be from where they were listed, metres; nobody misses a wall.
+    pub drift: f64,
+    /// How far, so that nobody misses anybody either, metres; at most `drift`.
+    pub margin: f64,
 }
 
 /// Neighbours as of the last sort.
@@ -78,12 +93,13 @@ impl Neighbors {
     /// Lists the walls near everybody: near ones for SPH and contact and for stopping moves, far ones
     /// for avoidance.
     pub fn list_walls(&mut self, agents: &Agents, walls: &Walls) {
+        let margin = self.ranges.drift;
         let least = self.ranges.support.max(self.ranges.longest_step);
         list_walls(&mut self.near_walls, agents, walls, |radius| {
-            least.max(radius)
+            least.max(radius) + margin
         });
         match self.ranges.avoidance {
-            Some(radius) => list_walls(&mut self.far_walls, agents, walls, |_| radius),
+            Some(radius) => list_walls(&mut self.far_walls, agents, walls, |_| radius + margin),
             None => self.far_walls.clear(),
         }
     }
@@ -98,7 +114,7 @@ impl Neighbors {
         self.travelled = farthest;
     }
 
-    /// Could somebody be missed?
+    /// Has somebody gone so far that lists with the [`SKIN`] could miss somebody?
     pub fn are_stale(&self) -> bool {
         self.travelled > 0.5 * SKIN
     }
@@ -112,14 +128,15 @@ impl Neighbors {
     /// that he would seem near. See [`Clusters::extent`]; in social forces that is a cluster's width, two
     /// cells, the radius and two moves.
     pub fn extent(&self) -> f64 {
-        let far = |radius: f64| radius + 2.5 * self.reach + SKIN;
-        Clusters::extent(self.reach).max(self.ranges.social.map_or(0.0, far))
+        let far = |radius: f64| radius + 2.5 * self.reach + 2.0 * self.ranges.margin;
+        let unlisted = 2.0 * (self.ranges.drift - self.ranges.margin);
+        Clusters::extent(self.reach).max(self.ranges.social.map_or(0.0, far)) + unlisted
     }
 
     /// Candidates for avoidance within `radius` metres of `p`, as ranges of agents, some out of range
     /// and whoever stands at `p` among them.
     pub fn around(&self, p: Vector, radius: f64) -> impl Iterator<Item = Range<usize>> + '_ {
-        let rows = self.grid.rows([p; 2], radius + 0.5 * SKIN);
+        let rows = self.grid.rows([p; 2], radius + self.ranges.margin);
         rows.map(|run| run.start as usize..run.end as usize)
     }
 
@@ -133,7 +150,7 @@ impl Neighbors {
         found: &mut Vec<Range<u32>>,
     ) {
         found.clear();
-        let reach = radius + 0.5 * SKIN;
+        let reach = radius + self.ranges.margin;
         if self.grid.height() <= self.reach {
             found.extend(self.grid.rows(bounds(&positions[agents]), reach));
             return;
@@ -167,7 +184,7 @@ impl Neighbors {
 /// So many walls are looked at one by one rather than searched.
 const FEW_WALLS: usize = 16;
 
-/// Lists the walls within reach of everybody, by the radius of the body, and half the skin.
+/// Lists the walls within reach of everybody, by the radius of the body.
 fn list_walls(
     lists: &mut Lists,
     agents: &Agents,
@@ -178,7 +195,7 @@ fn list_walls(
         lists.clear();
         return;
     }
-    let reach = |i: usize| reach(agents.radius[i]) + 0.5 * SKIN;
+    let reach = |i: usize| reach(agents.radius[i]);
     lists.rebuild(
         agents.len(),
         |some| {
@@ -199,10 +216,10 @@ fn list_walls(
     );
 }
 
-/// How far agents act on each other by SPH and contact, and the skin.
+/// How far agents act on each other by SPH and contact, and twice the margin.
 fn near_radius(agents: &Agents, ranges: &Ranges) -> f64 {
     let widest = agents.radius.iter().copied().fold(0.0, f64::max);
-    ranges.support.max(2.0 * widest) + SKIN
+    ranges.support.max(2.0 * widest) + 2.0 * ranges.margin
 }
 
 #[cfg(test)]
@@ -229,6 +246,8 @@ mod tests {
             avoidance: Some(5.0),
             social: Some(5.0),
             longest_step: 0.036,
+            drift: 0.5 * SKIN,
+            margin: 0.5 * SKIN,
         };
         neighbors.sort(agents, ranges);
         neighbors.list_agents();

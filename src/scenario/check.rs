@@ -9,7 +9,7 @@ use super::error::{Problem, Under, in_plain_words};
 use super::file::{self, File, Object, ProfileChoice, TimeStep};
 use super::range::{COARSE_EVERY, MAX_SPEED, PREFERRED_SPEED, Range, TIME, TIME_STEP};
 use super::range::{point, region};
-use super::{Scenario, Stop, View, profiles, settings};
+use super::{Scenario, Stop, View, parameters, preset, profiles};
 use crate::clock::{Clock, PAPER_TIME_STEP};
 use crate::geometry::Polygon;
 use crate::math::Vector;
@@ -31,7 +31,8 @@ const UNTIL: Range = Range::above(0.0, 1e7);
 
 /// Checks `document`; a scenario without a name gets `fallback_name`.
 pub(super) fn scenario(document: &Value, fallback_name: &str) -> Result<Scenario, Problem> {
-    let file = read(document)?;
+    let document = preset::fill(document);
+    let file = read(&document)?;
     let name = file
         .name
         .clone()
@@ -42,7 +43,7 @@ pub(super) fn scenario(document: &Value, fallback_name: &str) -> Result<Scenario
     let duration_secs = file.duration_secs.unwrap_or(DEFAULT_DURATION);
     let duration_secs = TIME.check("duration_secs", duration_secs)?;
     let mut scene = empty_scene(&file)?;
-    settings::check(&file.parameters.0).under("parameters")?;
+    parameters::check(&file.parameters.0).under("parameters")?;
     let choice = file.profile.clone();
     let choice = choice.unwrap_or_else(|| ProfileChoice::Named(DEFAULT_PROFILE.to_owned()));
     let blend = profiles::blend(&choice, &file.parameters.0).under("profile")?;
@@ -64,7 +65,7 @@ pub(super) fn scenario(document: &Value, fallback_name: &str) -> Result<Scenario
             None => spread(entering),
         },
         profile_name: blend.name,
-        document: document.clone(),
+        document,
         scene,
     })
 }
@@ -98,6 +99,7 @@ fn empty_scene(file: &File) -> Result<Scene, Problem> {
         integrator: file.integrator,
         wall_method: file.wall_method,
         precision: file.precision,
+        neighbor_lists: file.neighbor_lists,
         preferred_speed: PREFERRED_SPEED.check("preferred_speed", preferred_speed)?,
         max_speed: MAX_SPEED.check("max_speed", max_speed)?,
         ..Scene::with_obstacles(obstacles)

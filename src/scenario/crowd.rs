@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use super::error::{Problem, Under};
 use super::file::{self, Behaviour, File, Object, ProfileChoice};
+use super::parameters::DENSITY;
 use super::profiles;
 use super::range::{self, COORDINATE, Range, TIME, point};
-use super::settings::DENSITY;
 use crate::agents::NewAgent;
 use crate::placement::Grid;
 use crate::profile::Blend;

@@ -7,8 +7,10 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Serialize};
 
+use super::preset::Preset;
 use crate::boundary::WallMethod;
 use crate::catalog::{NavigationKind, Parameters};
+use crate::neighbors::ListPolicy;
 use crate::pairs::Precision;
 use crate::scene::Integrator;
 
@@ -48,11 +50,15 @@ pub(super) struct File {
     pub description: Option<String>,
     pub seed: Option<u64>,
     pub duration_secs: Option<f64>,
+    /// What it stands for has been written out by [`super::preset::fill`].
+    #[serde(rename = "preset")]
+    pub _preset: Preset,
     pub time_step_secs: Option<TimeStep>,
     pub coarse_every: Option<u32>,
     pub integrator: Integrator,
     pub wall_method: WallMethod,
     pub precision: Precision,
+    pub neighbor_lists: ListPolicy,
     pub preferred_speed: Option<f64>,
     pub max_speed: Option<f64>,
     pub profile: Option<ProfileChoice>,

@@ -25,6 +25,8 @@ mod document;
 mod error;
 mod file;
 mod nested;
+mod parameters;
+mod preset;
 mod profiles;
 mod range;
 mod setting;
@@ -33,6 +35,7 @@ mod shipped;
 
 pub use error::{Problem, ScenarioError};
 pub use nested::NESTED;
+pub use preset::Preset;
 pub use setting::{Setting, SettingError};
 pub use settings::{SettingDoc, settings};
 pub use shipped::{SHIPPED, Shipped};
@@ -69,7 +72,7 @@ pub struct Scenario {
     pub debug_agents: Vec<u32>,
     /// The name of the profile of agents that name none.
     pub profile_name: String,
-    /// The file as given, with the settings in it.
+    /// The file as given, with the settings and what its preset stands for in it.
     pub document: Value,
 }
 

@@ -2,7 +2,7 @@
 
 use super::error::{Problem, Under, suggestion};
 use super::file::{CustomProfile, Object, ProfileChoice, Step};
-use super::settings::{self, DENSITY};
+use super::parameters::{self, DENSITY};
 use crate::catalog::{self, NAMES, Parameters};
 use crate::profile::{Blend, BlendStep, Profile};
 
@@ -97,7 +97,7 @@ fn checked(custom: &CustomProfile) -> Result<(), Problem> {
     if custom.sph.is_some() && custom.navigation.is_none() {
         return Err(Problem::new("sph", "goes with `navigation` only"));
     }
-    settings::check(&custom.parameters.0).under("parameters")
+    parameters::check(&custom.parameters.0).under("parameters")
 }
 
 fn blend_of_steps(
@@ -148,8 +148,8 @@ fn shared_by(custom: &CustomProfile, steps: &[Object<Step>]) -> Result<Parameter
             continue;
         };
         let own = sph_only(&step.parameters.0);
-        let so_far = settings::given(&shared);
-        for (key, value) in settings::given(&own) {
+        let so_far = parameters::given(&shared);
+        for (key, value) in parameters::given(&own) {
             if let Some((_, other)) = so_far.iter().find(|(k, v)| *k == key && *v != value) {
                 let path = format!("blend[{k}].profile.parameters.{key}");
                 let reason =

@@ -5,7 +5,8 @@ use std::str::FromStr;
 use serde_json::{Map, Value};
 
 use super::error::{Problem, ScenarioError, suggestion};
-use super::settings::{self, TEXTS, settings};
+use super::parameters;
+use super::settings::{TEXTS, settings};
 
 /// One change: `viscosity=5`, `seed=7`, `profile=sf`, `sources.0.rows=50`.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,7 +48,7 @@ impl FromStr for Setting {
                 suggestion: suggestion(&path[0], known.iter().map(|doc| doc.key)),
             });
         }
-        if settings::is_parameter(&path[0]) {
+        if parameters::is_parameter(&path[0]) {
             path.insert(0, "parameters".to_owned());
         }
         let as_text = || Value::from(value.trim());

@@ -12,14 +12,18 @@ use crate::forces::rvo::Scratch;
 use crate::forces::social::SocialForce;
 use crate::frame::{Frame, velocity_range};
 use crate::math::{Vector, are_finite, numbers_are_finite};
-use crate::neighbors::{BLOCK, CLUSTER, TASK};
+use crate::neighbors::{BLOCK, CLUSTER, ListPolicy, TASK};
 use crate::pairs::{Columns, PairCoefficients, Real, each};
 use crate::profile::{Blend, Override};
 
 impl Simulation {
     /// Step 1.
     pub(super) fn update_neighbors(&mut self) {
-        if self.crowd_changed || self.neighbors.are_stale() {
+        let stale = match self.scene.neighbor_lists {
+            ListPolicy::Complete => self.neighbors.are_stale(),
+            ListPolicy::Coarse => self.clock.is_coarse(),
+        };
+        if self.crowd_changed || stale {
             self.sort_agents();
             self.list_walls();
         }
@@ -91,8 +95,8 @@ impl Simulation {
         });
     }
 
-    /// Step 1B.
-    pub(super) fn update_density_and_pressure(&mut self) {
+    /// Step 1B, `dt` seconds after the moving average was last kept.
+    pub(super) fn update_density_and_pressure(&mut self, dt: f64) {
         let due = self.density_is_due();
         if !due && !self.fields.density.is_empty() {
             self.agents.newcomer.fill(true); // when asked for again, ρ̂ starts anew
@@ -102,11 +106,11 @@ impl Simulation {
             return;
         }
         let mut packed = std::mem::take(&mut self.packed);
-        each!(&mut packed, columns => self.compress(columns));
+        each!(&mut packed, columns => self.compress(columns, dt));
         self.packed = packed;
     }
 
-    fn compress<R: Real>(&mut self, columns: &mut Columns<R>) {
+    fn compress<R: Real>(&mut self, columns: &mut Columns<R>, dt: f64) {
         let mut fields = std::mem::take(&mut self.fields);
         let mut stages = std::mem::take(&mut self.stages);
         let frame = self.frame();
@@ -148,7 +152,7 @@ impl Simulation {
                     let from = b * BLOCK;
                     let to = from + states.density.len();
                     let same = self.same_group(from..to).map(|blend| blend.sph);
-                    states.update(&frame, from, walls, same, |i| &self.blend(i).sph);
+                    states.update(&frame, dt, from, walls, same, |i| &self.blend(i).sph);
                     let mass = &frame.agents.mass[from..to];
                     for k in 0..mass.len() {
                         volumes[k] = R::of(mass[k] / states.density[k]);

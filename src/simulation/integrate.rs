@@ -15,25 +15,15 @@ impl Simulation {
     /// been moved then.
     pub fn integrate(&mut self) -> Result<(), Fault> {
         self.evaluate()?;
-        let mut stages = std::mem::take(&mut self.stages);
-        let moved = stages.time(Stage::Integration, || {
-            let fault = if self.finite { None } else { self.find_fault() };
-            fault.map_or_else(
-                || {
-                    self.move_agents();
-                    Ok(())
-                },
-                Err,
-            )
-        });
-        self.stages = stages;
-        moved?;
+        self.check()?;
+        match self.scene.integrator {
+            Integrator::SemiImplicit => self.move_semi_implicitly(),
+            Integrator::ForwardEuler => self.move_with_old_velocities(),
+            Integrator::VelocityVerlet => self.move_by_verlet(),
+            Integrator::Midpoint => self.move_by_midpoint()?,
+        }
         self.clock.advance();
         self.evaluated = false;
-        if !self.fields.density.is_empty() {
-            std::mem::swap(&mut self.agents.mean_density, &mut self.fields.mean_density);
-            self.agents.newcomer.fill(false);
-        }
         if self.needs.removal {
             self.remove_arrivals();
         }
@@ -41,11 +31,98 @@ impl Simulation {
         Ok(())
     }
 
-    fn move_agents(&mut self) {
+    fn move_semi_implicitly(&mut self) {
+        self.keep_mean_density();
         let dt = self.clock.time_step();
+        self.move_all(|_, v, a| Motion::along(v + a * dt));
+    }
+
+    fn move_with_old_velocities(&mut self) {
+        self.keep_mean_density();
+        let dt = self.clock.time_step();
+        self.move_all(|_, v, a| Motion {
+            way: v,
+            velocity: v + a * dt,
+        });
+    }
+
+    /// The velocity of the frame was predicted with the acceleration of the frame before; what is better
+    /// known now is mended first.
+    fn move_by_verlet(&mut self) {
+        self.keep_mean_density();
+        let dt = self.clock.time_step();
+        let mut before = std::mem::take(&mut self.agents.acceleration_before);
+        before.resize(self.agents.len(), None); // for who entered since
+        self.move_all(|i, v, a| {
+            let v = v + before[i].map_or(Vector::zeros(), |before| (a - before) * (0.5 * dt));
+            Motion {
+                way: v + a * (0.5 * dt),
+                velocity: v + a * dt,
+            }
+        });
+        before.clear();
+        before.extend(self.fields.acceleration.iter().copied().map(Some));
+        self.agents.acceleration_before = before;
+    }
+
+    fn move_by_midpoint(&mut self) -> Result<(), Fault> {
+        let dt = self.clock.time_step();
+        let begin = self.agents.clone();
+        self.keep_mean_density();
+        self.move_agents(0.5 * dt, |_, v, a| Motion {
+            way: v,
+            velocity: v + a * (0.5 * dt),
+        });
+        self.update_preferred_velocity();
+        self.update_density_and_pressure(0.5 * dt);
+        self.update_acceleration();
+        self.check()
+            .inspect_err(|_| self.agents.clone_from(&begin))?;
+        let half_way = std::mem::replace(&mut self.agents.velocity, begin.velocity);
+        self.agents.position = begin.position;
+        self.move_all(|i, v, a| Motion {
+            way: half_way[i],
+            velocity: v + a * dt,
+        });
+        Ok(())
+    }
+
+    /// The moving average of the evaluated frame becomes that of the frame before.
+    fn keep_mean_density(&mut self) {
+        if !self.fields.density.is_empty() {
+            std::mem::swap(&mut self.agents.mean_density, &mut self.fields.mean_density);
+            self.agents.newcomer.fill(false);
+        }
+    }
+
+    /// Moves everybody by a whole frame and counts what walls and the highest speed have changed.
+    fn move_all(&mut self, motion: impl Fn(usize, Vector, Vector) -> Motion + Sync) {
+        let moves = self.move_agents(self.clock.time_step(), motion);
+        self.outcome.contained_moves += moves.contained;
+        self.outcome.clamped_speeds += moves.clamped;
+    }
+
+    /// Moves everybody by `dt` seconds, each as `motion` says of its index, velocity and acceleration.
+    fn move_agents(
+        &mut self,
+        dt: f64,
+        motion: impl Fn(usize, Vector, Vector) -> Motion + Sync,
+    ) -> Moves {
+        let mut stages = std::mem::take(&mut self.stages);
+        let moves = stages.time(Stage::Integration, || self.moved_by(dt, motion));
+        self.stages = stages;
+        self.neighbors.travelled(moves.farthest.sqrt());
+        moves
+    }
+
+    fn moved_by(
+        &mut self,
+        dt: f64,
+        motion: impl Fn(usize, Vector, Vector) -> Motion + Sync,
+    ) -> Moves {
         let (scene, neighbors) = (&self.scene, &self.neighbors);
         let agents = &mut self.agents;
-        let total = (
+        (
             agents.position.par_chunks_mut(BLOCK),
             agents.velocity.par_chunks_mut(BLOCK),
             self.fields.acceleration.par_chunks(BLOCK),
@@ -59,20 +136,23 @@ impl Simulation {
                 let from = b * BLOCK;
                 let walled = neighbors.agents_near_walls(from..from + positions.len());
                 let mut walled = walled.peekable();
-                let motions = positions.iter_mut().zip(velocities);
-                let motions = motions.zip(accelerations).zip(sorted_at);
-                for (k, (((position, velocity), &acceleration), start)) in motions.enumerate() {
+                let states = positions.iter_mut().zip(velocities);
+                let states = states.zip(accelerations).zip(sorted_at);
+                for (k, (((position, velocity), &acceleration), start)) in states.enumerate() {
                     let walls = walled.next_if(|&(i, _)| i == from + k);
                     let walls = walls.map_or(&[][..], |(_, walls)| walls);
-                    moves.make(scene, walls, dt, position, velocity, acceleration);
+                    let motion = motion(from + k, *velocity, acceleration);
+                    moves.make(scene, walls, dt, motion, position, velocity);
                     moves.farthest = moves.farthest.max((*position - start).norm_squared());
                 }
                 moves
             })
-            .reduce(Moves::default, Moves::and);
-        self.outcome.contained_moves += total.contained;
-        self.outcome.clamped_speeds += total.clamped;
-        self.neighbors.travelled(total.farthest.sqrt());
+            .reduce(Moves::default, Moves::and)
+    }
+
+    fn check(&self) -> Result<(), Fault> {
+        let fault = if self.finite { None } else { self.find_fault() };
+        fault.map_or(Ok(()), Err)
     }
 
     /// The first quantity that is no number, and whose it is.
@@ -126,6 +206,24 @@ impl Simulation {
     }
 }
 
+/// How somebody moves; both are cut to the highest speed.
+struct Motion {
+    /// The velocity of the move, m/s.
+    way: Vector,
+    /// The velocity after it, m/s.
+    velocity: Vector,
+}
+
+impl Motion {
+    /// With one velocity.
+    fn along(velocity: Vector) -> Self {
+        Self {
+            way: velocity,
+            velocity,
+        }
+    }
+}
+
 /// What happened in the moves of some agents.
 #[derive(Default)]
 struct Moves {
@@ -138,27 +236,21 @@ struct Moves {
 }
 
 impl Moves {
-    /// Moves one agent by one frame of `dt` seconds.
+    /// Moves one agent by `dt` seconds.
     #[inline]
     fn make(
         &mut self,
         scene: &Scene,
         walls: &[u32],
         dt: f64,
+        motion: Motion,
         position: &mut Vector,
         velocity: &mut Vector,
-        acceleration: Vector,
     ) {
-        let (before, start) = (*velocity, *position);
-        let wish = before + acceleration * dt;
-        *velocity = clamp_length(wish, scene.max_speed);
-        self.clamped += u64::from(*velocity != wish);
-        let step = match scene.integrator {
-            Integrator::SemiImplicit => *velocity,
-            // A velocity that an agent enters with may be too fast.
-            Integrator::ForwardEuler => clamp_length(before, scene.max_speed),
-        };
-        let target = start + step * dt;
+        let start = *position;
+        *velocity = clamp_length(motion.velocity, scene.max_speed);
+        self.clamped += u64::from(*velocity != motion.velocity);
+        let target = start + clamp_length(motion.way, scene.max_speed) * dt;
         if walls.is_empty() {
             *position = target;
             return;

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::agents::Agents;
 use crate::bench::timing::warmed;
 use crate::forces::rvo::Scratch;
-use crate::neighbors::{Lists, Neighbors, SKIN};
+use crate::neighbors::{Lists, Neighbors};
 use crate::pairs::Packed;
 use crate::scene::Needs;
 use crate::simulation::{Fault, Simulation, StageTimes};
@@ -191,7 +191,7 @@ impl Work for WallsByBlocks {
         let list = |lists: &mut Lists, reach: &(dyn Fn(usize) -> f64 + Sync)| {
             let nobody_knows = |_| vec![0]; // of any walls that could be near
             lists.rebuild(agents.len(), nobody_knows, |i, _, found| {
-                walls.near(agents.position[i], reach(i) + 0.5 * SKIN, found);
+                walls.near(agents.position[i], reach(i) + ranges.drift, found);
             });
         };
         let one_by_one = seconds(|| {

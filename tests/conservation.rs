@@ -1,0 +1,192 @@
+//! What forces between people conserve: momentum, angular momentum where they are central, energy where
+//! they have a potential.
+
+mod common;
+
+use common::{blend_with, block, rectangle, run, scene, vector};
+use sandbox::agents::{Agents, NewAgent};
+use sandbox::catalog::Parameters;
+use sandbox::clock::Clock;
+use sandbox::math::Vector;
+use sandbox::scene::{Integrator, Scene};
+use sandbox::simulation::Simulation;
+
+/// No goal force, and a rest density below that of anybody alone: every pressure is positive.
+fn free(parameters: Parameters) -> Scene {
+    let parameters = Parameters {
+        goal_scale: Some(0.0),
+        rest_density_min: Some(1.0),
+        rest_density_max: Some(1.0),
+        ..parameters
+    };
+    let mut scene = scene(Vec::new(), blend_with("sph", &parameters));
+    scene.max_speed = 100.0;
+    scene.agents = moving(block(Vector::zeros(), 8, 8, 0.42, Vector::zeros()));
+    scene
+}
+
+/// The same people, each thrown another way.
+fn moving(agents: Vec<NewAgent>) -> Vec<NewAgent> {
+    let thrown = agents.into_iter().zip(0_u32..);
+    thrown
+        .map(|(agent, id)| {
+            let angle = 2.399_963 * f64::from(id);
+            NewAgent {
+                velocity: vector(0.1 + angle.cos(), angle.sin()) * 0.5,
+                ..agent
+            }
+        })
+        .collect()
+}
+
+fn momentum(agents: &Agents) -> Vector {
+    let parts = agents.mass.iter().zip(&agents.velocity);
+    parts.map(|(&mass, v)| v * mass).sum()
+}
+
+fn angular_momentum(agents: &Agents) -> f64 {
+    let bodies = agents.mass.iter().zip(&agents.position);
+    let parts = bodies.zip(&agents.velocity);
+    parts.map(|((mass, r), v)| mass * r.perp(v)).sum()
+}
+
+/// Before and after so many frames with an integrator, by a function of the crowd.
+fn before_and_after<T>(
+    scene: &Scene,
+    integrator: Integrator,
+    frames: u64,
+    of: impl Fn(&Agents) -> T,
+) -> [T; 2] {
+    let scene = Scene {
+        integrator,
+        ..scene.clone()
+    };
+    let mut simulation = Simulation::new(scene).unwrap();
+    let before = of(simulation.frame().agents);
+    run(&mut simulation, frames);
+    [before, of(simulation.frame().agents)]
+}
+
+#[test]
+fn a_free_crowd_keeps_its_momentum_whatever_the_integrator() {
+    for (k, mu, contact) in [
+        (200.0, 0.0, 0.0),
+        (0.0, 5.0, 0.0),
+        (0.0, 0.0, 1000.0),
+        (200.0, 5.0, 50.0),
+    ] {
+        let scene = free(Parameters {
+            gas_constant: Some(k),
+            viscosity: Some(mu),
+            agent_stiffness: Some(contact),
+            ..Parameters::default()
+        });
+        for integrator in Integrator::ALL {
+            let [before, after] = before_and_after(&scene, integrator, 100, momentum);
+            let change = (after - before).norm();
+            assert!(before.norm() > 3.0, "{before:?}");
+            // 64 people times 100 frames of rounding.
+            assert!(
+                change < 1e-11,
+                "{integrator:?} {k} {mu} {contact}: {change}"
+            );
+        }
+    }
+}
+
+#[test]
+fn central_forces_keep_the_angular_momentum_with_semi_implicit_steps() {
+    let crowd = |k, mu| {
+        free(Parameters {
+            gas_constant: Some(k),
+            viscosity: Some(mu),
+            agent_stiffness: Some(1000.0),
+            ..Parameters::default()
+        })
+    };
+    let change = |scene: &Scene, integrator| {
+        let [before, after] = before_and_after(scene, integrator, 100, angular_momentum);
+        (after - before).abs()
+    };
+    let central = crowd(200.0, 0.0);
+    assert!(change(&central, Integrator::SemiImplicit) < 1e-10);
+    assert!(change(&central, Integrator::ForwardEuler) > 0.1);
+    // Drag along the difference of two velocities is not central.
+    assert!(change(&crowd(200.0, 5.0), Integrator::SemiImplicit) > 0.1);
+}
+
+/// Soft discs in a closed room, which overlap a little from the start.
+fn billiard(time_step: f64) -> Scene {
+    let parameters = Parameters {
+        goal_scale: Some(0.0),
+        gas_constant: Some(0.0),
+        agent_stiffness: Some(200.0),
+        wall_stiffness: Some(200.0),
+        ..Parameters::default()
+    };
+    let (low, high) = (-1.0, 4.1);
+    let walls = vec![
+        rectangle([low, 0.0], [low, high]),
+        rectangle([3.1, high], [low, high]),
+        rectangle([0.0, 3.1], [low, 0.0]),
+        rectangle([0.0, 3.1], [3.1, high]),
+    ];
+    let mut scene = scene(walls, blend_with("sph", &parameters));
+    scene.max_speed = 100.0;
+    scene.clock = Clock::new(time_step, Clock::nearest_coarse_every(time_step));
+    scene.agents = moving(block(vector(0.2, 0.2), 7, 7, 0.45, Vector::zeros()));
+    scene
+}
+
+/// Kinetic energy and that of all overlaps: K/2 for the square of each.
+fn energy(simulation: &Simulation) -> f64 {
+    let frame = simulation.frame();
+    let agents = frame.agents;
+    let overlap = |touching: f64, distance: f64| 100.0 * (touching - distance).max(0.0).powi(2);
+    let mut energy = 0.0;
+    for i in 0..agents.len() {
+        let (r, radius) = (agents.position[i], agents.radius[i]);
+        energy += 0.5 * agents.mass[i] * agents.velocity[i].norm_squared();
+        for j in 0..i {
+            energy += overlap(radius + agents.radius[j], (r - agents.position[j]).norm());
+        }
+        for wall in frame.walls.iter() {
+            energy += overlap(radius, (r - wall.nearest_point(r).point).norm());
+        }
+    }
+    energy
+}
+
+/// The mean energy over the last second of 20, in parts of that at the start, less 1.
+fn drift(integrator: Integrator, time_step: f64) -> f64 {
+    let scene = Scene {
+        integrator,
+        ..billiard(time_step)
+    };
+    let mut simulation = Simulation::new(scene).unwrap();
+    let frames = |seconds: f64| (seconds / time_step).round() as u64;
+    let start = energy(&simulation);
+    run(&mut simulation, frames(19.0));
+    let mut sum = 0.0;
+    for _ in 0..frames(1.0) {
+        simulation.step().unwrap();
+        sum += energy(&simulation);
+    }
+    sum / frames(1.0) as f64 / start - 1.0
+}
+
+#[test]
+fn contact_alone_keeps_its_energy_as_well_as_the_integrator_can() {
+    let [semi_implicit, forward, verlet, midpoint] =
+        Integrator::ALL.map(|integrator| drift(integrator, 0.01));
+    for symplectic in [semi_implicit, verlet] {
+        assert!(symplectic.abs() < 0.03, "{symplectic}");
+    }
+    assert!(forward > 10.0, "{forward}");
+    // Of each oscillation the midpoint method adds (ω Δt)⁴/8 by the step: an eighth at half of it.
+    let halved = drift(Integrator::Midpoint, 0.005);
+    assert!(
+        midpoint > 0.1 && (4.0..16.0).contains(&(midpoint / halved)),
+        "{midpoint} {halved}"
+    );
+}
