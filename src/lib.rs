@@ -80,10 +80,15 @@ pub mod plot;
 
 pub mod reproduce;
 
+pub mod job;
+
 #[cfg(feature = "bench")]
 pub mod bench;
 
 pub mod stress;
+
+#[cfg(feature = "bench")]
+pub mod accuracy;
 
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -25,6 +25,7 @@ pub use report::{Findings, Report, Setting, Table, check_free};
 pub use skips::{SKIPS, Skip, everything};
 pub use spread::{Spread, ratios};
 pub use timing::{Contender, alternate};
+pub(crate) use timing::{ms_per_frame, pool};
 
 use std::path::PathBuf;
 

@@ -85,6 +85,14 @@ impl Table {
         }
         text
     }
+
+    /// As a table in Markdown.
+    pub fn markdown(&self) -> String {
+        let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+        let rule = "|---".repeat(self.head.len()) + "|\n";
+        let rows = self.rows.iter().map(|row| line(row));
+        line(&self.head) + &rule + &rows.collect::<String>()
+    }
 }
 
 /// What a benchmark itself has to say.

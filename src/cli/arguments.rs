@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 
-use super::{bench, reproduce};
+use super::{accuracy, bench, reproduce};
 use crate::scenario::{Preset, SHIPPED};
 
 const EXAMPLES: &str = "\
@@ -71,6 +71,9 @@ pub enum Command {
     /// Measure how fast it is on this machine: a table, one JSON object, a picture
     #[command(after_help = format!("{}{BENCH_EXAMPLES}", bench::about()))]
     Bench(BenchOptions),
+    /// Measure run time against error for every numerical choice: tables and work-precision diagrams
+    #[command(after_help = format!("{}Example: sandbox accuracy relaxed wall --knob integrator", accuracy::about()))]
+    Accuracy(AccuracyOptions),
     /// Run hard cases, map the largest stable time step, measure jitter
     #[command(after_help = "Example: sandbox stress --quick")]
     Stress(StressOptions),
@@ -222,6 +225,31 @@ pub struct BenchOptions {
     /// compare: the Python that has JuPedSim
     #[arg(long, value_name = "PATH", default_value = "python3")]
     pub python: PathBuf,
+}
+
+#[derive(Args)]
+pub struct AccuracyOptions {
+    /// The scenes [default: all]
+    #[arg(value_parser = PossibleValuesParser::new(accuracy::scenes()))]
+    pub scene: Vec<String>,
+    /// What is turned; may be repeated [default: all that matter in the scene]
+    #[arg(long, value_name = "KNOB", value_parser = PossibleValuesParser::new(accuracy::knobs()))]
+    pub knob: Vec<String>,
+    /// Few values, seeds and turns: less than a minute
+    #[arg(long)]
+    pub quick: bool,
+    /// Folder for the results; what is finished in it is not done again
+    #[arg(long, value_name = "DIR", default_value = "accuracy")]
+    pub out: PathBuf,
+    /// Put the tables also between the lines <!-- NAME --> and <!-- /NAME --> of a file
+    #[arg(long, value_name = "FILE.md")]
+    pub update: Option<PathBuf>,
+    /// Runs to compute at once, each on one thread [default: all cores]
+    #[arg(long, value_parser = threads)]
+    pub threads: Option<usize>,
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Args)]

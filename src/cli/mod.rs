@@ -1,5 +1,6 @@
 //! What was typed and what it means. The only place that names clap.
 
+mod accuracy;
 mod arguments;
 mod bench;
 mod drive;
@@ -99,6 +100,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Inspect(options) => inspect::run(&options),
         Command::Reproduce(options) => reproduce::run(&options),
         Command::Bench(options) => bench::run(&options),
+        Command::Accuracy(options) => accuracy::run(&options),
         Command::Stress(options) => stress::run(&options),
         Command::List { settings } => list::run(settings),
     }

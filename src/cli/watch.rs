@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::job;
 use crate::reproduce::{self, CaseResult};
-use crate::stress;
 
 /// A progress bar on stderr; where that is no terminal, a line for every finished case.
 pub struct Watch {
@@ -78,9 +78,13 @@ impl reproduce::Listener for Watch {
     }
 }
 
-impl stress::Listener for Watch {
+impl job::Listener for Watch {
     fn begins(&self, jobs: usize, kept: usize, seconds: f64) {
         self.begin(jobs, kept, seconds);
+    }
+
+    fn notes(&self, text: &str) {
+        self.note(text);
     }
 
     fn finishes(&self, job: &str, expected: f64, seconds: f64) {

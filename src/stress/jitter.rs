@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::job::Job;
 use crate::drive::{Then, drive};
+use crate::job::Job;
 use crate::reproduce::ReproduceError;
 use crate::scenario::{Scenario, ScenarioError, Setting, SettingError};
 use crate::simulation::{Fault, Simulation};

@@ -3,9 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::job::Job;
 use super::rest::Rest;
 use crate::clock::PAPER_COARSE_STEP;
+use crate::job::Job;
 use crate::reproduce::ReproduceError;
 use crate::simulation::Fault;
 use crate::stability::{self, FITTED, Mode};

@@ -5,7 +5,6 @@ mod fence;
 mod fit;
 mod hard;
 mod jitter;
-mod job;
 mod map;
 #[cfg(feature = "plot")]
 mod pictures;
@@ -18,7 +17,6 @@ pub use fence::Fence;
 pub use fit::fit;
 pub use hard::{HARD, Hard, Survival};
 pub use jitter::{Jitter, VARIANTS, Variant};
-pub use job::{Job, Listener};
 pub use map::{Cell, Detail};
 pub use report::Report;
 pub use rest::{Remains, Rest};

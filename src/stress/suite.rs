@@ -3,9 +3,9 @@
 use super::fit::fit;
 use super::hard::{HARD, Hard, Survival};
 use super::jitter::{Jitter, VARIANTS};
-use super::job::{Job, Listener, read, run};
 use super::map::{Cell, Detail};
 use super::report::Report;
+use crate::job::{Job, Listener, read, run};
 use crate::reproduce::{ReproduceError, Store};
 
 /// Runs everything that `store` does not have yet, and writes tables and pictures.

@@ -33,11 +33,14 @@ const BLOCKS: usize = 6;
 /// y = slope · x + offset.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Line {
+    /// dy/dx.
     pub slope: f64,
+    /// y at x = 0.
     pub offset: f64,
 }
 
 impl Line {
+    /// y at `x`.
     pub fn at(&self, x: f64) -> f64 {
         self.slope * x + self.offset
     }

@@ -9,6 +9,6 @@ mod fit;
 mod ridge;
 mod space_time;
 
-pub use fit::Estimate;
+pub use fit::{Estimate, Line};
 pub use ridge::{Ridge, RidgePoint, Run, Wave, measure};
 pub use space_time::{SpaceTime, Strip};

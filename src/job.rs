@@ -22,6 +22,8 @@ const VERSION: u32 = 4;
 pub trait Listener: Sync {
     /// So many jobs are to be done, in so many seconds on one core; so many were kept from before.
     fn begins(&self, jobs: usize, kept: usize, seconds: f64);
+    /// Something worth a line.
+    fn notes(&self, text: &str);
     /// A job that was expected to take `expected` seconds took `seconds`.
     fn finishes(&self, job: &str, expected: f64, seconds: f64);
 }
@@ -29,6 +31,7 @@ pub trait Listener: Sync {
 /// Nobody.
 impl Listener for () {
     fn begins(&self, _: usize, _: usize, _: f64) {}
+    fn notes(&self, _: &str) {}
     fn finishes(&self, _: &str, _: f64, _: f64) {}
 }
 
@@ -37,7 +40,7 @@ pub struct Job {
     /// A readable name, different from that of any other job.
     pub name: String,
     /// What else the result depends on.
-    input: &'static str,
+    input: String,
     /// Roughly how long it takes on one core, seconds.
     pub expected_secs: f64,
     /// Does it.
@@ -63,7 +66,7 @@ impl Job {
         };
         Self {
             name,
-            input: "",
+            input: String::new(),
             expected_secs,
             work: Box::new(value),
         }
@@ -71,8 +74,11 @@ impl Job {
 
     /// The same job, with a text that its result depends on.
     #[must_use]
-    pub fn depending_on(self, input: &'static str) -> Self {
-        Self { input, ..self }
+    pub fn depending_on(self, input: impl Into<String>) -> Self {
+        Self {
+            input: input.into(),
+            ..self
+        }
     }
 
     fn identity(&self) -> String {

@@ -1,0 +1,137 @@
+//! Where everybody is in the first seconds, and how far that is from the reference.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::scenes::simulation;
+use crate::boundary::WallMethod;
+use crate::clock::PAPER_TIME_STEP;
+use crate::math::Vector;
+use crate::reproduce::ReproduceError;
+use crate::simulation::Simulation;
+
+/// When is looked, seconds: half a second, one and two, to the nearest time that all steps meet.
+pub const SAMPLES: [f64; 3] = [0.48, 0.96, 1.92];
+/// The reference's step in parts of the paper's.
+const FINENESS: f64 = 64.0;
+
+/// Everybody at one moment, by id.
+#[derive(Debug, Clone, PartialEq)]
+struct Snapshot {
+    id: Vec<u32>,
+    position: Vec<Vector>,
+    velocity: Vec<Vector>,
+    density: Vec<f64>,
+}
+
+/// A crowd at [`SAMPLES`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion([Snapshot; 3]);
+
+/// Root mean squares over everybody, at each of [`SAMPLES`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Errors {
+    /// Metres.
+    pub position: [f64; 3],
+    /// m/s.
+    pub velocity: [f64; 3],
+    /// P/m².
+    pub density: [f64; 3],
+}
+
+impl Motion {
+    /// Runs a document under some settings.
+    ///
+    /// # Errors
+    /// A setting makes no sense, the run cannot go on, or a step meets not all of [`SAMPLES`].
+    pub fn of(document: &Value, settings: &[String]) -> Result<Self, ReproduceError> {
+        let mut simulation = simulation(document, settings)?;
+        simulation.request_density_until(u64::MAX);
+        let step = simulation.frame().clock.time_step();
+        let fault = |fault| ReproduceError::Fault {
+            case: settings.join(" "),
+            fault,
+        };
+        let mut at = |time: f64| {
+            let frames = time / step;
+            if (frames - frames.round()).abs() > 1e-6 {
+                let reason = format!("{time} s are no whole number of frames of {step} s");
+                return Err(ReproduceError::Data(reason));
+            }
+            while simulation.frame().clock.frame() < frames.round() as u64 {
+                simulation.step().map_err(fault)?;
+            }
+            simulation.evaluate().map_err(fault)?;
+            Ok(Snapshot::of(&simulation))
+        };
+        Ok(Self([at(SAMPLES[0])?, at(SAMPLES[1])?, at(SAMPLES[2])?]))
+    }
+
+    /// Where a scene goes as Δt → 0, and how far that is from a run at twice the step: its own error is about
+    /// as large.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of).
+    pub fn reference(
+        document: &Value,
+        walls: WallMethod,
+    ) -> Result<(Self, Errors), ReproduceError> {
+        let walls =
+            serde_json::to_value(walls).map_err(|error| ReproduceError::Data(error.to_string()))?;
+        let at = |step: f64| {
+            let settings = [
+                format!("time_step_secs={step}"),
+                format!("wall_method={walls}"),
+                "integrator=midpoint".to_owned(),
+                "precision=double".to_owned(),
+            ];
+            Self::of(document, &settings)
+        };
+        let step = PAPER_TIME_STEP / FINENESS;
+        let reference = at(step)?;
+        let errors = at(2.0 * step)?.errors(&reference);
+        Ok((reference, errors))
+    }
+
+    /// How far this motion is from `other`, over all who are in both.
+    pub fn errors(&self, other: &Self) -> Errors {
+        let pairs = [0, 1, 2].map(|k| self.0[k].distance(&other.0[k]));
+        Errors {
+            position: pairs.map(|p| p[0]),
+            velocity: pairs.map(|p| p[1]),
+            density: pairs.map(|p| p[2]),
+        }
+    }
+}
+
+impl Snapshot {
+    fn of(simulation: &Simulation) -> Self {
+        let frame = simulation.frame();
+        let agents = frame.agents;
+        let mut order: Vec<usize> = (0..agents.len()).collect();
+        order.sort_by_key(|&i| agents.id[i]);
+        Self {
+            id: order.iter().map(|&i| agents.id[i]).collect(),
+            position: order.iter().map(|&i| agents.position[i]).collect(),
+            velocity: order.iter().map(|&i| agents.velocity[i]).collect(),
+            density: order.iter().map(|&i| frame.fields.density[i]).collect(),
+        }
+    }
+
+    /// Root mean square differences of position, velocity and density.
+    fn distance(&self, other: &Self) -> [f64; 3] {
+        let (mut sums, mut count, mut k) = ([0.0; 3], 0.0_f64, 0);
+        for (i, id) in self.id.iter().enumerate() {
+            while other.id.get(k).is_some_and(|other| other < id) {
+                k += 1;
+            }
+            if other.id.get(k) == Some(id) {
+                sums[0] += (self.position[i] - other.position[k]).norm_squared();
+                sums[1] += (self.velocity[i] - other.velocity[k]).norm_squared();
+                sums[2] += (self.density[i] - other.density[k]).powi(2);
+                count += 1.0;
+            }
+        }
+        sums.map(|sum| (sum / count.max(1.0)).sqrt())
+    }
+}
