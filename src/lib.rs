@@ -85,5 +85,8 @@ pub mod bench;
 
 pub mod stress;
 
+#[cfg(feature = "bench")]
+pub mod accuracy;
+
 #[cfg(feature = "cli")]
 pub mod cli;

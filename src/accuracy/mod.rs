@@ -1,0 +1,3 @@
+//! How accurate it is: approximations beside what they approximate, error beside cost.
+
+pub mod walls;
