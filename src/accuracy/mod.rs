@@ -4,7 +4,7 @@
 //! Every point is a scenario under some settings, as `--set` takes them. Its cost is milliseconds per
 //! simulated second on one thread; its error is how far people are from where a run at Δt/64 takes them
 //! ([`trajectory`]), before chaos takes over ([`lyapunov`]), or how far Table 1's numbers are from those of
-//! a fine step, over seeds ([`statistics`]).
+//! a fine step, over seeds ([`statistics`]). How exactly walls are integrated stands apart, in [`walls`].
 
 mod cost;
 mod front;
@@ -17,6 +17,7 @@ mod scenes;
 mod statistics;
 mod suite;
 mod trajectory;
+pub mod walls;
 
 pub use front::{Front, cheapest};
 pub use knob::{Curve, KNOBS, Knob};

@@ -1,0 +1,288 @@
+//! The wall benchmark: its exact integrals, and that each method does what it is said to do.
+#![cfg(feature = "bench")]
+
+mod common;
+
+use common::quadrature;
+use common::{rectangle, vector};
+use sandbox::accuracy::walls::{
+    Case, Integrals, METHODS, Method, Place, Region, SUPPORT_RADIUS, Stored, Volumes, cases,
+    measure,
+};
+use sandbox::boundary::WallMethod;
+use sandbox::geometry::Walls;
+use sandbox::kernel;
+
+const PLACES: usize = 40;
+
+fn exact(region: Region, case: &Case) -> Vec<Integrals> {
+    let places = case.places.iter().map(|place| place.position);
+    places
+        .map(|r_i| Integrals::over(region, &case.walls, r_i, SUPPORT_RADIUS, 1e-12))
+        .collect()
+}
+
+fn found(method: Method, case: &Case) -> Vec<Integrals> {
+    let mut prepared = method.prepare(case);
+    let places = case.places.iter().map(|place| place.position);
+    places.map(|r_i| prepared.integrals(r_i)).collect()
+}
+
+/// The larger of the errors of density and force, root mean square over the path.
+fn error(method: Method, case: &Case, exact: &[Integrals]) -> f64 {
+    let mean = |of: fn(Integrals) -> f64| {
+        let differences = found(method, case)
+            .into_iter()
+            .zip(exact)
+            .map(|(f, e)| of(f - *e));
+        (differences.map(|d| d * d).sum::<f64>() / exact.len() as f64).sqrt()
+    };
+    mean(|d| d.kernel).max(mean(|d| d.gradient.norm()))
+}
+
+#[test]
+fn everybody_on_the_paths_stands_on_free_floor_near_walls() {
+    for case in cases(PLACES) {
+        assert_eq!(case.places.len(), PLACES);
+        let free = |place: &Place| case.walls.obstacle_at(place.position).is_none();
+        assert!(case.places.iter().all(free), "{}", case.name);
+        let hidden = exact(Region::Hidden, &case);
+        assert!(
+            hidden.iter().any(|hidden| hidden.kernel > 0.05),
+            "{}",
+            case.name
+        );
+    }
+}
+
+#[test]
+fn what_is_hidden_is_what_another_quadrature_gives() {
+    for case in cases(PLACES) {
+        for (place, hidden) in case.places.iter().zip(exact(Region::Hidden, &case)) {
+            let other = quadrature::shadow(&case.walls, place.position, SUPPORT_RADIUS);
+            let other = Integrals {
+                area: other.area,
+                kernel: other.kernel,
+                gradient: other.gradient,
+            };
+            assert!(hidden.distance(&other) < 1e-6, "{} {place:?}", case.name);
+        }
+    }
+}
+
+#[test]
+fn the_solid_is_what_small_squares_of_it_add_up_to() {
+    for case in cases(5) {
+        let solid = exact(Region::Solid, &case);
+        for (place, solid) in case.places.iter().zip(solid) {
+            let steps = 400;
+            let cell = 2.0 * SUPPORT_RADIUS / f64::from(steps);
+            let squares = (0..steps * steps).map(|k| {
+                let x = vector(f64::from(k % steps) + 0.5, f64::from(k / steps) + 0.5) * cell
+                    - vector(SUPPORT_RADIUS, SUPPORT_RADIUS);
+                let counts = x.norm() < SUPPORT_RADIUS
+                    && case.walls.obstacle_at(place.position + x).is_some();
+                let area = if counts { cell * cell } else { 0.0 };
+                Integrals::of_piece(x, area, SUPPORT_RADIUS)
+            });
+            let difference = solid.distance(&squares.sum());
+            assert!(difference < 1e-2, "{} {place:?}: {difference}", case.name);
+        }
+    }
+}
+
+#[test]
+fn a_wall_of_one_centimetre_hides_a_half_plane_and_is_the_difference_of_two() {
+    let walls = cases(PLACES).into_iter();
+    for mut case in walls.filter(|case| case.name == "wall of 1 cm") {
+        let [hidden, solid] = [Region::Hidden, Region::Solid].map(|region| exact(region, &case));
+        let normal = case.walls.iter().map(|wall| wall.normal);
+        let normal = normal.max_by(|a, b| a.y.total_cmp(&b.y)).unwrap();
+        for place in &mut case.places {
+            place.position += normal * 0.01;
+        }
+        let farther = exact(Region::Hidden, &case);
+        for ((hidden, solid), farther) in hidden.iter().zip(&solid).zip(&farther) {
+            assert!(solid.distance(&(*hidden - *farther)) < 1e-11);
+        }
+    }
+}
+
+#[test]
+fn the_union_is_what_the_walls_hide_and_exact_is_more_only_where_shadows_overlap() {
+    for case in cases(PLACES) {
+        let hidden = exact(Region::Hidden, &case);
+        let union = found(Method::Polygons(WallMethod::Union), &case);
+        let sum = found(Method::Polygons(WallMethod::Exact), &case);
+        for ((union, sum), hidden) in union.iter().zip(&sum).zip(&hidden) {
+            assert!(
+                union.distance(hidden) < 1e-10,
+                "{} {union:?} {hidden:?}",
+                case.name
+            );
+            assert!(sum.kernel > hidden.kernel - 1e-10, "{}", case.name);
+        }
+        let more = sum
+            .iter()
+            .zip(&hidden)
+            .map(|(s, h)| s.distance(h))
+            .fold(0.0, f64::max);
+        let overlaps = case.name == "barrier before a wall";
+        assert!(
+            if overlaps { more > 0.01 } else { more < 1e-10 },
+            "{} {more}",
+            case.name
+        );
+    }
+}
+
+#[test]
+fn before_an_infinite_wall_every_polygon_method_gives_the_printed_values() {
+    let place = |along: f64| Place {
+        along,
+        position: vector(0.3, along),
+    };
+    let case = Case {
+        name: "straight wall",
+        axis: "distance [m]",
+        walls: Walls::new(vec![rectangle([-3.0, 3.0], [-2.0, 0.0])]),
+        places: [0.24, 0.5].map(place).to_vec(),
+        tangent: None,
+    };
+    let (truth, point) = (
+        [[0.23860, 0.94868], [0.05865, 0.27759]],
+        [[0.32538, 1.51053], [0.06549, 0.36656]],
+    );
+    let assert_is = |found: Vec<Integrals>, printed: [[f64; 2]; 2]| {
+        for (found, [kernel, gradient]) in found.iter().zip(printed) {
+            assert!((found.kernel - kernel).abs() < 5.1e-6, "{found:?}");
+            assert!(
+                (found.gradient.norm() - gradient).abs() < 5.1e-6,
+                "{found:?}"
+            );
+            assert!(found.gradient.y < 0.0);
+        }
+    };
+    assert_is(exact(Region::Hidden, &case), truth);
+    assert_is(exact(Region::Solid, &case), truth);
+    assert_is(found(Method::Polygons(WallMethod::Exact), &case), truth);
+    assert_is(found(Method::Polygons(WallMethod::Union), &case), truth);
+    assert_is(
+        found(Method::Polygons(WallMethod::Representative), &case),
+        point,
+    );
+}
+
+/// Orders of convergence as a spacing is halved twice, for one of `coarse`, half and a quarter of it.
+fn orders(case: &Case, coarse: f64, method: impl Fn(f64) -> Method) -> [f64; 2] {
+    let exact = exact(Region::Solid, case);
+    let [a, b, c] = [1.0, 0.5, 0.25].map(|part| error(method(part * coarse), case, &exact));
+    [(a / b).log2(), (b / c).log2()]
+}
+
+/// The paths that keep a body's radius off all walls: nearer, the force's kernel has a cusp in reach.
+fn off_the_walls() -> impl Iterator<Item = Case> {
+    let cases = cases(PLACES).into_iter();
+    cases.filter(|case| case.tangent.is_none())
+}
+
+#[test]
+fn particles_in_cut_cells_converge_to_the_solid_with_order_two() {
+    for case in off_the_walls() {
+        let found = orders(&case, 0.2, |spacing| Method::Particles {
+            spacing,
+            volumes: Volumes::Cut,
+        });
+        assert!(
+            found.iter().all(|order| *order > 1.5),
+            "{} {found:?}",
+            case.name
+        );
+    }
+}
+
+#[test]
+fn particles_in_whole_cells_converge_too_and_are_worse_than_those_in_cut_ones() {
+    for case in off_the_walls() {
+        let exact = exact(Region::Solid, &case);
+        let error = |spacing, volumes| {
+            let method = Method::Particles { spacing, volumes };
+            error(method, &case, &exact)
+        };
+        let [coarse, fine] = [0.2, 0.05].map(|spacing| error(spacing, Volumes::Whole));
+        assert!(fine < 0.5 * coarse, "{} {coarse} {fine}", case.name);
+        assert!(error(0.1, Volumes::Cut) < error(0.1, Volumes::Whole));
+    }
+}
+
+#[test]
+fn a_map_of_integrals_converges_to_the_solid_with_order_two() {
+    for case in off_the_walls() {
+        let found = orders(&case, 0.2, |spacing| Method::Map {
+            spacing,
+            stored: Stored::Integrals,
+        });
+        assert!(
+            found.iter().all(|order| *order > 1.5),
+            "{} {found:?}",
+            case.name
+        );
+    }
+}
+
+#[test]
+fn a_volume_map_puts_the_whole_solid_at_the_nearest_point() {
+    let straight = cases(PLACES).into_iter().next().unwrap();
+    let map = Method::Map {
+        spacing: 0.02,
+        stored: Stored::Volume,
+    };
+    let solid = exact(Region::Solid, &straight);
+    for ((place, solid), found) in straight.places.iter().zip(solid).zip(found(map, &straight)) {
+        let weight = kernel::density(place.along * place.along, SUPPORT_RADIUS);
+        assert!(
+            (found.kernel - solid.area * weight).abs() < 2e-3,
+            "{place:?}"
+        );
+    }
+}
+
+#[test]
+fn particles_with_akincis_volumes_make_the_middle_of_a_solid_full_and_its_surface_too_heavy() {
+    let solid = Walls::new(vec![rectangle([-2.5, 2.5], [-4.0, 0.0])]);
+    let density = |volumes, y: f64| {
+        let particles = sandbox::accuracy::walls::Particles::fill(&solid, 0.1, volumes, 1.0);
+        particles.integrals(vector(0.017, y)).kernel
+    };
+    for volumes in [Volumes::Whole, Volumes::Cut, Volumes::Akinci] {
+        assert!((density(volumes, -2.0) - 1.0).abs() < 1e-3);
+    }
+    assert!((density(Volumes::Cut, 0.0) - 0.5).abs() < 0.01);
+    assert!(density(Volumes::Akinci, 0.0) > 0.65);
+}
+
+#[test]
+fn the_report_has_every_method_on_every_path() {
+    let report = measure(true);
+    let paths = cases(2).len();
+    assert_eq!(report.cases.len(), paths);
+    assert_eq!(report.csv().lines().count(), 1 + paths * METHODS.len());
+    for case in &report.cases {
+        assert!(case.quadrature < 1e-9);
+        for method in &case.methods {
+            assert!(method.density.rms <= method.density.max && method.density.max.is_finite());
+            assert!(method.force.rms <= method.force.max && method.force.max.is_finite());
+            assert!(method.ns.minimum > 0.0 && method.preparation_ms >= 0.0);
+            assert!(report.markdown().contains(&method.name));
+        }
+        for method in &case.methods[1..3] {
+            assert!(
+                method
+                    .roughness
+                    .is_none_or(|roughness| roughness.max < 1e-12)
+            );
+        }
+    }
+    let json = serde_json::to_value(&report).unwrap();
+    assert_eq!(json["cases"][0]["methods"][0]["region"], "hidden");
+}
