@@ -69,6 +69,8 @@ pub mod drive;
 
 pub mod wave;
 
+pub mod table;
+
 #[cfg(any(feature = "recording", feature = "plot"))]
 pub mod colors;
 

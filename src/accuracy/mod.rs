@@ -7,6 +7,7 @@
 //! a fine step, over seeds ([`statistics`]). How exactly walls are integrated stands apart, in [`walls`].
 
 mod cost;
+mod found;
 mod front;
 mod knob;
 mod lyapunov;
@@ -19,14 +20,15 @@ mod suite;
 mod trajectory;
 pub mod walls;
 
+pub use found::{Found, Measured, Point, Quantity};
 pub use front::{Front, cheapest};
 pub use knob::{Curve, KNOBS, Knob};
 pub use lyapunov::Lyapunov;
-pub use report::Report;
+pub use report::{Report, WALLS};
 pub use scenes::{Kind, SCENES, Scene};
 pub use statistics::{Deviation, Sample, sample};
 pub use suite::{Plan, accuracy};
-pub use trajectory::{Errors, Motion, SAMPLES};
+pub use trajectory::{Errors, Motion, SAMPLES, Trajectories};
 
 #[cfg(test)]
 mod tests {

@@ -1,7 +1,8 @@
 //! Work-precision diagrams: error against cost, one curve per knob.
 
+use super::found::{Found, Point as Setting};
 use super::knob::{Knob, are_default};
-use super::report::{Found, Point as Setting, Report};
+use super::report::{Report, WALLS};
 use crate::plot::{Axis, Corner, LINES, Mark, Panel, Point, Sheet, Style};
 use crate::reproduce::{ReproduceError, Store};
 
@@ -10,6 +11,10 @@ pub fn save(report: &Report, store: &Store) -> Result<(), ReproduceError> {
     for found in &report.scenes {
         let stem = format!("accuracy-{}", found.scene.name);
         sheet(found).save(&store.path(&stem))?;
+    }
+    if let Some(walls) = &report.walls {
+        let stem = format!("accuracy-{WALLS}");
+        walls.sheet().save(&store.path(&stem))?;
     }
     Ok(())
 }

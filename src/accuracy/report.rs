@@ -2,276 +2,46 @@
 
 use std::fmt::Write;
 
-use serde::Serialize;
-
-use super::front::{Front, cheapest};
-use super::knob::{Knob, are_default};
-use super::scenes::{Kind, Scene};
-use super::statistics::Deviation;
-use crate::bench::{Spread, Table};
+use super::found::Found;
+use super::knob::are_default;
+use super::walls::WallReport;
 use crate::reproduce::{ReproduceError, Store};
+use crate::table::Table;
 
-/// Something whose error is measured.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Quantity {
-    /// What it is.
-    pub name: String,
-    /// Its unit.
-    pub unit: &'static str,
-}
-
-impl Quantity {
-    pub(super) fn new(name: &str, unit: &'static str) -> Self {
-        Self {
-            name: name.to_owned(),
-            unit,
-        }
-    }
-}
-
-/// An error.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Measured {
-    /// The quantity itself, where it is a number: its mean and half its 95 % confidence interval.
-    pub mean: Option<(f64, f64)>,
-    /// How far from the reference.
-    pub error: f64,
-    /// Half the 95 % confidence interval of that; 0 where nothing is random.
-    pub interval: f64,
-}
-
-impl Measured {
-    /// Nothing random.
-    pub(super) fn exact(error: f64) -> Self {
-        Self {
-            mean: None,
-            error,
-            interval: 0.0,
-        }
-    }
-
-    /// At least what can be told from the reference.
-    pub fn bound(&self) -> f64 {
-        self.error.max(self.interval)
-    }
-}
-
-impl From<Deviation> for Measured {
-    fn from(found: Deviation) -> Self {
-        Self {
-            mean: Some((found.mean, found.interval)),
-            error: found.error,
-            interval: found.error_interval,
-        }
-    }
-}
-
-/// One setting of one knob in one scene.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Point {
-    /// The knob.
-    pub knob: Knob,
-    /// Its curve.
-    pub curve: String,
-    /// As `--set` takes them.
-    pub settings: Vec<String>,
-    /// Milliseconds per simulated second on one thread.
-    pub cost: Spread,
-    /// By quantity; `None` where there is none.
-    pub errors: Vec<Option<Measured>>,
-}
-
-/// A scene.
-#[derive(Clone)]
-pub struct Found {
-    /// Which.
-    pub scene: Scene,
-    /// What is measured.
-    pub quantities: Vec<Quantity>,
-    /// Curve by curve.
-    pub points: Vec<Point>,
-    /// What else was found, in words.
-    pub notes: String,
-}
+/// What walls are called where scenes are named.
+pub const WALLS: &str = "wall-integrals";
 
 /// Everything that was found.
 #[derive(Clone)]
 pub struct Report {
     /// Scene by scene.
     pub scenes: Vec<Found>,
+    /// How exactly walls are integrated, if that was asked for.
+    pub walls: Option<WallReport>,
     /// Were there few values, seeds and turns?
     pub quick: bool,
 }
 
-/// Errors for which the cheapest settings are told: of positions, metres.
-const POSITIONS: [f64; 4] = [0.03, 0.01, 0.003, 0.001];
-/// And of statistics, in parts of the number.
-const PARTS: [f64; 3] = [0.05, 0.02, 0.01];
-
-impl Found {
-    /// The one error by which settings are compared: of positions after a second, in metres; of statistics
-    /// the largest, in parts of the number.
-    pub fn overall(&self, point: &Point) -> Option<f64> {
-        match self.scene.kind {
-            Kind::Motion => point.errors[1].map(|error| error.error),
-            Kind::Evacuation | Kind::Wave => {
-                let relative = point.errors.iter().map(|error| {
-                    let error = (*error)?;
-                    Some(error.error / error.mean?.0.abs())
-                });
-                let all: Option<Vec<f64>> = relative.collect();
-                all.map(|all| all.into_iter().fold(0.0, f64::max))
-            }
-        }
-    }
-
-    /// Costs and errors of all points that have both, with their indices.
-    fn compared(&self) -> (Vec<usize>, Vec<(f64, f64)>) {
-        let points = self.points.iter().enumerate();
-        points
-            .filter_map(|(k, point)| Some((k, (point.cost.median, self.overall(point)?))))
-            .unzip()
-    }
-
-    fn targets(&self) -> (&'static [f64], fn(f64) -> String) {
-        match self.scene.kind {
-            Kind::Motion => (&POSITIONS, |error| format!("{} mm", 1e3 * error)),
-            Kind::Evacuation | Kind::Wave => (&PARTS, |error| format!("{} %", 100.0 * error)),
-        }
-    }
-
-    /// The cheapest settings for some errors, and whether the default is beaten, as rows of a table.
-    fn choices(&self) -> Vec<Vec<String>> {
-        let (indices, compared) = self.compared();
-        let (targets, write) = self.targets();
-        let named = |k: usize| self.points[indices[k]].settings.join(" ");
-        let mut rows = Vec::new();
-        for &most in targets {
-            let found = cheapest(&compared, most);
-            let found = found.map_or_else(
-                || ["none".to_owned(), String::new(), String::new()],
-                |k| {
-                    let (cost, error) = compared[k];
-                    [
-                        named(k),
-                        format!("{cost:.1}"),
-                        precise(self.scene.kind, error),
-                    ]
-                },
-            );
-            rows.push(row(
-                self.scene.name,
-                &format!("at most {}", write(most)),
-                found,
-            ));
-        }
-        let default = indices
-            .iter()
-            .position(|&k| are_default(&self.points[k].settings));
-        if let Some(k) = default {
-            let (cost, error) = compared[k];
-            let front = Front::of(&compared, k);
-            let mut verdict = Vec::new();
-            if let Some((other, error)) = front.best_at_cost {
-                let error = precise(self.scene.kind, error);
-                verdict.push(format!("at its cost: {} ({error})", named(other)));
-            }
-            if let Some((other, cost)) = front.cheapest_at_error {
-                verdict.push(format!("at its error: {} ({cost:.1} ms)", named(other)));
-            }
-            let verdict = if verdict.is_empty() {
-                "on the front".to_owned()
-            } else {
-                format!("beaten {}", verdict.join("; "))
-            };
-            let found = [
-                verdict,
-                format!("{cost:.1}"),
-                precise(self.scene.kind, error),
-            ];
-            rows.push(row(self.scene.name, "the default", found));
-        }
-        rows
-    }
-
-    /// Every point.
-    fn table(&self) -> Table {
-        let mut head = vec![
-            "knob".to_owned(),
-            "settings".to_owned(),
-            "ms per s".to_owned(),
-        ];
-        let quantities = self.quantities.iter();
-        head.extend(quantities.map(|quantity| format!("{} [{}]", quantity.name, quantity.unit)));
-        let rows = self.points.iter().map(|point| {
-            let mut settings = point.settings.join(" ");
-            if are_default(&point.settings) {
-                settings += " (default)";
-            }
-            let cells = point
-                .errors
-                .iter()
-                .map(|error| error.map_or(String::new(), written));
-            let first = [
-                point.knob.name().to_owned(),
-                settings,
-                format!("{:.2}", point.cost.median),
-            ];
-            first.into_iter().chain(cells).collect()
-        });
-        Table {
-            words: 2,
-            head,
-            rows: rows.collect(),
-        }
-    }
-}
-
-fn row(scene: &str, wanted: &str, found: [String; 3]) -> Vec<String> {
-    [scene.to_owned(), wanted.to_owned()]
-        .into_iter()
-        .chain(found)
-        .collect()
-}
-
-/// An error by which settings are compared, with its unit.
-fn precise(kind: Kind, error: f64) -> String {
-    match kind {
-        Kind::Motion => format!("{:.2} mm", 1e3 * error),
-        Kind::Evacuation | Kind::Wave => format!("{:.1} %", 100.0 * error),
-    }
-}
-
-fn written(measured: Measured) -> String {
-    match measured.mean {
-        Some((mean, interval)) => {
-            let sign = if measured.error > measured.interval {
-                ""
-            } else {
-                "≤ "
-            };
-            format!(
-                "{mean:.3} ± {interval:.3}, off {sign}{:.3}",
-                measured.bound()
-            )
-        }
-        None => format!("{:.2e}", measured.error),
-    }
-}
-
 impl Report {
-    /// What is cheapest for which error, and everything point by point, as Markdown: (name, text).
-    pub fn parts(&self) -> Vec<(String, String)> {
+    /// What is cheapest for which error.
+    fn choices(&self) -> Table {
         let mut choices = Table::new(
             3,
             &["scene", "error", "settings", "ms per s", "error found"],
         );
         choices.rows = self.scenes.iter().flat_map(Found::choices).collect();
-        let mut parts = vec![("choices".to_owned(), choices.markdown())];
+        choices
+    }
+
+    /// What is cheapest for which error, and everything point by point, as Markdown: (name, text).
+    pub fn parts(&self) -> Vec<(String, String)> {
+        let mut parts = vec![("choices".to_owned(), self.choices().markdown())];
         for found in &self.scenes {
             let text = format!("{}\n\n{}", found.notes, found.table().markdown());
             parts.push((found.scene.name.to_owned(), text));
         }
+        let walls = self.walls.iter();
+        parts.extend(walls.map(|walls| (WALLS.to_owned(), walls.markdown())));
         parts
     }
 
@@ -288,12 +58,14 @@ impl Report {
                 found.table().text()
             );
         }
-        let mut choices = Table::new(
-            3,
-            &["scene", "error", "settings", "ms per s", "error found"],
-        );
-        choices.rows = self.scenes.iter().flat_map(Found::choices).collect();
-        text + &choices.text()
+        if !self.scenes.is_empty() {
+            text += &self.choices().text();
+        }
+        text + &self
+            .walls
+            .as_ref()
+            .map(WallReport::markdown)
+            .unwrap_or_default()
     }
 
     /// Writes tables, CSV and JSON into the store's folder.
@@ -306,40 +78,44 @@ impl Report {
             .map(|(name, text)| format!("## {name}\n\n{text}\n"))
             .collect();
         store.write("accuracy.md", text.as_bytes())?;
-        store.write("accuracy.csv", self.csv()?.as_bytes())?;
+        store.write("accuracy.csv", &self.csv()?)?;
+        if let Some(walls) = &self.walls {
+            store.write("accuracy-walls.csv", walls.csv().as_bytes())?;
+        }
         let json = format!("{}\n", self.json());
         store.write("accuracy.json", json.as_bytes())?;
         Ok(())
     }
 
     /// One line for every error of every point.
-    fn csv(&self) -> Result<String, ReproduceError> {
-        let failed = |error: csv::Error| ReproduceError::Data(error.to_string());
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        let head = [
-            "scene",
-            "knob",
-            "curve",
-            "settings",
-            "default",
-            "ms_per_s",
-            "ms_per_s_min",
-            "ms_per_s_max",
-            "quantity",
-            "unit",
-            "mean",
-            "mean_interval",
-            "error",
-            "error_interval",
-        ];
-        writer.write_record(head).map_err(failed)?;
+    fn csv(&self) -> Result<Vec<u8>, ReproduceError> {
+        let mut table = Table::new(
+            0,
+            &[
+                "scene",
+                "knob",
+                "curve",
+                "settings",
+                "default",
+                "ms_per_s",
+                "ms_per_s_min",
+                "ms_per_s_max",
+                "quantity",
+                "unit",
+                "mean",
+                "mean_interval",
+                "error",
+                "error_interval",
+            ],
+        );
         for found in &self.scenes {
             for point in &found.points {
                 for (quantity, measured) in found.quantities.iter().zip(&point.errors) {
                     let Some(measured) = measured else { continue };
-                    let mean = measured.mean.map(|(mean, _)| mean.to_string());
-                    let interval = measured.mean.map(|(_, interval)| interval.to_string());
-                    let record = [
+                    let (mean, interval) = measured.mean.unzip();
+                    let number =
+                        |value: Option<f64>| value.map_or(String::new(), |v| v.to_string());
+                    table.add([
                         found.scene.name.to_owned(),
                         point.knob.name().to_owned(),
                         point.curve.clone(),
@@ -350,19 +126,17 @@ impl Report {
                         point.cost.maximum.to_string(),
                         quantity.name.clone(),
                         quantity.unit.to_owned(),
-                        mean.unwrap_or_default(),
-                        interval.unwrap_or_default(),
+                        number(mean),
+                        number(interval),
                         measured.error.to_string(),
                         measured.interval.to_string(),
-                    ];
-                    writer.write_record(record).map_err(failed)?;
+                    ]);
                 }
             }
         }
-        let bytes = writer
-            .into_inner()
-            .map_err(|error| ReproduceError::Data(error.to_string()))?;
-        Ok(String::from_utf8_lossy(&bytes).into_owned())
+        table
+            .csv()
+            .map_err(|error| ReproduceError::Data(error.to_string()))
     }
 
     /// Everything as one object.
@@ -386,6 +160,6 @@ impl Report {
                 "points": points.collect::<Vec<_>>(),
             })
         });
-        serde_json::json!({ "quick": self.quick, "scenes": scenes.collect::<Vec<_>>() })
+        serde_json::json!({ "quick": self.quick, "scenes": scenes.collect::<Vec<_>>(), "walls": self.walls })
     }
 }

@@ -1,16 +1,15 @@
 //! Everything: every scene under every knob, its errors kept, its costs measured anew.
 
-use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::cost;
+use super::found::{Found, Measured, Point, Quantity};
 use super::knob::{Curve, Knob, without_defaults};
-use super::lyapunov::Lyapunov;
-use super::report::{Found, Measured, Point, Quantity, Report};
+use super::report::Report;
 use super::scenes::{Kind, Scene, continued, simulation};
 use super::statistics::{self, Sample, deviations};
-use super::trajectory::{Errors, Motion, SAMPLES};
-use crate::boundary::WallMethod;
+use super::trajectory::{SAMPLES, Trajectories, trajectories};
+use super::walls;
 use crate::job::{Job, Listener, read, run};
 use crate::reproduce::{ReproduceError, Store};
 use crate::simulation::Simulation;
@@ -20,6 +19,8 @@ use crate::simulation::Simulation;
 pub struct Plan {
     /// The scenes.
     pub scenes: Vec<Scene>,
+    /// Are the integrals over walls measured, too?
+    pub walls: bool,
     /// The knobs that are turned.
     pub knobs: Vec<Knob>,
     /// Few values, one seed or two, and costs from one turn: whether it works.
@@ -42,14 +43,6 @@ struct Task {
     scene: Scene,
     document: Value,
     curves: Vec<Curve>,
-}
-
-/// The errors of all points of a scene that is judged by motion, curve by curve.
-#[derive(Serialize, Deserialize)]
-struct Trajectories {
-    points: Vec<(Errors, Option<Errors>)>,
-    reference: Errors,
-    lyapunov: Lyapunov,
 }
 
 /// Does what the plan says and `store` does not have, and writes tables and pictures.
@@ -75,8 +68,12 @@ pub fn accuracy(
         let own: Vec<&Value> = results.by_ref().take(task.jobs(plan).len()).collect();
         found.push(task.finish(plan, &own, listener)?);
     }
+    if plan.walls {
+        listener.notes("wall-integrals: measuring errors and costs");
+    }
     let report = Report {
         scenes: found,
+        walls: plan.walls.then(|| walls::measure(plan.quick)),
         quick: plan.quick,
     };
     report.write(store)?;
@@ -318,69 +315,3 @@ impl Task {
 
 /// What is measured, the errors of every point, and what is to be said.
 type Errored = (Vec<Quantity>, Vec<Vec<Option<Measured>>>, String);
-
-/// Runs a scene that is judged by motion under the settings of all points.
-fn trajectories(
-    document: &Value,
-    points: &[(Knob, Vec<String>)],
-) -> Result<Trajectories, ReproduceError> {
-    let mut known = Known::default();
-    let mut errors = Vec::new();
-    for (knob, settings) in points {
-        let motion = Motion::of(document, settings)?;
-        // The limit of the paper's model; of a preset, that of its own walls.
-        let walls = match knob {
-            Knob::Preset => simulation(document, settings)?.scene().wall_method,
-            _ => WallMethod::default(),
-        };
-        let (reference, _) = known.reference(document, walls)?;
-        let total = motion.errors(reference);
-        let own = known.best(document, *knob)?.map(|best| motion.errors(best));
-        errors.push((total, own));
-    }
-    Ok(Trajectories {
-        points: errors,
-        reference: known.reference(document, WallMethod::default())?.1,
-        lyapunov: Lyapunov::of(document)?,
-    })
-}
-
-/// Motions that others are compared with, each run once.
-#[derive(Default)]
-struct Known {
-    references: Vec<(WallMethod, (Motion, Errors))>,
-    best: Vec<(Knob, Motion)>,
-}
-
-impl Known {
-    fn reference(
-        &mut self,
-        document: &Value,
-        walls: WallMethod,
-    ) -> Result<&(Motion, Errors), ReproduceError> {
-        let found = self
-            .references
-            .iter()
-            .position(|(other, _)| *other == walls);
-        let k = match found {
-            Some(k) => k,
-            None => {
-                let found = Motion::reference(document, walls)?;
-                self.references.push((walls, found));
-                self.references.len() - 1
-            }
-        };
-        Ok(&self.references[k].1)
-    }
-
-    fn best(&mut self, document: &Value, knob: Knob) -> Result<Option<&Motion>, ReproduceError> {
-        let Some(settings) = knob.best() else {
-            return Ok(None);
-        };
-        if !self.best.iter().any(|(other, _)| *other == knob) {
-            self.best.push((knob, Motion::of(document, &settings)?));
-        }
-        let found = self.best.iter().find(|(other, _)| *other == knob);
-        Ok(found.map(|(_, motion)| motion))
-    }
-}

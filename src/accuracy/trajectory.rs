@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::knob::Knob;
+use super::lyapunov::Lyapunov;
 use super::scenes::simulation;
 use crate::boundary::WallMethod;
 use crate::clock::PAPER_TIME_STEP;
@@ -133,5 +135,82 @@ impl Snapshot {
             }
         }
         sums.map(|sum| (sum / count.max(1.0)).sqrt())
+    }
+}
+
+/// The errors of all points of a scene that is judged by motion, curve by curve.
+#[derive(Serialize, Deserialize)]
+pub struct Trajectories {
+    /// Against the reference, and against the knob's best value with everything else as it is.
+    pub points: Vec<(Errors, Option<Errors>)>,
+    /// Of the reference itself, roughly.
+    pub reference: Errors,
+    /// How fast errors grow by themselves.
+    pub lyapunov: Lyapunov,
+}
+
+/// Runs a scene that is judged by motion under the settings of all points.
+pub fn trajectories(
+    document: &Value,
+    points: &[(Knob, Vec<String>)],
+) -> Result<Trajectories, ReproduceError> {
+    let mut known = Known::default();
+    let mut errors = Vec::new();
+    for (knob, settings) in points {
+        let motion = Motion::of(document, settings)?;
+        // The limit of the paper's model; of a preset, that of its own walls.
+        let walls = match knob {
+            Knob::Preset => simulation(document, settings)?.scene().wall_method,
+            _ => WallMethod::default(),
+        };
+        let (reference, _) = known.reference(document, walls)?;
+        let total = motion.errors(reference);
+        let own = known.best(document, *knob)?.map(|best| motion.errors(best));
+        errors.push((total, own));
+    }
+    Ok(Trajectories {
+        points: errors,
+        reference: known.reference(document, WallMethod::default())?.1,
+        lyapunov: Lyapunov::of(document)?,
+    })
+}
+
+/// Motions that others are compared with, each run once.
+#[derive(Default)]
+struct Known {
+    references: Vec<(WallMethod, (Motion, Errors))>,
+    best: Vec<(Knob, Motion)>,
+}
+
+impl Known {
+    fn reference(
+        &mut self,
+        document: &Value,
+        walls: WallMethod,
+    ) -> Result<&(Motion, Errors), ReproduceError> {
+        let found = self
+            .references
+            .iter()
+            .position(|(other, _)| *other == walls);
+        let k = match found {
+            Some(k) => k,
+            None => {
+                let found = Motion::reference(document, walls)?;
+                self.references.push((walls, found));
+                self.references.len() - 1
+            }
+        };
+        Ok(&self.references[k].1)
+    }
+
+    fn best(&mut self, document: &Value, knob: Knob) -> Result<Option<&Motion>, ReproduceError> {
+        let Some(settings) = knob.best() else {
+            return Ok(None);
+        };
+        if !self.best.iter().any(|(other, _)| *other == knob) {
+            self.best.push((knob, Motion::of(document, &settings)?));
+        }
+        let found = self.best.iter().find(|(other, _)| *other == knob);
+        Ok(found.map(|(_, motion)| motion))
     }
 }

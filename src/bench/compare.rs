@@ -9,7 +9,7 @@ use serde_json::json;
 use super::crowd::Crowd;
 use super::error::BenchError;
 use super::machine::Machine;
-use super::report::{Findings, Table};
+use super::report::Findings;
 use super::spread::{Spread, ratios};
 use super::timing::{Contender, GoingOn, alternate, pool};
 use super::{Benchmark, Plan};
@@ -17,6 +17,7 @@ use crate::agents::Agents;
 use crate::pairs::Precision;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
+use crate::table::Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "compare",

@@ -12,6 +12,7 @@ use super::machine::Machine;
 use crate::pairs::Vectors;
 #[cfg(feature = "plot")]
 use crate::plot::Sheet;
+use crate::table::Table;
 
 /// What everything was measured with.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -38,60 +39,6 @@ impl Setting {
             repeats: plan.repeats,
             quick: plan.quick,
         }
-    }
-}
-
-/// A table whose cells are written already.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Table {
-    /// So many columns at the left are words, the others numbers.
-    pub words: usize,
-    /// The names of the columns.
-    pub head: Vec<String>,
-    /// The rows.
-    pub rows: Vec<Vec<String>>,
-}
-
-impl Table {
-    /// An empty table.
-    pub fn new(words: usize, head: &[&str]) -> Self {
-        Self {
-            words,
-            head: head.iter().map(|&name| name.to_owned()).collect(),
-            rows: Vec::new(),
-        }
-    }
-
-    /// In columns as wide as they must be: words from the left, numbers to the right.
-    pub fn text(&self) -> String {
-        let lines = || std::iter::once(&self.head).chain(&self.rows);
-        let length =
-            |line: &Vec<String>, k: usize| line.get(k).map_or(0, |cell| cell.chars().count());
-        let widths: Vec<usize> = (0..self.head.len())
-            .map(|k| lines().map(|line| length(line, k)).max().unwrap_or(0))
-            .collect();
-        let mut text = String::new();
-        for line in lines() {
-            let cells = line.iter().zip(&widths).enumerate();
-            let padded = cells.map(|(k, (cell, &width))| {
-                if k < self.words {
-                    format!("{cell:<width$}")
-                } else {
-                    format!("{cell:>width$}")
-                }
-            });
-            let padded: Vec<String> = padded.collect();
-            text += &format!("{}\n", padded.join("  ").trim_end());
-        }
-        text
-    }
-
-    /// As a table in Markdown.
-    pub fn markdown(&self) -> String {
-        let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
-        let rule = "|---".repeat(self.head.len()) + "|\n";
-        let rows = self.rows.iter().map(|row| line(row));
-        line(&self.head) + &rule + &rows.collect::<String>()
     }
 }
 

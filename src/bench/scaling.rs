@@ -6,10 +6,11 @@ use serde_json::json;
 use super::crowd::Crowd;
 use super::error::BenchError;
 use super::machine::Memory;
-use super::report::{Findings, Table};
+use super::report::Findings;
 use super::spread::Spread;
 use super::timing::ms_per_frame;
 use super::{Benchmark, Plan};
+use crate::table::Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "scaling",

@@ -11,7 +11,7 @@ use serde_json::json;
 
 use self::work::{Course, KeptLists, RvoByBlend, WallsByBlocks, Work};
 use super::error::BenchError;
-use super::report::{Findings, Table};
+use super::report::Findings;
 use super::spread::{Spread, ratios};
 use super::stages::{Started, Stretch, busiest};
 use super::timing::ms_of;
@@ -19,6 +19,7 @@ use super::{Benchmark, Plan};
 use crate::pairs::Wanted;
 use crate::scene::Needs;
 use crate::simulation::{Simulation, Stage};
+use crate::table::Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "skips",

@@ -4,12 +4,13 @@ use serde_json::{Map, Value, json};
 
 use super::crowd::Crowd;
 use super::error::BenchError;
-use super::report::{Findings, Table};
+use super::report::Findings;
 use super::spread::Spread;
 use super::timing::{ms_of, replay};
 use super::{Benchmark, Plan};
 use crate::scenario::{Scenario, Setting};
 use crate::simulation::{Simulation, Stage, StageTimes};
+use crate::table::Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "stages",

@@ -6,10 +6,11 @@ use serde_json::json;
 use super::crowd::Crowd;
 use super::error::BenchError;
 use super::machine::Machine;
-use super::report::{Findings, Table};
+use super::report::Findings;
 use super::spread::{Spread, ratios};
 use super::timing::{Contender, GoingOn, alternate, pool};
 use super::{Benchmark, Plan};
+use crate::table::Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "threads",

@@ -4,14 +4,16 @@ use super::arguments::AccuracyOptions;
 use super::update::{check, update};
 use super::watch::Watch;
 use super::{Failure, say, use_threads};
-use crate::accuracy::{KNOBS, Knob, Plan, SCENES, Scene, accuracy};
+use crate::accuracy::{KNOBS, Knob, Plan, SCENES, Scene, WALLS, accuracy};
 use crate::reproduce::Store;
 
 /// The scenes with a line about each.
 pub fn about() -> String {
-    let lines = SCENES.iter();
+    let walls = "density and force by five ways of seeing walls, beside the exact integrals";
+    let lines = SCENES.iter().map(|scene| (scene.name, scene.about));
     lines
-        .map(|scene| format!("  {:<18} {}\n", scene.name, scene.about))
+        .chain([(WALLS, walls)])
+        .map(|(name, about)| format!("  {name:<18} {about}\n"))
         .collect()
 }
 
@@ -22,7 +24,8 @@ pub fn knobs() -> Vec<&'static str> {
 
 /// What can be asked for.
 pub fn scenes() -> Vec<&'static str> {
-    SCENES.iter().map(|scene| scene.name).collect()
+    let names = SCENES.iter().map(|scene| scene.name);
+    names.chain([WALLS]).collect()
 }
 
 pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
@@ -31,14 +34,16 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
         check(file)?;
     }
     let store = Store::open(&options.out)?;
-    let wanted =
-        |scene: &&Scene| options.scene.is_empty() || options.scene.iter().any(|s| s == scene.name);
-    let turned = |(name, _): &&(&str, Knob)| {
-        options.knob.is_empty() || options.knob.iter().any(|k| k == name)
-    };
+    let wanted = |name: &str| options.scene.is_empty() || options.scene.iter().any(|s| s == name);
+    let turned = |name: &str| options.knob.is_empty() || options.knob.iter().any(|k| k == name);
+    let scenes = SCENES.iter().filter(|scene: &&Scene| wanted(scene.name));
+    let knobs = KNOBS
+        .iter()
+        .filter(|(name, _): &&(&str, Knob)| turned(name));
     let plan = Plan {
-        scenes: SCENES.iter().filter(wanted).copied().collect(),
-        knobs: KNOBS.iter().filter(turned).map(|(_, knob)| *knob).collect(),
+        scenes: scenes.copied().collect(),
+        walls: wanted(WALLS),
+        knobs: knobs.map(|(_, knob)| *knob).collect(),
         quick: options.quick,
     };
     let watch = Watch::new();

@@ -46,3 +46,9 @@ pub enum ReproduceError {
     #[error("{0}")]
     Data(String),
 }
+
+impl From<csv::Error> for ReproduceError {
+    fn from(error: csv::Error) -> Self {
+        Self::Data(format!("CSV: {error}"))
+    }
+}

@@ -10,7 +10,8 @@ use super::product::{Plan, Product};
 use super::published::{EvacuationRow, published, written};
 use super::runner::Results;
 use super::store::Store;
-use super::text::{TextTable, number};
+use super::text::number;
+use crate::table;
 
 /// The table.
 pub const PRODUCT: Product = Product {
@@ -173,22 +174,25 @@ fn as_json(row: &Row) -> serde_json::Value {
 }
 
 fn markdown(rows: &[Row]) -> String {
-    let mut table = TextTable::new(&[
-        "profile",
-        "setting",
-        "evacuated: paper",
-        "ours",
-        "density [P/m²]: paper",
-        "ours",
-        "difference",
-        "its deviation: paper",
-        "ours",
-        "difference",
-        "flow [P/s]: paper",
-        "ours",
-        "difference",
-        "band",
-    ]);
+    let mut table = table::Table::new(
+        0,
+        &[
+            "profile",
+            "setting",
+            "evacuated: paper",
+            "ours",
+            "density [P/m²]: paper",
+            "ours",
+            "difference",
+            "its deviation: paper",
+            "ours",
+            "difference",
+            "flow [P/s]: paper",
+            "ours",
+            "difference",
+            "band",
+        ],
+    );
     for row in rows {
         let evacuated = row.evacuated.ours.map_or(0.0, |ours| ours.mean);
         table.add([
@@ -212,21 +216,24 @@ fn markdown(rows: &[Row]) -> String {
 }
 
 fn csv(rows: &[Row]) -> Result<Vec<u8>, ReproduceError> {
-    let mut table = TextTable::new(&[
-        "profile",
-        "setting",
-        "value",
-        "quantity",
-        "unit",
-        "paper",
-        "ours_mean",
-        "ours_std",
-        "seeds_with_value",
-        "seeds",
-        "difference",
-        "relative_difference",
-        "kept",
-    ]);
+    let mut table = table::Table::new(
+        0,
+        &[
+            "profile",
+            "setting",
+            "value",
+            "quantity",
+            "unit",
+            "paper",
+            "ours_mean",
+            "ours_std",
+            "seeds_with_value",
+            "seeds",
+            "difference",
+            "relative_difference",
+            "kept",
+        ],
+    );
     for row in rows {
         for (name, unit, c) in [
             ("evacuated", "agents", &row.evacuated),
@@ -252,5 +259,5 @@ fn csv(rows: &[Row]) -> Result<Vec<u8>, ReproduceError> {
             ]);
         }
     }
-    table.csv()
+    Ok(table.csv()?)
 }

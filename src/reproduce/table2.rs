@@ -11,7 +11,8 @@ use super::published::{CrossingRow, published, written};
 use super::ranking::{LEAST_DIFFERENCE, Ranked, Ranking, rankings};
 use super::runner::Results;
 use super::store::Store;
-use super::text::{TextTable, number};
+use super::text::number;
+use crate::table;
 
 /// The table.
 pub const PRODUCT: Product = Product {
@@ -136,18 +137,21 @@ impl Table {
     }
 
     fn rows_markdown(&self) -> String {
-        let mut table = TextTable::new(&[
-            "profile",
-            "density [P/m²]: paper",
-            "ours",
-            "difference",
-            "its deviation: paper",
-            "ours",
-            "difference",
-            "flow [P/s]: paper",
-            "ours",
-            "difference",
-        ]);
+        let mut table = table::Table::new(
+            0,
+            &[
+                "profile",
+                "density [P/m²]: paper",
+                "ours",
+                "difference",
+                "its deviation: paper",
+                "ours",
+                "difference",
+                "flow [P/s]: paper",
+                "ours",
+                "difference",
+            ],
+        );
         for row in &self.rows {
             let mut cells = vec![written(&row.profile)];
             for quantity in [&row.density, &row.deviation, &row.flow] {
@@ -161,9 +165,12 @@ impl Table {
     }
 
     fn rankings_markdown(&self) -> String {
-        let mut table = TextTable::new(&[
-            "quantity", "higher", "lower", "paper", "ours", "seeds", "ranking",
-        ]);
+        let mut table = table::Table::new(
+            0,
+            &[
+                "quantity", "higher", "lower", "paper", "ours", "seeds", "ranking",
+            ],
+        );
         for ranking in &self.rankings {
             let [a, b] = ranking.paper;
             let ours = ranking
@@ -201,17 +208,20 @@ impl Table {
     }
 
     fn csv(&self) -> Result<Vec<u8>, ReproduceError> {
-        let mut table = TextTable::new(&[
-            "profile",
-            "quantity",
-            "unit",
-            "paper",
-            "ours_mean",
-            "ours_std",
-            "seeds",
-            "difference",
-            "relative_difference",
-        ]);
+        let mut table = table::Table::new(
+            0,
+            &[
+                "profile",
+                "quantity",
+                "unit",
+                "paper",
+                "ours_mean",
+                "ours_std",
+                "seeds",
+                "difference",
+                "relative_difference",
+            ],
+        );
         for row in &self.rows {
             for (name, unit, c) in [
                 ("density", "P/m²", &row.density),
@@ -231,7 +241,7 @@ impl Table {
                 ]);
             }
         }
-        table.csv()
+        Ok(table.csv()?)
     }
 }
 

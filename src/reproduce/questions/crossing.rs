@@ -11,7 +11,7 @@ use crate::reproduce::product::Plan;
 use crate::reproduce::published::written;
 use crate::reproduce::runner::Results;
 use crate::reproduce::table2;
-use crate::reproduce::text::TextTable;
+use crate::table::Table;
 
 /// The run of a profile in a guess.
 fn case(guess: Crossing, profile: &str, seed: u64) -> Case {
@@ -36,15 +36,18 @@ pub(super) fn cases(plan: &Plan) -> Result<Vec<Case>, ReproduceError> {
 }
 
 pub(super) fn answer(plan: &Plan, results: &Results) -> Result<Answer, ReproduceError> {
-    let mut rows = TextTable::new(&[
-        "geometry",
-        "profile",
-        "density [P/m²]",
-        "its deviation",
-        "flow [P/s]",
-        "of the stream through in 60 s",
-    ]);
-    let mut rankings = TextTable::new(&["geometry", "flow", "density", "broken"]);
+    let mut rows = Table::new(
+        0,
+        &[
+            "geometry",
+            "profile",
+            "density [P/m²]",
+            "its deviation",
+            "flow [P/s]",
+            "of the stream through in 60 s",
+        ],
+    );
+    let mut rankings = Table::new(0, &["geometry", "flow", "density", "broken"]);
     let mut data = Vec::new();
     for (guess, about) in Crossing::ALL {
         let table = table2::Table::new(plan, results, |profile, seed| case(guess, profile, seed))?;

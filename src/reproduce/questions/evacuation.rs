@@ -15,7 +15,7 @@ use crate::reproduce::product::Plan;
 use crate::reproduce::published::{EvacuationRow, published, written};
 use crate::reproduce::runner::Results;
 use crate::reproduce::table1;
-use crate::reproduce::text::TextTable;
+use crate::table::Table;
 
 /// A pause between two arrivals, seconds: a clog.
 const PAUSE: f64 = 2.0;
@@ -121,17 +121,20 @@ impl Question {
     }
 
     fn answer(&self, plan: &Plan, results: &Results) -> Result<Answer, ReproduceError> {
-        let mut table = TextTable::new(&[
-            "profile",
-            "changed",
-            "evacuated",
-            "locked",
-            "density [P/m²]",
-            "its deviation",
-            "flow [P/s]",
-            "pauses [s]",
-            "flow between pauses",
-        ]);
+        let mut table = Table::new(
+            0,
+            &[
+                "profile",
+                "changed",
+                "evacuated",
+                "locked",
+                "density [P/m²]",
+                "its deviation",
+                "flow [P/s]",
+                "pauses [s]",
+                "flow between pauses",
+            ],
+        );
         let mut data = Vec::new();
         for (row, variant, cases) in self.runs(plan)? {
             let outcome = Outcome::new(&cases, results)?;

@@ -1,0 +1,94 @@
+//! Tables as text, for a terminal, for Markdown and as CSV.
+
+/// A table whose cells are written already.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Table {
+    /// So many columns at the left are words, the others numbers.
+    pub words: usize,
+    /// The names of the columns.
+    pub head: Vec<String>,
+    /// The rows.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// An empty table.
+    pub fn new(words: usize, head: &[&str]) -> Self {
+        Self {
+            words,
+            head: head.iter().map(|&name| name.to_owned()).collect(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// Adds a row.
+    pub fn add<const N: usize>(&mut self, row: [String; N]) {
+        self.rows.push(row.to_vec());
+    }
+
+    /// In columns as wide as they must be: words from the left, numbers to the right.
+    pub fn text(&self) -> String {
+        let length =
+            |line: &Vec<String>, k: usize| line.get(k).map_or(0, |cell| cell.chars().count());
+        let widths: Vec<usize> = (0..self.head.len())
+            .map(|k| self.lines().map(|line| length(line, k)).max().unwrap_or(0))
+            .collect();
+        let mut text = String::new();
+        for line in self.lines() {
+            let cells = line.iter().zip(&widths).enumerate();
+            let padded = cells.map(|(k, (cell, &width))| {
+                if k < self.words {
+                    format!("{cell:<width$}")
+                } else {
+                    format!("{cell:>width$}")
+                }
+            });
+            let padded: Vec<String> = padded.collect();
+            text += &format!("{}\n", padded.join("  ").trim_end());
+        }
+        text
+    }
+
+    /// As Markdown.
+    pub fn markdown(&self) -> String {
+        let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+        let rule = vec!["---".to_owned(); self.head.len()];
+        let rows = self.rows.iter().map(|row| line(row));
+        line(&self.head) + &line(&rule) + &rows.collect::<String>()
+    }
+
+    /// As CSV.
+    ///
+    /// # Errors
+    /// Never for rows as long as the head.
+    pub fn csv(&self) -> Result<Vec<u8>, csv::Error> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        for row in self.lines() {
+            writer.write_record(row)?;
+        }
+        writer
+            .into_inner()
+            .map_err(|error| error.into_error().into())
+    }
+
+    fn lines(&self) -> impl Iterator<Item = &Vec<String>> {
+        std::iter::once(&self.head).chain(&self.rows)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_same_table_for_a_terminal_as_markdown_and_as_csv() {
+        let mut table = Table::new(1, &["a", "b"]);
+        table.add(["word".to_owned(), "x, y".to_owned()]);
+        assert_eq!(table.text(), "a        b\nword  x, y\n");
+        assert_eq!(
+            table.markdown(),
+            "| a | b |\n| --- | --- |\n| word | x, y |\n"
+        );
+        assert_eq!(table.csv().unwrap(), b"a,b\nword,\"x, y\"\n");
+    }
+}
