@@ -7,12 +7,13 @@ use std::path::Path;
 
 use common::{blend, blend_with, block, person, rectangle, scene, vector};
 use sandbox::agents::NewAgent;
+use sandbox::boundary::WallMethod;
 use sandbox::breakdown::Breakdown;
 use sandbox::catalog::{NAMES, Parameters};
 use sandbox::scenario::{Scenario, Setting};
 use sandbox::simulation::{Fault, Simulation};
 use sandbox::stability;
-use sandbox::stress::{Cell, Detail, Found, HARD, Hard, Rest, Watch};
+use sandbox::stress::{Cell, Detail, Found, HARD, Hard, Rest, Surroundings, Watch};
 
 /// Runs a file of `scenarios/stress` with some settings; fails unless it survives.
 fn survives(name: &str, settings: &[&str]) -> Found {
@@ -248,9 +249,10 @@ fn an_automatic_step_is_stable_and_no_less_than_seven_tenths_of_the_largest() {
             ..paper
         },
     ] {
-        let cell = Cell::find(crowd, Detail { quick: true }).unwrap();
-        assert!(cell.auto_is_stable, "{cell:?}");
-        assert!((0.7..=1.0).contains(&cell.ratio()), "{cell:?}");
+        let cell = Cell::find(crowd, Detail { quick: true }, 0).unwrap();
+        assert!(cell.auto_is_stable(), "{cell:?}");
+        let ratios = cell.ratios();
+        assert!(ratios.iter().all(|r| (0.7..=1.0).contains(r)), "{cell:?}");
     }
 }
 
@@ -261,10 +263,35 @@ fn a_step_of_twice_the_largest_shakes_a_crowd_at_rest() {
         ..Rest::default()
     };
     let step = stability::time_step(&crowd.scene(5.5, 1.0));
-    let unrest = crowd.unrest(0.2 * step).unwrap();
-    assert!(unrest.into_iter().all(|speed| speed < 0.05), "{unrest:?}");
-    assert!(crowd.is_stable(step, unrest).unwrap());
-    assert!(!crowd.is_stable(2.0 * step, unrest).unwrap());
+    for walls in [WallMethod::Representative, WallMethod::Union] {
+        let surroundings = Surroundings {
+            walls,
+            first_seed: 0,
+        };
+        let [full, loose] = crowd.rooms(step, surroundings).unwrap();
+        assert!(full.speed < Some(0.1) && loose.speed < Some(0.01));
+        let [full, _] = crowd.rooms(2.0 * step, surroundings).unwrap();
+        assert!(full.speed > Some(0.5) && full.persistence < 0.0, "{full:?}");
+        assert!(!full.are_stable());
+    }
+}
+
+#[test]
+fn a_crowd_that_the_model_keeps_moving_goes_on_from_frame_to_frame_unless_the_step_is_too_long() {
+    let crowd = Rest {
+        gas_constant: 3200.0,
+        ..Rest::default()
+    };
+    let step = stability::time_step(&crowd.scene(5.5, 1.0));
+    let surroundings = Surroundings {
+        walls: WallMethod::Representative,
+        first_seed: 0,
+    };
+    let run = |step| crowd.run(5.5, step, surroundings).unwrap();
+    let (fine, auto, long) = (run(0.2 * step), run(step), run(1.5 * step));
+    assert!(fine.speed > Some(0.5) && fine.persistence > 0.9, "{fine:?}");
+    assert!(auto.are_stable() && auto.persistence > 0.1, "{auto:?}");
+    assert!(long.persistence < -0.3, "{long:?}");
 }
 
 #[test]

@@ -1,21 +1,39 @@
-//! The stability maps: for every k and ρ⁰max, for every K^ag, for every μ, the largest time step at which
-//! a crowd comes to rest, found by bisection.
-
-use serde::{Deserialize, Serialize};
+//! The places of the stability maps: every k and ρ⁰max, every K^ag, every μ; and places in between, on
+//! which the maps' formula is tested.
 
 use super::rest::Rest;
-use crate::clock::PAPER_COARSE_STEP;
-use crate::job::Job;
-use crate::reproduce::ReproduceError;
-use crate::simulation::Fault;
-use crate::stability::{self, FITTED, Mode};
 
-/// No step is longer, seconds: Δt_fine never is longer than Δt_coarse.
-const LONGEST: f64 = PAPER_COARSE_STEP;
-/// A step so much shorter than the formula's shows what the model does by itself.
-const FINE: f64 = 0.2;
-/// The search begins so far below and above the formula's step, as factors.
-const WIDTH: f64 = 4.0;
+/// k, ρ⁰max, K^ag and μ of places that the fit never sees: between those of the maps, three of theirs with
+/// other people, stiff gas with stiff contact and with viscosity.
+const HELD_OUT: [[f64; 4]; 27] = [
+    [70.0, 3.5, 50.0, 0.0],
+    [150.0, 6.5, 50.0, 0.0],
+    [300.0, 4.5, 50.0, 0.0],
+    [450.0, 7.5, 50.0, 0.0],
+    [600.0, 5.5, 50.0, 0.0],
+    [1100.0, 8.0, 50.0, 0.0],
+    [200.0, 7.0, 50.0, 0.0],
+    [400.0, 8.0, 50.0, 0.0],
+    [1600.0, 7.0, 50.0, 0.0],
+    [2300.0, 3.5, 50.0, 0.0],
+    [4500.0, 7.5, 50.0, 0.0],
+    [9000.0, 6.5, 50.0, 0.0],
+    [200.0, 5.0, 25.0, 0.0],
+    [200.0, 5.0, 300.0, 0.0],
+    [200.0, 5.0, 3000.0, 0.0],
+    [200.0, 5.0, 30_000.0, 0.0],
+    [200.0, 5.0, 50.0, 15.0],
+    [200.0, 5.0, 50.0, 27.0],
+    [200.0, 5.0, 50.0, 85.0],
+    [1600.0, 6.0, 1000.0, 0.0],
+    [6400.0, 4.0, 10_000.0, 0.0],
+    [800.0, 7.0, 200.0, 10.0],
+    [3200.0, 5.0, 2000.0, 20.0],
+    [100.0, 3.0, 5000.0, 5.0],
+    [50.0, 8.0, 500.0, 50.0],
+    [400.0, 6.0, 0.0, 35.0],
+    [12_800.0, 8.0, 50_000.0, 100.0],
+];
 
 /// How finely the maps are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,7 +64,7 @@ impl Detail {
     /// K^ag, rising.
     pub fn stiffnesses(self) -> Vec<f64> {
         if self.quick {
-            vec![0.0, 1e3, 5e4]
+            vec![0.0, 1e3, 1e4]
         } else {
             vec![0.0, 50.0, 100.0, 200.0, 500.0, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4]
         }
@@ -59,6 +77,19 @@ impl Detail {
         } else {
             vec![0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 35.0, 50.0, 70.0, 100.0]
         }
+    }
+
+    /// The crowds that the fit never sees.
+    pub fn held_out(self) -> Vec<Rest> {
+        let every = if self.quick { 6 } else { 1 };
+        let places = HELD_OUT.into_iter().step_by(every);
+        let crowd = |[gas_constant, rest_density_max, agent_stiffness, viscosity]: [f64; 4]| Rest {
+            gas_constant,
+            rest_density_max,
+            agent_stiffness,
+            viscosity,
+        };
+        places.map(crowd).collect()
     }
 
     /// Every crowd of the maps, each once.
@@ -92,84 +123,8 @@ impl Detail {
         once
     }
 
-    fn bisections(self) -> u32 {
-        if self.quick { 4 } else { 7 }
-    }
-}
-
-/// One place on the maps.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Cell {
-    /// The crowd.
-    pub crowd: Rest,
-    /// The speeds that the model keeps in the full and in the loose room at fine steps, m/s.
-    pub unrest: [f64; 2],
-    /// The largest stable step that was found, seconds.
-    pub largest: f64,
-    /// What `auto` takes, seconds.
-    pub auto: f64,
-    /// Is that stable?
-    pub auto_is_stable: bool,
-}
-
-impl Cell {
-    /// Finds the largest stable step of a crowd.
-    ///
-    /// # Errors
-    /// Somebody has no place at the start.
-    pub fn find(crowd: Rest, detail: Detail) -> Result<Self, Fault> {
-        let guess = crowd.mode().largest_step(&FITTED);
-        let auto = stability::time_step(&crowd.scene(crowd.densities()[0], 1.0));
-        let unrest = crowd.unrest(FINE * guess)?;
-        let (mut low, mut high) = (guess / WIDTH, (guess * WIDTH).min(LONGEST));
-        while !crowd.is_stable(low, unrest)? && low > 1e-3 * guess {
-            (low, high) = (low / WIDTH, low);
-        }
-        if crowd.is_stable(high, unrest)? {
-            low = high;
-        }
-        for _ in 0..detail.bisections() {
-            let middle = (low * high).sqrt();
-            if crowd.is_stable(middle, unrest)? {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        Ok(Self {
-            crowd,
-            unrest,
-            largest: low,
-            auto,
-            auto_is_stable: crowd.is_stable(auto, unrest)?,
-        })
-    }
-
-    /// The job of finding it.
-    pub fn job(crowd: Rest, detail: Detail) -> Job {
-        let steps = detail.bisections();
-        let name = format!(
-            "map k={} ρ⁰max={} K^ag={} μ={}, {steps} bisections",
-            crowd.gas_constant, crowd.rest_density_max, crowd.agent_stiffness, crowd.viscosity
-        );
-        // Frames of 8 s, in two rooms, with three crowds, the fine steps foremost.
-        let frames = 48.0 * (1.0 / FINE + f64::from(steps) + 4.0);
-        let expected = 5e-5 * frames / crowd.mode().largest_step(&FITTED);
-        Job::new(name, expected, move || {
-            Self::find(crowd, detail).map_err(|fault| ReproduceError::Fault {
-                case: format!("{crowd:?}"),
-                fault,
-            })
-        })
-    }
-
-    /// `auto` in parts of the largest stable step.
-    pub fn ratio(&self) -> f64 {
-        self.auto / self.largest
-    }
-
-    /// The fastest mode.
-    pub fn mode(&self) -> Mode {
-        self.crowd.mode()
+    /// How often the search for a step is halved.
+    pub fn bisections(self) -> u32 {
+        if self.quick { 3 } else { 4 }
     }
 }

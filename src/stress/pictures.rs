@@ -1,6 +1,7 @@
 //! The stability maps as pictures.
 
-use super::map::{Cell, Detail};
+use super::cell::Cell;
+use super::map::Detail;
 use super::report::Report;
 use super::rest::Rest;
 use crate::colors::ColorMap;
@@ -26,7 +27,7 @@ pub fn save(report: &Report, detail: Detail, store: &Store) -> Result<(), Reprod
         panels: vec![
             map("largest stable Δt", cells, detail, &LARGEST),
             map("auto in parts of it", cells, detail, &RATIO),
-            map("speed kept at any Δt, full room", cells, detail, &UNREST),
+            map("speed kept at fine Δt", cells, detail, &UNREST),
             against_gas_constant(cells, detail),
             against_stiffness(cells, detail),
             against_viscosity(cells, detail),
@@ -45,19 +46,19 @@ struct Shown {
 }
 
 const LARGEST: Shown = Shown {
-    value: |cell| (1e3 * cell.largest).log10(),
+    value: |cell| (1e3 * cell.limits[0].largest).log10(),
     write: |value| format!("{:.1}", 10_f64.powf(value)),
     range: [0.8, 2.1],
     label: "log₁₀ Δt [ms]",
 };
 const RATIO: Shown = Shown {
-    value: Cell::ratio,
+    value: |cell| cell.ratios()[0],
     write: |value| format!("{value:.2}"),
     range: [0.5, 1.0],
     label: "auto / largest",
 };
 const UNREST: Shown = Shown {
-    value: |cell| cell.unrest[0],
+    value: |cell| cell.limits[0].fine,
     write: |value| format!("{value:.2}"),
     range: [0.0, 1.8],
     label: "root mean square speed [m/s]",
@@ -120,8 +121,12 @@ fn curve(cells: &[Cell], crowds: &[(f64, Rest)], x: Axis, title: &str) -> Panel 
             .map(|(x, cell)| [x.max(ZERO), 1e3 * step(cell)])
             .collect()
     };
-    let found = along(|cell| cell.largest).into_iter();
-    let found = found.map(|[x, y]| Point { x, y, error: 0.0 }).collect();
+    let points = |steps: Vec<[f64; 2]>| {
+        let points = steps.into_iter();
+        points.map(|[x, y]| Point { x, y, error: 0.0 }).collect()
+    };
+    let paper = points(along(|cell| cell.limits[0].largest));
+    let exact = points(along(|cell| cell.limits[1].largest));
     Panel {
         title: title.to_owned(),
         x,
@@ -132,7 +137,8 @@ fn curve(cells: &[Cell], crowds: &[(f64, Rest)], x: Axis, title: &str) -> Panel 
                 Style::broken(LINES[6], 1.0, "formula"),
             ),
             Mark::Line(along(|cell| cell.auto), Style::full(LINES[1], 1.2, "auto")),
-            Mark::Points(found, Style::full(LINES[0], 2.4, "largest stable")),
+            Mark::Points(exact, Style::full(LINES[2], 2.4, "with exact walls")),
+            Mark::Points(paper, Style::full(LINES[0], 2.4, "largest stable")),
         ],
         bar: None,
         legend: Some(Corner::UpperRight),

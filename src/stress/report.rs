@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
+use super::cell::{Cell, Limit};
 use super::fit::LEAST;
 use super::hard::Survival;
 use super::jitter::{Jitter, Variant};
-use super::map::Cell;
 use crate::reproduce::{ReproduceError, Store};
 use crate::stability::{Constants, FITTED};
 
@@ -16,7 +16,9 @@ pub struct Report {
     pub hard: Vec<(&'static str, Survival)>,
     /// The maps.
     pub cells: Vec<Cell>,
-    /// The constants that these maps give.
+    /// Places that the constants were not fitted to.
+    pub held_out: Vec<Cell>,
+    /// The constants that the maps give.
     pub fitted: Constants,
     /// Crowds at rest.
     pub jitter: Vec<(Variant, Jitter)>,
@@ -33,10 +35,11 @@ impl Report {
             Some(fault) => format!("{name}: {fault}"),
             None => format!("{name}: {} through a wall", survival.found.passed),
         });
-        let unstable = self.cells.iter().filter(|cell| !cell.auto_is_stable);
+        let everywhere = self.cells.iter().chain(&self.held_out);
+        let unstable = everywhere.filter(|cell| !cell.auto_is_stable());
         let unstable = unstable.map(|cell| format!("auto is not stable: {cell:?}"));
-        let short = self.cells.iter().filter(|cell| cell.ratio() < LEAST);
-        let short = short.map(|cell| format!("auto is only {:.2}: {cell:?}", cell.ratio()));
+        let short = self.cells.iter().filter(|cell| range(&[**cell])[0] < LEAST);
+        let short = short.map(|cell| format!("auto is too short: {cell:?}"));
         hard.chain(unstable).chain(short).collect()
     }
 
@@ -57,9 +60,11 @@ impl Report {
         let text: String = self.parts().map(|(_, text)| text + "\n").concat();
         store.write("report.md", text.as_bytes())?;
         store.write("maps.csv", csv(&self.cells).as_bytes())?;
+        store.write("held_out.csv", csv(&self.held_out).as_bytes())?;
         let json = serde_json::json!({
             "hard": self.hard,
             "maps": self.cells,
+            "held_out": self.held_out,
             "jitter": self.jitter.iter().map(|(v, j)| (v.label, j)).collect::<Vec<_>>(),
         });
         let json = format!("{json}\n");
@@ -68,46 +73,79 @@ impl Report {
     }
 
     fn maps(&self) -> String {
-        let ratios = || self.cells.iter().map(Cell::ratio);
-        let least = ratios().fold(f64::INFINITY, f64::min);
-        let most = ratios().fold(0.0, f64::max);
-        let stable = self.cells.iter().filter(|cell| cell.auto_is_stable).count();
         let constants = |c: &Constants| {
             format!(
                 "C₁ = {:.2}, C₂ = {:.2}, C₃ = {:.2}, margin {:.2}",
                 c.pressure, c.contact, c.drag, c.margin
             )
         };
-        let mut text = "| k | ρ⁰max | K^ag | μ | largest stable Δt [s] | auto [s] | auto / largest | \
-                        auto is stable | unrest, full and loose room [m/s] |\n|---|---|---|---|---|---|---|---|---|\n"
-            .to_owned();
-        for cell in &self.cells {
-            let crowd = cell.crowd;
-            let _ = writeln!(
-                text,
-                "| {} | {} | {} | {} | {:.4} | {} | {:.2} | {} | {:.3}, {:.3} |",
-                crowd.gas_constant,
-                crowd.rest_density_max,
-                crowd.agent_stiffness,
-                crowd.viscosity,
-                cell.largest,
-                cell.auto,
-                cell.ratio(),
-                if cell.auto_is_stable { "yes" } else { "**no**" },
-                cell.unrest[0],
-                cell.unrest[1],
-            );
-        }
-        let _ = write!(
-            text,
-            "\nauto is stable at {stable} of {} places, at {least:.2} to {most:.2} of the largest stable step. \
-             Constants of the engine: {}. Fitted to these maps: {}.\n",
-            self.cells.len(),
+        format!(
+            "{}\n{} Constants of the engine: {}. Fitted to these maps: {}.\n\n\
+             Places that the fit never saw, with other people:\n\n{}\n{}\n",
+            map_table(&self.cells),
+            summary(&self.cells),
             constants(&FITTED),
             constants(&self.fitted),
-        );
-        text
+            map_table(&self.held_out),
+            summary(&self.held_out),
+        )
     }
+}
+
+/// The least and the greatest that `auto` is of the largest stable steps.
+fn range(cells: &[Cell]) -> [f64; 2] {
+    let ratios = || cells.iter().flat_map(Cell::ratios);
+    [
+        ratios().fold(f64::INFINITY, f64::min),
+        ratios().fold(0.0, f64::max),
+    ]
+}
+
+fn summary(cells: &[Cell]) -> String {
+    let [least, most] = range(cells);
+    let stable = cells.iter().filter(|cell| cell.auto_is_stable()).count();
+    format!(
+        "auto is stable at {stable} of {} places, at {least:.2} to {most:.2} of the largest stable step.",
+        cells.len(),
+    )
+}
+
+fn map_table(cells: &[Cell]) -> String {
+    let mut text = "| k | ρ⁰max | K^ag | μ | auto [s] | auto is stable | largest stable Δt [s] | auto / largest | \
+                    speed, fine steps → auto [m/s] | exact walls: largest stable Δt [s] | auto / largest | \
+                    speed, fine steps → auto [m/s] |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n"
+        .to_owned();
+    for cell in cells {
+        let crowd = cell.crowd;
+        let found = |limit: Limit| {
+            let Limit {
+                largest,
+                fine,
+                auto,
+                ..
+            } = limit;
+            format!(
+                "{largest:.4} | {:.2} | {fine:.2} → {auto:.2}",
+                cell.auto / largest
+            )
+        };
+        let [paper, exact] = cell.limits.map(found);
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} | {} | {paper} | {exact} |",
+            crowd.gas_constant,
+            crowd.rest_density_max,
+            crowd.agent_stiffness,
+            crowd.viscosity,
+            cell.auto,
+            if cell.auto_is_stable() {
+                "yes"
+            } else {
+                "**no**"
+            },
+        );
+    }
+    text
 }
 
 fn hard_table(hard: &[(&str, Survival)]) -> String {
@@ -159,19 +197,21 @@ fn jitter_table(jitter: &[(Variant, Jitter)]) -> String {
 }
 
 fn csv(cells: &[Cell]) -> String {
-    let head = "gas_constant,rest_density_max,agent_stiffness,viscosity,largest_secs,auto_secs,\
-                auto_is_stable,unrest_full,unrest_loose\n";
+    let head = "gas_constant,rest_density_max,agent_stiffness,viscosity,auto_secs,auto_is_stable,\
+                largest_secs,fine_speed,auto_speed,exact_largest_secs,exact_fine_speed,exact_auto_speed\n";
     let row = |cell: &Cell| {
-        let (crowd, [full, loose]) = (cell.crowd, cell.unrest);
+        let crowd = cell.crowd;
+        let found =
+            |limit: Limit| format!("{:.5},{:.4},{:.4}", limit.largest, limit.fine, limit.auto);
+        let [paper, exact] = cell.limits.map(found);
         format!(
-            "{},{},{},{},{:.5},{},{},{full:.4},{loose:.4}\n",
+            "{},{},{},{},{},{},{paper},{exact}\n",
             crowd.gas_constant,
             crowd.rest_density_max,
             crowd.agent_stiffness,
             crowd.viscosity,
-            cell.largest,
             cell.auto,
-            cell.auto_is_stable,
+            cell.auto_is_stable(),
         )
     };
     head.to_owned() + &cells.iter().map(row).collect::<String>()

@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::watch::{Watch, mean_square_speed};
-use crate::agents::NewAgent;
+use super::watch::Watch;
+use crate::agents::{Agents, NewAgent};
+use crate::boundary::WallMethod;
 use crate::catalog::{NavigationKind, Parameters};
 use crate::clock::Clock;
 use crate::geometry::Polygon;
@@ -26,13 +27,12 @@ const JITTER: f64 = 0.1;
 const KICK: f64 = 0.7;
 /// How long a crowd is given to come to rest, seconds: the goal force alone slows by e⁻¹ in τ = 0.5 s.
 const DURATION: f64 = 8.0;
-/// So many crowds of different people are looked at.
-const SEEDS: u64 = 3;
 /// The last part of it, in which the crowd is judged, seconds.
 const JUDGED: f64 = 3.0;
-/// A step shakes a crowd if it takes the crowd's speed by more than this part of the way from what it is at
-/// the finest steps to the highest allowed, at which a crowd that is thrown about soon is.
-const SHAKEN: f64 = 1.0 / 3.0;
+/// So many crowds of different people are looked at.
+const SEEDS: u64 = 3;
+/// Crowds that are so slow have come to rest, m/s.
+const RESTING: f64 = 0.1;
 /// Nobody's centre may be nearer to another's than this part of their radii's sum.
 const CLOSEST: f64 = 0.1;
 
@@ -49,6 +49,15 @@ pub struct Rest {
     pub viscosity: f64,
 }
 
+/// Walls and people.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Surroundings {
+    /// How walls enter SPH.
+    pub walls: WallMethod,
+    /// The seeds are those that follow.
+    pub first_seed: u64,
+}
+
 impl Default for Rest {
     /// The paper's `sph` (§5.5).
     fn default() -> Self {
@@ -61,11 +70,14 @@ impl Default for Rest {
     }
 }
 
-/// What became of a crowd.
+/// What became of some crowds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Remains {
-    /// Root mean square speed in the last seconds, m/s, of the most restless crowd; `None` if a run broke off.
+    /// Root mean square speed in the last seconds, m/s; `None` if a run broke off.
     pub speed: Option<f64>,
+    /// How far velocities last from one frame to the next in those seconds, Σ v(t)·v(t − Δt) / Σ v²: 1 where
+    /// everybody goes on, −1 where everybody turns round in every frame.
+    pub persistence: f64,
     /// The least distance of two centres, in parts of their radii's sum.
     pub closest: f64,
     /// How many got through a wall.
@@ -73,20 +85,34 @@ pub struct Remains {
 }
 
 impl Remains {
-    /// Both, with the higher of their squared speeds: some crowds boil by chance, at the finest steps too.
-    fn and(self, other: Self) -> Self {
-        Self {
-            speed: self.speed.zip(other.speed).map(|(a, b)| a.max(b)),
-            closest: self.closest.min(other.closest),
-            escaped: self.escaped + other.escaped,
-        }
-    }
-
-    /// Did the crowd come to rest, in one piece? `unrest` is the speed that it keeps at the finest steps.
-    fn are_stable(&self, unrest: f64) -> bool {
-        let most = unrest + SHAKEN * (Scene::default().max_speed - unrest);
-        let rests = self.speed.is_some_and(|speed| speed <= most);
+    /// Did the crowds come to rest, or is their motion at least none that the step makes, and all in one piece?
+    /// A step that is too long has people turn round in every frame; what the model does by itself takes several.
+    pub fn are_stable(&self) -> bool {
+        let moves_on = self.persistence > 0.0;
+        let rests = self.speed.is_some_and(|speed| speed <= RESTING || moves_on);
         rests && self.closest >= CLOSEST && self.escaped == 0
+    }
+}
+
+/// What moves in the last seconds, summed over people and frames.
+#[derive(Debug, Clone, Copy, Default)]
+struct Motion {
+    people: f64,
+    /// |v|², m²/s².
+    squares: f64,
+    /// v · v of the frame before, m²/s².
+    lasting: f64,
+}
+
+impl Motion {
+    /// Adds a frame; `before` are the velocities of the one before by id, and are replaced.
+    fn add(&mut self, agents: &Agents, before: &mut [Vector]) {
+        for (&id, velocity) in agents.id.iter().zip(&agents.velocity) {
+            let last = std::mem::replace(&mut before[id as usize], *velocity);
+            self.people += 1.0;
+            self.squares += velocity.norm_squared();
+            self.lasting += velocity.dot(&last);
+        }
     }
 }
 
@@ -141,69 +167,56 @@ impl Rest {
         scene
     }
 
-    /// Runs one room at a time step in seconds, with people after people.
+    /// Runs rooms of one density at a time step in seconds, with people after people.
     ///
     /// # Errors
     /// Somebody has no place at the start.
-    pub fn run(&self, density: f64, time_step: f64) -> Result<Remains, Fault> {
-        let mut all = Remains {
-            speed: Some(0.0),
-            closest: 1.0,
-            escaped: 0,
-        };
+    pub fn run(
+        &self,
+        density: f64,
+        time_step: f64,
+        surroundings: Surroundings,
+    ) -> Result<Remains, Fault> {
+        let (mut motion, mut broken) = (Motion::default(), false);
+        let (mut closest, mut escaped) = (f64::INFINITY, 0);
         for seed in 1..=SEEDS {
             let mut scene = self.scene(density, time_step);
-            scene.seed = seed;
-            all = all.and(Self::run_scene(scene)?);
+            scene.seed = surroundings.first_seed + seed;
+            scene.wall_method = surroundings.walls;
+            let mut simulation = Simulation::new(scene)?;
+            let mut watch = Watch::new(&simulation);
+            broken |= !settle(&mut simulation, &mut watch, &mut motion)?;
+            let found = watch.found(&simulation);
+            closest = found.closest.min(closest);
+            escaped += found.passed;
         }
-        all.speed = all.speed.map(f64::sqrt);
-        Ok(all)
-    }
-
-    /// Runs one crowd; the speed is squared.
-    fn run_scene(scene: Scene) -> Result<Remains, Fault> {
-        let mut simulation = Simulation::new(scene)?;
-        let mut watch = Watch::new(&simulation);
-        let last = simulation.frame().clock.frame_at(DURATION).max(1);
-        let judged = simulation.frame().clock.frame_at(DURATION - JUDGED);
-        let (mut squares, mut frames, mut broken) = (0.0, 0.0, false);
-        while simulation.frame().clock.frame() < last && !broken {
-            simulation.evaluate()?;
-            watch.look(&simulation);
-            broken = simulation.integrate().is_err();
-            if simulation.frame().clock.frame() > judged {
-                squares += mean_square_speed(&simulation);
-                frames += 1.0;
-            }
-        }
-        let found = watch.found(&simulation);
-        let speed: f64 = squares / frames;
         Ok(Remains {
-            speed: (!broken).then_some(speed),
-            closest: found.closest,
-            escaped: found.passed,
+            speed: (!broken).then_some((motion.squares / motion.people).sqrt()),
+            persistence: motion.lasting / motion.squares,
+            closest,
+            escaped,
         })
     }
 
-    /// The speeds that the model keeps in both rooms at a step far below every limit, m/s.
+    /// The full and the loose room at a time step in seconds.
     ///
     /// # Errors
     /// As [`run`](Self::run).
-    pub fn unrest(&self, time_step: f64) -> Result<[f64; 2], Fault> {
-        let mut speeds = [0.0; 2];
-        for (speed, density) in speeds.iter_mut().zip(self.densities()) {
-            *speed = self.run(density, time_step)?.speed.unwrap_or(0.0);
-        }
-        Ok(speeds)
+    pub fn rooms(&self, time_step: f64, surroundings: Surroundings) -> Result<[Remains; 2], Fault> {
+        let [full, loose] = self.densities();
+        Ok([
+            self.run(full, time_step, surroundings)?,
+            self.run(loose, time_step, surroundings)?,
+        ])
     }
 
-    /// Is a time step in seconds stable in both rooms, whose own [`unrest`](Self::unrest) is known?
+    /// Is a time step in seconds stable in both rooms?
     ///
     /// # Errors
     /// As [`run`](Self::run).
-    pub fn is_stable(&self, time_step: f64, unrest: [f64; 2]) -> Result<bool, Fault> {
-        for (density, unrest) in self.densities().into_iter().zip(unrest) {
-            if !self.run(density, time_step)?.are_stable(unrest) {
+    pub fn is_stable(&self, time_step: f64, surroundings: Surroundings) -> Result<bool, Fault> {
+        for density in self.densities() {
+            if !self.run(density, time_step, surroundings)?.are_stable() {
                 return Ok(false);
             }
         }
@@ -214,6 +227,33 @@ impl Rest {
     pub fn mode(&self) -> Mode {
         Mode::of(&self.scene(LOOSE, 1.0))
     }
+}
+
+/// Runs one crowd to its end; `false` if it broke off.
+fn settle(
+    simulation: &mut Simulation,
+    watch: &mut Watch,
+    motion: &mut Motion,
+) -> Result<bool, Fault> {
+    let clock = *simulation.frame().clock;
+    let (judged, last) = (
+        clock.frame_at(DURATION - JUDGED),
+        clock.frame_at(DURATION).max(1),
+    );
+    let mut before = vec![Vector::zeros(); simulation.frame().agents.len()];
+    for frame in 1..=last {
+        simulation.evaluate()?;
+        watch.look(simulation);
+        if simulation.integrate().is_err() {
+            return Ok(false);
+        }
+        if frame == judged {
+            Motion::default().add(simulation.frame().agents, &mut before);
+        } else if frame > judged {
+            motion.add(simulation.frame().agents, &mut before);
+        }
+    }
+    Ok(true)
 }
 
 /// Two angles of wall, 1 m thick, round [0, side]²: nowhere more than two edges push the same way.
