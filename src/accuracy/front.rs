@@ -1,7 +1,7 @@
 //! Which settings nothing else beats.
 
-/// Costs within this factor are taken for the same: what a machine varies by.
-const SAME_COST: f64 = 1.1;
+/// Costs and errors within this factor are taken for the same: costs vary by as much from turn to turn.
+const SAME: f64 = 1.1;
 
 /// What stands above a point: the best that costs no more, and the cheapest that is no worse.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,8 +21,8 @@ impl Front {
             Some((_, least)) if least <= value => best,
             _ => Some((other, value)),
         };
-        let affordable = others().filter(|(_, p)| p.0 <= SAME_COST * cost && p.1 < error);
-        let exact = others().filter(|(_, p)| p.1 <= error && p.0 * SAME_COST < cost);
+        let affordable = others().filter(|(_, p)| p.0 <= SAME * cost && p.1 * SAME < error);
+        let exact = others().filter(|(_, p)| p.1 <= error && p.0 * SAME < cost);
         Self {
             best_at_cost: affordable.map(|(other, p)| (other, p.1)).fold(None, least),
             cheapest_at_error: exact.map(|(other, p)| (other, p.0)).fold(None, least),

@@ -22,16 +22,16 @@ pub fn save(report: &Report, store: &Store) -> Result<(), ReproduceError> {
 fn sheet(found: &Found) -> Sheet {
     let costs = range(found.points.iter().map(|point| point.cost.median));
     let quantities = 0..found.quantities.len();
-    let last = quantities.end - 1;
+    let columns = quantities.len().div_ceil(2).max(1);
     Sheet {
         title: format!("{}: {}", found.scene.name, found.scene.about),
-        columns: quantities.len().div_ceil(2).max(1),
+        columns,
         panel_size: [225.0, 195.0],
         shared_axes: false,
         row_titles: Vec::new(),
         bar: None,
         panels: quantities
-            .map(|k| panel(found, k, costs, k == last))
+            .map(|k| panel(found, k, costs, k + 1 == columns))
             .collect(),
     }
 }

@@ -93,14 +93,23 @@ fn linear_ticks([first, last]: [f64; 2], most: usize) -> Vec<(f64, String)> {
         .collect()
 }
 
-/// 1, 2 and 5 times every power of ten.
+/// So many powers of ten have room for more than one tick each.
+const MOST_DECADES: f64 = 4.0;
+
+/// 1, 2 and 5 times every power of ten; only the powers where there are many.
 fn log_ticks([first, last]: [f64; 2]) -> Vec<(f64, String)> {
+    let many = (last / first).log10() > MOST_DECADES;
+    let factors = if many { &[1.0][..] } else { &[1.0, 2.0, 5.0] };
     let mut ticks = Vec::new();
     for exponent in first.log10().floor() as i32..=last.log10().ceil() as i32 {
-        for factor in [1.0, 2.0, 5.0] {
+        for factor in factors {
             let value = factor * 10_f64.powi(exponent);
             if (first * (1.0 - 1e-9)..=last * (1.0 + 1e-9)).contains(&value) {
-                ticks.push((value, grouped(value, (-exponent).max(0) as usize)));
+                let text = match exponent {
+                    ..-3 => format!("{factor}e\u{2212}{}", -exponent),
+                    _ => grouped(value, (-exponent).max(0) as usize),
+                };
+                ticks.push((value, text));
             }
         }
     }
@@ -141,6 +150,18 @@ mod tests {
         assert_eq!(
             values(log_ticks([2_500.0, 100_000.0])),
             [5e3, 1e4, 2e4, 5e4, 1e5]
+        );
+        let small: Vec<String> = log_ticks([1e-6, 1e-1]).into_iter().map(|t| t.1).collect();
+        assert_eq!(
+            small,
+            [
+                "1e\u{2212}6",
+                "1e\u{2212}5",
+                "1e\u{2212}4",
+                "0.001",
+                "0.01",
+                "0.1"
+            ]
         );
     }
 

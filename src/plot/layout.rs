@@ -55,7 +55,10 @@ fn pitch(sheet: &Sheet) -> [f64; 2] {
     if sheet.shared_axes {
         return [width + GAP, height + above];
     }
-    let right = sheet.panels.iter().map(beside).fold(GAP, f64::max);
+    // What stands beside the last column is in nobody's way.
+    let inner = sheet.panels.iter().enumerate();
+    let inner = inner.filter(|(k, _)| k % sheet.columns != sheet.columns - 1);
+    let right = inner.map(|(_, panel)| beside(panel)).fold(GAP, f64::max);
     [LEFT + width + right, above + height + BELOW]
 }
 

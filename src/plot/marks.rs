@@ -154,11 +154,22 @@ pub fn stroke<DB: DrawingBackend>(
         return Ok(());
     }
     if !style.broken {
-        return canvas.line(path, style.width, style.color);
+        // The backend draws a spike where a thick line turns back.
+        let pieces = path.len() - 1;
+        let sharp = (1..pieces).filter(|&k| turns_back([path[k - 1], path[k], path[k + 1]]));
+        let ends: Vec<usize> = std::iter::once(0).chain(sharp).chain([pieces]).collect();
+        return ends
+            .windows(2)
+            .try_for_each(|ends| canvas.line(&path[ends[0]..=ends[1]], style.width, style.color));
     }
     dashes(path)
         .iter()
         .try_for_each(|dash| canvas.line(dash, style.width, style.color))
+}
+
+/// Is there a sharp corner at the middle one?
+fn turns_back([a, b, c]: [Place; 3]) -> bool {
+    (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0.0
 }
 
 /// A path in pieces of [`DASH`] points with gaps of the same length.
