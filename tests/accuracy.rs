@@ -2,7 +2,7 @@
 //! command writes what it says.
 #![cfg(feature = "bench")]
 
-use sandbox::accuracy::{KNOBS, Kind, Knob, Lyapunov, Motion, SCENES, Scene, sample};
+use sandbox::accuracy::{Detail, KNOBS, Kind, Knob, Lyapunov, Motion, SCENES, Scene, sample};
 use sandbox::boundary::WallMethod;
 use sandbox::scenario::{Scenario, Setting};
 use serde_json::{Value, json};
@@ -20,7 +20,7 @@ fn parse(document: &Value, settings: &[String]) -> Scenario {
 fn every_value_of_every_knob_is_a_setting() {
     for (name, knob) in KNOBS {
         assert_eq!(knob.name(), name);
-        for curve in knob.curves(false) {
+        for curve in knob.curves(Detail::All) {
             for settings in &curve.points {
                 parse(&small("sph"), settings);
             }
@@ -129,7 +129,7 @@ fn best_values_are_among_those_tried() {
             ));
             continue;
         };
-        assert!(knob.curves(false)[0].points.contains(&best));
+        assert!(knob.curves(Detail::All)[0].points.contains(&best));
     }
 }
 

@@ -78,6 +78,17 @@ pub fn are_default(settings: &[String]) -> bool {
 /// Δt, seconds.
 const STEPS: [&str; 6] = ["0.0025", "0.005", "0.01", "0.02", "0.04", "0.08"];
 
+/// How much is tried.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Detail {
+    /// Everything.
+    All,
+    /// All but the finest steps, which statistics cannot tell from the reference.
+    Coarser,
+    /// A few values.
+    Few,
+}
+
 impl Knob {
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
@@ -97,9 +108,13 @@ impl Knob {
         }
     }
 
-    /// What is tried; less of it where time is short.
-    pub fn curves(self, quick: bool) -> Vec<Curve> {
-        let steps = if quick { &STEPS[2..5] } else { &STEPS[..] };
+    /// What is tried.
+    pub fn curves(self, detail: Detail) -> Vec<Curve> {
+        let steps = match detail {
+            Detail::All => &STEPS[..],
+            Detail::Coarser => &STEPS[1..],
+            Detail::Few => &STEPS[2..5],
+        };
         let by_step = |integrator: Option<&str>| {
             let point = |step: &&str| {
                 let integrator = integrator.map(|name| format!("integrator={name}"));
@@ -121,14 +136,13 @@ impl Knob {
             _ => {
                 let point = |value: &&str| vec![format!("{}={value}", self.key())];
                 let values = self.values();
-                let few = if quick {
-                    values.len().min(3)
-                } else {
-                    values.len()
+                let count = match detail {
+                    Detail::Few => values.len().min(3),
+                    Detail::All | Detail::Coarser => values.len(),
                 };
                 vec![curve(
                     self.name(),
-                    values[..few].iter().map(point).collect(),
+                    values[..count].iter().map(point).collect(),
                 )]
             }
         }

@@ -22,7 +22,7 @@ pub mod walls;
 
 pub use found::{Found, Measured, Point, Quantity};
 pub use front::{Front, cheapest};
-pub use knob::{Curve, KNOBS, Knob};
+pub use knob::{Curve, Detail, KNOBS, Knob};
 pub use lyapunov::Lyapunov;
 pub use report::{Report, WALLS};
 pub use scenes::{Kind, SCENES, Scene};
@@ -36,7 +36,7 @@ mod tests {
 
     #[test]
     fn every_step_of_the_knobs_meets_every_sample() {
-        for curve in Knob::TimeStep.curves(false) {
+        for curve in Knob::TimeStep.curves(Detail::All) {
             for settings in curve.points {
                 let step: f64 = settings[0].split_once('=').unwrap().1.parse().unwrap();
                 for time in SAMPLES {

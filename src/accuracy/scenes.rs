@@ -81,14 +81,14 @@ pub const SCENES: [Scene; 9] = [
         name: "evacuation-social",
         about: "Table 1's evacuation, sf->sph",
         kind: Kind::Evacuation,
-        seeds: 3,
+        seeds: 5,
         document: || evacuation("sf->sph"),
     },
     Scene {
         name: "evacuation-rvo",
         about: "Table 1's evacuation, rvo->sph",
         kind: Kind::Evacuation,
-        seeds: 3,
+        seeds: 5,
         document: || evacuation("rvo->sph"),
     },
     Scene {

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::cost;
 use super::found::{Found, Measured, Point, Quantity};
-use super::knob::{Curve, Knob, without_defaults};
+use super::knob::{Curve, Detail, Knob, without_defaults};
 use super::report::Report;
 use super::scenes::{Kind, Scene, continued, simulation};
 use super::statistics::{self, Sample, deviations};
@@ -87,12 +87,17 @@ impl Task {
         let document = scene.document()?;
         let first = simulation(&document, &[])?;
         let has_walls = !first.frame().walls.is_empty();
+        let detail = match scene.kind {
+            _ if plan.quick => Detail::Few,
+            Kind::Motion => Detail::All,
+            Kind::Evacuation | Kind::Wave => Detail::Coarser,
+        };
         let acts = |knob: &&Knob| knob.acts(first.needs(), has_walls);
         let knobs = plan.knobs.iter().filter(acts);
         Ok(Self {
             scene,
             document,
-            curves: knobs.flat_map(|knob| knob.curves(plan.quick)).collect(),
+            curves: knobs.flat_map(|knob| knob.curves(detail)).collect(),
         })
     }
 

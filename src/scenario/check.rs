@@ -10,7 +10,7 @@ use super::file::{self, File, Object, ProfileChoice, TimeStep};
 use super::range::{COARSE_EVERY, MAX_SPEED, PREFERRED_SPEED, Range, TIME, TIME_STEP};
 use super::range::{point, region};
 use super::{Scenario, Stop, View, parameters, preset, profiles};
-use crate::clock::{Clock, PAPER_TIME_STEP};
+use crate::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP};
 use crate::geometry::Polygon;
 use crate::math::Vector;
 use crate::metrics::Measurement;
@@ -87,6 +87,7 @@ fn empty_scene(file: &File) -> Result<Scene, Problem> {
         Some(TimeStep::Given(step)) => clock(file, step)?,
         Some(TimeStep::Auto) | None => clock(file, PAPER_TIME_STEP)?,
     };
+    TIME_STEP.check_given("longest_step_secs", file.longest_step_secs)?;
     let preferred_speed = file.preferred_speed.unwrap_or(paper.preferred_speed);
     let max_speed = file.max_speed.unwrap_or(paper.max_speed);
     let mut obstacles = Vec::with_capacity(file.obstacles.len());
@@ -121,7 +122,8 @@ fn automatic_clock(file: &File, scene: &Scene) -> Result<Clock, Problem> {
         let reason = "`auto` is known for the semi-implicit integrator alone; give a number";
         return Err(Problem::new("time_step_secs", reason));
     }
-    clock(file, stability::time_step(scene))
+    let longest = file.longest_step_secs.unwrap_or(PAPER_COARSE_STEP);
+    clock(file, stability::time_step(scene).min(longest))
 }
 
 fn obstacle(corners: &[[f64; 2]]) -> Result<Polygon, Problem> {

@@ -54,6 +54,7 @@ pub(super) struct File {
     #[serde(rename = "preset")]
     pub _preset: Preset,
     pub time_step_secs: Option<TimeStep>,
+    pub longest_step_secs: Option<f64>,
     pub coarse_every: Option<u32>,
     pub integrator: Integrator,
     pub wall_method: WallMethod,

@@ -30,7 +30,7 @@ pub fn settings() -> Vec<SettingDoc> {
         .collect()
 }
 
-fn scalars() -> [SettingDoc; 14] {
+fn scalars() -> [SettingDoc; 15] {
     let doc = |key, unit, default, range: &dyn ToString, description| SettingDoc {
         key,
         unit,
@@ -81,6 +81,13 @@ fn scalars() -> [SettingDoc; 14] {
             "0.02",
             &format!("{}, or auto", range::TIME_STEP),
             "Δt_fine, one frame; auto: the largest at which a crowd is sure to come to rest",
+        ),
+        doc(
+            "longest_step_secs",
+            "s",
+            "0.1",
+            &range::TIME_STEP,
+            "no step that `auto` takes is longer",
         ),
         doc(
             "coarse_every",
