@@ -80,7 +80,7 @@ pub struct Frame<'a> {
     pub packed: &'a Packed,
     /// Which of them some profile reads.
     pub wanted: Wanted,
-    /// Seed of the scene's random numbers.
+    /// Seed of what people choose.
     pub seed: u64,
 }
 

@@ -114,8 +114,10 @@ impl Region {
 /// Everything that [`Simulation`](crate::simulation::Simulation) needs to begin.
 #[derive(Debug, Clone)]
 pub struct Scene {
-    /// Seed of all random numbers.
+    /// Seed of who enters: bodies, and jitter of where they stand.
     pub seed: u64,
+    /// Seed of what they do, RVO's candidates; `None`: the same.
+    pub behaviour_seed: Option<u64>,
     /// Δt_fine and Δt_coarse.
     pub clock: Clock,
     /// How the state is moved on.
@@ -147,6 +149,7 @@ impl Default for Scene {
     fn default() -> Self {
         Self {
             seed: 1,
+            behaviour_seed: None,
             clock: Clock::default(),
             integrator: Integrator::default(),
             wall_method: WallMethod::default(),

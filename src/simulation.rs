@@ -1,5 +1,6 @@
 //! The loop (§4.1).
 
+mod digest;
 mod evaluate;
 mod integrate;
 mod schedule;
@@ -201,7 +202,7 @@ impl Simulation {
             neighbors: &self.neighbors,
             packed: &self.packed,
             wanted: self.needs.pairs,
-            seed: self.scene.seed,
+            seed: self.scene.behaviour_seed.unwrap_or(self.scene.seed),
         }
     }
 

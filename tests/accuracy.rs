@@ -70,7 +70,7 @@ fn errors_are_distances_and_fall_with_the_step() {
     let zero = default.errors(&motion(&["time_step_secs=0.02"]));
     assert_eq!([zero.position, zero.velocity, zero.density], [[0.0; 3]; 3]);
 
-    let (reference, own) = Motion::reference(&document, WallMethod::default()).unwrap();
+    let (reference, own) = Motion::reference(&document, WallMethod::default(), false).unwrap();
     let errors = ["0.04", "0.02", "0.01"].map(|step| {
         let motion = motion(&[&format!("time_step_secs={step}")]);
         assert_eq!(motion.errors(&reference), reference.errors(&motion));

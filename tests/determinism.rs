@@ -160,3 +160,41 @@ fn a_density_asked_for_between_coarse_frames_misses_nobody() {
         }
     }
 }
+
+#[test]
+fn who_comes_and_what_they_do_have_seeds_of_their_own() {
+    let run = |population: u64, behaviour: u64, frames: u32| {
+        let mut scene = busy_room("rvo->sph");
+        scene.seed = population;
+        scene.behaviour_seed = Some(behaviour);
+        simulated(scene, 2, frames)
+    };
+    let bodies = |simulation: &Simulation| {
+        let agents = simulation.frame().agents;
+        let mut bodies: Vec<(u32, u64)> = agents
+            .id
+            .iter()
+            .copied()
+            .zip(agents.radius.iter().map(|r| r.to_bits()))
+            .collect();
+        bodies.sort_unstable();
+        bodies
+    };
+    let (one, other) = (run(5, 1, 20), run(5, 2, 20));
+    assert_eq!(bodies(&one), bodies(&other));
+    assert_ne!(one.digest(), other.digest());
+    assert_ne!(bodies(&one), bodies(&run(6, 1, 20)));
+    // Without a seed of its own, behaviour has that of the population.
+    let mut same = busy_room("rvo->sph");
+    same.behaviour_seed = None;
+    assert_eq!(simulated(same, 2, 20).digest(), run(5, 5, 20).digest());
+}
+
+#[test]
+fn the_digest_is_that_of_the_state_whatever_the_threads() {
+    let digest = |threads, frames| simulated(busy_room("sf->sph"), threads, frames).digest();
+    let one = digest(1, 40);
+    assert_eq!(one.len(), 64);
+    assert_eq!(one, digest(3, 40));
+    assert_ne!(one, digest(1, 41));
+}

@@ -63,7 +63,7 @@ fn the_keys_of_nested_objects_are_documented() {
 fn every_documented_key_is_accepted() {
     let text = |key: &str| match key {
         "name" | "description" => "word".to_owned(),
-        "coarse_every" => "3".to_owned(),
+        "coarse_every" | "population_seed" | "behaviour_seed" => "3".to_owned(),
         "parameters" | "stop" => "{}".to_owned(),
         "goal" => "[1, 2]".to_owned(),
         "view" => "{\"region\": [[0, 0], [1, 1]]}".to_owned(),

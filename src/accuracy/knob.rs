@@ -136,13 +136,13 @@ impl Knob {
             _ => {
                 let point = |value: &&str| vec![format!("{}={value}", self.key())];
                 let values = self.values();
-                let count = match detail {
-                    Detail::Few => values.len().min(3),
-                    Detail::All | Detail::Coarser => values.len(),
+                let from = match detail {
+                    Detail::Few => values.len().saturating_sub(3),
+                    Detail::All | Detail::Coarser => 0,
                 };
                 vec![curve(
                     self.name(),
-                    values[..count].iter().map(point).collect(),
+                    values[from..].iter().map(point).collect(),
                 )]
             }
         }

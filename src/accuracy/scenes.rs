@@ -30,6 +30,8 @@ pub struct Scene {
     pub kind: Kind,
     /// Seeds, where it is judged over them.
     pub seeds: u64,
+    /// Is it left out where time is short and nobody has named it?
+    pub is_long: bool,
     document: fn() -> Result<Value, ReproduceError>,
 }
 
@@ -40,6 +42,7 @@ pub const SCENES: [Scene; 9] = [
         about: "900 people at rest in a closed room at 5 P/m², set into a smooth whirl",
         kind: Kind::Motion,
         seeds: 1,
+        is_long: false,
         document: relaxed,
     },
     Scene {
@@ -47,6 +50,7 @@ pub const SCENES: [Scene; 9] = [
         about: "900 people at rest in a corridor at 5 P/m², and a pulse of compression",
         kind: Kind::Motion,
         seeds: 1,
+        is_long: false,
         document: pulse,
     },
     Scene {
@@ -54,6 +58,7 @@ pub const SCENES: [Scene; 9] = [
         about: "400 people, each alone, walking against a wall at all angles",
         kind: Kind::Motion,
         seeds: 1,
+        is_long: false,
         document: wall,
     },
     Scene {
@@ -61,6 +66,7 @@ pub const SCENES: [Scene; 9] = [
         about: "two streams of 300 people through each other, sf+sph",
         kind: Kind::Motion,
         seeds: 1,
+        is_long: false,
         document: || Ok(streams("sf+sph")),
     },
     Scene {
@@ -68,6 +74,7 @@ pub const SCENES: [Scene; 9] = [
         about: "two streams of 300 people through each other, rvo+sph",
         kind: Kind::Motion,
         seeds: 1,
+        is_long: false,
         document: || Ok(streams("rvo+sph")),
     },
     Scene {
@@ -75,6 +82,7 @@ pub const SCENES: [Scene; 9] = [
         about: "Table 1's evacuation, sph",
         kind: Kind::Evacuation,
         seeds: 5,
+        is_long: false,
         document: || evacuation("sph"),
     },
     Scene {
@@ -82,6 +90,7 @@ pub const SCENES: [Scene; 9] = [
         about: "Table 1's evacuation, sf->sph",
         kind: Kind::Evacuation,
         seeds: 5,
+        is_long: true,
         document: || evacuation("sf->sph"),
     },
     Scene {
@@ -89,6 +98,7 @@ pub const SCENES: [Scene; 9] = [
         about: "Table 1's evacuation, rvo->sph",
         kind: Kind::Evacuation,
         seeds: 5,
+        is_long: true,
         document: || evacuation("rvo->sph"),
     },
     Scene {
@@ -96,6 +106,7 @@ pub const SCENES: [Scene; 9] = [
         about: "a push in a corridor of 1,200 people at 5 P/m², sph with μ = 5",
         kind: Kind::Wave,
         seeds: 5,
+        is_long: false,
         document: || Ok(corridor()),
     },
 ];

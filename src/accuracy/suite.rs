@@ -141,7 +141,7 @@ impl Task {
 
     fn jobs(&self, plan: &Plan) -> Vec<Job> {
         match self.scene.kind {
-            Kind::Motion => vec![self.motion_job()],
+            Kind::Motion => vec![self.motion_job(plan.quick)],
             Kind::Evacuation | Kind::Wave => {
                 let reference = (!plan.quick).then(Self::fine);
                 let settings = self.settings().into_iter().chain(reference);
@@ -156,15 +156,15 @@ impl Task {
         }
     }
 
-    fn motion_job(&self) -> Job {
+    fn motion_job(&self, quick: bool) -> Job {
         let document = self.document.clone();
         let points: Vec<(Knob, Vec<String>)> = self
             .points()
             .map(|(curve, settings)| (curve.knob, settings.clone()))
             .collect();
         let name = format!("motion {}, {} points", self.scene.name, points.len());
-        let input = format!("{document} {points:?}");
-        Job::new(name, 10.0, move || trajectories(&document, &points)).depending_on(input)
+        let input = format!("{document} {points:?} {quick}");
+        Job::new(name, 10.0, move || trajectories(&document, &points, quick)).depending_on(input)
     }
 
     fn sample_job(&self, settings: Vec<String>, seed: u64) -> Job {

@@ -14,8 +14,8 @@ use crate::simulation::Simulation;
 
 /// When is looked, seconds: half a second, one and two, to the nearest time that all steps meet.
 pub const SAMPLES: [f64; 3] = [0.48, 0.96, 1.92];
-/// The reference's step in parts of the paper's.
-const FINENESS: f64 = 64.0;
+/// The reference's step in parts of the paper's; where time is short the second.
+const FINENESS: [f64; 2] = [64.0, 16.0];
 
 /// Everybody at one moment, by id.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,6 +77,7 @@ impl Motion {
     pub fn reference(
         document: &Value,
         walls: WallMethod,
+        quick: bool,
     ) -> Result<(Self, Errors), ReproduceError> {
         let walls =
             serde_json::to_value(walls).map_err(|error| ReproduceError::Data(error.to_string()))?;
@@ -89,7 +90,7 @@ impl Motion {
             ];
             Self::of(document, &settings)
         };
-        let step = PAPER_TIME_STEP / FINENESS;
+        let step = PAPER_TIME_STEP / FINENESS[usize::from(quick)];
         let reference = at(step)?;
         let errors = at(2.0 * step)?.errors(&reference);
         Ok((reference, errors))
@@ -153,6 +154,7 @@ pub struct Trajectories {
 pub fn trajectories(
     document: &Value,
     points: &[(Knob, Vec<String>)],
+    quick: bool,
 ) -> Result<Trajectories, ReproduceError> {
     let mut known = Known::default();
     let mut errors = Vec::new();
@@ -163,14 +165,14 @@ pub fn trajectories(
             Knob::Preset => simulation(document, settings)?.scene().wall_method,
             _ => WallMethod::default(),
         };
-        let (reference, _) = known.reference(document, walls)?;
+        let (reference, _) = known.reference(document, walls, quick)?;
         let total = motion.errors(reference);
         let own = known.best(document, *knob)?.map(|best| motion.errors(best));
         errors.push((total, own));
     }
     Ok(Trajectories {
         points: errors,
-        reference: known.reference(document, WallMethod::default())?.1,
+        reference: known.reference(document, WallMethod::default(), quick)?.1,
         lyapunov: Lyapunov::of(document)?,
     })
 }
@@ -187,6 +189,7 @@ impl Known {
         &mut self,
         document: &Value,
         walls: WallMethod,
+        quick: bool,
     ) -> Result<&(Motion, Errors), ReproduceError> {
         let found = self
             .references
@@ -195,7 +198,7 @@ impl Known {
         let k = match found {
             Some(k) => k,
             None => {
-                let found = Motion::reference(document, walls)?;
+                let found = Motion::reference(document, walls, quick)?;
                 self.references.push((walls, found));
                 self.references.len() - 1
             }

@@ -36,7 +36,10 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
     let store = Store::open(&options.out)?;
     let wanted = |name: &str| options.scene.is_empty() || options.scene.iter().any(|s| s == name);
     let turned = |name: &str| options.knob.is_empty() || options.knob.iter().any(|k| k == name);
-    let scenes = SCENES.iter().filter(|scene: &&Scene| wanted(scene.name));
+    let in_time = |scene: &Scene| !(options.quick && scene.is_long && options.scene.is_empty());
+    let scenes = SCENES
+        .iter()
+        .filter(|scene| wanted(scene.name) && in_time(scene));
     let knobs = KNOBS
         .iter()
         .filter(|(name, _): &&(&str, Knob)| turned(name));

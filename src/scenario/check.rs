@@ -90,12 +90,14 @@ fn empty_scene(file: &File) -> Result<Scene, Problem> {
     TIME_STEP.check_given("longest_step_secs", file.longest_step_secs)?;
     let preferred_speed = file.preferred_speed.unwrap_or(paper.preferred_speed);
     let max_speed = file.max_speed.unwrap_or(paper.max_speed);
+    let seed = file.seed.unwrap_or(paper.seed);
     let mut obstacles = Vec::with_capacity(file.obstacles.len());
     for (k, corners) in file.obstacles.iter().enumerate() {
         obstacles.push(obstacle(corners).under(&format!("obstacles[{k}]"))?);
     }
     Ok(Scene {
-        seed: file.seed.unwrap_or(paper.seed),
+        seed: file.population_seed.unwrap_or(seed),
+        behaviour_seed: Some(file.behaviour_seed.unwrap_or(seed)),
         clock,
         integrator: file.integrator,
         wall_method: file.wall_method,

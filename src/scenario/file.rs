@@ -49,6 +49,8 @@ pub(super) struct File {
     pub name: Option<String>,
     pub description: Option<String>,
     pub seed: Option<u64>,
+    pub population_seed: Option<u64>,
+    pub behaviour_seed: Option<u64>,
     pub duration_secs: Option<f64>,
     /// What it stands for has been written out by [`super::preset::fill`].
     #[serde(rename = "preset")]

@@ -30,7 +30,7 @@ pub fn settings() -> Vec<SettingDoc> {
         .collect()
 }
 
-fn scalars() -> [SettingDoc; 15] {
+fn scalars() -> [SettingDoc; 17] {
     let doc = |key, unit, default, range: &dyn ToString, description| SettingDoc {
         key,
         unit,
@@ -59,6 +59,20 @@ fn scalars() -> [SettingDoc; 15] {
             "1",
             &"a whole number from 0 to 2^64 - 1",
             "seed of all random numbers",
+        ),
+        doc(
+            "population_seed",
+            "",
+            "seed",
+            &"a whole number from 0 to 2^64 - 1",
+            "seed of who enters: bodies, and jitter of where they stand",
+        ),
+        doc(
+            "behaviour_seed",
+            "",
+            "seed",
+            &"a whole number from 0 to 2^64 - 1",
+            "seed of what they do: candidate velocities of RVO",
         ),
         doc(
             "duration_secs",
