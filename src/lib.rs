@@ -77,6 +77,9 @@ pub mod colors;
 #[cfg(feature = "recording")]
 pub mod recording;
 
+#[cfg(feature = "trajectory")]
+pub mod trajectory;
+
 #[cfg(feature = "plot")]
 pub mod plot;
 

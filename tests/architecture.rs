@@ -154,7 +154,8 @@ fn strays(krate: &str, homes: &[&str]) -> Vec<String> {
         let starts = line
             .match_indices(&path)
             .any(|(at, _)| !line[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_'));
-        starts || line.trim_start().starts_with(&format!("use {krate}"))
+        let used = line.trim_start().strip_prefix(&format!("use {krate}"));
+        starts || used.is_some_and(|rest| rest.starts_with([';', ' ']))
     };
     let mut found = Vec::new();
     for path in files(&source()) {
@@ -173,6 +174,8 @@ fn each_foreign_crate_has_one_home() {
         ("parry2d", "geometry"),
         ("rerun", "recording"),
         ("clap", "cli"),
+        ("rusqlite", "trajectory"),
+        ("geo", "trajectory"),
         ("plotters", "plot"),
         ("colorgrad", "colors"),
         ("fearless_simd", "pairs"),

@@ -247,6 +247,74 @@ fn an_existing_file_is_replaced_only_by_force() {
 }
 
 #[test]
+fn trajectories_are_written_beside_each_other_and_change_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let files = ["a.sqlite", "b.txt", "c.csv"].map(path);
+    let mut run = vec!["evacuation", "--profile", "sf", "--until", "1", "--json"];
+    let alone = json(&run);
+    run.extend(
+        files
+            .iter()
+            .flat_map(|file| ["--trajectory", file.as_str()]),
+    );
+    assert_eq!(json(&run)["metrics"], alone["metrics"]);
+    let lines = |file: &str| std::fs::read_to_string(file).unwrap().lines().count();
+    assert_eq!(lines(&files[1]), 2 + 11 * 400);
+    assert_eq!(lines(&files[2]), 1 + 11 * 400);
+    refused(&run, 2, &["--trajectory", "a.sqlite", "--force"]);
+    run.extend(["--force", "--trajectory-fps", "2"]);
+    json(&run);
+    assert_eq!(lines(&files[1]), 2 + 3 * 400);
+}
+
+#[test]
+fn a_trajectory_that_cannot_be_is_refused_before_anything_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let [csv, hdf5, nowhere] = ["a.csv", "a.h5", "no/folder.txt"].map(path);
+    let run = ["evacuation", "--until", "0.1", "--trajectory", &csv];
+    let with = |more: &[&str], code, words: &[&str]| refused(&[&run, more].concat(), code, words);
+    with(
+        &["--trajectory", &hdf5],
+        2,
+        &["a.h5", ".sqlite", ".txt", ".csv"],
+    );
+    with(&["--trajectory", &csv], 2, &["a.csv", "twice"]);
+    with(&["--trajectory-fps", "11"], 2, &["--trajectory-fps", " 10"]);
+    with(&["--trajectory-fps", "0"], 2, &["--trajectory-fps"]);
+    assert!(!folder.path().join("a.csv").exists());
+    refused(
+        &["evacuation", "--trajectory-fps", "5"],
+        2,
+        &["--trajectory"],
+    );
+    refused(
+        &["evacuation", "--trajectory", &nowhere],
+        1,
+        &["folder.txt"],
+    );
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_ends_the_run_and_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("full.csv");
+    std::os::unix::fs::symlink("/dev/full", &file).unwrap();
+    let path = file.to_str().unwrap();
+    let run = [
+        "evacuation",
+        "--until",
+        "0.1",
+        "--force",
+        "--trajectory",
+        path,
+    ];
+    refused(&run, 1, &["full.csv", "No space", "nothing is in it"]);
+}
+
+#[test]
 fn what_cannot_be_reproduced_is_told_in_plain_words() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");

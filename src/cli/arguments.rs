@@ -13,6 +13,7 @@ Examples:
   sandbox evacuation --profile 'sf->sph' --set rest_density_max=6 --json
   sandbox crossing --profile rvo --save crossing.rrd
   sandbox concert --record-from 149 --save recordings/concert.rrd --force
+  sandbox evacuation --trajectory evacuation.sqlite --trajectory evacuation.csv
   sandbox run my_station.json --until 60 --threads 2 --json
   sandbox inspect evacuation --agent 17 --at 15 --json
   sandbox bench scaling --largest 100000
@@ -124,6 +125,8 @@ pub struct RunOptions {
     pub until: Option<f64>,
     #[command(flatten)]
     pub record: RecordOptions,
+    #[command(flatten)]
+    pub trajectory: TrajectoryOptions,
 }
 
 /// What is written to a recording.
@@ -154,6 +157,17 @@ pub struct RecordOptions {
         allow_hyphen_values = true
     )]
     pub debug_region: Option<String>,
+}
+
+/// What is written for other programs.
+#[derive(Args)]
+pub struct TrajectoryOptions {
+    /// Write everybody's trajectory: .sqlite or .db for JuPedSim and PedPy, .txt, or .csv with every quantity; may be repeated
+    #[arg(long = "trajectory", value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Frames per second of the trajectories; must divide the simulation's
+    #[arg(long = "trajectory-fps", value_name = "N", default_value_t = 10.0, requires = "files", value_parser = frame_rate)]
+    pub fps: f64,
 }
 
 #[derive(Args)]
@@ -289,6 +303,13 @@ fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(value) if (0.0..=1e9).contains(&value) => Ok(value),
         _ => Err("not a time in seconds, 0 or later".to_owned()),
+    }
+}
+
+fn frame_rate(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(fps) if (1e-6..=1e6).contains(&fps) => Ok(fps),
+        _ => Err("not a number of frames per second above 0".to_owned()),
     }
 }
 

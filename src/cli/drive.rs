@@ -1,10 +1,11 @@
-//! A scenario from its first frame to its end, with a progress bar, a recording and a report.
+//! A scenario from its first frame to its end, with a progress bar, recordings and a report.
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::arguments::{RunOptions, Source};
 use super::output::Output;
 use super::report::Report;
+use super::trajectory::{self, Trajectories};
 use super::{Failure, say, scenario, use_threads};
 use crate::drive::{Then, drive, unless_over};
 use crate::metrics::Metrics;
@@ -20,7 +21,9 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     let mut metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
     let duration = scenario.duration_secs;
+    trajectory::check(options, &scenario)?;
     let mut output = Output::create(options, &scenario, &mut simulation)?;
+    let mut trajectories = Trajectories::create(options, &scenario, &mut simulation)?;
     let progress = Progress::new(duration);
 
     // From a thread of the pool, parallel work starts without a detour.
@@ -29,12 +32,13 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
             metrics.observe(simulation);
             progress.show(simulation);
             output.log(simulation, ms)?;
+            trajectories.log(simulation)?;
             Ok::<Then, Failure>(unless_over(simulation, &scenario))
         })
     });
     progress.finish();
     // What was recorded is kept, whatever ended the run.
-    let saved = output.finish();
+    let saved = output.finish().and(trajectories.finish());
     driven.map_err(|failure| failure.laid_open(&mut simulation))?;
     saved?;
     report_oddities(&simulation);

@@ -10,6 +10,7 @@ mod output;
 mod report;
 mod reproduce;
 mod stress;
+mod trajectory;
 mod update;
 mod watch;
 

@@ -8,11 +8,11 @@ use crate::scenario::Scenario;
 use crate::simulation::Simulation;
 
 /// Refuses to replace a file unless told so, before anything is computed.
-fn check_free(path: &Path, force: bool) -> Result<(), Failure> {
+pub fn check_free(flag: &str, path: &Path, force: bool) -> Result<(), Failure> {
     if path.exists() && !force {
         let path = path.display();
         return Err(Failure::Input(format!(
-            "--save {path}: exists already; give --force to replace it"
+            "{flag} {path}: exists already; give --force to replace it"
         )));
     }
     Ok(())
@@ -46,7 +46,7 @@ mod with_recording {
             let recorder = match &record.save {
                 None => None,
                 Some(path) => {
-                    check_free(path, options.scene.force)?;
+                    check_free("--save", path, options.scene.force)?;
                     simulation.request_density_until(u64::MAX);
                     let view = recording_options(scenario, debug, record.record_from);
                     Some(Recorder::create(path, simulation, &view)?)
@@ -86,7 +86,7 @@ mod with_recording {
         simulation: &Simulation,
         ids: Vec<u32>,
     ) -> Result<(), Failure> {
-        check_free(path, force)?;
+        check_free("--save", path, force)?;
         let now = simulation.frame().clock.time();
         let mut options = recording_options(scenario, DebugAgents::Ids(ids), now);
         options.opens_at = now;
@@ -197,7 +197,7 @@ mod without_recording {
         _: &Simulation,
         _: Vec<u32>,
     ) -> Result<(), Failure> {
-        check_free(path, force)?;
+        check_free("--save", path, force)?;
         Err(unavailable(path))
     }
 

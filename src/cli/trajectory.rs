@@ -1,0 +1,66 @@
+//! Trajectories, as far as the command line is concerned.
+
+use super::Failure;
+use super::arguments::RunOptions;
+use super::output::check_free;
+use crate::scenario::Scenario;
+use crate::simulation::Simulation;
+use crate::trajectory::{Format, Trajectory, TrajectoryError, frames_between};
+
+/// Refuses what cannot be, before any file is touched.
+pub fn check(options: &RunOptions, scenario: &Scenario) -> Result<(), Failure> {
+    let files = &options.trajectory.files;
+    for (k, path) in files.iter().enumerate() {
+        Format::of(path)?;
+        check_free("--trajectory", path, options.scene.force)?;
+        if files[..k].contains(path) {
+            let path = path.display();
+            return Err(Failure::Input(format!("--trajectory {path}: given twice")));
+        }
+    }
+    if !files.is_empty() {
+        frames_between(&scenario.scene.clock, options.trajectory.fps)?;
+    }
+    Ok(())
+}
+
+/// The trajectory files of a run.
+pub struct Trajectories(Vec<Trajectory>);
+
+impl Trajectories {
+    /// Opens those that are asked for.
+    pub fn create(
+        options: &RunOptions,
+        scenario: &Scenario,
+        simulation: &mut Simulation,
+    ) -> Result<Self, Failure> {
+        let (view, fps) = (scenario.view.region, options.trajectory.fps);
+        let files = options.trajectory.files.iter();
+        let opened = files.map(|path| Trajectory::create(path, simulation, view, fps));
+        Ok(Self(opened.collect::<Result<_, _>>()?))
+    }
+
+    /// Adds an evaluated frame where its turn has come.
+    pub fn log(&mut self, simulation: &Simulation) -> Result<(), Failure> {
+        for trajectory in &mut self.0 {
+            trajectory.log(simulation)?;
+        }
+        Ok(())
+    }
+
+    /// Closes them all, whatever becomes of each.
+    pub fn finish(self) -> Result<(), Failure> {
+        let finished: Vec<_> = self.0.into_iter().map(Trajectory::finish).collect();
+        Ok(finished.into_iter().collect::<Result<(), _>>()?)
+    }
+}
+
+impl From<TrajectoryError> for Failure {
+    fn from(error: TrajectoryError) -> Self {
+        match error {
+            TrajectoryError::Unwritten { .. } => Self::Output(error.to_string()),
+            TrajectoryError::FrameRate { .. } => Self::Input(format!("--trajectory-fps: {error}")),
+            TrajectoryError::UnknownFormat(_) => Self::Input(format!("--trajectory {error}")),
+        }
+    }
+}
