@@ -35,12 +35,12 @@ fn lacking(mut simulation: Simulation) -> (usize, f64) {
         simulation.evaluate().unwrap();
         let frame = simulation.frame();
         let (agents, density) = (frame.agents, &frame.fields.density);
-        for i in 0..agents.len() {
+        for (&place, &found) in agents.position.iter().zip(density) {
             let bodies = agents.mass.iter().zip(&agents.position);
             let whole: f64 = bodies
-                .map(|(m, r)| m * kernel::density((agents.position[i] - r).norm_squared(), 1.0))
+                .map(|(m, r)| m * kernel::density((place - r).norm_squared(), 1.0))
                 .sum();
-            let lacks = whole - density[i];
+            let lacks = whole - found;
             assert!(lacks > -1e-9, "somebody was counted twice");
             count += usize::from(lacks > 1e-9);
             most = most.max(lacks);

@@ -3,8 +3,8 @@
 //!
 //! Every point is a scenario under some settings, as `--set` takes them. Its cost is milliseconds per
 //! simulated second on one thread; its error is how far people are from where a run at Δt/64 takes them
-//! ([`trajectory`]), before chaos takes over ([`lyapunov`]), or how far Table 1's numbers are from those of
-//! a fine step, over seeds ([`statistics`]). How exactly walls are integrated stands apart, in [`walls`].
+//! ([`Motion`]), before chaos takes over ([`Lyapunov`]), or how far Table 1's numbers are from those of
+//! a fine step, over seeds ([`Deviation`]). How exactly walls are integrated stands apart, in [`walls`].
 
 mod cost;
 mod found;

@@ -25,7 +25,8 @@ const DIAGRAM_STEP: f64 = 0.04;
 /// What one run gives.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
-    /// By [`names`]; `None` where the run gave none.
+    /// Density at 15 s, its deviation and the flow, and speeds by density; or the wave's speed. `None` where the
+    /// run gave none.
     pub values: Vec<Option<f64>>,
 }
 
