@@ -7,13 +7,13 @@ use std::path::Path;
 
 use common::{blend, blend_with, block, person, rectangle, scene, vector};
 use sandbox::agents::NewAgent;
-use sandbox::boundary::WallMethod;
 use sandbox::breakdown::Breakdown;
 use sandbox::catalog::{NAMES, Parameters};
 use sandbox::scenario::{Scenario, Setting};
 use sandbox::simulation::{Fault, Simulation};
-use sandbox::stability;
-use sandbox::stress::{Cell, Detail, Found, HARD, Hard, Rest, Surroundings, Watch};
+use sandbox::stress::{
+    Cell, Condition, Detail, Found, HARD, Hard, Limit, Rest, Surroundings, Watch,
+};
 
 /// Runs a file of `scenarios/stress` with some settings; fails unless it survives.
 fn survives(name: &str, settings: &[&str]) -> Found {
@@ -251,8 +251,9 @@ fn an_automatic_step_is_stable_and_no_less_than_seven_tenths_of_the_largest() {
     ] {
         let cell = Cell::find(crowd, Detail { quick: true }, 0).unwrap();
         assert!(cell.auto_is_stable(), "{cell:?}");
-        let ratios = cell.ratios();
-        assert!(ratios.iter().all(|r| (0.7..=1.0).contains(r)), "{cell:?}");
+        let limits = cell.limits.iter();
+        let mut ratios = limits.map(Limit::ratio);
+        assert!(ratios.all(|r| (0.7..=1.0).contains(&r)), "{cell:?}");
     }
 }
 
@@ -262,10 +263,10 @@ fn a_step_of_twice_the_largest_shakes_a_crowd_at_rest() {
         agent_stiffness: 1000.0,
         ..Rest::default()
     };
-    let step = stability::time_step(&crowd.scene(5.5, 1.0));
-    for walls in [WallMethod::Representative, WallMethod::Union] {
+    for condition in Condition::ALL {
+        let step = crowd.mode().time_step(condition.scheme);
         let surroundings = Surroundings {
-            walls,
+            condition,
             first_seed: 0,
         };
         let [full, loose] = crowd.rooms(step, surroundings).unwrap();
@@ -282,22 +283,24 @@ fn a_crowd_that_the_model_keeps_moving_goes_on_from_frame_to_frame_unless_the_st
         gas_constant: 3200.0,
         ..Rest::default()
     };
-    let step = stability::time_step(&crowd.scene(5.5, 1.0));
-    let surroundings = Surroundings {
-        walls: WallMethod::Representative,
-        first_seed: 0,
-    };
-    let run = |step| crowd.run(5.5, step, surroundings).unwrap();
-    let (fine, auto, long) = (run(0.2 * step), run(step), run(1.5 * step));
-    assert!(fine.speed > Some(0.5) && fine.persistence > 0.9, "{fine:?}");
-    assert!(auto.are_stable() && auto.persistence > 0.1, "{auto:?}");
-    assert!(long.persistence < -0.3, "{long:?}");
+    for condition in [Condition::PAPER, Condition::VERLET] {
+        let step = crowd.mode().time_step(condition.scheme);
+        let surroundings = Surroundings {
+            condition,
+            first_seed: 0,
+        };
+        let run = |step| crowd.run(5.5, step, surroundings).unwrap();
+        let (fine, auto, long) = (run(0.2 * step), run(step), run(1.5 * step));
+        assert!(fine.speed > Some(0.5) && fine.persistence > 0.9, "{fine:?}");
+        assert!(auto.are_stable() && auto.persistence > 0.1, "{auto:?}");
+        assert!(long.persistence < -0.3, "{long:?}");
+    }
 }
 
 #[test]
 fn a_scenario_takes_the_automatic_step_and_says_where_it_is_unknown() {
     let parse = |text: &str| Scenario::parse(text, "f.json", &[]);
-    let step = |text| parse(text).unwrap().scene.clock.time_step();
+    let step = |text: &str| parse(text).unwrap().scene.clock.time_step();
     let soft =
         step(r#"{"time_step_secs": "auto", "goal": [9, 0], "agents": [{"position": [0, 0]}]}"#);
     let stiff = step(
@@ -307,9 +310,24 @@ fn a_scenario_takes_the_automatic_step_and_says_where_it_is_unknown() {
     assert!(soft > 0.03 && stiff < 0.012, "{soft} {stiff}");
     assert_eq!(step(r#"{"time_step_secs": 0.01}"#), 0.01);
     assert_eq!(step(r#"{"time_step_secs": 1}"#), 1.0);
-    let refused = |text| parse(text).unwrap_err().to_string();
-    let euler = refused(r#"{"time_step_secs": "auto", "integrator": "forward-euler"}"#);
-    assert!(euler.contains("time_step_secs: `auto`"), "{euler}");
+    let thick = |integrator: &str| {
+        step(&format!(
+            r#"{{"time_step_secs": "auto", "integrator": "{integrator}", "goal": [9, 0],
+                "agents": [{{"position": [0, 0]}}], "parameters": {{"viscosity": 100}}}}"#
+        ))
+    };
+    let ratio = thick("semi-implicit") / thick("velocity-verlet");
+    // Half as long, but for the margins.
+    assert!((1.9..=2.0).contains(&ratio), "{ratio}");
+    let refused = |text: &str| parse(text).unwrap_err().to_string();
+    for integrator in ["forward-euler", "midpoint"] {
+        let text = format!(r#"{{"time_step_secs": "auto", "integrator": "{integrator}"}}"#);
+        let refusal = refused(&text);
+        assert!(refusal.contains("time_step_secs: `auto`"), "{refusal}");
+        for known in ["`semi-implicit`", "`velocity-verlet`"] {
+            assert!(refusal.contains(known), "{refusal}");
+        }
+    }
     let word = refused(r#"{"time_step_secs": "fast"}"#);
     assert!(
         word.contains("time_step_secs") && word.contains("auto"),
@@ -320,17 +338,24 @@ fn a_scenario_takes_the_automatic_step_and_says_where_it_is_unknown() {
 #[cfg(feature = "cli")]
 #[test]
 fn a_step_that_is_too_long_is_warned_of_with_its_number() {
-    let stderr = |step: &str| {
+    let stderr = |step: &str, settings: &[&str]| {
         let arguments = ["evacuation", "--until", "1", "--time-step", step];
+        let settings = settings.iter().flat_map(|setting| ["--set", setting]);
         let program = env!("CARGO_BIN_EXE_sandbox");
         let output = std::process::Command::new(program)
             .args(arguments)
+            .args(settings)
             .output()
             .unwrap();
         assert_eq!(output.status.code(), Some(0));
         String::from_utf8(output.stderr).unwrap()
     };
-    assert!(stderr("0.25").contains("warning: time_step_secs 0.25 is "));
-    assert!(!stderr("auto").contains("warning"));
-    assert!(!stderr("0.02").contains("warning"));
+    assert!(stderr("0.25", &[]).contains("warning: time_step_secs 0.25 is "));
+    assert!(!stderr("auto", &[]).contains("warning"));
+    assert!(!stderr("0.02", &[]).contains("warning"));
+    // Velocity Verlet bears half as much friction.
+    let (verlet, thick) = ("integrator=velocity-verlet", "viscosity=30");
+    assert!(!stderr("0.02", &[thick]).contains("warning"));
+    assert!(stderr("0.02", &[thick, verlet]).contains("warning: time_step_secs 0.02 is "));
+    assert!(!stderr("auto", &[thick, verlet]).contains("warning"));
 }

@@ -9,9 +9,9 @@ use super::trajectory::{self, Trajectories};
 use super::{Failure, say, scenario, use_threads};
 use crate::drive::{Then, drive, unless_over};
 use crate::metrics::Metrics;
-use crate::scene::{Integrator, Scene};
+use crate::scene::Scene;
 use crate::simulation::{EventKind, Simulation};
-use crate::stability::{self, FITTED, Mode};
+use crate::stability::{FITTED, Mode, Scheme};
 
 /// `sandbox evacuation|crossing|concert|run`.
 pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
@@ -45,18 +45,19 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     say(&Report::new(&scenario, &simulation, &metrics).render(options.scene.json))
 }
 
-/// Says by how much a step is longer than a crowd at rest bears.
+/// Says by how much a step is longer than a crowd at rest bears, if that is known of the integrator.
 fn warn_of_the_step(scene: &Scene) {
-    let (step, largest) = (
-        scene.clock.time_step(),
-        Mode::of(scene).largest_step(&FITTED),
-    );
-    if scene.integrator == Integrator::SemiImplicit && step > largest {
+    let Some(scheme) = Scheme::of(scene.integrator) else {
+        return;
+    };
+    let mode = Mode::of(scene);
+    let (step, largest) = (scene.clock.time_step(), mode.largest_step(scheme, &FITTED));
+    if step > largest {
         eprintln!(
             "warning: time_step_secs {step} is {:.1} times {largest:.4}, the longest at which a crowd comes to \
              rest; --time-step auto takes {}",
             step / largest,
-            stability::time_step(scene),
+            mode.time_step(scheme),
         );
     }
 }

@@ -266,12 +266,15 @@ fn draw_legend<DB: DrawingBackend>(
     let ([x, y], [width, height]) = (frame.corner, frame.size);
     let top = match corner {
         Corner::UpperLeft | Corner::UpperRight | Corner::Beside => y + 5.0,
-        Corner::LowerRight => y + height - 5.0 - LINE * entries.len() as f64,
+        Corner::LowerLeft | Corner::LowerRight => y + height - 5.0 - LINE * entries.len() as f64,
     };
-    let left = matches!(corner, Corner::UpperLeft | Corner::Beside);
+    let left = matches!(
+        corner,
+        Corner::UpperLeft | Corner::LowerLeft | Corner::Beside
+    );
     draw_legend_box(frame, &entries, [top, LINE], corner, canvas)?;
     let sample = match corner {
-        Corner::UpperLeft => x + 6.0,
+        Corner::UpperLeft | Corner::LowerLeft => x + 6.0,
         Corner::UpperRight | Corner::LowerRight => x + width - 24.0,
         Corner::Beside => x + width + 8.0,
     };
@@ -310,7 +313,7 @@ fn draw_legend_box<DB: DrawingBackend>(
     let wide = 32.0 + LETTER * TICK.size * most as f64;
     let [x, width] = [frame.corner[0], frame.size[0]];
     let from = match corner {
-        Corner::UpperLeft => x + 3.0,
+        Corner::UpperLeft | Corner::LowerLeft => x + 3.0,
         Corner::UpperRight | Corner::LowerRight => x + width - 3.0 - wide,
         Corner::Beside => return Ok(()),
     };

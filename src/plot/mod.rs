@@ -78,6 +78,8 @@ pub enum Corner {
     UpperLeft,
     /// Upper right.
     UpperRight,
+    /// Lower left.
+    LowerLeft,
     /// Lower right.
     LowerRight,
     /// Not inside, but beside the panel on the right.

@@ -15,7 +15,7 @@ use crate::geometry::Polygon;
 use crate::math::Vector;
 use crate::metrics::Measurement;
 use crate::profile::Override;
-use crate::scene::{Integrator, Push, Region, Scene};
+use crate::scene::{Push, Region, Scene};
 use crate::stability;
 
 /// How long a run lasts that says nothing, seconds.
@@ -120,12 +120,13 @@ fn clock(file: &File, time_step: f64) -> Result<Clock, Problem> {
 
 /// The clock of a scene that is complete but for its step.
 fn automatic_clock(file: &File, scene: &Scene) -> Result<Clock, Problem> {
-    if scene.integrator != Integrator::SemiImplicit {
-        let reason = "`auto` is known for the semi-implicit integrator alone; give a number";
-        return Err(Problem::new("time_step_secs", reason));
-    }
+    let step = stability::time_step(scene).ok_or_else(|| {
+        let reason = "`auto` is known for the integrators `semi-implicit` and `velocity-verlet` alone; \
+                      give a number";
+        Problem::new("time_step_secs", reason)
+    })?;
     let longest = file.longest_step_secs.unwrap_or(PAPER_COARSE_STEP);
-    clock(file, stability::time_step(scene).min(longest))
+    clock(file, step.min(longest))
 }
 
 fn obstacle(corners: &[[f64; 2]]) -> Result<Polygon, Problem> {

@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::condition::Condition;
 use super::map::Detail;
 use super::rest::{Remains, Rest, Surroundings};
-use crate::boundary::WallMethod;
 use crate::clock::PAPER_COARSE_STEP;
 use crate::job::Job;
 use crate::reproduce::ReproduceError;
 use crate::simulation::Fault;
-use crate::stability::{self, FITTED, Mode};
+use crate::stability::{FITTED, Mode};
 
 /// No step is longer, seconds: Δt_fine never is longer than Δt_coarse.
 const LONGEST: f64 = PAPER_COARSE_STEP;
@@ -19,37 +19,39 @@ const FINE: f64 = 0.2;
 const WIDTH: f64 = 1.25;
 /// It gives up at this part of it.
 const SHORTEST: f64 = 1e-3;
-/// The paper's walls, and exact ones, between which more crowds come to rest.
-const WALLS: [WallMethod; 2] = [WallMethod::Representative, WallMethod::Union];
 
-/// What is found with one kind of walls.
+/// What is found under one condition.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
     /// The largest stable step, seconds.
     pub largest: f64,
-    /// The speed that the model keeps by itself, at fine steps, in the more restless room, m/s.
-    pub fine: f64,
-    /// The same at `auto`.
+    /// What `auto` takes, seconds.
     pub auto: f64,
-    /// Is `auto` stable?
+    /// Is that stable?
     pub auto_is_stable: bool,
+    /// The speed that the model keeps by itself, at fine steps, in the more restless room, m/s.
+    pub fine_speed: f64,
+    /// The same at `auto`.
+    pub auto_speed: f64,
 }
 
 impl Limit {
-    fn find(
-        crowd: &Rest,
-        auto: f64,
-        bisections: u32,
-        surroundings: Surroundings,
-    ) -> Result<Self, Fault> {
-        let formula = crowd.mode().largest_step(&FITTED);
+    fn find(crowd: &Rest, bisections: u32, surroundings: Surroundings) -> Result<Self, Fault> {
+        let (mode, scheme) = (crowd.mode(), surroundings.condition.scheme);
+        let (formula, auto) = (mode.largest_step(scheme, &FITTED), mode.time_step(scheme));
         let at_auto = crowd.rooms(auto, surroundings)?;
         Ok(Self {
             largest: largest(crowd, formula, bisections, surroundings)?,
-            fine: fastest(&crowd.rooms(FINE * formula, surroundings)?),
-            auto: fastest(&at_auto),
+            auto,
             auto_is_stable: at_auto.iter().all(Remains::are_stable),
+            fine_speed: fastest(&crowd.rooms(FINE * formula, surroundings)?),
+            auto_speed: fastest(&at_auto),
         })
+    }
+
+    /// `auto` in parts of the largest stable step.
+    pub fn ratio(&self) -> f64 {
+        self.auto / self.largest
     }
 }
 
@@ -91,10 +93,8 @@ fn fastest(rooms: &[Remains]) -> f64 {
 pub struct Cell {
     /// The crowd.
     pub crowd: Rest,
-    /// What `auto` takes, seconds.
-    pub auto: f64,
-    /// With the paper's walls, and with exact ones.
-    pub limits: [Limit; 2],
+    /// What was found, in the order of [`Condition::ALL`].
+    pub limits: [Limit; Condition::ALL.len()],
 }
 
 impl Cell {
@@ -103,16 +103,17 @@ impl Cell {
     /// # Errors
     /// Somebody has no place at the start.
     pub fn find(crowd: Rest, detail: Detail, first_seed: u64) -> Result<Self, Fault> {
-        let auto = stability::time_step(&crowd.scene(crowd.densities()[0], 1.0));
-        let limit = |walls| {
-            let surroundings = Surroundings { walls, first_seed };
-            Limit::find(&crowd, auto, detail.bisections(), surroundings)
+        let limit = |condition| {
+            let surroundings = Surroundings {
+                condition,
+                first_seed,
+            };
+            Limit::find(&crowd, detail.bisections(), surroundings)
         };
-        let [paper, exact] = WALLS.map(limit);
+        let [paper, exact_walls, verlet] = Condition::ALL.map(limit);
         Ok(Self {
             crowd,
-            auto,
-            limits: [paper?, exact?],
+            limits: [paper?, exact_walls?, verlet?],
         })
     }
 
@@ -123,9 +124,14 @@ impl Cell {
             "map k={} ρ⁰max={} K^ag={} μ={}, {steps} bisections, people after {first_seed}",
             crowd.gas_constant, crowd.rest_density_max, crowd.agent_stiffness, crowd.viscosity
         );
-        // Frames of 8 s, in two rooms, between two kinds of walls, with three crowds, the fine steps foremost.
-        let frames = 96.0 * (1.0 / FINE + f64::from(steps) + 3.0);
-        let expected = 5e-5 * frames / crowd.mode().largest_step(&FITTED);
+        // Seconds of simulated time: 8 s, in two rooms, with three crowds, the fine steps foremost.
+        let simulated = 48.0 * (1.0 / FINE + f64::from(steps) + 3.0);
+        let mode = crowd.mode();
+        let frames = Condition::ALL.map(|condition| {
+            let formula = mode.largest_step(condition.scheme, &FITTED);
+            simulated / formula
+        });
+        let expected = 5e-5 * frames.iter().sum::<f64>();
         Job::new(name, expected, move || {
             Self::find(crowd, detail, first_seed).map_err(|fault| ReproduceError::Fault {
                 case: format!("{crowd:?}"),
@@ -134,12 +140,7 @@ impl Cell {
         })
     }
 
-    /// `auto` in parts of the largest stable step, with the paper's walls and with exact ones.
-    pub fn ratios(&self) -> [f64; 2] {
-        self.limits.map(|limit| self.auto / limit.largest)
-    }
-
-    /// Is `auto` stable, whatever the walls?
+    /// Is `auto` stable under every condition?
     pub fn auto_is_stable(&self) -> bool {
         self.limits.iter().all(|limit| limit.auto_is_stable)
     }

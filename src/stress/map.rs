@@ -73,7 +73,7 @@ impl Detail {
     /// μ, rising.
     pub fn viscosities(self) -> Vec<f64> {
         if self.quick {
-            vec![0.0, 5.0, 100.0]
+            vec![0.0, 5.0, 35.0]
         } else {
             vec![0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 35.0, 50.0, 70.0, 100.0]
         }
@@ -81,7 +81,7 @@ impl Detail {
 
     /// The crowds that the fit never sees.
     pub fn held_out(self) -> Vec<Rest> {
-        let every = if self.quick { 6 } else { 1 };
+        let every = if self.quick { 7 } else { 1 };
         let places = HELD_OUT.into_iter().step_by(every);
         let crowd = |[gas_constant, rest_density_max, agent_stiffness, viscosity]: [f64; 4]| Rest {
             gas_constant,

@@ -2,6 +2,7 @@
 //! of the longest frame at which a crowd comes to rest; and how much it still moves then.
 
 mod cell;
+mod condition;
 mod fence;
 mod fit;
 mod hard;
@@ -15,6 +16,7 @@ mod suite;
 mod watch;
 
 pub use cell::{Cell, Limit};
+pub use condition::Condition;
 pub use fence::Fence;
 pub use fit::fit;
 pub use hard::{HARD, Hard, Survival};

@@ -7,7 +7,7 @@ use super::rest::Rest;
 use crate::colors::ColorMap;
 use crate::plot::{Axis, Cells, ColorBar, Corner, LINES, Mark, Panel, Point, Sheet, Style};
 use crate::reproduce::{ReproduceError, Store};
-use crate::stability::FITTED;
+use crate::stability::{FITTED, Scheme};
 
 /// Axis of all curves, milliseconds.
 const STEPS: [f64; 2] = [2.0, 200.0];
@@ -52,13 +52,13 @@ const LARGEST: Shown = Shown {
     label: "log₁₀ Δt [ms]",
 };
 const RATIO: Shown = Shown {
-    value: |cell| cell.ratios()[0],
+    value: |cell| cell.limits[0].ratio(),
     write: |value| format!("{value:.2}"),
     range: [0.5, 1.0],
     label: "auto / largest",
 };
 const UNREST: Shown = Shown {
-    value: |cell| cell.limits[0].fine,
+    value: |cell| cell.limits[0].fine_speed,
     write: |value| format!("{value:.2}"),
     range: [0.0, 1.8],
     label: "root mean square speed [m/s]",
@@ -126,22 +126,31 @@ fn curve(cells: &[Cell], crowds: &[(f64, Rest)], x: Axis, title: &str) -> Panel 
         points.map(|[x, y]| Point { x, y, error: 0.0 }).collect()
     };
     let paper = points(along(|cell| cell.limits[0].largest));
-    let exact = points(along(|cell| cell.limits[1].largest));
+    let exact_walls = points(along(|cell| cell.limits[1].largest));
+    let verlet = points(along(|cell| cell.limits[2].largest));
     Panel {
         title: title.to_owned(),
         x,
         y: Axis::log("Δt [ms]", STEPS),
         marks: vec![
             Mark::Line(
-                along(|cell| cell.mode().largest_step(&FITTED)),
+                along(|cell| cell.mode().largest_step(Scheme::SemiImplicit, &FITTED)),
                 Style::broken(LINES[6], 1.0, "formula"),
             ),
-            Mark::Line(along(|cell| cell.auto), Style::full(LINES[1], 1.2, "auto")),
-            Mark::Points(exact, Style::full(LINES[2], 2.4, "with exact walls")),
+            Mark::Line(
+                along(|cell| cell.limits[0].auto),
+                Style::full(LINES[1], 1.2, "auto"),
+            ),
+            Mark::Line(
+                along(|cell| cell.limits[2].auto),
+                Style::full(LINES[3], 1.2, "auto, Verlet"),
+            ),
+            Mark::Points(exact_walls, Style::full(LINES[2], 2.4, "with exact walls")),
+            Mark::Points(verlet, Style::full(LINES[4], 2.4, "with Verlet")),
             Mark::Points(paper, Style::full(LINES[0], 2.4, "largest stable")),
         ],
         bar: None,
-        legend: Some(Corner::UpperRight),
+        legend: Some(Corner::LowerLeft),
     }
 }
 

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use super::cell::{Cell, Limit};
+use super::cell::Cell;
+use super::condition::Condition;
 use super::fit::LEAST;
 use super::hard::Survival;
 use super::jitter::{Jitter, Variant};
@@ -38,7 +39,8 @@ impl Report {
         let everywhere = self.cells.iter().chain(&self.held_out);
         let unstable = everywhere.filter(|cell| !cell.auto_is_stable());
         let unstable = unstable.map(|cell| format!("auto is not stable: {cell:?}"));
-        let short = self.cells.iter().filter(|cell| range(&[**cell])[0] < LEAST);
+        let is_short = |cell: &&Cell| cell.limits.iter().any(|limit| limit.ratio() < LEAST);
+        let short = self.cells.iter().filter(is_short);
         let short = short.map(|cell| format!("auto is too short: {cell:?}"));
         hard.chain(unstable).chain(short).collect()
     }
@@ -75,8 +77,8 @@ impl Report {
     fn maps(&self) -> String {
         let constants = |c: &Constants| {
             format!(
-                "C₁ = {:.2}, C₂ = {:.2}, C₃ = {:.2}, margin {:.2}",
-                c.pressure, c.contact, c.drag, c.margin
+                "C₁ = {:.2}, C₂ = {:.2}, C₃ = {:.2}, margin {:.2} (Verlet {:.2})",
+                c.pressure, c.contact, c.drag, c.margin, c.verlet_margin
             )
         };
         format!(
@@ -92,9 +94,9 @@ impl Report {
     }
 }
 
-/// The least and the greatest that `auto` is of the largest stable steps.
-fn range(cells: &[Cell]) -> [f64; 2] {
-    let ratios = || cells.iter().flat_map(Cell::ratios);
+/// The least and the greatest that `auto` is of the largest stable steps under one of the conditions.
+fn range(cells: &[Cell], condition: usize) -> [f64; 2] {
+    let ratios = || cells.iter().map(|cell| cell.limits[condition].ratio());
     [
         ratios().fold(f64::INFINITY, f64::min),
         ratios().fold(0.0, f64::max),
@@ -102,48 +104,55 @@ fn range(cells: &[Cell]) -> [f64; 2] {
 }
 
 fn summary(cells: &[Cell]) -> String {
-    let [least, most] = range(cells);
+    let ranges = Condition::ALL.iter().enumerate().map(|(k, condition)| {
+        let [least, most] = range(cells, k);
+        format!("{least:.2} to {most:.2} ({})", condition.name)
+    });
     let stable = cells.iter().filter(|cell| cell.auto_is_stable()).count();
     format!(
-        "auto is stable at {stable} of {} places, at {least:.2} to {most:.2} of the largest stable step.",
+        "auto is stable at {stable} of {} places, at {} of the largest stable step.",
         cells.len(),
+        ranges.collect::<Vec<_>>().join(", "),
     )
 }
 
 fn map_table(cells: &[Cell]) -> String {
-    let mut text = "| k | ρ⁰max | K^ag | μ | auto [s] | auto is stable | largest stable Δt [s] | auto / largest | \
-                    speed, fine steps → auto [m/s] | exact walls: largest stable Δt [s] | auto / largest | \
-                    speed, fine steps → auto [m/s] |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n"
-        .to_owned();
+    let mut text = "| k | ρ⁰max | K^ag | μ | auto is stable |".to_owned();
+    for Condition { name, .. } in Condition::ALL {
+        let _ = write!(
+            text,
+            " {name}: auto / largest stable Δt [s] | speed, fine steps → auto [m/s] |"
+        );
+    }
+    let columns = 5 + 2 * Condition::ALL.len();
+    let _ = writeln!(text, "\n|{}", "---|".repeat(columns));
     for cell in cells {
         let crowd = cell.crowd;
-        let found = |limit: Limit| {
-            let Limit {
-                largest,
-                fine,
-                auto,
-                ..
-            } = limit;
-            format!(
-                "{largest:.4} | {:.2} | {fine:.2} → {auto:.2}",
-                cell.auto / largest
-            )
-        };
-        let [paper, exact] = cell.limits.map(found);
-        let _ = writeln!(
+        let _ = write!(
             text,
-            "| {} | {} | {} | {} | {} | {} | {paper} | {exact} |",
+            "| {} | {} | {} | {} | {} |",
             crowd.gas_constant,
             crowd.rest_density_max,
             crowd.agent_stiffness,
             crowd.viscosity,
-            cell.auto,
             if cell.auto_is_stable() {
                 "yes"
             } else {
                 "**no**"
             },
         );
+        for limit in cell.limits {
+            let _ = write!(
+                text,
+                " {} / {:.4} = {:.2} | {:.2} → {:.2} |",
+                limit.auto,
+                limit.largest,
+                limit.ratio(),
+                limit.fine_speed,
+                limit.auto_speed,
+            );
+        }
+        text.push('\n');
     }
     text
 }
@@ -196,23 +205,29 @@ fn jitter_table(jitter: &[(Variant, Jitter)]) -> String {
     text
 }
 
+/// A line for every place and condition.
 fn csv(cells: &[Cell]) -> String {
-    let head = "gas_constant,rest_density_max,agent_stiffness,viscosity,auto_secs,auto_is_stable,\
-                largest_secs,fine_speed,auto_speed,exact_largest_secs,exact_fine_speed,exact_auto_speed\n";
-    let row = |cell: &Cell| {
+    let mut text = "gas_constant,rest_density_max,agent_stiffness,viscosity,condition,auto_secs,auto_is_stable,\
+                    largest_secs,fine_speed,auto_speed\n"
+        .to_owned();
+    for cell in cells {
         let crowd = cell.crowd;
-        let found =
-            |limit: Limit| format!("{:.5},{:.4},{:.4}", limit.largest, limit.fine, limit.auto);
-        let [paper, exact] = cell.limits.map(found);
-        format!(
-            "{},{},{},{},{},{},{paper},{exact}\n",
-            crowd.gas_constant,
-            crowd.rest_density_max,
-            crowd.agent_stiffness,
-            crowd.viscosity,
-            cell.auto,
-            cell.auto_is_stable(),
-        )
-    };
-    head.to_owned() + &cells.iter().map(row).collect::<String>()
+        for (condition, limit) in Condition::ALL.iter().zip(cell.limits) {
+            let _ = writeln!(
+                text,
+                "{},{},{},{},{},{},{},{:.5},{:.4},{:.4}",
+                crowd.gas_constant,
+                crowd.rest_density_max,
+                crowd.agent_stiffness,
+                crowd.viscosity,
+                condition.name,
+                limit.auto,
+                limit.auto_is_stable,
+                limit.largest,
+                limit.fine_speed,
+                limit.auto_speed,
+            );
+        }
+    }
+    text
 }

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::condition::Condition;
 use super::watch::Watch;
 use crate::agents::{Agents, NewAgent};
-use crate::boundary::WallMethod;
 use crate::catalog::{NavigationKind, Parameters};
 use crate::clock::Clock;
 use crate::geometry::Polygon;
@@ -49,11 +49,11 @@ pub struct Rest {
     pub viscosity: f64,
 }
 
-/// Walls and people.
+/// Under what a crowd is looked at, and whose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Surroundings {
-    /// How walls enter SPH.
-    pub walls: WallMethod,
+    /// Walls and integrator.
+    pub condition: Condition,
     /// The seeds are those that follow.
     pub first_seed: u64,
 }
@@ -182,7 +182,8 @@ impl Rest {
         for seed in 1..=SEEDS {
             let mut scene = self.scene(density, time_step);
             scene.seed = surroundings.first_seed + seed;
-            scene.wall_method = surroundings.walls;
+            scene.wall_method = surroundings.condition.walls;
+            scene.integrator = surroundings.condition.scheme.integrator();
             let mut simulation = Simulation::new(scene)?;
             let mut watch = Watch::new(&simulation);
             broken |= !settle(&mut simulation, &mut watch, &mut motion)?;
