@@ -174,6 +174,7 @@ fn each_foreign_crate_has_one_home() {
         ("parry2d", "geometry"),
         ("rerun", "recording"),
         ("clap", "cli"),
+        ("signal_hook", "cli"),
         ("rusqlite", "trajectory"),
         ("geo", "trajectory"),
         ("plotters", "plot"),

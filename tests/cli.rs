@@ -61,6 +61,7 @@ fn a_run_reports_its_metrics_and_only_the_stages_it_needed() {
     assert_eq!(report["seed"], 5);
     assert_eq!(report["threads"], 2);
     assert_eq!(report["frames"], 50);
+    assert_eq!(report["interrupted"], false);
     assert_eq!(report["agents"], 400);
     assert_eq!(report["metrics"]["evacuated"], 0);
     assert!(report["metrics"]["density_mean_15s"].is_null());

@@ -3,6 +3,7 @@
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::arguments::{RunOptions, Source};
+use super::interrupt::Interrupt;
 use super::output::Output;
 use super::report::Report;
 use super::trajectory::{self, Trajectories};
@@ -13,7 +14,7 @@ use crate::scene::Scene;
 use crate::simulation::{EventKind, Simulation};
 use crate::stability::{FITTED, Mode, Scheme};
 
-/// `sandbox evacuation|crossing|concert|run`.
+/// `sandbox evacuation|crossing|concert|plaza|run`.
 pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     let scenario = scenario(source, &options.scene, options.until)?;
     use_threads(options.scene.threads)?;
@@ -22,8 +23,10 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     let mut metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
     let duration = scenario.duration_secs;
     trajectory::check(options, &scenario)?;
+    let interrupt = Interrupt::listen().map_err(|error| Failure::Output(error.to_string()))?;
     let mut output = Output::create(options, &scenario, &mut simulation)?;
     let mut trajectories = Trajectories::create(options, &scenario, &mut simulation)?;
+    let mut interrupted = None;
     let progress = Progress::new(duration);
 
     // From a thread of the pool, parallel work starts without a detour.
@@ -33,7 +36,11 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
             progress.show(simulation);
             output.log(simulation, ms)?;
             trajectories.log(simulation)?;
-            Ok::<Then, Failure>(unless_over(simulation, &scenario))
+            let then = unless_over(simulation, &scenario);
+            if then == Then::GoOn {
+                interrupted = interrupt.exit_code();
+            }
+            Ok::<Then, Failure>(interrupted.map_or(then, |_| Then::Stop))
         })
     });
     progress.finish();
@@ -42,7 +49,12 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     driven.map_err(|failure| failure.laid_open(&mut simulation))?;
     saved?;
     report_oddities(&simulation);
-    say(&Report::new(&scenario, &simulation, &metrics).render(options.scene.json))
+    let report = Report::new(&scenario, &simulation, &metrics, interrupted.is_some());
+    say(&report.render(options.scene.json))?;
+    interrupted.map_or(Ok(()), |exit_code| {
+        let time = simulation.frame().clock.time();
+        Err(Failure::Interrupted { time, exit_code })
+    })
 }
 
 /// Says by how much a step is longer than a crowd at rest bears, if that is known of the integrator.

@@ -5,6 +5,7 @@ mod arguments;
 mod bench;
 mod drive;
 mod inspect;
+mod interrupt;
 mod list;
 mod output;
 mod report;
@@ -51,6 +52,14 @@ enum Failure {
     /// Something cannot be reproduced: exit code 1.
     #[error(transparent)]
     Reproduce(#[from] ReproduceError),
+    /// Somebody asked the run to end, and it did: exit code 130 or 143.
+    #[error("interrupted at {time:.2} s; results and files end there")]
+    Interrupted {
+        /// The frame it ended with, seconds.
+        time: f64,
+        /// By which signal.
+        exit_code: u8,
+    },
 }
 
 impl Failure {
@@ -58,6 +67,7 @@ impl Failure {
         match self {
             Self::Scenario(_) | Self::Input(_) => 2,
             Self::Fault(_) | Self::LaidOpen { .. } | Self::Output(_) | Self::Reproduce(_) => 1,
+            Self::Interrupted { exit_code, .. } => *exit_code,
         }
     }
 }
@@ -79,7 +89,7 @@ impl Failure {
 }
 
 /// Runs the program; results go to stdout, talk to stderr. Exit code 0: done, 1: the run failed,
-/// 2: bad input.
+/// 2: bad input, 130 and 143: interrupted.
 pub fn main() -> ExitCode {
     let command = Arguments::parse().command;
     match run(command) {

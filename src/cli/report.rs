@@ -11,14 +11,21 @@ pub struct Report<'a> {
     scenario: &'a Scenario,
     simulation: &'a Simulation,
     metrics: Vec<Metric>,
+    interrupted: bool,
 }
 
 impl<'a> Report<'a> {
-    pub fn new(scenario: &'a Scenario, simulation: &'a Simulation, metrics: &Metrics) -> Self {
+    pub fn new(
+        scenario: &'a Scenario,
+        simulation: &'a Simulation,
+        metrics: &Metrics,
+        interrupted: bool,
+    ) -> Self {
         Self {
             scenario,
             simulation,
             metrics: metrics.results(simulation),
+            interrupted,
         }
     }
 
@@ -54,6 +61,7 @@ impl<'a> Report<'a> {
             "threads": rayon::current_num_threads(),
             "frames": frame.clock.frame(),
             "time_secs": frame.clock.time(),
+            "interrupted": self.interrupted,
             "agents": frame.agents.entered(),
             "metrics": metrics,
             "contained_moves": outcome.contained_moves,
@@ -68,13 +76,18 @@ impl<'a> Report<'a> {
     fn text(&self) -> String {
         let frame = self.simulation.frame();
         let mut text = format!(
-            "{} ({}), seed {}: {} agents, {:.2} s in {} frames\n",
+            "{} ({}), seed {}: {} agents, {:.2} s in {} frames{}\n",
             self.scenario.name,
             self.scenario.profile_name,
             self.simulation.scene().seed,
             frame.agents.entered(),
             frame.clock.time(),
             frame.clock.frame(),
+            if self.interrupted {
+                ", interrupted"
+            } else {
+                ""
+            },
         );
         for metric in &self.metrics {
             let value = match (value(metric), metric.value) {

@@ -144,6 +144,7 @@ impl Recorder {
             self.focus = self.debug.focus(simulation).or(self.focus);
         }
         self.opened |= snapshot.opens_here;
+        self.options.ends_at = snapshot.time;
         self.writer.write(snapshot)
     }
 

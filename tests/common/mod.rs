@@ -1,6 +1,8 @@
 //! Scenes that the tests are built from. Each test file uses its own part of this.
 #![allow(dead_code)]
 
+#[cfg(feature = "cli")]
+pub mod program;
 pub mod quadrature;
 pub mod social;
 

@@ -1,0 +1,85 @@
+//! Ctrl-C: a run ends with its current frame and closes everything; the second time at once.
+#![cfg(all(feature = "cli", unix))]
+
+mod common;
+
+use std::fs;
+
+use common::program::{ended, text, under_way};
+
+/// One person for days.
+const LONG: &str = r#"{"duration_secs": 1e6, "agents": [{"position": [0, 0], "goal": [9, 0]}]}"#;
+
+#[cfg(feature = "recording")]
+#[test]
+fn an_interrupted_concert_is_whole_up_to_its_last_frame() {
+    use std::collections::BTreeMap;
+
+    let folder = tempfile::tempdir().unwrap();
+    let [rrd, csv] = ["concert.rrd", "concert.csv"].map(|name| folder.path().join(name));
+    let files = ["--save", text(&rrd), "--trajectory", text(&csv)];
+    let run = [&["concert", "--json"][..], &files].concat();
+    let output = ended(
+        under_way(&run, &[(&rrd, 1_000), (&csv, 100_000)]),
+        "kill -INT $1",
+    );
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(130), "{stderr}");
+    assert!(stderr.contains("interrupted at "), "{stderr}");
+
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["interrupted"], true);
+    let last = report["frames"].as_u64().unwrap() / 5;
+    assert!(last < 1800, "it had ended by itself");
+
+    let mut people: BTreeMap<u64, usize> = BTreeMap::new();
+    let mut reader = csv::Reader::from_path(&csv).unwrap();
+    for row in reader.deserialize() {
+        let row: BTreeMap<String, String> = row.unwrap();
+        *people.entry(row["frame"].parse().unwrap()).or_default() += 1;
+    }
+    assert!(people.keys().copied().eq(0..=last));
+    assert!(
+        people.values().all(|rows| rows % 100 == 0),
+        "100 enter at once"
+    );
+
+    let recording = sandbox::recording::Recording::read(&rrd).unwrap();
+    let crowd = recording.pairs("/world/agents", "Points2D:positions");
+    let recorded = crowd.iter();
+    let recorded = recorded.map(|(frame, places)| (frame.cast_unsigned() / 5, places.len()));
+    assert_eq!(recorded.collect::<BTreeMap<_, _>>(), people);
+}
+
+#[test]
+fn a_run_that_is_to_terminate_does_so_with_its_summary() {
+    let folder = tempfile::tempdir().unwrap();
+    let [file, sqlite] = ["long.json", "long.sqlite"].map(|name| folder.path().join(name));
+    fs::write(&file, LONG).unwrap();
+    let run = ["run", text(&file), "--trajectory", text(&sqlite)];
+    let output = ended(under_way(&run, &[(&sqlite, 0)]), "kill -TERM $1");
+    assert_eq!(output.status.code(), Some(143));
+    let summary = String::from_utf8(output.stdout).unwrap();
+    let frames = summary
+        .lines()
+        .next()
+        .unwrap()
+        .strip_suffix(" frames, interrupted");
+    let frames: i64 = frames.unwrap().rsplit(' ').next().unwrap().parse().unwrap();
+    let connection = rusqlite::Connection::open(&sqlite).unwrap();
+    let query = "SELECT max(frame), count(*) FROM frame_data";
+    let found = connection.query_row(query, [], |row| Ok((row.get(0)?, row.get(1)?)));
+    assert_eq!(found, Ok((frames / 5, frames / 5 + 1)));
+    assert!(!folder.path().join("long.sqlite-journal").exists());
+}
+
+#[test]
+fn a_second_ctrl_c_ends_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let txt = folder.path().join("plaza.txt");
+    let run = ["plaza", "--trajectory", text(&txt)];
+    let often = "for k in 1 2 3 4 5 6 7 8 9; do kill -INT $1; sleep 0.002; done";
+    let output = ended(under_way(&run, &[(&txt, 0)]), often);
+    assert_eq!(output.status.code(), Some(130));
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), "", "no summary");
+}
