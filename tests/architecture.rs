@@ -174,6 +174,8 @@ fn each_foreign_crate_has_one_home() {
         ("parry2d", "geometry"),
         ("rerun", "recording"),
         ("clap", "cli"),
+        ("clap_complete", "cli"),
+        ("clap_mangen", "cli"),
         ("signal_hook", "cli"),
         ("rusqlite", "trajectory"),
         ("geo", "trajectory"),

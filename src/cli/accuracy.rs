@@ -61,8 +61,8 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
         update(file, texts)?;
     }
     if options.json {
-        say(&format!("{}\n", report.json()))
+        say(format!("{}\n", report.json()))
     } else {
-        say(&report.text())
+        say(report.text())
     }
 }

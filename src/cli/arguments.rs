@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
 
 use super::{accuracy, bench, reproduce};
 use crate::scenario::{Preset, SHIPPED};
@@ -84,6 +85,21 @@ pub enum Command {
         /// List what --set takes instead of the scenarios and profiles
         #[arg(long)]
         settings: bool,
+    },
+    /// Print what a shell needs to complete commands and options
+    #[command(
+        after_help = "Example: sandbox completions bash > ~/.local/share/bash-completion/completions/sandbox"
+    )]
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the man page of the program, or write those of all subcommands too
+    #[command(after_help = "Example: sandbox man --out ~/.local/share/man/man1")]
+    Man {
+        /// Write a page for the program and one for every subcommand into this folder instead
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
     },
 }
 

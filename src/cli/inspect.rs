@@ -29,13 +29,13 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     let (time, frame) = (clock.time(), clock.frame());
     if options.scene.json {
         let object = json!({"time_secs": time, "frame": frame, "agents": breakdowns});
-        return say(&format!("{object}\n"));
+        return say(format!("{object}\n"));
     }
     let tables: String = breakdowns
         .iter()
         .map(|agent| format!("\n{agent}"))
         .collect();
-    say(&format!("t = {time:.2} s, frame {frame}\n{tables}"))
+    say(format!("t = {time:.2} s, frame {frame}\n{tables}"))
 }
 
 /// On to a moment in seconds, though the scenario may have come to its own end before. The state is

@@ -7,6 +7,7 @@ mod drive;
 mod inspect;
 mod interrupt;
 mod list;
+mod manual;
 mod output;
 mod report;
 mod reproduce;
@@ -114,6 +115,8 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Accuracy(options) => accuracy::run(&options),
         Command::Stress(options) => stress::run(&options),
         Command::List { settings } => list::run(settings),
+        Command::Completions { shell } => manual::completions(shell),
+        Command::Man { out } => manual::man(out.as_deref()),
     }
 }
 
@@ -155,8 +158,10 @@ fn setting(text: &str) -> Result<Setting, Failure> {
 }
 
 /// Writes results to stdout; a reader that has gone (`| head`) is no failure.
-fn say(text: &str) -> Result<(), Failure> {
-    match std::io::stdout().write_all(text.as_bytes()) {
+fn say(text: impl AsRef<[u8]>) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout();
+    let said = stdout.write_all(text.as_ref());
+    match said.and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(Failure::Output(format!("stdout: {error}")))
         }

@@ -55,5 +55,5 @@ pub fn run(options: &ReproduceOptions) -> Result<(), Failure> {
         let names = products.iter().map(|product| product.name);
         update(file, names.zip(said.iter().map(String::as_str)))?;
     }
-    said.iter().try_for_each(|text| say(text))
+    said.iter().try_for_each(say)
 }

@@ -27,7 +27,7 @@ pub fn run(options: &StressOptions) -> Result<(), Failure> {
     }
     parts
         .iter()
-        .try_for_each(|(_, text)| say(&format!("{text}\n")))?;
+        .try_for_each(|(_, text)| say(format!("{text}\n")))?;
     let failures = report.failures();
     if failures.is_empty() {
         Ok(())

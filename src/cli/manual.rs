@@ -1,0 +1,37 @@
+//! What shells and `man` are to know about the program.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use clap::CommandFactory;
+use clap_complete::{Shell, generate};
+use clap_mangen::{Man, generate_to};
+
+use super::arguments::Arguments;
+use super::{Failure, say};
+
+/// `sandbox completions`.
+pub fn completions(shell: Shell) -> Result<(), Failure> {
+    let mut command = Arguments::command();
+    let name = command.get_name().to_owned();
+    let mut script = Vec::new();
+    generate(shell, &mut command, name, &mut script);
+    say(script)
+}
+
+/// `sandbox man`: the program's page, or all pages into a folder.
+pub fn man(folder: Option<&Path>) -> Result<(), Failure> {
+    // `sandbox help` has no page.
+    let command = Arguments::command().disable_help_subcommand(true);
+    if let Some(folder) = folder {
+        let path = folder.display();
+        let failed = |error: io::Error| Failure::Output(format!("cannot write {path}: {error}"));
+        fs::create_dir_all(folder).map_err(failed)?;
+        return generate_to(command, folder).map_err(failed);
+    }
+    let mut page = Vec::new();
+    let rendered = Man::new(command).render(&mut page);
+    rendered.map_err(|error| Failure::Output(error.to_string()))?;
+    say(page)
+}
