@@ -202,7 +202,7 @@ fn a_file_that_cannot_be_written_is_an_error() {
     let simulation = Simulation::new(scene("sph")).unwrap();
     let nowhere = std::path::Path::new("/no/such/folder/test.rrd");
     let result = Recorder::create(nowhere, &simulation, &options(DebugAgents::None));
-    assert!(matches!(result, Err(RecordingError::Stream(_))));
+    assert!(matches!(result, Err(RecordingError::Unwritten { .. })));
 }
 
 #[cfg(target_os = "linux")]

@@ -40,11 +40,15 @@ pub enum BenchError {
     #[error("{}: exists already; give --force to replace it", .0.display())]
     Exists(PathBuf),
     /// A result cannot be written.
-    #[error("{}: {reason}", path.display())]
+    #[error("cannot write {}: {reason}", path.display())]
     Unwritable {
         /// The file.
         path: PathBuf,
         /// Why.
         reason: String,
     },
+    /// A picture cannot be made.
+    #[cfg(feature = "plot")]
+    #[error(transparent)]
+    Picture(#[from] crate::plot::PlotError),
 }

@@ -1,6 +1,7 @@
 //! What was measured: as text, as JSON, as files.
 
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -12,6 +13,7 @@ use super::machine::Machine;
 use crate::pairs::Vectors;
 #[cfg(feature = "plot")]
 use crate::plot::Sheet;
+use crate::reproduce::write_whole;
 use crate::table::Table;
 
 /// What everything was measured with.
@@ -117,20 +119,28 @@ impl Report {
     /// A file cannot be written.
     pub fn save(&self, folder: &Path) -> Result<Vec<PathBuf>, BenchError> {
         let written = files(self.name, folder);
-        let unwritable = |path: &Path| {
-            let path = path.to_owned();
-            move |reason: String| BenchError::Unwritable { path, reason }
-        };
-        fs::create_dir_all(folder).map_err(|error| unwritable(folder)(error.to_string()))?;
+        make_folder(folder)?;
         let path = &written[0];
-        fs::write(path, format!("{:#}\n", self.json()))
-            .map_err(|error| unwritable(path)(error.to_string()))?;
+        let json = format!("{:#}\n", self.json());
+        write_whole(path, json.as_bytes()).map_err(|error| unwritable(path, &error))?;
         #[cfg(feature = "plot")]
-        self.findings
-            .sheet
-            .save(&folder.join(self.name))
-            .map_err(|error| unwritable(folder)(error.to_string()))?;
+        self.findings.sheet.save(&folder.join(self.name))?;
         Ok(written)
+    }
+}
+
+/// Makes the folder for results, better before anything is measured than after.
+///
+/// # Errors
+/// It cannot be made.
+pub fn make_folder(folder: &Path) -> Result<(), BenchError> {
+    fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))
+}
+
+fn unwritable(path: &Path, error: &io::Error) -> BenchError {
+    BenchError::Unwritable {
+        path: path.to_owned(),
+        reason: error.to_string(),
     }
 }
 

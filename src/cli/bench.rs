@@ -1,8 +1,10 @@
 //! `sandbox bench`: how fast it is on this machine.
 
+use std::path::Path;
+
 use super::arguments::BenchOptions;
-use super::{Failure, say, use_threads};
-use crate::bench::{BENCHMARKS, BenchError, Plan, check_free};
+use super::{Failure, say, talk, use_threads};
+use crate::bench::{BENCHMARKS, BenchError, Plan, Report, check_free, make_folder};
 
 /// What can be measured.
 pub fn names() -> Vec<&'static str> {
@@ -23,8 +25,11 @@ pub fn run(options: &BenchOptions) -> Result<(), Failure> {
         .find(|benchmark| benchmark.name == options.what);
     let benchmark =
         found.ok_or_else(|| Failure::Input(format!("{}: no benchmark", options.what)))?;
-    if let Some(folder) = options.out.as_ref().filter(|_| !options.force) {
-        check_free(benchmark.name, folder)?;
+    if let Some(folder) = &options.out {
+        if !options.force {
+            check_free(benchmark.name, folder)?;
+        }
+        make_folder(folder)?;
     }
     use_threads(options.threads)?;
     let plan = Plan {
@@ -33,20 +38,28 @@ pub fn run(options: &BenchOptions) -> Result<(), Failure> {
         largest: options.largest,
         python: options.python.clone(),
     };
-    let report = benchmark.measure(&plan, &|text| eprintln!("{}: {text}", benchmark.name))?;
-    if let Some(folder) = &options.out {
-        for path in report.save(folder)? {
-            eprintln!("note: {} written", path.display());
-        }
-        if cfg!(not(feature = "plot")) {
-            eprintln!("note: no picture: this program was built without the feature `plot`");
-        }
-    }
+    let report = benchmark.measure(&plan, &|text| talk(&format!("{}: {text}", benchmark.name)))?;
+    // What was measured is told even if it cannot be kept.
+    let saved = options
+        .out
+        .as_deref()
+        .map_or(Ok(()), |folder| save(&report, folder));
     if options.json {
-        say(&format!("{}\n", report.json()))
+        say(format!("{}\n", report.json()))?;
     } else {
-        say(&report.text())
+        say(report.text())?;
     }
+    saved
+}
+
+fn save(report: &Report, folder: &Path) -> Result<(), Failure> {
+    for path in report.save(folder)? {
+        talk(&format!("note: {} written", path.display()));
+    }
+    if cfg!(not(feature = "plot")) {
+        talk("note: no picture: this program was built without the feature `plot`");
+    }
+    Ok(())
 }
 
 impl From<BenchError> for Failure {

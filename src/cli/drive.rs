@@ -7,7 +7,7 @@ use super::interrupt::Interrupt;
 use super::output::Output;
 use super::report::Report;
 use super::trajectory::{self, Trajectories};
-use super::{Failure, say, scenario, use_threads};
+use super::{Failure, say, scenario, talk, use_threads};
 use crate::drive::{Then, drive, unless_over};
 use crate::metrics::Metrics;
 use crate::scene::Scene;
@@ -47,10 +47,10 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     // What was recorded is kept, whatever ended the run.
     let saved = output.finish().and(trajectories.finish());
     driven.map_err(|failure| failure.laid_open(&mut simulation))?;
-    saved?;
     report_oddities(&simulation);
     let report = Report::new(&scenario, &simulation, &metrics, interrupted.is_some());
-    say(&report.render(options.scene.json))?;
+    say(report.render(options.scene.json))?;
+    saved?;
     interrupted.map_or(Ok(()), |exit_code| {
         let time = simulation.frame().clock.time();
         Err(Failure::Interrupted { time, exit_code })
@@ -65,12 +65,12 @@ fn warn_of_the_step(scene: &Scene) {
     let mode = Mode::of(scene);
     let (step, largest) = (scene.clock.time_step(), mode.largest_step(scheme, &FITTED));
     if step > largest {
-        eprintln!(
+        talk(&format!(
             "warning: time_step_secs {step} is {:.1} times {largest:.4}, the longest at which a crowd comes to \
              rest; --time-step auto takes {}",
             step / largest,
             mode.time_step(scheme),
-        );
+        ));
     }
 }
 
@@ -80,26 +80,28 @@ fn report_oddities(simulation: &Simulation) {
     if !outcome.displaced.is_empty() {
         let count = outcome.displaced.len();
         let (agent, obstacle) = outcome.displaced[0];
-        eprintln!(
+        talk(&format!(
             "note: {count} agent(s) entered inside an obstacle and were put at the nearest free point \
              (the first: agent {agent}, obstacle {obstacle})"
-        );
+        ));
     }
     if outcome.contained_moves > 0 {
-        eprintln!(
+        talk(&format!(
             "note: {} move(s) would have crossed a wall and were stopped there",
             outcome.contained_moves
-        );
+        ));
     }
     if outcome.clamped_speeds > 0 {
         let frame = simulation.frame();
         let (count, most) = (outcome.clamped_speeds, simulation.scene().max_speed);
         let frames = frame.clock.frame();
-        eprintln!("note: a speed was cut to {most} m/s {count} time(s) in {frames} frames");
+        talk(&format!(
+            "note: a speed was cut to {most} m/s {count} time(s) in {frames} frames"
+        ));
     }
     for event in simulation.events() {
         if event.kind == EventKind::PushBegan(0) {
-            eprintln!("note: nobody stood where {:?} began", event.name);
+            talk(&format!("note: nobody stood where {:?} began", event.name));
         }
     }
 }

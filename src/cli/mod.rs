@@ -96,7 +96,7 @@ pub fn main() -> ExitCode {
     match run(command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("error: {failure}");
+            talk(&format!("error: {failure}"));
             ExitCode::from(failure.exit_code())
         }
     }
@@ -167,6 +167,11 @@ fn say(text: impl AsRef<[u8]>) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
+}
+
+/// Writes a line to stderr; where that is not possible nothing is lost that the exit code does not tell.
+fn talk(line: &str) {
+    writeln!(std::io::stderr(), "{line}").ok();
 }
 
 /// Makes rayon use so many threads.

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::talk;
 use crate::job;
 use crate::reproduce::{self, CaseResult};
 
@@ -44,14 +45,14 @@ impl Watch {
             let (done, all) = (self.bar.position(), self.bar.length().unwrap_or_default());
             let left = self.bar.eta().as_secs();
             let percent = 100 * done / all.max(1);
-            eprintln!("{percent:>3} %, {left} s left; {text}");
+            talk(&format!("{percent:>3} %, {left} s left; {text}"));
         } else {
             self.bar.set_message(text);
         }
     }
 
     fn note(&self, text: &str) {
-        self.bar.suspend(|| eprintln!("note: {text}"));
+        self.bar.suspend(|| talk(&format!("note: {text}")));
     }
 }
 

@@ -26,7 +26,7 @@ pub enum PlotError {
     #[error("cannot draw: {0}")]
     Drawing(String),
     /// It cannot be written.
-    #[error("{}: {reason}", path.display())]
+    #[error("cannot write {}: {reason}", path.display())]
     Writing {
         /// The file.
         path: PathBuf,

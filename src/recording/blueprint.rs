@@ -14,7 +14,7 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 };
 use rerun::{AsComponents, Color, EntityPath, Points2D, RecordingStream, RecordingStreamBuilder};
 
-use super::error::RecordingError;
+use super::error::Cause;
 use super::{APPLICATION, DebugAgents, RecordingOptions, SIM_TIME, crowd, geometry, text};
 use crate::scene::Region;
 
@@ -44,7 +44,7 @@ pub fn send(
     stream: &RecordingStream,
     options: &RecordingOptions,
     opening: Opening,
-) -> Result<(), RecordingError> {
+) -> Result<(), Cause> {
     if !stream.is_enabled() {
         return Ok(()); // Sending would panic.
     }

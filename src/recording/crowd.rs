@@ -9,7 +9,7 @@ use rerun::external::arrow::array::{ArrayRef, Float16Array, Float32Array, UInt32
 use rerun::external::arrow::datatypes::{ArrowPrimitiveType, Float16Type};
 use rerun::{AsComponents, Color, DynamicArchetype, Points2D, Radius, RecordingStream};
 
-use super::error::RecordingError;
+use super::error::Cause;
 use super::snapshot::Snapshot;
 use crate::colors::{self, ColorMap};
 
@@ -34,17 +34,13 @@ fn color(map: &ColorMap, value: f32) -> Color {
     Color::from_rgb(r, g, b)
 }
 
-pub fn log_style(stream: &RecordingStream) -> Result<(), RecordingError> {
+pub fn log_style(stream: &RecordingStream) -> Result<(), Cause> {
     let style = Points2D::update_fields().with_draw_order(1.0);
     Ok(stream.log_static(ENTITY, &style)?)
 }
 
 impl Crowd {
-    pub fn log(
-        &mut self,
-        stream: &RecordingStream,
-        snapshot: &Snapshot,
-    ) -> Result<(), RecordingError> {
+    pub fn log(&mut self, stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
         self.rows.sort(&snapshot.ids);
         self.log_bodies(stream, snapshot)?;
         let rows = &self.rows.order;
@@ -73,11 +69,7 @@ impl Crowd {
     }
 
     /// What an agent keeps as long as it is there.
-    fn log_bodies(
-        &mut self,
-        stream: &RecordingStream,
-        snapshot: &Snapshot,
-    ) -> Result<(), RecordingError> {
+    fn log_bodies(&mut self, stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
         let rows = &self.rows.order;
         let ids = rows.iter().map(|&i| snapshot.ids[i]);
         if ids.clone().eq(self.logged_ids.iter().copied()) {

@@ -1,25 +1,38 @@
 //! Why a recording failed.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use rerun::RecordingStreamError;
 use rerun::sink::SinkFlushError;
 
+/// What rerun or the system has to say.
+#[derive(Debug, thiserror::Error)]
+pub enum Cause {
+    /// The file cannot be made, or a thread not started.
+    #[error(transparent)]
+    System(#[from] std::io::Error),
+    /// The stream refused something.
+    #[error(transparent)]
+    Stream(#[from] RecordingStreamError),
+    /// Something did not reach the file; rerun does not say why.
+    #[error("is the disk full? ({0})")]
+    Flush(#[from] SinkFlushError),
+    /// The thread that writes has ended before its time.
+    #[error("the thread that writes has failed")]
+    WriterGone,
+}
+
 /// A recording could not be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
-    /// The stream refused something.
-    #[error("cannot record: {0}")]
-    Stream(#[from] RecordingStreamError),
-    /// Something did not reach the file.
-    #[error("cannot write the recording (is the disk full?): {0}")]
-    Flush(#[from] SinkFlushError),
-    /// The thread that writes cannot start.
-    #[error("cannot start to record: {0}")]
-    Thread(#[from] std::io::Error),
-    /// The thread that writes has ended before its time.
-    #[error("the thread that writes the recording has failed")]
-    WriterGone,
+    /// It cannot be written.
+    #[error("cannot write {}: {cause}; {}", path.display(), kept(path))]
+    Unwritten {
+        /// Which file.
+        path: PathBuf,
+        /// Why.
+        cause: String,
+    },
     /// The file is not whole.
     #[error("the recording {} is not complete: {reason}", path.display())]
     Incomplete {
@@ -36,4 +49,21 @@ pub enum RecordingError {
         /// What is wrong with it.
         reason: String,
     },
+}
+
+impl RecordingError {
+    /// `path` takes no more.
+    pub(super) fn unwritten(path: &Path, cause: &Cause) -> Self {
+        Self::Unwritten {
+            path: path.to_owned(),
+            cause: cause.to_string(),
+        }
+    }
+}
+
+fn kept(path: &Path) -> &'static str {
+    match path.metadata() {
+        Ok(about) if about.len() > 0 => "it opens, but ends early",
+        _ => "nothing is in it",
+    }
 }

@@ -8,7 +8,7 @@ use rerun::{
     Radius, RecordingStream, Rgba32, SegmentationImage, Transform3D,
 };
 
-use super::error::RecordingError;
+use super::error::Cause;
 use crate::agents::Agents;
 use crate::geometry::Polygon;
 use crate::math::Vector;
@@ -28,7 +28,7 @@ const WALL: Color = Color(Rgba32::from_rgb(214, 214, 222));
 const GOAL: Color = Color(Rgba32::from_rgb(95, 211, 120));
 
 /// What stands still: walls, and where the scene's agents go.
-pub fn log(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result<(), RecordingError> {
+pub fn log(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result<(), Cause> {
     // Y up: 2D views have it down.
     stream.log_static("world", &Transform3D::from_scale([1.0, -1.0, 1.0]))?;
     let obstacles = scene.walls.obstacles();
@@ -39,7 +39,7 @@ pub fn log(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result<(
     log_goals(stream, scene, agents)
 }
 
-fn log_walls(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), RecordingError> {
+fn log_walls(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), Cause> {
     let outlines = obstacles.iter().map(|obstacle| {
         let corners = obstacle.points().iter();
         let closed = corners.chain(obstacle.points().first());
@@ -52,7 +52,7 @@ fn log_walls(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), Reco
     Ok(stream.log_static("world/geometry/walls", &walls)?)
 }
 
-fn log_obstacles(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), RecordingError> {
+fn log_obstacles(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), Cause> {
     let raster = Raster::of(obstacles);
     let classes = AnnotationContext::new([
         (0, "free", Rgba32::TRANSPARENT),
@@ -125,11 +125,7 @@ impl Raster {
     }
 }
 
-fn log_goals(
-    stream: &RecordingStream,
-    scene: &Scene,
-    agents: &Agents,
-) -> Result<(), RecordingError> {
+fn log_goals(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result<(), Cause> {
     let goals = goals(scene, agents);
     if goals.is_empty() {
         return Ok(());

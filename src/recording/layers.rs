@@ -5,7 +5,7 @@ use rerun::{
 };
 
 use super::debug::{DebugAgents, Open};
-use super::error::RecordingError;
+use super::error::Cause;
 use super::geometry::xy;
 use crate::boundary::WallMethod;
 use crate::math::Vector;
@@ -81,7 +81,7 @@ impl Layers {
         }
     }
 
-    pub fn log_style(&self, stream: &RecordingStream) -> Result<(), RecordingError> {
+    pub fn log_style(&self, stream: &RecordingStream) -> Result<(), Cause> {
         for layer in &self.layers {
             stream.log_static(layer.entity.as_str(), layer.kind.style().as_ref())?;
         }
@@ -89,7 +89,7 @@ impl Layers {
     }
 
     /// Logs one frame; what has just become empty is logged as empty, so that it goes out of sight.
-    pub fn log(&mut self, stream: &RecordingStream, open: &[Open]) -> Result<(), RecordingError> {
+    pub fn log(&mut self, stream: &RecordingStream, open: &[Open]) -> Result<(), Cause> {
         for layer in &mut self.layers {
             let (data, count) = layer.kind.data(open, METRES_PER_ACCELERATION);
             if count > 0 || layer.shown {

@@ -30,6 +30,8 @@ pub use error::RecordingError;
 pub use layers::METRES_PER_ACCELERATION;
 pub use read::Recording;
 
+use std::fs::File;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -40,6 +42,7 @@ use crate::scene::Region;
 use crate::simulation::{Event, Simulation};
 use blueprint::Opening;
 use debug::Debug;
+use error::Cause;
 use writer::Writer;
 
 /// The viewer keeps its own settings per application.
@@ -93,6 +96,17 @@ impl Recorder {
         simulation: &Simulation,
         options: &RecordingOptions,
     ) -> Result<Self, RecordingError> {
+        Self::begin(path, simulation, options)
+            .map_err(|cause| RecordingError::unwritten(path, &cause))
+    }
+
+    fn begin(
+        path: &Path,
+        simulation: &Simulation,
+        options: &RecordingOptions,
+    ) -> Result<Self, Cause> {
+        // Rerun, which empties the file again, does not tell what was wrong with it.
+        File::create(path)?.write_all(b" ")?;
         let scene = simulation.scene();
         let stream = RecordingStreamBuilder::new(APPLICATION)
             .recording_id(format!("{}-seed{}", options.title, scene.seed))
@@ -145,7 +159,8 @@ impl Recorder {
         }
         self.opened |= snapshot.opens_here;
         self.options.ends_at = snapshot.time;
-        self.writer.write(snapshot)
+        let written = self.writer.write(snapshot);
+        written.map_err(|cause| RecordingError::unwritten(&self.path, &cause))
     }
 
     /// Writes what is still in memory, closes the file and checks that it is whole.
@@ -153,12 +168,18 @@ impl Recorder {
     /// # Errors
     /// Something could not be written: the disk is full, for example.
     pub fn finish(mut self) -> Result<(), RecordingError> {
+        let ended = self.end();
+        ended.map_err(|cause| RecordingError::unwritten(&self.path, &cause))?;
+        drop(self.stream); // Joins rerun's writer, which adds the footer and only logs its failure.
+        read::check_footer(&self.path)
+    }
+
+    /// Everything but the footer.
+    fn end(&mut self) -> Result<(), Cause> {
         self.writer.finish()?;
         self.stream.flush_blocking()?;
         blueprint::send(&self.stream, &self.options, Opening::Whole(self.focus))?;
-        self.stream.flush_blocking()?;
-        drop(self.stream); // Joins rerun's writer, which adds the footer and only logs its failure.
-        read::check_footer(&self.path)
+        Ok(self.stream.flush_blocking()?)
     }
 }
 

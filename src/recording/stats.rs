@@ -2,7 +2,7 @@
 
 use rerun::{Color, RecordingStream, Scalars, SeriesLines, TextLog, TextLogLevel};
 
-use super::error::RecordingError;
+use super::error::Cause;
 use super::set_time;
 use super::snapshot::Snapshot;
 use crate::simulation::{Event, EventKind};
@@ -40,7 +40,7 @@ const fn series(entity: &'static str, name: &'static str, color: [u8; 3]) -> Ser
     }
 }
 
-pub fn log_style(stream: &RecordingStream) -> Result<(), RecordingError> {
+pub fn log_style(stream: &RecordingStream) -> Result<(), Cause> {
     for Series {
         entity,
         name,
@@ -57,7 +57,7 @@ pub fn log_style(stream: &RecordingStream) -> Result<(), RecordingError> {
 }
 
 /// Logs the values of one frame.
-pub fn log(stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), RecordingError> {
+pub fn log(stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
     let squares = || {
         let velocities = snapshot.velocities.iter();
         velocities.map(|&[x, y]| f64::from(x).powi(2) + f64::from(y).powi(2))
@@ -82,7 +82,7 @@ pub fn log(stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Recordin
 }
 
 /// Logs events, each at its own time.
-pub fn log_events(stream: &RecordingStream, events: &[(f64, Event)]) -> Result<(), RecordingError> {
+pub fn log_events(stream: &RecordingStream, events: &[(f64, Event)]) -> Result<(), Cause> {
     for (time, event) in events {
         set_time(stream, event.frame, *time);
         stream.log(
@@ -94,7 +94,7 @@ pub fn log_events(stream: &RecordingStream, events: &[(f64, Event)]) -> Result<(
 }
 
 /// Marks the current time in the log of events; a click there leads to it.
-pub fn log_bookmark(stream: &RecordingStream) -> Result<(), RecordingError> {
+pub fn log_bookmark(stream: &RecordingStream) -> Result<(), Cause> {
     let bookmark = TextLog::new("Look here first.").with_level(TextLogLevel::INFO);
     Ok(stream.log("log", &bookmark)?)
 }

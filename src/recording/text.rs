@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rerun::external::arrow::array::{ArrayRef, Float64Array, StringArray, UInt64Array};
 use rerun::{AnyValues, RecordingStream, TextDocument};
 
-use super::error::RecordingError;
+use super::error::Cause;
 use super::layers::{METRES_PER_ACCELERATION, force_colors};
 use super::{DebugAgents, RecordingOptions};
 use crate::colors::{DENSITY_RANGE, SPEED_RANGE};
@@ -18,7 +18,7 @@ pub fn log_document(
     stream: &RecordingStream,
     scene: &Scene,
     options: &RecordingOptions,
-) -> Result<(), RecordingError> {
+) -> Result<(), Cause> {
     let text = format!(
         "# {}\n\n{}\n\n{}\n{}\n",
         options.title,

@@ -5,7 +5,7 @@ use std::thread::JoinHandle;
 
 use rerun::RecordingStream;
 
-use super::error::RecordingError;
+use super::error::Cause;
 use super::snapshot::Snapshot;
 use super::{crowd, layers, set_time, stats};
 
@@ -18,7 +18,7 @@ pub struct Writer {
     snapshots: Option<SyncSender<Snapshot>>,
     /// Written snapshots, for their memory.
     used: Receiver<Snapshot>,
-    thread: Option<JoinHandle<Result<(), RecordingError>>>,
+    thread: Option<JoinHandle<Result<(), Cause>>>,
 }
 
 /// The thread's end.
@@ -30,7 +30,7 @@ struct Rows {
 
 impl Writer {
     /// Starts the thread.
-    pub fn start(stream: RecordingStream, layers: layers::Layers) -> Result<Self, RecordingError> {
+    pub fn start(stream: RecordingStream, layers: layers::Layers) -> Result<Self, Cause> {
         let (snapshots, queue) = sync_channel(QUEUE);
         let (give_back, used) = channel();
         let rows = Rows {
@@ -54,22 +54,20 @@ impl Writer {
     }
 
     /// Queues a snapshot; what went wrong with earlier ones shows here or in [`finish`](Self::finish).
-    pub fn write(&mut self, snapshot: Snapshot) -> Result<(), RecordingError> {
+    pub fn write(&mut self, snapshot: Snapshot) -> Result<(), Cause> {
         let queue = self.snapshots.as_ref();
         if queue.is_some_and(|queue| queue.send(snapshot).is_ok()) {
             return Ok(());
         }
         self.finish()?;
-        Err(RecordingError::WriterGone)
+        Err(Cause::WriterGone)
     }
 
     /// Waits until everything is written.
-    pub fn finish(&mut self) -> Result<(), RecordingError> {
+    pub fn finish(&mut self) -> Result<(), Cause> {
         self.snapshots = None;
         let result = self.thread.take().map(JoinHandle::join);
-        result.map_or(Ok(()), |joined| {
-            joined.unwrap_or(Err(RecordingError::WriterGone))
-        })
+        result.map_or(Ok(()), |joined| joined.unwrap_or(Err(Cause::WriterGone)))
     }
 }
 
@@ -78,7 +76,7 @@ impl Rows {
         mut self,
         queue: &Receiver<Snapshot>,
         give_back: &Sender<Snapshot>,
-    ) -> Result<(), RecordingError> {
+    ) -> Result<(), Cause> {
         while let Ok(snapshot) = queue.recv() {
             self.write(&snapshot)?;
             // Nobody waits for the memory of the last ones.
@@ -87,7 +85,7 @@ impl Rows {
         Ok(())
     }
 
-    fn write(&mut self, snapshot: &Snapshot) -> Result<(), RecordingError> {
+    fn write(&mut self, snapshot: &Snapshot) -> Result<(), Cause> {
         stats::log_events(&self.stream, &snapshot.events)?;
         set_time(&self.stream, snapshot.frame, snapshot.time);
         self.crowd.log(&self.stream, snapshot)?;

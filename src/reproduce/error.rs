@@ -23,12 +23,14 @@ pub enum ReproduceError {
         fault: Fault,
     },
     /// A file or folder cannot be written.
-    #[error("{path}: {reason}")]
+    #[error("cannot write {path}: {reason}{kept}")]
     Unwritable {
         /// The file or folder.
         path: String,
         /// What the system said.
         reason: String,
+        /// What is there all the same.
+        kept: String,
     },
     /// A result that was asked for is not there, or not of the expected form.
     #[error("{case}: there is no {what}")]

@@ -1,7 +1,7 @@
 //! Finished cases on disk: one file each, whole or not there.
 
 use std::fs;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -46,7 +46,9 @@ impl Store {
             folder: folder.to_owned(),
         };
         let cases = store.cases();
-        fs::create_dir_all(&cases).map_err(|error| unwritable(folder, &error))?;
+        // Better known now than when the first case is finished.
+        let writable = fs::create_dir_all(&cases).and_then(|()| temporary_in(&cases));
+        writable.map_err(|error| store.unwritable(folder, &error))?;
         Ok(store)
     }
 
@@ -61,13 +63,22 @@ impl Store {
     /// It cannot be written.
     pub fn write(&self, file: &str, contents: &[u8]) -> Result<PathBuf, ReproduceError> {
         let path = self.path(file);
-        let folder = path.parent().unwrap_or(&self.folder);
-        let written = temporary_in(folder).and_then(|mut temporary| {
-            temporary.write_all(contents)?;
-            temporary.persist(&path).map_err(|error| error.error)
-        });
-        written.map_err(|error| unwritable(&path, &error))?;
+        write_whole(&path, contents).map_err(|error| self.unwritable(&path, &error))?;
         Ok(path)
+    }
+
+    fn unwritable(&self, path: &Path, error: &io::Error) -> ReproduceError {
+        let cases = self.cases();
+        let finished =
+            fs::read_dir(&cases).map_or(0, |files| files.flatten().filter(is_case).count());
+        ReproduceError::Unwritable {
+            path: path.display().to_string(),
+            reason: error.to_string(),
+            kept: match finished {
+                0 => String::new(),
+                count => format!("; {count} finished case(s) are kept in {}", cases.display()),
+            },
+        }
     }
 
     /// What is known of a case.
@@ -117,14 +128,28 @@ impl Store {
     }
 }
 
-fn unwritable(path: &Path, error: &std::io::Error) -> ReproduceError {
-    ReproduceError::Unwritable {
-        path: path.display().to_string(),
-        reason: error.to_string(),
-    }
+fn is_case(file: &fs::DirEntry) -> bool {
+    file.path()
+        .extension()
+        .is_some_and(|extension| extension == "json")
 }
+
+/// Writes a file, whole or not at all.
+///
+/// # Errors
+/// It cannot be written; one that was there before is as it was.
+pub fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let mut temporary = temporary_in(folder.unwrap_or(Path::new(".")))?;
+    temporary.write_all(contents)?;
+    temporary.persist(path)?;
+    Ok(())
+}
+
 /// A file to be renamed when it is whole, as readable as any other new one.
-fn temporary_in(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+fn temporary_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     {

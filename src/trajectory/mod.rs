@@ -19,7 +19,7 @@ mod sqlite;
 pub use error::TrajectoryError;
 pub use row::Row;
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 use crate::clock::Clock;
@@ -156,11 +156,14 @@ impl Trajectory {
     /// As [`log`](Self::log).
     pub fn finish(mut self) -> Result<(), TrajectoryError> {
         let finished = self.sink.finish();
-        self.checked(finished)
+        // A file that somebody has removed takes everything in silence.
+        let there = finished.and_then(|()| Ok(fs::metadata(&self.path).map(|_| ())?));
+        self.checked(there)
     }
 
     fn checked(&self, result: Result<(), Cause>) -> Result<(), TrajectoryError> {
-        let kept = self.sink.kept();
+        let is_there = self.path.exists();
+        let kept = if is_there { self.sink.kept() } else { 0 };
         result.map_err(|cause| TrajectoryError::unwritten(&self.path, kept, cause))
     }
 }

@@ -1,0 +1,289 @@
+//! Disks that are full, folders that cannot be or that vanish: exit code 1, one sentence with the path, and
+//! what was found until then is kept.
+#![cfg(all(feature = "cli", target_os = "linux"))]
+
+mod common;
+
+use std::fs::{self, File};
+use std::os::unix::fs::symlink;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use common::program::{PROGRAM, ended, text, under_way};
+use serde_json::Value;
+
+fn sandbox(arguments: &[&str]) -> Output {
+    Command::new(PROGRAM).args(arguments).output().unwrap()
+}
+
+/// With no file longer than so many blocks of 1 KiB: to the program, a disk that becomes full.
+fn limited(blocks: u32, arguments: &[&str]) -> Output {
+    let limit = format!(r#"trap "" XFSZ; ulimit -f {blocks}; exec "$0" "$@""#);
+    let mut bash = Command::new("bash");
+    let bash = bash.args(["-c", &limit, PROGRAM]).args(arguments);
+    bash.output().unwrap()
+}
+
+/// Exit code 1, and the one sentence on stderr that says what failed.
+fn sentence(arguments: &[&str], output: &Output) -> String {
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
+    let mut lines = stderr.lines().filter(|line| !line.starts_with("note: "));
+    let errors: Vec<&str> = lines
+        .by_ref()
+        .filter(|l| l.starts_with("error: "))
+        .collect();
+    assert_eq!(errors.len(), 1, "{arguments:?}: {stderr}");
+    assert!(stderr.ends_with(&format!("{}\n", errors[0])), "{stderr}");
+    errors[0].to_owned()
+}
+
+/// Commands that write, each with the option that takes the path still to come.
+const WRITERS: [(&[&str], &str); 9] = [
+    (
+        &["evacuation", "--until", "0.1", "--force", "--save"],
+        "rrd",
+    ),
+    (
+        &["evacuation", "--until", "0.1", "--force", "--trajectory"],
+        "csv",
+    ),
+    (
+        &["evacuation", "--until", "0.1", "--force", "--trajectory"],
+        "txt",
+    ),
+    (
+        &["evacuation", "--until", "0.1", "--force", "--trajectory"],
+        "sqlite",
+    ),
+    (
+        &["inspect", "evacuation", "--agent", "1", "--force", "--save"],
+        "rrd",
+    ),
+    (&["reproduce", "table1", "--out"], ""),
+    (&["bench", "threads", "--quick", "--out"], ""),
+    (&["stress", "--quick", "--out"], ""),
+    (&["accuracy", "--quick", "--out"], ""),
+];
+
+/// Those of them that this program has.
+fn writers() -> impl Iterator<Item = (&'static [&'static str], &'static str)> {
+    let has = |extension: &str| cfg!(feature = "recording") || extension != "rrd";
+    WRITERS
+        .into_iter()
+        .filter(move |(_, extension)| has(extension))
+}
+
+#[test]
+fn what_cannot_be_written_is_named_before_anything_is_computed() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "precious").unwrap();
+    let man: (&[&str], _) = (&["man", "--out"], "");
+    for (arguments, extension) in writers().chain([man]) {
+        let below = file.join("x").with_extension(extension);
+        let missing = folder.path().join("no").join("x").with_extension(extension);
+        let is_folder = extension.is_empty();
+        // A missing folder is made where it is the folder that was asked for.
+        for path in [&below, if is_folder { &file } else { &missing }] {
+            let arguments = [arguments, &[text(path)]].concat();
+            let output = sandbox(&arguments);
+            let said = sentence(&arguments, &output);
+            assert!(said.contains(text(path)), "{said}");
+            assert!(output.stdout.is_empty(), "{arguments:?}");
+        }
+    }
+    assert_eq!(fs::read(&file).unwrap(), b"precious");
+}
+
+#[test]
+fn a_full_disk_is_named_by_whoever_writes_to_it() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, extension) in writers().filter(|(_, extension)| !extension.is_empty()) {
+        let path = folder.path().join("full").with_extension(extension);
+        symlink("/dev/full", &path).ok();
+        let arguments = [arguments, &[text(&path)]].concat();
+        let said = sentence(&arguments, &sandbox(&arguments));
+        assert!(said.contains(text(&path)), "{said}");
+        assert!(said.ends_with("; nothing is in it"), "{said}");
+    }
+}
+
+#[test]
+fn results_that_nobody_gets_are_a_failure_and_notes_that_nobody_gets_are_not() {
+    let full = || File::create("/dev/full").unwrap();
+    let run = [
+        "evacuation",
+        "--until",
+        "0.2",
+        "--time-step",
+        "0.1",
+        "--json",
+    ];
+    for arguments in [&["list"][..], &["completions", "zsh"], &["man"], &run] {
+        let mut program = Command::new(PROGRAM);
+        let output = program.args(arguments).stdout(full()).output().unwrap();
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+        assert!(stderr.contains("error: stdout: No space"), "{stderr}");
+    }
+    assert!(!sandbox(&run).stderr.is_empty(), "a warning");
+    let mut program = Command::new(PROGRAM);
+    let output = program.args(run).stderr(full()).output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(json(&output)["frames"], 2);
+}
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The frames that a file has, as its own readers see them.
+fn frames(path: &Path) -> u64 {
+    if path.extension().unwrap() == "sqlite" {
+        let connection = rusqlite::Connection::open(path).unwrap();
+        let whole = "SELECT count(*), (SELECT count(*) FROM trajectory_data) FROM frame_data";
+        let count = connection.query_row(whole, [], |row| Ok((row.get(0)?, row.get(1)?)));
+        let (frames, rows): (i64, i64) = count.unwrap();
+        assert_eq!(rows, 400 * frames);
+        return frames.unsigned_abs();
+    }
+    let lines = fs::read_to_string(path).unwrap();
+    assert!(lines.ends_with('\n'));
+    let is_row = |line: &&str| line.starts_with(|c: char| c.is_ascii_digit());
+    let rows = lines.lines().filter(is_row).count();
+    assert_eq!(rows % 400, 0);
+    rows as u64 / 400
+}
+
+#[test]
+fn a_disk_that_becomes_full_leaves_whole_frames_and_says_how_many() {
+    let folder = tempfile::tempdir().unwrap();
+    for extension in ["csv", "txt", "sqlite"] {
+        let path = folder.path().join("run").with_extension(extension);
+        let run = [
+            "evacuation",
+            "--profile",
+            "sf",
+            "--until",
+            "6",
+            "--trajectory",
+            text(&path),
+        ];
+        let output = limited(400, &run);
+        let said = sentence(&run, &output);
+        assert!(said.contains(text(&path)), "{said}");
+        let kept = frames(&path);
+        let words = match kept {
+            0 => "nothing is in it".to_owned(),
+            kept => format!("its first {kept} frames are kept"),
+        };
+        assert!(said.ends_with(&words), "{kept}: {said}");
+        assert!(kept > 0 || extension == "sqlite", "{said}");
+        assert!(output.stdout.is_empty());
+    }
+}
+
+#[cfg(feature = "recording")]
+#[test]
+fn a_recording_on_a_disk_that_becomes_full_opens_and_the_run_is_reported() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.rrd");
+    let run = [
+        "evacuation",
+        "--until",
+        "4",
+        "--json",
+        "--record-every",
+        "1",
+        "--save",
+        text(&path),
+    ];
+    let output = limited(1_000, &run);
+    let said = sentence(&run, &output);
+    assert!(
+        said.contains(text(&path)) && said.contains("is the disk full?"),
+        "{said}"
+    );
+    assert!(said.ends_with("; it opens, but ends early"), "{said}");
+    assert_eq!(json(&output)["frames"], 200);
+    let recording = sandbox::recording::Recording::read(&path).unwrap();
+    assert!(recording.entities().contains("/world/geometry/walls"));
+}
+
+#[test]
+fn a_folder_that_vanishes_under_a_run_is_a_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    for extension in ["csv", "sqlite", "rrd"] {
+        if extension == "rrd" && cfg!(not(feature = "recording")) {
+            continue;
+        }
+        let place = folder.path().join("place");
+        fs::create_dir(&place).unwrap();
+        let path = place.join("run").with_extension(extension);
+        let option = if extension == "rrd" {
+            "--save"
+        } else {
+            "--trajectory"
+        };
+        let run = ["concert", option, text(&path)];
+        let child = under_way(&run, &[(&path, 0)]);
+        fs::remove_dir_all(&place).unwrap();
+        let output = ended(child, "kill -INT $1");
+        let said = sentence(&run, &output);
+        assert!(said.contains(text(&path)), "{said}");
+        assert!(!said.contains("kept"), "{said}");
+    }
+}
+
+#[test]
+fn measurements_are_told_even_if_they_cannot_be_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = [
+        "bench",
+        "threads",
+        "--quick",
+        "--json",
+        "--out",
+        text(folder.path()),
+    ];
+    let output = limited(0, &run);
+    let said = sentence(&run, &output);
+    assert!(
+        said.contains(text(&folder.path().join("threads.json"))),
+        "{said}"
+    );
+    assert_eq!(json(&output)["benchmark"], "threads");
+}
+
+#[test]
+fn finished_cases_are_kept_and_counted_when_a_result_cannot_be_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = text(folder.path());
+    let run = [
+        "accuracy",
+        "relaxed",
+        "--knob",
+        "integrator",
+        "--quick",
+        "--out",
+        out,
+    ];
+    let place = folder.path().join("accuracy.md");
+    fs::create_dir(&place).unwrap();
+    let said = sentence(&run, &sandbox(&run));
+    assert!(said.contains(text(&place)), "{said}");
+    let cases = folder.path().join("cases");
+    let count = fs::read_dir(&cases).unwrap().count();
+    assert!(count > 0, "{said}");
+    let kept = format!("; {count} finished case(s) are kept in {}", text(&cases));
+    assert!(said.ends_with(&kept), "{said}");
+    fs::remove_dir(&place).unwrap();
+    let again = sandbox(&run);
+    let stderr = String::from_utf8_lossy(&again.stderr);
+    assert_eq!(again.status.code(), Some(0), "{stderr}");
+    assert!(
+        stderr.contains(&format!("0 case(s) to run, {count} kept")),
+        "{stderr}"
+    );
+}
