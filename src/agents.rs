@@ -2,6 +2,7 @@
 
 use rand::Rng;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::math::Vector;
 use crate::random::{self, Purpose};
@@ -47,7 +48,7 @@ impl NewAgent {
 
 /// Everybody's state. All arrays but the last two have the same length; index i is an agent until the next
 /// frame in which the neighbour lists are rebuilt, `id` is one for ever.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Agents {
     /// Unique number, in the order of entry from 0.
     pub id: Vec<u32>,
@@ -92,6 +93,24 @@ impl Agents {
     /// How many ever entered.
     pub fn entered(&self) -> u32 {
         self.next_id
+    }
+
+    /// Have all quantities as many values as there are agents?
+    pub fn is_whole(&self) -> bool {
+        let count = self.len();
+        let sometimes = [self.avoidance.len(), self.acceleration_before.len()];
+        let always = [
+            self.position.len(),
+            self.velocity.len(),
+            self.goal.len(),
+            self.radius.len(),
+            self.mass.len(),
+            self.mean_density.len(),
+            self.newcomer.len(),
+            self.group.len(),
+            self.push.len(),
+        ];
+        always.iter().all(|&len| len == count) && sometimes.iter().all(|&len| len <= count)
     }
 
     /// The current index of agent `id`, if it is still there.

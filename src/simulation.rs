@@ -5,9 +5,13 @@ mod evaluate;
 mod integrate;
 mod schedule;
 mod stages;
+mod state;
 
 pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};
+pub use state::{State, StateError};
+
+use serde::{Deserialize, Serialize};
 
 use crate::agents::Agents;
 use crate::clock::Clock;
@@ -46,7 +50,7 @@ pub struct Simulation {
 }
 
 /// What has happened so far.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// Who reached the goal and left, in order.
     pub arrivals: Vec<Arrival>,
@@ -59,7 +63,7 @@ pub struct Outcome {
 }
 
 /// Somebody who reached the goal.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Arrival {
     /// The agent's id.
     pub id: u32,
