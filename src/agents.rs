@@ -4,7 +4,7 @@ use rand::Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::math::Vector;
+use crate::math::{Vector, pairs_of};
 use crate::random::{self, Purpose};
 
 /// D_i ∈ U[0.215, 0.265] m (§5.6).
@@ -53,10 +53,13 @@ pub struct Agents {
     /// Unique number, in the order of entry from 0.
     pub id: Vec<u32>,
     /// r_i, metres.
+    #[serde(with = "pairs_of::many")]
     pub position: Vec<Vector>,
     /// v_i, m/s.
+    #[serde(with = "pairs_of::many")]
     pub velocity: Vec<Vector>,
     /// g_i, metres.
+    #[serde(with = "pairs_of::many")]
     pub goal: Vec<Vector>,
     /// D_i, metres.
     pub radius: Vec<f64>,
@@ -72,9 +75,11 @@ pub struct Agents {
     pub push: Vec<Option<u16>>,
     /// The RVO acceleration held since the last coarse frame, m/s²; `None` where none is due. Empty
     /// where nobody avoids by RVO.
+    #[serde(with = "pairs_of::some")]
     pub avoidance: Vec<Option<Vector>>,
     /// The acceleration of the frame before, m/s²; `None` for who was not there. Empty but for velocity
     /// Verlet.
+    #[serde(with = "pairs_of::some")]
     pub acceleration_before: Vec<Option<Vector>>,
     next_id: u32,
 }

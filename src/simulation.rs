@@ -17,7 +17,7 @@ use crate::agents::Agents;
 use crate::clock::Clock;
 use crate::forces::social::SocialForce;
 use crate::frame::{Fields, Frame};
-use crate::math::Vector;
+use crate::math::{Vector, pairs_of};
 use crate::neighbors::Neighbors;
 use crate::pairs::{Packed, Precision};
 use crate::profile::{Blend, Override};
@@ -70,6 +70,7 @@ pub struct Arrival {
     /// When, seconds: after the move that led there.
     pub time: f64,
     /// Where that move ended, metres.
+    #[serde(with = "pairs_of::one")]
     pub position: Vector,
     /// Does it count as evacuated?
     pub counted: bool,

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::schedule::Schedule;
 use super::{Outcome, Simulation};
 use crate::agents::Agents;
-use crate::math::Vector;
+use crate::math::{Vector, pairs_of};
 use crate::scene::Scene;
 
 /// What an evaluated frame and a scene do not say by themselves.
@@ -14,6 +14,7 @@ pub struct State {
     frame: u64,
     agents: Agents,
     /// Where everybody was when neighbours were last listed, metres.
+    #[serde(with = "pairs_of::many")]
     sorted_at: Vec<Vector>,
     /// Has somebody come or gone since?
     crowd_changed: bool,
