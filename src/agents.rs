@@ -2,8 +2,9 @@
 
 use rand::Rng;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
-use crate::math::Vector;
+use crate::math::{Vector, pairs_of};
 use crate::random::{self, Purpose};
 
 /// D_i ∈ U[0.215, 0.265] m (§5.6).
@@ -47,15 +48,18 @@ impl NewAgent {
 
 /// Everybody's state. All arrays but the last two have the same length; index i is an agent until the next
 /// frame in which the neighbour lists are rebuilt, `id` is one for ever.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Agents {
     /// Unique number, in the order of entry from 0.
     pub id: Vec<u32>,
     /// r_i, metres.
+    #[serde(with = "pairs_of::many")]
     pub position: Vec<Vector>,
     /// v_i, m/s.
+    #[serde(with = "pairs_of::many")]
     pub velocity: Vec<Vector>,
     /// g_i, metres.
+    #[serde(with = "pairs_of::many")]
     pub goal: Vec<Vector>,
     /// D_i, metres.
     pub radius: Vec<f64>,
@@ -71,9 +75,11 @@ pub struct Agents {
     pub push: Vec<Option<u16>>,
     /// The RVO acceleration held since the last coarse frame, m/s²; `None` where none is due. Empty
     /// where nobody avoids by RVO.
+    #[serde(with = "pairs_of::some")]
     pub avoidance: Vec<Option<Vector>>,
     /// The acceleration of the frame before, m/s²; `None` for who was not there. Empty but for velocity
     /// Verlet.
+    #[serde(with = "pairs_of::some")]
     pub acceleration_before: Vec<Option<Vector>>,
     next_id: u32,
 }
@@ -92,6 +98,24 @@ impl Agents {
     /// How many ever entered.
     pub fn entered(&self) -> u32 {
         self.next_id
+    }
+
+    /// Have all quantities as many values as there are agents?
+    pub fn is_whole(&self) -> bool {
+        let count = self.len();
+        let sometimes = [self.avoidance.len(), self.acceleration_before.len()];
+        let always = [
+            self.position.len(),
+            self.velocity.len(),
+            self.goal.len(),
+            self.radius.len(),
+            self.mass.len(),
+            self.mean_density.len(),
+            self.newcomer.len(),
+            self.group.len(),
+            self.push.len(),
+        ];
+        always.iter().all(|&len| len == count) && sometimes.iter().all(|&len| len <= count)
     }
 
     /// The current index of agent `id`, if it is still there.

@@ -80,6 +80,11 @@ impl Clock {
         self.frame / u64::from(self.coarse_every)
     }
 
+    /// To any frame.
+    pub fn go_to(&mut self, frame: u64) {
+        self.frame = frame;
+    }
+
     /// On to the next frame.
     pub fn advance(&mut self) {
         self.frame += 1;

@@ -67,6 +67,8 @@ pub mod scenario;
 
 pub mod drive;
 
+pub mod checkpoint;
+
 pub mod wave;
 
 pub mod table;

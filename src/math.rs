@@ -85,6 +85,91 @@ pub fn numbers_are_finite(numbers: &[f64]) -> bool {
     numbers.iter().map(|number| number * 0.0).sum::<f64>() == 0.0
 }
 
+/// Vectors in files, as pairs of coordinates: for serde's `with`, of one vector, of many, and of many that
+/// may be missing. (nalgebra's own feature for it would have half of the dependencies compiled anew.)
+pub mod pairs_of {
+    /// One vector.
+    pub mod one {
+        use crate::math::Vector;
+        use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+        /// Writes it.
+        ///
+        /// # Errors
+        /// The writer's.
+        pub fn serialize<S: Serializer>(v: &Vector, serializer: S) -> Result<S::Ok, S::Error> {
+            <[f64; 2]>::from(*v).serialize(serializer)
+        }
+
+        /// Reads it.
+        ///
+        /// # Errors
+        /// It is no pair of numbers.
+        pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vector, D::Error> {
+            <[f64; 2]>::deserialize(deserializer).map(Vector::from)
+        }
+    }
+
+    /// Many vectors.
+    pub mod many {
+        use crate::math::Vector;
+        use serde::{Deserialize, Deserializer, Serializer};
+
+        /// Writes them.
+        ///
+        /// # Errors
+        /// The writer's.
+        pub fn serialize<S: Serializer>(
+            vectors: &[Vector],
+            serializer: S,
+        ) -> Result<S::Ok, S::Error> {
+            serializer.collect_seq(vectors.iter().map(|&v| <[f64; 2]>::from(v)))
+        }
+
+        /// Reads them.
+        ///
+        /// # Errors
+        /// They are no pairs of numbers.
+        pub fn deserialize<'de, D: Deserializer<'de>>(
+            deserializer: D,
+        ) -> Result<Vec<Vector>, D::Error> {
+            let pairs = Vec::<[f64; 2]>::deserialize(deserializer)?;
+            Ok(pairs.into_iter().map(Vector::from).collect())
+        }
+    }
+
+    /// Many vectors, some of which are missing.
+    pub mod some {
+        use crate::math::Vector;
+        use serde::{Deserialize, Deserializer, Serializer};
+
+        /// Writes them.
+        ///
+        /// # Errors
+        /// The writer's.
+        pub fn serialize<S: Serializer>(
+            vectors: &[Option<Vector>],
+            serializer: S,
+        ) -> Result<S::Ok, S::Error> {
+            serializer.collect_seq(vectors.iter().map(|v| v.map(<[f64; 2]>::from)))
+        }
+
+        /// Reads them.
+        ///
+        /// # Errors
+        /// They are no pairs of numbers.
+        pub fn deserialize<'de, D: Deserializer<'de>>(
+            deserializer: D,
+        ) -> Result<Vec<Option<Vector>>, D::Error> {
+            let pairs = Vec::<Option<[f64; 2]>>::deserialize(deserializer)?;
+            Ok(pairs
+                .into_iter()
+                .map(|pair| pair.map(Vector::from))
+                .collect())
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -84,6 +84,19 @@ impl Metrics {
         }
     }
 
+    /// The densities taken so far, by measurement.
+    pub fn taken(&self) -> &[Option<(f64, f64)>] {
+        &self.densities
+    }
+
+    /// Goes on with densities that were [`taken`](Self::taken) before; does nothing with those of another
+    /// scenario.
+    pub fn resume(&mut self, taken: &[Option<(f64, f64)>]) {
+        if taken.len() == self.densities.len() {
+            self.densities.copy_from_slice(taken);
+        }
+    }
+
     /// Measures what is due in an evaluated frame.
     pub fn observe(&mut self, simulation: &Simulation) {
         let frame = simulation.frame();

@@ -5,15 +5,19 @@ mod evaluate;
 mod integrate;
 mod schedule;
 mod stages;
+mod state;
 
 pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};
+pub use state::{State, StateError};
+
+use serde::{Deserialize, Serialize};
 
 use crate::agents::Agents;
 use crate::clock::Clock;
 use crate::forces::social::SocialForce;
 use crate::frame::{Fields, Frame};
-use crate::math::Vector;
+use crate::math::{Vector, pairs_of};
 use crate::neighbors::Neighbors;
 use crate::pairs::{Packed, Precision};
 use crate::profile::{Blend, Override};
@@ -46,7 +50,7 @@ pub struct Simulation {
 }
 
 /// What has happened so far.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// Who reached the goal and left, in order.
     pub arrivals: Vec<Arrival>,
@@ -59,13 +63,14 @@ pub struct Outcome {
 }
 
 /// Somebody who reached the goal.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Arrival {
     /// The agent's id.
     pub id: u32,
     /// When, seconds: after the move that led there.
     pub time: f64,
     /// Where that move ended, metres.
+    #[serde(with = "pairs_of::one")]
     pub position: Vector,
     /// Does it count as evacuated?
     pub counted: bool,

@@ -62,6 +62,9 @@ pub enum Command {
         #[command(flatten)]
         options: RunOptions,
     },
+    /// Go on with a run from a checkpoint, as if it had never stopped
+    #[command(after_help = "Example: sandbox resume concert.checkpoint --json")]
+    Resume(ResumeOptions),
     /// Lay open the forces on single agents at one moment
     #[command(after_help = "Example: sandbox inspect evacuation --agent 17 --at 15 --json")]
     Inspect(InspectOptions),
@@ -121,6 +124,13 @@ pub struct SceneOptions {
     /// Change a setting of the scenario (see `sandbox list --settings`); may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    #[command(flatten)]
+    pub program: ProgramOptions,
+}
+
+/// How it is computed and told.
+#[derive(Args)]
+pub struct ProgramOptions {
     /// Threads to compute on; the results do not depend on it [default: all cores]
     #[arg(long, value_parser = threads)]
     pub threads: Option<usize>,
@@ -136,6 +146,23 @@ pub struct SceneOptions {
 pub struct RunOptions {
     #[command(flatten)]
     pub scene: SceneOptions,
+    #[command(flatten)]
+    pub output: OutputOptions,
+}
+
+#[derive(Args)]
+pub struct ResumeOptions {
+    /// The checkpoint
+    pub file: PathBuf,
+    #[command(flatten)]
+    pub program: ProgramOptions,
+    #[command(flatten)]
+    pub output: OutputOptions,
+}
+
+/// How long a run lasts, and what it writes.
+#[derive(Args)]
+pub struct OutputOptions {
     /// Stop at this time, seconds [default: the scenario's]
     #[arg(long, value_name = "SECS", value_parser = seconds)]
     pub until: Option<f64>,
@@ -143,6 +170,19 @@ pub struct RunOptions {
     pub record: RecordOptions,
     #[command(flatten)]
     pub trajectory: TrajectoryOptions,
+    #[command(flatten)]
+    pub checkpoint: CheckpointOptions,
+}
+
+/// What can be gone on with after a crash.
+#[derive(Args)]
+pub struct CheckpointOptions {
+    /// Write checkpoints to this file, each in place of the one before
+    #[arg(long, value_name = "FILE")]
+    pub checkpoint: Option<PathBuf>,
+    /// Every so many simulated seconds
+    #[arg(long, value_name = "SECS", default_value_t = 10.0, requires = "checkpoint", value_parser = positive_seconds)]
+    pub checkpoint_every: f64,
 }
 
 /// What is written to a recording.
@@ -326,6 +366,13 @@ fn frame_rate(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(fps) if (1e-6..=1e6).contains(&fps) => Ok(fps),
         _ => Err("not a number of frames per second above 0".to_owned()),
+    }
+}
+
+fn positive_seconds(text: &str) -> Result<f64, String> {
+    match seconds(text) {
+        Ok(value) if value > 0.0 => Ok(value),
+        _ => Err("not a time in seconds above 0".to_owned()),
     }
 }
 

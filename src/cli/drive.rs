@@ -2,30 +2,78 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::arguments::{RunOptions, Source};
+use super::arguments::{OutputOptions, ProgramOptions, ResumeOptions, RunOptions, Source};
+use super::checkpoint::Checkpoints;
 use super::interrupt::Interrupt;
 use super::output::Output;
 use super::report::Report;
 use super::trajectory::{self, Trajectories};
-use super::{Failure, say, scenario, talk, use_threads};
+use super::{Failure, say, scenario, setting, talk, use_threads};
+use crate::checkpoint::Checkpoint;
 use crate::drive::{Then, drive, unless_over};
 use crate::metrics::Metrics;
+use crate::scenario::{Scenario, Setting};
 use crate::scene::Scene;
 use crate::simulation::{EventKind, Simulation};
 use crate::stability::{FITTED, Mode, Scheme};
 
 /// `sandbox evacuation|crossing|concert|plaza|run`.
 pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
-    let scenario = scenario(source, &options.scene, options.until)?;
-    use_threads(options.scene.threads)?;
+    let scenario = scenario(source, &options.scene, options.output.until)?;
+    use_threads(options.scene.program.threads)?;
     warn_of_the_step(&scenario.scene);
     let mut simulation = Simulation::new(scenario.scene.clone())?;
-    let mut metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
+    let metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
+    go_on(
+        &scenario,
+        simulation,
+        metrics,
+        &options.scene.program,
+        &options.output,
+    )
+}
+
+/// `sandbox resume`.
+pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
+    let checkpoint = Checkpoint::read(&options.file)?;
+    if !checkpoint.is_of_this_engine() {
+        talk(&format!(
+            "note: {} was written by another version of the engine; what follows may differ from what it \
+             would have done",
+            options.file.display()
+        ));
+    }
+    let until = options.output.until.map(|secs| {
+        let text = format!("duration_secs={secs}");
+        setting(&text).map(|setting| setting.typed_as(format!("--until {secs}")))
+    });
+    let until: Option<Setting> = until.transpose()?;
+    let scenario = checkpoint.scenario(until.as_slice())?;
+    use_threads(options.program.threads)?;
+    let (simulation, metrics) = checkpoint.resume(&scenario)?;
+    go_on(
+        &scenario,
+        simulation,
+        metrics,
+        &options.program,
+        &options.output,
+    )
+}
+
+/// From where a simulation is to its end.
+fn go_on(
+    scenario: &Scenario,
+    mut simulation: Simulation,
+    mut metrics: Metrics,
+    program: &ProgramOptions,
+    options: &OutputOptions,
+) -> Result<(), Failure> {
     let duration = scenario.duration_secs;
-    trajectory::check(options, &scenario)?;
+    trajectory::check(&options.trajectory, program.force, scenario)?;
     let interrupt = Interrupt::listen().map_err(|error| Failure::Output(error.to_string()))?;
-    let mut output = Output::create(options, &scenario, &mut simulation)?;
-    let mut trajectories = Trajectories::create(options, &scenario, &mut simulation)?;
+    let mut checkpoints = Checkpoints::create(&options.checkpoint, program.force, &simulation)?;
+    let mut output = Output::create(&options.record, program.force, scenario, &mut simulation)?;
+    let mut trajectories = Trajectories::create(&options.trajectory, scenario, &mut simulation)?;
     let mut interrupted = None;
     let progress = Progress::new(duration);
 
@@ -36,10 +84,11 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
             progress.show(simulation);
             output.log(simulation, ms)?;
             trajectories.log(simulation)?;
-            let then = unless_over(simulation, &scenario);
+            let then = unless_over(simulation, scenario);
             if then == Then::GoOn {
                 interrupted = interrupt.exit_code();
             }
+            checkpoints.write(scenario, simulation, &metrics, interrupted.is_some())?;
             Ok::<Then, Failure>(interrupted.map_or(then, |_| Then::Stop))
         })
     });
@@ -48,8 +97,8 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     let saved = output.finish().and(trajectories.finish());
     driven.map_err(|failure| failure.laid_open(&mut simulation))?;
     report_oddities(&simulation);
-    let report = Report::new(&scenario, &simulation, &metrics, interrupted.is_some());
-    say(report.render(options.scene.json))?;
+    let report = Report::new(scenario, &simulation, &metrics, interrupted.is_some());
+    say(report.render(program.json))?;
     saved?;
     interrupted.map_or(Ok(()), |exit_code| {
         let time = simulation.frame().clock.time();

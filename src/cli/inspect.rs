@@ -12,7 +12,7 @@ use crate::simulation::Simulation;
 
 pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     let scenario = scenario(&Source::named(&options.scenario), &options.scene, None)?;
-    use_threads(options.scene.threads)?;
+    use_threads(options.scene.program.threads)?;
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     // The rest density follows the density's history, so every frame needs it.
     simulation.request_density_until(u64::MAX);
@@ -23,11 +23,17 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     let breakdowns = breakdowns(&simulation, options)?;
     if let Some(path) = &options.save {
         let ids = breakdowns.iter().map(|breakdown| breakdown.id).collect();
-        output::save_moment(path, options.scene.force, &scenario, &simulation, ids)?;
+        output::save_moment(
+            path,
+            options.scene.program.force,
+            &scenario,
+            &simulation,
+            ids,
+        )?;
     }
     let clock = simulation.frame().clock;
     let (time, frame) = (clock.time(), clock.frame());
-    if options.scene.json {
+    if options.scene.program.json {
         let object = json!({"time_secs": time, "frame": frame, "agents": breakdowns});
         return say(format!("{object}\n"));
     }

@@ -3,6 +3,7 @@
 mod accuracy;
 mod arguments;
 mod bench;
+mod checkpoint;
 mod drive;
 mod inspect;
 mod interrupt;
@@ -109,6 +110,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Concert(options) => drive::run(&Source::Shipped("concert"), &options),
         Command::Plaza(options) => drive::run(&Source::Shipped("plaza"), &options),
         Command::Run { file, options } => drive::run(&Source::File(file), &options),
+        Command::Resume(options) => drive::resume(&options),
         Command::Inspect(options) => inspect::run(&options),
         Command::Reproduce(options) => reproduce::run(&options),
         Command::Bench(options) => bench::run(&options),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::Failure;
-use super::arguments::RunOptions;
+use super::arguments::RecordOptions;
 use crate::scenario::Scenario;
 use crate::simulation::Simulation;
 
@@ -37,16 +37,16 @@ mod with_recording {
     impl Output {
         /// Opens the recording, if one is asked for.
         pub fn create(
-            options: &RunOptions,
+            record: &RecordOptions,
+            force: bool,
             scenario: &Scenario,
             simulation: &mut Simulation,
         ) -> Result<Self, Failure> {
-            let record = &options.record;
-            let debug = debug_agents(options, scenario)?;
+            let debug = debug_agents(record, scenario)?;
             let recorder = match &record.save {
                 None => None,
                 Some(path) => {
-                    check_free("--save", path, options.scene.force)?;
+                    check_free("--save", path, force)?;
                     simulation.request_density_until(u64::MAX);
                     let view = recording_options(scenario, debug, record.record_from);
                     Some(Recorder::create(path, simulation, &view)?)
@@ -116,8 +116,7 @@ mod with_recording {
         }
     }
 
-    fn debug_agents(options: &RunOptions, scenario: &Scenario) -> Result<DebugAgents, Failure> {
-        let record = &options.record;
+    fn debug_agents(record: &RecordOptions, scenario: &Scenario) -> Result<DebugAgents, Failure> {
         if let Some(text) = &record.debug_region {
             return region(text).map(DebugAgents::Region).ok_or_else(|| {
                 Failure::Input(format!(
@@ -171,11 +170,12 @@ mod without_recording {
 
     impl Output {
         pub fn create(
-            options: &RunOptions,
+            record: &RecordOptions,
+            _: bool,
             _: &Scenario,
             _: &mut Simulation,
         ) -> Result<Self, Failure> {
-            match &options.record.save {
+            match &record.save {
                 Some(path) => Err(unavailable(path)),
                 None => Ok(Self),
             }

@@ -1,25 +1,25 @@
 //! Trajectories, as far as the command line is concerned.
 
 use super::Failure;
-use super::arguments::RunOptions;
+use super::arguments::TrajectoryOptions;
 use super::output::check_free;
 use crate::scenario::Scenario;
 use crate::simulation::Simulation;
 use crate::trajectory::{Format, Trajectory, TrajectoryError, frames_between};
 
 /// Refuses what cannot be, before any file is touched.
-pub fn check(options: &RunOptions, scenario: &Scenario) -> Result<(), Failure> {
-    let files = &options.trajectory.files;
+pub fn check(options: &TrajectoryOptions, force: bool, scenario: &Scenario) -> Result<(), Failure> {
+    let files = &options.files;
     for (k, path) in files.iter().enumerate() {
         Format::of(path)?;
-        check_free("--trajectory", path, options.scene.force)?;
+        check_free("--trajectory", path, force)?;
         if files[..k].contains(path) {
             let path = path.display();
             return Err(Failure::Input(format!("--trajectory {path}: given twice")));
         }
     }
     if !files.is_empty() {
-        frames_between(&scenario.scene.clock, options.trajectory.fps)?;
+        frames_between(&scenario.scene.clock, options.fps)?;
     }
     Ok(())
 }
@@ -30,12 +30,12 @@ pub struct Trajectories(Vec<Trajectory>);
 impl Trajectories {
     /// Opens those that are asked for.
     pub fn create(
-        options: &RunOptions,
+        options: &TrajectoryOptions,
         scenario: &Scenario,
         simulation: &mut Simulation,
     ) -> Result<Self, Failure> {
-        let (view, fps) = (scenario.view.region, options.trajectory.fps);
-        let files = options.trajectory.files.iter();
+        let (view, fps) = (scenario.view.region, options.fps);
+        let files = options.files.iter();
         let opened = files.map(|path| Trajectory::create(path, simulation, view, fps));
         Ok(Self(opened.collect::<Result<_, _>>()?))
     }

@@ -41,7 +41,7 @@ impl Simulation {
         }
     }
 
-    fn sort_agents(&mut self) {
+    pub(super) fn sort_agents(&mut self) {
         let ranges = self.scene.ranges(&self.needs);
         let (agents, neighbors) = (&mut self.agents, &mut self.neighbors);
         self.stages
@@ -51,7 +51,7 @@ impl Simulation {
         self.crowd_changed = false;
     }
 
-    fn list_walls(&mut self) {
+    pub(super) fn list_walls(&mut self) {
         let (agents, neighbors) = (&self.agents, &mut self.neighbors);
         self.stages.time(Stage::Neighbors, || {
             neighbors.list_walls(agents, &self.scene.walls);

@@ -1,5 +1,7 @@
 //! Sources and pushes: what happens to the crowd from outside, on coarse frames only.
 
+use serde::{Deserialize, Serialize};
+
 use crate::agents::NewAgent;
 use crate::clock::Clock;
 use crate::math::Vector;
@@ -8,7 +10,7 @@ use crate::scene::{Goal, Scene, Source};
 use super::{Fault, Simulation};
 
 /// Something that happened to the crowd.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Event {
     /// In which frame.
     pub frame: u64,
@@ -19,7 +21,7 @@ pub struct Event {
 }
 
 /// What happened, and to how many agents.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EventKind {
     /// So many entered.
     Entered(usize),
@@ -30,7 +32,7 @@ pub enum EventKind {
 }
 
 /// How far the scene's sources and pushes have come.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Schedule {
     /// How often each source has let agents in.
     entries: Vec<u32>,
@@ -51,6 +53,15 @@ impl Schedule {
             let entries = self.entries.get(s).copied().unwrap_or(0);
             source.times.is_none_or(|times| entries < times)
         })
+    }
+
+    /// Can a scene have come so far?
+    pub(super) fn fits(&self, scene: &Scene) -> bool {
+        let (sources, pushes) = (scene.sources.len(), scene.pushes.len());
+        let known = |&(push, _): &(u16, u64)| usize::from(push) < pushes;
+        self.entries.len() <= sources
+            && self.begun.len() <= pushes
+            && self.pushing.iter().all(known)
     }
 
     fn note(&mut self, frame: u64, name: &str, kind: EventKind) {

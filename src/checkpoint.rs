@@ -1,0 +1,180 @@
+//! Checkpoints: a run written down whole, to be gone on with after a crash as if it had never stopped.
+//!
+//! A file is a line of text, the format's version, a SHA-256 of what follows, and that: the scenario as JSON,
+//! the state and what was measured so far, in postcard's encoding. It is written to a temporary name beside
+//! its own and renamed when it is whole: whatever happens, a checkpoint of before is not lost.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::metrics::Metrics;
+use crate::scenario::{Scenario, ScenarioError, Setting};
+use crate::simulation::{Simulation, State, StateError};
+
+/// How every file begins.
+const MAGIC: &[u8] = b"sandbox checkpoint\n";
+/// To be raised with whatever changes what a file holds.
+const VERSION: u32 = 1;
+/// The engine's sources: another engine goes on otherwise.
+const ENGINE: &str = env!("SANDBOX_ENGINE");
+
+/// A run that can be gone on with.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Checkpoint {
+    /// The engine that wrote it.
+    engine: String,
+    /// What messages call the scenario's file.
+    file: String,
+    /// The scenario with all settings in it.
+    document: String,
+    state: State,
+    densities: Vec<Option<(f64, f64)>>,
+}
+
+/// Why a checkpoint cannot be written or gone on with.
+#[derive(Debug, thiserror::Error)]
+pub enum CheckpointError {
+    /// The file cannot be written; one of before is as it was.
+    #[error("{}: cannot be written: {reason}", path.display())]
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        reason: String,
+    },
+    /// The file cannot be read.
+    #[error("{}: cannot be read: {reason}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        reason: String,
+    },
+    /// It is something else.
+    #[error("{}: is no checkpoint", .0.display())]
+    Foreign(PathBuf),
+    /// It is of another version.
+    #[error("{}: is a checkpoint of version {found}; this program reads version {VERSION}", path.display())]
+    Version {
+        /// The file.
+        path: PathBuf,
+        /// Its version.
+        found: u32,
+    },
+    /// It is not as it was written.
+    #[error("{}: is damaged: {reason}", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What shows it.
+        reason: String,
+    },
+    /// Its scenario makes no sense with the settings given now.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// Its state and its scenario do not belong together.
+    #[error(transparent)]
+    State(#[from] StateError),
+}
+
+impl Checkpoint {
+    /// Of an evaluated frame.
+    pub fn of(scenario: &Scenario, simulation: &Simulation, metrics: &Metrics) -> Self {
+        Self {
+            engine: ENGINE.to_owned(),
+            file: format!("{}.json", scenario.name),
+            document: scenario.to_text(),
+            state: simulation.state(),
+            densities: metrics.taken().to_vec(),
+        }
+    }
+
+    /// Was it written by this very engine? Another one goes on, but perhaps not to the same bits.
+    pub fn is_of_this_engine(&self) -> bool {
+        self.engine == ENGINE
+    }
+
+    /// The scenario with some more settings.
+    ///
+    /// # Errors
+    /// A setting makes no sense.
+    pub fn scenario(&self, settings: &[Setting]) -> Result<Scenario, ScenarioError> {
+        Scenario::parse(&self.document, &self.file, settings)
+    }
+
+    /// Goes on with `scenario`, which is the checkpoint's own but for when it ends.
+    ///
+    /// # Errors
+    /// The scenario cannot have been in this state.
+    pub fn resume(self, scenario: &Scenario) -> Result<(Simulation, Metrics), CheckpointError> {
+        let mut simulation = Simulation::resumed(scenario.scene.clone(), self.state)?;
+        let mut metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
+        metrics.resume(&self.densities);
+        Ok((simulation, metrics))
+    }
+
+    /// Writes it, whole or not at all.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), CheckpointError> {
+        let failed = |reason: String| CheckpointError::Unwritable {
+            path: path.to_owned(),
+            reason,
+        };
+        let payload = postcard::to_stdvec(self).map_err(|error| failed(error.to_string()))?;
+        let folder = match path.parent() {
+            Some(folder) if folder != Path::new("") => folder,
+            _ => Path::new("."),
+        };
+        let written = tempfile::NamedTempFile::new_in(folder).and_then(|mut file| {
+            file.write_all(MAGIC)?;
+            file.write_all(&VERSION.to_le_bytes())?;
+            file.write_all(&Sha256::digest(&payload))?;
+            file.write_all(&payload)?;
+            file.as_file().sync_all()?;
+            file.persist(path).map_err(|error| error.error)
+        });
+        written
+            .map(|_| ())
+            .map_err(|error| failed(error.to_string()))
+    }
+
+    /// Reads it.
+    ///
+    /// # Errors
+    /// There is no such file, or it is no checkpoint of this version that is as it was written.
+    pub fn read(path: &Path) -> Result<Self, CheckpointError> {
+        let bytes = fs::read(path).map_err(|error| CheckpointError::Unreadable {
+            path: path.to_owned(),
+            reason: error.to_string(),
+        })?;
+        let damaged = |reason: &str| CheckpointError::Damaged {
+            path: path.to_owned(),
+            reason: reason.to_owned(),
+        };
+        let rest = bytes.strip_prefix(MAGIC);
+        let rest = rest.ok_or_else(|| CheckpointError::Foreign(path.to_owned()))?;
+        let (version, rest) = rest
+            .split_first_chunk()
+            .ok_or_else(|| damaged("cut short"))?;
+        let version = u32::from_le_bytes(*version);
+        if version != VERSION {
+            return Err(CheckpointError::Version {
+                path: path.to_owned(),
+                found: version,
+            });
+        }
+        let (sum, payload) = rest
+            .split_first_chunk::<32>()
+            .ok_or_else(|| damaged("cut short"))?;
+        if Sha256::digest(payload).as_slice() != sum {
+            return Err(damaged("its checksum is another"));
+        }
+        postcard::from_bytes(payload).map_err(|error| damaged(&error.to_string()))
+    }
+}

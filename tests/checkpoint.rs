@@ -1,0 +1,287 @@
+//! A run that goes on from a checkpoint is the run that never stopped, to the last bit.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::{blend, block, room, scene, vector};
+use sandbox::catalog::NAMES;
+use sandbox::checkpoint::{Checkpoint, CheckpointError};
+use sandbox::metrics::Metrics;
+use sandbox::neighbors::ListPolicy;
+use sandbox::pairs::Precision;
+use sandbox::placement::Grid;
+use sandbox::profile::Override;
+use sandbox::scenario::{Scenario, Setting};
+use sandbox::scene::{Goal, Integrator, Push, Region, Scene, Source};
+use sandbox::simulation::Simulation;
+
+/// A crowd that leaves a room through a door, with latecomers and a push.
+fn busy_room(profile: &str) -> Scene {
+    let mut scene = scene(vec![room(8.0, 1.2)], blend(profile));
+    scene.precision = Precision::Mixed;
+    scene.groups[0].removal_radius = Some(0.5);
+    let exit = vector(9.5, 4.0);
+    scene.agents = block(vector(1.0, 0.5), 15, 16, 0.45, exit);
+    scene.sources = vec![Source {
+        name: "late".to_owned(),
+        grid: Grid {
+            min: vector(0.3, 7.0),
+            max: vector(7.5, 7.7),
+            columns: 8,
+            rows: 1,
+            jitter: 0.2,
+        },
+        group: 0,
+        goal: Goal::Point(exit),
+        start: 0.3,
+        every: 0.4,
+        times: Some(3),
+    }];
+    scene.pushes = vec![Push {
+        name: "push".to_owned(),
+        at: 0.5,
+        lasting: 0.4,
+        region: Region {
+            min: vector(2.0, 2.0),
+            max: vector(6.0, 6.0),
+        },
+        change: Override {
+            goal_scale: Some(3.0),
+            ignore_contact: true,
+            ignore_sph: true,
+        },
+    }];
+    scene
+}
+
+fn go_to(simulation: &mut Simulation, frame: u64) {
+    while simulation.frame().clock.frame() < frame {
+        simulation.step().unwrap();
+    }
+    simulation.evaluate().unwrap();
+}
+
+fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.unwrap().install(work)
+}
+
+/// Stops at every one of `stops` and goes on from what was written down, on another number of threads;
+/// returns the digests at `end` of this run and of one that never stopped.
+fn digests(scene: &Scene, stops: &[u64], end: u64) -> [String; 2] {
+    let without = on_threads(2, || {
+        let mut simulation = Simulation::new(scene.clone()).unwrap();
+        go_to(&mut simulation, end);
+        assert!(!simulation.outcome().arrivals.is_empty());
+        simulation.digest()
+    });
+    let mut simulation = Simulation::new(scene.clone()).unwrap();
+    for (k, &stop) in stops.iter().enumerate() {
+        simulation = on_threads(1 + k % 3, || {
+            go_to(&mut simulation, stop);
+            let written = postcard::to_stdvec(&simulation.state()).unwrap();
+            let read = postcard::from_bytes(&written).unwrap();
+            Simulation::resumed(scene.clone(), read).unwrap()
+        });
+    }
+    go_to(&mut simulation, end);
+    [simulation.digest(), without]
+}
+
+#[test]
+fn all_profiles_go_on_as_if_they_had_never_stopped() {
+    for profile in NAMES {
+        let mut scene = busy_room(profile);
+        // Before anything, between coarse frames, in the push, after it.
+        let stops = [0, 1, 13, 27, 30, 31, 48, 90];
+        let [resumed, without] = digests(&scene, &stops, 150);
+        assert_eq!(resumed, without, "{profile}");
+        scene.precision = Precision::Double;
+        let [resumed, without] = digests(&scene, &[33], 120);
+        assert_eq!(resumed, without, "{profile}, double");
+    }
+}
+
+#[test]
+fn all_integrators_and_lists_go_on_as_if_they_had_never_stopped() {
+    for integrator in Integrator::ALL {
+        for neighbor_lists in [ListPolicy::Complete, ListPolicy::Coarse] {
+            let scene = Scene {
+                integrator,
+                neighbor_lists,
+                ..busy_room("sf->sph")
+            };
+            let [resumed, without] = digests(&scene, &[7, 32, 61], 150);
+            assert_eq!(resumed, without, "{integrator:?} {neighbor_lists:?}");
+        }
+    }
+}
+
+#[test]
+fn every_frame_of_a_run_can_be_the_last_before_a_crash() {
+    let scene = busy_room("rvo->sph");
+    let stops: Vec<u64> = (0..120).collect();
+    let [resumed, without] = digests(&scene, &stops, 121);
+    assert_eq!(resumed, without);
+}
+
+fn evacuation() -> (Scenario, Simulation, Metrics) {
+    let settings: [Setting; 1] = ["duration_secs=16".parse().unwrap()];
+    let scenario = Scenario::shipped("evacuation", &settings).unwrap();
+    let mut simulation = Simulation::new(scenario.scene.clone()).unwrap();
+    let metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
+    (scenario, simulation, metrics)
+}
+
+#[test]
+fn what_was_measured_goes_on_too() {
+    let (scenario, mut simulation, mut metrics) = evacuation();
+    go_to(&mut simulation, 750);
+    metrics.observe(&simulation);
+    go_to(&mut simulation, 760);
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("evacuation.checkpoint");
+    Checkpoint::of(&scenario, &simulation, &metrics)
+        .write(&file)
+        .unwrap();
+    let read = Checkpoint::read(&file).unwrap();
+    assert!(read.is_of_this_engine());
+    let scenario = read.scenario(&[]).unwrap();
+    let (again, measured) = read.resume(&scenario).unwrap();
+    assert_eq!(measured.results(&again), metrics.results(&simulation));
+    assert!(metrics.results(&simulation)[0].value.is_some());
+    assert_eq!(again.digest(), simulation.digest());
+}
+
+#[test]
+fn what_is_no_whole_checkpoint_is_refused_with_its_reason() {
+    let (scenario, mut simulation, metrics) = evacuation();
+    simulation.evaluate().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("c");
+    Checkpoint::of(&scenario, &simulation, &metrics)
+        .write(&file)
+        .unwrap();
+    let whole = fs::read(&file).unwrap();
+    let refused = |bytes: &[u8]| {
+        fs::write(&file, bytes).unwrap();
+        Checkpoint::read(&file).unwrap_err()
+    };
+    for length in [0, 5, 19, 22, 30, 60, whole.len() / 2, whole.len() - 1] {
+        let error = refused(&whole[..length]);
+        let expected = matches!(
+            error,
+            CheckpointError::Damaged { .. } | CheckpointError::Foreign(_)
+        );
+        assert!(expected, "{length}: {error}");
+    }
+    for place in [40, 100, whole.len() / 2, whole.len() - 1] {
+        let mut changed = whole.clone();
+        changed[place] ^= 1;
+        assert!(
+            matches!(refused(&changed), CheckpointError::Damaged { .. }),
+            "{place}"
+        );
+    }
+    let mut newer = whole.clone();
+    newer[19] = 99;
+    assert!(
+        refused(&newer)
+            .to_string()
+            .ends_with("is a checkpoint of version 99; this program reads version 1")
+    );
+    assert!(matches!(
+        refused(b"{\"name\": \"x\"}"),
+        CheckpointError::Foreign(_)
+    ));
+    let nowhere = Checkpoint::read(Path::new("/nowhere/c")).unwrap_err();
+    assert!(
+        nowhere
+            .to_string()
+            .starts_with("/nowhere/c: cannot be read: ")
+    );
+}
+
+#[test]
+fn a_checkpoint_that_cannot_be_written_leaves_the_one_before() {
+    let (scenario, mut simulation, metrics) = evacuation();
+    simulation.evaluate().unwrap();
+    let checkpoint = Checkpoint::of(&scenario, &simulation, &metrics);
+    let error = checkpoint.write(Path::new("/dev/null/c")).unwrap_err();
+    assert!(
+        matches!(error, CheckpointError::Unwritable { .. }),
+        "{error}"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("c");
+    checkpoint.write(&file).unwrap();
+    checkpoint.write(&file).unwrap();
+    let names: Vec<_> = fs::read_dir(folder.path())
+        .unwrap()
+        .map(|f| f.unwrap().file_name())
+        .collect();
+    assert_eq!(names, ["c"], "nothing else is left in the folder");
+}
+
+#[test]
+fn a_state_of_another_scene_is_refused() {
+    let (_, mut simulation, _) = evacuation();
+    simulation.evaluate().unwrap();
+    let state = simulation.state();
+    assert!(Simulation::resumed(Scene::default(), state.clone()).is_err());
+    let mut other = busy_room("sph");
+    other.groups.clear();
+    assert!(Simulation::resumed(other, state).is_err());
+}
+
+#[cfg(feature = "cli")]
+#[test]
+fn the_program_goes_on_from_a_checkpoint() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("c");
+    let path = file.to_str().unwrap();
+    let run = |arguments: &[&str]| {
+        std::process::Command::new(env!("CARGO_BIN_EXE_sandbox"))
+            .args(arguments)
+            .output()
+            .unwrap()
+    };
+    let result = |arguments: &[&str]| -> serde_json::Value {
+        let output = run(arguments);
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{stderr}");
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let profile = "rvo->sph";
+    let whole = result(&["evacuation", "--profile", profile, "--until", "8", "--json"]);
+    let first = [
+        "evacuation",
+        "--profile",
+        profile,
+        "--until",
+        "5",
+        "--json",
+        "--checkpoint",
+        path,
+        "--checkpoint-every",
+        "2",
+    ];
+    assert_ne!(result(&first)["state_sha256"], whole["state_sha256"]);
+    let rest = result(&["resume", path, "--until", "8", "--json", "--threads", "1"]);
+    for key in [
+        "state_sha256",
+        "metrics",
+        "frames",
+        "contained_moves",
+        "clamped_speeds",
+    ] {
+        assert_eq!(rest[key], whole[key], "{key}");
+    }
+    let taken = run(&first);
+    assert_eq!(taken.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&taken.stderr).contains("exists already; give --force"));
+    let nothing = run(&["resume", "/nowhere"]);
+    assert_eq!(nothing.status.code(), Some(2));
+}
