@@ -3,8 +3,12 @@
 use super::found::{Found, Point as Setting};
 use super::knob::{Knob, are_default};
 use super::report::{Report, WALLS};
+use super::scenes::Kind;
 use crate::plot::{Axis, Corner, LINES, Mark, Panel, Point, Sheet, Style};
 use crate::reproduce::{ReproduceError, Store};
+
+/// Of scenes of motion: positions at all moments, velocity and density at the middle one, and the knob alone.
+const MOTION: [usize; 6] = [0, 1, 2, 4, 7, 9];
 
 /// Draws `accuracy-SCENE.svg` and `.png`.
 pub fn save(report: &Report, store: &Store) -> Result<(), ReproduceError> {
@@ -21,7 +25,10 @@ pub fn save(report: &Report, store: &Store) -> Result<(), ReproduceError> {
 
 fn sheet(found: &Found) -> Sheet {
     let costs = range(found.points.iter().map(|point| point.cost.median));
-    let quantities = 0..found.quantities.len();
+    let quantities = match found.scene.kind {
+        Kind::Motion => MOTION.to_vec(),
+        Kind::Evacuation | Kind::Wave => (0..found.quantities.len()).collect(),
+    };
     let columns = quantities.len().div_ceil(2).max(1);
     Sheet {
         title: format!("{}: {}", found.scene.name, found.scene.about),
@@ -31,7 +38,9 @@ fn sheet(found: &Found) -> Sheet {
         row_titles: Vec::new(),
         bar: None,
         panels: quantities
-            .map(|k| panel(found, k, costs, k + 1 == columns))
+            .into_iter()
+            .enumerate()
+            .map(|(place, k)| panel(found, k, costs, place + 1 == columns))
             .collect(),
     }
 }

@@ -246,24 +246,19 @@ impl Task {
 
     fn motion_errors(&self, results: &[&Value]) -> Result<Errored, ReproduceError> {
         let found: Trajectories = read(results[0])?;
-        let mut quantities: Vec<Quantity> = SAMPLES
-            .iter()
-            .map(|time| Quantity::new(&format!("position at {time} s"), "m"))
-            .collect();
+        let mut quantities = Vec::new();
+        for (name, unit) in [("position", "m"), ("velocity", "m/s"), ("density", "P/m²")] {
+            let at = |time: f64| Quantity::new(&format!("{name} at {time} s"), unit);
+            quantities.extend(SAMPLES.map(at));
+        }
         let middle = SAMPLES[1];
-        quantities.push(Quantity::new(&format!("velocity at {middle} s"), "m/s"));
-        quantities.push(Quantity::new(&format!("density at {middle} s"), "P/m²"));
         let alone = format!("position at {middle} s by this knob alone");
         quantities.push(Quantity::new(&alone, "m"));
         let errors = found.points.iter().map(|(total, own)| {
-            let [a, b, c] = total.position;
-            let values = [a, b, c, total.velocity[1], total.density[1]].map(Some);
+            let all = [total.position, total.velocity, total.density].concat();
             let own = own.map(|own| own.position[1]);
-            values
-                .into_iter()
-                .chain([own])
-                .map(|v| v.map(Measured::exact))
-                .collect()
+            let values = all.into_iter().map(Some).chain([own]);
+            values.map(|v| v.map(Measured::exact)).collect()
         });
         let lyapunov = &found.lyapunov;
         let [_, own_error, _] = found.reference.position;
@@ -310,10 +305,13 @@ impl Task {
             found.into_iter().map(|d| d.map(Measured::from)).collect()
         });
         let errors = errors.collect();
-        let notes = format!(
-            "Over {seeds} seeds, against {} with as many; intervals are 95 %.",
+        let against = if plan.quick {
+            format!("the first point, {},", settings[0].join(" "))
+        } else {
             FINE.join(" ")
-        );
+        };
+        let notes =
+            format!("Over {seeds} seeds, against {against} with as many; intervals are 95 %.");
         Ok((quantities, errors, notes))
     }
 }
