@@ -202,7 +202,7 @@ fn a_recording_on_a_disk_that_becomes_full_opens_and_the_run_is_reported() {
     let output = limited(1_000, &run);
     let said = sentence(&run, &output);
     assert!(
-        said.contains(text(&path)) && said.contains("is the disk full?"),
+        said.contains(text(&path)) && said.contains("File too large"),
         "{said}"
     );
     assert!(said.ends_with("; it opens, but ends early"), "{said}");

@@ -14,9 +14,12 @@ pub enum Cause {
     /// The stream refused something.
     #[error(transparent)]
     Stream(#[from] RecordingStreamError),
-    /// Something did not reach the file; rerun does not say why.
-    #[error("is the disk full? ({0})")]
+    /// Something did not reach the file.
+    #[error(transparent)]
     Flush(#[from] SinkFlushError),
+    /// The same, found when it was closed.
+    #[error("{0}")]
+    File(String),
     /// The thread that writes has ended before its time.
     #[error("the thread that writes has failed")]
     WriterGone,

@@ -17,6 +17,7 @@ mod blueprint;
 mod crowd;
 mod debug;
 mod error;
+mod file;
 mod geometry;
 mod layers;
 mod read;
@@ -30,12 +31,11 @@ pub use error::RecordingError;
 pub use layers::METRES_PER_ACCELERATION;
 pub use read::Recording;
 
-use std::fs::File;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use rerun::log::ChunkBatcherConfig;
+use rerun::sink::LogSink;
 use rerun::{RecordingStream, RecordingStreamBuilder};
 
 use crate::scene::Region;
@@ -43,6 +43,7 @@ use crate::simulation::{Event, Simulation};
 use blueprint::Opening;
 use debug::Debug;
 use error::Cause;
+use file::{Failure, FileSink};
 use writer::Writer;
 
 /// The viewer keeps its own settings per application.
@@ -75,6 +76,8 @@ pub struct RecordingOptions {
 /// writes them.
 pub struct Recorder {
     path: PathBuf,
+    /// Of the file.
+    failure: Failure,
     stream: RecordingStream,
     writer: Writer,
     debug: Debug,
@@ -105,13 +108,13 @@ impl Recorder {
         simulation: &Simulation,
         options: &RecordingOptions,
     ) -> Result<Self, Cause> {
-        // Rerun, which empties the file again, does not tell what was wrong with it.
-        File::create(path)?.write_all(b" ")?;
+        let file = FileSink::create(path)?;
+        let failure = file.failure();
         let scene = simulation.scene();
         let stream = RecordingStreamBuilder::new(APPLICATION)
             .recording_id(format!("{}-seed{}", options.title, scene.seed))
             .batcher_config(batches())
-            .save(path)?;
+            .set_sinks(vec![Box::new(file) as Box<dyn LogSink>])?;
         stream.set_log_tick_enabled(false);
         stream.set_log_time_enabled(false);
         stream.send_recording_name(options.title.clone())?;
@@ -125,6 +128,7 @@ impl Recorder {
         stream.flush_blocking()?;
         Ok(Self {
             path: path.to_owned(),
+            failure,
             writer: Writer::start(stream.clone(), layers)?,
             stream,
             debug: Debug::new(options.debug.clone()),
@@ -170,8 +174,11 @@ impl Recorder {
     pub fn finish(mut self) -> Result<(), RecordingError> {
         let ended = self.end();
         ended.map_err(|cause| RecordingError::unwritten(&self.path, &cause))?;
-        drop(self.stream); // Joins rerun's writer, which adds the footer and only logs its failure.
-        read::check_footer(&self.path)
+        drop(self.stream); // And with it the sink, which adds the index and waits for it.
+        match self.failure.reason() {
+            Some(reason) => Err(RecordingError::unwritten(&self.path, &Cause::File(reason))),
+            None => read::check_footer(&self.path),
+        }
     }
 
     /// Everything but the footer.
