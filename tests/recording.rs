@@ -68,7 +68,7 @@ fn record(
     if density {
         simulation.request_density_until(u64::MAX);
     }
-    let mut recorder = Recorder::create(&path, &simulation, &options(debug)).unwrap();
+    let mut recorder = Recorder::create(path.as_path(), &simulation, &options(debug)).unwrap();
     let mut truth = Vec::new();
     for _ in 0..frames {
         simulation.evaluate().unwrap();

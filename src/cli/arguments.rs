@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use clap::{Args, Parser, Subcommand};
+use clap::{ArgGroup, Args, Parser, Subcommand};
 use clap_complete::Shell;
 
 use super::{accuracy, bench, reproduce};
@@ -185,23 +185,30 @@ pub struct CheckpointOptions {
     pub checkpoint_every: f64,
 }
 
-/// What is written to a recording.
+/// What is recorded, and where it goes.
 #[derive(Args)]
+#[command(group(ArgGroup::new("record").multiple(true).args(["save", "spawn", "connect"])))]
 pub struct RecordOptions {
     /// Write a recording for the Rerun viewer
     #[arg(long, value_name = "FILE.rrd")]
     pub save: Option<PathBuf>,
+    /// Show the run in a Rerun viewer while it goes on; starts one if none is there
+    #[arg(long)]
+    pub spawn: bool,
+    /// Show the run in the viewer that listens there: rerun+http://HOST:PORT/proxy, or HOST:PORT
+    #[arg(long, value_name = "URL", conflicts_with = "spawn")]
+    pub connect: Option<String>,
     /// Record every so many frames
-    #[arg(long, value_name = "FRAMES", default_value_t = 5, requires = "save", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "FRAMES", default_value_t = 5, requires = "record", value_parser = clap::value_parser!(u64).range(1..))]
     pub record_every: u64,
     /// Record from this time on, seconds
-    #[arg(long, value_name = "SECS", default_value_t = 0.0, requires = "save", value_parser = seconds)]
+    #[arg(long, value_name = "SECS", default_value_t = 0.0, requires = "record", value_parser = seconds)]
     pub record_from: f64,
     /// Lay these agents open in the recording: ids, all or none [default: the scenario's choice]
     #[arg(
         long,
         value_name = "17,42|all|none",
-        requires = "save",
+        requires = "record",
         conflicts_with = "debug_region"
     )]
     pub debug_agents: Option<String>,
@@ -209,7 +216,7 @@ pub struct RecordOptions {
     #[arg(
         long,
         value_name = "X0,Y0,X1,Y1",
-        requires = "save",
+        requires = "record",
         allow_hyphen_values = true
     )]
     pub debug_region: Option<String>,

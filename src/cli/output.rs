@@ -23,8 +23,11 @@ pub use with_recording::{Output, save_moment};
 
 #[cfg(feature = "recording")]
 mod with_recording {
+    use super::super::talk;
     use super::*;
-    use crate::recording::{DebugAgents, Recorder, RecordingError, RecordingOptions};
+    use crate::recording::{
+        DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer,
+    };
     use crate::scene::Region;
 
     /// What a run writes beside its results.
@@ -43,13 +46,15 @@ mod with_recording {
             simulation: &mut Simulation,
         ) -> Result<Self, Failure> {
             let debug = debug_agents(record, scenario)?;
-            let recorder = match &record.save {
+            let recorder = match destination(record)? {
                 None => None,
-                Some(path) => {
-                    check_free("--save", path, force)?;
+                Some(to) => {
+                    if let Some(path) = &to.file {
+                        check_free("--save", path, force)?;
+                    }
                     simulation.request_density_until(u64::MAX);
                     let view = recording_options(scenario, debug, record.record_from);
-                    Some(Recorder::create(path, simulation, &view)?)
+                    Some(Recorder::create(to, simulation, &view)?)
                 }
             };
             Ok(Self {
@@ -73,9 +78,30 @@ mod with_recording {
 
         /// Closes the recording.
         pub fn finish(self) -> Result<(), Failure> {
-            self.recorder
-                .map_or(Ok(()), |recorder| Ok(recorder.finish()?))
+            match self.recorder.map_or(Ok(()), Recorder::finish) {
+                // Whoever closes a window has seen enough.
+                Err(gone @ RecordingError::ViewerGone { .. }) => {
+                    talk(&format!("note: {gone}"));
+                    Ok(())
+                }
+                finished => Ok(finished?),
+            }
         }
+    }
+
+    /// Where the recording goes, if there is to be one.
+    fn destination(record: &RecordOptions) -> Result<Option<Destination>, Failure> {
+        let address = |text: &String| {
+            let address = text.parse().map(Viewer::At);
+            address.map_err(|error| Failure::Input(format!("--connect {text}: {error}")))
+        };
+        let viewer = match &record.connect {
+            Some(text) => Some(address(text)?),
+            None => record.spawn.then_some(Viewer::Spawned),
+        };
+        let file = record.save.clone();
+        let asked = file.is_some() || viewer.is_some();
+        Ok(asked.then_some(Destination { file, viewer }))
     }
 
     /// Writes one evaluated frame with some agents laid open.
@@ -175,8 +201,19 @@ mod without_recording {
             _: &Scenario,
             _: &mut Simulation,
         ) -> Result<Self, Failure> {
-            match &record.save {
-                Some(path) => Err(unavailable(path)),
+            let asked = [
+                record
+                    .save
+                    .as_ref()
+                    .map(|path| format!("--save {}", path.display())),
+                record.spawn.then(|| "--spawn".to_owned()),
+                record
+                    .connect
+                    .as_ref()
+                    .map(|url| format!("--connect {url}")),
+            ];
+            match asked.into_iter().flatten().next() {
+                Some(option) => Err(unavailable(&option)),
                 None => Ok(Self),
             }
         }
@@ -198,13 +235,12 @@ mod without_recording {
         _: Vec<u32>,
     ) -> Result<(), Failure> {
         check_free("--save", path, force)?;
-        Err(unavailable(path))
+        Err(unavailable(&format!("--save {}", path.display())))
     }
 
-    fn unavailable(path: &Path) -> Failure {
-        let path = path.display();
+    fn unavailable(option: &str) -> Failure {
         Failure::Input(format!(
-            "--save {path}: this program was built without the feature `recording`"
+            "{option}: this program was built without the feature `recording`"
         ))
     }
 }

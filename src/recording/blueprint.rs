@@ -34,6 +34,8 @@ type Property = (EntityPath, Box<dyn AsComponents>);
 pub enum Opening {
     /// Nothing is there yet: everything stands still at the start.
     Empty,
+    /// Somebody looks on while it comes.
+    Live,
     /// All is there: the seconds to look at first play, and the debug view shows this, or as much as the
     /// crowd views. The viewer would not go to a time that it has not read yet.
     Whole(Option<Region>),
@@ -107,7 +109,7 @@ fn layout(options: &RecordingOptions, opening: Opening) -> (Blueprint, Vec<Prope
             .into();
         let shown = match opening {
             Opening::Whole(Some(focus)) => focus,
-            Opening::Whole(None) | Opening::Empty => options.view,
+            Opening::Whole(None) | Opening::Empty | Opening::Live => options.view,
         };
         add_properties(&mut properties, &forces, &shown, BACKGROUND);
         below.push(forces);
@@ -135,6 +137,9 @@ fn time_panel(options: &RecordingOptions, opening: Opening) -> TimePanel {
         .with_timeline(SIM_TIME);
     let start = options.opens_at;
     let end = (start + LOOP).min(options.ends_at);
+    if matches!(opening, Opening::Live) {
+        return panel.with_play_state(PlayState::Following);
+    }
     if matches!(opening, Opening::Empty) || end <= start {
         return panel.with_play_state(PlayState::Paused);
     }

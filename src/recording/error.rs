@@ -36,6 +36,31 @@ pub enum RecordingError {
         /// Why.
         cause: String,
     },
+    /// Where it goes to a viewer alone: it cannot be made.
+    #[error("cannot show the run: {0}")]
+    Unshown(String),
+    /// Nobody is at the other end.
+    #[error(
+        "no viewer answers at {address} ({reason}); start one with `rerun`, or let --spawn do it"
+    )]
+    NoViewer {
+        /// Where.
+        address: String,
+        /// What the system says.
+        reason: String,
+    },
+    /// No viewer can be started.
+    #[error("cannot start a viewer: {reason}")]
+    NotSpawned {
+        /// Why.
+        reason: String,
+    },
+    /// The viewer was closed, or the connection broke; a file beside it is whole.
+    #[error("the viewer went away before the run had ended: {reason}")]
+    ViewerGone {
+        /// What rerun says.
+        reason: String,
+    },
     /// The file is not whole.
     #[error("the recording {} is not complete: {reason}", path.display())]
     Incomplete {
@@ -55,11 +80,15 @@ pub enum RecordingError {
 }
 
 impl RecordingError {
-    /// `path` takes no more.
-    pub(super) fn unwritten(path: &Path, cause: &Cause) -> Self {
-        Self::Unwritten {
-            path: path.to_owned(),
-            cause: cause.to_string(),
+    /// The file takes no more; without one, the viewer.
+    pub(super) fn unwritten(file: Option<&Path>, cause: &Cause) -> Self {
+        let cause = cause.to_string();
+        match file {
+            Some(path) => Self::Unwritten {
+                path: path.to_owned(),
+                cause,
+            },
+            None => Self::Unshown(cause),
         }
     }
 }

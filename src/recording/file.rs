@@ -28,7 +28,8 @@ impl Failure {
             .clone()
     }
 
-    fn is(&self, reason: &dyn ToString) {
+    /// Notes what went wrong, unless something has before.
+    pub fn is(&self, reason: &dyn ToString) {
         let mut first = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         first.get_or_insert_with(|| reason.to_string());
     }

@@ -1,4 +1,4 @@
-//! A run as a file for the Rerun viewer. The only place that names rerun.
+//! A run for the Rerun viewer, as a file or while it goes on. The only place that names rerun.
 //!
 //! One entity holds the whole crowd, `world/agents`; what stands still is logged once. Positions are
 //! metres with y up: a static transform on `world` turns the picture, since the viewer's 2D views
@@ -24,12 +24,14 @@ mod read;
 mod snapshot;
 mod stats;
 mod text;
+mod viewer;
 mod writer;
 
 pub use debug::DebugAgents;
 pub use error::RecordingError;
 pub use layers::METRES_PER_ACCELERATION;
 pub use read::Recording;
+pub use viewer::{Address, AddressError, Viewer};
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -44,10 +46,15 @@ use blueprint::Opening;
 use debug::Debug;
 use error::Cause;
 use file::{Failure, FileSink};
+use viewer::ViewerSink;
 use writer::Writer;
 
 /// The viewer keeps its own settings per application.
 const APPLICATION: &str = "sandbox";
+/// What a run that is killed loses at most, besides the last chunk under way.
+const FILE_TICK: Duration = Duration::from_secs(1);
+/// What a viewer lags behind.
+const VIEWER_TICK: Duration = Duration::from_millis(100);
 const FRAME: &str = "frame";
 const SIM_TIME: &str = "sim_time";
 
@@ -70,14 +77,34 @@ pub struct RecordingOptions {
     pub debug: DebugAgents,
 }
 
+/// Where a recording goes: to a file, to a viewer, or to both.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Destination {
+    /// A file, which replaces any there.
+    pub file: Option<PathBuf>,
+    /// A viewer that shows the run while it goes on.
+    pub viewer: Option<Viewer>,
+}
+
+impl From<&Path> for Destination {
+    fn from(path: &Path) -> Self {
+        Self {
+            file: Some(path.to_owned()),
+            viewer: None,
+        }
+    }
+}
+
 /// Writes a recording, frame by frame.
 ///
 /// [`log`](Self::log) only copies; one thread makes rows of the copies, another compresses and
 /// writes them.
 pub struct Recorder {
-    path: PathBuf,
-    /// Of the file.
-    failure: Failure,
+    file: Option<PathBuf>,
+    /// What went wrong with the file.
+    file_failure: Failure,
+    /// What became of the viewer.
+    viewer_failure: Failure,
     stream: RecordingStream,
     writer: Writer,
     debug: Debug,
@@ -90,36 +117,51 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Begins a recording of `simulation` at `path`, replacing any file there.
+    /// Begins a recording of `simulation`.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// The file cannot be written, or there is no viewer.
     pub fn create(
-        path: &Path,
+        to: impl Into<Destination>,
         simulation: &Simulation,
         options: &RecordingOptions,
     ) -> Result<Self, RecordingError> {
-        Self::begin(path, simulation, options)
-            .map_err(|cause| RecordingError::unwritten(path, &cause))
+        let to = to.into();
+        let viewer = to.viewer.as_ref().map(Viewer::connect).transpose()?;
+        Self::begin(to.file.as_deref(), viewer, simulation, options)
+            .map_err(|cause| RecordingError::unwritten(to.file.as_deref(), &cause))
     }
 
     fn begin(
-        path: &Path,
+        file: Option<&Path>,
+        viewer: Option<ViewerSink>,
         simulation: &Simulation,
         options: &RecordingOptions,
     ) -> Result<Self, Cause> {
-        let file = FileSink::create(path)?;
-        let failure = file.failure();
         let scene = simulation.scene();
-        let stream = RecordingStreamBuilder::new(APPLICATION)
-            .recording_id(format!("{}-seed{}", options.title, scene.seed))
-            .batcher_config(batches())
-            .set_sinks(vec![Box::new(file) as Box<dyn LogSink>])?;
+        let mut builder = RecordingStreamBuilder::new(APPLICATION);
+        let (mut tick, mut opening) = (FILE_TICK, Opening::Empty);
+        let (mut file_failure, mut viewer_failure) = (Failure::default(), Failure::default());
+        let mut sinks: Vec<Box<dyn LogSink>> = Vec::new();
+        if let Some(path) = file {
+            let sink = FileSink::create(path)?;
+            file_failure = sink.failure();
+            sinks.push(Box::new(sink));
+        }
+        if let Some(sink) = viewer {
+            viewer_failure = sink.failure();
+            sinks.push(Box::new(sink));
+            (tick, opening) = (VIEWER_TICK, Opening::Live);
+        } else {
+            // In a viewer a second run of the same name would become part of the first.
+            builder = builder.recording_id(format!("{}-seed{}", options.title, scene.seed));
+        }
+        let stream = builder.batcher_config(batches(tick)).set_sinks(sinks)?;
         stream.set_log_tick_enabled(false);
         stream.set_log_time_enabled(false);
         stream.send_recording_name(options.title.clone())?;
         let layers = layers::Layers::new(scene, &options.debug);
-        blueprint::send(&stream, options, Opening::Empty)?;
+        blueprint::send(&stream, options, opening)?;
         text::log_document(&stream, scene, options)?;
         geometry::log(&stream, scene, simulation.frame().agents)?;
         crowd::log_style(&stream)?;
@@ -127,8 +169,9 @@ impl Recorder {
         stats::log_style(&stream)?;
         stream.flush_blocking()?;
         Ok(Self {
-            path: path.to_owned(),
-            failure,
+            file: file.map(Path::to_owned),
+            file_failure,
+            viewer_failure,
             writer: Writer::start(stream.clone(), layers)?,
             stream,
             debug: Debug::new(options.debug.clone()),
@@ -164,29 +207,40 @@ impl Recorder {
         self.opened |= snapshot.opens_here;
         self.options.ends_at = snapshot.time;
         let written = self.writer.write(snapshot);
-        written.map_err(|cause| RecordingError::unwritten(&self.path, &cause))
+        written.map_err(|cause| RecordingError::unwritten(self.file.as_deref(), &cause))
     }
 
-    /// Writes what is still in memory, closes the file and checks that it is whole.
+    /// Sends what is still in memory, closes the file and checks that it is whole.
     ///
     /// # Errors
-    /// Something could not be written: the disk is full, for example.
+    /// Something could not be written: the disk is full, for example. Else, the viewer has gone.
     pub fn finish(mut self) -> Result<(), RecordingError> {
-        let ended = self.end();
-        ended.map_err(|cause| RecordingError::unwritten(&self.path, &cause))?;
-        drop(self.stream); // And with it the sink, which adds the index and waits for it.
-        match self.failure.reason() {
-            Some(reason) => Err(RecordingError::unwritten(&self.path, &Cause::File(reason))),
-            None => read::check_footer(&self.path),
+        let file = self.file.as_deref();
+        let unwritten = |cause: &Cause| RecordingError::unwritten(file, cause);
+        Self::end(&mut self.writer, &self.stream, &self.options, self.focus)
+            .map_err(|cause| unwritten(&cause))?;
+        drop(self.stream); // And with it the sinks; that of the file adds the index and waits for it.
+        if let Some(reason) = self.file_failure.reason() {
+            return Err(unwritten(&Cause::File(reason)));
+        }
+        file.map_or(Ok(()), read::check_footer)?;
+        match self.viewer_failure.reason() {
+            Some(reason) => Err(RecordingError::ViewerGone { reason }),
+            None => Ok(()),
         }
     }
 
     /// Everything but the footer.
-    fn end(&mut self) -> Result<(), Cause> {
-        self.writer.finish()?;
-        self.stream.flush_blocking()?;
-        blueprint::send(&self.stream, &self.options, Opening::Whole(self.focus))?;
-        Ok(self.stream.flush_blocking()?)
+    fn end(
+        writer: &mut Writer,
+        stream: &RecordingStream,
+        options: &RecordingOptions,
+        focus: Option<Region>,
+    ) -> Result<(), Cause> {
+        writer.finish()?;
+        stream.flush_blocking()?;
+        blueprint::send(stream, options, Opening::Whole(focus))?;
+        Ok(stream.flush_blocking()?)
     }
 }
 
@@ -224,10 +278,10 @@ impl Progress {
     }
 }
 
-/// Few, large chunks: the crowd's rows fill one by their size, all others by the passing of time.
-fn batches() -> ChunkBatcherConfig {
+/// The crowd's rows fill a chunk by their size, all others by the passing of so much time.
+fn batches(flush_tick: Duration) -> ChunkBatcherConfig {
     ChunkBatcherConfig {
-        flush_tick: Duration::from_secs(5),
+        flush_tick,
         ..ChunkBatcherConfig::DEFAULT
     }
 }
