@@ -1,0 +1,105 @@
+//! `kill -9` at any moment: what was recorded more than two seconds earlier is readable.
+#![cfg(all(feature = "cli", feature = "recording", unix))]
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+
+use common::program::{text, under_way};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use sandbox::checkpoint::Checkpoint;
+use sandbox::recording::Recording;
+
+/// So many runs are killed, so many at a time.
+const KILLED: u64 = 50;
+const AT_A_TIME: u64 = 5;
+/// What is older than this is safe.
+const SAFE: Duration = Duration::from_secs(2);
+
+/// 100 people who stay, for days: one frame in 50 is recorded everywhere.
+const LONG: &str = r#"{
+  "duration_secs": 1e6, "profile": "rvo->sph", "goal": [5, 5],
+  "grids": [{"min": [0, 0], "max": [10, 10], "columns": 10, "rows": 10}]
+}"#;
+
+/// The last frame of the text, counted as the recording does; it has each as soon as it is there.
+fn last_frame(csv: &Path) -> u64 {
+    let text = fs::read_to_string(csv).unwrap();
+    let whole = text.rsplit_once('\n').unwrap().0;
+    let last = whole.lines().last().unwrap();
+    50 * last.split(',').next().unwrap().parse::<u64>().unwrap()
+}
+
+/// Kills a run at a random moment, and reads what it leaves.
+fn kill_one(seed: u64) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let [scenario, rrd, csv] = ["long.json", "a.rrd", "a.csv"].map(file);
+    let [sqlite, checkpoint] = ["a.sqlite", "a.checkpoint"].map(file);
+    fs::write(&scenario, LONG).unwrap();
+    let mut run = vec![
+        "run",
+        text(&scenario),
+        "--threads",
+        "1",
+        "--record-every",
+        "50",
+    ];
+    run.extend(["--save", text(&rrd), "--checkpoint", text(&checkpoint)]);
+    run.extend(["--trajectory", text(&csv), "--trajectory", text(&sqlite)]);
+    run.extend(["--trajectory-fps", "1"]);
+    let mut child = under_way(&run, &[(&csv, 40_000), (&checkpoint, 0)]);
+    let pause = ChaCha8Rng::seed_from_u64(seed).random_range(0.0..1.0);
+    std::thread::sleep(Duration::from_secs_f64(pause));
+    let safe = last_frame(&csv);
+    std::thread::sleep(SAFE);
+    child.kill().unwrap(); // SIGKILL
+    child.wait().unwrap();
+
+    let recording = Recording::read(&rrd).unwrap();
+    let crowd = recording.pairs("/world/agents", "Points2D:positions");
+    let frames: Vec<u64> = crowd
+        .iter()
+        .map(|(frame, _)| frame.cast_unsigned())
+        .collect();
+    let last = *frames.last().unwrap();
+    assert!(
+        last >= safe,
+        "seed {seed}: the recording ends at {last} of {safe}"
+    );
+    assert!(
+        frames.iter().copied().eq((0..=last).step_by(50)),
+        "seed {seed}"
+    );
+    assert!(crowd.iter().all(|(_, places)| places.len() == 100));
+
+    let connection = rusqlite::Connection::open(&sqlite).unwrap();
+    let rows = "SELECT max(frame), count(*) FROM trajectory_data";
+    let rows = connection.query_row(rows, [], |row| Ok((row.get(0)?, row.get(1)?)));
+    let (last, rows): (i64, i64) = rows.unwrap();
+    assert!(
+        50 * last.unsigned_abs() >= safe,
+        "seed {seed}: SQLite ends at {last} of {safe}"
+    );
+    assert_eq!(rows, 100 * (last + 1), "seed {seed}");
+
+    let left = Checkpoint::read(&checkpoint).unwrap();
+    assert!(left.is_of_this_engine());
+}
+
+#[test]
+fn what_was_recorded_two_seconds_before_a_kill_is_readable() {
+    std::thread::scope(|scope| {
+        let kill_some = |first| {
+            for seed in (first..KILLED).step_by(AT_A_TIME as usize) {
+                kill_one(seed);
+            }
+        };
+        for first in 0..AT_A_TIME {
+            scope.spawn(move || kill_some(first));
+        }
+    });
+}
