@@ -93,6 +93,8 @@ impl Viewer {
 fn spawn() -> Result<Address, RecordingError> {
     let options = SpawnOptions {
         wait_for_bind: true,
+        // It shares our stderr.
+        extra_env: vec![("RUST_LOG".to_owned(), "error".to_owned())],
         ..SpawnOptions::default()
     };
     let viewer = rerun::spawn(&options).map_err(|error| RecordingError::NotSpawned {
