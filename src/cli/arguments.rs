@@ -15,6 +15,7 @@ Examples:
   sandbox concert --record-from 149 --save recordings/concert.rrd --force
   sandbox evacuation --trajectory evacuation.sqlite --trajectory evacuation.csv
   sandbox run my_station.json --until 60 --threads 2 --json
+  sandbox run my_station.json --geometry station.geojson
   sandbox inspect evacuation --agent 17 --at 15 --json
   sandbox bench scaling --largest 100000
   sandbox list --settings";
@@ -105,6 +106,9 @@ pub struct SceneOptions {
     /// Δt_fine in seconds, or `auto`: the largest step at which the crowd is sure to come to rest
     #[arg(long, value_name = "SECS|auto")]
     pub time_step: Option<String>,
+    /// A floor plan, WKT or GeoJSON in metres, in place of the scenario's walkable area and obstacles
+    #[arg(long, value_name = "FILE")]
+    pub geometry: Option<PathBuf>,
     /// Change a setting of the scenario (see `sandbox list --settings`); may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,

@@ -21,6 +21,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use crate::breakdown::Breakdown;
+use crate::floor_plan;
 use crate::reproduce::ReproduceError;
 use crate::scenario::{Scenario, ScenarioError, Setting};
 use crate::simulation::{Fault, Simulation};
@@ -130,6 +131,12 @@ fn scenario(
             let setting = setting(&format!("{key}={value}"))?;
             settings.push(setting.typed_as(format!("{flag} {value}")));
         }
+    }
+    if let Some(path) = &scene.geometry {
+        let text = format!("--geometry {}", path.display());
+        let plan = floor_plan::read(path);
+        let plan = plan.map_err(|error| Failure::Input(format!("--geometry {error}")))?;
+        settings.extend(Setting::floor_plan(&plan, &text));
     }
     for text in &scene.set {
         settings.push(setting(text)?);

@@ -7,6 +7,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Serialize};
 
+use super::plan::Nested;
 use super::preset::Preset;
 use crate::boundary::WallMethod;
 use crate::catalog::{NavigationKind, Parameters};
@@ -66,7 +67,8 @@ pub(super) struct File {
     pub max_speed: Option<f64>,
     pub profile: Option<ProfileChoice>,
     pub parameters: Object<Parameters>,
-    pub obstacles: Vec<Vec<[f64; 2]>>,
+    pub walkable_area: Option<Vec<Vec<Vec<[f64; 2]>>>>,
+    pub obstacles: Vec<Vec<Nested>>,
     pub goal: Option<[f64; 2]>,
     pub agents: Vec<Object<Agent>>,
     pub grids: Vec<Object<Grid>>,

@@ -162,7 +162,7 @@ fn scalars() -> [SettingDoc; 17] {
     ]
 }
 
-fn containers() -> [SettingDoc; 11] {
+fn containers() -> [SettingDoc; 12] {
     let doc = |key, range: &str, description| SettingDoc {
         key,
         unit: "",
@@ -177,8 +177,13 @@ fn containers() -> [SettingDoc; 11] {
             "values that hold for every profile of the scenario",
         ),
         doc(
+            "walkable_area",
+            "a list of polygons, each a list of rings (the outline, then holes); or a WKT or GeoJSON file",
+            "where people can walk, everything round it is solid; corners in metres",
+        ),
+        doc(
             "obstacles",
-            "a list of simple polygons",
+            "a list of polygons, each a list of corners, or of rings (the outline, then holes); or a file",
             "solid bodies; corners in metres, either orientation",
         ),
         doc(
