@@ -82,6 +82,11 @@ pub enum Command {
     /// Run hard cases, map the largest stable time step, measure jitter
     #[command(after_help = "Example: sandbox stress --quick")]
     Stress(StressOptions),
+    /// Print the JSON Schema of scenario files, by which editors complete and check them
+    #[command(
+        after_help = "Example: sandbox schema > scenario.schema.json, and in a scenario \"$schema\": \"scenario.schema.json\""
+    )]
+    Schema,
     /// List the scenarios and profiles, or the settings that --set takes
     #[command(after_help = "Example: sandbox list --settings")]
     List {

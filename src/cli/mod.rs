@@ -106,6 +106,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Bench(options) => bench::run(&options),
         Command::Accuracy(options) => accuracy::run(&options),
         Command::Stress(options) => stress::run(&options),
+        Command::Schema => list::schema(),
         Command::List { settings } => list::run(settings),
     }
 }

@@ -25,9 +25,9 @@ const DEFAULT_PROFILE: &str = "sph";
 /// Round everything there is, metres: the view of a scenario that gives none.
 const DEFAULT_MARGIN: f64 = 1.0;
 /// K^goal of a push.
-const GOAL_SCALE: Range = Range::at_least(0.0, 1e9);
+pub(super) const GOAL_SCALE: Range = Range::at_least(0.0, 1e9);
 /// Times that something is divided by, seconds.
-const UNTIL: Range = Range::above(0.0, 1e7);
+pub(super) const UNTIL: Range = Range::above(0.0, 1e7);
 
 /// Checks `document`, which is or came from `path`: by it a scenario without a name is called, and in its
 /// folder are the files that the scenario names.
@@ -193,23 +193,27 @@ fn measurements(given: &[file::Measurement]) -> Result<Vec<Measurement>, Problem
 
 fn measurement(given: &file::Measurement) -> Result<Measurement, Problem> {
     Ok(match given {
-        file::Measurement::Density { at_secs, region: r } => Measurement::Density {
-            at: TIME.check("density.at_secs", *at_secs)?,
-            region: r.map(|r| region("density.region", r)).transpose()?,
-        },
-        file::Measurement::FlowOfFirst { arrivals } => {
-            if *arrivals < 2 {
+        file::Measurement::Density(Object(density)) => {
+            let place = density.region.map(|r| region("density.region", r));
+            Measurement::Density {
+                at: TIME.check("density.at_secs", density.at_secs)?,
+                region: place.transpose()?,
+            }
+        }
+        file::Measurement::FlowOfFirst(Object(flow)) => {
+            let arrivals = flow.arrivals;
+            if arrivals < 2 {
                 let reason = format!("a flow needs at least 2 arrivals, not {arrivals}");
                 return Err(Problem::new("flow_of_first.arrivals", reason));
             }
             Measurement::FlowOfFirst {
-                arrivals: *arrivals as usize,
+                arrivals: arrivals as usize,
             }
         }
-        file::Measurement::FlowUntil { until_secs } => Measurement::FlowUntil {
-            until: UNTIL.check("flow_until.until_secs", *until_secs)?,
+        file::Measurement::FlowUntil(Object(flow)) => Measurement::FlowUntil {
+            until: UNTIL.check("flow_until.until_secs", flow.until_secs)?,
         },
-        file::Measurement::Evacuated {} => Measurement::Evacuated,
+        file::Measurement::Evacuated(_) => Measurement::Evacuated,
     })
 }
 

@@ -70,8 +70,13 @@ pub(super) fn fill(document: &mut Value, folder: &Path) -> Result<(), Problem> {
         (WALKABLE_AREA, floor_plan::read as fn(&Path) -> _),
         (OBSTACLES, floor_plan::read_obstacles),
     ] {
-        let Some(Value::String(name)) = document.get(key) else {
-            continue;
+        let name = match document.get(key) {
+            Some(Value::String(name)) => name,
+            None | Some(Value::Null | Value::Array(_)) => continue,
+            Some(_) => {
+                let reason = "must be a list of polygons, or the name of a file";
+                return Err(Problem::new(key, reason));
+            }
         };
         let plan: FloorPlan =
             read(&folder.join(name)).map_err(|error| problem(error).under(key))?;
