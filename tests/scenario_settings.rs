@@ -66,6 +66,7 @@ fn every_documented_key_is_accepted() {
         "coarse_every" | "population_seed" | "behaviour_seed" => "3".to_owned(),
         "parameters" | "stop" => "{}".to_owned(),
         "goal" => "[1, 2]".to_owned(),
+        "walkable_area" => "[[[[0, 0], [9, 0], [9, 9]]]]".to_owned(),
         "view" => "{\"region\": [[0, 0], [1, 1]]}".to_owned(),
         "agent_stiffness" | "wall_stiffness" => "10".to_owned(),
         _ if documented_default(key) == "none" => "[]".to_owned(),

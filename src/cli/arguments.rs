@@ -16,6 +16,7 @@ Examples:
   sandbox concert --record-from 149 --save recordings/concert.rrd --force
   sandbox evacuation --trajectory evacuation.sqlite --trajectory evacuation.csv
   sandbox run my_station.json --until 60 --threads 2 --json
+  sandbox run my_station.json --geometry station.geojson
   sandbox inspect evacuation --agent 17 --at 15 --json
   sandbox bench scaling --largest 100000
   sandbox list --settings";
@@ -82,6 +83,11 @@ pub enum Command {
     /// Run hard cases, map the largest stable time step, measure jitter
     #[command(after_help = "Example: sandbox stress --quick")]
     Stress(StressOptions),
+    /// Print the JSON Schema of scenario files, by which editors complete and check them
+    #[command(
+        after_help = "Example: sandbox schema > scenario.schema.json, and in a scenario \"$schema\": \"scenario.schema.json\""
+    )]
+    Schema,
     /// List the scenarios and profiles, or the settings that --set takes
     #[command(after_help = "Example: sandbox list --settings")]
     List {
@@ -121,6 +127,9 @@ pub struct SceneOptions {
     /// Δt_fine in seconds, or `auto`: the largest step at which the crowd is sure to come to rest
     #[arg(long, value_name = "SECS|auto")]
     pub time_step: Option<String>,
+    /// A floor plan, WKT or GeoJSON in metres, in place of the scenario's walkable area and obstacles
+    #[arg(long, value_name = "FILE")]
+    pub geometry: Option<PathBuf>,
     /// Change a setting of the scenario (see `sandbox list --settings`); may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,

@@ -1,8 +1,8 @@
-//! `sandbox list`: the scenarios and profiles, or what `--set` takes.
+//! `sandbox list`: the scenarios and profiles, or what `--set` takes; `sandbox schema`: the same for editors.
 
 use super::{Failure, say};
 use crate::catalog::NAMES;
-use crate::scenario::{NESTED, SHIPPED, settings};
+use crate::scenario::{self, NESTED, SHIPPED, settings};
 
 pub fn run(list_settings: bool) -> Result<(), Failure> {
     let mut text = String::new();
@@ -31,6 +31,11 @@ pub fn run(list_settings: bool) -> Result<(), Failure> {
         text += &format!("\nprofiles: {}\n", NAMES.join(", "));
     }
     say(&text)
+}
+
+/// `sandbox schema`.
+pub fn schema() -> Result<(), Failure> {
+    say(&format!("{:#}\n", scenario::schema()))
 }
 
 /// A unit in brackets.

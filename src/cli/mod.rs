@@ -23,6 +23,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use crate::breakdown::Breakdown;
+use crate::floor_plan;
 use crate::reproduce::ReproduceError;
 use crate::scenario::{Scenario, ScenarioError, Setting};
 use crate::simulation::{Fault, Simulation};
@@ -116,6 +117,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Bench(options) => bench::run(&options),
         Command::Accuracy(options) => accuracy::run(&options),
         Command::Stress(options) => stress::run(&options),
+        Command::Schema => list::schema(),
         Command::List { settings } => list::run(settings),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man { out } => manual::man(out.as_deref()),
@@ -143,6 +145,12 @@ fn scenario(
             let setting = setting(&format!("{key}={value}"))?;
             settings.push(setting.typed_as(format!("{flag} {value}")));
         }
+    }
+    if let Some(path) = &scene.geometry {
+        let text = format!("--geometry {}", path.display());
+        let plan = floor_plan::read(path);
+        let plan = plan.map_err(|error| Failure::Input(format!("--geometry {error}")))?;
+        settings.extend(Setting::floor_plan(&plan, &text));
     }
     for text in &scene.set {
         settings.push(setting(text)?);

@@ -1,6 +1,7 @@
 //! What a file says → a scenario that can run, or the first thing that is wrong with it.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
 use serde_json::Value;
 
@@ -9,9 +10,8 @@ use super::error::{Problem, Under, in_plain_words};
 use super::file::{self, File, Object, ProfileChoice, TimeStep};
 use super::range::{COARSE_EVERY, MAX_SPEED, PREFERRED_SPEED, Range, TIME, TIME_STEP};
 use super::range::{point, region};
-use super::{Scenario, Stop, View, parameters, preset, profiles};
+use super::{Scenario, Stop, View, parameters, plan, preset, profiles};
 use crate::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP};
-use crate::geometry::Polygon;
 use crate::math::Vector;
 use crate::metrics::Measurement;
 use crate::profile::Override;
@@ -25,18 +25,19 @@ const DEFAULT_PROFILE: &str = "sph";
 /// Round everything there is, metres: the view of a scenario that gives none.
 const DEFAULT_MARGIN: f64 = 1.0;
 /// K^goal of a push.
-const GOAL_SCALE: Range = Range::at_least(0.0, 1e9);
+pub(super) const GOAL_SCALE: Range = Range::at_least(0.0, 1e9);
 /// Times that something is divided by, seconds.
-const UNTIL: Range = Range::above(0.0, 1e7);
+pub(super) const UNTIL: Range = Range::above(0.0, 1e7);
 
-/// Checks `document`; a scenario without a name gets `fallback_name`.
-pub(super) fn scenario(document: &Value, fallback_name: &str) -> Result<Scenario, Problem> {
-    let document = preset::fill(document);
+/// Checks `document`, which is or came from `path`: by it a scenario without a name is called, and in its
+/// folder are the files that the scenario names.
+pub(super) fn scenario(document: &Value, path: &Path) -> Result<Scenario, Problem> {
+    let mut document = preset::fill(document);
+    without_schema(&mut document)?;
+    plan::fill(&mut document, path.parent().unwrap_or(Path::new("")))?;
     let file = read(&document)?;
-    let name = file
-        .name
-        .clone()
-        .unwrap_or_else(|| fallback_name.to_owned());
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = file.name.clone().unwrap_or_else(|| stem.into_owned());
     if name.is_empty() {
         return Err(Problem::new("name", "must not be empty"));
     }
@@ -70,6 +71,17 @@ pub(super) fn scenario(document: &Value, fallback_name: &str) -> Result<Scenario
     })
 }
 
+/// Takes out the key by which editors find the schema.
+fn without_schema(document: &mut Value) -> Result<(), Problem> {
+    let given = document
+        .as_object_mut()
+        .and_then(|document| document.remove("$schema"));
+    match given {
+        None | Some(Value::String(_)) => Ok(()),
+        Some(_) => Err(Problem::new("$schema", "must be text, where the schema is")),
+    }
+}
+
 /// Names and types.
 fn read(document: &Value) -> Result<File, Problem> {
     let file: Result<Object<File>, _> = serde_path_to_error::deserialize(document);
@@ -91,10 +103,7 @@ fn empty_scene(file: &File) -> Result<Scene, Problem> {
     let preferred_speed = file.preferred_speed.unwrap_or(paper.preferred_speed);
     let max_speed = file.max_speed.unwrap_or(paper.max_speed);
     let seed = file.seed.unwrap_or(paper.seed);
-    let mut obstacles = Vec::with_capacity(file.obstacles.len());
-    for (k, corners) in file.obstacles.iter().enumerate() {
-        obstacles.push(obstacle(corners).under(&format!("obstacles[{k}]"))?);
-    }
+    let obstacles = plan::solids(file)?;
     Ok(Scene {
         seed: file.population_seed.unwrap_or(seed),
         behaviour_seed: Some(file.behaviour_seed.unwrap_or(seed)),
@@ -127,14 +136,6 @@ fn automatic_clock(file: &File, scene: &Scene) -> Result<Clock, Problem> {
     })?;
     let longest = file.longest_step_secs.unwrap_or(PAPER_COARSE_STEP);
     clock(file, step.min(longest))
-}
-
-fn obstacle(corners: &[[f64; 2]]) -> Result<Polygon, Problem> {
-    let mut points = Vec::with_capacity(corners.len());
-    for (k, &corner) in corners.iter().enumerate() {
-        points.push(point(&format!("[{k}]"), corner)?);
-    }
-    Polygon::new(points).map_err(|error| Problem::new("", error.to_string()))
 }
 
 fn pushes(events: &[Object<file::Event>]) -> Result<Vec<Push>, Problem> {
@@ -192,23 +193,27 @@ fn measurements(given: &[file::Measurement]) -> Result<Vec<Measurement>, Problem
 
 fn measurement(given: &file::Measurement) -> Result<Measurement, Problem> {
     Ok(match given {
-        file::Measurement::Density { at_secs, region: r } => Measurement::Density {
-            at: TIME.check("density.at_secs", *at_secs)?,
-            region: r.map(|r| region("density.region", r)).transpose()?,
-        },
-        file::Measurement::FlowOfFirst { arrivals } => {
-            if *arrivals < 2 {
+        file::Measurement::Density(Object(density)) => {
+            let place = density.region.map(|r| region("density.region", r));
+            Measurement::Density {
+                at: TIME.check("density.at_secs", density.at_secs)?,
+                region: place.transpose()?,
+            }
+        }
+        file::Measurement::FlowOfFirst(Object(flow)) => {
+            let arrivals = flow.arrivals;
+            if arrivals < 2 {
                 let reason = format!("a flow needs at least 2 arrivals, not {arrivals}");
                 return Err(Problem::new("flow_of_first.arrivals", reason));
             }
             Measurement::FlowOfFirst {
-                arrivals: *arrivals as usize,
+                arrivals: arrivals as usize,
             }
         }
-        file::Measurement::FlowUntil { until_secs } => Measurement::FlowUntil {
-            until: UNTIL.check("flow_until.until_secs", *until_secs)?,
+        file::Measurement::FlowUntil(Object(flow)) => Measurement::FlowUntil {
+            until: UNTIL.check("flow_until.until_secs", flow.until_secs)?,
         },
-        file::Measurement::Evacuated {} => Measurement::Evacuated,
+        file::Measurement::Evacuated(_) => Measurement::Evacuated,
     })
 }
 

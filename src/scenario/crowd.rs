@@ -18,16 +18,16 @@ pub(super) const MOST_AGENTS: u64 = 10_000_000;
 pub(super) const MOST_NUMBERED: usize = u16::MAX as usize;
 
 /// D_i, metres.
-const RADIUS: Range = Range::at_least(0.01, 10.0);
+pub(super) const RADIUS: Range = Range::at_least(0.01, 10.0);
 /// m_i.
-const MASS: Range = Range::at_least(1e-6, 1e6);
+pub(super) const MASS: Range = Range::at_least(1e-6, 1e6);
 /// Removal radius and jitter, metres.
-const DISTANCE: Range = Range::above(0.0, 1e6);
-const JITTER: Range = Range::at_least(0.0, 1e6);
+pub(super) const DISTANCE: Range = Range::above(0.0, 1e6);
+pub(super) const JITTER: Range = Range::at_least(0.0, 1e6);
 /// Time between entries, seconds.
-const EVERY: Range = Range::above(0.0, 1e7);
+pub(super) const EVERY: Range = Range::above(0.0, 1e7);
 /// Initial speeds, m/s.
-const VELOCITY: Range = Range::at_least(-100.0, 100.0);
+pub(super) const VELOCITY: Range = Range::at_least(-100.0, 100.0);
 
 /// Fills a scene with people.
 pub(super) struct Crowd<'a> {

@@ -84,7 +84,7 @@ impl Problem {
     }
 
     /// The same problem seen from outside of `parent`.
-    fn under(self, parent: &str) -> Self {
+    pub(super) fn under(self, parent: &str) -> Self {
         let joint = match self.path.chars().next() {
             None | Some('[') => "",
             Some(_) => ".",

@@ -7,6 +7,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Serialize};
 
+use super::plan::Nested;
 use super::preset::Preset;
 use crate::boundary::WallMethod;
 use crate::catalog::{NavigationKind, Parameters};
@@ -66,7 +67,8 @@ pub(super) struct File {
     pub max_speed: Option<f64>,
     pub profile: Option<ProfileChoice>,
     pub parameters: Object<Parameters>,
-    pub obstacles: Vec<Vec<[f64; 2]>>,
+    pub walkable_area: Option<Vec<Vec<Vec<[f64; 2]>>>>,
+    pub obstacles: Vec<Vec<Nested>>,
     pub goal: Option<[f64; 2]>,
     pub agents: Vec<Object<Agent>>,
     pub grids: Vec<Object<Grid>>,
@@ -244,18 +246,38 @@ pub(super) struct Event {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(super) enum Measurement {
-    Density {
-        at_secs: f64,
-        region: Option<Corners>,
-    },
-    FlowOfFirst {
-        arrivals: u32,
-    },
-    FlowUntil {
-        until_secs: f64,
-    },
-    Evacuated {},
+    Density(Object<DensityAt>),
+    FlowOfFirst(Object<FlowOfFirst>),
+    FlowUntil(Object<FlowUntil>),
+    Evacuated(Object<Nothing>),
 }
+
+/// The density in a region at one moment.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DensityAt {
+    pub at_secs: f64,
+    pub region: Option<Corners>,
+}
+
+/// The flow of the first who arrive.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FlowOfFirst {
+    pub arrivals: u32,
+}
+
+/// The flow of those who arrive in time.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FlowUntil {
+    pub until_secs: f64,
+}
+
+/// An object without keys.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Nothing {}
 
 /// When to stop before the end.
 #[derive(Debug, Clone, Default, Deserialize)]

@@ -15,6 +15,10 @@
 //! | `view` | `region`, and optionally `opens_at_secs` |
 //! | `profile` | one of `base` (a name), `navigation` (`goal`, `social` or `rvo`; with it `sph`, true or false) and `blend` (a list of `at_density`, `profile`), and optionally `name`, `parameters` |
 //!
+//! People walk in the `walkable_area`, everywhere without it, but not in the `obstacles`. Either is written
+//! out, or is the name of a file that [`floor_plan`](crate::floor_plan) reads. `$schema` is left alone, for
+//! editors.
+//!
 //! An agent is removed `remove_within` metres of its goal, and never without that key; unless
 //! `counted` is false, its arrival counts as evacuated. `parameters` at the top go before those of
 //! the profiles. Ids are given from 0 in the order of entry: agents, grids, then sources as they come.
@@ -24,11 +28,14 @@ mod crowd;
 mod document;
 mod error;
 mod file;
+mod key;
 mod nested;
 mod parameters;
+mod plan;
 mod preset;
 mod profiles;
 mod range;
+mod schema;
 mod setting;
 mod settings;
 mod shipped;
@@ -36,6 +43,7 @@ mod shipped;
 pub use error::{Problem, ScenarioError};
 pub use nested::NESTED;
 pub use preset::Preset;
+pub use schema::schema;
 pub use setting::{Setting, SettingError};
 pub use settings::{SettingDoc, settings};
 pub use shipped::{SHIPPED, Shipped};
@@ -72,7 +80,7 @@ pub struct Scenario {
     pub debug_agents: Vec<u32>,
     /// The name of the profile of agents that name none.
     pub profile_name: String,
-    /// The file as given, with the settings and what its preset stands for in it.
+    /// The file as given, with the settings, what its preset stands for and what the files that it names say.
     pub document: Value,
 }
 
@@ -100,17 +108,17 @@ impl Scenario {
         document::write(&self.document)
     }
 
-    /// Reads a scenario from JSON; `file` is what messages call it.
+    /// Reads a scenario from JSON; `file` is what messages call it, and files that it names are in that one's
+    /// folder.
     ///
     /// # Errors
     /// Anything wrong with the text or with the settings: the first thing, with its place.
     pub fn parse(text: &str, file: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
         let given = document::read(text, file)?;
-        let stem = Path::new(file).file_stem().unwrap_or_default();
-        let stem = stem.to_string_lossy();
+        let path = Path::new(file);
         let invalid = |file: String, problem| ScenarioError::Invalid { file, problem };
         if settings.is_empty() || !given.is_object() {
-            return check::scenario(&given, &stem).map_err(|p| invalid(file.to_owned(), p));
+            return check::scenario(&given, path).map_err(|p| invalid(file.to_owned(), p));
         }
         let mut changed = given.clone();
         let mut paths = Vec::with_capacity(settings.len());
@@ -118,14 +126,14 @@ impl Scenario {
             let applied = setting.apply(&mut changed);
             paths.push(applied.map_err(|problem| setting.refused(problem))?);
         }
-        check::scenario(&changed, &stem).map_err(|problem| {
+        check::scenario(&changed, path).map_err(|problem| {
             for (path, setting) in paths.iter().zip(settings).rev() {
                 if let Some(problem) = problem.seen_from(path) {
                     return setting.refused(problem);
                 }
             }
             let mut source = file.to_owned();
-            if check::scenario(&given, &stem).is_ok() {
+            if check::scenario(&given, path).is_ok() {
                 source.push_str(" with");
                 source.extend(settings.iter().map(|setting| format!(" {setting}")));
             }

@@ -2,18 +2,9 @@
 //! range, meaning.
 
 use super::error::Problem;
+use super::key::{Key, Kind};
 use super::range::Range;
-use super::settings::SettingDoc;
 use crate::catalog::Parameters;
-
-/// One of them.
-struct ParameterDoc {
-    key: &'static str,
-    unit: &'static str,
-    default: &'static str,
-    range: Range,
-    description: &'static str,
-}
 
 /// Lengths over which agents act on each other, metres.
 const REACH: Range = Range::at_least(0.01, 100.0);
@@ -24,180 +15,153 @@ const STRENGTH: Range = Range::at_least(0.0, 1e9);
 /// Densities, P/m².
 pub(super) const DENSITY: Range = Range::at_least(0.0, 1000.0);
 
-const PARAMETERS: [ParameterDoc; 19] = [
-    parameter(
+/// Every parameter.
+pub(super) const PARAMETERS: [Key; 19] = [
+    Key::new(
         "goal_scale",
-        "",
-        "1",
-        STRENGTH,
+        Kind::Number(STRENGTH),
         "K^goal, strength of the goal force (Eq. 17)",
-    ),
-    parameter(
+    )
+    .default("1"),
+    Key::new(
         "relaxation_time",
-        "s",
-        "0.5",
-        RELAXATION,
+        Kind::Number(RELAXATION),
         "τ, in which the goal force corrects the velocity (Eq. 17)",
-    ),
-    parameter(
+    )
+    .unit("s")
+    .default("0.5"),
+    Key::new(
         "agent_strength",
-        "m²/s²",
-        "2.1",
-        STRENGTH,
+        Kind::Number(STRENGTH),
         "V₀, strength of the social force of agents (Eq. 18)",
-    ),
-    parameter(
+    )
+    .unit("m²/s²")
+    .default("2.1"),
+    Key::new(
         "agent_range",
-        "m",
-        "0.3",
-        REACH,
+        Kind::Number(REACH),
         "σ, range of the social force of agents (Eq. 18)",
-    ),
-    parameter(
+    )
+    .unit("m")
+    .default("0.3"),
+    Key::new(
         "anticipation_time",
-        "s",
-        "2",
-        Range::at_least(0.0, 1e3),
+        Kind::Number(Range::at_least(0.0, 1e3)),
         "T, how far ahead the social force looks (Eq. 18)",
-    ),
-    parameter(
+    )
+    .unit("s")
+    .default("2"),
+    Key::new(
         "wall_strength",
-        "m²/s²",
-        "2.1",
-        STRENGTH,
+        Kind::Number(STRENGTH),
         "U₀, strength of the social force of walls (Eq. 19)",
-    ),
-    parameter(
+    )
+    .unit("m²/s²")
+    .default("2.1"),
+    Key::new(
         "wall_range",
-        "m",
-        "0.1",
-        REACH,
+        Kind::Number(REACH),
         "R, range of the social force of walls (Eq. 19)",
-    ),
-    parameter(
+    )
+    .unit("m")
+    .default("0.1"),
+    Key::new(
         "avoidance_radius",
-        "m",
-        "5",
-        REACH,
+        Kind::Number(REACH),
         "social force and RVO look this far",
-    ),
-    parameter(
+    )
+    .unit("m")
+    .default("5"),
+    Key::new(
         "avoidance_tolerance",
-        "m/s²",
-        "0",
-        STRENGTH,
+        Kind::Number(STRENGTH),
         "social forces that are certainly below this, on a person of mass 1, are left out",
-    ),
-    parameter(
+    )
+    .unit("m/s²")
+    .default("0"),
+    Key::new(
         "collision_weight",
-        "m",
-        "1",
-        STRENGTH,
+        Kind::Number(STRENGTH),
         "w, weight of the time to collision in RVO (Eq. 20)",
-    ),
-    parameter(
+    )
+    .unit("m")
+    .default("1"),
+    Key::new(
         "candidates",
-        "",
-        "250",
-        Range::at_least(1.0, 1e6),
+        Kind::Whole(Range::at_least(1.0, 1e6)),
         "candidate velocities of RVO per agent and coarse frame; a whole number",
-    ),
-    parameter("viscosity", "", "0", STRENGTH, "μ (Eq. 2); 0: none"),
-    parameter(
+    )
+    .default("250"),
+    Key::new("viscosity", Kind::Number(STRENGTH), "μ (Eq. 2); 0: none").default("0"),
+    Key::new(
         "agent_stiffness",
-        "1/s²",
-        "1000; with SPH 50",
-        STRENGTH,
+        Kind::Number(STRENGTH),
         "K^ag, contact between agents (Eq. 22); 0: none",
-    ),
-    parameter(
+    )
+    .unit("1/s²")
+    .default("1000; with SPH 50"),
+    Key::new(
         "wall_stiffness",
-        "1/s²",
-        "1000; with SPH 200",
-        STRENGTH,
+        Kind::Number(STRENGTH),
         "K^obs, contact with walls (Eq. 23); 0: none",
-    ),
-    parameter(
+    )
+    .unit("1/s²")
+    .default("1000; with SPH 200"),
+    Key::new(
         "support_radius",
-        "m",
-        "1",
-        REACH,
+        Kind::Number(REACH),
         "h, support radius of the SPH kernels",
-    ),
-    parameter(
+    )
+    .unit("m")
+    .default("1"),
+    Key::new(
         "gas_constant",
-        "",
-        "200",
-        STRENGTH,
+        Kind::Number(STRENGTH),
         "k, pressure per excess density (Eq. 5); 0: no pressure",
-    ),
-    parameter(
+    )
+    .default("200"),
+    Key::new(
         "rest_density_min",
-        "P/m²",
-        "0",
-        DENSITY,
+        Kind::Number(DENSITY),
         "ρ⁰min, lowest personal rest density",
-    ),
-    parameter(
+    )
+    .unit("P/m²")
+    .default("0"),
+    Key::new(
         "rest_density_max",
-        "P/m²",
-        "5",
-        DENSITY,
+        Kind::Number(DENSITY),
         "ρ⁰max, highest personal rest density",
-    ),
-    parameter(
+    )
+    .unit("P/m²")
+    .default("5"),
+    Key::new(
         "averaging_time",
-        "s",
-        "0.1",
-        RELAXATION,
+        Kind::Number(RELAXATION),
         "T^ρ, over which the personal rest density adapts (Eq. 8)",
-    ),
+    )
+    .unit("s")
+    .default("0.1"),
 ];
-
-const fn parameter(
-    key: &'static str,
-    unit: &'static str,
-    default: &'static str,
-    range: Range,
-    description: &'static str,
-) -> ParameterDoc {
-    ParameterDoc {
-        key,
-        unit,
-        default,
-        range,
-        description,
-    }
-}
-
-/// Every parameter, for the list of settings.
-pub(super) fn docs() -> impl Iterator<Item = SettingDoc> {
-    PARAMETERS.iter().map(|doc| SettingDoc {
-        key: doc.key,
-        unit: doc.unit,
-        default: doc.default,
-        range: doc.range.to_string(),
-        description: doc.description,
-    })
-}
 
 /// Is `key` a parameter of profiles?
 pub(super) fn is_parameter(key: &str) -> bool {
-    PARAMETERS.iter().any(|doc| doc.key == key)
+    PARAMETERS.iter().any(|known| known.key == key)
 }
 
 /// Every given parameter with its key.
 pub(super) fn given(parameters: &Parameters) -> Vec<(&'static str, f64)> {
     let values = serde_json::to_value(parameters).unwrap_or_default();
-    let value = |doc: &ParameterDoc| Some((doc.key, values.get(doc.key)?.as_f64()?));
+    let value = |known: &Key| Some((known.key, values.get(known.key)?.as_f64()?));
     PARAMETERS.iter().filter_map(value).collect()
 }
 
 /// Is every given parameter in range?
 pub(super) fn check(parameters: &Parameters) -> Result<(), Problem> {
     for (key, value) in given(parameters) {
-        for doc in PARAMETERS.iter().filter(|doc| doc.key == key) {
-            doc.range.check(key, value)?;
+        for known in PARAMETERS.iter().filter(|known| known.key == key) {
+            if let Kind::Number(range) | Kind::Whole(range) = known.kind {
+                range.check(key, value)?;
+            }
         }
     }
     Ok(())

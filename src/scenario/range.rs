@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde_json::{Value, json};
+
 use super::error::Problem;
 use crate::math::Vector;
 use crate::scene::Region;
@@ -43,6 +45,20 @@ impl Range {
             open: true,
             highest,
         }
+    }
+
+    /// The same as JSON Schema of a `number` or `integer`.
+    pub(super) fn schema(&self, number: &str) -> Value {
+        let lowest = if self.open {
+            "exclusiveMinimum"
+        } else {
+            "minimum"
+        };
+        let plain = |bound: f64| match bound as i64 {
+            whole if whole as f64 == bound => json!(whole),
+            _ => json!(bound),
+        };
+        json!({"type": number, lowest: plain(self.lowest), "maximum": plain(self.highest)})
     }
 
     /// `value`, if it is allowed for `key`.

@@ -78,6 +78,15 @@ impl Setting {
         Self { text, ..self }
     }
 
+    /// A value for `key` at the top of a file, which messages call `text`.
+    pub(super) fn of(key: &str, value: Value, text: &str) -> Self {
+        Self {
+            text: text.to_owned(),
+            path: vec![key.to_owned()],
+            value,
+        }
+    }
+
     /// The error for a problem at or below the changed value.
     pub(super) fn refused(&self, problem: Problem) -> ScenarioError {
         ScenarioError::Setting {

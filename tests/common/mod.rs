@@ -1,6 +1,8 @@
 //! Scenes that the tests are built from. Each test file uses its own part of this.
 #![allow(dead_code)]
 
+pub mod documents;
+pub mod json_schema;
 #[cfg(feature = "cli")]
 pub mod program;
 pub mod quadrature;

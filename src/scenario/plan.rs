@@ -1,0 +1,200 @@
+//! Walkable areas and obstacles: written out in a scenario, or in files that it names.
+
+use std::fmt;
+use std::path::Path;
+
+use serde::de::{Deserialize, Deserializer, SeqAccess, Visitor};
+use serde_json::{Value, json};
+
+use super::error::{Problem, Under};
+use super::file::File;
+use super::range::point;
+use super::setting::Setting;
+use crate::floor_plan::{self, FloorPlan, FloorPlanError};
+use crate::geometry::{Area, Polygon, Ring};
+
+/// The keys that may name a file.
+const WALKABLE_AREA: &str = "walkable_area";
+const OBSTACLES: &str = "obstacles";
+
+/// Numbers in lists in lists: a point, a ring of points or a list of rings.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Nested {
+    Number(f64),
+    List(Vec<Nested>),
+}
+
+impl<'de> Deserialize<'de> for Nested {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(NestedVisitor)
+    }
+}
+
+struct NestedVisitor;
+
+impl<'de> Visitor<'de> for NestedVisitor {
+    type Value = Nested;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a number or a list")
+    }
+
+    fn visit_f64<E>(self, number: f64) -> Result<Nested, E> {
+        Ok(Nested::Number(number))
+    }
+
+    fn visit_u64<E>(self, number: u64) -> Result<Nested, E> {
+        Ok(Nested::Number(number as f64))
+    }
+
+    fn visit_i64<E>(self, number: i64) -> Result<Nested, E> {
+        Ok(Nested::Number(number as f64))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Nested, A::Error> {
+        let mut list = Vec::new();
+        while let Some(item) = items.next_element()? {
+            list.push(item);
+        }
+        Ok(Nested::List(list))
+    }
+}
+
+/// Puts what files say in the place of their names, which are relative to `folder`: the document says
+/// everything itself then.
+pub(super) fn fill(document: &mut Value, folder: &Path) -> Result<(), Problem> {
+    let Value::Object(document) = document else {
+        return Ok(());
+    };
+    for (key, read) in [
+        (WALKABLE_AREA, floor_plan::read as fn(&Path) -> _),
+        (OBSTACLES, floor_plan::read_obstacles),
+    ] {
+        let name = match document.get(key) {
+            Some(Value::String(name)) => name,
+            None | Some(Value::Null | Value::Array(_)) => continue,
+            Some(_) => {
+                let reason = "must be a list of polygons, or the name of a file";
+                return Err(Problem::new(key, reason));
+            }
+        };
+        let plan: FloorPlan =
+            read(&folder.join(name)).map_err(|error| problem(error).under(key))?;
+        let value = match key {
+            OBSTACLES => obstacles_value(&plan),
+            _ if plan.walkable.is_empty() => {
+                let reason =
+                    format!("{name}: has nothing but obstacles; name it under `obstacles`");
+                return Err(Problem::new(key, reason));
+            }
+            _ => walkable_value(&plan),
+        };
+        document.insert(key.to_owned(), value);
+    }
+    Ok(())
+}
+
+impl Setting {
+    /// What puts `plan` in the place of a scenario's walkable area and obstacles; messages call it `text`.
+    pub fn floor_plan(plan: &FloorPlan, text: &str) -> [Self; 2] {
+        let walkable = match plan.walkable.is_empty() {
+            true => Value::Null,
+            false => walkable_value(plan),
+        };
+        [
+            Self::of(WALKABLE_AREA, walkable, text),
+            Self::of(OBSTACLES, obstacles_value(plan), text),
+        ]
+    }
+}
+
+fn walkable_value(plan: &FloorPlan) -> Value {
+    plan.walkable.iter().map(rings_value).collect()
+}
+
+fn obstacles_value(plan: &FloorPlan) -> Value {
+    let obstacle = |area: &Area| match area.holes.is_empty() {
+        true => ring_value(&area.exterior),
+        false => rings_value(area),
+    };
+    plan.obstacles.iter().map(obstacle).collect()
+}
+
+fn rings_value(area: &Area) -> Value {
+    area.rings().map(ring_value).collect()
+}
+
+fn ring_value(ring: &Ring) -> Value {
+    ring.points().iter().map(|p| json!([p.x, p.y])).collect()
+}
+
+/// The obstacles in their order, then what is round the walkable area.
+pub(super) fn solids(file: &File) -> Result<Vec<Polygon>, Problem> {
+    let mut solids = Vec::with_capacity(file.obstacles.len() + 1);
+    for (k, given) in file.obstacles.iter().enumerate() {
+        solids.push(obstacle(given).under(&format!("{OBSTACLES}[{k}]"))?);
+    }
+    if let Some(polygons) = &file.walkable_area {
+        solids.extend(walls_round(polygons).under(WALKABLE_AREA)?);
+    }
+    Ok(solids)
+}
+
+fn walls_round(polygons: &[Vec<Vec<[f64; 2]>>]) -> Result<Vec<Polygon>, Problem> {
+    for (k, rings) in polygons.iter().enumerate() {
+        for (r, ring) in rings.iter().enumerate() {
+            for (c, &corner) in ring.iter().enumerate() {
+                point(&format!("[{k}][{r}][{c}]"), corner)?;
+            }
+        }
+    }
+    let plan = FloorPlan::walkable(polygons).map_err(problem)?;
+    plan.solids()
+        .map_err(|error| Problem::new("", error.to_string()))
+}
+
+/// A ring, or a list of rings: the outline, then the holes.
+fn obstacle(given: &[Nested]) -> Result<Polygon, Problem> {
+    let is_corner = |item: &Nested| match item {
+        Nested::List(inner) => matches!(inner.first(), None | Some(Nested::Number(_))),
+        Nested::Number(_) => true,
+    };
+    if given.iter().all(is_corner) {
+        let corners = ring(given)?;
+        let points = corners.into_iter().map(Into::into).collect();
+        return Polygon::new(points).map_err(|error| Problem::new("", error.to_string()));
+    }
+    let mut rings = Vec::with_capacity(given.len());
+    for (k, item) in given.iter().enumerate() {
+        let place = format!("[{k}]");
+        let Nested::List(corners) = item else {
+            return Err(Problem::new(place, "must be a ring, a list of points"));
+        };
+        rings.push(ring(corners).under(&place)?);
+    }
+    let area = FloorPlan::obstacle(&rings).map_err(problem)?;
+    Polygon::filling(area).map_err(|error| Problem::new("", error.to_string()))
+}
+
+fn ring(given: &[Nested]) -> Result<Vec<[f64; 2]>, Problem> {
+    let corner = |(k, item): (usize, &Nested)| match item {
+        Nested::List(xy) => match xy[..] {
+            [Nested::Number(x), Nested::Number(y)] => {
+                point(&format!("[{k}]"), [x, y])?;
+                Ok([x, y])
+            }
+            _ => Err(Problem::new(format!("[{k}]"), "must be a point, [x, y]")),
+        },
+        Nested::Number(_) => Err(Problem::new(format!("[{k}]"), "must be a point, [x, y]")),
+    };
+    given.iter().enumerate().map(corner).collect()
+}
+
+/// With the place in the path if it is one.
+fn problem(error: FloorPlanError) -> Problem {
+    match error {
+        FloorPlanError::Ring { place, reason } => Problem::new(place, reason),
+        FloorPlanError::EmptyGeometry(place) => Problem::new(place, "has no rings"),
+        other => Problem::new("", other.to_string()),
+    }
+}

@@ -1,0 +1,92 @@
+//! JSON Schema as far as the schema of scenarios needs it; any other keyword is a panic, so that nothing is
+//! passed over.
+
+use serde_json::Value;
+
+/// Why `value` is not valid by `schema`, whose definitions are in `root`; `None` if it is.
+pub fn refusal(root: &Value, schema: &Value, value: &Value) -> Option<String> {
+    let mut reasons = schema
+        .as_object()
+        .unwrap()
+        .iter()
+        .filter_map(|(keyword, rule)| {
+            let fine = holds(root, schema, keyword, rule, value);
+            (!fine).then(|| format!("{value} fails {keyword}: {rule}"))
+        });
+    reasons.next()
+}
+
+fn valid(root: &Value, schema: &Value, value: &Value) -> bool {
+    refusal(root, schema, value).is_none()
+}
+
+fn holds(root: &Value, schema: &Value, keyword: &str, rule: &Value, value: &Value) -> bool {
+    let ways = || {
+        rule.as_array()
+            .unwrap()
+            .iter()
+            .filter(|way| valid(root, way, value))
+            .count()
+    };
+    let bound = || rule.as_f64().unwrap();
+    let number = value.as_f64();
+    let length = || rule.as_u64().unwrap() as usize;
+    match keyword {
+        "$schema" | "title" | "description" | "default" | "$defs" => true,
+        "$ref" => {
+            let pointer = rule.as_str().unwrap().strip_prefix('#').unwrap();
+            valid(root, root.pointer(pointer).expect(pointer), value)
+        }
+        "type" => match rule {
+            Value::Array(types) => types.iter().any(|name| is(name, value)),
+            name => is(name, value),
+        },
+        "enum" => rule.as_array().unwrap().contains(value),
+        "const" => rule == value,
+        "not" => !valid(root, rule, value),
+        "anyOf" => ways() > 0,
+        "oneOf" => ways() == 1,
+        "minimum" => number.is_none_or(|x| x >= bound()),
+        "exclusiveMinimum" => number.is_none_or(|x| x > bound()),
+        "maximum" => number.is_none_or(|x| x <= bound()),
+        "minLength" => value
+            .as_str()
+            .is_none_or(|text| text.chars().count() >= length()),
+        "minItems" => value.as_array().is_none_or(|list| list.len() >= length()),
+        "maxItems" => value.as_array().is_none_or(|list| list.len() <= length()),
+        "items" => value
+            .as_array()
+            .is_none_or(|list| list.iter().all(|item| valid(root, rule, item))),
+        "required" => value.as_object().is_none_or(|object| {
+            let mut keys = rule.as_array().unwrap().iter();
+            keys.all(|key| object.contains_key(key.as_str().unwrap()))
+        }),
+        "properties" => value.as_object().is_none_or(|object| {
+            let mut known = object
+                .iter()
+                .filter_map(|(key, value)| Some((rule.get(key)?, value)));
+            known.all(|(schema, value)| valid(root, schema, value))
+        }),
+        "additionalProperties" => {
+            assert_eq!(*rule, Value::Bool(false));
+            let known = schema["properties"].as_object().unwrap();
+            value
+                .as_object()
+                .is_none_or(|object| object.keys().all(|key| known.contains_key(key)))
+        }
+        unknown => panic!("{unknown} is not known here"),
+    }
+}
+
+fn is(name: &Value, value: &Value) -> bool {
+    match name.as_str().unwrap() {
+        "null" => value.is_null(),
+        "boolean" => value.is_boolean(),
+        "string" => value.is_string(),
+        "number" => value.is_number(),
+        "integer" => value.as_f64().is_some_and(|x| x.fract() == 0.0),
+        "array" => value.is_array(),
+        "object" => value.is_object(),
+        unknown => panic!("no type is called {unknown}"),
+    }
+}

@@ -1,0 +1,288 @@
+//! The schema of scenarios allows what the program takes, and knows every key, word and range.
+
+mod common;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use common::documents::{count, nasty, replace};
+use common::json_schema::refusal;
+use proptest::prelude::*;
+use sandbox::scenario::{SHIPPED, Scenario, schema};
+use serde_json::{Value, json};
+
+/// One of everything.
+fn whole() -> Value {
+    json!({
+        "$schema": "scenario.schema.json", "name": "whole", "description": "", "seed": 1,
+        "population_seed": 2, "behaviour_seed": 3, "duration_secs": 5.5, "preset": "fast",
+        "time_step_secs": "auto", "longest_step_secs": 0.05, "coarse_every": 3,
+        "integrator": "velocity-verlet", "wall_method": "union", "precision": "double",
+        "neighbor_lists": "coarse", "preferred_speed": 1.4, "max_speed": 2, "goal": [5, 5],
+        "profile": {"name": "own", "blend": [
+            {"at_density": 2, "profile": "sf"},
+            {"at_density": 4, "profile": {"base": "sph", "parameters": {"viscosity": 1}}}
+        ]},
+        "parameters": {"goal_scale": 2, "candidates": 30},
+        "walkable_area": [[[[0, 0], [9, 0], [9, 9]], [[5, 2], [6, 2], [6, 3]]]],
+        "obstacles": [[[0, 0], [1, 0], [1, 1]], [[[3, 1], [5, 1], [5, 3]], [[4, 1.5], [4.5, 1.5], [4.5, 2]]]],
+        "agents": [
+            {"position": [2, 1], "velocity": [1, 0], "radius": 0.2, "mass": 1, "goal": [8, 1],
+             "mean_density": 2, "profile": {"navigation": "rvo", "sph": false}, "remove_within": 1,
+             "counted": false},
+            {"position": [3, 1], "profile": null}
+        ],
+        "grids": [{"name": "g", "min": [7, 3], "max": [8, 4], "columns": 2, "rows": 2, "jitter": 0.1,
+                   "goal_offset": [1, 0], "profile": "rvo->sph", "remove_within": 0.5, "counted": true}],
+        "sources": [{"name": "s", "min": [7, 2], "max": [8, 2], "columns": 2, "rows": 1, "goal": [1, 0],
+                     "start_secs": 1, "every_secs": 1, "times": 3}],
+        "events": [{"name": "e", "at_secs": 1, "for_secs": 1, "region": [[0, 0], [5, 5]], "goal_scale": 3,
+                    "ignore_contact": true, "ignore_sph": false}],
+        "measurements": [{"density": {"at_secs": 5, "region": [[0, 0], [5, 5]]}}, {"evacuated": {}},
+                         {"flow_of_first": {"arrivals": 2}}, {"flow_until": {"until_secs": 5}}],
+        "stop": {"when_empty": true, "idle_secs": 5},
+        "view": {"region": [[0, 0], [9, 9]], "opens_at_secs": 1},
+        "debug_agents": [0, 1]
+    })
+}
+
+fn parsed(document: &Value) -> Result<Scenario, String> {
+    Scenario::parse(&document.to_string(), "f.json", &[]).map_err(|error| error.to_string())
+}
+
+fn refused(schema: &Value, document: &Value) -> Option<String> {
+    refusal(schema, schema, document)
+}
+
+#[test]
+fn every_scenario_there_is_and_one_with_everything_are_valid() {
+    let schema = schema();
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let mut seen = 0;
+    for folder in [scenarios.clone(), scenarios.join("stress")] {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path
+                .extension()
+                .is_some_and(|extension| extension == "json")
+            {
+                let document = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+                assert_eq!(refused(&schema, &document), None, "{}", path.display());
+                let scenario = Scenario::load(&path, &[]).unwrap();
+                assert_eq!(refused(&schema, &scenario.document), None);
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 20, "{seen}");
+    assert_eq!(refused(&schema, &whole()), None);
+    let scenario = parsed(&whole()).unwrap();
+    assert_eq!(scenario.document.get("$schema"), None);
+    assert!(
+        parsed(&json!({"$schema": 5}))
+            .unwrap_err()
+            .contains("$schema")
+    );
+}
+
+/// The names that the parser says it knows, where `whole` has a `?` put in.
+fn known(pointer: &str) -> Vec<String> {
+    let mut document = whole();
+    let object = document.pointer_mut(pointer).unwrap();
+    object
+        .as_object_mut()
+        .unwrap()
+        .insert("?".to_owned(), json!(0));
+    let error = parsed(&document).unwrap_err();
+    let (_, names) = error
+        .split_once("`?`, ")
+        .unwrap_or_else(|| panic!("{error}"));
+    names
+        .split('`')
+        .skip(1)
+        .step_by(2)
+        .map(str::to_owned)
+        .collect()
+}
+
+#[test]
+fn every_object_has_the_keys_that_the_parser_knows() {
+    let schema = schema();
+    for (pointer, place) in [
+        ("", ""),
+        ("/parameters", "/$defs/parameters"),
+        ("/profile", "/$defs/full_profile"),
+        ("/profile/blend/0", "/$defs/blend_step"),
+        ("/agents/0", "/$defs/agent"),
+        ("/grids/0", "/$defs/grid"),
+        ("/sources/0", "/$defs/source"),
+        ("/events/0", "/$defs/event"),
+        (
+            "/measurements/0/density",
+            "/$defs/measurement/oneOf/0/properties/density",
+        ),
+        (
+            "/measurements/2/flow_of_first",
+            "/$defs/measurement/oneOf/1/properties/flow_of_first",
+        ),
+        (
+            "/measurements/3/flow_until",
+            "/$defs/measurement/oneOf/2/properties/flow_until",
+        ),
+        ("/stop", "/$defs/stop"),
+        ("/view", "/$defs/view"),
+    ] {
+        let object = schema.pointer(place).unwrap();
+        let properties = object["properties"].as_object().unwrap();
+        let mut keys: Vec<&str> = properties.keys().map(String::as_str).collect();
+        keys.retain(|key| *key != "$schema");
+        let mut expected = known(pointer);
+        expected.sort();
+        assert_eq!(keys, expected, "{place}");
+        // Without a key that is required the parser refuses as well, and only then.
+        let required = object
+            .get("required")
+            .map_or(vec![], |keys| keys.as_array().unwrap().clone());
+        for key in keys {
+            let mut document = whole();
+            let there = document
+                .pointer_mut(pointer)
+                .unwrap()
+                .as_object_mut()
+                .unwrap();
+            if there.remove(key).is_some() {
+                let missing = parsed(&document).is_err_and(|error| error.contains("missing field"));
+                assert_eq!(required.contains(&json!(key)), missing, "{place} {key}");
+            }
+        }
+        for (key, property) in properties {
+            assert!(
+                property["description"]
+                    .as_str()
+                    .is_some_and(|d| !d.is_empty()),
+                "{key}"
+            );
+        }
+    }
+}
+
+#[test]
+fn words_are_those_that_the_parser_knows() {
+    let schema = schema();
+    let mut seen = 0;
+    for (key, property) in schema["properties"].as_object().unwrap() {
+        let Some(words) = property.get("enum") else {
+            continue;
+        };
+        let error = parsed(&json!({ key.as_str(): "?" })).unwrap_err();
+        let mut known: Vec<&str> = error.split('`').skip(3).step_by(2).collect();
+        let mut words: Vec<&str> = words
+            .as_array()
+            .unwrap()
+            .iter()
+            .filter_map(Value::as_str)
+            .collect();
+        assert!(
+            words.contains(&property["default"].as_str().unwrap()),
+            "{key}"
+        );
+        known.sort();
+        words.sort();
+        assert_eq!(words, known, "{key}");
+        seen += 1;
+    }
+    assert_eq!(seen, 5);
+}
+
+/// What no schema can say: how values relate to each other, and geometry.
+const RELATIONS: [&str; 17] = [
+    "lower left corner comes first",
+    "too many",
+    "is measured already",
+    "would stand on one point",
+    "encloses no area",
+    "is named twice",
+    "no goal",
+    "either `goal` or `goal_offset`",
+    "remove one",
+    "crosses or touches itself",
+    "goes with `navigation` only",
+    "densities must rise",
+    "a blend is made of plain profiles",
+    "all profiles of a blend share it",
+    "share one velocity of RVO",
+    "is above rest_density_max",
+    "key `seed` is given twice",
+];
+
+#[test]
+fn what_the_parser_refuses_for_itself_the_schema_refuses_as_well() {
+    let schema = schema();
+    let table = include_str!("data/broken_scenarios.json");
+    let cases: BTreeMap<String, Vec<Value>> = serde_json::from_str(table).unwrap();
+    let mut seen = 0;
+    for case in cases.into_values().flatten() {
+        let mut document = whole();
+        document["profile"] = json!("sph");
+        let (parent, key) = case["at"].as_str().unwrap().rsplit_once('/').unwrap();
+        match document.pointer_mut(parent).unwrap() {
+            Value::Object(object) => drop(object.insert(key.to_owned(), case["put"].clone())),
+            Value::Array(list) => list[key.parse::<usize>().unwrap()] = case["put"].clone(),
+            _ => panic!("nothing can be put into {parent}"),
+        }
+        if RELATIONS
+            .iter()
+            .any(|said| case["message"].as_str().unwrap().contains(said))
+        {
+            continue;
+        }
+        assert!(parsed(&document).is_err(), "{case}");
+        assert!(refused(&schema, &document).is_some(), "{case}");
+        seen += 1;
+    }
+    assert!(seen > 40, "{seen}");
+    for document in [
+        json!([]),
+        json!({"obstacles": [[[0, 0], [1, 0]]]}),
+        json!({"obstacles": [[[0, 0], [1, 0], [1, "x"]]]}),
+        json!({"obstacles": [[[0, 0], [1, 0], [[1, 0], [2, 0], [2, 2]]]]}),
+        json!({"obstacles": null}),
+        json!({"walkable_area": [[[0, 0], [1, 0], [1, 1]]]}),
+        json!({"walkable_area": []}),
+        json!({"walkable_area": 5}),
+        json!({"walkable_area": {"type": "Polygon"}}),
+        json!({"measurements": ["evacuated"]}),
+        json!({"measurements": [{"evacuated": []}]}),
+        json!({"measurements": [{"density": [5]}]}),
+        json!({"measurements": [{"evacuated": {}, "density": {"at_secs": 1}}]}),
+        json!({"profile": {"base": "sf", "navigation": "goal"}}),
+        json!({"profile": {"parameters": {}}}),
+        json!({"debug_agents": [-1]}),
+    ] {
+        assert!(parsed(&document).is_err(), "{document}");
+        assert!(refused(&schema, &document).is_some(), "{document}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(4000) })]
+
+    #[test]
+    fn whatever_the_parser_takes_is_valid(
+        which in 0..=2 * SHIPPED.len(),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), nasty()), 1..3),
+    ) {
+        let mut document: Value = match SHIPPED.get(which) {
+            Some(shipped) => serde_json::from_str(shipped.text).unwrap(),
+            None => whole(),
+        };
+        for (index, value) in changes {
+            let mut k = index.index(count(&document));
+            replace(&mut document, &mut k, &value);
+        }
+        if parsed(&document).is_ok() {
+            prop_assert_eq!(refused(&schema(), &document), None);
+        }
+    }
+}
