@@ -69,6 +69,10 @@ pub mod drive;
 
 pub mod checkpoint;
 
+pub mod summary;
+
+pub mod statistics;
+
 pub mod wave;
 
 pub mod table;
@@ -88,6 +92,8 @@ pub mod plot;
 pub mod reproduce;
 
 pub mod job;
+
+pub mod sweep;
 
 #[cfg(feature = "bench")]
 pub mod bench;

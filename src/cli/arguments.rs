@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 
-use super::{accuracy, bench, reproduce};
+use super::{accuracy, bench, reproduce, sweep};
 use crate::scenario::{Preset, SHIPPED};
 
 const EXAMPLES: &str = "\
@@ -81,6 +81,9 @@ pub enum Command {
     /// Run hard cases, map the largest stable time step, measure jitter
     #[command(after_help = "Example: sandbox stress --quick")]
     Stress(StressOptions),
+    /// Run a scenario over a grid or list of settings and over seeds: a table, on many threads or machines
+    #[command(after_help = sweep::EXAMPLE)]
+    Sweep(sweep::SweepOptions),
     /// List the scenarios and profiles, or the settings that --set takes
     #[command(after_help = "Example: sandbox list --settings")]
     List {
@@ -360,7 +363,7 @@ fn positive_seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-fn threads(text: &str) -> Result<usize, String> {
+pub fn threads(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(count @ 1..=1024) => Ok(count),
         _ => Err("not a number of threads between 1 and 1024".to_owned()),

@@ -11,6 +11,7 @@ mod output;
 mod report;
 mod reproduce;
 mod stress;
+mod sweep;
 mod trajectory;
 mod update;
 mod watch;
@@ -105,6 +106,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Bench(options) => bench::run(&options),
         Command::Accuracy(options) => accuracy::run(&options),
         Command::Stress(options) => stress::run(&options),
+        Command::Sweep(options) => sweep::run(&options),
         Command::List { settings } => list::run(settings),
     }
 }

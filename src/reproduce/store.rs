@@ -42,12 +42,22 @@ impl Store {
     /// # Errors
     /// It cannot be made.
     pub fn open(folder: &Path) -> Result<Self, ReproduceError> {
-        let store = Self {
-            folder: folder.to_owned(),
-        };
+        let store = Self::at(folder);
         let cases = store.cases();
         fs::create_dir_all(&cases).map_err(|error| unwritable(folder, &error))?;
         Ok(store)
+    }
+
+    /// What may be in `folder`; makes nothing.
+    pub fn at(folder: &Path) -> Self {
+        Self {
+            folder: folder.to_owned(),
+        }
+    }
+
+    /// The folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
     }
 
     /// Where a file of this name belongs.
