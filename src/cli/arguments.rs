@@ -16,6 +16,7 @@ Examples:
   sandbox evacuation --trajectory evacuation.sqlite --trajectory evacuation.csv
   sandbox run my_station.json --until 60 --threads 2 --json
   sandbox inspect evacuation --agent 17 --at 15 --json
+  sandbox sweep study.json --threads 2
   sandbox bench scaling --largest 100000
   sandbox list --settings";
 

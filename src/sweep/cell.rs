@@ -142,7 +142,7 @@ fn key(scenario: &Scenario) -> String {
 /// By how many agents there are for how many frames, and what they are asked to do; to put cells in order.
 fn expected_secs(scenario: &Scenario) -> f64 {
     /// Seconds for one agent and frame, with SPH alone, social forces, RVO.
-    const SECONDS: [f64; 3] = [0.5e-6, 1.5e-6, 10e-6];
+    const SECONDS: [f64; 3] = [0.8e-6, 3.5e-6, 8e-6];
     let scene = &scenario.scene;
     let frames = scenario.duration_secs / scene.clock.time_step();
     let entering = scene.sources.iter().map(|source| {

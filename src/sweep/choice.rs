@@ -15,7 +15,9 @@ pub(super) const SCENARIO: &str = "scenario";
 /// A setting at its place in the file.
 #[derive(Debug, Clone)]
 pub(super) struct Choice {
+    /// As written.
     pub(super) key: String,
+    /// As written.
     pub(super) value: Value,
     /// As in `grid.viscosity[2]`.
     pub(super) place: String,
@@ -23,13 +25,17 @@ pub(super) struct Choice {
     pub(super) meaning: Meaning,
 }
 
+/// What a key may stand for.
 #[derive(Debug, Clone)]
 pub(super) enum Meaning {
+    /// Another scenario.
     Scenario(Source),
+    /// A change to the scenario.
     Setting(Setting),
 }
 
 impl Choice {
+    /// Does it set the same?
     pub(super) fn is_as(&self, other: &Self) -> bool {
         match (&self.meaning, &other.meaning) {
             (Meaning::Setting(own), Meaning::Setting(other)) => own.path() == other.path(),
@@ -37,6 +43,15 @@ impl Choice {
             _ => false,
         }
     }
+}
+
+/// Do two objects say the same, in whatever order?
+pub(super) fn same(one: &[Choice], other: &[Choice]) -> bool {
+    let has = |choice: &Choice| {
+        let mut others = other.iter();
+        others.any(|other| other.is_as(choice) && other.value == choice.value)
+    };
+    one.len() == other.len() && one.iter().all(has)
 }
 
 /// The settings of an object at `place`; with a folder, a scenario may be among them.

@@ -95,10 +95,10 @@ impl Shelf {
         self.0.write(file, contents)
     }
 
-    /// The result of a cell, if it is there; of a file that cannot be read, its name and why.
+    /// The result of a cell, if it is there.
     ///
     /// # Errors
-    /// The file is damaged.
+    /// Its file is damaged: its name, and what shows it.
     pub fn result(&self, cell: &Cell) -> Result<Option<CellResult>, String> {
         self.read(cell, FINISHED)
     }

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::cell::{Cell, Source};
-use super::choice::{Choice, Meaning, SCENARIO, axis, choices, source};
+use super::choice::{Choice, Meaning, SCENARIO, axis, choices, same, source};
 use super::entries::Entries;
 use super::seeds::Seeds;
 use super::{StudyError, problem};
@@ -134,7 +134,7 @@ struct Plan {
 impl Plan {
     fn new(file: &File, folder: &Path) -> Result<Self, Problem> {
         let fixed = choices(&file.settings, "settings", None)?;
-        let rows = match &file.list {
+        let rows: Vec<Vec<Choice>> = match &file.list {
             None => vec![Vec::new()],
             Some(list) if list.is_empty() => return Err(problem("list", "must not be empty")),
             Some(list) => {
@@ -183,8 +183,14 @@ impl Plan {
         Ok(count as usize)
     }
 
-    /// A setting that another one always goes before means nothing.
+    /// A setting that another one always goes before means nothing, and nothing is run twice.
     fn refuse_repetitions(&self) -> Result<(), Problem> {
+        for (k, row) in self.rows.iter().enumerate() {
+            if let Some(other) = self.rows[..k].iter().position(|other| same(other, row)) {
+                let reason = format!("is the same as list[{other}]");
+                return Err(problem(format!("list[{k}]"), reason));
+            }
+        }
         let seed = self.seeds[0].as_ref();
         let refuse = |choice: &Choice, other: String| {
             let reason = format!("is also given by {other}; give it in one of them");

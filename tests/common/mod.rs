@@ -3,6 +3,7 @@
 
 pub mod quadrature;
 pub mod social;
+pub mod sweep;
 
 use sandbox::agents::NewAgent;
 use sandbox::breakdown::Breakdown;
