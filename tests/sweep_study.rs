@@ -134,7 +134,7 @@ fn the_scenario_may_be_varied_too() {
 
 #[test]
 fn the_key_of_a_cell_depends_on_its_scenario_alone() {
-    let varied =
+    let (varied, _folder) =
         study(&json!({"scenario": "walk.json", "grid": {"viscosity": [1, 2]}, "seeds": 2}));
     let (fixed, _other) = study(&json!({
         "scenario": "walk.json", "name": "other",

@@ -68,9 +68,9 @@ struct Todo<'a> {
     attempts: u32,
 }
 
-/// Computes the cells of a shard that `shelf` does not have, the longest first, side by side on as many threads
-/// as rayon has, each on one; every one is kept as soon as it is finished. What another process is computing is
-/// waited for at the end, and computed only if that process goes without a result.
+/// Computes the cells of a shard that `shelf` does not have, the longest first, side by side on as many
+/// threads as rayon has, each on one; every one is kept as soon as it is finished. What another process is
+/// computing is waited for at the end, and computed only if that process goes without a result.
 ///
 /// # Errors
 /// Results cannot be kept. A cell that fails is none: it is in the tally, and tried again by the next call.
