@@ -59,13 +59,21 @@ snakemake
 [ "$before" = "$(ls -l --time-style=full-iso snakemake/cases)" ]
 
 # %% Slurm.
-installed() { command -v munged slurmctld slurmd sbatch > /dev/null; }
+installed() {
+  local program
+  for program in munged slurmctld slurmd sbatch sinfo squeue; do
+    command -v "$program" > /dev/null || return 1
+  done
+}
 
 start_slurm() {
   if ! installed; then
     [ "$(id -u)" = 0 ] && command -v apt-get > /dev/null || { echo "no apt-get, or not root"; return 1; }
-    apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
-      slurmctld slurmd slurm-client munge > apt.log 2>&1 || { tail -n 5 apt.log; return 1; }
+    {
+      apt-get update -qq
+      DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+        slurmctld slurmd slurm-client munge
+    } > apt.log 2>&1 || { tail -n 5 apt.log; return 1; }
     installed || return 1
   fi
   [ "$(id -u)" = 0 ] || { echo "slurmd needs root"; return 1; }
