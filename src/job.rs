@@ -144,32 +144,51 @@ pub fn run(
     missing.sort_by(|&a, &b| jobs[b].expected_secs.total_cmp(&jobs[a].expected_secs));
     let seconds = missing.iter().map(|&k| jobs[k].expected_secs).sum();
     listener.begins(missing.len(), jobs.len() - missing.len(), seconds);
-    let next = AtomicUsize::new(0);
     let results = Mutex::new(kept);
-    let work = || {
-        let pool = one_thread()?;
-        while let Some(&k) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let finished = pool.install(|| jobs[k].finish(store, listener));
-            if finished.is_err() {
-                next.store(missing.len(), Ordering::Relaxed);
-            }
-            let result = finished?;
-            results.lock().unwrap_or_else(|broken| broken.into_inner())[k] = Some(result);
-        }
-        Ok::<(), ReproduceError>(())
-    };
-    std::thread::scope(|scope| {
-        let threads = rayon::current_num_threads().min(missing.len());
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        workers.into_iter().try_for_each(|worker| {
-            let crashed = |_| ReproduceError::Data("a thread crashed".to_owned());
-            worker.join().map_err(crashed)?
-        })
+    side_by_side(missing.len(), |place| {
+        let k = missing[place];
+        let result = jobs[k].finish(store, listener)?;
+        results.lock().unwrap_or_else(|broken| broken.into_inner())[k] = Some(result);
+        Ok(())
     })?;
     let results = results
         .into_inner()
         .unwrap_or_else(|broken| broken.into_inner());
     Ok(results.into_iter().flatten().collect())
+}
+
+/// Does `work` for 0, 1, … below `count` on as many threads as rayon has, each piece on one of them, in this
+/// order as threads become free.
+///
+/// # Errors
+/// The first piece that fails; none begins after it.
+pub fn side_by_side(
+    count: usize,
+    work: impl Fn(usize) -> Result<(), ReproduceError> + Sync,
+) -> Result<(), ReproduceError> {
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let pool = one_thread()?;
+        loop {
+            let k = next.fetch_add(1, Ordering::Relaxed);
+            if k >= count {
+                return Ok(());
+            }
+            if let Err(error) = pool.install(|| work(k)) {
+                next.store(count, Ordering::Relaxed);
+                return Err(error);
+            }
+        }
+    };
+    // Threads of their own: one of rayon's would take up a second piece while it waits for the first.
+    std::thread::scope(|scope| {
+        let threads = rayon::current_num_threads().min(count);
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().try_for_each(|worker| {
+            let crashed = |_| ReproduceError::Data("a thread crashed".to_owned());
+            worker.join().map_err(crashed)?
+        })
+    })
 }
 
 /// What a job gave.

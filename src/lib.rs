@@ -71,6 +71,10 @@ pub mod drive;
 
 pub mod checkpoint;
 
+pub mod summary;
+
+pub mod statistics;
+
 pub mod wave;
 
 pub mod table;
@@ -90,6 +94,8 @@ pub mod plot;
 pub mod reproduce;
 
 pub mod job;
+
+pub mod sweep;
 
 #[cfg(feature = "bench")]
 pub mod bench;

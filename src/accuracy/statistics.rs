@@ -9,6 +9,7 @@ use crate::metrics::Metrics;
 use crate::reproduce::ReproduceError;
 use crate::scenario::Scenario;
 use crate::simulation::{Fault, Simulation};
+use crate::statistics::student_95;
 use crate::wave::{self, Estimate, Run, SpaceTime, Strip};
 
 /// Speeds are averaged over people of nearly the same density: the lower ends of the bins, P/m²; each is
@@ -154,8 +155,8 @@ impl Deviation {
 
     fn of(values: &[f64], reference: &[f64]) -> Option<Self> {
         let (mean, other) = (Estimate::of_mean(values)?, Estimate::of_mean(reference)?);
-        let interval = mean.error * quantile(values.len());
-        let beside = other.error * quantile(reference.len());
+        let interval = mean.error * student_95(values.len()).unwrap_or(0.0);
+        let beside = other.error * student_95(reference.len()).unwrap_or(0.0);
         Some(Self {
             mean: mean.value,
             interval,
@@ -163,14 +164,6 @@ impl Deviation {
             error_interval: interval.hypot(beside),
         })
     }
-}
-
-/// Student's t for 95 % of both sides, by the number of values.
-fn quantile(values: usize) -> f64 {
-    const TABLE: [f64; 10] = [
-        12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
-    ];
-    TABLE[values.saturating_sub(2).min(TABLE.len() - 1)]
 }
 
 /// Every number of a kind of scene against the reference, and last, where there is one, the fundamental
@@ -230,6 +223,6 @@ mod tests {
         let interval = Deviation::of(&[10.0, 10.2, 9.8, 10.1, 9.9], &[0.0])
             .unwrap()
             .interval;
-        assert!((interval - 2.776 * (0.025_f64 / 5.0).sqrt()).abs() < 1e-12);
+        assert!((interval - 2.776_445 * (0.025_f64 / 5.0).sqrt()).abs() < 1e-12);
     }
 }

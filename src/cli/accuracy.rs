@@ -1,11 +1,41 @@
 //! `sandbox accuracy`: run time against error.
 
-use super::arguments::AccuracyOptions;
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+
 use super::update::{check, update};
+use super::values::threads;
 use super::watch::Watch;
 use super::{Failure, say, use_threads};
 use crate::accuracy::{KNOBS, Knob, Plan, SCENES, Scene, WALLS, accuracy};
 use crate::reproduce::Store;
+
+#[derive(Args)]
+pub struct AccuracyOptions {
+    /// The scenes [default: all]
+    #[arg(value_parser = PossibleValuesParser::new(scenes()))]
+    pub scene: Vec<String>,
+    /// What is turned; may be repeated [default: all that matter in the scene]
+    #[arg(long, value_name = "KNOB", value_parser = PossibleValuesParser::new(knobs()))]
+    pub knob: Vec<String>,
+    /// Few values, seeds and turns: less than a minute
+    #[arg(long)]
+    pub quick: bool,
+    /// Folder for the results; what is finished in it is not done again
+    #[arg(long, value_name = "DIR", default_value = "accuracy")]
+    pub out: PathBuf,
+    /// Put the tables also between the lines <!-- NAME --> and <!-- /NAME --> of a file
+    #[arg(long, value_name = "FILE.md")]
+    pub update: Option<PathBuf>,
+    /// Runs to compute at once, each on one thread [default: all cores]
+    #[arg(long, value_parser = threads)]
+    pub threads: Option<usize>,
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    pub json: bool,
+}
 
 /// The scenes with a line about each.
 pub fn about() -> String {

@@ -6,7 +6,8 @@ use clap::builder::PossibleValuesParser;
 use clap::{ArgGroup, Args, Parser, Subcommand};
 use clap_complete::Shell;
 
-use super::{accuracy, bench, reproduce};
+use super::values::{frame_rate, positive_seconds, seconds, threads};
+use super::{accuracy, bench, reproduce, stress, sweep};
 use crate::scenario::{Preset, SHIPPED};
 
 const EXAMPLES: &str = "\
@@ -18,16 +19,9 @@ Examples:
   sandbox run my_station.json --until 60 --threads 2 --json
   sandbox run my_station.json --geometry station.geojson
   sandbox inspect evacuation --agent 17 --at 15 --json
+  sandbox sweep study.json --threads 2
   sandbox bench scaling --largest 100000
   sandbox list --settings";
-
-const BENCH_EXAMPLES: &str = "\
-Examples:
-  sandbox bench scaling --largest 100000
-  sandbox bench stages --out bench --force
-  sandbox bench threads --repeats 15 --json
-  sandbox bench skips --quick
-  sandbox bench compare --python jps/bin/python";
 
 /// Simulate, measure and inspect dense crowds (SPH crowds, van Toll et al. 2021).
 #[derive(Parser)]
@@ -73,21 +67,24 @@ pub enum Command {
     #[command(
         after_help = format!("{}Example: sandbox reproduce table1 fig5 --seeds 3", reproduce::about())
     )]
-    Reproduce(ReproduceOptions),
+    Reproduce(reproduce::ReproduceOptions),
     /// Measure how fast it is on this machine: a table, one JSON object, a picture
-    #[command(after_help = format!("{}{BENCH_EXAMPLES}", bench::about()))]
-    Bench(BenchOptions),
+    #[command(after_help = format!("{}{}", bench::about(), bench::EXAMPLES))]
+    Bench(bench::BenchOptions),
     /// Measure run time against error for every numerical choice: tables and work-precision diagrams
     #[command(after_help = format!("{}Example: sandbox accuracy relaxed wall --knob integrator", accuracy::about()))]
-    Accuracy(AccuracyOptions),
+    Accuracy(accuracy::AccuracyOptions),
     /// Run hard cases, map the largest stable time step, measure jitter
     #[command(after_help = "Example: sandbox stress --quick")]
-    Stress(StressOptions),
+    Stress(stress::StressOptions),
     /// Print the JSON Schema of scenario files, by which editors complete and check them
     #[command(
         after_help = "Example: sandbox schema > scenario.schema.json, and in a scenario \"$schema\": \"scenario.schema.json\""
     )]
     Schema,
+    /// Run a scenario over a grid or list of settings and over seeds: a table, on many threads or machines
+    #[command(after_help = sweep::EXAMPLE)]
+    Sweep(sweep::SweepOptions),
     /// List the scenarios and profiles, or the settings that --set takes
     #[command(after_help = "Example: sandbox list --settings")]
     List {
@@ -263,97 +260,6 @@ pub struct InspectOptions {
     pub save: Option<PathBuf>,
 }
 
-#[derive(Args)]
-pub struct ReproduceOptions {
-    /// Tables and figures, or all
-    #[arg(required = true, value_parser = PossibleValuesParser::new(reproduce::names()))]
-    pub what: Vec<String>,
-    /// Seeds per row of a table: 1, 2, …
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=1000))]
-    pub seeds: u64,
-    /// Folder for the results; finished cases in it are not run again
-    #[arg(long, value_name = "DIR", default_value = "reproduction")]
-    pub out: PathBuf,
-    /// Put what is said about each table also between the lines <!-- NAME --> and <!-- /NAME --> of a file
-    #[arg(long, value_name = "FILE.md")]
-    pub update: Option<PathBuf>,
-    /// Cases to compute at once, each on one thread [default: all cores]
-    #[arg(long, value_parser = threads)]
-    pub threads: Option<usize>,
-}
-
-#[derive(Args)]
-pub struct BenchOptions {
-    /// What to measure
-    #[arg(value_parser = PossibleValuesParser::new(bench::names()))]
-    pub what: String,
-    /// Folder for the results as JSON, SVG and PNG
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Replace existing results
-    #[arg(long)]
-    pub force: bool,
-    /// Print one JSON object instead of text
-    #[arg(long)]
-    pub json: bool,
-    /// How often to measure the same [default: 7, or 2 with --quick]
-    #[arg(long, value_name = "N", value_parser = repeats)]
-    pub repeats: Option<usize>,
-    /// Small crowds and few steps, in seconds: shows that it works, not how fast it is
-    #[arg(long)]
-    pub quick: bool,
-    /// Threads to compute on, where the benchmark does not choose them itself [default: all cores]
-    #[arg(long, value_parser = threads)]
-    pub threads: Option<usize>,
-    /// scaling: the largest crowd
-    #[arg(long, value_name = "AGENTS", default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(1_000..))]
-    pub largest: u32,
-    /// compare: the Python that has JuPedSim
-    #[arg(long, value_name = "PATH", default_value = "python3")]
-    pub python: PathBuf,
-}
-
-#[derive(Args)]
-pub struct AccuracyOptions {
-    /// The scenes [default: all]
-    #[arg(value_parser = PossibleValuesParser::new(accuracy::scenes()))]
-    pub scene: Vec<String>,
-    /// What is turned; may be repeated [default: all that matter in the scene]
-    #[arg(long, value_name = "KNOB", value_parser = PossibleValuesParser::new(accuracy::knobs()))]
-    pub knob: Vec<String>,
-    /// Few values, seeds and turns: less than a minute
-    #[arg(long)]
-    pub quick: bool,
-    /// Folder for the results; what is finished in it is not done again
-    #[arg(long, value_name = "DIR", default_value = "accuracy")]
-    pub out: PathBuf,
-    /// Put the tables also between the lines <!-- NAME --> and <!-- /NAME --> of a file
-    #[arg(long, value_name = "FILE.md")]
-    pub update: Option<PathBuf>,
-    /// Runs to compute at once, each on one thread [default: all cores]
-    #[arg(long, value_parser = threads)]
-    pub threads: Option<usize>,
-    /// Print one JSON object instead of text
-    #[arg(long)]
-    pub json: bool,
-}
-
-#[derive(Args)]
-pub struct StressOptions {
-    /// Fewer places on the maps and a shorter soak: less than a minute
-    #[arg(long)]
-    pub quick: bool,
-    /// Folder for the results; what is finished in it is not done again
-    #[arg(long, value_name = "DIR", default_value = "stress")]
-    pub out: PathBuf,
-    /// Put the tables also between the lines <!-- NAME --> and <!-- /NAME --> of a file
-    #[arg(long, value_name = "FILE.md")]
-    pub update: Option<PathBuf>,
-    /// Cases to compute at once, each on one thread [default: all cores]
-    #[arg(long, value_parser = threads)]
-    pub threads: Option<usize>,
-}
-
 /// Where a scenario comes from.
 pub enum Source {
     Shipped(&'static str),
@@ -368,40 +274,5 @@ impl Source {
             Some(name) => Self::Shipped(name),
             None => Self::File(PathBuf::from(text)),
         }
-    }
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(value) if (0.0..=1e9).contains(&value) => Ok(value),
-        _ => Err("not a time in seconds, 0 or later".to_owned()),
-    }
-}
-
-fn frame_rate(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(fps) if (1e-6..=1e6).contains(&fps) => Ok(fps),
-        _ => Err("not a number of frames per second above 0".to_owned()),
-    }
-}
-
-fn positive_seconds(text: &str) -> Result<f64, String> {
-    match seconds(text) {
-        Ok(value) if value > 0.0 => Ok(value),
-        _ => Err("not a time in seconds above 0".to_owned()),
-    }
-}
-
-fn threads(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(count @ 1..=1024) => Ok(count),
-        _ => Err("not a number of threads between 1 and 1024".to_owned()),
-    }
-}
-
-fn repeats(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(count @ 1..=1000) => Ok(count),
-        _ => Err("not a number of repeats between 1 and 1000".to_owned()),
     }
 }

@@ -1,10 +1,53 @@
 //! `sandbox bench`: how fast it is on this machine.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::arguments::BenchOptions;
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+
+use super::values::{repeats, threads};
 use super::{Failure, say, talk, use_threads};
 use crate::bench::{BENCHMARKS, BenchError, Plan, Report, check_free, make_folder};
+
+/// What may be typed.
+pub const EXAMPLES: &str = "\
+Examples:
+  sandbox bench scaling --largest 100000
+  sandbox bench stages --out bench --force
+  sandbox bench threads --repeats 15 --json
+  sandbox bench skips --quick
+  sandbox bench compare --python jps/bin/python";
+
+#[derive(Args)]
+pub struct BenchOptions {
+    /// What to measure
+    #[arg(value_parser = PossibleValuesParser::new(names()))]
+    pub what: String,
+    /// Folder for the results as JSON, SVG and PNG
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace existing results
+    #[arg(long)]
+    pub force: bool,
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    pub json: bool,
+    /// How often to measure the same [default: 7, or 2 with --quick]
+    #[arg(long, value_name = "N", value_parser = repeats)]
+    pub repeats: Option<usize>,
+    /// Small crowds and few steps, in seconds: shows that it works, not how fast it is
+    #[arg(long)]
+    pub quick: bool,
+    /// Threads to compute on, where the benchmark does not choose them itself [default: all cores]
+    #[arg(long, value_parser = threads)]
+    pub threads: Option<usize>,
+    /// scaling: the largest crowd
+    #[arg(long, value_name = "AGENTS", default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(1_000..))]
+    pub largest: u32,
+    /// compare: the Python that has JuPedSim
+    #[arg(long, value_name = "PATH", default_value = "python3")]
+    pub python: PathBuf,
+}
 
 /// What can be measured.
 pub fn names() -> Vec<&'static str> {

@@ -13,8 +13,10 @@ mod output;
 mod report;
 mod reproduce;
 mod stress;
+mod sweep;
 mod trajectory;
 mod update;
+mod values;
 mod watch;
 
 use std::io::{ErrorKind, Write};
@@ -118,6 +120,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Accuracy(options) => accuracy::run(&options),
         Command::Stress(options) => stress::run(&options),
         Command::Schema => list::schema(),
+        Command::Sweep(options) => sweep::run(&options),
         Command::List { settings } => list::run(settings),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man { out } => manual::man(out.as_deref()),

@@ -5,11 +5,13 @@ use serde_json::{Map, Value, json};
 use crate::metrics::{Metric, Metrics};
 use crate::scenario::Scenario;
 use crate::simulation::Simulation;
+use crate::summary::{Summary, value};
 
 /// The results of one run.
 pub struct Report<'a> {
     scenario: &'a Scenario,
     simulation: &'a Simulation,
+    measured: &'a Metrics,
     metrics: Vec<Metric>,
     interrupted: bool,
 }
@@ -18,12 +20,13 @@ impl<'a> Report<'a> {
     pub fn new(
         scenario: &'a Scenario,
         simulation: &'a Simulation,
-        metrics: &Metrics,
+        metrics: &'a Metrics,
         interrupted: bool,
     ) -> Self {
         Self {
             scenario,
             simulation,
+            measured: metrics,
             metrics: metrics.results(simulation),
             interrupted,
         }
@@ -38,39 +41,21 @@ impl<'a> Report<'a> {
         }
     }
 
+    /// The summary, and how it was computed.
     fn json(&self) -> Value {
-        let metrics: Map<String, Value> = self
-            .metrics
-            .iter()
-            .map(|metric| (metric.name.clone(), value(metric)))
-            .collect();
         let stages: Map<String, Value> = self
             .simulation
             .stages()
             .ms_per_frame()
             .map(|(stage, ms)| (stage.name().to_owned(), json!(ms)))
             .collect();
-        let frame = self.simulation.frame();
-        let outcome = self.simulation.outcome();
-        json!({
-            "scenario": self.scenario.name,
-            "profile": self.scenario.profile_name,
-            "seed": self.simulation.scene().seed,
-            "behaviour_seed": frame.seed,
-            "state_sha256": self.simulation.digest(),
-            "threads": rayon::current_num_threads(),
-            "frames": frame.clock.frame(),
-            "time_secs": frame.clock.time(),
-            "interrupted": self.interrupted,
-            "agents": frame.agents.entered(),
-            "metrics": metrics,
-            "contained_moves": outcome.contained_moves,
-            "clamped_speeds": outcome.clamped_speeds,
-            "displaced_agents": outcome.displaced.len(),
-            "ms_per_frame": self.ms_per_frame(),
-            "real_time_factor": self.real_time_factor(),
-            "stages_ms": stages,
-        })
+        let mut report = json!(Summary::of(self.scenario, self.simulation, self.measured));
+        report["interrupted"] = json!(self.interrupted);
+        report["threads"] = json!(rayon::current_num_threads());
+        report["ms_per_frame"] = json!(self.ms_per_frame());
+        report["real_time_factor"] = json!(self.real_time_factor());
+        report["stages_ms"] = Value::Object(stages);
+        report
     }
 
     fn text(&self) -> String {
@@ -116,13 +101,5 @@ impl<'a> Report<'a> {
 
     fn real_time_factor(&self) -> f64 {
         1e3 * self.simulation.frame().clock.time_step() / self.ms_per_frame()
-    }
-}
-
-/// A metric's value; counts of agents are whole numbers.
-fn value(metric: &Metric) -> Value {
-    match metric.value {
-        Some(count) if metric.unit == "agents" => json!(count as u64),
-        value => json!(value),
     }
 }

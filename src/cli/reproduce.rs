@@ -1,10 +1,34 @@
 //! `sandbox reproduce`: the paper's tables and figures.
 
-use super::arguments::ReproduceOptions;
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+
 use super::update::{check, update};
+use super::values::threads;
 use super::watch::Watch;
 use super::{Failure, say, use_threads};
 use crate::reproduce::{PRODUCTS, Plan, Product, Store, reproduce};
+
+#[derive(Args)]
+pub struct ReproduceOptions {
+    /// Tables and figures, or all
+    #[arg(required = true, value_parser = PossibleValuesParser::new(names()))]
+    pub what: Vec<String>,
+    /// Seeds per row of a table: 1, 2, …
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub seeds: u64,
+    /// Folder for the results; finished cases in it are not run again
+    #[arg(long, value_name = "DIR", default_value = "reproduction")]
+    pub out: PathBuf,
+    /// Put what is said about each table also between the lines <!-- NAME --> and <!-- /NAME --> of a file
+    #[arg(long, value_name = "FILE.md")]
+    pub update: Option<PathBuf>,
+    /// Cases to compute at once, each on one thread [default: all cores]
+    #[arg(long, value_parser = threads)]
+    pub threads: Option<usize>,
+}
 
 /// The name for everything that has `in_all`.
 const ALL: &str = "all";

@@ -1,11 +1,31 @@
 //! `sandbox stress`: where the model breaks.
 
-use super::arguments::StressOptions;
+use std::path::PathBuf;
+
+use clap::Args;
+
 use super::update::{check, update};
+use super::values::threads;
 use super::watch::Watch;
 use super::{Failure, say, use_threads};
 use crate::reproduce::Store;
 use crate::stress::{Detail, stress};
+
+#[derive(Args)]
+pub struct StressOptions {
+    /// Fewer places on the maps and a shorter soak: less than a minute
+    #[arg(long)]
+    pub quick: bool,
+    /// Folder for the results; what is finished in it is not done again
+    #[arg(long, value_name = "DIR", default_value = "stress")]
+    pub out: PathBuf,
+    /// Put the tables also between the lines <!-- NAME --> and <!-- /NAME --> of a file
+    #[arg(long, value_name = "FILE.md")]
+    pub update: Option<PathBuf>,
+    /// Cases to compute at once, each on one thread [default: all cores]
+    #[arg(long, value_parser = threads)]
+    pub threads: Option<usize>,
+}
 
 pub fn run(options: &StressOptions) -> Result<(), Failure> {
     use_threads(options.threads)?;

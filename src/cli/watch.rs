@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::talk;
 use crate::job;
 use crate::reproduce::{self, CaseResult};
+use crate::sweep::{self, Cell};
 
 /// A progress bar on stderr; where that is no terminal, a line for every finished case.
 pub struct Watch {
@@ -35,6 +36,10 @@ impl Watch {
 
     fn begin(&self, cases: usize, kept: usize, seconds: f64) {
         self.note(&format!("{cases} case(s) to run, {kept} kept from before"));
+        self.start(seconds);
+    }
+
+    fn start(&self, seconds: f64) {
         self.bar.set_length(steps(seconds));
         self.bar.enable_steady_tick(Duration::from_secs(1));
     }
@@ -91,5 +96,28 @@ impl job::Listener for Watch {
     fn finishes(&self, job: &str, expected: f64, seconds: f64) {
         self.bar.inc(steps(expected));
         self.finish(job, seconds);
+    }
+}
+
+impl sweep::Listener for Watch {
+    fn begins(&self, cells: usize, kept: usize, seconds: f64) {
+        self.note(&format!("{cells} cell(s) to run, {kept} kept from before"));
+        self.start(seconds);
+    }
+
+    fn advances(&self, seconds: f64) {
+        self.bar.inc(steps(seconds));
+    }
+
+    fn finishes(&self, cell: &Cell, seconds: f64) {
+        self.finish(&cell.to_string(), seconds);
+    }
+
+    fn fails(&self, cell: &Cell, message: &str) {
+        self.note(&format!("{cell} failed: {message}"));
+    }
+
+    fn notes(&self, text: &str) {
+        self.note(text);
     }
 }

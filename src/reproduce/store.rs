@@ -42,14 +42,24 @@ impl Store {
     /// # Errors
     /// It cannot be made.
     pub fn open(folder: &Path) -> Result<Self, ReproduceError> {
-        let store = Self {
-            folder: folder.to_owned(),
-        };
+        let store = Self::at(folder);
         let cases = store.cases();
         // Better known now than when the first case is finished.
         let writable = fs::create_dir_all(&cases).and_then(|()| temporary_in(&cases));
         writable.map_err(|error| store.unwritable(folder, &error))?;
         Ok(store)
+    }
+
+    /// What may be in `folder`; makes nothing.
+    pub fn at(folder: &Path) -> Self {
+        Self {
+            folder: folder.to_owned(),
+        }
+    }
+
+    /// The folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
     }
 
     /// Where a file of this name belongs.
@@ -67,7 +77,8 @@ impl Store {
         Ok(path)
     }
 
-    fn unwritable(&self, path: &Path, error: &io::Error) -> ReproduceError {
+    /// The failure to write `path`, and what is there all the same.
+    pub(crate) fn unwritable(&self, path: &Path, error: &io::Error) -> ReproduceError {
         let cases = self.cases();
         let finished =
             fs::read_dir(&cases).map_or(0, |files| files.flatten().filter(is_case).count());

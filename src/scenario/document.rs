@@ -8,7 +8,7 @@ use serde_json::{Map, Number, Value};
 use super::error::ScenarioError;
 
 /// Reads `text`, which came from `file`.
-pub(super) fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
+pub(crate) fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
     let document: Result<Document, _> = serde_json::from_str(text);
     document.map(|document| document.0).map_err(|error| {
         let (line, column) = (error.line(), error.column());

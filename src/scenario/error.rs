@@ -108,7 +108,7 @@ impl<T> Under for Result<T, Problem> {
 }
 
 /// "; did you mean `x`?" if one of `known` looks like `given`, else nothing.
-pub(super) fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+pub(crate) fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     /// A name begun with so many letters may be meant in full.
     const STEM: usize = 4;
     let slips = |name: &str| {
@@ -129,7 +129,7 @@ pub(super) fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a st
 }
 
 /// What serde says about a document, for people who write no Rust, with a suggestion.
-pub(super) fn in_plain_words(said: &str) -> String {
+pub(crate) fn in_plain_words(said: &str) -> String {
     let quoted = said.split('`').skip(1).step_by(2);
     let is_name = said.starts_with("unknown field") || said.starts_with("unknown variant");
     let near = match quoted.clone().next() {

@@ -40,7 +40,9 @@ mod setting;
 mod settings;
 mod shipped;
 
+pub(crate) use document::read as read_document;
 pub use error::{Problem, ScenarioError};
+pub(crate) use error::{in_plain_words, suggestion};
 pub use nested::NESTED;
 pub use preset::Preset;
 pub use schema::schema;

@@ -40,6 +40,28 @@ impl FromStr for Setting {
     fn from_str(text: &str) -> Result<Self, SettingError> {
         let (key, value) = text.split_once('=').ok_or(SettingError::NoValue)?;
         let key = key.trim();
+        let as_text = || Value::from(value.trim());
+        let value = if TEXTS.contains(&key) {
+            as_text()
+        } else {
+            serde_json::from_str(value).unwrap_or_else(|_| as_text())
+        };
+        Self::new(key, value, format!("--set {text}"))
+    }
+}
+
+impl std::fmt::Display for Setting {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl Setting {
+    /// Sets a key, `sources.0.rows`, to a value; messages call it `text`.
+    ///
+    /// # Errors
+    /// No such key.
+    pub fn new(key: &str, value: Value, text: String) -> Result<Self, SettingError> {
         let mut path: Vec<String> = key.split('.').map(str::to_owned).collect();
         let known = settings();
         if !known.iter().any(|doc| doc.key == path[0]) {
@@ -51,27 +73,14 @@ impl FromStr for Setting {
         if parameters::is_parameter(&path[0]) {
             path.insert(0, "parameters".to_owned());
         }
-        let as_text = || Value::from(value.trim());
-        let value = if TEXTS.contains(&key) {
-            as_text()
-        } else {
-            serde_json::from_str(value).unwrap_or_else(|_| as_text())
-        };
-        Ok(Self {
-            text: format!("--set {text}"),
-            path,
-            value,
-        })
+        Ok(Self { text, path, value })
     }
-}
 
-impl std::fmt::Display for Setting {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        f.write_str(&self.text)
+    /// Where it goes in a document: `["parameters", "viscosity"]`.
+    pub fn path(&self) -> &[String] {
+        &self.path
     }
-}
 
-impl Setting {
     /// The same setting, which messages call `text`: `--seed 5`.
     #[must_use]
     pub fn typed_as(self, text: String) -> Self {

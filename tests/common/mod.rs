@@ -7,6 +7,7 @@ pub mod json_schema;
 pub mod program;
 pub mod quadrature;
 pub mod social;
+pub mod sweep;
 
 use sandbox::agents::NewAgent;
 use sandbox::breakdown::Breakdown;

@@ -1,0 +1,241 @@
+//! `sandbox sweep`: a study from one file.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::watch::Watch;
+use super::{Failure, say, talk, use_threads};
+use crate::sweep::{Gathered, Shard, Shelf, State, Study, StudyError, Tally, run as run_shard};
+
+/// What a study may look like.
+pub const EXAMPLE: &str = r#"A study, JSON:
+  {
+    "scenario": "evacuation",
+    "settings": { "duration_secs": 60 },
+    "grid": { "gas_constant": [200, 400], "profile": ["sf", "sf->sph"] },
+    "seeds": 5
+  }
+
+Examples:
+  sandbox sweep study.json
+  sandbox sweep study.json --list
+  sandbox sweep study.json --shard 2/8 --out /shared/study
+  sandbox sweep study.json --merge --out /shared/study"#;
+
+#[derive(Args)]
+pub struct SweepOptions {
+    /// The study, JSON: a scenario, settings, a grid or a list of them, seeds
+    pub file: PathBuf,
+    /// Run part I of N (1 ≤ I ≤ N): the cells I, I + N, I + 2N, …; put together with --merge
+    #[arg(long, value_name = "I/N", conflicts_with = "merge")]
+    pub shard: Option<Shard>,
+    /// Run nothing; put together what is finished
+    #[arg(long)]
+    pub merge: bool,
+    /// Run nothing; list the cells and which of them are finished
+    #[arg(long, conflicts_with = "merge")]
+    pub list: bool,
+    /// Folder for the results; what is finished in it is not done again [default: the study's name]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Cells to compute at once, each on one thread [default: all cores]
+    #[arg(long, value_parser = super::values::threads)]
+    pub threads: Option<usize>,
+    /// Replace files of the results' names in a folder that is no study's
+    #[arg(long)]
+    pub force: bool,
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+pub fn run(options: &SweepOptions) -> Result<(), Failure> {
+    use_threads(options.threads)?;
+    let study = Study::read(&options.file)?;
+    let folder = options
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(&study.name));
+    let shelf = Shelf::at(&folder);
+    if options.list {
+        return list(&Gathered::of(&study, &shelf), options);
+    }
+    if options.merge {
+        if !shelf.is_begun() {
+            let folder = folder.display();
+            let reason = format!("{folder}: no study was begun there; name its folder with --out");
+            return Err(Failure::Input(reason));
+        }
+        return merge(&study, &shelf, options);
+    }
+    check_free(&study, &shelf, options.force)?;
+    let shelf = Shelf::open(&folder)?;
+    let watch = Watch::new();
+    let shard = options.shard.unwrap_or(Shard::WHOLE);
+    let tally = run_shard(&study, shard, &shelf, &watch);
+    watch.ends();
+    let tally = tally?;
+    if options.shard.is_none() {
+        return merge(&study, &shelf, options);
+    }
+    say(&told(&tally, shard, options.json))?;
+    let failed: Vec<String> = tally
+        .failed
+        .iter()
+        .map(|(cell, why)| format!("{cell}: {why}"))
+        .collect();
+    if failed.is_empty() {
+        Ok(())
+    } else {
+        Err(some_failed(&failed, tally.cells))
+    }
+}
+
+/// A folder that this program did not make may have files of these names that are somebody's.
+fn check_free(study: &Study, shelf: &Shelf, force: bool) -> Result<(), Failure> {
+    if force || shelf.is_begun() {
+        return Ok(());
+    }
+    let paths = study.files().map(|file| shelf.folder().join(file));
+    match paths.iter().find(|path| path.exists()) {
+        None => Ok(()),
+        Some(path) => Err(Failure::Input(format!(
+            "{}: is there already, and no study was begun in this folder; give another one with --out, or \
+             replace the file with --force",
+            path.display()
+        ))),
+    }
+}
+
+fn list(gathered: &Gathered, options: &SweepOptions) -> Result<(), Failure> {
+    let shard = options.shard.unwrap_or(Shard::WHOLE);
+    if options.json {
+        let mut value = gathered.json();
+        if let Some(cells) = value["cells"].as_array_mut() {
+            let number = |cell: &Value| cell["cell"].as_u64().unwrap_or_default() as usize;
+            cells.retain(|cell| shard.has(number(cell)));
+        }
+        let cells = json!({ "study": value["study"], "cells": value["cells"] });
+        return say(&format!("{cells}\n"));
+    }
+    say(&gathered.list(shard))
+}
+
+/// Puts together what is there.
+fn merge(study: &Study, shelf: &Shelf, options: &SweepOptions) -> Result<(), Failure> {
+    let gathered = Gathered::of(study, shelf);
+    for path in gathered.write(shelf)? {
+        talk(&format!("note: {} written", path.display()));
+    }
+    if options.json {
+        say(&format!("{}\n", gathered.json()))?;
+    } else {
+        say(&gathered.text())?;
+    }
+    let all = study.cells.iter().zip(&gathered.states);
+    let missing: Vec<usize> = all
+        .clone()
+        .filter(|(_, state)| **state == State::Missing)
+        .map(|(cell, _)| cell.number)
+        .collect();
+    let failed = all.filter_map(|(cell, state)| match state {
+        State::Failed(message) => Some(format!("{cell}: {message}")),
+        State::Finished(_) | State::Missing => None,
+    });
+    let failed: Vec<String> = failed.collect();
+    if !missing.is_empty() {
+        let (count, of) = (missing.len(), study.cells.len());
+        let missing = ranges(&missing);
+        talk(&format!(
+            "note: {count} of {of} cells are missing: {missing}"
+        ));
+    }
+    match (failed.is_empty(), missing.is_empty()) {
+        (true, true) => Ok(()),
+        (true, false) => Err(Failure::Output(
+            "the study is not finished; what there is was written (what another version of the engine \
+             computed does not count)"
+                .to_owned(),
+        )),
+        (false, _) => Err(some_failed(&failed, study.cells.len())),
+    }
+}
+
+fn some_failed(failed: &[String], of: usize) -> Failure {
+    /// More would only push the first ones out of sight.
+    const MOST: usize = 5;
+    let mut text = format!(
+        "{} of {of} cells failed (run the same command to try them again):",
+        failed.len()
+    );
+    for line in failed.iter().take(MOST) {
+        text += &format!("\n  {line}");
+    }
+    if failed.len() > MOST {
+        text += &format!("\n  … and {} more", failed.len() - MOST);
+    }
+    Failure::Output(text)
+}
+
+fn told(tally: &Tally, shard: Shard, as_json: bool) -> String {
+    let Tally {
+        cells,
+        kept,
+        finished,
+        by_others,
+        failed,
+    } = tally;
+    if as_json {
+        let failed = failed
+            .iter()
+            .map(|(cell, why)| json!({ "cell": cell, "error": why }));
+        let told = json!({
+            "shard": shard.to_string(),
+            "cells": cells,
+            "kept": kept + by_others,
+            "finished": finished,
+            "failed": failed.collect::<Vec<_>>(),
+        });
+        return format!("{told}\n");
+    }
+    format!(
+        "shard {shard}: {cells} cell(s); {finished} finished now, {} before, {} failed\n",
+        kept + by_others,
+        failed.len()
+    )
+}
+
+/// Rising numbers: `1–3, 7`.
+fn ranges(numbers: &[usize]) -> String {
+    let mut runs: Vec<[usize; 2]> = Vec::new();
+    for &number in numbers {
+        match runs.last_mut() {
+            Some([_, last]) if *last + 1 == number => *last = number,
+            _ => runs.push([number, number]),
+        }
+    }
+    let text = runs.iter().map(|[first, last]| match first == last {
+        true => first.to_string(),
+        false => format!("{first}–{last}"),
+    });
+    text.collect::<Vec<_>>().join(", ")
+}
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_a_row_are_told_by_the_first_and_the_last() {
+        assert_eq!(ranges(&[1, 2, 3, 7, 9, 10]), "1–3, 7, 9–10");
+        assert_eq!(ranges(&[4]), "4");
+    }
+}

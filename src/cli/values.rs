@@ -1,0 +1,36 @@
+//! What may be typed for a value.
+
+pub fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if (0.0..=1e9).contains(&value) => Ok(value),
+        _ => Err("not a time in seconds, 0 or later".to_owned()),
+    }
+}
+
+pub fn frame_rate(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(fps) if (1e-6..=1e6).contains(&fps) => Ok(fps),
+        _ => Err("not a number of frames per second above 0".to_owned()),
+    }
+}
+
+pub fn positive_seconds(text: &str) -> Result<f64, String> {
+    match seconds(text) {
+        Ok(value) if value > 0.0 => Ok(value),
+        _ => Err("not a time in seconds above 0".to_owned()),
+    }
+}
+
+pub fn threads(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count @ 1..=1024) => Ok(count),
+        _ => Err("not a number of threads between 1 and 1024".to_owned()),
+    }
+}
+
+pub fn repeats(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count @ 1..=1000) => Ok(count),
+        _ => Err("not a number of repeats between 1 and 1000".to_owned()),
+    }
+}

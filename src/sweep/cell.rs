@@ -1,0 +1,164 @@
+//! One cell of a study: a scenario with its settings and seed.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+
+use crate::scenario::{SHIPPED, Scenario, ScenarioError, Setting};
+
+/// The engine's sources, in 16 letters: a result of another engine is not taken for one of this.
+const ENGINE: &str = env!("SANDBOX_ENGINE");
+/// To be raised with whatever changes what is kept of a cell and is no part of the engine.
+const VERSION: u32 = 1;
+
+/// Where a cell's scenario comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Source {
+    /// From the program.
+    Shipped(&'static str),
+    /// From a file.
+    File(PathBuf),
+}
+
+impl Source {
+    /// A scenario of that name that comes with the program.
+    pub(super) fn shipped(name: &str) -> Option<Self> {
+        let found = SHIPPED.iter().find(|shipped| shipped.name == name)?;
+        Some(Self::Shipped(found.name))
+    }
+
+    fn scenario(&self, settings: &[Setting]) -> Result<Scenario, ScenarioError> {
+        match self {
+            Self::Shipped(name) => Scenario::shipped(name, settings),
+            Self::File(path) => Scenario::load(path, settings),
+        }
+    }
+}
+
+/// One run of a study.
+#[derive(Debug, Clone)]
+pub struct Cell {
+    /// Its number in the study, from 1.
+    pub number: usize,
+    /// What is varied: names and values, without the seeds.
+    pub values: Vec<(String, Value)>,
+    /// The scenario's seed.
+    pub seed: u64,
+    /// Roughly how long it takes on one core, seconds.
+    pub expected_secs: f64,
+    pub(super) source: Source,
+    pub(super) settings: Vec<Setting>,
+    /// What its result is known by.
+    key: String,
+}
+
+impl Cell {
+    /// A cell, checked; its scenario itself is read again when it runs.
+    ///
+    /// # Errors
+    /// Its scenario or a setting makes no sense.
+    pub(super) fn new(
+        number: usize,
+        values: Vec<(String, Value)>,
+        source: Source,
+        settings: Vec<Setting>,
+    ) -> Result<Self, ScenarioError> {
+        let scenario = source.scenario(&settings)?;
+        let given = scenario.document.get("seed").and_then(Value::as_u64);
+        Ok(Self {
+            number,
+            values,
+            seed: given.unwrap_or(scenario.scene.seed),
+            expected_secs: expected_secs(&scenario),
+            key: key(&scenario),
+            source,
+            settings,
+        })
+    }
+
+    /// The scenario with the settings in it.
+    ///
+    /// # Errors
+    /// As when the study was read.
+    pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
+        self.source.scenario(&self.settings)
+    }
+
+    /// What its result is known by: a hash of the engine and of the whole scenario with its settings.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
+    /// Is this still the cell's scenario?
+    pub(super) fn is_of(&self, scenario: &Scenario) -> bool {
+        self.key == key(scenario)
+    }
+}
+
+/// The number, and what makes it different from others.
+impl fmt::Display for Cell {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "cell {}:", self.number)?;
+        for (name, value) in &self.values {
+            write!(f, " {name}={}", short(value))?;
+        }
+        if self.values.iter().all(|(name, _)| name != "seed") {
+            write!(f, " seed={}", self.seed)?;
+        }
+        Ok(())
+    }
+}
+
+/// A value as in `--set key=value`: text without quotes.
+pub(super) fn plain(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
+/// The same; what is long is cut.
+pub(super) fn short(value: &Value) -> String {
+    /// More letters tell nobody anything.
+    const LONGEST: usize = 40;
+    let text = plain(value);
+    if text.chars().count() <= LONGEST {
+        return text;
+    }
+    text.chars().take(LONGEST).chain(['…']).collect()
+}
+
+fn key(scenario: &Scenario) -> String {
+    let identity = format!("{ENGINE} {VERSION} {}", scenario.document);
+    let digest = Sha256::digest(identity);
+    digest[..16]
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
+}
+
+/// By how many agents there are for how many frames, and what they are asked to do; to put cells in order.
+fn expected_secs(scenario: &Scenario) -> f64 {
+    /// Seconds for one agent and frame, with SPH alone, social forces, RVO.
+    const SECONDS: [f64; 3] = [0.8e-6, 3.5e-6, 8e-6];
+    let scene = &scenario.scene;
+    let frames = scenario.duration_secs / scene.clock.time_step();
+    let entering = scene.sources.iter().map(|source| {
+        let times = (scenario.duration_secs - source.start).max(0.0) / source.every;
+        source.grid.len() as f64
+            * source
+                .times
+                .map_or(times, |most| times.min(f64::from(most)))
+    });
+    // Who enters on the way is there half of the time.
+    let agents = scene.agents.len() as f64 + 0.5 * entering.sum::<f64>();
+    let needs = scene.needs();
+    let seconds = match (needs.rvo, needs.social) {
+        (true, _) => SECONDS[2],
+        (false, true) => SECONDS[1],
+        (false, false) => SECONDS[0],
+    };
+    1e-3 + agents * frames * seconds
+}

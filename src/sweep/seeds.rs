@@ -1,0 +1,73 @@
+//! `seeds`: how many, or which.
+
+use std::fmt;
+
+use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Unexpected, Visitor};
+
+use super::problem;
+use crate::scenario::Problem;
+
+/// As written.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Seeds {
+    /// 1, 2, …
+    Count(u64),
+    /// These.
+    List(Vec<u64>),
+}
+
+impl Seeds {
+    /// The seeds, checked.
+    pub(super) fn all(&self, most: usize) -> Result<Vec<u64>, Problem> {
+        match self {
+            Self::Count(0) => Err(problem("seeds", "must be at least 1")),
+            Self::Count(count) if *count > most as u64 => {
+                Err(problem("seeds", format!("must be at most {most}")))
+            }
+            Self::Count(count) => Ok((1..=*count).collect()),
+            Self::List(list) if list.is_empty() => Err(problem("seeds", "must not be empty")),
+            Self::List(list) => {
+                let twice = (1..list.len()).find(|&k| list[..k].contains(&list[k]));
+                match twice {
+                    Some(k) => Err(problem(
+                        format!("seeds[{k}]"),
+                        format!("{} is given twice", list[k]),
+                    )),
+                    None => Ok(list.clone()),
+                }
+            }
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Seeds {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(SeedsVisitor)
+    }
+}
+
+struct SeedsVisitor;
+
+impl<'de> Visitor<'de> for SeedsVisitor {
+    type Value = Seeds;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("how many seeds, or a list of them")
+    }
+
+    fn visit_u64<E>(self, count: u64) -> Result<Seeds, E> {
+        Ok(Seeds::Count(count))
+    }
+
+    fn visit_i64<E: Error>(self, count: i64) -> Result<Seeds, E> {
+        Err(E::invalid_value(Unexpected::Signed(count), &self))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Seeds, A::Error> {
+        let mut list = Vec::new();
+        while let Some(seed) = items.next_element()? {
+            list.push(seed);
+        }
+        Ok(Seeds::List(list))
+    }
+}

@@ -1,0 +1,294 @@
+//! What a study's file says → its cells, checked.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::cell::{Cell, Source};
+use super::choice::{Choice, Meaning, SCENARIO, axis, choices, same, source};
+use super::entries::Entries;
+use super::seeds::Seeds;
+use super::{StudyError, problem};
+use crate::scenario::{Problem, ScenarioError, Setting, in_plain_words, read_document};
+
+/// A study with more cells is taken for a mistake.
+const MOST_CELLS: usize = 100_000;
+
+/// The whole file.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct File {
+    name: Option<String>,
+    #[serde(rename = "description")]
+    _description: Option<String>,
+    scenario: Option<String>,
+    settings: Entries,
+    list: Option<Vec<Entries>>,
+    grid: Entries,
+    seeds: Option<Seeds>,
+}
+
+/// A scenario over settings and seeds.
+#[derive(Debug, Clone)]
+pub struct Study {
+    /// What it is called, fit for a file.
+    pub name: String,
+    /// The file.
+    pub document: Value,
+    /// The names of what is varied, without the seeds: keys of the list, then of the grid, as written.
+    pub axes: Vec<String>,
+    /// Seeds per combination.
+    pub seeds: usize,
+    /// In the order of their numbers; seeds change first, then the grid's last key, the list last.
+    pub cells: Vec<Cell>,
+}
+
+impl Study {
+    /// Is the seed itself among what is varied?
+    pub(super) fn varies_seed(&self) -> bool {
+        self.axes.iter().any(|axis| axis == "seed")
+    }
+
+    /// Reads a study, and checks the scenario of every cell.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its place in the file or the cell.
+    pub fn read(path: &Path) -> Result<Self, StudyError> {
+        let file = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|error| ScenarioError::Unreadable {
+            file: file.clone(),
+            reason: error.to_string(),
+        })?;
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let invalid = |problem| ScenarioError::Invalid {
+            file: file.clone(),
+            problem,
+        };
+        let document = read_document(&text, &file)?;
+        let written = parse(&text).map_err(invalid)?;
+        let plan = Plan::new(&written, folder).map_err(invalid)?;
+        let name = written.name.unwrap_or_else(|| stem.into_owned());
+        if name.is_empty() || name.starts_with('.') || name.contains(['/', '\\']) {
+            let reason = format!("must be fit for a file's name, not {name:?}");
+            return Err(invalid(problem("name", reason)).into());
+        }
+        let cells: Vec<Result<Cell, ScenarioError>> = (0..plan.count)
+            .into_par_iter()
+            .map(|index| plan.cell(index))
+            .collect();
+        let failed = |(index, cell): (usize, Result<Cell, ScenarioError>)| {
+            cell.map_err(|error| StudyError::Cell {
+                file: file.clone(),
+                cell: index + 1,
+                error,
+            })
+        };
+        Ok(Self {
+            name,
+            document,
+            seeds: plan.seeds.len(),
+            cells: cells
+                .into_iter()
+                .enumerate()
+                .map(failed)
+                .collect::<Result<_, _>>()?,
+            axes: plan.names,
+        })
+    }
+}
+
+/// Names and types.
+fn parse(text: &str) -> Result<File, Problem> {
+    if !text.trim_start().starts_with('{') {
+        return Err(problem("", "must be an object, {…}, with a `scenario`"));
+    }
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
+        let path = error.path().to_string();
+        let said = error.inner();
+        let place = format!(" at line {} column {}", said.line(), said.column());
+        let said = said.to_string();
+        let reason = in_plain_words(said.strip_suffix(&place).unwrap_or(&said));
+        problem(if path == "." { String::new() } else { path }, reason)
+    })
+}
+
+/// Everything that cells are put together from.
+struct Plan {
+    names: Vec<String>,
+    /// That of cells whose settings name none.
+    scenario: Source,
+    fixed: Vec<Choice>,
+    /// The combinations of the list; one of nothing without a list.
+    rows: Vec<Vec<Choice>>,
+    /// The values of each axis of the grid.
+    grid: Vec<Vec<Choice>>,
+    /// The seeds as settings; one of nothing if the study gives none.
+    seeds: Vec<Option<Setting>>,
+    count: usize,
+}
+
+impl Plan {
+    fn new(file: &File, folder: &Path) -> Result<Self, Problem> {
+        let fixed = choices(&file.settings, "settings", None)?;
+        let rows: Vec<Vec<Choice>> = match &file.list {
+            None => vec![Vec::new()],
+            Some(list) if list.is_empty() => return Err(problem("list", "must not be empty")),
+            Some(list) => {
+                let row = |(k, row)| choices(row, &format!("list[{k}]"), Some(folder));
+                list.iter().enumerate().map(row).collect::<Result<_, _>>()?
+            }
+        };
+        let grid = file
+            .grid
+            .0
+            .iter()
+            .map(|(key, values)| axis(key, values, folder));
+        let grid = grid.collect::<Result<Vec<_>, _>>()?;
+        let mut plan = Self {
+            names: Vec::new(),
+            scenario: match &file.scenario {
+                Some(name) => source(name, SCENARIO, folder)?,
+                None => varied_scenario(&rows, &grid)?,
+            },
+            fixed,
+            rows,
+            grid,
+            seeds: seeds(file.seeds.as_ref())?,
+            count: 0,
+        };
+        plan.refuse_repetitions()?;
+        let varied = plan.rows.iter().flatten().chain(plan.grid.iter().flatten());
+        for choice in varied {
+            if !plan.names.contains(&choice.key) {
+                plan.names.push(choice.key.clone());
+            }
+        }
+        plan.count = plan.cells()?;
+        Ok(plan)
+    }
+
+    /// How many cells there are.
+    fn cells(&self) -> Result<usize, Problem> {
+        let sizes = self.grid.iter().map(Vec::len);
+        let sizes = sizes.chain([self.rows.len(), self.seeds.len()]);
+        let count = sizes.map(|size| size as f64).product::<f64>();
+        if count > MOST_CELLS as f64 {
+            let reason = format!("makes {count} cells; at most {MOST_CELLS} are allowed");
+            return Err(problem("", reason));
+        }
+        Ok(count as usize)
+    }
+
+    /// A setting that another one always goes before means nothing, and nothing is run twice.
+    fn refuse_repetitions(&self) -> Result<(), Problem> {
+        for (k, row) in self.rows.iter().enumerate() {
+            if let Some(other) = self.rows[..k].iter().position(|other| same(other, row)) {
+                let reason = format!("is the same as list[{other}]");
+                return Err(problem(format!("list[{k}]"), reason));
+            }
+        }
+        let seed = self.seeds[0].as_ref();
+        let refuse = |choice: &Choice, other: String| {
+            let reason = format!("is also given by {other}; give it in one of them");
+            Err(problem(&choice.place, reason))
+        };
+        let axes: Vec<&Choice> = self.grid.iter().filter_map(|axis| axis.first()).collect();
+        for (k, choice) in axes.iter().enumerate() {
+            let axis = format!("grid.{}", choice.key);
+            let rows = self.rows.iter().flatten();
+            let others = self.fixed.iter().chain(rows);
+            if let Some(other) = others.into_iter().find(|other| other.is_as(choice)) {
+                return refuse(other, axis);
+            }
+            if let Some(other) = axes[..k].iter().find(|other| other.is_as(choice)) {
+                return Err(problem(axis, format!("is the same as grid.{}", other.key)));
+            }
+        }
+        let all = self
+            .fixed
+            .iter()
+            .chain(self.rows.iter().flatten())
+            .chain(axes);
+        for choice in all {
+            let own = matches!(&choice.meaning, Meaning::Setting(own)
+                if seed.is_some_and(|seed| seed.path() == own.path()));
+            if own {
+                return refuse(choice, "seeds".to_owned());
+            }
+        }
+        Ok(())
+    }
+
+    /// A cell by its place, from 0.
+    fn cell(&self, index: usize) -> Result<Cell, ScenarioError> {
+        let mut rest = index;
+        let mut digit = |size: usize| {
+            let digit = rest % size;
+            rest /= size;
+            digit
+        };
+        let seed = self.seeds[digit(self.seeds.len())].clone();
+        let grid: Vec<&Choice> = self
+            .grid
+            .iter()
+            .rev()
+            .map(|axis| &axis[digit(axis.len())])
+            .collect();
+        let row = &self.rows[digit(self.rows.len())];
+        let varied: Vec<&Choice> = row.iter().chain(grid.into_iter().rev()).collect();
+        let mut scenario = self.scenario.clone();
+        let mut settings = Vec::new();
+        for choice in self.fixed.iter().chain(varied.iter().copied()) {
+            match &choice.meaning {
+                Meaning::Scenario(source) => scenario = source.clone(),
+                Meaning::Setting(setting) => settings.push(setting.clone()),
+            }
+        }
+        settings.extend(seed);
+        let values = varied
+            .iter()
+            .map(|choice| (choice.key.clone(), choice.value.clone()));
+        Cell::new(index + 1, values.collect(), scenario, settings)
+    }
+}
+
+/// One of the scenarios of a study that gives none at the top, if it gives every cell one.
+fn varied_scenario(rows: &[Vec<Choice>], grid: &[Vec<Choice>]) -> Result<Source, Problem> {
+    let of = |choices: &[Choice]| {
+        choices.iter().find_map(|choice| match &choice.meaning {
+            Meaning::Scenario(source) => Some(source.clone()),
+            Meaning::Setting(_) => None,
+        })
+    };
+    let in_every_row: Option<Vec<Source>> = rows.iter().map(|row| of(row)).collect();
+    let found = in_every_row.and_then(|sources| sources.into_iter().next());
+    found
+        .or_else(|| grid.iter().find_map(|axis| of(axis)))
+        .ok_or_else(|| {
+            let reason = "is missing: the name of a scenario (see `sandbox list`), or a file";
+            problem(SCENARIO, reason)
+        })
+}
+
+fn seeds(given: Option<&Seeds>) -> Result<Vec<Option<Setting>>, Problem> {
+    let Some(given) = given else {
+        return Ok(vec![None]);
+    };
+    let setting = |(k, seed): (usize, u64)| {
+        let text = format!("seeds[{k}]={seed}");
+        let setting = Setting::new("seed", Value::from(seed), text);
+        setting
+            .map(Some)
+            .map_err(|error| problem("seeds", error.to_string()))
+    };
+    given
+        .all(MOST_CELLS)?
+        .into_iter()
+        .enumerate()
+        .map(setting)
+        .collect()
+}

@@ -1,0 +1,284 @@
+//! Studies as they run: shards, what is kept, what fails, and what is put together.
+
+mod common;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::sync::Mutex;
+
+use common::sweep::{ROOM, cases, column, folder, put, rows};
+use sandbox::statistics::student_95;
+use sandbox::sweep::{Cell, Gathered, Listener, Shard, Shelf, State, Study, Tally, run};
+
+/// Writes down what a run says.
+#[derive(Default)]
+struct Ear {
+    begun: Mutex<Vec<[usize; 2]>>,
+    finished: Mutex<Vec<usize>>,
+    failed: Mutex<Vec<usize>>,
+    notes: Mutex<Vec<String>>,
+    seconds: Mutex<[f64; 2]>,
+}
+
+impl Listener for Ear {
+    fn begins(&self, cells: usize, kept: usize, seconds: f64) {
+        self.begun.lock().unwrap().push([cells, kept]);
+        self.seconds.lock().unwrap()[0] += seconds;
+    }
+    fn advances(&self, seconds: f64) {
+        self.seconds.lock().unwrap()[1] += seconds;
+    }
+    fn finishes(&self, cell: &Cell, _: f64) {
+        self.finished.lock().unwrap().push(cell.number);
+    }
+    fn fails(&self, cell: &Cell, _: &str) {
+        self.failed.lock().unwrap().push(cell.number);
+    }
+    fn notes(&self, text: &str) {
+        self.notes.lock().unwrap().push(text.to_owned());
+    }
+}
+
+/// Two settings, two profiles, three seeds.
+const GRID: &str = r#"{"scenario": "room.json", "seeds": 3,
+    "grid": {"gas_constant": [100, 200], "profile": ["sph", "sf->sph"]}}"#;
+
+fn run_in(study: &Study, out: &Path, shard: Shard) -> (Tally, Ear) {
+    let ear = Ear::default();
+    let shelf = Shelf::open(out).unwrap();
+    let tally = run(study, shard, &shelf, &ear).unwrap();
+    (tally, ear)
+}
+
+fn write(study: &Study, out: &Path) {
+    let shelf = Shelf::at(out);
+    Gathered::of(study, &shelf).write(&shelf).unwrap();
+}
+
+#[test]
+fn shards_put_together_are_the_whole_study() {
+    let (folder, path) = folder(GRID);
+    let study = Study::read(&path).unwrap();
+    let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
+    let (tally, ear) = run_in(&study, &whole, Shard::WHOLE);
+    assert_eq!([tally.cells, tally.finished, tally.kept], [12, 12, 0]);
+    let [expected, advanced] = *ear.seconds.lock().unwrap();
+    assert!(
+        (expected - advanced).abs() < 1e-9 * expected,
+        "the bar comes to its end"
+    );
+    for number in [2, 5, 1, 4, 3] {
+        let shard = Shard::new(number, 5).unwrap();
+        let (tally, _) = run_in(&study, &parts, shard);
+        assert_eq!(
+            tally.cells,
+            study.cells.iter().filter(|c| shard.has(c.number)).count()
+        );
+        assert_eq!(tally.finished, tally.cells);
+    }
+    write(&study, &whole);
+    write(&study, &parts);
+    let read = |out: &Path, file: &str| rows(&out.join(file));
+    assert_eq!(read(&whole, "study.csv"), read(&parts, "study.csv"));
+    assert_eq!(
+        read(&whole, "study-summary.csv"),
+        read(&parts, "study-summary.csv")
+    );
+    assert_eq!(cases(&whole, ".json").len(), 12);
+    assert!(cases(&whole, ".lock").is_empty());
+    let hashes = column(&read(&whole, "study.csv"), "state_sha256");
+    assert_eq!(
+        hashes.iter().collect::<BTreeSet<_>>().len(),
+        12,
+        "settings and seeds matter"
+    );
+}
+
+#[test]
+fn nothing_is_run_twice_and_a_changed_setting_runs_only_what_is_new() {
+    let (folder, path) = folder(GRID);
+    let out = folder.path().join("out");
+    run_in(&Study::read(&path).unwrap(), &out, Shard::WHOLE);
+    let (tally, ear) = run_in(&Study::read(&path).unwrap(), &out, Shard::WHOLE);
+    assert_eq!([tally.finished, tally.kept], [0, 12]);
+    assert!(ear.finished.lock().unwrap().is_empty());
+    let wider = GRID
+        .replace("[100, 200]", "[300, 200, 100]")
+        .replace("3,\n", "4,\n");
+    let study = Study::read(&put(folder.path(), &wider)).unwrap();
+    let (tally, ear) = run_in(&study, &out, Shard::WHOLE);
+    assert_eq!([tally.cells, tally.kept, tally.finished], [24, 12, 12]);
+    let is_new = |cell: &&Cell| cell.values[0].1 == 300 || cell.seed == 4;
+    let new: BTreeSet<usize> = study
+        .cells
+        .iter()
+        .filter(is_new)
+        .map(|c| c.number)
+        .collect();
+    let ran: BTreeSet<usize> = ear.finished.lock().unwrap().iter().copied().collect();
+    assert_eq!(ran, new);
+}
+
+#[test]
+fn two_at_once_on_one_folder_share_the_work() {
+    let (folder, path) = folder(&GRID.replace("\"seeds\": 3", "\"seeds\": 12"));
+    let study = Study::read(&path).unwrap();
+    let out = folder.path().join("out");
+    Shelf::open(&out).unwrap();
+    let [(one, heard), (other, overheard)] = std::thread::scope(|scope| {
+        let begin = || scope.spawn(|| run_in(&study, &out, Shard::WHOLE));
+        [begin(), begin()].map(|thread| thread.join().unwrap())
+    });
+    for tally in [&one, &other] {
+        assert!(tally.failed.is_empty());
+        assert_eq!(tally.finished + tally.kept + tally.by_others, 48);
+    }
+    let finished = [heard, overheard].map(|ear| ear.finished.into_inner().unwrap());
+    let mut finished = finished.concat();
+    finished.sort_unstable();
+    assert_eq!(finished, (1..=48).collect::<Vec<_>>(), "each once");
+    assert!(cases(&out, ".lock").is_empty());
+}
+
+#[test]
+fn what_a_killed_process_had_claimed_is_free() {
+    let (folder, path) = folder(r#"{"scenario": "room.json"}"#);
+    let study = Study::read(&path).unwrap();
+    let out = folder.path().join("out");
+    Shelf::open(&out).unwrap();
+    let left = out.join(format!("cases/{}.lock", study.cells[0].key()));
+    fs::write(&left, "").unwrap();
+    assert_eq!(run_in(&study, &out, Shard::WHOLE).0.finished, 1);
+    assert!(!left.exists());
+}
+
+#[test]
+fn a_cell_that_fails_is_written_down_and_the_others_finish() {
+    let (folder, path) = folder(
+        r#"{"scenario": "star.json", "seeds": 2,
+            "grid": {"agents.0.position": [[0, 0], [20, 0], [0, 20]]}}"#,
+    );
+    let study = Study::read(&path).unwrap();
+    let out = folder.path().join("out");
+    let (tally, ear) = run_in(&study, &out, Shard::WHOLE);
+    assert_eq!([tally.finished, tally.failed.len()], [4, 2]);
+    let (cell, message) = &tally.failed[0];
+    assert_eq!(cell, "cell 1: agents.0.position=[0,0] seed=1");
+    assert!(message.contains("no free point"), "{message}");
+    let mut failed = ear.failed.into_inner().unwrap();
+    failed.sort_unstable();
+    assert_eq!(failed, [1, 2]);
+    write(&study, &out);
+    let table = rows(&out.join("study.csv"));
+    assert_eq!(
+        column(&table, "status")[..3],
+        ["failed", "failed", "finished"]
+    );
+    assert_eq!(column(&table, "error")[1], *message);
+    assert_eq!(column(&table, "state_sha256")[1], "");
+    assert_eq!(
+        column(&rows(&out.join("study-summary.csv")), "runs"),
+        ["0", "2", "2"]
+    );
+    let (again, _) = run_in(&study, &out, Shard::WHOLE);
+    assert_eq!(
+        [again.kept, again.finished, again.failed.len()],
+        [4, 0, 2],
+        "only these again"
+    );
+    let shelf = Shelf::at(&out);
+    assert_eq!(shelf.failure(&study.cells[0]).unwrap().attempts, 2);
+}
+
+#[test]
+fn a_failure_is_forgotten_when_the_cell_finishes() {
+    let (folder, path) = folder(r#"{"scenario": "room.json", "seeds": 2}"#);
+    let study = Study::read(&path).unwrap();
+    let out = folder.path().join("out");
+    let scenario = folder.path().join("room.json");
+    fs::write(&scenario, ROOM.replace("0.4", "0.3")).unwrap();
+    let (tally, _) = run_in(&study, &out, Shard::WHOLE);
+    assert_eq!(tally.failed.len(), 2);
+    assert!(
+        tally.failed[0].1.contains("has changed"),
+        "{:?}",
+        tally.failed
+    );
+    fs::write(&scenario, ROOM).unwrap();
+    assert_eq!(run_in(&study, &out, Shard::WHOLE).0.finished, 2);
+    assert_eq!(Gathered::of(&study, &Shelf::at(&out)).counts(), [2, 0, 0]);
+    assert_eq!(cases(&out, ".json").len(), 2, "no failure is left");
+}
+
+#[test]
+fn a_damaged_result_is_computed_again() {
+    let (folder, path) = folder(r#"{"scenario": "room.json", "seeds": 2}"#);
+    let study = Study::read(&path).unwrap();
+    let out = folder.path().join("out");
+    run_in(&study, &out, Shard::WHOLE);
+    let before = Gathered::of(&study, &Shelf::at(&out));
+    let file = out.join(format!("cases/{}.json", study.cells[1].key()));
+    fs::write(&file, "{\"key\"").unwrap();
+    let (tally, ear) = run_in(&study, &out, Shard::WHOLE);
+    assert_eq!([tally.kept, tally.finished], [1, 1]);
+    assert!(ear.notes.into_inner().unwrap()[0].contains(file.to_str().unwrap()));
+    let hash = |gathered: &Gathered| {
+        let State::Finished(result) = &gathered.states[1] else {
+            panic!("not finished");
+        };
+        result.summary.state_sha256.clone()
+    };
+    assert_eq!(hash(&Gathered::of(&study, &Shelf::at(&out))), hash(&before));
+}
+
+#[test]
+fn the_summary_has_means_over_seeds_with_their_intervals() {
+    let (folder, path) = folder(GRID);
+    let study = Study::read(&path).unwrap();
+    let out = folder.path().join("out");
+    run_in(&study, &out, Shard::WHOLE);
+    write(&study, &out);
+    let numbers = |file: &str, name: &str| -> Vec<f64> {
+        let values = column(&rows(&out.join(file)), name);
+        values.iter().map(|value| value.parse().unwrap()).collect()
+    };
+    let values = numbers("study.csv", "density_mean_0.2s");
+    let means = numbers("study-summary.csv", "density_mean_0.2s_mean");
+    let intervals = numbers("study-summary.csv", "density_mean_0.2s_ci95");
+    assert_eq!(
+        numbers("study-summary.csv", "density_mean_0.2s_n"),
+        [3.0; 4]
+    );
+    for (k, seeds) in values.chunks(3).enumerate() {
+        let mean = seeds.iter().sum::<f64>() / 3.0;
+        let variance = seeds.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 2.0;
+        let interval = student_95(3).unwrap() * (variance / 3.0).sqrt();
+        assert!((means[k] - mean).abs() < 1e-12 && (intervals[k] - interval).abs() < 1e-12);
+        assert!(interval > 0.0);
+    }
+    let combination = column(&rows(&out.join("study-summary.csv")), "profile");
+    assert_eq!(combination, ["sph", "sf->sph", "sph", "sf->sph"]);
+}
+
+#[test]
+fn what_is_missing_has_a_row_as_well() {
+    let (folder, path) = folder(GRID);
+    let study = Study::read(&path).unwrap();
+    let out = folder.path().join("out");
+    run_in(&study, &out, Shard::new(2, 3).unwrap());
+    write(&study, &out);
+    let table = rows(&out.join("study.csv"));
+    assert_eq!(
+        column(&table, "status")[..4],
+        ["missing", "finished", "missing", "missing"]
+    );
+    assert_eq!(Gathered::of(&study, &Shelf::at(&out)).counts(), [4, 0, 8]);
+    let summary = rows(&out.join("study-summary.csv"));
+    assert_eq!(column(&summary, "runs"), ["1"; 4]);
+    assert_eq!(
+        column(&summary, "evacuated_ci95"),
+        [""; 4],
+        "one value has no interval"
+    );
+}

@@ -1,0 +1,261 @@
+//! `sandbox sweep` as a user runs it: exit codes, what goes where, two processes at once.
+#![cfg(feature = "cli")]
+
+mod common;
+
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use common::sweep::{cases, column, folder, number, rows};
+use serde_json::Value;
+
+fn sandbox(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sandbox"));
+    command.args(arguments).current_dir(folder);
+    command
+}
+
+/// Exit code, stdout and stderr.
+fn said(output: Output) -> (Option<i32>, String, String) {
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (
+        output.status.code(),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
+    said(sandbox(folder, arguments).output().unwrap())
+}
+
+fn json(folder: &Path, arguments: &[&str]) -> Value {
+    let (code, stdout, stderr) = run(folder, arguments);
+    assert_eq!(code, Some(0), "{arguments:?}: {stderr}");
+    serde_json::from_str(&stdout).unwrap()
+}
+
+#[test]
+fn a_cell_is_the_run_that_its_settings_make() {
+    let (folder, _) = folder(
+        r#"{"scenario": "room.json", "seeds": [5, 6], "settings": {"duration_secs": 0.3},
+            "grid": {"gas_constant": [300, 400], "grids.0.columns": [4]}}"#,
+    );
+    let study = json(folder.path(), &["sweep", "study.json", "--json"]);
+    let cell = &study["cells"][3];
+    assert_eq!(cell["settings"]["gas_constant"], 400);
+    let set = [
+        "--set",
+        "gas_constant=400",
+        "--set",
+        "grids.0.columns=4",
+        "--set",
+        "duration_secs=0.3",
+    ];
+    let alone = [&["run", "room.json", "--seed", "6", "--json"], &set[..]].concat();
+    let alone = json(folder.path(), &alone);
+    // Everything that a run reports, but for how it was computed.
+    let how = ["threads", "ms_per_frame", "real_time_factor", "stages_ms"];
+    let keys = alone.as_object().unwrap().keys();
+    let keys: Vec<&String> = keys.filter(|key| !how.contains(&key.as_str())).collect();
+    assert!(keys.len() >= 12);
+    for key in keys {
+        assert_eq!(cell["result"][key], alone[key], "{key}");
+    }
+    let table = rows(&folder.path().join("study/study.csv"));
+    assert_eq!(
+        column(&table, "state_sha256")[3],
+        alone["state_sha256"].as_str().unwrap()
+    );
+}
+
+#[test]
+fn a_failed_cell_is_told_at_the_end_and_the_exit_code_is_1() {
+    let (folder, _) = folder(
+        r#"{"scenario": "star.json", "grid": {"agents.0.position": [[0, 0], [20, 0], [0, 20]]}}"#,
+    );
+    let (code, stdout, stderr) = run(folder.path(), &["sweep", "study.json", "--out", "out"]);
+    assert_eq!(code, Some(1));
+    assert!(stderr.contains("error: 1 of 3 cells failed"), "{stderr}");
+    assert!(
+        stderr.contains("cell 1: agents.0.position=[0,0] seed=1: agent 0"),
+        "{stderr}"
+    );
+    assert!(
+        stdout.contains("evacuated"),
+        "the others are reported: {stdout}"
+    );
+    let table = rows(&folder.path().join("out/study.csv"));
+    assert_eq!(column(&table, "status"), ["failed", "finished", "finished"]);
+    let (code, stdout, _) = run(
+        folder.path(),
+        &[
+            "sweep",
+            "study.json",
+            "--out",
+            "out",
+            "--shard",
+            "2/3",
+            "--json",
+        ],
+    );
+    assert_eq!(code, Some(0), "a shard answers for its own cells");
+    let told: Value = serde_json::from_str(&stdout).unwrap();
+    assert_eq!([number(&told, "kept"), number(&told, "finished")], [1, 0]);
+}
+
+#[test]
+fn two_processes_at_once_run_every_cell_once() {
+    let (folder, _) = folder(r#"{"scenario": "room.json", "seeds": 40}"#);
+    let begin = || {
+        let arguments = ["sweep", "study.json", "--shard", "1/1", "--json"];
+        let mut command = sandbox(folder.path(), &arguments);
+        let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.spawn().unwrap()
+    };
+    let both = [begin(), begin()].map(|child| {
+        let (code, stdout, stderr) = said(child.wait_with_output().unwrap());
+        assert_eq!(code, Some(0), "{stderr}");
+        serde_json::from_str::<Value>(&stdout).unwrap()
+    });
+    assert_eq!(
+        both.each_ref()
+            .map(|told| number(told, "finished"))
+            .iter()
+            .sum::<u64>(),
+        40
+    );
+    for told in &both {
+        assert_eq!(number(told, "finished") + number(told, "kept"), 40);
+    }
+    assert_eq!(cases(&folder.path().join("study"), ".json").len(), 40);
+    let (code, ..) = run(folder.path(), &["sweep", "study.json", "--merge"]);
+    assert_eq!(code, Some(0));
+}
+
+#[test]
+fn what_was_finished_before_a_process_is_killed_is_kept() {
+    let (folder, _) =
+        folder(r#"{"scenario": "room.json", "grid": {"duration_secs": [0.1, 10000000]}}"#);
+    let arguments = ["sweep", "study.json", "--threads", "2"];
+    let mut child = sandbox(folder.path(), &arguments)
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let out = folder.path().join("study");
+    while !out.join("cases").is_dir() || cases(&out, ".json").is_empty() {
+        assert_eq!(child.try_wait().unwrap(), None, "it goes on for long");
+        std::thread::yield_now();
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let (code, stdout, _) = run(folder.path(), &["sweep", "study.json", "--list"]);
+    assert_eq!(code, Some(0));
+    let last = |line: &str| {
+        line.split_whitespace()
+            .last()
+            .unwrap_or_default()
+            .to_owned()
+    };
+    assert_eq!(
+        stdout.lines().map(last).collect::<Vec<_>>(),
+        ["status", "finished", "missing"]
+    );
+    let (code, _, stderr) = run(folder.path(), &["sweep", "study.json", "--shard", "1/2"]);
+    assert_eq!(code, Some(0));
+    assert!(stderr.contains("0 cell(s) to run, 1 kept"), "{stderr}");
+}
+
+#[test]
+fn a_list_runs_and_writes_nothing() {
+    let (folder, _) =
+        folder(r#"{"scenario": "room.json", "grid": {"viscosity": [0, 2.5]}, "seeds": 2}"#);
+    let (code, stdout, _) = run(folder.path(), &["sweep", "study.json", "--list"]);
+    assert_eq!(code, Some(0));
+    assert_eq!(stdout.lines().count(), 5);
+    assert_eq!(stdout.lines().next(), Some("cell  viscosity  seed  status"));
+    assert_eq!(
+        stdout.lines().nth(3),
+        Some("3     2.5        1     missing")
+    );
+    let part = json(
+        folder.path(),
+        &["sweep", "study.json", "--list", "--shard", "2/3", "--json"],
+    );
+    assert_eq!(part["cells"].as_array().unwrap().len(), 1);
+    assert_eq!(part["cells"][0]["cell"], 2);
+    assert!(!folder.path().join("study").exists());
+}
+
+#[test]
+fn merging_writes_what_there_is_and_says_what_is_missing() {
+    let (folder, _) = folder(r#"{"scenario": "room.json", "seeds": 5}"#);
+    let merge = ["sweep", "study.json", "--merge"];
+    let (code, _, stderr) = run(folder.path(), &merge);
+    assert_eq!(code, Some(2));
+    assert!(
+        stderr.contains("study: no study was begun there"),
+        "{stderr}"
+    );
+    let (code, stdout, _) = run(folder.path(), &["sweep", "study.json", "--shard", "1/3"]);
+    assert_eq!(code, Some(0));
+    assert_eq!(
+        stdout,
+        "shard 1/3: 2 cell(s); 2 finished now, 0 before, 0 failed\n"
+    );
+    assert!(
+        !folder.path().join("study/study.csv").exists(),
+        "shards write only their cells"
+    );
+    let (code, _, stderr) = run(folder.path(), &merge);
+    assert_eq!(code, Some(1));
+    assert!(
+        stderr.contains("3 of 5 cells are missing: 2–3, 5"),
+        "{stderr}"
+    );
+    let table = rows(&folder.path().join("study/study.csv"));
+    assert_eq!(
+        column(&table, "status")
+            .iter()
+            .filter(|s| *s == "finished")
+            .count(),
+        2
+    );
+}
+
+#[test]
+fn bad_input_is_refused_with_exit_code_2() {
+    let (folder, path) = folder(r#"{"scenario": "room.json", "grid": {"viscosity": [0, -1]}}"#);
+    let refused = |arguments: &[&str], words: &str| {
+        let (code, stdout, stderr) = run(folder.path(), arguments);
+        assert_eq!(code, Some(2), "{stderr}");
+        assert!(stderr.contains(words), "{words} in {stderr}");
+        assert_eq!(stdout, "");
+    };
+    refused(
+        &["sweep", "study.json"],
+        "study.json: cell 2: grid.viscosity[1]=-1: must be",
+    );
+    refused(&["sweep", "study.json", "--shard", "4/3"], "1 ≤ i ≤ n");
+    refused(
+        &["sweep", "study.json", "--shard", "1/3", "--merge"],
+        "--merge",
+    );
+    refused(&["sweep", "study.json", "--list", "--merge"], "--merge");
+    refused(&["sweep"], "FILE");
+    std::fs::write(path, r#"{"scenario": "room.json"}"#).unwrap();
+    std::fs::write(folder.path().join("study.csv"), "precious").unwrap();
+    refused(&["sweep", "study.json", "--out", "."], "--force");
+    assert_eq!(
+        std::fs::read(folder.path().join("study.csv")).unwrap(),
+        b"precious"
+    );
+    let (code, ..) = run(
+        folder.path(),
+        &["sweep", "study.json", "--out", ".", "--force"],
+    );
+    assert_eq!(code, Some(0));
+    assert_eq!(rows(&folder.path().join("study.csv")).len(), 1);
+    let help = run(folder.path(), &["sweep", "--help"]).1;
+    assert!(help.contains("sandbox sweep study.json --shard 2/8"));
+}
