@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 
+use super::measure::MeasureOptions;
 use super::{accuracy, bench, reproduce};
 use crate::scenario::{Preset, SHIPPED};
 
@@ -81,6 +82,11 @@ pub enum Command {
     /// Run hard cases, map the largest stable time step, measure jitter
     #[command(after_help = "Example: sandbox stress --quick")]
     Stress(StressOptions),
+    /// Measure densities, speeds and flows in trajectories, real or simulated (§8)
+    #[command(
+        after_help = "Example: sandbox measure run.sqlite --line 21,9.6,21,10.4 --region 15,8,19,12"
+    )]
+    Measure(MeasureOptions),
     /// List the scenarios and profiles, or the settings that --set takes
     #[command(after_help = "Example: sandbox list --settings")]
     List {
@@ -346,14 +352,14 @@ fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-fn frame_rate(text: &str) -> Result<f64, String> {
+pub fn frame_rate(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(fps) if (1e-6..=1e6).contains(&fps) => Ok(fps),
         _ => Err("not a number of frames per second above 0".to_owned()),
     }
 }
 
-fn positive_seconds(text: &str) -> Result<f64, String> {
+pub fn positive_seconds(text: &str) -> Result<f64, String> {
     match seconds(text) {
         Ok(value) if value > 0.0 => Ok(value),
         _ => Err("not a time in seconds above 0".to_owned()),

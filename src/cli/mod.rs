@@ -7,6 +7,7 @@ mod checkpoint;
 mod drive;
 mod inspect;
 mod list;
+mod measure;
 mod output;
 mod report;
 mod reproduce;
@@ -105,6 +106,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Bench(options) => bench::run(&options),
         Command::Accuracy(options) => accuracy::run(&options),
         Command::Stress(options) => stress::run(&options),
+        Command::Measure(options) => measure::run(&options),
         Command::List { settings } => list::run(settings),
     }
 }

@@ -1,0 +1,142 @@
+//! The density of people in one frame (§8): Eqs. 9 and 10 without a simulation.
+
+use rayon::prelude::*;
+
+use super::site::{Hidden, Kernel, Site};
+use crate::agents::{Agents, NewAgent, REFERENCE_RADIUS};
+use crate::density::SphParameters;
+use crate::math::Vector;
+use crate::neighbors::{BLOCK, Neighbors, Ranges};
+use crate::pairs::Columns;
+
+/// No more of a kernel than this is taken to be hidden: in a crack, what is left says nothing.
+pub const MOST_HIDDEN: f64 = 0.9;
+
+/// How dense the crowd is taken to be where walls are: ρ_i⁰ in Eq. 10.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Behind {
+    /// As dense as where the person stands: ρ_i = Σ_j m_j W / (1 − Σ_k ∫ W over P_k), the sum over what is
+    /// seen of the kernel by its integral. A uniform crowd has the same density up to its walls.
+    #[default]
+    Same,
+    /// The engine's: the moving average ρ̂_i of the person's own density (Eq. 8) between 0 and so many
+    /// P/m². It depends on the frames before.
+    Rest(f64),
+}
+
+/// Eq. 9 in parts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parts {
+    /// Σ_j m_j W, j = i too, P/m².
+    pub from_people: f64,
+    /// What walls hide.
+    pub hidden: Hidden,
+}
+
+/// The parts of everybody's density in a frame, in the order given; masses are all 1 where there are none.
+pub fn parts(site: &Site, positions: &[Vector], masses: &[f64], kernel: &Kernel) -> Vec<Parts> {
+    let mut agents = Agents::default();
+    for (k, &position) in positions.iter().enumerate() {
+        let person = NewAgent {
+            radius: Some(REFERENCE_RADIUS),
+            mass: Some(masses.get(k).copied().unwrap_or(1.0)),
+            ..NewAgent::at(position, position, 0)
+        };
+        agents.enter(person, 0);
+    }
+    let ranges = Ranges {
+        support: kernel.support_radius,
+        ..Ranges::default()
+    };
+    let mut neighbors = Neighbors::default();
+    neighbors.sort(&mut agents, ranges);
+    neighbors.list_agents();
+    neighbors.list_walls(&agents, site.walls());
+    let sums = sums(&agents, &neighbors, kernel.support_radius);
+    let nothing = Parts {
+        from_people: 0.0,
+        hidden: Hidden {
+            share: 0.0,
+            inside: None,
+        },
+    };
+    let mut parts = vec![nothing; positions.len()];
+    for (i, from_people) in sums.into_iter().enumerate() {
+        // Ids were given in the order of the positions.
+        parts[agents.id[i] as usize] = Parts {
+            from_people,
+            hidden: site.hidden(agents.position[i], neighbors.near_walls(i), kernel),
+        };
+    }
+    parts
+}
+
+/// Eq. 9 without walls, by the engine's own sums, in double precision and its order of the agents.
+fn sums(agents: &Agents, neighbors: &Neighbors, h: f64) -> Vec<f64> {
+    let mut columns = Columns::<f64>::default();
+    columns.take_bodies(agents, 1.0, |_| h);
+    let states = (
+        columns.motions(),
+        agents.position.par_chunks(BLOCK),
+        agents.velocity.par_chunks(BLOCK),
+    );
+    states
+        .into_par_iter()
+        .for_each(|(mut motion, positions, velocities)| motion.take(positions, velocities));
+    let mut sums = vec![0.0; agents.len()];
+    let (bodies, _) = columns.pressures();
+    for (b, sums) in sums.chunks_mut(BLOCK).enumerate() {
+        bodies.densities(neighbors.near().block(b), sums);
+    }
+    sums
+}
+
+/// Everybody's moving average, for [`Behind::Rest`].
+pub struct History {
+    behind: Behind,
+    sph: SphParameters,
+    /// ρ̂ of each person and the frame that it is of.
+    kept: Vec<Option<(i64, f64)>>,
+}
+
+impl History {
+    /// Of so many people, none of whom has been seen.
+    pub fn new(behind: Behind, people: usize) -> Self {
+        let mut sph = SphParameters::default();
+        if let Behind::Rest(max) = behind {
+            sph.rest_density_max = max;
+        }
+        let kept = match behind {
+            Behind::Same => Vec::new(),
+            Behind::Rest(_) => vec![None; people],
+        };
+        Self { behind, sph, kept }
+    }
+
+    /// The walls' part of ρ_i of a person in a frame, P/m²; `step` frames take `interval` seconds, and frames
+    /// must come in order.
+    pub fn from_walls(
+        &mut self,
+        (person, frame): (usize, i64),
+        parts: &Parts,
+        (step, interval): (i64, f64),
+    ) -> f64 {
+        let Parts {
+            from_people,
+            hidden,
+        } = *parts;
+        if self.behind == Behind::Same {
+            let hidden = hidden.share.min(MOST_HIDDEN);
+            return from_people * hidden / (1.0 - hidden);
+        }
+        // Who was not there one frame before is new, as in the engine.
+        let before = self.kept[person].filter(|&(last, _)| last == frame - step);
+        let before = before.map_or(from_people, |(_, mean)| mean);
+        let from_walls = hidden.share * self.sph.rest_density(before);
+        let mean = self
+            .sph
+            .averaged(before, from_people + from_walls, interval);
+        self.kept[person] = Some((frame, mean));
+        from_walls
+    }
+}

@@ -1,0 +1,102 @@
+//! Where people walk: what walls hide of a kernel, for people and for places.
+
+use crate::boundary::WallMethod;
+use crate::geometry::{Polygon, Walls};
+use crate::math::Vector;
+
+/// Obstacles, with a quick answer to who is inside one.
+#[derive(Debug, Clone)]
+pub struct Site {
+    walls: Walls,
+    /// The corners of each obstacle's bounding box.
+    bounds: Vec<[Vector; 2]>,
+}
+
+/// The kernel that measures, and how walls enter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Kernel {
+    /// h, metres.
+    pub support_radius: f64,
+    /// How the integral over what walls hide is taken.
+    pub walls: WallMethod,
+}
+
+/// What walls hide from somebody.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hidden {
+    /// Σ_k ∫ W over P_k, the part of the kernel behind walls.
+    pub share: f64,
+    /// How far inside an obstacle somebody is, metres; his share is that of the nearest free point.
+    pub inside: Option<f64>,
+}
+
+impl Site {
+    /// Round these obstacles.
+    pub fn new(obstacles: Vec<Polygon>) -> Self {
+        let bounds = obstacles.iter().map(|obstacle| {
+            let corners = obstacle.points();
+            let first = [corners[0]; 2];
+            corners
+                .iter()
+                .fold(first, |[low, high], p| [low.inf(p), high.sup(p)])
+        });
+        Self {
+            bounds: bounds.collect(),
+            walls: Walls::new(obstacles),
+        }
+    }
+
+    /// The obstacles and their walls.
+    pub fn walls(&self) -> &Walls {
+        &self.walls
+    }
+
+    /// Is `p` inside an obstacle?
+    pub fn is_inside(&self, p: Vector) -> bool {
+        let obstacles = self.bounds.iter().zip(self.walls.obstacles());
+        let may = |[low, high]: &[Vector; 2]| p == p.sup(low) && p == p.inf(high);
+        obstacles
+            .filter(|(bounds, _)| may(bounds))
+            .any(|(_, obstacle)| obstacle.contains(p))
+    }
+
+    /// What the walls `near` a free place hide of the kernel there.
+    pub fn share(&self, p: Vector, near: &[u32], kernel: &Kernel) -> f64 {
+        let mut share = 0.0;
+        let h = kernel.support_radius;
+        kernel
+            .walls
+            .shares(&self.walls, near, p, h, |wall| share += wall.kernel);
+        share
+    }
+
+    /// What walls hide from somebody at `p`; `near` are the walls within h.
+    pub fn hidden(&self, p: Vector, near: &[u32], kernel: &Kernel) -> Hidden {
+        if self.walls.is_empty() {
+            return Hidden {
+                share: 0.0,
+                inside: None,
+            };
+        }
+        if !self.is_inside(p) {
+            let share = self.share(p, near, kernel);
+            return Hidden {
+                share,
+                inside: None,
+            };
+        }
+        // A recorded head leans over a wall: what it hides is what it hides at its face.
+        let Some(free) = self.walls.free_point_near(p) else {
+            return Hidden {
+                share: 0.0,
+                inside: Some(f64::INFINITY),
+            };
+        };
+        let mut near = Vec::new();
+        self.walls.near(free, kernel.support_radius, &mut near);
+        Hidden {
+            share: self.share(free, &near, kernel),
+            inside: Some((free - p).norm()),
+        }
+    }
+}
