@@ -63,7 +63,7 @@ pub struct Class {
 }
 
 impl Class {
-    fn add(&mut self, density: f64, speed: f64) {
+    pub(super) fn add(&mut self, density: f64, speed: f64) {
         self.density.add(density);
         self.speed.add(speed);
         self.flow.add(density * speed);

@@ -10,6 +10,10 @@ mod diagram;
 mod fields;
 mod line;
 mod output;
+#[cfg(feature = "plot")]
+pub mod pictures;
+#[cfg(feature = "recording")]
+mod record;
 mod report;
 mod site;
 pub mod speed;
@@ -19,6 +23,8 @@ pub use diagram::{CLASS, Class, Diagram, FrameMean, Spread};
 pub use fields::{Fields, Grid, MOST_CELLS, Mean};
 pub use line::{Crossing, Crossings, Line};
 pub use output::{OutputError, Results};
+#[cfg(feature = "recording")]
+pub use record::MomentRecorder;
 pub use report::Report;
 pub use site::{Hidden, Kernel, Site};
 

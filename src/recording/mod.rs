@@ -19,6 +19,7 @@ mod debug;
 mod error;
 mod geometry;
 mod layers;
+mod measured;
 mod read;
 mod snapshot;
 mod stats;
@@ -28,6 +29,7 @@ mod writer;
 pub use debug::DebugAgents;
 pub use error::RecordingError;
 pub use layers::METRES_PER_ACCELERATION;
+pub use measured::{MeasuredPerson, MeasuredRecorder};
 pub use read::Recording;
 
 use std::path::{Path, PathBuf};
@@ -38,7 +40,7 @@ use rerun::{RecordingStream, RecordingStreamBuilder};
 
 use crate::scene::Region;
 use crate::simulation::{Event, Simulation};
-use blueprint::Opening;
+use blueprint::{Content, Opening};
 use debug::Debug;
 use writer::Writer;
 
@@ -102,7 +104,7 @@ impl Recorder {
         stream.set_log_time_enabled(false);
         stream.send_recording_name(options.title.clone())?;
         let layers = layers::Layers::new(scene, &options.debug);
-        blueprint::send(&stream, options, Opening::Empty)?;
+        blueprint::send(&stream, options, Opening::Empty, Content::Run)?;
         text::log_document(&stream, scene, options)?;
         geometry::log(&stream, scene, simulation.frame().agents)?;
         crowd::log_style(&stream)?;
@@ -135,8 +137,8 @@ impl Recorder {
     ) -> Result<(), RecordingError> {
         let mut snapshot = self.writer.empty();
         snapshot.take(simulation, &self.debug);
-        snapshot.ms_per_frame = ms_per_frame;
-        snapshot.evacuated = self.progress.count_arrivals(simulation);
+        snapshot.ms_per_frame = Some(ms_per_frame);
+        snapshot.evacuated = Some(self.progress.count_arrivals(simulation));
         snapshot.events = self.progress.new_events(simulation);
         snapshot.opens_here = !self.opened && snapshot.time >= self.options.opens_at;
         // A run may end before that time; then the debug view shows somebody who was there first.
@@ -154,7 +156,8 @@ impl Recorder {
     pub fn finish(mut self) -> Result<(), RecordingError> {
         self.writer.finish()?;
         self.stream.flush_blocking()?;
-        blueprint::send(&self.stream, &self.options, Opening::Whole(self.focus))?;
+        let opening = Opening::Whole(self.focus);
+        blueprint::send(&self.stream, &self.options, opening, Content::Run)?;
         self.stream.flush_blocking()?;
         drop(self.stream); // Joins rerun's writer, which adds the footer and only logs its failure.
         read::check_footer(&self.path)
@@ -203,7 +206,7 @@ fn batches() -> ChunkBatcherConfig {
     }
 }
 
-fn set_time(stream: &RecordingStream, frame: u64, time: f64) {
-    stream.set_time_sequence(FRAME, i64::try_from(frame).unwrap_or(i64::MAX));
+fn set_time(stream: &RecordingStream, frame: i64, time: f64) {
+    stream.set_time_sequence(FRAME, frame);
     stream.set_duration_secs(SIM_TIME, time);
 }
