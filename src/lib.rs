@@ -27,6 +27,8 @@ pub mod random;
 
 pub mod geometry;
 
+pub mod floor_plan;
+
 pub mod kernel;
 
 pub mod clock;

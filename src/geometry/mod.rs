@@ -1,17 +1,19 @@
 //! Obstacles and what can be asked about them. The only place that names parry2d.
 //!
-//! An obstacle is a simple [`Polygon`], solid inside; each boundary edge is a [`Wall`] with a free
-//! side. [`Walls`] holds them all in parry's bounding volume hierarchy; a [`HiddenRegion`] is the
+//! An obstacle is a [`Polygon`]: a body, solid inside but for its holes, or everything round the [`Area`]s
+//! that people walk in. Each boundary edge is a [`Wall`] with a free side. [`Walls`] holds them all in parry's bounding volume hierarchy; a [`HiddenRegion`] is the
 //! part of an agent's kernel behind one wall (P_k in §4.3), in closed form.
 
 mod hidden_region;
 mod polygon;
+mod ring;
 mod shadows;
 mod wall;
 mod walls;
 
 pub use hidden_region::HiddenRegion;
-pub use polygon::{Polygon, PolygonError};
+pub use polygon::{Area, Polygon, PolygonError};
+pub use ring::Ring;
 pub use shadows::visible_parts;
 pub use wall::{NearestPoint, Wall, WallPart};
 pub use walls::Walls;

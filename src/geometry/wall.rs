@@ -23,7 +23,7 @@ pub struct Wall {
     pub normal: Vector,
     /// The obstacle that this edge bounds, in the order of the scene.
     pub obstacle: u32,
-    /// The wall of the same obstacle that ends where this one starts.
+    /// The wall of the same ring that ends where this one starts.
     pub previous: u32,
 }
 
@@ -48,7 +48,7 @@ pub struct NearestPoint {
 }
 
 impl Wall {
-    /// The edge from `start` to `end` of a counter-clockwise polygon; the ends must differ.
+    /// The edge from `start` to `end`, with the solid on its left; the ends must differ.
     pub fn new(start: Vector, end: Vector, obstacle: u32, previous: u32) -> Self {
         let tangent = (end - start).normalize();
         Self {
@@ -64,6 +64,11 @@ impl Wall {
     /// Length in metres.
     pub fn length(&self) -> f64 {
         (self.end - self.start).norm()
+    }
+
+    /// Is there wall so many metres `along` it, but for rounding?
+    fn reaches(&self, along: f64) -> bool {
+        (-END_ROUNDING..=self.length() + END_ROUNDING).contains(&along)
     }
 
     /// Distance of `p` from the wall's line in metres, negative behind it.
@@ -98,8 +103,7 @@ impl Wall {
         let along = (other.start - self.start).perp(&other.tangent) / sine;
         let point = self.start + self.tangent * along;
         let there = (point - other.start).dot(&other.tangent);
-        let crosses =
-            (0.0..=self.length()).contains(&along) && (0.0..=other.length()).contains(&there);
+        let crosses = self.reaches(along) && other.reaches(there);
         let cosine = self.normal.dot(&other.normal);
         let out = (self.normal + other.normal) * (clearance / (1.0 + cosine));
         (crosses && out.norm().is_finite()).then_some(point + out)
@@ -115,8 +119,7 @@ impl Wall {
         }
         let fraction = before / (before - after);
         let along = (from + (to - from) * fraction - self.start).dot(&self.tangent);
-        let reach = -END_ROUNDING..=self.length() + END_ROUNDING;
-        reach.contains(&along).then_some(fraction)
+        self.reaches(along).then_some(fraction)
     }
 }
 

@@ -23,12 +23,14 @@ impl Walls {
     pub fn new(obstacles: Vec<Polygon>) -> Self {
         let mut walls = Vec::new();
         for (obstacle, polygon) in obstacles.iter().enumerate() {
-            let first = walls.len();
-            let last = first + polygon.points().len() - 1;
-            walls.extend(polygon.edges().enumerate().map(|(k, (start, end))| {
-                let previous = if k == 0 { last } else { first + k - 1 };
-                Wall::new(start, end, obstacle as u32, previous as u32)
-            }));
+            for ring in polygon.rings() {
+                let first = walls.len();
+                walls.extend((0..ring.len()).map(|k| {
+                    let previous = first + (k + ring.len() - 1) % ring.len();
+                    let end = ring[(k + 1) % ring.len()];
+                    Wall::new(ring[k], end, obstacle as u32, previous as u32)
+                }));
+            }
         }
         let bounds: Vec<Aabb> = walls
             .iter()
@@ -114,7 +116,7 @@ impl Walls {
     }
 
     /// The nearest point to `p`, a hair outside of walls, that lies in no obstacle: on a wall, or where two
-    /// walls of overlapping obstacles cross.
+    /// walls meet, at a corner of a room or where obstacles overlap.
     pub fn free_point_near(&self, p: Vector) -> Option<Vector> {
         let feet = self.walls.iter();
         let feet = feet.map(|wall| wall.nearest_point(p).point + wall.normal * CLEARANCE);
@@ -127,8 +129,7 @@ impl Walls {
             .collect();
         let mut corners = Vec::new();
         for (k, a) in near.iter().enumerate() {
-            let others = near[..k].iter().filter(|b| b.obstacle != a.obstacle);
-            corners.extend(others.filter_map(|b| a.corner_with(b, CLEARANCE)));
+            corners.extend(near[..k].iter().filter_map(|b| a.corner_with(b, CLEARANCE)));
         }
         let corner = self.nearest_free(p, corners);
         let nearest = [foot, corner].into_iter().flatten();

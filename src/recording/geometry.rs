@@ -20,6 +20,8 @@ pub const OBSTACLES: &str = "world/geometry/obstacles";
 const RASTER_SIDE: f64 = 1024.0;
 /// Its pixels are not smaller than this, metres.
 const RASTER_CELL: f64 = 0.05;
+/// What is solid without end is shown so far round the floor, metres.
+const SOLID_MARGIN: f64 = 1.0;
 /// No more goals than this are shown, and no more than `NAMED_GOALS` with names.
 const GOALS: usize = 200;
 const NAMED_GOALS: usize = 8;
@@ -45,9 +47,9 @@ pub fn log_still(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), 
 }
 
 fn log_walls(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), RecordingError> {
-    let outlines = obstacles.iter().map(|obstacle| {
-        let corners = obstacle.points().iter();
-        let closed = corners.chain(obstacle.points().first());
+    let rings = obstacles.iter().flat_map(Polygon::rings);
+    let outlines = rings.map(|ring| {
+        let closed = ring.iter().chain(ring.first());
         closed.map(|&p| xy(p)).collect::<Vec<_>>()
     });
     let walls = LineStrips2D::new(outlines)
@@ -94,6 +96,9 @@ impl Raster {
         let infinity = Vector::repeat(f64::INFINITY);
         let min = points().fold(infinity, |min, p| min.inf(p));
         let max = points().fold(-infinity, |max, p| max.sup(p));
+        let unbounded = obstacles.iter().any(Polygon::is_unbounded);
+        let margin = Vector::repeat(if unbounded { SOLID_MARGIN } else { 0.0 });
+        let (min, max) = (min - margin, max + margin);
         let cell = ((max - min).max() / RASTER_SIDE).max(RASTER_CELL);
         let cells = |length: f64| (length / cell).ceil().max(1.0) as usize;
         let (columns, rows) = (cells(max.x - min.x), cells(max.y - min.y));
@@ -119,6 +124,9 @@ impl Raster {
                 .filter(|(a, b)| (a.y > y) != (b.y > y))
                 .map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y))
                 .collect();
+            if obstacle.is_unbounded() {
+                crossings.extend([f64::NEG_INFINITY, f64::INFINITY]);
+            }
             crossings.sort_by(f64::total_cmp);
             for inside in crossings.chunks_exact(2) {
                 // Pixels whose centres lie inside; `as` saturates at 0.
@@ -202,6 +210,7 @@ pub fn xy(v: Vector) -> [f32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::{Area, Ring};
 
     #[test]
     fn the_picture_of_an_obstacle_covers_its_area() {
@@ -209,9 +218,25 @@ mod tests {
         let polygon = Polygon::new(corners.map(|[x, y]| Vector::new(x, y)).to_vec()).unwrap();
         let raster = Raster::of(std::slice::from_ref(&polygon));
         let filled = raster.pixels.iter().filter(|&&pixel| pixel == 1).count() as f64;
-        assert!((filled * raster.cell.powi(2) - polygon.area()).abs() < 0.1);
+        assert!((filled * raster.cell.powi(2) - 8.0).abs() < 0.1);
         assert_eq!(raster.pixels[0], 1, "the lower left corner is solid");
         let above_the_notch = (raster.rows - 1) * raster.columns + raster.columns / 2;
         assert_eq!(raster.pixels[above_the_notch], 0);
+    }
+
+    #[test]
+    fn the_picture_of_an_enclosure_leaves_the_floor_free_and_has_a_margin() {
+        let square = |low: f64, high: f64| {
+            let corners = [[low, low], [high, low], [high, high], [low, high]];
+            Ring::new(corners.map(Vector::from).to_vec()).unwrap()
+        };
+        let floor = Area {
+            exterior: square(0.0, 10.0),
+            holes: vec![square(4.0, 6.0)],
+        };
+        let raster = Raster::of(&[Polygon::enclosing(vec![floor]).unwrap()]);
+        let filled = raster.pixels.iter().filter(|&&pixel| pixel == 1).count() as f64;
+        assert!((filled * raster.cell.powi(2) - (144.0 - 96.0)).abs() < 0.5);
+        assert_eq!((raster.pixels[0], raster.pixels.last()), (1, Some(&1)));
     }
 }

@@ -23,8 +23,8 @@ struct Edge {
 #[derive(Debug, Clone)]
 pub struct Fence {
     edges: Vec<Edge>,
-    /// How many edges each obstacle has, in their order.
-    counts: Vec<usize>,
+    /// How many edges each obstacle has, in their order, and whether it is solid outside.
+    counts: Vec<(usize, bool)>,
     low: Vector,
     cell: f64,
     cells: Vec<Vec<u32>>,
@@ -53,7 +53,10 @@ impl Fence {
         let low = ends().reduce(|a, b| a.inf(&b)).unwrap_or_default();
         let high = ends().reduce(|a, b| a.sup(&b)).unwrap_or_default();
         let mut fence = Self {
-            counts: obstacles.iter().map(|o| o.points().len()).collect(),
+            counts: obstacles
+                .iter()
+                .map(|o| (o.points().len(), o.is_unbounded()))
+                .collect(),
             cell: ((high - low).max() / CELLS as f64).max(TOLERANCE),
             cells: vec![Vec::new(); (CELLS + 1) * (CELLS + 1)],
             low,
@@ -100,8 +103,8 @@ impl Fence {
     /// Does `p` lie inside an obstacle? By the edges that a ray to the right meets.
     pub fn encloses(&self, p: Vector) -> bool {
         let mut edges = self.edges.iter();
-        self.counts.iter().any(|&count| {
-            let (mut odd, mut near) = (false, false);
+        self.counts.iter().any(|&(count, unbounded)| {
+            let (mut odd, mut near) = (unbounded, false);
             for edge in edges.by_ref().take(count) {
                 let (from, to) = (edge.start, edge.end());
                 near |= edge.distance(p) <= TOLERANCE;

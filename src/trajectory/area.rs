@@ -1,4 +1,4 @@
-//! Where people can walk: a rectangle without the obstacles, as WKT.
+//! Where people can walk: a rectangle without the obstacles, or the scenario's own walkable area, as WKT.
 //!
 //! The rectangle holds the view, everything in the scene and some free space round it, and grows with the
 //! crowd. Of what obstacles cut off, only those parts count where somebody enters: nobody gets through a
@@ -6,10 +6,11 @@
 //! its user must choose.
 
 use geo::bool_ops::FillRule;
-use geo::{BooleanOps, BoundingRect, Contains, Coord, CoordsIter, LineString, MapCoordsInPlace};
+use geo::{BooleanOps, BoundingRect, Contains, Coord, CoordsIter, LineString};
 use geo::{MultiPolygon, Point, Polygon, Rect};
 
 use super::Row;
+use crate::floor_plan::restore_corners;
 use crate::math::Vector;
 use crate::scene::{Goal, Region};
 use crate::simulation::Simulation;
@@ -17,13 +18,12 @@ use crate::simulation::Simulation;
 /// Free space round everything, metres.
 const MARGIN: f64 = 5.0;
 
-/// How far, in parts of the whole extent, the corners of a difference may be from where they were given:
-/// geo computes on a grid of some 2⁻³⁰.
-const ROUNDING: f64 = 1.0 / (1 << 28) as f64;
-
 /// What the walkable area is cut out of, and by what.
 pub struct WalkableArea {
     bounds: Rect,
+    /// The rings of what is solid outside.
+    floors: Vec<MultiPolygon>,
+    /// The rings of what is solid inside.
     obstacles: MultiPolygon,
     entries: Vec<Point>,
 }
@@ -52,12 +52,17 @@ impl WalkableArea {
         });
         let margin = Vector::new(MARGIN, MARGIN);
         let ring = |points: &[Vector]| LineString::from_iter(points.iter().map(|&p| coord(p)));
-        let polygons = obstacles
+        let rings = |obstacle: &crate::geometry::Polygon| -> MultiPolygon {
+            let rings = obstacle.rings();
+            rings.map(|r| Polygon::new(ring(r), Vec::new())).collect()
+        };
+        let (unbounded, bodies): (Vec<_>, Vec<_>) = obstacles
             .iter()
-            .map(|obstacle| Polygon::new(ring(obstacle.points()), Vec::new()));
+            .partition(|obstacle| obstacle.is_unbounded());
         Self {
             bounds: Rect::new(coord(min - margin), coord(max + margin)),
-            obstacles: polygons.collect(),
+            floors: unbounded.into_iter().map(rings).collect(),
+            obstacles: bodies.into_iter().flat_map(rings).collect(),
             entries: entries.into_iter().map(|p| coord(p).into()).collect(),
         }
     }
@@ -84,9 +89,12 @@ impl WalkableArea {
 
     /// The area as WKT, and its lowest and highest x and y.
     pub fn cut_out(&self) -> (String, [f64; 4]) {
-        let bounds = self.bounds.to_polygon();
-        // Nonzero: where two obstacles overlap, nobody walks either.
-        let mut free = bounds.difference_with_fill_rule(&self.obstacles, FillRule::NonZero);
+        let mut free = MultiPolygon::from(self.bounds.to_polygon());
+        for floor in &self.floors {
+            free = free.intersection_with_fill_rule(floor, FillRule::EvenOdd);
+        }
+        // Nonzero: where two obstacles overlap, nobody walks either; the holes of one turn the other way.
+        free = free.difference_with_fill_rule(&self.obstacles, FillRule::NonZero);
         self.restore_corners(&mut free);
         let holds_somebody = |part: &Polygon| self.entries.iter().any(|p| part.contains(p));
         let walked: Vec<Polygon> = free
@@ -105,18 +113,10 @@ impl WalkableArea {
     /// Corners as they were given, to the last bit.
     fn restore_corners(&self, area: &mut MultiPolygon) {
         let extent = self.bounds.width().max(self.bounds.height());
-        let rounding = extent * ROUNDING;
-        let mut given: Vec<Coord> = self.obstacles.coords_iter().collect();
+        let floors = self.floors.iter().flat_map(|floor| floor.coords_iter());
+        let mut given: Vec<Coord> = self.obstacles.coords_iter().chain(floors).collect();
         given.extend(self.bounds.coords_iter());
-        given.sort_by(|a, b| a.x.total_cmp(&b.x));
-        area.map_coords_in_place(|corner| {
-            let from = given.partition_point(|other| other.x < corner.x - rounding);
-            let near = given[from..]
-                .iter()
-                .take_while(|other| other.x <= corner.x + rounding)
-                .find(|other| (other.y - corner.y).abs() <= rounding);
-            near.copied().unwrap_or(corner)
-        });
+        restore_corners(area, given, extent);
     }
 }
 

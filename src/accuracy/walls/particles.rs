@@ -83,7 +83,15 @@ impl Particles {
                 (f64::from(obstacle.contains(middle)) * square, middle)
             } else {
                 let high = low + Vector::repeat(self.spacing);
-                area_and_middle(&clipped(obstacle.points(), low, high), low)
+                let whole = [
+                    low,
+                    Vector::new(high.x, low.y),
+                    high,
+                    Vector::new(low.x, high.y),
+                ];
+                let whole = obstacle.is_unbounded().then_some(whole.to_vec());
+                let rings = obstacle.rings().map(|ring| clipped(ring, low, high));
+                area_and_middle(rings.chain(whole), low)
             };
             if volume > LEAST_PART * square {
                 self.position.push(middle);
@@ -169,14 +177,17 @@ fn clipped(points: &[Vector], low: Vector, high: Vector) -> Vec<Vector> {
     })
 }
 
-/// Area in m² and centre of mass of a counter-clockwise outline, by triangles from `origin`.
-fn area_and_middle(outline: &[Vector], origin: Vector) -> (f64, Vector) {
+/// Area in m² and centre of mass of what counter-clockwise outlines enclose and clockwise ones leave out, by
+/// triangles from `origin`.
+fn area_and_middle(outlines: impl Iterator<Item = Vec<Vector>>, origin: Vector) -> (f64, Vector) {
     let (mut area, mut moment) = (0.0, Vector::zeros());
-    for (k, a) in outline.iter().enumerate() {
-        let (a, b) = (a - origin, outline[(k + 1) % outline.len()] - origin);
-        let triangle = 0.5 * a.perp(&b);
-        area += triangle;
-        moment += (a + b) * (triangle / 3.0);
+    for outline in outlines {
+        for (k, a) in outline.iter().enumerate() {
+            let (a, b) = (a - origin, outline[(k + 1) % outline.len()] - origin);
+            let triangle = 0.5 * a.perp(&b);
+            area += triangle;
+            moment += (a + b) * (triangle / 3.0);
+        }
     }
     (area, origin + moment / area)
 }

@@ -1,0 +1,111 @@
+//! GeoJSON (RFC 7946), in metres. The only file that names geojson.
+
+use geojson::{Feature, GeoJson, Geometry, GeometryValue, Position};
+use serde_json::Value;
+
+use super::error::FloorPlanError;
+use super::shape::Shape;
+use super::wkt::{IN_DEGREES, part};
+
+/// The polygons of `text`.
+pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
+    let document: Value = serde_json::from_str(text).map_err(|error| syntax(&error))?;
+    refuse_degrees(&document)?;
+    let mut shapes = Vec::new();
+    match serde_json::from_value(document).map_err(|error| syntax(&error))? {
+        GeoJson::Geometry(geometry) => collect(&geometry, "", false, &mut shapes)?,
+        GeoJson::Feature(one) => feature(&one, "", &mut shapes)?,
+        GeoJson::FeatureCollection(collection) => {
+            for (k, one) in collection.features.iter().enumerate() {
+                feature(one, &named(one, k), &mut shapes)?;
+            }
+        }
+    }
+    Ok(shapes)
+}
+
+fn syntax(error: &impl ToString) -> FloorPlanError {
+    FloorPlanError::Syntax {
+        format: "GeoJSON",
+        reason: error.to_string(),
+    }
+}
+
+/// Files of before RFC 7946 may say what their coordinates are.
+fn refuse_degrees(document: &Value) -> Result<(), FloorPlanError> {
+    let Some(name) = document["crs"]["properties"]["name"].as_str() else {
+        return Ok(());
+    };
+    let code = name.rsplit(':').next().and_then(|code| code.parse().ok());
+    let known = code.is_some_and(|code| IN_DEGREES.contains(&code));
+    if known || name.to_ascii_uppercase().contains("CRS84") {
+        return Err(FloorPlanError::Degrees(format!("crs {name}")));
+    }
+    Ok(())
+}
+
+/// What messages call feature `k`: by its `name`, if it has one, and its number from 1.
+fn named(feature: &Feature, k: usize) -> String {
+    let properties = feature.properties.as_ref();
+    match properties.and_then(|properties| properties.get("name")?.as_str()) {
+        Some(name) => format!("feature {} ({name})", k + 1),
+        None => format!("feature {}", k + 1),
+    }
+}
+
+fn feature(feature: &Feature, place: &str, shapes: &mut Vec<Shape>) -> Result<(), FloorPlanError> {
+    let properties = feature.properties.as_ref();
+    let kind = properties.and_then(|properties| properties.get("kind")?.as_str());
+    let is_obstacle = kind.is_some_and(|kind| kind.eq_ignore_ascii_case("obstacle"));
+    match &feature.geometry {
+        Some(geometry) => collect(geometry, place, is_obstacle, shapes),
+        None => Err(FloorPlanError::EmptyGeometry(place.to_owned())),
+    }
+}
+
+fn collect(
+    geometry: &Geometry,
+    place: &str,
+    is_obstacle: bool,
+    shapes: &mut Vec<Shape>,
+) -> Result<(), FloorPlanError> {
+    let empty = || Err(FloorPlanError::EmptyGeometry(place.to_owned()));
+    let found = match &geometry.value {
+        GeometryValue::Polygon { coordinates } if coordinates.is_empty() => return empty(),
+        GeometryValue::Polygon { coordinates } => {
+            shapes.push(shape(coordinates, place.to_owned(), is_obstacle));
+            return Ok(());
+        }
+        GeometryValue::MultiPolygon { coordinates } if coordinates.is_empty() => return empty(),
+        GeometryValue::MultiPolygon { coordinates } => {
+            let numbered = coordinates.iter().enumerate();
+            shapes.extend(
+                numbered.map(|(k, rings)| shape(rings, part(place, "polygon", k), is_obstacle)),
+            );
+            return Ok(());
+        }
+        GeometryValue::GeometryCollection { geometries } if geometries.is_empty() => {
+            return empty();
+        }
+        GeometryValue::GeometryCollection { geometries } => {
+            for (k, one) in geometries.iter().enumerate() {
+                collect(one, &part(place, "geometry", k), is_obstacle, shapes)?;
+            }
+            return Ok(());
+        }
+        other => other.type_name(),
+    };
+    Err(FloorPlanError::NoPolygon {
+        place: place.to_owned(),
+        found,
+    })
+}
+
+fn shape(rings: &[Vec<Position>], place: String, is_obstacle: bool) -> Shape {
+    let points = |ring: &Vec<Position>| ring.iter().map(|p| [p[0], p[1]]).collect();
+    Shape {
+        place,
+        rings: rings.iter().map(points).collect(),
+        is_obstacle,
+    }
+}

@@ -1,0 +1,132 @@
+//! Well-known text. The only file that names wkt.
+
+use std::str::FromStr;
+
+use wkt::Wkt;
+use wkt::types::{LineString, Polygon};
+
+use super::error::FloorPlanError;
+use super::shape::Shape;
+
+/// EPSG codes of the systems in degrees that plans come in.
+pub(super) const IN_DEGREES: [u32; 16] = [
+    4326, 4979, 4258, 4937, 4269, 4267, 4277, 4230, 4283, 7844, 4490, 4612, 6668, 4674, 4171, 4312,
+];
+
+/// The polygons of `text`: one geometry or several.
+pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
+    let pieces = pieces(text);
+    let several = pieces.len() > 1;
+    let mut shapes = Vec::new();
+    for (line, piece) in pieces {
+        let piece = without_srid(piece)?;
+        let wkt = Wkt::<f64>::from_str(piece).map_err(|reason| FloorPlanError::Syntax {
+            format: "WKT",
+            reason: format!("line {line}: {reason}"),
+        })?;
+        let place = match several {
+            true => format!("line {line}"),
+            false => String::new(),
+        };
+        collect(&wkt, &place, &mut shapes)?;
+    }
+    Ok(shapes)
+}
+
+/// The geometries that stand one after the other, with the lines they begin on, from 1.
+fn pieces(text: &str) -> Vec<(usize, &str)> {
+    let (mut depth, mut start, mut found) = (0_usize, 0, Vec::new());
+    let mut push = |start: usize, end: usize| {
+        let piece = text[start..end].trim_matches(|c: char| c.is_whitespace() || c == ';');
+        if !piece.is_empty() {
+            let before = text[..end].rfind(piece).unwrap_or(start);
+            found.push((1 + text[..before].matches('\n').count(), piece));
+        }
+    };
+    for (at, c) in text.char_indices() {
+        match c {
+            '(' => depth += 1,
+            ')' => {
+                depth = depth.saturating_sub(1);
+                if depth == 0 {
+                    push(start, at + 1);
+                    start = at + 1;
+                }
+            }
+            _ => {}
+        }
+    }
+    push(start, text.len());
+    found
+}
+
+/// PostGIS writes `SRID=25832;POLYGON …`.
+fn without_srid(piece: &str) -> Result<&str, FloorPlanError> {
+    let Some((srid, geometry)) = piece.split_once(';') else {
+        return Ok(piece);
+    };
+    let code = srid.trim().to_ascii_uppercase();
+    let Some(code) = code.strip_prefix("SRID=") else {
+        return Ok(piece);
+    };
+    if code.parse().is_ok_and(|code| IN_DEGREES.contains(&code)) {
+        return Err(FloorPlanError::Degrees(srid.trim().to_owned()));
+    }
+    Ok(geometry.trim())
+}
+
+fn collect(wkt: &Wkt<f64>, place: &str, shapes: &mut Vec<Shape>) -> Result<(), FloorPlanError> {
+    let found = match wkt {
+        Wkt::Polygon(polygon) => {
+            shapes.push(shape(polygon, place.to_owned())?);
+            return Ok(());
+        }
+        Wkt::MultiPolygon(several) => {
+            let polygons = several.polygons();
+            if polygons.is_empty() {
+                return Err(FloorPlanError::EmptyGeometry(place.to_owned()));
+            }
+            for (k, polygon) in polygons.iter().enumerate() {
+                shapes.push(shape(polygon, part(place, "polygon", k))?);
+            }
+            return Ok(());
+        }
+        Wkt::GeometryCollection(collection) => {
+            let geometries = collection.geometries();
+            if geometries.is_empty() {
+                return Err(FloorPlanError::EmptyGeometry(place.to_owned()));
+            }
+            for (k, geometry) in geometries.iter().enumerate() {
+                collect(geometry, &part(place, "geometry", k), shapes)?;
+            }
+            return Ok(());
+        }
+        Wkt::Point(_) => "POINT",
+        Wkt::LineString(_) => "LINESTRING",
+        Wkt::MultiPoint(_) => "MULTIPOINT",
+        Wkt::MultiLineString(_) => "MULTILINESTRING",
+    };
+    Err(FloorPlanError::NoPolygon {
+        place: place.to_owned(),
+        found,
+    })
+}
+
+/// Part `k` of several, counted from 1 for people.
+pub(super) fn part(place: &str, kind: &str, k: usize) -> String {
+    let comma = if place.is_empty() { "" } else { ", " };
+    format!("{place}{comma}{kind} {}", k + 1)
+}
+
+fn shape(polygon: &Polygon<f64>, place: String) -> Result<Shape, FloorPlanError> {
+    let points = |ring: &LineString<f64>| ring.coords().iter().map(|c| [c.x, c.y]).collect();
+    let rings: Vec<Vec<[f64; 2]>> = polygon.rings().iter().map(points).collect();
+    if rings.is_empty() {
+        return Err(FloorPlanError::EmptyGeometry(place));
+    }
+    Ok(Shape {
+        place,
+        rings,
+        is_obstacle: false,
+    })
+}

@@ -1,0 +1,260 @@
+//! A floor plan is the same however it was written and cut in pieces.
+
+use std::fs;
+
+use sandbox::floor_plan::{self, FloorPlan, FloorPlanError, parse_wkt};
+use sandbox::geometry::Polygon;
+use sandbox::math::Vector;
+use serde_json::{Value, json};
+
+fn read(name: &str, text: &str) -> Result<FloorPlan, FloorPlanError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    fs::write(&path, text).unwrap();
+    floor_plan::read(&path)
+}
+
+fn json(document: &Value) -> Result<FloorPlan, FloorPlanError> {
+    read("plan.geojson", &document.to_string())
+}
+
+/// The walls of a plan, from the lowest up, wherever their rings begin.
+fn walls(plan: FloorPlan) -> Vec<[f64; 4]> {
+    let mut walls: Vec<[f64; 4]> = plan
+        .solids()
+        .unwrap()
+        .iter()
+        .flat_map(|solid| solid.edges().collect::<Vec<_>>())
+        .map(|(a, b)| [a.x, a.y, b.x, b.y])
+        .collect();
+    walls.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    walls
+}
+
+fn solid(plan: FloorPlan, x: f64, y: f64) -> bool {
+    let solids: Vec<Polygon> = plan.solids().unwrap();
+    solids.iter().any(|solid| solid.contains(Vector::new(x, y)))
+}
+
+const ROOM: &str = "POLYGON ((0 0, 10 0, 10 10, 0 10, 0 0), (2 2, 2 3, 3 3, 3 2, 2 2))";
+
+fn feature(coordinates: Value, kind: &str) -> Value {
+    json!({"type": "Feature", "properties": {"kind": kind},
+           "geometry": {"type": "Polygon", "coordinates": coordinates}})
+}
+
+fn room() -> Value {
+    json!([[[0, 0], [10, 0], [10, 10], [0, 10], [0, 0]]])
+}
+
+fn pillar() -> Value {
+    json!([[[2, 2], [3, 2], [3, 3], [2, 3], [2, 2]]])
+}
+
+#[test]
+fn all_ways_of_writing_a_room_with_a_pillar_give_the_same_walls() {
+    let expected = walls(parse_wkt(ROOM).unwrap());
+    assert_eq!(expected.len(), 8);
+    for text in [
+        // The other way round, another first point, repeated points, a third coordinate.
+        "POLYGON ((10 10, 10 0, 0 0, 0 10, 10 10), (3 3, 3 2, 2 2, 2 3, 3 3))",
+        "polygon((0 0,10 0,10 0,10 10,0 10),(2 2,2 2.5,2 3,3 3,3 2,2 2,2 2))",
+        "POLYGON Z ((0 0 5, 10 0 5, 10 10 5, 0 10 5, 0 0 5), (2 2 1, 3 2 1, 3 3 1, 2 3 1, 2 2 1))",
+        "SRID=25832;POLYGON ((0 0, 10 0, 10 10, 0 10, 0 0), (2 2, 2 3, 3 3, 3 2, 2 2))",
+        // Two halves that share an edge, through the pillar; overlapping halves; one geometry a line.
+        "MULTIPOLYGON (((0 0, 10 0, 10 2.5, 3 2.5, 3 2, 2 2, 2 2.5, 0 2.5, 0 0)), \
+         ((0 2.5, 2 2.5, 2 3, 3 3, 3 2.5, 10 2.5, 10 10, 0 10, 0 2.5)))",
+        "GEOMETRYCOLLECTION (POLYGON ((0 0, 10 0, 10 10, 0 10), (2 2, 3 2, 3 3, 2 3)), \
+         MULTIPOLYGON (((4 4, 9 4, 9 9, 4 9)), ((0 0, 1 0, 1 1, 0 1))))",
+        "POLYGON ((0 0, 10 0, 10 10, 0 10), (2 2, 3 2, 3 3, 2 3))\nPOLYGON ((4 4, 9 4, 9 9, 4 9))\n",
+    ] {
+        assert_eq!(walls(read("plan.wkt", text).unwrap()), expected, "{text}");
+    }
+    let features = |features: Value| json!({"type": "FeatureCollection", "features": features});
+    let whole = json!([room()[0], pillar()[0]]);
+    for document in [
+        json!({"type": "Polygon", "coordinates": whole}),
+        json!({"type": "MultiPolygon", "coordinates": [whole]}),
+        json!({"type": "GeometryCollection",
+               "geometries": [{"type": "Polygon", "coordinates": whole}]}),
+        feature(whole.clone(), "floor"),
+        features(json!([
+            feature(room(), "floor"),
+            feature(pillar(), "obstacle")
+        ])),
+        // An obstacle that lies on the wall of the pillar, in it.
+        features(json!([
+            feature(whole.clone(), "floor"),
+            feature(json!([[[2, 2], [3, 2], [3, 2.5], [2, 2.5]]]), "Obstacle")
+        ])),
+    ] {
+        assert_eq!(walls(json(&document).unwrap()), expected, "{document}");
+    }
+}
+
+#[test]
+fn obstacles_alone_stand_in_the_open() {
+    let plan = json(&feature(pillar(), "obstacle")).unwrap();
+    assert!(plan.walkable.is_empty());
+    assert!(solid(plan.clone(), 2.5, 2.5));
+    assert!(!solid(plan, 20.0, 2.5));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("walls.wkt");
+    fs::write(&path, ROOM).unwrap();
+    let plan = floor_plan::read_obstacles(&path).unwrap();
+    assert!(solid(plan.clone(), 1.0, 1.0));
+    assert!(!solid(plan.clone(), 2.5, 2.5), "the hole of an obstacle");
+    assert!(!solid(plan, 11.0, 1.0));
+    // A thin post is no mistake.
+    fs::write(&path, "POLYGON ((0 0, 0.1 0, 0.1 0.1, 0 0.1))").unwrap();
+    assert!(floor_plan::read_obstacles(&path).is_ok());
+}
+
+#[test]
+fn several_areas_have_solid_between_them_and_one_may_lie_in_anothers_hole() {
+    let text = "MULTIPOLYGON (((0 0, 9 0, 9 9, 0 9), (1 1, 8 1, 8 8, 1 8)), ((3 3, 5 3, 5 5, 3 5)), \
+                ((20 0, 30 0, 30 9, 20 9)))";
+    let plan = parse_wkt(text).unwrap();
+    assert_eq!(plan.walkable.len(), 3);
+    for (x, expected) in [
+        (0.5, false),
+        (2.0, true),
+        (4.0, false),
+        (6.0, true),
+        (8.5, false),
+    ] {
+        assert_eq!(solid(plan.clone(), x, 4.0), expected, "{x}");
+    }
+    for (x, expected) in [(15.0, true), (25.0, false), (31.0, true), (-1.0, true)] {
+        assert_eq!(solid(plan.clone(), x, 4.0), expected, "{x}");
+    }
+    assert_eq!(plan.solids().unwrap().len(), 1);
+}
+
+#[test]
+fn holes_may_touch_the_outline_and_each_other() {
+    // A hole with an edge on the outline is a notch; one with a corner on it stays a hole.
+    let notch = parse_wkt("POLYGON ((0 0, 9 0, 9 9, 0 9), (0 3, 2 3, 2 5, 0 5))").unwrap();
+    assert_eq!(notch.walkable[0].holes.len(), 0);
+    assert!((notch.walkable[0].area() - 77.0).abs() < 1e-9);
+    let touching = "POLYGON ((0 0, 9 0, 9 9, 0 9), (0 4, 2 3, 2 5), (2 5, 4 5, 4 6))";
+    let touching = parse_wkt(touching).unwrap();
+    let free: f64 = touching.walkable.iter().map(|area| area.area()).sum();
+    assert!((free - 78.0).abs() < 1e-9);
+    assert!(solid(touching.clone(), 1.5, 4.0) && solid(touching.clone(), 3.5, 5.5));
+    assert!(!solid(touching, 0.2, 1.0));
+    // Holes that share an edge are one, and one that cuts the floor in two leaves two areas.
+    let shared = "POLYGON ((0 0, 9 0, 9 9, 0 9), (1 1, 2 1, 2 2, 1 2), (2 1, 3 1, 3 2, 2 2))";
+    assert_eq!(parse_wkt(shared).unwrap().walkable[0].holes.len(), 1);
+    let cut = "POLYGON ((0 0, 9 0, 9 9, 0 9), (-1 4, 10 4, 10 5, -1 5))";
+    assert_eq!(parse_wkt(cut).unwrap().walkable.len(), 2);
+}
+
+#[test]
+fn corners_keep_every_digit_far_from_the_origin_and_at_odd_angles() {
+    let (sine, cosine) = 0.3_f64.sin_cos();
+    let place = |x: f64, y: f64| {
+        [
+            cosine * x - sine * y + 512_345.678_9,
+            sine * x + cosine * y - 9e5,
+        ]
+    };
+    let ring = |points: [[f64; 2]; 4]| points.map(|[x, y]| place(x, y)).to_vec();
+    let outline = ring([[0.0, 0.0], [70.1, 0.0], [70.1, 31.7], [0.0, 31.7]]);
+    let hole = ring([[7.3, 3.1], [8.9, 3.1], [8.9, 4.7], [7.3, 4.7]]);
+    let plan = FloorPlan::walkable(&[vec![outline.clone(), hole.clone()]]).unwrap();
+    let mut corners: Vec<[f64; 2]> = plan.walkable[0]
+        .rings()
+        .flat_map(|ring| ring.points().iter().map(|p| [p.x, p.y]))
+        .collect();
+    let mut given = [outline, hole].concat();
+    let order = |a: &[f64; 2], b: &[f64; 2]| a.partial_cmp(b).unwrap();
+    corners.sort_by(order);
+    given.sort_by(order);
+    assert_eq!(corners, given);
+}
+
+#[test]
+fn what_is_no_floor_plan_is_refused_with_the_place_and_the_fix() {
+    let crs = |name: &str| {
+        json!({"type": "FeatureCollection", "features": [feature(room(), "floor")],
+               "crs": {"type": "name", "properties": {"name": name}}})
+        .to_string()
+    };
+    assert!(read("plan", &crs("urn:ogc:def:crs:EPSG::25832")).is_ok());
+    let line = json!({"type": "Feature", "properties": {"name": "track 4"}, "geometry":
+                      {"type": "LineString", "coordinates": [[0, 0], [1, 1]]}});
+    let track = json!({"type": "FeatureCollection", "features": [feature(room(), "floor"), line]});
+    for (text, parts) in [
+        ("", vec!["has no polygons"]),
+        ("POLYGON EMPTY", vec!["the geometry is empty"]),
+        ("GEOMETRYCOLLECTION EMPTY", vec!["empty"]),
+        (
+            r#"{"type": "FeatureCollection", "features": []}"#,
+            vec!["has no polygons"],
+        ),
+        ("POLYGON ((0 0, 1 0, 1", vec!["no WKT", "line 1"]),
+        (
+            "POLYGON ((0 0, 9 0, 9 9))\n rubbish",
+            vec!["no WKT", "line 2"],
+        ),
+        (
+            "{\"type\": \"Polygon\",\n \"coordinates\": ",
+            vec!["no GeoJSON", "line 2"],
+        ),
+        (r#"{"type": "Polygon"}"#, vec!["no GeoJSON", "coordinates"]),
+        ("LINESTRING (0 0, 9 9)", vec!["a LINESTRING has no area"]),
+        (
+            "GEOMETRYCOLLECTION (POLYGON ((0 0, 9 0, 9 9)), POINT (1 1))",
+            vec!["geometry 2", "POINT"],
+        ),
+        (
+            &track.to_string(),
+            vec!["feature 2 (track 4)", "LineString"],
+        ),
+        (
+            &crs("urn:ogc:def:crs:OGC:1.3:CRS84"),
+            vec!["degrees", "CRS84", "UTM"],
+        ),
+        (&crs("EPSG:4326"), vec!["degrees", "EPSG:4326"]),
+        (
+            "SRID=4326;POLYGON ((0 0, 9 0, 9 9))",
+            vec!["degrees", "SRID=4326"],
+        ),
+        (
+            "POLYGON ((8.41 49.01, 8.42 49.01, 8.42 49.02, 8.41 49.02))",
+            vec!["no person fits in", "degrees"],
+        ),
+        (
+            "POLYGON ((0 0, 4 4, 4 0, 0 4))",
+            vec!["the outline crosses or touches itself at (2, 2)"],
+        ),
+        (
+            "POLYGON ((0 0, 9 0, 9 9), (5 1, 8 1, 6 1))",
+            vec!["hole 1", "itself at", "1)"],
+        ),
+        ("POLYGON ((0 0, 1 1, 0 0))", vec!["2 different point(s)"]),
+        (
+            "POLYGON ((0 0, 9 0, 9 9))\nPOLYGON ((2000000 0, 2000009 0, 2000009 9))",
+            vec!["line 2", "(2000000, 0)", "origin"],
+        ),
+    ] {
+        let error = read("hall.plan", text).unwrap_err().to_string();
+        for part in parts.into_iter().chain(["hall.plan: "]) {
+            assert!(error.contains(part), "{text}: {error}");
+        }
+    }
+    let full = json!({"type": "FeatureCollection",
+                      "features": [feature(pillar(), ""), feature(room(), "obstacle")]});
+    let error = json(&full).unwrap_err().to_string();
+    assert!(
+        error.ends_with("the obstacles leave no room for anybody"),
+        "{error}"
+    );
+    let missing = floor_plan::read(std::path::Path::new("no/such.wkt")).unwrap_err();
+    assert!(
+        missing
+            .to_string()
+            .starts_with("no/such.wkt: cannot be read")
+    );
+}
