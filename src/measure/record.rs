@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Moment, Site};
+use super::{Behind, Moment, Options, Site};
 use crate::agents::REFERENCE_RADIUS;
 use crate::math::Vector;
 use crate::recording::{
@@ -24,8 +24,7 @@ pub struct MomentRecorder<'a> {
 }
 
 impl<'a> MomentRecorder<'a> {
-    /// Begins a recording at `path`, replacing any file there; `title` and `document`, in Markdown, say what
-    /// it is.
+    /// Begins a recording at `path`, replacing any file there.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -33,8 +32,7 @@ impl<'a> MomentRecorder<'a> {
         path: &Path,
         (tracks, site): (&'a Tracks, &Site),
         title: &str,
-        document: &str,
-        times: [f64; 2],
+        measured: &Options,
     ) -> Result<Self, RecordingError> {
         let first = [tracks.position[0]; 2];
         let [low, high] = tracks
@@ -42,16 +40,18 @@ impl<'a> MomentRecorder<'a> {
             .iter()
             .fold(first, |[low, high], p| [low.inf(p), high.sup(p)]);
         let margin = Vector::repeat(1.0);
+        let ends = [tracks.frames.first(), tracks.frames.last()];
+        let first_and_last = ends.map(|frame| frame.map_or(0.0, |&frame| tracks.time(frame)));
         let options = RecordingOptions {
             title: title.to_owned(),
             description: "A crowd that was measured, by its SPH density (§8).".to_owned(),
-            document: document.to_owned(),
+            document: document(tracks, measured),
             view: Region {
                 min: low - margin,
                 max: high + margin,
             },
-            opens_at: times[0],
-            ends_at: times[1],
+            opens_at: measured.times[0].max(first_and_last[0]),
+            ends_at: measured.times[1].min(first_and_last[1]),
             debug: DebugAgents::None,
         };
         Ok(Self {
@@ -100,4 +100,25 @@ impl<'a> MomentRecorder<'a> {
     pub fn finish(self) -> Result<(), RecordingError> {
         self.recorder.finish()
     }
+}
+
+/// How it was measured, in Markdown.
+fn document(tracks: &Tracks, options: &Options) -> String {
+    let behind = match options.behind {
+        Behind::Same => "as dense as where the person stands".to_owned(),
+        Behind::Rest(max) => format!("at the rest density, {max} P/m² at most"),
+    };
+    format!(
+        "## Measurement\n\
+         * {} persons, {} rows, {} frames per second\n\
+         * Kernel radius h = {} m, walls by `{:?}`, the crowd behind them {behind}\n\
+         * Velocities from {:.2} s before to {:.2} s after\n",
+        tracks.ids.len(),
+        tracks.len(),
+        tracks.fps,
+        options.kernel.support_radius,
+        options.kernel.walls,
+        options.speed_reach as f64 * tracks.interval(),
+        options.speed_reach as f64 * tracks.interval(),
+    )
 }

@@ -8,7 +8,7 @@ use crate::math::Vector;
 #[derive(Debug, Clone)]
 pub struct Site {
     walls: Walls,
-    /// The corners of each obstacle's bounding box.
+    /// The corners of each obstacle's bounding box, which may be the whole plane.
     bounds: Vec<[Vector; 2]>,
 }
 
@@ -34,6 +34,9 @@ impl Site {
     /// Round these obstacles.
     pub fn new(obstacles: Vec<Polygon>) -> Self {
         let bounds = obstacles.iter().map(|obstacle| {
+            if obstacle.is_unbounded() {
+                return [f64::NEG_INFINITY, f64::INFINITY].map(Vector::repeat);
+            }
             let corners = obstacle.points();
             let first = [corners[0]; 2];
             corners

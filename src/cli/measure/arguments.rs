@@ -14,7 +14,7 @@ use super::super::arguments::{ProgramOptions, frame_rate, positive_seconds};
 pub struct MeasureOptions {
     /// Trajectories: JuPedSim's SQLite, text (id frame x y), or .csv
     pub trajectory: PathBuf,
-    /// Where people can walk, WKT or GeoJSON [default: what the SQLite file says, else no walls]
+    /// Where people can walk, WKT or GeoJSON, or none for no walls [default: what the SQLite file says, else none]
     #[arg(long, value_name = "FILE")]
     pub geometry: Option<PathBuf>,
     /// Unit of the coordinates [default: what the file says, else m]

@@ -1,26 +1,35 @@
 //! `sandbox measure`: densities, speeds and flows in trajectories.
 
 mod arguments;
+mod extras;
 
 pub use arguments::MeasureOptions;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::output::check_free;
 use super::{Failure, say, use_threads};
 use crate::boundary::WallMethod;
+use crate::floor_plan::{self, FloorPlan};
 use crate::measure::{
     Behind, Kernel, MOST_HIDDEN, MeasureError, Measured, Options, OutputError, Report, Results,
     Site, measure, speed,
 };
 use crate::trajectory::read::{ReadError, ReadOptions, Tracks, Unit, read};
 
+/// Instead of a floor plan.
+const NO_WALLS: &str = "none";
+
 pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     use_threads(options.program.threads)?;
     let folder = folder(options);
-    for name in Results::FILES {
+    for name in Results::FILES
+        .into_iter()
+        .map(str::to_owned)
+        .chain(extras::names())
+    {
         check_free("--out", &folder.join(name), options.program.force)?;
     }
     let tracks = read(
@@ -36,15 +45,19 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     let site = site(options, &tracks)?;
     let what = what(options, &tracks);
     let mut results = Results::create(&folder)?;
+    let mut recording = extras::Recording::create(&folder, &tracks, &site, &what)?;
     let progress = Progress::new(tracks.len() as u64);
     let measured = measure(&tracks, &site, &what, |moments| {
         let rows: usize = moments.iter().map(|moment| moment.people.len()).sum();
         progress.0.inc(rows as u64);
-        results.add(moments).map_err(Failure::from)
+        results.add(moments)?;
+        recording.add(moments)
     });
     progress.0.finish_and_clear();
     let measured = measured?;
     results.finish(&measured)?;
+    recording.finish()?;
+    extras::save_pictures(&folder, &measured, &site)?;
     report_oddities(&measured);
     let report = Report {
         tracks: &tracks,
@@ -101,8 +114,30 @@ fn what(options: &MeasureOptions, tracks: &Tracks) -> Options {
 
 /// Walls from a plan, else from the trajectories' own file.
 fn site(options: &MeasureOptions, tracks: &Tracks) -> Result<Site, Failure> {
-    let _: (&Option<PathBuf>, &[String]) = (&options.geometry, &tracks.walkable);
-    Ok(Site::new(Vec::new()))
+    let plan = match (&options.geometry, tracks.walkable.as_slice()) {
+        (Some(path), _) if path.as_os_str() == NO_WALLS => None,
+        (Some(path), _) => {
+            let plan = floor_plan::read(path);
+            Some(plan.map_err(|error| Failure::Input(format!("--geometry {error}")))?)
+        }
+        (None, []) => None,
+        (None, [text]) => Some(floor_plan::parse_wkt(text).map_err(|error| own(options, &error))?),
+        (None, several) => {
+            let problem = format!("{} geometries, one after the other", several.len());
+            return Err(own(options, &problem));
+        }
+    };
+    let solids = plan.map_or(Ok(Vec::new()), FloorPlan::solids);
+    let solids = solids.map_err(|error| Failure::Input(format!("the floor plan: {error}")))?;
+    Ok(Site::new(solids))
+}
+
+/// Something is wrong with the geometry in the trajectories' own file.
+fn own(options: &MeasureOptions, problem: &dyn std::fmt::Display) -> Failure {
+    let path = options.trajectory.display();
+    Failure::Input(format!(
+        "{path}: its geometry: {problem}; give one by --geometry, or none by --geometry {NO_WALLS}"
+    ))
 }
 
 /// Says what a careful reader of the results should know.
