@@ -3,6 +3,8 @@
 
 pub mod quadrature;
 pub mod social;
+#[cfg(feature = "trajectory")]
+pub mod tracks;
 
 use sandbox::agents::NewAgent;
 use sandbox::breakdown::Breakdown;
