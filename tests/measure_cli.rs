@@ -23,7 +23,10 @@ fn refused(arguments: &[&str], words: &str) {
     let output = measure(arguments);
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
-    assert!(stderr.contains(words), "{arguments:?}: no {words:?} in {stderr}");
+    assert!(
+        stderr.contains(words),
+        "{arguments:?}: no {words:?} in {stderr}"
+    );
     assert!(output.stdout.is_empty());
 }
 
@@ -81,9 +84,15 @@ fn a_corridor_is_measured_into_a_folder() {
     assert_eq!(output.status.code(), Some(0), "{stderr}");
     assert_eq!(stderr, format!("note: results are in {out}\n"));
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!((&report["people"], &report["rows"]), (&5.into(), &200.into()));
+    assert_eq!(
+        (&report["people"], &report["rows"]),
+        (&5.into(), &200.into())
+    );
     let [first, second] = [0, 1].map(|k| &report["lines"][k]);
-    assert_eq!((&first["forward"]["passages"], &first["length"]), (&5.into(), &2.0.into()));
+    assert_eq!(
+        (&first["forward"]["passages"], &first["length"]),
+        (&5.into(), &2.0.into())
+    );
     let flow = first["forward"]["flow_per_s"].as_f64().unwrap();
     assert!((flow - 2.0).abs() < 1e-9);
     let specific = first["forward"]["specific_flow_per_m_s"].as_f64().unwrap();
@@ -93,14 +102,28 @@ fn a_corridor_is_measured_into_a_folder() {
     let folder = Path::new(&out);
     let agents = columns(&folder.join("agents.csv"));
     assert_eq!(agents["id"].len(), 200);
-    assert!(agents["speed"].iter().all(|speed| (speed - 1.0).abs() < 1e-9));
+    assert!(
+        agents["speed"]
+            .iter()
+            .all(|speed| (speed - 1.0).abs() < 1e-9)
+    );
     let walls = &agents["density_from_walls"];
-    assert!(walls.iter().all(|density| density.abs() < 1e-12), "1 m away: out of reach");
+    assert!(
+        walls.iter().all(|density| density.abs() < 1e-12),
+        "1 m away: out of reach"
+    );
     let fields = columns(&folder.join("fields.csv"));
-    assert!(fields["y"].iter().all(|y| (0.0..2.0).contains(y)), "only where people can walk");
+    assert!(
+        fields["y"].iter().all(|y| (0.0..2.0).contains(y)),
+        "only where people can walk"
+    );
     assert_eq!(columns(&folder.join("flow.csv"))["net"].last(), Some(&5.0));
     let diagram = columns(&folder.join("fundamental_diagram.csv"));
-    assert!(diagram["people"].iter().all(|&people| (1.0..=3.0).contains(&people)));
+    assert!(
+        diagram["people"]
+            .iter()
+            .all(|&people| (1.0..=3.0).contains(&people))
+    );
     let classes = columns(&folder.join("fundamental_classes.csv"));
     let pairs: f64 = classes["count"].iter().sum();
     let people: f64 = diagram["people"].iter().sum();
@@ -112,7 +135,10 @@ fn a_corridor_is_measured_into_a_folder() {
 
     // Nothing is replaced without being asked for.
     let agents = format!("{}", folder.join("agents.csv").display());
-    refused(&arguments, &format!("--out {agents}: exists already; give --force to replace it"));
+    refused(
+        &arguments,
+        &format!("--out {agents}: exists already; give --force to replace it"),
+    );
     let again = measure(&[&arguments[..], &["--force"]].concat());
     assert_eq!(again.stdout, output.stdout);
 }
@@ -123,11 +149,24 @@ fn the_recording_has_the_crowd_and_its_walls() {
     use sandbox::recording::Recording;
 
     let (_folder, [trajectory, plan, out]) = walkers();
-    let output = measure(&[&trajectory, "--geometry", &plan, "--out", &out, "--from", "1"]);
+    let output = measure(&[
+        &trajectory,
+        "--geometry",
+        &plan,
+        "--out",
+        &out,
+        "--from",
+        "1",
+    ]);
     assert_eq!(output.status.code(), Some(0));
     let recording = Recording::read(&Path::new(&out).join("measured.rrd")).unwrap();
     let entities = recording.entities();
-    for entity in ["/world/agents", "/world/geometry/walls", "/stats/density/mean", "/info/scenario"] {
+    for entity in [
+        "/world/agents",
+        "/world/geometry/walls",
+        "/stats/density/mean",
+        "/info/scenario",
+    ] {
         assert!(entities.contains(entity), "{entities:?}");
     }
     for entity in ["/stats/energy/kinetic", "/stats/crowd/evacuated"] {
@@ -145,13 +184,34 @@ fn what_is_typed_wrong_is_refused_with_the_fix() {
     let (folder, [trajectory, plan, out]) = walkers();
     for (arguments, words) in [
         (vec!["no.txt"], "no.txt: cannot be read"),
-        (vec![&*trajectory, "--line", "1,2,3"], "four numbers x0,y0,x1,y1 are needed"),
-        (vec![&*trajectory, "--region", "1,0,0,1"], "x0 < x1, y0 < y1"),
-        (vec![&*trajectory, "--fps", "0"], "not a number of frames per second above 0"),
-        (vec![&*trajectory, "--from", "99"], "nobody is there from 99 s to inf s; there is somebody from 0 s"),
-        (vec![&*trajectory, "--cell", "0.001"], "give a larger --cell"),
-        (vec![&*trajectory, "--geometry", "no.wkt"], "--geometry no.wkt: cannot be read"),
-        (vec![&*trajectory, "--geometry", &*trajectory], "--geometry "),
+        (
+            vec![&*trajectory, "--line", "1,2,3"],
+            "four numbers x0,y0,x1,y1 are needed",
+        ),
+        (
+            vec![&*trajectory, "--region", "1,0,0,1"],
+            "x0 < x1, y0 < y1",
+        ),
+        (
+            vec![&*trajectory, "--fps", "0"],
+            "not a number of frames per second above 0",
+        ),
+        (
+            vec![&*trajectory, "--from", "99"],
+            "nobody is there from 99 s to inf s; there is somebody from 0 s",
+        ),
+        (
+            vec![&*trajectory, "--cell", "0.001"],
+            "give a larger --cell",
+        ),
+        (
+            vec![&*trajectory, "--geometry", "no.wkt"],
+            "--geometry no.wkt: cannot be read",
+        ),
+        (
+            vec![&*trajectory, "--geometry", &*trajectory],
+            "--geometry ",
+        ),
     ] {
         refused(&[&arguments[..], &["--out", &out]].concat(), words);
     }

@@ -177,7 +177,7 @@ fn where_lines_join_nobody_crosses_both() {
         let crossings = Crossings::of(&tracks, 1, line, ALWAYS);
         crossings.list.iter().map(|c| c.id).collect()
     };
-    assert_eq!(ids(line([0.0, -1.0], [0.0, 0.0])), []);
+    assert!(ids(line([0.0, -1.0], [0.0, 0.0])).is_empty());
     assert_eq!(ids(line([0.0, 0.0], [0.0, 1.0])), [1]);
 }
 

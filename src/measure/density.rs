@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::site::{Hidden, Kernel, Site};
 use crate::agents::{Agents, NewAgent, REFERENCE_RADIUS};
 use crate::density::SphParameters;
+use crate::kernel;
 use crate::math::Vector;
 use crate::neighbors::{BLOCK, Neighbors, Ranges};
 use crate::pairs::Columns;
@@ -15,26 +16,32 @@ pub const MOST_HIDDEN: f64 = 0.9;
 /// How dense the crowd is taken to be where walls are: ρ_i⁰ in Eq. 10.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Behind {
-    /// As dense as where the person stands: ρ_i = Σ_j m_j W / (1 − Σ_k ∫ W over P_k), the sum over what is
-    /// seen of the kernel by its integral. A uniform crowd has the same density up to its walls.
+    /// As dense as where the person stands: ρ_i = Σ_j m_j W / (1 − Σ_k ∫ W over P_k), the sum over those who
+    /// are seen by the part of the kernel that is seen. A uniform crowd has the same density up to its walls,
+    /// and who is behind a thin one does not count.
     #[default]
     Same,
     /// The engine's: the moving average ρ̂_i of the person's own density (Eq. 8) between 0 and so many
-    /// P/m². It depends on the frames before.
+    /// P/m². It depends on the frames before, and everybody in reach counts.
     Rest(f64),
 }
 
 /// Eq. 9 in parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parts {
-    /// Σ_j m_j W, j = i too, P/m².
+    /// Σ_j m_j W, j = i too, P/m²; of those who are seen, or of all.
     pub from_people: f64,
     /// What walls hide.
     pub hidden: Hidden,
 }
 
 /// The parts of everybody's density in a frame, in the order given; masses are all 1 where there are none.
-pub fn parts(site: &Site, positions: &[Vector], masses: &[f64], kernel: &Kernel) -> Vec<Parts> {
+pub fn parts(
+    site: &Site,
+    positions: &[Vector],
+    masses: &[f64],
+    (kernel, behind): (&Kernel, Behind),
+) -> Vec<Parts> {
     let mut agents = Agents::default();
     for (k, &position) in positions.iter().enumerate() {
         let person = NewAgent {
@@ -52,23 +59,36 @@ pub fn parts(site: &Site, positions: &[Vector], masses: &[f64], kernel: &Kernel)
     neighbors.sort(&mut agents, ranges);
     neighbors.list_agents();
     neighbors.list_walls(&agents, site.walls());
-    let sums = sums(&agents, &neighbors, kernel.support_radius);
-    let nothing = Parts {
-        from_people: 0.0,
-        hidden: Hidden {
-            share: 0.0,
-            inside: None,
-        },
-    };
-    let mut parts = vec![nothing; positions.len()];
-    for (i, from_people) in sums.into_iter().enumerate() {
-        // Ids were given in the order of the positions.
-        parts[agents.id[i] as usize] = Parts {
-            from_people,
-            hidden: site.hidden(agents.position[i], neighbors.near_walls(i), kernel),
-        };
+    let mut from_people = sums(&agents, &neighbors, kernel.support_radius);
+    let mut near: Vec<Vec<u32>> = Vec::with_capacity(agents.len());
+    let hidden: Vec<Hidden> = (0..agents.len())
+        .map(|i| {
+            near.push(neighbors.near_walls(i).to_vec());
+            site.hidden(agents.position[i], &mut near[i], kernel)
+        })
+        .collect();
+    if behind == Behind::Same {
+        for i in (0..agents.len()).filter(|&i| !near[i].is_empty()) {
+            let eye = hidden[i].eye;
+            let seen = neighbors.near().near(i);
+            let seen = seen.filter(|&j| j == i || site.sees(eye, hidden[j].eye, &near[i]));
+            let weight = |j: usize| {
+                let offset = agents.position[i] - agents.position[j];
+                agents.mass[j] * kernel::density(offset.norm_squared(), kernel.support_radius)
+            };
+            from_people[i] = seen.map(weight).sum();
+        }
     }
-    parts
+    let of = |i: usize| Parts {
+        from_people: from_people[i],
+        hidden: hidden[i],
+    };
+    // Ids were given in the order of the positions.
+    let mut places: Vec<usize> = vec![0; agents.len()];
+    for (i, &id) in agents.id.iter().enumerate() {
+        places[id as usize] = i;
+    }
+    places.into_iter().map(of).collect()
 }
 
 /// Eq. 9 without walls, by the engine's own sums, in double precision and its order of the agents.

@@ -91,24 +91,35 @@ pub struct Fields {
     grid: Grid,
     kernel: Kernel,
     sums: Vec<Sums>,
-    /// What walls hide of the kernel at each place; `None` inside obstacles.
-    hidden: Vec<Option<f64>>,
+    views: Vec<Option<View>>,
+}
+
+/// What is seen from a place outside of obstacles.
+#[derive(Debug, Clone, Default)]
+struct View {
+    /// The part of the kernel that walls hide.
+    hidden: f64,
+    /// The walls within reach.
+    near: Box<[u32]>,
 }
 
 impl Fields {
     /// Nobody yet.
     pub fn new(grid: Grid, site: &Site, kernel: Kernel) -> Self {
-        let hidden = |k| {
+        let view = |k| {
             let p = grid.center(k);
             if site.is_inside(p) {
                 return None;
             }
             let mut near = Vec::new();
             site.walls().near(p, kernel.support_radius, &mut near);
-            Some(site.share(p, &near, &kernel))
+            Some(View {
+                hidden: site.share(p, &near, &kernel),
+                near: near.into_boxed_slice(),
+            })
         };
         Self {
-            hidden: (0..grid.len()).into_par_iter().map(hidden).collect(),
+            views: (0..grid.len()).into_par_iter().map(view).collect(),
             sums: vec![Sums::default(); grid.len()],
             grid,
             kernel,
@@ -117,8 +128,8 @@ impl Fields {
 
     /// Adds everybody in some frames. Bands of cells are summed at a time, each in the order of the people:
     /// the bits do not depend on the threads.
-    pub fn add(&mut self, people: &[&Person]) {
-        let (grid, h) = (&self.grid, self.kernel.support_radius);
+    pub fn add(&mut self, people: &[&Person], site: &Site) {
+        let (grid, views, h) = (&self.grid, &self.views, self.kernel.support_radius);
         let bands = self.sums.par_chunks_mut(BAND * grid.columns).enumerate();
         bands.for_each(|(band, sums)| {
             let rows = band * BAND..(band * BAND + sums.len() / grid.columns);
@@ -128,7 +139,7 @@ impl Fields {
                 .iter()
                 .filter(|p| (low..high).contains(&p.position.y))
             {
-                spread(grid, rows.clone(), sums, person, h);
+                spread((grid, site, views), rows.clone(), sums, person, h);
             }
         });
     }
@@ -140,9 +151,9 @@ impl Fields {
 
     /// The means over so many frames, cell by cell; `None` inside obstacles.
     pub fn means(&self, frames: u64) -> impl Iterator<Item = Option<Mean>> + '_ {
-        let places = self.sums.iter().zip(&self.hidden);
-        places.map(move |(sums, hidden)| {
-            let seen = 1.0 - (*hidden)?.min(MOST_HIDDEN);
+        let places = self.sums.iter().zip(&self.views);
+        places.map(move |(sums, view)| {
+            let seen = 1.0 - view.as_ref()?.hidden.min(MOST_HIDDEN);
             let is_known = sums.moving > 0.0;
             Some(Mean {
                 density: sums.mass / seen / frames as f64,
@@ -154,8 +165,14 @@ impl Fields {
     }
 }
 
-/// Adds a person's kernel to those of the cells in `rows` that it reaches.
-fn spread(grid: &Grid, rows: Range<usize>, sums: &mut [Sums], person: &Person, h: f64) {
+/// Adds a person's kernel to those of the cells in `rows` that it reaches and that see the person.
+fn spread(
+    (grid, site, views): (&Grid, &Site, &[Option<View>]),
+    rows: Range<usize>,
+    sums: &mut [Sums],
+    person: &Person,
+    h: f64,
+) {
     let place = (person.position - grid.min) / grid.cell;
     let reach = h / grid.cell;
     // Cells whose centres are within reach.
@@ -169,13 +186,20 @@ fn spread(grid: &Grid, rows: Range<usize>, sums: &mut [Sums], person: &Person, h
             let dx = (column as f64 + 0.5 - place.x) * grid.cell;
             let weight = person.mass * kernel::density(dx * dx + dy * dy, h);
             let sums = &mut cells[column];
+            sums.people += u64::from(own == [column as f64, row as f64]);
+            let k = row * grid.columns + column;
+            let seen = views[k].as_ref().is_some_and(|view| {
+                view.near.is_empty() || site.sees(grid.center(k), person.eye, &view.near)
+            });
+            if weight == 0.0 || !seen {
+                continue;
+            }
             sums.mass += weight;
             if let Some(velocity) = person.velocity {
                 sums.moving += weight;
                 sums.momentum += velocity * weight;
                 sums.speed += velocity.norm() * weight;
             }
-            sums.people += u64::from(own == [column as f64, row as f64]);
         }
     }
 }

@@ -2,7 +2,7 @@
 //! velocity of everybody, mean fields, fundamental diagrams, flow over lines.
 //!
 //! A person's density is Eq. 9, its own mass included. What walls hide of the kernel counts as a crowd that
-//! is as dense as where the person stands, or as in the engine ([`Behind`]). Velocities are those of
+//! is as dense as where the person stands, or as in the engine ([`Behind`]); fields are of the first kind. Velocities are those of
 //! [`speed::velocities`], crossings those of [`Crossings`]. Time is frame over frame rate.
 
 mod density;
@@ -66,6 +66,8 @@ pub struct Person {
     pub id: i64,
     /// Metres.
     pub position: Vector,
+    /// Where the person is seen, metres: not inside an obstacle.
+    pub eye: Vector,
     /// 1 = an average person.
     pub mass: f64,
     /// m/s; `None` where it is not known.
@@ -179,13 +181,14 @@ pub fn measure<E: From<MeasureError>>(
             .map(|k| {
                 let rows = tracks.rows(k);
                 let masses = tracks.mass.get(rows.clone()).unwrap_or(&[]);
-                parts(site, &tracks.position[rows], masses, &options.kernel)
+                let how = (&options.kernel, options.behind);
+                parts(site, &tracks.position[rows], masses, how)
             })
             .collect();
         let frames = (begin..next).zip(parts);
         let moments: Vec<Moment> = frames
             .map(|(k, parts)| {
-                overview.look_at(&parts);
+                overview.look_at(&parts, &tracks.position[tracks.rows(k)]);
                 moment(tracks, k, &parts, &velocities, &mut history)
             })
             .collect();
@@ -200,7 +203,7 @@ pub fn measure<E: From<MeasureError>>(
             }
         }
         let people: Vec<&Person> = moments.iter().flat_map(|moment| &moment.people).collect();
-        fields.add(&people);
+        fields.add(&people, site);
         take(&moments)?;
     }
     overview.people = seen.into_iter().filter(|&seen| seen).count() as u64;
@@ -274,6 +277,7 @@ fn moment(
             number,
             id: tracks.ids[number as usize],
             position: tracks.position[row],
+            eye: parts.hidden.eye,
             mass: tracks.mass_of(row),
             velocity: velocities[row],
             density: parts.from_people + from_walls,
@@ -288,10 +292,11 @@ fn moment(
 }
 
 impl Overview {
-    fn look_at(&mut self, parts: &[Parts]) {
-        for part in parts {
+    fn look_at(&mut self, parts: &[Parts], positions: &[Vector]) {
+        for (part, position) in parts.iter().zip(positions) {
             self.crammed += u64::from(part.hidden.share > MOST_HIDDEN);
-            if let Some(depth) = part.hidden.inside {
+            if part.hidden.inside {
+                let depth = (part.hidden.eye - position).norm();
                 self.inside = (self.inside.0 + 1, self.inside.1.max(depth));
             }
         }

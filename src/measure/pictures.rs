@@ -95,9 +95,9 @@ fn diagrams(diagrams: &[Diagram]) -> Sheet {
     let classes = || diagrams.iter().flat_map(|diagram| &diagram.of_persons);
     let top = |of: fn(&Class) -> &Spread| {
         let tops = classes().map(of).filter(|spread| spread.count > 0);
-        tops.map(|spread| spread.mean + spread.deviation())
-            .fold(0.1, f64::max)
-            * 1.1
+        let classes = tops.map(|spread| spread.mean + spread.deviation());
+        let dots = diagrams.iter().flat_map(|diagram| dots(diagram, of));
+        classes.chain(dots.map(|dot| dot.y)).fold(0.1, f64::max) * 1.1
     };
     let density = classes().filter(|class| class.density.count > 0);
     let density = density.map(|class| class.density.mean).fold(0.5, f64::max) * 1.1;

@@ -26,8 +26,11 @@ pub struct Kernel {
 pub struct Hidden {
     /// Σ_k ∫ W over P_k, the part of the kernel behind walls.
     pub share: f64,
-    /// How far inside an obstacle somebody is, metres; his share is that of the nearest free point.
-    pub inside: Option<f64>,
+    /// Where the person looks from and is seen, metres: where he stands or, inside an obstacle, the nearest
+    /// free point. A recorded head leans over a wall.
+    pub eye: Vector,
+    /// Is the person inside an obstacle?
+    pub inside: bool,
 }
 
 impl Site {
@@ -73,33 +76,30 @@ impl Site {
         share
     }
 
-    /// What walls hide from somebody at `p`; `near` are the walls within h.
-    pub fn hidden(&self, p: Vector, near: &[u32], kernel: &Kernel) -> Hidden {
-        if self.walls.is_empty() {
-            return Hidden {
-                share: 0.0,
-                inside: None,
-            };
-        }
-        if !self.is_inside(p) {
-            let share = self.share(p, near, kernel);
-            return Hidden {
-                share,
-                inside: None,
-            };
-        }
-        // A recorded head leans over a wall: what it hides is what it hides at its face.
-        let Some(free) = self.walls.free_point_near(p) else {
-            return Hidden {
-                share: 0.0,
-                inside: Some(f64::INFINITY),
-            };
+    /// Does no wall `near` a free place stand between it and another? The same walls hide `q` that hide that
+    /// part of the kernel.
+    pub fn sees(&self, p: Vector, q: Vector, near: &[u32]) -> bool {
+        let hides = |&k: &u32| self.walls.wall(k).crossing(p, q).is_some();
+        !near.iter().any(hides)
+    }
+
+    /// What walls hide from somebody at `p`; `near` are the walls within h, and will be those of the eye.
+    pub fn hidden(&self, p: Vector, near: &mut Vec<u32>, kernel: &Kernel) -> Hidden {
+        let inside = self.is_inside(p);
+        let free = if inside {
+            self.walls.free_point_near(p)
+        } else {
+            None
         };
-        let mut near = Vec::new();
-        self.walls.near(free, kernel.support_radius, &mut near);
+        if let Some(free) = free {
+            near.clear();
+            self.walls.near(free, kernel.support_radius, near);
+        }
+        let eye = free.unwrap_or(p);
         Hidden {
-            share: self.share(free, &near, kernel),
-            inside: Some((free - p).norm()),
+            share: self.share(eye, near, kernel),
+            eye,
+            inside,
         }
     }
 }
