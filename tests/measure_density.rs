@@ -190,7 +190,7 @@ fn who_is_behind_a_thin_wall_does_not_count_but_in_the_engine() {
     };
     let (_, moments) = measured(&tracks, &site, &engine);
     let densest = moments[0].people.iter().map(|person| person.density);
-    assert!(densest.fold(0.0, f64::max) > 1.3 * uniform);
+    assert!(densest.fold(0.0, f64::max) > 1.15 * uniform);
 }
 
 /// ∫ρ over all cells.

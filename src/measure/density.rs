@@ -135,7 +135,7 @@ impl History {
 
     /// The walls' part of ρ_i of a person in a frame, P/m²; `step` frames take `interval` seconds, and frames
     /// must come in order.
-    pub fn from_walls(
+    pub fn walls_part(
         &mut self,
         (person, frame): (usize, i64),
         parts: &Parts,

@@ -174,20 +174,19 @@ fn spread(
     h: f64,
 ) {
     let place = (person.position - grid.min) / grid.cell;
-    let reach = h / grid.cell;
-    // Cells whose centres are within reach.
+    // Cells whose centres are within reach, and the person's own.
+    let reach = (h / grid.cell).max(0.5);
     let first = |x: f64| (x - reach - 0.5).ceil().max(0.0) as usize;
     let end = |x: f64, most: usize| ((x + reach + 0.5).ceil().max(0.0) as usize).min(most);
     let own = [place.x, place.y].map(|x| x.floor());
     for row in first(place.y).max(rows.start)..end(place.y, rows.end) {
         let dy = (row as f64 + 0.5 - place.y) * grid.cell;
-        let cells = &mut sums[(row - rows.start) * grid.columns..][..grid.columns];
         for column in first(place.x)..end(place.x, grid.columns) {
             let dx = (column as f64 + 0.5 - place.x) * grid.cell;
             let weight = person.mass * kernel::density(dx * dx + dy * dy, h);
-            let sums = &mut cells[column];
-            sums.people += u64::from(own == [column as f64, row as f64]);
             let k = row * grid.columns + column;
+            let sums = &mut sums[k - rows.start * grid.columns];
+            sums.people += u64::from(own == [column as f64, row as f64]);
             let seen = views[k].as_ref().is_some_and(|view| {
                 view.near.is_empty() || site.sees(grid.center(k), person.eye, &view.near)
             });

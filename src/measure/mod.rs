@@ -2,8 +2,9 @@
 //! velocity of everybody, mean fields, fundamental diagrams, flow over lines.
 //!
 //! A person's density is Eq. 9, its own mass included. What walls hide of the kernel counts as a crowd that
-//! is as dense as where the person stands, or as in the engine ([`Behind`]); fields are of the first kind. Velocities are those of
-//! [`speed::velocities`], crossings those of [`Crossings`]. Time is frame over frame rate.
+//! is as dense as where the person stands, or as in the engine ([`Behind`]); fields are of the first kind.
+//! Velocities are those of [`speed::velocities`], crossings those of [`Crossings`]. Time is frame over frame
+//! rate.
 
 mod density;
 mod diagram;
@@ -66,7 +67,7 @@ pub struct Person {
     pub id: i64,
     /// Metres.
     pub position: Vector,
-    /// Where the person is seen, metres: not inside an obstacle.
+    /// Where the person is seen, metres: at the face of an obstacle that the person leans over.
     pub eye: Vector,
     /// 1 = an average person.
     pub mass: f64,
@@ -188,7 +189,7 @@ pub fn measure<E: From<MeasureError>>(
         let frames = (begin..next).zip(parts);
         let moments: Vec<Moment> = frames
             .map(|(k, parts)| {
-                overview.look_at(&parts, &tracks.position[tracks.rows(k)]);
+                overview.look_at(&parts);
                 moment(tracks, k, &parts, &velocities, &mut history)
             })
             .collect();
@@ -215,6 +216,15 @@ pub fn measure<E: From<MeasureError>>(
         diagrams,
         crossings: crossings.collect(),
     })
+}
+
+/// Is there something to measure?
+///
+/// # Errors
+/// Nobody is there in the time asked for, or there are too many cells.
+pub fn check(tracks: &Tracks, options: &Options) -> Result<(), MeasureError> {
+    let chosen = chosen(tracks, options)?;
+    grid(tracks, options, chosen).map(|_| ())
 }
 
 /// The frames in the time asked for.
@@ -272,7 +282,7 @@ fn moment(
     let pace = (tracks.step, tracks.interval());
     let people = tracks.rows(k).zip(parts).map(|(row, parts)| {
         let number = tracks.person[row];
-        let from_walls = history.from_walls((number as usize, frame), parts, pace);
+        let from_walls = history.walls_part((number as usize, frame), parts, pace);
         Person {
             number,
             id: tracks.ids[number as usize],
@@ -292,11 +302,10 @@ fn moment(
 }
 
 impl Overview {
-    fn look_at(&mut self, parts: &[Parts], positions: &[Vector]) {
-        for (part, position) in parts.iter().zip(positions) {
+    fn look_at(&mut self, parts: &[Parts]) {
+        for part in parts {
             self.crammed += u64::from(part.hidden.share > MOST_HIDDEN);
-            if part.hidden.inside {
-                let depth = (part.hidden.eye - position).norm();
+            if let Some(depth) = part.hidden.inside {
                 self.inside = (self.inside.0 + 1, self.inside.1.max(depth));
             }
         }

@@ -27,10 +27,10 @@ pub struct Hidden {
     /// Σ_k ∫ W over P_k, the part of the kernel behind walls.
     pub share: f64,
     /// Where the person looks from and is seen, metres: where he stands or, inside an obstacle, the nearest
-    /// free point. A recorded head leans over a wall.
+    /// free point, for recorded heads lean over walls. Who is farther inside than h sees no walls.
     pub eye: Vector,
-    /// Is the person inside an obstacle?
-    pub inside: bool,
+    /// How far inside an obstacle the person is, metres.
+    pub inside: Option<f64>,
 }
 
 impl Site {
@@ -85,21 +85,25 @@ impl Site {
 
     /// What walls hide from somebody at `p`; `near` are the walls within h, and will be those of the eye.
     pub fn hidden(&self, p: Vector, near: &mut Vec<u32>, kernel: &Kernel) -> Hidden {
-        let inside = self.is_inside(p);
-        let free = if inside {
-            self.walls.free_point_near(p)
-        } else {
-            None
-        };
-        if let Some(free) = free {
-            near.clear();
-            self.walls.near(free, kernel.support_radius, near);
+        let h = kernel.support_radius;
+        if !self.is_inside(p) {
+            return Hidden {
+                share: self.share(p, near, kernel),
+                eye: p,
+                inside: None,
+            };
         }
-        let eye = free.unwrap_or(p);
+        near.clear();
+        let free = self.walls.free_point_near(p);
+        let depth = free.map_or(f64::INFINITY, |free| (free - p).norm());
+        let eye = free.filter(|_| depth < h).unwrap_or(p);
+        if depth < h {
+            self.walls.near(eye, h, near);
+        }
         Hidden {
             share: self.share(eye, near, kernel),
             eye,
-            inside,
+            inside: Some(depth),
         }
     }
 }

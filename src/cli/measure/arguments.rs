@@ -14,7 +14,7 @@ use super::super::arguments::{ProgramOptions, frame_rate, positive_seconds};
 pub struct MeasureOptions {
     /// Trajectories: JuPedSim's SQLite, text (id frame x y), or .csv
     pub trajectory: PathBuf,
-    /// Where people can walk, WKT or GeoJSON, or none for no walls [default: what the SQLite file says, else none]
+    /// Where people can walk, WKT or GeoJSON; none: no walls [default: what an SQLite file says, else none]
     #[arg(long, value_name = "FILE")]
     pub geometry: Option<PathBuf>,
     /// Unit of the coordinates [default: what the file says, else m]
@@ -32,10 +32,10 @@ pub struct MeasureOptions {
     /// Support radius h of the kernel, metres
     #[arg(long, value_name = "METRES", default_value_t = 1.0, value_parser = length)]
     pub support_radius: f64,
-    /// How what walls hide is integrated: exactly, once; exactly, wall by wall; or at the paper's single points
+    /// How what walls hide is integrated: once, wall by wall, or at the paper's single points
     #[arg(long, value_name = "NAME", default_value = "union", value_parser = PossibleValuesParser::new(["union", "exact", "representative"]))]
     pub wall_method: String,
-    /// How dense the crowd is behind walls: as where the person stands, or the engine's rest density, an average over 0.1 s
+    /// Behind walls it is as dense as where the person stands, or as in the engine: the rest density
     #[arg(long, value_name = "NAME", default_value = "same", value_parser = PossibleValuesParser::new(["same", "rest"]))]
     pub behind_walls: String,
     /// The largest rest density, P/m², with --behind-walls rest

@@ -10,15 +10,20 @@ use crate::trajectory::read::Tracks;
 const RECORDING: &str = "measured.rrd";
 
 /// The names of the files that may be written.
-pub fn names() -> Vec<String> {
-    let mut names = Vec::new();
+pub fn names() -> impl Iterator<Item = String> {
     #[cfg(feature = "recording")]
-    names.push(RECORDING.to_owned());
+    let recording = Some(RECORDING.to_owned());
+    #[cfg(not(feature = "recording"))]
+    let recording: Option<String> = None;
     #[cfg(feature = "plot")]
-    for stem in crate::measure::pictures::STEMS {
-        names.extend(["svg", "png"].map(|kind| format!("{stem}.{kind}")));
-    }
-    names
+    let stems = crate::measure::pictures::STEMS;
+    #[cfg(not(feature = "plot"))]
+    let stems: [&str; 0] = [];
+    let pictures = stems.into_iter().flat_map(|stem| {
+        let name = |kind| format!("{stem}.{kind}");
+        ["svg", "png"].map(name)
+    });
+    recording.into_iter().chain(pictures)
 }
 
 /// Draws what was measured.

@@ -15,7 +15,7 @@ use crate::boundary::WallMethod;
 use crate::floor_plan::{self, FloorPlan};
 use crate::measure::{
     Behind, Kernel, MOST_HIDDEN, MeasureError, Measured, Options, OutputError, Report, Results,
-    Site, measure, speed,
+    Site, check, measure, speed,
 };
 use crate::trajectory::read::{ReadError, ReadOptions, Tracks, Unit, read};
 
@@ -44,6 +44,7 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     }
     let site = site(options, &tracks)?;
     let what = what(options, &tracks);
+    check(&tracks, &what)?;
     let mut results = Results::create(&folder)?;
     let mut recording = extras::Recording::create(&folder, &tracks, &site, &what)?;
     let progress = Progress::new(tracks.len() as u64);
@@ -146,8 +147,8 @@ fn report_oddities(measured: &Measured) {
     let (inside, deepest) = overview.inside;
     if inside > 0 {
         eprintln!(
-            "note: {inside} of {} rows are outside of the walkable area, by {deepest:.2} m at most; they count, \
-             and see the walls as from the nearest point inside",
+            "note: {inside} of {} rows are outside of where people can walk, by {deepest:.2} m at most; they \
+             count, and see walls as from the nearest point where people can; from farther than h, none",
             overview.rows
         );
     }

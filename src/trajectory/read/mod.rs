@@ -2,9 +2,9 @@
 //!
 //! | file | from | what is read |
 //! |---|---|---|
-//! | SQLite | JuPedSim (version 1 and 2), the sandbox | `trajectory_data`, `fps`, the walkable area, `mass` if there |
-//! | `.csv` | the sandbox, anybody | columns by the names in the first line: `id frame x y`, or `pos_x pos_y`; `time`, `mass` |
-//! | other text | PeTrack, the Pedestrian Dynamics Data Archive | `id frame x y`, or as the header names them |
+//! | SQLite | JuPedSim 1 and 2, the sandbox | `trajectory_data`, `fps`, the walkable area, `mass` if there |
+//! | `.csv` | the sandbox, anybody | by their names: `id`, `frame`, `x` and `y` or `pos_x` and `pos_y`; `time`, `mass` |
+//! | other text | PeTrack, Pedestrian Dynamics Data Archive | `id frame x y`, or as the header names them |
 //!
 //! Metres and seconds from then on. Frame f is at the time f / fps.
 
