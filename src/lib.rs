@@ -91,6 +91,9 @@ pub mod trajectory;
 #[cfg(feature = "plot")]
 pub mod plot;
 
+#[cfg(feature = "trajectory")]
+pub mod measure;
+
 pub mod reproduce;
 
 pub mod job;

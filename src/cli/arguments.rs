@@ -7,7 +7,7 @@ use clap::{ArgGroup, Args, Parser, Subcommand};
 use clap_complete::Shell;
 
 use super::values::{frame_rate, positive_seconds, seconds, threads};
-use super::{accuracy, bench, reproduce, stress, sweep};
+use super::{accuracy, bench, measure, reproduce, stress, sweep};
 use crate::scenario::{Preset, SHIPPED};
 
 const EXAMPLES: &str = "\
@@ -85,6 +85,11 @@ pub enum Command {
     /// Run a scenario over a grid or list of settings and over seeds: a table, on many threads or machines
     #[command(after_help = sweep::EXAMPLE)]
     Sweep(sweep::SweepOptions),
+    /// Measure densities, speeds and flows in trajectories, real or simulated (§8)
+    #[command(
+        after_help = "Example: sandbox measure run.sqlite --line 21,9.6,21,10.4 --region 15,8,19,12"
+    )]
+    Measure(measure::MeasureOptions),
     /// List the scenarios and profiles, or the settings that --set takes
     #[command(after_help = "Example: sandbox list --settings")]
     List {

@@ -9,6 +9,7 @@ mod inspect;
 mod interrupt;
 mod list;
 mod manual;
+mod measure;
 mod output;
 mod report;
 mod reproduce;
@@ -121,6 +122,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Stress(options) => stress::run(&options),
         Command::Schema => list::schema(),
         Command::Sweep(options) => sweep::run(&options),
+        Command::Measure(options) => measure::run(&options),
         Command::List { settings } => list::run(settings),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man { out } => manual::man(out.as_deref()),

@@ -41,16 +41,26 @@ pub enum Opening {
     Whole(Option<Region>),
 }
 
+/// What there is to show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Content {
+    /// A simulation.
+    Run,
+    /// A crowd that was measured: nobody knows its energy, and it took no computing time.
+    Measurement,
+}
+
 /// Sends the default blueprint.
 pub fn send(
     stream: &RecordingStream,
     options: &RecordingOptions,
     opening: Opening,
+    content: Content,
 ) -> Result<(), Cause> {
     if !stream.is_enabled() {
         return Ok(()); // Sending would panic.
     }
-    let (blueprint, properties) = layout(options, opening);
+    let (blueprint, properties) = layout(options, opening, content);
     let (memory, storage) = RecordingStreamBuilder::new(APPLICATION)
         .send_properties(false)
         .memory()?;
@@ -85,7 +95,11 @@ pub fn send(
     Ok(())
 }
 
-fn layout(options: &RecordingOptions, opening: Opening) -> (Blueprint, Vec<Property>) {
+fn layout(
+    options: &RecordingOptions,
+    opening: Opening,
+    content: Content,
+) -> (Blueprint, Vec<Property>) {
     let geometry = "+ /world/geometry/**";
     let agents = format!("+ /{}", crowd::ENTITY);
     let crowd = |name: &str| {
@@ -114,7 +128,7 @@ fn layout(options: &RecordingOptions, opening: Opening) -> (Blueprint, Vec<Prope
         add_properties(&mut properties, &forces, &shown, BACKGROUND);
         below.push(forces);
     }
-    below.extend([plots(), texts()]);
+    below.extend([plots(content), texts(content)]);
     let root = Vertical::new([
         Horizontal::new([by_density, by_speed]).into(),
         Horizontal::new(below).into(),
@@ -167,15 +181,19 @@ fn dim_colors() -> Visualizer {
         .visualizer()
 }
 
-fn plots() -> ContainerLike {
+fn plots(content: Content) -> ContainerLike {
     let plot = |name: &str, origin: &str| TimeSeriesView::new(name).with_origin(origin).into();
+    let motion = Vertical::new([
+        plot("Density", "/stats/density"),
+        plot("Mean speed", "/stats/speed"),
+    ])
+    .with_name("Density and speed")
+    .into();
+    if content == Content::Measurement {
+        return Tabs::new([motion, plot("Agents", "/stats/crowd")]).into();
+    }
     let pages: [ContainerLike; 3] = [
-        Vertical::new([
-            plot("Density", "/stats/density"),
-            plot("Mean speed", "/stats/speed"),
-        ])
-        .with_name("Density and speed")
-        .into(),
+        motion,
         Vertical::new([
             plot("Agents", "/stats/crowd"),
             plot("Kinetic energy", "/stats/energy"),
@@ -187,11 +205,16 @@ fn plots() -> ContainerLike {
     Tabs::new(pages).into()
 }
 
-fn texts() -> ContainerLike {
+fn texts(content: Content) -> ContainerLike {
+    let document = |name: &str| -> ContainerLike {
+        let origin = format!("/{}", text::DOCUMENT);
+        TextDocumentView::new(name).with_origin(origin).into()
+    };
+    if content == Content::Measurement {
+        return document("Measurement");
+    }
     Tabs::new([
-        TextDocumentView::new("Scenario")
-            .with_origin(format!("/{}", text::DOCUMENT))
-            .into(),
+        document("Scenario"),
         TextLogView::new("Events").with_origin("/log").into(),
     ])
     .into()

@@ -57,10 +57,12 @@ impl Crowd {
         } else {
             let density = |&i: &usize| color(&colors::DENSITY, snapshot.densities[i]);
             points = points.with_colors(rows.iter().map(density));
+            values = values.with_component_from_data("density", halves(rows, &snapshot.densities));
+        }
+        if !snapshot.pressures.is_empty() {
             let pressure = rows.iter().map(|&i| snapshot.pressures[i]);
             let pressure = Arc::new(Float32Array::from_iter_values(pressure)) as ArrayRef;
             values = values
-                .with_component_from_data("density", halves(rows, &snapshot.densities))
                 .with_component_from_data("rest_density", halves(rows, &snapshot.rest_densities))
                 .with_component_from_data("pressure", pressure);
         }

@@ -31,14 +31,19 @@ const GOAL: Color = Color(Rgba32::from_rgb(95, 211, 120));
 
 /// What stands still: walls, and where the scene's agents go.
 pub fn log(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result<(), Cause> {
+    log_still(stream, scene.walls.obstacles())?;
+    log_goals(stream, scene, agents)
+}
+
+/// Which way is up, and walls.
+pub fn log_still(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), Cause> {
     // Y up: 2D views have it down.
     stream.log_static("world", &Transform3D::from_scale([1.0, -1.0, 1.0]))?;
-    let obstacles = scene.walls.obstacles();
     if !obstacles.is_empty() {
         log_walls(stream, obstacles)?;
         log_obstacles(stream, obstacles)?;
     }
-    log_goals(stream, scene, agents)
+    Ok(())
 }
 
 fn log_walls(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), Cause> {

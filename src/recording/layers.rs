@@ -81,6 +81,11 @@ impl Layers {
         }
     }
 
+    /// No layers at all.
+    pub fn none() -> Self {
+        Self { layers: Vec::new() }
+    }
+
     pub fn log_style(&self, stream: &RecordingStream) -> Result<(), Cause> {
         for layer in &self.layers {
             stream.log_static(layer.entity.as_str(), layer.kind.style().as_ref())?;

@@ -20,6 +20,8 @@ mod error;
 mod file;
 mod geometry;
 mod layers;
+mod measured;
+mod output;
 mod read;
 mod snapshot;
 mod stats;
@@ -30,31 +32,21 @@ mod writer;
 pub use debug::DebugAgents;
 pub use error::RecordingError;
 pub use layers::METRES_PER_ACCELERATION;
+pub use measured::{MeasuredPerson, MeasuredRecorder};
+pub use output::Destination;
 pub use read::Recording;
 pub use viewer::{Address, AddressError, Viewer};
 
-use std::path::{Path, PathBuf};
-use std::time::Duration;
-
-use rerun::log::ChunkBatcherConfig;
-use rerun::sink::LogSink;
-use rerun::{RecordingStream, RecordingStreamBuilder};
+use rerun::RecordingStream;
 
 use crate::scene::Region;
 use crate::simulation::{Event, Simulation};
-use blueprint::Opening;
+use blueprint::{Content, Opening};
 use debug::Debug;
 use error::Cause;
-use file::{Failure, FileSink};
-use viewer::ViewerSink;
+use output::{APPLICATION, Output};
 use writer::Writer;
 
-/// The viewer keeps its own settings per application.
-const APPLICATION: &str = "sandbox";
-/// What a run that is killed loses at most, besides the last chunk under way.
-const FILE_TICK: Duration = Duration::from_secs(1);
-/// What a viewer lags behind.
-const VIEWER_TICK: Duration = Duration::from_millis(100);
 const FRAME: &str = "frame";
 const SIM_TIME: &str = "sim_time";
 
@@ -77,35 +69,12 @@ pub struct RecordingOptions {
     pub debug: DebugAgents,
 }
 
-/// Where a recording goes: to a file, to a viewer, or to both.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Destination {
-    /// A file, which replaces any there.
-    pub file: Option<PathBuf>,
-    /// A viewer that shows the run while it goes on.
-    pub viewer: Option<Viewer>,
-}
-
-impl From<&Path> for Destination {
-    fn from(path: &Path) -> Self {
-        Self {
-            file: Some(path.to_owned()),
-            viewer: None,
-        }
-    }
-}
-
 /// Writes a recording, frame by frame.
 ///
 /// [`log`](Self::log) only copies; one thread makes rows of the copies, another compresses and
 /// writes them.
 pub struct Recorder {
-    file: Option<PathBuf>,
-    /// What went wrong with the file.
-    file_failure: Failure,
-    /// What became of the viewer.
-    viewer_failure: Failure,
-    stream: RecordingStream,
+    output: Output,
     writer: Writer,
     debug: Debug,
     options: RecordingOptions,
@@ -126,54 +95,12 @@ impl Recorder {
         simulation: &Simulation,
         options: &RecordingOptions,
     ) -> Result<Self, RecordingError> {
-        let to = to.into();
-        let viewer = to.viewer.as_ref().map(Viewer::connect).transpose()?;
-        Self::begin(to.file.as_deref(), viewer, simulation, options)
-            .map_err(|cause| RecordingError::unwritten(to.file.as_deref(), &cause))
-    }
-
-    fn begin(
-        file: Option<&Path>,
-        viewer: Option<ViewerSink>,
-        simulation: &Simulation,
-        options: &RecordingOptions,
-    ) -> Result<Self, Cause> {
-        let scene = simulation.scene();
-        let mut builder = RecordingStreamBuilder::new(APPLICATION);
-        let (mut tick, mut opening) = (FILE_TICK, Opening::Empty);
-        let (mut file_failure, mut viewer_failure) = (Failure::default(), Failure::default());
-        let mut sinks: Vec<Box<dyn LogSink>> = Vec::new();
-        if let Some(path) = file {
-            let sink = FileSink::create(path)?;
-            file_failure = sink.failure();
-            sinks.push(Box::new(sink));
-        }
-        if let Some(sink) = viewer {
-            viewer_failure = sink.failure();
-            sinks.push(Box::new(sink));
-            (tick, opening) = (VIEWER_TICK, Opening::Live);
-        } else {
-            // In a viewer a second run of the same name would become part of the first.
-            builder = builder.recording_id(format!("{}-seed{}", options.title, scene.seed));
-        }
-        let stream = builder.batcher_config(batches(tick)).set_sinks(sinks)?;
-        stream.set_log_tick_enabled(false);
-        stream.set_log_time_enabled(false);
-        stream.send_recording_name(options.title.clone())?;
-        let layers = layers::Layers::new(scene, &options.debug);
-        blueprint::send(&stream, options, opening)?;
-        text::log_document(&stream, scene, options)?;
-        geometry::log(&stream, scene, simulation.frame().agents)?;
-        crowd::log_style(&stream)?;
-        layers.log_style(&stream)?;
-        stats::log_style(&stream)?;
-        stream.flush_blocking()?;
+        let id = format!("{}-seed{}", options.title, simulation.scene().seed);
+        let output = Output::open(&to.into(), &options.title, id)?;
+        let begun = begin(&output, simulation, options);
         Ok(Self {
-            file: file.map(Path::to_owned),
-            file_failure,
-            viewer_failure,
-            writer: Writer::start(stream.clone(), layers)?,
-            stream,
+            writer: output.checked(begun)?,
+            output,
             debug: Debug::new(options.debug.clone()),
             options: options.clone(),
             opened: false,
@@ -196,8 +123,8 @@ impl Recorder {
     ) -> Result<(), RecordingError> {
         let mut snapshot = self.writer.empty();
         snapshot.take(simulation, &self.debug);
-        snapshot.ms_per_frame = ms_per_frame;
-        snapshot.evacuated = self.progress.count_arrivals(simulation);
+        snapshot.ms_per_frame = Some(ms_per_frame);
+        snapshot.evacuated = Some(self.progress.count_arrivals(simulation));
         snapshot.events = self.progress.new_events(simulation);
         snapshot.opens_here = !self.opened && snapshot.time >= self.options.opens_at;
         // A run may end before that time; then the debug view shows somebody who was there first.
@@ -206,8 +133,7 @@ impl Recorder {
         }
         self.opened |= snapshot.opens_here;
         self.options.ends_at = snapshot.time;
-        let written = self.writer.write(snapshot);
-        written.map_err(|cause| RecordingError::unwritten(self.file.as_deref(), &cause))
+        self.output.checked(self.writer.write(snapshot))
     }
 
     /// Sends what is still in memory, closes the file and checks that it is whole.
@@ -215,33 +141,54 @@ impl Recorder {
     /// # Errors
     /// Something could not be written: the disk is full, for example. Else, the viewer has gone.
     pub fn finish(mut self) -> Result<(), RecordingError> {
-        let file = self.file.as_deref();
-        let unwritten = |cause: &Cause| RecordingError::unwritten(file, cause);
-        Self::end(&mut self.writer, &self.stream, &self.options, self.focus)
-            .map_err(|cause| unwritten(&cause))?;
-        drop(self.stream); // And with it the sinks; that of the file adds the index and waits for it.
-        if let Some(reason) = self.file_failure.reason() {
-            return Err(unwritten(&Cause::File(reason)));
-        }
-        file.map_or(Ok(()), read::check_footer)?;
-        match self.viewer_failure.reason() {
-            Some(reason) => Err(RecordingError::ViewerGone { reason }),
-            None => Ok(()),
-        }
+        let opening = Opening::Whole(self.focus);
+        let ended = end(
+            &mut self.writer,
+            &self.output,
+            &self.options,
+            opening,
+            Content::Run,
+        );
+        self.output.checked(ended)?;
+        self.output.close()
     }
+}
 
-    /// Everything but the footer.
-    fn end(
-        writer: &mut Writer,
-        stream: &RecordingStream,
-        options: &RecordingOptions,
-        focus: Option<Region>,
-    ) -> Result<(), Cause> {
-        writer.finish()?;
-        stream.flush_blocking()?;
-        blueprint::send(stream, options, Opening::Whole(focus))?;
-        Ok(stream.flush_blocking()?)
-    }
+/// Logs what stands still.
+fn begin(
+    output: &Output,
+    simulation: &Simulation,
+    options: &RecordingOptions,
+) -> Result<Writer, Cause> {
+    let (stream, scene) = (&output.stream, simulation.scene());
+    let layers = layers::Layers::new(scene, &options.debug);
+    let opening = if output.is_live() {
+        Opening::Live
+    } else {
+        Opening::Empty
+    };
+    blueprint::send(stream, options, opening, Content::Run)?;
+    text::log_document(stream, scene, options)?;
+    geometry::log(stream, scene, simulation.frame().agents)?;
+    crowd::log_style(stream)?;
+    layers.log_style(stream)?;
+    stats::log_style(stream)?;
+    stream.flush_blocking()?;
+    Ok(Writer::start(stream.clone(), layers)?)
+}
+
+/// Sends what is still in memory, and how it is to be looked at.
+fn end(
+    writer: &mut Writer,
+    output: &Output,
+    options: &RecordingOptions,
+    opening: Opening,
+    content: Content,
+) -> Result<(), Cause> {
+    writer.finish()?;
+    // The viewer would not go to a time that it has not read yet.
+    output.stream.flush_blocking()?;
+    blueprint::send(&output.stream, options, opening, content)
 }
 
 /// How much of what the simulation reports is in the recording.
@@ -278,15 +225,7 @@ impl Progress {
     }
 }
 
-/// The crowd's rows fill a chunk by their size, all others by the passing of so much time.
-fn batches(flush_tick: Duration) -> ChunkBatcherConfig {
-    ChunkBatcherConfig {
-        flush_tick,
-        ..ChunkBatcherConfig::DEFAULT
-    }
-}
-
-fn set_time(stream: &RecordingStream, frame: u64, time: f64) {
-    stream.set_time_sequence(FRAME, i64::try_from(frame).unwrap_or(i64::MAX));
+fn set_time(stream: &RecordingStream, frame: i64, time: f64) {
+    stream.set_time_sequence(FRAME, frame);
     stream.set_duration_secs(SIM_TIME, time);
 }

@@ -63,15 +63,18 @@ pub fn log(stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
         velocities.map(|&[x, y]| f64::from(x).powi(2) + f64::from(y).powi(2))
     };
     let energies = squares().zip(&snapshot.masses);
+    let known: Vec<f64> = squares().filter(|square| square.is_finite()).collect();
     let densities = snapshot.densities.iter().map(|&density| f64::from(density));
     let values = [
         Some(snapshot.ids.len() as f64),
-        Some(snapshot.evacuated as f64),
+        snapshot.evacuated.map(|count| count as f64),
         mean(densities.clone()),
         densities.reduce(f64::max),
-        mean(squares().map(f64::sqrt)),
-        Some(energies.map(|(v2, &m)| 0.5 * f64::from(m) * v2).sum()),
-        Some(snapshot.ms_per_frame),
+        mean(known.into_iter().map(f64::sqrt)),
+        snapshot
+            .ms_per_frame
+            .map(|_| energies.map(|(v2, &m)| 0.5 * f64::from(m) * v2).sum()),
+        snapshot.ms_per_frame,
     ];
     for (series, value) in SERIES.iter().zip(values) {
         if let Some(value) = value {
@@ -84,7 +87,7 @@ pub fn log(stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
 /// Logs events, each at its own time.
 pub fn log_events(stream: &RecordingStream, events: &[(f64, Event)]) -> Result<(), Cause> {
     for (time, event) in events {
-        set_time(stream, event.frame, *time);
+        set_time(stream, event.frame.cast_signed(), *time);
         stream.log(
             "log",
             &TextLog::new(sentence(event)).with_level(level(event)),

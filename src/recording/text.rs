@@ -13,6 +13,34 @@ use crate::scene::Scene;
 
 pub const DOCUMENT: &str = "info/scenario";
 
+/// Logs what was measured, and what colours mean.
+pub fn log_measurement(stream: &RecordingStream, options: &RecordingOptions) -> Result<(), Cause> {
+    let text = format!(
+        "# {}\n\n{}\n\n\
+         ## Legend\n\
+         * Metres, seconds, y up. (The viewer's own *hover position* counts y down.)\n{}\
+         * Click somebody: `agent:id`, `agent:density` in P/m² (three digits).\n\n{}\n",
+        options.title,
+        options.description,
+        color_legend(),
+        options.document.trim_end(),
+    );
+    stream.log_static(DOCUMENT, &TextDocument::from_markdown(text))?;
+    let version = Arc::new(StringArray::from(vec![env!("CARGO_PKG_VERSION")])) as ArrayRef;
+    let properties = AnyValues::default().with_component_from_data("sandbox_version", version);
+    Ok(stream.send_property("measurement", &properties)?)
+}
+
+/// What the two colourings mean.
+fn color_legend() -> String {
+    format!(
+        "* Density colours (viridis): dark purple 0, green {:.0}, yellow {DENSITY_RANGE} P/m² and more.\n\
+         * Speed colours (inferno): black 0, red {:.1}, pale yellow {SPEED_RANGE} m/s and more.\n",
+        0.6 * DENSITY_RANGE,
+        0.5 * SPEED_RANGE,
+    )
+}
+
 /// Logs the document and the properties that the viewer lists.
 pub fn log_document(
     stream: &RecordingStream,
@@ -48,14 +76,11 @@ fn legend(options: &RecordingOptions) -> String {
     let mut legend = format!(
         "## Legend\n\
          * Metres, seconds, y up; mass 1 = an average person. (The viewer's own *hover position* counts \
-         y down.)\n\
-         * Density colours (viridis): dark purple 0, green {:.0}, yellow {DENSITY_RANGE} P/m² and more.\n\
-         * Speed colours (inferno): black 0, red {:.1}, pale yellow {SPEED_RANGE} m/s and more.\n\
+         y down.)\n{}\
          * Click an agent: `agent:id`, `agent:density` ρ and `agent:rest_density` ρ⁰ in P/m² (three \
          digits), `agent:pressure` p = k (ρ − ρ⁰).\n\
          * Look first at t = {} s, where the marked loop begins.\n",
-        0.6 * DENSITY_RANGE,
-        0.5 * SPEED_RANGE,
+        color_legend(),
         options.opens_at,
     );
     if options.debug != DebugAgents::None {

@@ -1,4 +1,5 @@
-//! A run as trajectories that other programs read. The only place that names rusqlite and geo.
+//! A run as trajectories that other programs read, and theirs [read] back. The only place that names
+//! rusqlite and geo.
 //!
 //! | file | read by | holds |
 //! |---|---|---|
@@ -13,6 +14,7 @@
 mod area;
 mod error;
 mod lines;
+pub mod read;
 mod row;
 mod sqlite;
 

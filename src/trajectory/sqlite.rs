@@ -13,7 +13,7 @@ use super::{Row, Sink};
 /// How much of a run that is cut short may be lost, at most a frame more.
 const COMMIT_EVERY: Duration = Duration::from_secs(1);
 
-/// The tables of JuPedSim's own writer; the last three columns are ours.
+/// The tables of JuPedSim's own writer; the last four columns are ours.
 const TABLES: &str = "
     CREATE TABLE trajectory_data (
         frame INTEGER NOT NULL,
@@ -24,7 +24,8 @@ const TABLES: &str = "
         ori_y REAL NOT NULL,
         density REAL NOT NULL,
         pressure REAL NOT NULL,
-        speed REAL NOT NULL);
+        speed REAL NOT NULL,
+        mass REAL NOT NULL);
     CREATE INDEX frame_id_idx ON trajectory_data(frame, id);
     CREATE TABLE metadata (key TEXT NOT NULL UNIQUE PRIMARY KEY, value TEXT NOT NULL);
     CREATE TABLE geometry (hash INTEGER NOT NULL, wkt TEXT NOT NULL);
@@ -81,7 +82,7 @@ impl Sqlite {
     }
 
     fn insert(&self, frame: u64, rows: &[Row<'_>]) -> rusqlite::Result<()> {
-        let insert = "INSERT INTO trajectory_data VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)";
+        let insert = "INSERT INTO trajectory_data VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
         let mut insert = self.connection.prepare(insert)?;
         let frame = frame.cast_signed();
         for row in rows {
@@ -93,10 +94,11 @@ impl Sqlite {
                 density,
                 pressure,
                 speed,
+                mass,
                 ..
             } = row;
             insert.execute(params![
-                frame, id, pos_x, pos_y, ori_x, ori_y, density, pressure, speed
+                frame, id, pos_x, pos_y, ori_x, ori_y, density, pressure, speed, mass
             ])?;
         }
         let insert = "INSERT INTO frame_data VALUES (?, ?)";

@@ -8,6 +8,8 @@ pub mod program;
 pub mod quadrature;
 pub mod social;
 pub mod sweep;
+#[cfg(feature = "trajectory")]
+pub mod tracks;
 
 use sandbox::agents::NewAgent;
 use sandbox::breakdown::Breakdown;

@@ -1,0 +1,102 @@
+//! What `sandbox measure` takes.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+
+use crate::measure::Line;
+use crate::scene::Region;
+
+use super::super::arguments::ProgramOptions;
+use super::super::values::{frame_rate, positive_seconds};
+
+#[derive(Args)]
+pub struct MeasureOptions {
+    /// Trajectories: JuPedSim's SQLite, text (id frame x y), or .csv
+    pub trajectory: PathBuf,
+    /// Where people can walk, WKT or GeoJSON; none: no walls [default: what an SQLite file says, else none]
+    #[arg(long, value_name = "FILE")]
+    pub geometry: Option<PathBuf>,
+    /// Unit of the coordinates [default: what the file says, else m]
+    #[arg(long, value_parser = PossibleValuesParser::new(["m", "cm"]))]
+    pub unit: Option<String>,
+    /// Frames per second [default: what the file says]
+    #[arg(long, value_name = "N", value_parser = frame_rate)]
+    pub fps: Option<f64>,
+    /// Measure from this time on, seconds; frame f is at f / fps
+    #[arg(long, value_name = "SECS", allow_hyphen_values = true, value_parser = moment)]
+    pub from: Option<f64>,
+    /// Measure until this time, seconds
+    #[arg(long, value_name = "SECS", allow_hyphen_values = true, value_parser = moment)]
+    pub until: Option<f64>,
+    /// Support radius h of the kernel, metres
+    #[arg(long, value_name = "METRES", default_value_t = 1.0, value_parser = length)]
+    pub support_radius: f64,
+    /// How what walls hide is integrated: once, wall by wall, or at the paper's single points
+    #[arg(long, value_name = "NAME", default_value = "union", value_parser = PossibleValuesParser::new(["union", "exact", "representative"]))]
+    pub wall_method: String,
+    /// Behind walls it is as dense as where the person stands, or as in the engine: the rest density
+    #[arg(long, value_name = "NAME", default_value = "same", value_parser = PossibleValuesParser::new(["same", "rest"]))]
+    pub behind_walls: String,
+    /// The largest rest density, P/m², with --behind-walls rest
+    #[arg(long, value_name = "P/m²", default_value_t = 5.0, value_parser = length)]
+    pub rest_density_max: f64,
+    /// Velocities are taken over this time, half before and half after, seconds [default: 10 frames]
+    #[arg(long, value_name = "SECS", value_parser = positive_seconds)]
+    pub speed_window: Option<f64>,
+    /// Side of the cells of mean fields, metres
+    #[arg(long, value_name = "METRES", default_value_t = 0.25, value_parser = length)]
+    pub cell: f64,
+    /// Take a fundamental diagram in this rectangle; may be repeated [default: everywhere]
+    #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true, value_parser = region)]
+    pub region: Vec<Region>,
+    /// Measure the flow over this line, forward is from its left to its right; may be repeated
+    #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true, value_parser = line)]
+    pub line: Vec<Line>,
+    /// Folder for the results [default: the file's name with -measured]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub program: ProgramOptions,
+}
+
+fn moment(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if (-1e9..=1e9).contains(&value) => Ok(value),
+        _ => Err("not a time in seconds".to_owned()),
+    }
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if (1e-3..=1e3).contains(&value) => Ok(value),
+        _ => Err("not a number between 0.001 and 1000".to_owned()),
+    }
+}
+
+fn four(text: &str) -> Option<[f64; 4]> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+    let numbers: [f64; 4] = numbers.ok()?.try_into().ok()?;
+    numbers.iter().all(|n| n.is_finite()).then_some(numbers)
+}
+
+fn region(text: &str) -> Result<Region, String> {
+    match four(text) {
+        Some([x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok(Region {
+            min: [x0, y0].into(),
+            max: [x1, y1].into(),
+        }),
+        _ => Err("four numbers x0,y0,x1,y1 are needed, x0 < x1, y0 < y1".to_owned()),
+    }
+}
+
+fn line(text: &str) -> Result<Line, String> {
+    match four(text) {
+        Some([x0, y0, x1, y1]) if (x0, y0) != (x1, y1) => Ok(Line {
+            start: [x0, y0].into(),
+            end: [x1, y1].into(),
+        }),
+        _ => Err("four numbers x0,y0,x1,y1 are needed, the ends of a line".to_owned()),
+    }
+}

@@ -1,0 +1,205 @@
+//! `sandbox measure`: densities, speeds and flows in trajectories.
+
+mod arguments;
+mod extras;
+
+pub use arguments::MeasureOptions;
+
+use std::path::PathBuf;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::output::check_free;
+use super::{Failure, say, talk, use_threads};
+use crate::boundary::WallMethod;
+use crate::floor_plan::{self, FloorPlan};
+use crate::measure::{
+    Behind, Kernel, MOST_HIDDEN, MeasureError, Measured, Options, OutputError, Report, Results,
+    Site, check, measure, speed,
+};
+use crate::trajectory::read::{ReadError, ReadOptions, Tracks, Unit, read};
+
+/// Instead of a floor plan.
+const NO_WALLS: &str = "none";
+
+pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
+    use_threads(options.program.threads)?;
+    let folder = folder(options);
+    for name in Results::FILES
+        .into_iter()
+        .map(str::to_owned)
+        .chain(extras::names())
+    {
+        check_free("--out", &folder.join(name), options.program.force)?;
+    }
+    let tracks = read(
+        &options.trajectory,
+        &ReadOptions {
+            unit: options.unit.as_deref().and_then(Unit::named),
+            fps: options.fps,
+        },
+    )?;
+    for note in &tracks.notes {
+        talk(&format!("note: {}: {note}", options.trajectory.display()));
+    }
+    let site = site(options, &tracks)?;
+    let what = what(options, &tracks);
+    check(&tracks, &what)?;
+    let mut results = Results::create(&folder)?;
+    let mut recording = extras::Recording::create(&folder, &tracks, &site, &what)?;
+    let progress = Progress::new(tracks.len() as u64);
+    let measured = measure(&tracks, &site, &what, |moments| {
+        let rows: usize = moments.iter().map(|moment| moment.people.len()).sum();
+        progress.0.inc(rows as u64);
+        results.add(moments)?;
+        recording.add(moments)
+    });
+    progress.0.finish_and_clear();
+    let measured = measured?;
+    results.finish(&measured)?;
+    recording.finish()?;
+    extras::save_pictures(&folder, &measured, &site)?;
+    report_oddities(&measured);
+    let report = Report {
+        tracks: &tracks,
+        options: &what,
+        measured: &measured,
+    };
+    talk(&format!("note: results are in {}", folder.display()));
+    if options.program.json {
+        return say(&format!("{}\n", report.json()));
+    }
+    say(&report.text())
+}
+
+/// Where results go: beside where the user is, not beside the data.
+fn folder(options: &MeasureOptions) -> PathBuf {
+    let named = || {
+        let stem = options.trajectory.file_stem().unwrap_or_default();
+        let mut name = stem.to_owned();
+        name.push("-measured");
+        PathBuf::from(name)
+    };
+    options.out.clone().unwrap_or_else(named)
+}
+
+fn what(options: &MeasureOptions, tracks: &Tracks) -> Options {
+    let walls = match options.wall_method.as_str() {
+        "exact" => WallMethod::Exact,
+        "representative" => WallMethod::Representative,
+        _ => WallMethod::Union,
+    };
+    let reach = options.speed_window.map(|secs| {
+        let reach = (0.5 * secs / tracks.interval()).round().max(1.0);
+        (reach as i64).min(i64::from(u32::MAX))
+    });
+    Options {
+        kernel: Kernel {
+            support_radius: options.support_radius,
+            walls,
+        },
+        behind: match options.behind_walls.as_str() {
+            "rest" => Behind::Rest(options.rest_density_max),
+            _ => Behind::Same,
+        },
+        speed_reach: reach.unwrap_or(speed::FRAMES),
+        times: [
+            options.from.unwrap_or(f64::NEG_INFINITY),
+            options.until.unwrap_or(f64::INFINITY),
+        ],
+        cell: options.cell,
+        regions: options.region.clone(),
+        lines: options.line.clone(),
+    }
+}
+
+/// Walls from a plan, else from the trajectories' own file.
+fn site(options: &MeasureOptions, tracks: &Tracks) -> Result<Site, Failure> {
+    let plan = match (&options.geometry, tracks.walkable.as_slice()) {
+        (Some(path), _) if path.as_os_str() == NO_WALLS => None,
+        (Some(path), _) => {
+            let plan = floor_plan::read(path);
+            Some(plan.map_err(|error| Failure::Input(format!("--geometry {error}")))?)
+        }
+        (None, []) => None,
+        (None, [text]) => Some(floor_plan::parse_wkt(text).map_err(|error| own(options, &error))?),
+        (None, several) => {
+            let problem = format!("{} geometries, one after the other", several.len());
+            return Err(own(options, &problem));
+        }
+    };
+    let solids = plan.map_or(Ok(Vec::new()), FloorPlan::solids);
+    let solids = solids.map_err(|error| Failure::Input(format!("the floor plan: {error}")))?;
+    Ok(Site::new(solids))
+}
+
+/// Something is wrong with the geometry in the trajectories' own file.
+fn own(options: &MeasureOptions, problem: &dyn std::fmt::Display) -> Failure {
+    let path = options.trajectory.display();
+    Failure::Input(format!(
+        "{path}: its geometry: {problem}; give one by --geometry, or none by --geometry {NO_WALLS}"
+    ))
+}
+
+/// Says what a careful reader of the results should know.
+fn report_oddities(measured: &Measured) {
+    let overview = &measured.overview;
+    let (inside, deepest) = overview.inside;
+    if inside > 0 {
+        talk(&format!(
+            "note: {inside} of {} rows are outside of where people can walk, by {deepest:.2} m at most; they \
+             count, and see walls as from the nearest point where people can; from farther than h, none",
+            overview.rows
+        ));
+    }
+    if overview.crammed > 0 {
+        talk(&format!(
+            "note: of {} rows walls hide more than {} % of the kernel; {} % are taken",
+            overview.crammed,
+            100.0 * MOST_HIDDEN,
+            100.0 * MOST_HIDDEN
+        ));
+    }
+    for (k, crossings) in measured.crossings.iter().enumerate() {
+        if crossings.across_gaps > 0 {
+            talk(&format!(
+                "note: line {}: {} person(s) who were missing in between came back on the other side; they \
+                 do not count",
+                k + 1,
+                crossings.across_gaps
+            ));
+        }
+    }
+}
+
+/// Rows measured, shown only if stderr is a terminal.
+struct Progress(ProgressBar);
+
+impl Progress {
+    fn new(rows: u64) -> Self {
+        let bar = ProgressBar::new(rows);
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} rows, {eta} left")
+        {
+            bar.set_style(style);
+        }
+        Self(bar)
+    }
+}
+
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<MeasureError> for Failure {
+    fn from(error: MeasureError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        Self::Output(error.to_string())
+    }
+}

@@ -1,0 +1,30 @@
+//! Trajectories that the tests measure.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use sandbox::trajectory::read::{ReadError, ReadOptions, Tracks, read};
+
+/// A file with this name and text, and the folder that it is in.
+pub fn file(name: &str, text: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, text).unwrap();
+    (folder, path)
+}
+
+/// What a file with this name and text is read as; errors without the folder.
+pub fn read_as(name: &str, text: &str, options: &ReadOptions) -> Result<Tracks, String> {
+    let (folder, path) = file(name, text);
+    let folder = format!("{}/", folder.path().display());
+    read(&path, options).map_err(|error: ReadError| error.to_string().replace(&folder, ""))
+}
+
+/// Rows `id frame x y` in metres at so many frames per second.
+pub fn tracks(fps: f64, rows: &[(i64, i64, f64, f64)]) -> Tracks {
+    let mut text = format!("# framerate: {fps}\n# id frame x/m y/m\n");
+    for (id, frame, x, y) in rows {
+        writeln!(text, "{id} {frame} {x} {y}").unwrap();
+    }
+    read_as("rows.txt", &text, &ReadOptions::default()).unwrap()
+}

@@ -1,0 +1,222 @@
+//! `sandbox measure` as a user runs it.
+#![cfg(feature = "cli")]
+
+mod common;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use common::tracks::file;
+use serde_json::Value;
+
+fn measure(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_sandbox"))
+        .arg("measure")
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn refused(arguments: &[&str], words: &str) {
+    let output = measure(arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+    assert!(
+        stderr.contains(words),
+        "{arguments:?}: no {words:?} in {stderr}"
+    );
+    assert!(output.stdout.is_empty());
+}
+
+/// Five people walk to the right at 1 m/s for 4 s, between two walls.
+fn walkers() -> (tempfile::TempDir, [String; 3]) {
+    let rows = (0..40).flat_map(|frame| (0..5).map(move |id| (id, frame)));
+    let rows = rows.map(|(id, frame)| {
+        let x = -0.5 * f64::from(id) + 0.1 * f64::from(frame);
+        format!("{id} {frame} {x} 1\n")
+    });
+    let text = "# framerate: 10\n# id frame x/m y/m\n".to_owned() + &rows.collect::<String>();
+    let (folder, path) = file("walkers.txt", &text);
+    let plan = folder.path().join("corridor.wkt");
+    fs::write(&plan, "POLYGON ((-9 0, 9 0, 9 2, -9 2, -9 0))").unwrap();
+    let out = folder.path().join("results");
+    let paths = [path, plan, out].map(|path| path.to_str().unwrap().to_owned());
+    (folder, paths)
+}
+
+/// The columns of a CSV file, by name; empty cells are NaN.
+fn columns(path: &Path) -> BTreeMap<String, Vec<f64>> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let head = reader.headers().unwrap().clone();
+    let mut columns: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for row in reader.records() {
+        for (name, cell) in head.iter().zip(&row.unwrap()) {
+            let number = cell.parse().unwrap_or(f64::NAN);
+            columns.entry(name.to_owned()).or_default().push(number);
+        }
+    }
+    columns
+}
+
+#[test]
+fn a_corridor_is_measured_into_a_folder() {
+    let (_folder, [trajectory, plan, out]) = walkers();
+    let arguments = [
+        &trajectory,
+        "--geometry",
+        &plan,
+        "--out",
+        &out,
+        "--line",
+        "1.02,0,1.02,2",
+        "--line",
+        "9,0,9,2",
+        "--region",
+        "0,0,1,2",
+        "--cell",
+        "0.5",
+        "--json",
+    ];
+    let output = measure(&arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    assert_eq!(stderr, format!("note: results are in {out}\n"));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(
+        (&report["people"], &report["rows"]),
+        (&5.into(), &200.into())
+    );
+    let [first, second] = [0, 1].map(|k| &report["lines"][k]);
+    assert_eq!(
+        (&first["forward"]["passages"], &first["length"]),
+        (&5.into(), &2.0.into())
+    );
+    let flow = first["forward"]["flow_per_s"].as_f64().unwrap();
+    assert!((flow - 2.0).abs() < 1e-9);
+    let specific = first["forward"]["specific_flow_per_m_s"].as_f64().unwrap();
+    assert!((specific - 1.0).abs() < 1e-9);
+    assert_eq!(second["forward"]["flow_per_s"], Value::Null);
+
+    let folder = Path::new(&out);
+    let agents = columns(&folder.join("agents.csv"));
+    assert_eq!(agents["id"].len(), 200);
+    assert!(
+        agents["speed"]
+            .iter()
+            .all(|speed| (speed - 1.0).abs() < 1e-9)
+    );
+    let walls = &agents["density_from_walls"];
+    assert!(
+        walls.iter().all(|density| density.abs() < 1e-12),
+        "1 m away: out of reach"
+    );
+    let fields = columns(&folder.join("fields.csv"));
+    assert!(
+        fields["y"].iter().all(|y| (0.0..2.0).contains(y)),
+        "only where people can walk"
+    );
+    assert_eq!(columns(&folder.join("flow.csv"))["net"].last(), Some(&5.0));
+    let diagram = columns(&folder.join("fundamental_diagram.csv"));
+    assert!(
+        diagram["people"]
+            .iter()
+            .all(|&people| (1.0..=3.0).contains(&people))
+    );
+    let classes = columns(&folder.join("fundamental_classes.csv"));
+    let pairs: f64 = classes["count"].iter().sum();
+    let people: f64 = diagram["people"].iter().sum();
+    assert_eq!(pairs, people + diagram["people"].len() as f64);
+    #[cfg(feature = "plot")]
+    for name in ["fields.svg", "fundamental_diagram.png", "flow.svg"] {
+        assert!(folder.join(name).metadata().unwrap().len() > 1000);
+    }
+
+    // Nothing is replaced without being asked for.
+    let agents = format!("{}", folder.join("agents.csv").display());
+    refused(
+        &arguments,
+        &format!("--out {agents}: exists already; give --force to replace it"),
+    );
+    let again = measure(&[&arguments[..], &["--force"]].concat());
+    assert_eq!(again.stdout, output.stdout);
+}
+
+#[cfg(feature = "recording")]
+#[test]
+fn the_recording_has_the_crowd_and_its_walls() {
+    use sandbox::recording::Recording;
+
+    let (_folder, [trajectory, plan, out]) = walkers();
+    let output = measure(&[
+        &trajectory,
+        "--geometry",
+        &plan,
+        "--out",
+        &out,
+        "--from",
+        "1",
+    ]);
+    assert_eq!(output.status.code(), Some(0));
+    let recording = Recording::read(&Path::new(&out).join("measured.rrd")).unwrap();
+    let entities = recording.entities();
+    for entity in [
+        "/world/agents",
+        "/world/geometry/walls",
+        "/stats/density/mean",
+        "/info/scenario",
+    ] {
+        assert!(entities.contains(entity), "{entities:?}");
+    }
+    for entity in ["/stats/energy/kinetic", "/stats/crowd/evacuated"] {
+        let values = recording.pairs(entity, "Scalars:scalars");
+        assert!(values.is_empty(), "nobody knows {entity}");
+    }
+    let positions = recording.pairs("/world/agents", "Points2D:positions");
+    assert_eq!((positions.len(), positions[0].0), (30, 10));
+    assert_eq!(positions[0].1.len(), 5);
+    assert!((positions[0].1[0][0] - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn what_is_typed_wrong_is_refused_with_the_fix() {
+    let (_folder, [trajectory, plan, out]) = walkers();
+    for (arguments, words) in [
+        (vec!["no.txt"], "no.txt: cannot be read"),
+        (
+            vec![&*trajectory, "--line", "1,2,3"],
+            "four numbers x0,y0,x1,y1 are needed",
+        ),
+        (
+            vec![&*trajectory, "--region", "1,0,0,1"],
+            "x0 < x1, y0 < y1",
+        ),
+        (
+            vec![&*trajectory, "--fps", "0"],
+            "not a number of frames per second above 0",
+        ),
+        (
+            vec![&*trajectory, "--from", "99"],
+            "nobody is there from 99 s to inf s; there is somebody from 0 s",
+        ),
+        (
+            vec![&*trajectory, "--cell", "0.001"],
+            "give a larger --cell",
+        ),
+        (
+            vec![&*trajectory, "--geometry", "no.wkt"],
+            "--geometry no.wkt: cannot be read",
+        ),
+        (
+            vec![&*trajectory, "--geometry", &*trajectory],
+            "--geometry ",
+        ),
+    ] {
+        refused(&[&arguments[..], &["--out", &out]].concat(), words);
+    }
+    assert!(
+        fs::metadata(&plan).is_ok() && !Path::new(&out).exists(),
+        "nothing is begun"
+    );
+}

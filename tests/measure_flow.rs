@@ -1,0 +1,260 @@
+//! Velocities, crossings and fundamental diagrams of motions that are known.
+#![cfg(feature = "trajectory")]
+
+mod common;
+
+use common::tracks::tracks;
+use common::vector;
+use proptest::prelude::*;
+use sandbox::boundary::WallMethod;
+use sandbox::math::Vector;
+use sandbox::measure::{
+    Behind, CLASS, Crossings, Kernel, Line, MeasureError, Measured, Options, Site, measure, speed,
+};
+use sandbox::scene::Region;
+use sandbox::trajectory::read::Tracks;
+
+const ALWAYS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+fn line(start: [f64; 2], end: [f64; 2]) -> Line {
+    Line {
+        start: Vector::from(start),
+        end: Vector::from(end),
+    }
+}
+
+/// Upwards along x = 0: forward is to the right.
+fn gate() -> Line {
+    line([0.0, -1.0], [0.0, 1.0])
+}
+
+fn measured(tracks: &Tracks, regions: Vec<Region>, lines: Vec<Line>) -> Measured {
+    let options = Options {
+        kernel: Kernel {
+            support_radius: 1.0,
+            walls: WallMethod::Union,
+        },
+        behind: Behind::Same,
+        speed_reach: 5,
+        times: ALWAYS,
+        cell: 0.25,
+        regions,
+        lines,
+    };
+    measure(tracks, &Site::new(Vec::new()), &options, |_| {
+        Ok::<(), MeasureError>(())
+    })
+    .unwrap()
+}
+
+/// `people` in a file, `spacing` apart, at x = −0.3 and behind at the start, `speed` to the right.
+fn column(people: i64, spacing: f64, speed: f64, frames: i64) -> Tracks {
+    let rows: Vec<_> = (0..people)
+        .flat_map(|id| {
+            (0..frames).map(move |frame| {
+                let x = -0.3 - spacing * id as f64 + speed * frame as f64 / 25.0;
+                (id, frame, x, 0.1)
+            })
+        })
+        .collect();
+    tracks(25.0, &rows)
+}
+
+#[test]
+fn a_column_has_the_flow_of_its_line_density_times_its_speed() {
+    let (spacing, v) = (0.7, 1.3);
+    let tracks = column(40, spacing, v, 500);
+    let crossings = Crossings::of(&tracks, 1, gate(), ALWAYS);
+    let passed = ((v * 499.0 / 25.0 - 0.3) / spacing).floor() as usize + 1;
+    assert_eq!((crossings.list.len(), passed), (37, 37));
+    for (k, crossing) in crossings.list.iter().enumerate() {
+        let time = (0.3 + spacing * k as f64) / v;
+        assert!((crossing.time - time).abs() < 1e-12 && crossing.id == k as i64);
+        assert!(crossing.frame as f64 / 25.0 >= crossing.time);
+        assert!(crossing.x.abs() < 1e-12 && (crossing.y - 0.1).abs() < 1e-12);
+        assert_eq!((crossing.direction, crossing.forward), (1, k as u64 + 1));
+    }
+    assert!((crossings.flow(1).unwrap() - v / spacing).abs() < 1e-12);
+    assert_eq!(crossings.flow(-1), None);
+    // Only what happens in the time asked for.
+    let later = Crossings::of(&tracks, 1, gate(), [10.0, 15.0]);
+    let within = crossings
+        .list
+        .iter()
+        .filter(|c| (10.0..=15.0).contains(&c.time));
+    assert_eq!(later.list.len(), within.count());
+    // From the other side it is the same, backward.
+    let turned = Crossings::of(&tracks, 1, line([0.0, 1.0], [0.0, -1.0]), ALWAYS);
+    assert_eq!(turned.passages(-1).count(), 37);
+}
+
+#[test]
+fn velocities_of_even_motion_are_exact_and_one_sided_at_the_ends() {
+    let v = vector(0.8, -0.5);
+    let rows: Vec<_> = (0..30)
+        .map(|frame| {
+            let p = vector(3.0, 2.0) + v * (frame as f64 / 16.0);
+            (9, frame, p.x, p.y)
+        })
+        .collect();
+    for reach in [1, 5, 12] {
+        for velocity in speed::velocities(&tracks(16.0, &rows), reach) {
+            assert!((velocity.unwrap() - v).norm() < 1e-12);
+        }
+    }
+    // Who is seen for less than the window in either direction: nobody knows.
+    let short = speed::velocities(&tracks(16.0, &rows[..6]), 5);
+    let known: Vec<bool> = short.iter().map(Option::is_some).collect();
+    assert_eq!(known, [true, false, false, false, false, true]);
+}
+
+#[test]
+fn accelerating_people_have_the_mean_velocity_of_the_window() {
+    let rows: Vec<_> = (0..21)
+        .map(|f| (1, f, (f * f) as f64 * 0.01, 0.0))
+        .collect();
+    let velocities = speed::velocities(&tracks(10.0, &rows), 5);
+    for (f, velocity) in velocities.iter().enumerate() {
+        let (from, to) = (f.saturating_sub(5), (f + 5).min(20));
+        let (from, to) = if f < 5 {
+            (f, to)
+        } else if f > 15 {
+            (from, f)
+        } else {
+            (from, to)
+        };
+        let mean = 0.01 * (to * to - from * from) as f64 / ((to - from) as f64 / 10.0);
+        assert!((velocity.unwrap().x - mean).abs() < 1e-12, "{f}");
+    }
+}
+
+#[test]
+fn nothing_moves_across_a_gap() {
+    // Away from frame 10 to 19, while the line is crossed.
+    let rows: Vec<_> = (0..30)
+        .filter(|frame| !(10..20).contains(frame))
+        .map(|frame| (1, frame, frame as f64 * 0.1 - 1.45, 0.0))
+        .collect();
+    let tracks = tracks(10.0, &rows);
+    let crossings = Crossings::of(&tracks, 1, gate(), ALWAYS);
+    assert_eq!((crossings.list.len(), crossings.across_gaps), (0, 1));
+    for (k, velocity) in speed::velocities(&tracks, 3).into_iter().enumerate() {
+        assert!((velocity.unwrap().x - 1.0).abs() < 1e-12, "{k}");
+    }
+    // A window that is wider than either part has nothing to look at.
+    let wide = speed::velocities(&tracks, 10);
+    assert!(wide.iter().all(Option::is_none));
+}
+
+#[test]
+fn who_lingers_on_a_line_passes_it_once() {
+    let way = [-1.0, 0.1, -0.1, 0.0, 0.2, -0.2, 0.3, 1.0];
+    let rows: Vec<_> = (0..8).map(|k| (1, k as i64, way[k], 0.0)).collect();
+    let crossings = Crossings::of(&tracks(10.0, &rows), 1, gate(), ALWAYS);
+    let directions: Vec<i8> = crossings.list.iter().map(|c| c.direction).collect();
+    // 0.0 is on the line, and that is its right side.
+    assert_eq!(directions, [1, -1, 1, -1, 1]);
+    assert_eq!(
+        (
+            crossings.passages(1).count(),
+            crossings.passages(-1).count()
+        ),
+        (1, 0)
+    );
+    assert_eq!(crossings.list.last().unwrap().net, 1);
+}
+
+#[test]
+fn where_lines_join_nobody_crosses_both() {
+    let rows = [
+        (1, 0, -1.0, 0.0),
+        (1, 1, 1.0, 0.0),
+        (2, 0, -1.0, 1.5),
+        (2, 1, 1.0, 1.5),
+    ];
+    let tracks = tracks(10.0, &rows);
+    let ids = |line| -> Vec<i64> {
+        let crossings = Crossings::of(&tracks, 1, line, ALWAYS);
+        crossings.list.iter().map(|c| c.id).collect()
+    };
+    assert!(ids(line([0.0, -1.0], [0.0, 0.0])).is_empty());
+    assert_eq!(ids(line([0.0, 0.0], [0.0, 1.0])), [1]);
+}
+
+#[test]
+fn a_region_has_the_density_and_speed_of_who_is_in_it() {
+    let rows: Vec<_> = (0..40)
+        .flat_map(|frame| {
+            let x = frame as f64 * 0.1;
+            [
+                (1, frame, x, 0.0),
+                (2, frame, x + 0.3, 0.0),
+                (3, frame, 50.0, 0.0),
+            ]
+        })
+        .collect();
+    let region = |x: [f64; 2]| Region {
+        min: vector(x[0], -1.0),
+        max: vector(x[1], 1.0),
+    };
+    let tracks = tracks(10.0, &rows);
+    let regions = vec![
+        region([1.0, 3.0]),
+        region([49.0, 51.0]),
+        region([90.0, 91.0]),
+    ];
+    let found = measured(&tracks, regions, Vec::new());
+    let [walking, standing, nobody] = found.diagrams.as_slice() else {
+        panic!("three regions");
+    };
+    assert!(nobody.frames.is_empty() && nobody.of_persons.is_empty());
+    for frame in &standing.frames {
+        assert_eq!(
+            (frame.people, frame.speed, frame.flow),
+            (1, Some(0.0), Some(0.0))
+        );
+        assert!((frame.density - 4.0 / std::f64::consts::PI).abs() < 1e-12);
+    }
+    for frame in &walking.frames {
+        let (speed, flow) = (frame.speed.unwrap(), frame.flow.unwrap());
+        assert!((speed - 1.0).abs() < 1e-12 && (flow - frame.density).abs() < 1e-12);
+    }
+    for diagram in &found.diagrams {
+        let count = |classes: &[sandbox::measure::Class]| -> u64 {
+            classes.iter().map(|class| class.density.count).sum()
+        };
+        let people: usize = diagram.frames.iter().map(|frame| frame.people).sum();
+        assert_eq!(count(&diagram.of_persons), people as u64);
+        assert_eq!(count(&diagram.of_frames), diagram.frames.len() as u64);
+        for (k, class) in diagram.of_persons.iter().enumerate() {
+            let within = k as f64 * CLASS..(k + 1) as f64 * CLASS;
+            assert!(class.density.count == 0 || within.contains(&class.density.mean));
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Whatever people do: N only grows, the net number is that of who has changed sides, and nobody who
+    /// walks on passes more than once.
+    #[test]
+    fn counts_add_up(steps in prop::collection::vec((0_i64..6, -1.0..1.0_f64), 60)) {
+        let mut x = [0.5; 6];
+        let mut rows: Vec<_> = (0..6).map(|id| (id, 0, 0.5, 0.0)).collect();
+        for (frame, &(who, dx)) in steps.iter().enumerate() {
+            x[who as usize] += dx;
+            rows.extend((0..6).map(|id| (id, frame as i64 + 1, x[id as usize], 0.0)));
+        }
+        let crossings = Crossings::of(&tracks(10.0, &rows), 1, gate(), ALWAYS);
+        let behind = x.iter().filter(|&&x| x < 0.0).count() as i64;
+        prop_assert_eq!(crossings.list.last().map_or(0, |last| last.net), -behind);
+        let counts = crossings.list.iter().map(|c| (c.forward, c.backward));
+        let pairs = counts.clone().zip(counts.skip(1));
+        for ((forward, backward), (next_forward, next_backward)) in pairs {
+            prop_assert!(forward <= next_forward && backward <= next_backward);
+        }
+        prop_assert!(crossings.list.iter().is_sorted_by(|a, b| a.time <= b.time));
+        prop_assert!(crossings.passages(-1).count() <= 6 && crossings.passages(1).count() == 0);
+    }
+}

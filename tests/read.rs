@@ -1,0 +1,274 @@
+//! Trajectories of other programs, as they are and as they should not be.
+#![cfg(feature = "trajectory")]
+
+mod common;
+
+use common::tracks::{file, read_as};
+use common::vector;
+use rusqlite::Connection;
+use sandbox::trajectory::read::{ReadOptions, Tracks, Unit, read};
+
+const PLAIN: ReadOptions = ReadOptions {
+    unit: None,
+    fps: None,
+};
+
+fn read_text(text: &str) -> Tracks {
+    read_as("crowd.txt", text, &PLAIN).unwrap()
+}
+
+/// Everybody in every frame: (frame, id, x, y).
+fn rows(tracks: &Tracks) -> Vec<(i64, i64, f64, f64)> {
+    let frames = 0..tracks.frames.len();
+    let rows = frames.flat_map(|k| tracks.rows(k).map(move |row| (k, row)));
+    rows.map(|(k, row)| {
+        let (p, id) = (
+            tracks.position[row],
+            tracks.ids[tracks.person[row] as usize],
+        );
+        (tracks.frames[k], id, p.x, p.y)
+    })
+    .collect()
+}
+
+#[test]
+fn text_is_read_with_every_header_that_is_about() {
+    let expected = [(3, 1, 1.5, -2.0), (3, 2, 0.25, 4.0), (4, 1, 1.75, -2.0)];
+    let lines = |separator: &str, factor: f64, rest: &str| {
+        let line = |id: i64, frame: i64, x: f64, y: f64| {
+            let cells = [id.to_string(), frame.to_string()];
+            let place = [x * factor, y * factor].map(|x| x.to_string());
+            format!("{}{rest}\n", [cells, place].concat().join(separator))
+        };
+        // In no order.
+        line(1, 4, 1.75, -2.0) + &line(2, 3, 0.25, 4.0) + &line(1, 3, 1.5, -2.0)
+    };
+    for (header, separator, factor, rest, fps) in [
+        (
+            "# framerate: 10.00\n# id frame x/m y/m z/m\n",
+            "\t",
+            1.0,
+            "\t0",
+            10.0,
+        ),
+        (
+            "#framerate: 16 fps\n#ID\tFR\tX\tY\tZ\n",
+            "  ",
+            1.0,
+            " 1.7",
+            16.0,
+        ),
+        (
+            "# framerate: 25\n# id frame x/cm y/cm z/cm\n",
+            " ",
+            100.0,
+            " 170",
+            25.0,
+        ),
+        (
+            "# Framerate: 12.5\n# x and y in cm\n\n",
+            " ",
+            100.0,
+            "",
+            12.5,
+        ),
+        ("# framerate 8\n", " ", 1.0, "", 8.0),
+        (
+            "# framerate: 8\r\nid frame x [m] y [m]\r\n",
+            " ",
+            1.0,
+            "\r",
+            8.0,
+        ),
+    ] {
+        let tracks = read_text(&(header.to_owned() + &lines(separator, factor, rest)));
+        assert_eq!(rows(&tracks), expected, "{header}");
+        assert_eq!(tracks.fps, fps, "{header}");
+    }
+}
+
+#[test]
+fn columns_are_taken_in_the_order_that_the_header_names() {
+    let tracks = read_text("# framerate: 5\n# frame y/m x/m id\n7 2 1 30\n8.0 3 1 30.0\n");
+    assert_eq!(rows(&tracks), [(7, 30, 1.0, 2.0), (8, 30, 1.0, 3.0)]);
+    assert_eq!(tracks.time(8), 1.6);
+}
+
+#[test]
+fn what_is_typed_wins_over_what_the_file_says_and_that_is_noted() {
+    let options = ReadOptions {
+        unit: Some(Unit::Centimetre),
+        fps: Some(20.0),
+    };
+    let text = "# framerate: 10\n# id frame x/m y/m\n1 0 100 50\n";
+    let tracks = read_as("a.txt", text, &options).unwrap();
+    assert_eq!((tracks.fps, tracks.position[0]), (20.0, vector(1.0, 0.5)));
+    assert_eq!(
+        tracks.notes,
+        [
+            "--fps 20 is taken, not the file's own 10",
+            "--unit cm is taken, not the file's own m"
+        ]
+    );
+}
+
+#[test]
+fn mistakes_are_named_with_their_line_and_the_fix() {
+    let head = "# framerate: 10\n# id frame x/m y/m\n";
+    for (name, text, expected) in [
+        ("a.txt", String::new(), "a.txt: there is nobody in it"),
+        ("a.txt", head.to_owned(), "a.txt: there is nobody in it"),
+        (
+            "a.txt",
+            "1 0 0 0\n".to_owned(),
+            "a.txt: it has no frame rate (a line like `# framerate: 25`); give --fps",
+        ),
+        (
+            "a.txt",
+            format!("{head}1 0 0 0\n1 1 nan 0\n"),
+            "a.txt:4: x is \"nan\", not a finite number",
+        ),
+        (
+            "a.txt",
+            format!("{head}1 0 0 inf\n"),
+            "a.txt:3: y is \"inf\", not a finite number",
+        ),
+        (
+            "a.txt",
+            format!("{head}1 0 0\n"),
+            "a.txt:3: y belongs in column 4, and there are only 3",
+        ),
+        (
+            "a.txt",
+            format!("{head}1.5 0 0 0\n"),
+            "a.txt:3: the id \"1.5\" is not a whole number",
+        ),
+        (
+            "a.txt",
+            format!("{head}1,0,0,0\n"),
+            "a.txt:3: the id \"1,0,0,0\" is not a whole number; columns are separated by blanks or tabs here, \
+             by commas in a .csv",
+        ),
+        (
+            "a.txt",
+            format!("{head}1 0 0 0\n2 0 1 1\n1 0 0 0.5\n"),
+            "a.txt:5: person 1 is in frame 0 already, by line 3; each may be there once: remove one",
+        ),
+        (
+            "a.txt",
+            "# framerate: 10\n# id frame x/mm y/mm\n1 0 0 0\n".to_owned(),
+            "a.txt:2: the unit \"mm\" is not known; m and cm are, or give --unit",
+        ),
+        (
+            "a.csv",
+            "a,b\n1,2\n".to_owned(),
+            "a.csv:1: the first line must name the columns id, frame, x and y",
+        ),
+        (
+            "a.csv",
+            "frame,time,id,pos_x,pos_y\n0,0,1,0,0\n1,0.1,1,zero,0\n".to_owned(),
+            "a.csv:3: x is \"zero\", not a finite number",
+        ),
+    ] {
+        assert_eq!(read_as(name, &text, &PLAIN).unwrap_err(), expected);
+    }
+    let missing = read("no/such.txt".as_ref(), &PLAIN)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        missing.starts_with("no/such.txt: cannot be read: "),
+        "{missing}"
+    );
+}
+
+#[test]
+fn gaps_and_empty_frames_and_odd_steps_are_noted() {
+    let tracks =
+        read_text("# framerate: 10\n# in m\n1 0 0 0\n1 1 0 0\n1 4 0 0\n1 5 0 0\n2 1 5 5\n");
+    assert_eq!(tracks.step, 1);
+    assert_eq!(
+        tracks.notes,
+        [
+            "1 gap(s) in which a person is missing, the longest 0.30 s; no motion is measured across",
+            "2 frame(s) have nobody in them; they count as empty"
+        ]
+    );
+    let tenth = read_text("# framerate: 50\n# in m\n1 10 0 0\n1 15 0 0\n1 20 0 0\n");
+    assert_eq!((tenth.step, tenth.span(), tenth.interval()), (5, 3, 0.1));
+    assert_eq!(tenth.notes, ["frames are numbered in steps of 5"]);
+}
+
+#[test]
+fn centimetres_without_a_unit_are_warned_of() {
+    let walk = |step: f64| -> String {
+        let lines = (0..20).map(|frame| format!("1 {frame} {} 0\n", step * f64::from(frame)));
+        "# framerate: 10\n".to_owned() + &lines.collect::<String>()
+    };
+    let metres = "no unit is given in the file (x/m or x/cm) or by --unit: metres are taken";
+    assert_eq!(read_text(&walk(0.13)).notes, [metres]);
+    assert_eq!(
+        read_text(&walk(13.0)).notes,
+        [
+            metres,
+            "half of all steps are faster than 10 m/s; are these centimetres? then give --unit cm"
+        ]
+    );
+}
+
+#[test]
+fn csv_is_read_by_the_names_of_its_columns() {
+    let text = "frame,time,id,group,pos_x,pos_y,mass\n0,0,4,all,1,2,0.9\n1,0.04,4,all,1.5,2,0.9\n";
+    let tracks = read_as("run.csv", text, &PLAIN).unwrap();
+    assert_eq!(rows(&tracks), [(0, 4, 1.0, 2.0), (1, 4, 1.5, 2.0)]);
+    assert_eq!((tracks.fps, &tracks.mass), (25.0, &vec![0.9; 2]));
+    assert!(tracks.notes.is_empty(), "{:?}", tracks.notes);
+}
+
+#[test]
+fn both_versions_of_jupedsims_format_are_read() {
+    let version_1 = "
+        CREATE TABLE trajectory_data (frame INTEGER, id INTEGER, pos_x REAL, pos_y REAL, ori_x REAL, ori_y REAL);
+        CREATE TABLE metadata (key TEXT, value TEXT);
+        CREATE TABLE geometry (wkt TEXT);
+        INSERT INTO metadata VALUES ('version', '1'), ('fps', '12.5');
+        INSERT INTO geometry VALUES ('GEOMETRYCOLLECTION (POLYGON ((0 0, 9 0, 9 9, 0 0)))');
+        INSERT INTO trajectory_data VALUES (1, 7, 2.5, 1.0, 1, 0), (0, 7, 2, 1, 1, 0);";
+    let version_2 = version_1
+        .replace("geometry (wkt", "geometry (hash INTEGER, wkt")
+        .replace("geometry VALUES (", "geometry VALUES (17, ");
+    for tables in [version_1, &version_2] {
+        let (_folder, path) = file("jps.sqlite", "");
+        let connection = Connection::open(&path).unwrap();
+        connection.execute_batch(tables).unwrap();
+        drop(connection);
+        let tracks = read(&path, &PLAIN).unwrap();
+        assert_eq!(rows(&tracks), [(0, 7, 2.0, 1.0), (1, 7, 2.5, 1.0)]);
+        assert_eq!((tracks.fps, tracks.walkable.len()), (12.5, 1));
+    }
+}
+
+#[test]
+fn a_database_without_trajectories_is_none() {
+    for (tables, expected) in [
+        (
+            "CREATE TABLE a (b)",
+            "it has no table trajectory_data: this is no trajectory of JuPedSim",
+        ),
+        (
+            "CREATE TABLE trajectory_data (frame, id, x, y)",
+            "its table trajectory_data has no column pos_x",
+        ),
+        (
+            "CREATE TABLE trajectory_data (frame, id, pos_x, pos_y);
+             INSERT INTO trajectory_data VALUES (0, 1, 2.0, NULL)",
+            "row 1 of trajectory_data: pos_y is not a finite number",
+        ),
+    ] {
+        let (_folder, path) = file("jps.db", "");
+        let connection = Connection::open(&path).unwrap();
+        connection.execute_batch(tables).unwrap();
+        drop(connection);
+        let error = read(&path, &PLAIN).unwrap_err().to_string();
+        assert_eq!(error, format!("{}: {expected}", path.display()));
+    }
+}
