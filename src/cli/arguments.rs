@@ -20,6 +20,10 @@ Examples:
   sandbox bench scaling --largest 100000
   sandbox list --settings";
 
+const SCHEMA_EXAMPLE: &str = "\
+Example: sandbox schema > scenario.schema.json
+Editors use it where a scenario has the key \"$schema\": \"scenario.schema.json\".";
+
 const BENCH_EXAMPLES: &str = "\
 Examples:
   sandbox bench scaling --largest 100000
@@ -83,9 +87,7 @@ pub enum Command {
     #[command(after_help = "Example: sandbox stress --quick")]
     Stress(StressOptions),
     /// Print the JSON Schema of scenario files, by which editors complete and check them
-    #[command(
-        after_help = "Example: sandbox schema > scenario.schema.json, and in a scenario \"$schema\": \"scenario.schema.json\""
-    )]
+    #[command(after_help = SCHEMA_EXAMPLE)]
     Schema,
     /// List the scenarios and profiles, or the settings that --set takes
     #[command(after_help = "Example: sandbox list --settings")]
