@@ -55,7 +55,13 @@ fn a_cell_is_the_run_that_its_settings_make() {
     let alone = [&["run", "room.json", "--seed", "6", "--json"], &set[..]].concat();
     let alone = json(folder.path(), &alone);
     // Everything that a run reports, but for how it was computed.
-    let how = ["threads", "ms_per_frame", "real_time_factor", "stages_ms"];
+    let how = [
+        "interrupted",
+        "threads",
+        "ms_per_frame",
+        "real_time_factor",
+        "stages_ms",
+    ];
     let keys = alone.as_object().unwrap().keys();
     let keys: Vec<&String> = keys.filter(|key| !how.contains(&key.as_str())).collect();
     assert!(keys.len() >= 12);

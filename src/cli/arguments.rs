@@ -23,6 +23,10 @@ Examples:
   sandbox bench scaling --largest 100000
   sandbox list --settings";
 
+const SCHEMA_EXAMPLE: &str = "\
+Example: sandbox schema > scenario.schema.json
+Editors use it where a scenario has the key \"$schema\": \"scenario.schema.json\".";
+
 /// Simulate, measure and inspect dense crowds (SPH crowds, van Toll et al. 2021).
 #[derive(Parser)]
 #[command(version, arg_required_else_help = true, after_help = EXAMPLES)]
@@ -78,9 +82,7 @@ pub enum Command {
     #[command(after_help = "Example: sandbox stress --quick")]
     Stress(stress::StressOptions),
     /// Print the JSON Schema of scenario files, by which editors complete and check them
-    #[command(
-        after_help = "Example: sandbox schema > scenario.schema.json, and in a scenario \"$schema\": \"scenario.schema.json\""
-    )]
+    #[command(after_help = SCHEMA_EXAMPLE)]
     Schema,
     /// Run a scenario over a grid or list of settings and over seeds: a table, on many threads or machines
     #[command(after_help = sweep::EXAMPLE)]

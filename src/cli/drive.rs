@@ -130,8 +130,8 @@ fn report_oddities(simulation: &Simulation) {
         let count = outcome.displaced.len();
         let (agent, obstacle) = outcome.displaced[0];
         talk(&format!(
-            "note: {count} agent(s) entered inside an obstacle or outside of the walkable area and were put at the \
-             nearest free point (the first: agent {agent}, obstacle {obstacle})"
+            "note: {count} agent(s) entered inside an obstacle or outside of the walkable area and were put \
+             at the nearest free point (the first: agent {agent}, obstacle {obstacle})"
         ));
     }
     if outcome.contained_moves > 0 {

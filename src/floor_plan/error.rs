@@ -45,8 +45,8 @@ pub enum FloorPlanError {
     Degrees(String),
     /// So small that it must be a mistake, metres.
     #[error(
-        "no person fits in: everything lies within {width} by {height} m. Coordinates are metres; if these are \
-         degrees, project them, to UTM for example"
+        "no person fits in: everything lies within {width} by {height} m. Coordinates are metres; if these \
+         are degrees, project them, to UTM for example"
     )]
     TooSmall {
         /// Along x, metres.
@@ -59,8 +59,8 @@ pub enum FloorPlanError {
     NoRoom,
     /// A point where lengths lose their digits.
     #[error(
-        "{}({x}, {y}) is out of range: x and y must be at least -1e6 and at most 1e6 m; move the plan near to \
-         the origin", at(.place)
+        "{}({x}, {y}) is out of range: x and y must be at least -1e6 and at most 1e6 m; move the plan \
+         near to the origin", at(.place)
     )]
     TooFar {
         /// Which feature or geometry.

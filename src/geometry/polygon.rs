@@ -38,7 +38,9 @@ pub enum PolygonError {
     )]
     Crossing(Vector, Vector),
     /// The hole's first point, metres.
-    #[error("the hole that begins at ({}, {}) does not lie in its outline, or lies in another hole", .0.x, .0.y)]
+    #[error(
+        "the hole that begins at ({}, {}) does not lie in its outline, or lies in another hole", .0.x, .0.y
+    )]
     StrayHole(Vector),
     /// The first point of one of them, metres.
     #[error("the area that begins at ({}, {}) overlaps another; unite them", .0.x, .0.y)]

@@ -1,0 +1,70 @@
+//! `--geometry` and `sandbox schema` as a user runs them.
+#![cfg(feature = "cli")]
+
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn sandbox(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_sandbox"))
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn a_floor_plan_replaces_the_walls_of_a_shipped_scenario() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = folder.path().join("hall.wkt");
+    // Without a doorway nobody gets near to the goal, 2 m outside.
+    std::fs::write(&plan, "POLYGON ((0 0, 20 0, 20 20, 0 20, 0 0))").unwrap();
+    let plan = plan.to_str().unwrap();
+    let output = sandbox(&["evacuation", "--geometry", plan, "--until", "20", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["metrics"]["evacuated"], 0);
+    let inspect = ["inspect", "evacuation", "--agent", "0", "--json"];
+    let open = sandbox(&[&inspect[..], &["--set", "obstacles=[]"]].concat());
+    let walled = sandbox(&[&inspect[..], &["--geometry", plan]].concat());
+    let walls = |output: Output| {
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        report["agents"][0]["walls"].as_array().unwrap().len()
+    };
+    assert_eq!(
+        (walls(open), walls(walled)),
+        (0, 2),
+        "in the corner of the hall"
+    );
+}
+
+#[test]
+fn a_floor_plan_that_is_none_is_refused_with_its_name_and_exit_code_2() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = folder.path().join("hall.wkt");
+    std::fs::write(&plan, "POLYGON ((8.41 49.01, 8.42 49.01, 8.42 49.02))").unwrap();
+    let plan = plan.to_str().unwrap();
+    let output = sandbox(&["evacuation", "--geometry", plan]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(output.stdout.is_empty());
+    let start = format!("error: --geometry {plan}: no person fits in");
+    assert!(said(&output).starts_with(&start), "{}", said(&output));
+    let missing = sandbox(&["evacuation", "--geometry", "no/such.geojson"]);
+    assert_eq!(missing.status.code(), Some(2));
+    assert!(said(&missing).contains("--geometry no/such.geojson: cannot be read"));
+}
+
+#[test]
+fn the_schema_is_one_json_object_on_stdout() {
+    let output = sandbox(&["schema"]);
+    assert_eq!(output.status.code(), Some(0));
+    let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(printed, sandbox::scenario::schema());
+    assert_eq!(
+        printed["$schema"],
+        "https://json-schema.org/draft/2020-12/schema"
+    );
+}
