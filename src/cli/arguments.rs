@@ -6,6 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 
+use super::values::{every_frames, id, seed};
 use super::{accuracy, bench, reproduce};
 use crate::scenario::{Preset, SHIPPED};
 
@@ -113,7 +114,7 @@ pub struct SceneOptions {
     #[arg(long, value_name = "NAME")]
     pub profile: Option<String>,
     /// Seed of all random numbers
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = seed)]
     pub seed: Option<u64>,
     /// Numerics: the paper's, cheaper ones, or nearer to the model's own limit (see docs/accuracy.md)
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Preset::ALL.map(|(name, _)| name)))]
@@ -164,7 +165,7 @@ pub struct ResumeOptions {
 #[derive(Args)]
 pub struct OutputOptions {
     /// Stop at this time, seconds [default: the scenario's]
-    #[arg(long, value_name = "SECS", value_parser = seconds)]
+    #[arg(long, value_name = "SECS", allow_negative_numbers = true, value_parser = seconds)]
     pub until: Option<f64>,
     #[command(flatten)]
     pub record: RecordOptions,
@@ -192,10 +193,10 @@ pub struct RecordOptions {
     #[arg(long, value_name = "FILE.rrd")]
     pub save: Option<PathBuf>,
     /// Record every so many frames
-    #[arg(long, value_name = "FRAMES", default_value_t = 5, requires = "save", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "FRAMES", default_value_t = 5, requires = "save", value_parser = every_frames)]
     pub record_every: u64,
     /// Record from this time on, seconds
-    #[arg(long, value_name = "SECS", default_value_t = 0.0, requires = "save", value_parser = seconds)]
+    #[arg(long, value_name = "SECS", default_value_t = 0.0, requires = "save", allow_negative_numbers = true, value_parser = seconds)]
     pub record_from: f64,
     /// Lay these agents open in the recording: ids, all or none [default: the scenario's choice]
     #[arg(
@@ -234,13 +235,13 @@ pub struct InspectOptions {
     #[command(flatten)]
     pub scene: SceneOptions,
     /// The agent's id; may be repeated
-    #[arg(long, value_name = "ID", required_unless_present = "all")]
+    #[arg(long, value_name = "ID", required_unless_present = "all", value_parser = id)]
     pub agent: Vec<u32>,
     /// Inspect every agent
     #[arg(long, conflicts_with = "agent")]
     pub all: bool,
     /// The moment, seconds; 0 is the scenario's start, nobody moved
-    #[arg(long, value_name = "SECS", default_value_t = 0.0, value_parser = seconds)]
+    #[arg(long, value_name = "SECS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = seconds)]
     pub at: f64,
     /// Write the same as a recording for the Rerun viewer
     #[arg(long, value_name = "FILE.rrd")]

@@ -5,8 +5,10 @@ use std::collections::BTreeSet;
 use serde_json::Value;
 
 use super::crowd::{Crowd, MOST_NUMBERED};
+use super::crowding;
 use super::error::{Problem, Under, in_plain_words};
 use super::file::{self, File, Object, ProfileChoice, TimeStep};
+use super::need::Need;
 use super::range::{COARSE_EVERY, MAX_SPEED, PREFERRED_SPEED, Range, TIME, TIME_STEP};
 use super::range::{point, region};
 use super::{Scenario, Stop, View, parameters, preset, profiles};
@@ -29,6 +31,19 @@ const GOAL_SCALE: Range = Range::at_least(0.0, 1e9);
 /// Times that something is divided by, seconds.
 const UNTIL: Range = Range::above(0.0, 1e7);
 
+/// Corners of one obstacle: to find edges that cross, all that are near each other are compared.
+const MOST_CORNERS: usize = 20_000;
+/// Walls in all.
+const MOST_WALLS: u64 = 1_000_000;
+
+/// How large a run of `document` becomes; nothing else in it is checked but names and types.
+pub(super) fn need(document: &Value, _: &str) -> Result<Need, Problem> {
+    let document = preset::fill(document);
+    let file = read(&document)?;
+    let duration_secs = duration(&file)?;
+    Need::of(&file, &first_clock(&file)?, duration_secs)
+}
+
 /// Checks `document`; a scenario without a name gets `fallback_name`.
 pub(super) fn scenario(document: &Value, fallback_name: &str) -> Result<Scenario, Problem> {
     let document = preset::fill(document);
@@ -40,15 +55,16 @@ pub(super) fn scenario(document: &Value, fallback_name: &str) -> Result<Scenario
     if name.is_empty() {
         return Err(Problem::new("name", "must not be empty"));
     }
-    let duration_secs = file.duration_secs.unwrap_or(DEFAULT_DURATION);
-    let duration_secs = TIME.check("duration_secs", duration_secs)?;
+    let duration_secs = duration(&file)?;
     let mut scene = empty_scene(&file)?;
     parameters::check(&file.parameters.0).under("parameters")?;
     let choice = file.profile.clone();
     let choice = choice.unwrap_or_else(|| ProfileChoice::Named(DEFAULT_PROFILE.to_owned()));
     let blend = profiles::blend(&choice, &file.parameters.0).under("profile")?;
     file.goal.map(|goal| point("goal", goal)).transpose()?;
-    let entering = Crowd::new(&file, &blend, &mut scene, duration_secs).enter()?;
+    let need = Need::of(&file, &scene.clock, duration_secs)?;
+    Crowd::new(&file, &blend, &mut scene).enter()?;
+    crowding::check(&file, &scene, duration_secs)?;
     scene.pushes = pushes(&file.events)?;
     if file.time_step_secs == Some(TimeStep::Auto) {
         scene.clock = automatic_clock(&file, &scene)?;
@@ -62,8 +78,9 @@ pub(super) fn scenario(document: &Value, fallback_name: &str) -> Result<Scenario
         view: view(file.view.as_ref(), &scene).under("view")?,
         debug_agents: match &file.debug_agents {
             Some(ids) => without_repetition(ids)?,
-            None => spread(entering),
+            None => spread(need.entering),
         },
+        entering: need.entering,
         profile_name: blend.name,
         document,
         scene,
@@ -80,17 +97,34 @@ fn read(document: &Value) -> Result<File, Problem> {
     })
 }
 
+fn duration(file: &File) -> Result<f64, Problem> {
+    let duration_secs = file.duration_secs.unwrap_or(DEFAULT_DURATION);
+    TIME.check("duration_secs", duration_secs)
+}
+
+/// The clock, the paper's where the step is to be found.
+fn first_clock(file: &File) -> Result<Clock, Problem> {
+    TIME_STEP.check_given("longest_step_secs", file.longest_step_secs)?;
+    match file.time_step_secs {
+        Some(TimeStep::Given(step)) => clock(file, step),
+        Some(TimeStep::Auto) | None => clock(file, PAPER_TIME_STEP),
+    }
+}
+
 /// Everything but the people.
 fn empty_scene(file: &File) -> Result<Scene, Problem> {
     let paper = Scene::default();
-    let clock = match file.time_step_secs {
-        Some(TimeStep::Given(step)) => clock(file, step)?,
-        Some(TimeStep::Auto) | None => clock(file, PAPER_TIME_STEP)?,
-    };
-    TIME_STEP.check_given("longest_step_secs", file.longest_step_secs)?;
+    let clock = first_clock(file)?;
     let preferred_speed = file.preferred_speed.unwrap_or(paper.preferred_speed);
     let max_speed = file.max_speed.unwrap_or(paper.max_speed);
     let seed = file.seed.unwrap_or(paper.seed);
+    let corners: u64 = file.obstacles.iter().map(|c| c.len() as u64).sum();
+    if corners > MOST_WALLS {
+        let reason = format!(
+            "{corners} corners in all; at most {MOST_WALLS} may be: leave out corners that hardly matter"
+        );
+        return Err(Problem::new("obstacles", reason));
+    }
     let mut obstacles = Vec::with_capacity(file.obstacles.len());
     for (k, corners) in file.obstacles.iter().enumerate() {
         obstacles.push(obstacle(corners).under(&format!("obstacles[{k}]"))?);
@@ -130,6 +164,13 @@ fn automatic_clock(file: &File, scene: &Scene) -> Result<Clock, Problem> {
 }
 
 fn obstacle(corners: &[[f64; 2]]) -> Result<Polygon, Problem> {
+    if corners.len() > MOST_CORNERS {
+        let reason = format!(
+            "{} corners; at most {MOST_CORNERS} may be: make it several obstacles",
+            corners.len()
+        );
+        return Err(Problem::new("", reason));
+    }
     let mut points = Vec::with_capacity(corners.len());
     for (k, &corner) in corners.iter().enumerate() {
         points.push(point(&format!("[{k}]"), corner)?);
@@ -139,10 +180,7 @@ fn obstacle(corners: &[[f64; 2]]) -> Result<Polygon, Problem> {
 
 fn pushes(events: &[Object<file::Event>]) -> Result<Vec<Push>, Problem> {
     if events.len() > MOST_NUMBERED {
-        let reason = format!(
-            "{} events; at most {MOST_NUMBERED} are possible",
-            events.len()
-        );
+        let reason = format!("{} events; at most {MOST_NUMBERED} may be", events.len());
         return Err(Problem::new("events", reason));
     }
     let numbered = events.iter().enumerate();
@@ -180,7 +218,7 @@ fn measurements(given: &[file::Measurement]) -> Result<Vec<Measurement>, Problem
         let measurement = measurement(given).under(&place)?;
         for name in measurement.names() {
             if names.contains(&name) {
-                let reason = format!("`{name}` is measured already");
+                let reason = format!("`{name}` is measured already; remove one");
                 return Err(Problem::new(place, reason));
             }
             names.insert(name);
@@ -228,7 +266,10 @@ fn view(given: Option<&Object<file::View>>, scene: &Scene) -> Result<View, Probl
     };
     let region = region("region", given.region)?;
     if region.min.x == region.max.x || region.min.y == region.max.y {
-        return Err(Problem::new("region", "encloses no area"));
+        return Err(Problem::new(
+            "region",
+            "encloses no area: its corners must differ in x and in y",
+        ));
     }
     Ok(View {
         region,
@@ -272,7 +313,7 @@ fn without_repetition(ids: &[u32]) -> Result<Vec<u32>, Problem> {
     let mut seen = BTreeSet::new();
     for (k, id) in ids.iter().enumerate() {
         if !seen.insert(id) {
-            let reason = format!("agent {id} is named twice");
+            let reason = format!("agent {id} is named twice; remove one");
             return Err(Problem::new(format!("debug_agents[{k}]"), reason));
         }
     }
