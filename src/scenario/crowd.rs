@@ -6,7 +6,7 @@ use super::error::{Problem, Under};
 use super::file::{self, Behaviour, File, Object, ProfileChoice};
 use super::parameters::DENSITY;
 use super::profiles;
-use super::range::{self, COORDINATE, Range, TIME, point};
+use super::range::{self, COORDINATE, Range, point};
 use crate::agents::NewAgent;
 use crate::placement::Grid;
 use crate::profile::Blend;
@@ -25,8 +25,6 @@ const MASS: Range = Range::at_least(1e-6, 1e6);
 /// Removal radius and jitter, metres.
 const DISTANCE: Range = Range::above(0.0, 1e6);
 const JITTER: Range = Range::at_least(0.0, 1e6);
-/// Time between entries, seconds.
-const EVERY: Range = Range::above(0.0, 1e7);
 /// Initial speeds, m/s.
 const VELOCITY: Range = Range::at_least(-100.0, 100.0);
 
@@ -113,8 +111,8 @@ impl<'a> Crowd<'a> {
             grid,
             group: self.group(name, &given.grid().behaviour())?,
             goal,
-            start: TIME.check("start_secs", given.start_secs)?,
-            every: EVERY.check("every_secs", given.every_secs)?,
+            start: given.start_secs,
+            every: given.every_secs,
             times: given.times,
         };
         self.scene.sources.push(source);

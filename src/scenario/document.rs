@@ -108,7 +108,7 @@ impl<'de> Visitor<'de> for DocumentVisitor {
         let number = Number::from_f64(value);
         number
             .map(Value::Number)
-            .ok_or_else(|| E::custom("number out of range: the largest is 1.7e308"))
+            .ok_or_else(|| E::custom("number out of range"))
     }
 
     fn visit_str<E>(self, value: &str) -> Result<Value, E> {

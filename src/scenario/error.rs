@@ -139,11 +139,14 @@ pub(super) fn in_plain_words(said: &str) -> String {
     let plain = WORDS.iter().fold(said.to_owned(), |said, (rust, plain)| {
         said.replacen(rust, plain, 1)
     });
-    plain + &near
+    if near.is_empty() {
+        return plain;
+    }
+    plain.replacen(", expected", &format!("{near} Expected"), 1)
 }
 
 /// What serde and serde_json say, and what people say.
-const WORDS: [(&str, &str); 20] = [
+const WORDS: [(&str, &str); 22] = [
     ("expected f64", "expected a number"),
     ("expected u32", "expected a whole number from 0 to 2^32 - 1"),
     ("expected u64", "expected a whole number from 0 to 2^64 - 1"),

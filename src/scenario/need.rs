@@ -1,11 +1,15 @@
 //! How many people enter, and how much memory that takes, told before anybody is placed.
 
-use super::error::Problem;
+use super::error::{Problem, Under};
 use super::file::{File, Object, Source, TimeStep};
+use super::range::{Range, TIME};
 use crate::clock::{Clock, PAPER_COARSE_STEP};
 
 /// So many agents may enter in one run.
 pub(super) const MOST_AGENTS: u64 = 10_000_000;
+
+/// Time between entries, seconds.
+const EVERY: Range = Range::above(0.0, 1e7);
 
 /// The program itself with its threads, bytes.
 const PROGRAM: u64 = 12 << 20;
@@ -54,7 +58,7 @@ impl Need {
         products.into_iter().fold(PROGRAM, u64::saturating_add)
     }
 
-    /// Counts what `file` asks for; `clock` is its clock, if it gives one.
+    /// Counts what `file` asks for, and checks what that depends on; `clock` is its clock, if it gives one.
     pub(super) fn of(file: &File, clock: &Clock, duration_secs: f64) -> Result<Self, Problem> {
         let corners = file.obstacles.iter().map(|corners| corners.len() as u64);
         let mut need = Self {
@@ -88,6 +92,9 @@ impl Need {
         }
         let last_entry = last_entry(file, clock, duration_secs);
         for (k, Object(source)) in file.sources.iter().enumerate() {
+            let place = format!("sources[{k}]");
+            TIME.check("start_secs", source.start_secs).under(&place)?;
+            EVERY.check("every_secs", source.every_secs).under(&place)?;
             let agents = u64::from(source.columns) * u64::from(source.rows);
             let agents = agents.saturating_mul(entries(source, last_entry));
             count(&mut need, "sources", k, agents)?;
@@ -111,7 +118,7 @@ pub(super) fn last_entry(file: &File, clock: &Clock, duration_secs: f64) -> f64 
 
 /// How often a source lets people in.
 pub(super) fn entries(source: &Source, last_entry: f64) -> u64 {
-    // What is negative, or no number because the source itself is refused later, is none.
+    // What is negative is none.
     let entries = ((last_entry - source.start_secs) / source.every_secs).floor() + 1.0;
     (entries as u64).min(source.times.map_or(u64::MAX, u64::from))
 }
