@@ -12,6 +12,7 @@ mod wall_checks;
 use bounded::cases;
 use proptest::prelude::*;
 use proptest::sample::select;
+use sandbox::boundary::WallMethod;
 use sandbox::geometry::Walls;
 use sandbox::math::Vector;
 use sandbox::scenario::Scenario;
@@ -122,6 +123,34 @@ fn any_people_among_any_obstacles_move_or_are_refused() {
             (1 << 20) + 150 * text.len() as u64 + 2_000 * people + 8 * people.pow(2)
         },
     );
+}
+
+#[test]
+fn on_the_corner_of_a_wall_no_more_than_its_quarter_is_hidden() {
+    // The distance of this corner from one of its walls is −0, and what that wall hid was 1.5 discs: found
+    // by fuzzing.
+    let corner = Vector::new(-10.0, -6.875);
+    let points = vec![
+        Vector::new(9.125, -7.9375),
+        corner,
+        Vector::new(-4.0, 3.3125),
+    ];
+    let walls = Walls::new(wall_checks::obstacles(vec![points]));
+    let (all, h) = ([0, 1, 2], 0.01);
+    let quarter = 0.25 * std::f64::consts::PI * h * h;
+    for method in [
+        WallMethod::Representative,
+        WallMethod::Exact,
+        WallMethod::Union,
+    ] {
+        method.shares(&walls, &all, corner, h, |share| {
+            assert!(
+                share.hidden_area <= quarter * (1.0 + 1e-9),
+                "{method:?}: {share:?}"
+            );
+        });
+    }
+    wall_checks::check(&walls, corner, Vector::new(0.0, 0.0), h);
 }
 
 fn zigzag(corners: usize) -> Vec<[f64; 2]> {

@@ -30,7 +30,7 @@ pub struct HiddenRegion {
 impl HiddenRegion {
     /// What `wall` hides from an agent at `r_i`: `None` behind the wall or out of reach.
     pub fn behind(wall: &Wall, r_i: Vector, support_radius: f64) -> Option<Self> {
-        let distance = wall.signed_distance(r_i);
+        let distance = wall.signed_distance(r_i) + 0.0; // never −0, whose angles are turned by π
         if !(0.0..support_radius).contains(&distance) {
             return None;
         }

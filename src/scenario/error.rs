@@ -146,7 +146,7 @@ pub(super) fn in_plain_words(said: &str) -> String {
 }
 
 /// What serde and serde_json say, and what people say.
-const WORDS: [(&str, &str); 22] = [
+const WORDS: [(&str, &str); 20] = [
     ("expected f64", "expected a number"),
     ("expected u32", "expected a whole number from 0 to 2^32 - 1"),
     ("expected u64", "expected a whole number from 0 to 2^64 - 1"),
