@@ -153,6 +153,31 @@ fn on_the_corner_of_a_wall_no_more_than_its_quarter_is_hidden() {
     wall_checks::check(&walls, corner, Vector::new(0.0, 0.0), h);
 }
 
+#[test]
+fn on_a_wall_that_another_crosses_no_more_than_a_disc_is_hidden() {
+    // At distance 0 every part of the wall was all of it: found by fuzzing.
+    let [wedge, bar] = [
+        [
+            [0.5, 0.5],
+            [-9.0, -10.0],
+            [-4.8125, -2.6875],
+            [-5.0, -4.8125],
+        ],
+        [
+            [-6.0, -2.6875],
+            [-5.0, 0.5],
+            [3.375, 3.375],
+            [3.375, -2.6875],
+        ],
+    ];
+    let walls = Walls::new(wall_checks::obstacles(
+        [wedge, bar].map(|points| vectors(points.to_vec())).to_vec(),
+    ));
+    for h in [0.01, 1.0, 5.0] {
+        wall_checks::check(&walls, Vector::new(-4.75, -2.6875), Vector::zeros(), h);
+    }
+}
+
 fn zigzag(corners: usize) -> Vec<[f64; 2]> {
     let upper = (0..corners / 2).map(|k| [k as f64, (k % 2) as f64 * 5_000.0]);
     let lower = (0..corners / 2)
