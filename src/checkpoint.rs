@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::metrics::Metrics;
-use crate::scenario::{Scenario, ScenarioError, Setting};
+use crate::scenario::{Need, Scenario, ScenarioError, Setting};
 use crate::simulation::{Simulation, State, StateError};
 
 /// How every file begins.
@@ -96,6 +96,14 @@ impl Checkpoint {
     /// Was it written by this very engine? Another one goes on, but perhaps not to the same bits.
     pub fn is_of_this_engine(&self) -> bool {
         self.engine == ENGINE
+    }
+
+    /// How large its run becomes with some more settings.
+    ///
+    /// # Errors
+    /// A setting makes no sense.
+    pub fn need(&self, settings: &[Setting]) -> Result<Need, ScenarioError> {
+        Need::parse(&self.document, &self.file, settings)
     }
 
     /// The scenario with some more settings.

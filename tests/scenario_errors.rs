@@ -55,6 +55,7 @@ fn every_broken_value_is_reported_with_its_place_and_reason() {
     assert_eq!(message(WHOLE, &[]), "no error");
     let cases: BTreeMap<String, Vec<Broken>> =
         serde_json::from_str(include_str!("data/broken_scenarios.json")).unwrap();
+    assert!(cases.values().map(Vec::len).sum::<usize>() >= 60);
     for Broken {
         at,
         put,
@@ -68,26 +69,29 @@ fn every_broken_value_is_reported_with_its_place_and_reason() {
 
 /// A whole text, and the message.
 const BROKEN_TEXTS: &[[&str; 2]] = &[
-    ["", "f.json: line 1, column 0: EOF while parsing a value"],
+    ["", "f.json: line 1, column 0: the text ends within a value"],
     [
         "{\"seed\": 1,}",
-        "f.json: line 1, column 12: trailing comma",
+        "f.json: line 1, column 12: a comma before a closing bracket; remove it",
     ],
     [
         "{\n  \"duration_secs\": 1e999\n}",
-        "f.json: line 2, column 24: number out of range",
+        "f.json: line 2, column 24: number out of range: the largest is 1.7e308",
     ],
     [
         "{\"seed\": NaN}",
-        "f.json: line 1, column 10: expected value",
+        "f.json: line 1, column 10: expected a value: a number, text in quotes, true, false, null, a list or an object",
     ],
     [
         "{\"seed\": 1, \"seed\": 2}",
-        "f.json: line 1, column 18: key `seed` is given twice",
+        "f.json: line 1, column 18: key `seed` is given twice; remove one",
     ],
-    ["[]", "f.json: invalid type: sequence, expected an object"],
+    ["[]", "f.json: invalid type: a list, expected an object"],
     ["null", "f.json: invalid type: null, expected an object"],
-    ["{} {}", "f.json: line 1, column 4: trailing characters"],
+    [
+        "{} {}",
+        "f.json: line 1, column 4: more text after the end of the scenario; remove it",
+    ],
 ];
 
 #[test]
@@ -105,11 +109,11 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
     ],
     [
         "viscosity=much",
-        r#"--set viscosity=much: invalid type: string "much", expected a number"#,
+        r#"--set viscosity=much: invalid type: text "much", expected a number"#,
     ],
     [
         "viscosity=1e999",
-        r#"--set viscosity=1e999: invalid type: string "1e999", expected a number"#,
+        r#"--set viscosity=1e999: invalid type: text "1e999", expected a number"#,
     ],
     [
         "viscocity=1",
@@ -118,7 +122,7 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
     ["viscosity", "a setting is written key=value"],
     [
         "seed=x",
-        r#"--set seed=x: invalid type: string "x", expected a whole number from 0 to 2^64 - 1"#,
+        r#"--set seed=x: invalid type: text "x", expected a whole number from 0 to 2^64 - 1"#,
     ],
     [
         "profile=fs",
@@ -130,7 +134,7 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
     ],
     [
         "rest_density_min=6",
-        "f.json with --set rest_density_min=6: profile: rest_density_min 6 is above rest_density_max 5",
+        "f.json with --set rest_density_min=6: profile: rest_density_min 6 is above rest_density_max 5; give both",
     ],
     [
         "sources.0.rows=0",
@@ -142,7 +146,7 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
     ],
     [
         "sources.0.rwos=5",
-        "--set sources.0.rwos=5: unknown field `rwos`, expected one of `name`, `min`, `max`, `columns`, `rows`, `jitter`, `goal`, `goal_offset`, `profile`, `remove_within`, `counted`, `start_secs`, `every_secs`, `times`; did you mean `rows`?",
+        "--set sources.0.rwos=5: unknown key `rwos`; did you mean `rows`? Expected one of `name`, `min`, `max`, `columns`, `rows`, `jitter`, `goal`, `goal_offset`, `profile`, `remove_within`, `counted`, `start_secs`, `every_secs`, `times`",
     ],
     [
         "profile.base=sf",
@@ -150,7 +154,7 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
     ],
     [
         "goal=[1]",
-        "--set goal=[1]: invalid length 1, expected an array of length 2",
+        "--set goal=[1]: invalid length 1, expected a list of length 2",
     ],
     ["name=", "--set name=: must not be empty"],
 ];

@@ -50,6 +50,20 @@ impl Machine {
     }
 }
 
+/// Main memory that this process may use, bytes: the machine's, or less where its control group has a
+/// limit; `None` where the system does not say.
+pub fn main_memory() -> Option<u64> {
+    let mut system = System::new();
+    system.refresh_memory();
+    let limit = system.cgroup_limits().map(|limits| limits.total_memory);
+    let memory = [Some(system.total_memory()), limit];
+    memory
+        .into_iter()
+        .flatten()
+        .filter(|&bytes| bytes > 0)
+        .min()
+}
+
 impl fmt::Display for Machine {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let gibibytes = self.memory_bytes as f64 / f64::from(1 << 30);

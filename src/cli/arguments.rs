@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{ArgGroup, Args, Parser, Subcommand};
 use clap_complete::Shell;
 
-use super::values::{frame_rate, positive_seconds, seconds, threads};
+use super::values::{every_frames, frame_rate, id, positive_seconds, seconds, seed, threads};
 use super::{accuracy, bench, measure, reproduce, stress, sweep};
 use crate::scenario::{Preset, SHIPPED};
 
@@ -123,7 +123,7 @@ pub struct SceneOptions {
     #[arg(long, value_name = "NAME")]
     pub profile: Option<String>,
     /// Seed of all random numbers
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = seed)]
     pub seed: Option<u64>,
     /// Numerics: the paper's, cheaper ones, or nearer to the model's own limit (see docs/accuracy.md)
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Preset::ALL.map(|(name, _)| name)))]
@@ -177,7 +177,7 @@ pub struct ResumeOptions {
 #[derive(Args)]
 pub struct OutputOptions {
     /// Stop at this time, seconds [default: the scenario's]
-    #[arg(long, value_name = "SECS", value_parser = seconds)]
+    #[arg(long, value_name = "SECS", allow_negative_numbers = true, value_parser = seconds)]
     pub until: Option<f64>,
     #[command(flatten)]
     pub record: RecordOptions,
@@ -212,10 +212,10 @@ pub struct RecordOptions {
     #[arg(long, value_name = "URL", conflicts_with = "spawn")]
     pub connect: Option<String>,
     /// Record every so many frames
-    #[arg(long, value_name = "FRAMES", default_value_t = 5, requires = "record", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "FRAMES", default_value_t = 5, requires = "record", value_parser = every_frames)]
     pub record_every: u64,
     /// Record from this time on, seconds
-    #[arg(long, value_name = "SECS", default_value_t = 0.0, requires = "record", value_parser = seconds)]
+    #[arg(long, value_name = "SECS", default_value_t = 0.0, requires = "record", allow_negative_numbers = true, value_parser = seconds)]
     pub record_from: f64,
     /// Lay these agents open in the recording: ids, all or none [default: the scenario's choice]
     #[arg(
@@ -254,13 +254,13 @@ pub struct InspectOptions {
     #[command(flatten)]
     pub scene: SceneOptions,
     /// The agent's id; may be repeated
-    #[arg(long, value_name = "ID", required_unless_present = "all")]
+    #[arg(long, value_name = "ID", required_unless_present = "all", value_parser = id)]
     pub agent: Vec<u32>,
     /// Inspect every agent
     #[arg(long, conflicts_with = "agent")]
     pub all: bool,
     /// The moment, seconds; 0 is the scenario's start, nobody moved
-    #[arg(long, value_name = "SECS", default_value_t = 0.0, value_parser = seconds)]
+    #[arg(long, value_name = "SECS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = seconds)]
     pub at: f64,
     /// Write the same as a recording for the Rerun viewer
     #[arg(long, value_name = "FILE.rrd")]

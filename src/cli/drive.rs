@@ -2,13 +2,15 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::arguments::{OutputOptions, ProgramOptions, ResumeOptions, RunOptions, Source};
+use super::arguments::{
+    OutputOptions, ProgramOptions, RecordOptions, ResumeOptions, RunOptions, Source,
+};
 use super::checkpoint::Checkpoints;
 use super::interrupt::Interrupt;
-use super::output::Output;
+use super::output::{Output, laid_open};
 use super::report::Report;
 use super::trajectory::{self, Trajectories};
-use super::{Failure, say, scenario, setting, talk, use_threads};
+use super::{Failure, memory, say, scenario, setting, talk, use_threads};
 use crate::checkpoint::Checkpoint;
 use crate::drive::{Then, drive, unless_over};
 use crate::metrics::Metrics;
@@ -19,7 +21,9 @@ use crate::stability::{FITTED, Mode, Scheme};
 
 /// `sandbox evacuation|crossing|concert|plaza|run`.
 pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
-    let scenario = scenario(source, &options.scene, options.output.until)?;
+    let writing = memory::of_writing(&options.output);
+    let until = options.output.until.map(|secs| ("--until", secs));
+    let scenario = scenario(source, &options.scene, until, writing)?;
     use_threads(options.scene.program.threads)?;
     warn_of_the_step(&scenario.scene);
     let mut simulation = Simulation::new(scenario.scene.clone())?;
@@ -48,6 +52,9 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
         setting(&text).map(|setting| setting.typed_as(format!("--until {secs}")))
     });
     let until: Option<Setting> = until.transpose()?;
+    let file = options.file.display().to_string();
+    let need = checkpoint.need(until.as_slice())?;
+    memory::check(&file, &need, memory::of_writing(&options.output))?;
     let scenario = checkpoint.scenario(until.as_slice())?;
     use_threads(options.program.threads)?;
     let (simulation, metrics) = checkpoint.resume(&scenario)?;
@@ -97,6 +104,7 @@ fn go_on(
     let saved = output.finish().and(trajectories.finish());
     driven.map_err(|failure| failure.laid_open(&mut simulation))?;
     report_oddities(&simulation);
+    report_absent(&options.record, &simulation);
     let report = Report::new(scenario, &simulation, &metrics, interrupted.is_some());
     say(report.render(program.json))?;
     saved?;
@@ -152,6 +160,23 @@ fn report_oddities(simulation: &Simulation) {
         if event.kind == EventKind::PushBegan(0) {
             talk(&format!("note: nobody stood where {:?} began", event.name));
         }
+    }
+}
+
+/// Names agents that were to be laid open and have not entered.
+fn report_absent(record: &RecordOptions, simulation: &Simulation) {
+    let entered = simulation.frame().agents.entered();
+    let asked = laid_open(record).ok().flatten().unwrap_or_default();
+    let absent: Vec<String> = asked
+        .iter()
+        .filter(|&&id| id >= entered)
+        .map(u32::to_string)
+        .collect();
+    if !absent.is_empty() {
+        talk(&format!(
+            "note: --debug-agents: {} never entered: only {entered} agents did, with ids from 0",
+            absent.join(", ")
+        ));
     }
 }
 

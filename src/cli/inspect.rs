@@ -5,13 +5,18 @@ use serde_json::json;
 use super::arguments::{InspectOptions, Source};
 use super::drive::Progress;
 use super::output;
-use super::{Failure, say, scenario, use_threads};
+use super::{Failure, say, scenario as read, use_threads};
 use crate::breakdown::Breakdown;
 use crate::pairs::Precision;
 use crate::simulation::Simulation;
 
 pub fn run(options: &InspectOptions) -> Result<(), Failure> {
-    let scenario = scenario(&Source::named(&options.scenario), &options.scene, None)?;
+    let source = Source::named(&options.scenario);
+    let mut scenario = read(&source, &options.scene, None, 0)?;
+    if options.at > scenario.duration_secs {
+        // Sources go on until then.
+        scenario = read(&source, &options.scene, Some(("--at", options.at)), 0)?;
+    }
     use_threads(options.scene.program.threads)?;
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     // The rest density follows the density's history, so every frame needs it.

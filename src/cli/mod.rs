@@ -10,6 +10,7 @@ mod interrupt;
 mod list;
 mod manual;
 mod measure;
+mod memory;
 mod output;
 mod report;
 mod reproduce;
@@ -28,7 +29,7 @@ use clap::Parser;
 use crate::breakdown::Breakdown;
 use crate::floor_plan;
 use crate::reproduce::ReproduceError;
-use crate::scenario::{Scenario, ScenarioError, Setting};
+use crate::scenario::{Need, Scenario, ScenarioError, Setting, read_text, shipped_text};
 use crate::simulation::{Fault, Simulation};
 use arguments::{Arguments, Command, Source};
 
@@ -129,19 +130,23 @@ fn run(command: Command) -> Result<(), Failure> {
     }
 }
 
-/// Reads a scenario with the settings of the command line.
+/// Reads a scenario with the settings of the command line, among them its end, after the flag that gives
+/// it; what is written of it takes `writing` bytes of
+/// memory per agent.
 fn scenario(
     source: &Source,
     scene: &arguments::SceneOptions,
-    until: Option<f64>,
+    until: Option<(&str, f64)>,
+    writing: u64,
 ) -> Result<Scenario, Failure> {
-    let until = until.map(|secs| secs.to_string());
+    let (until_flag, until) =
+        until.map_or(("", None), |(flag, secs)| (flag, Some(secs.to_string())));
     let seed = scene.seed.map(|seed| seed.to_string());
     let flags = [
         ("--profile", "profile", scene.profile.clone()),
         ("--preset", "preset", scene.preset.clone()),
         ("--seed", "seed", seed),
-        ("--until", "duration_secs", until),
+        (until_flag, "duration_secs", until),
         ("--time-step", "time_step_secs", scene.time_step.clone()),
     ];
     let mut settings = Vec::new();
@@ -160,11 +165,12 @@ fn scenario(
     for text in &scene.set {
         settings.push(setting(text)?);
     }
-    let scenario = match source {
-        Source::Shipped(name) => Scenario::shipped(name, &settings)?,
-        Source::File(path) => Scenario::load(path, &settings)?,
+    let (text, file) = match source {
+        Source::Shipped(name) => (shipped_text(name)?.to_owned(), format!("{name}.json")),
+        Source::File(path) => (read_text(path)?, path.display().to_string()),
     };
-    Ok(scenario)
+    memory::check(&file, &Need::parse(&text, &file, &settings)?, writing)?;
+    Ok(Scenario::parse(&text, &file, &settings)?)
 }
 
 fn setting(text: &str) -> Result<Setting, Failure> {

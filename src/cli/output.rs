@@ -18,6 +18,20 @@ pub fn check_free(flag: &str, path: &Path, force: bool) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The ids that `--debug-agents` names; none for `all` and `none`.
+pub fn laid_open(record: &RecordOptions) -> Result<Option<Vec<u32>>, Failure> {
+    let text = match record.debug_agents.as_deref() {
+        None | Some("all" | "none") => return Ok(None),
+        Some(text) => text,
+    };
+    let ids: Result<Vec<u32>, _> = text.split(',').map(|id| id.trim().parse()).collect();
+    ids.map(Some).map_err(|_| {
+        Failure::Input(format!(
+            "--debug-agents {text}: ids separated by commas, all or none are needed"
+        ))
+    })
+}
+
 #[cfg(feature = "recording")]
 pub use with_recording::{Output, save_moment};
 
@@ -150,20 +164,21 @@ mod with_recording {
                 ))
             });
         }
-        match record.debug_agents.as_deref() {
-            None => Ok(DebugAgents::Ids(scenario.debug_agents.clone())),
-            Some("all") => Ok(DebugAgents::All),
-            Some("none") => Ok(DebugAgents::None),
-            Some(text) => {
-                let ids: Result<Vec<u32>, _> =
-                    text.split(',').map(|id| id.trim().parse()).collect();
-                ids.map(DebugAgents::Ids).map_err(|_| {
-                    Failure::Input(format!(
-                        "--debug-agents {text}: ids separated by commas, all or none are needed"
-                    ))
-                })
+        if let Some(ids) = laid_open(record)? {
+            if let Some(id) = ids.iter().find(|&&id| u64::from(id) >= scenario.entering) {
+                let entering = scenario.entering;
+                return Err(Failure::Input(format!(
+                    "--debug-agents {id}: never enters: {entering} agents do until {} s, with ids from 0",
+                    scenario.duration_secs
+                )));
             }
+            return Ok(DebugAgents::Ids(ids));
         }
+        Ok(match record.debug_agents.as_deref() {
+            Some("all") => DebugAgents::All,
+            Some("none") => DebugAgents::None,
+            _ => DebugAgents::Ids(scenario.debug_agents.clone()),
+        })
     }
 
     fn region(text: &str) -> Option<Region> {

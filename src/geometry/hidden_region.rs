@@ -7,6 +7,10 @@ use crate::math::{Vector, perpendicular};
 /// where the whole region ends, whose ends are known exactly (tan is steep close to a wall).
 const ANGLE_ROUNDING: f64 = 1e-12;
 
+/// Who stands on a wall is taken to be so far before it, metres: at 0 all directions lead to one point of it,
+/// so that nothing tells its parts apart, and at −0 they are turned round.
+const LEAST_DISTANCE: f64 = 1e-9;
+
 /// The points of the disc of radius h round an agent that one wall, or a part of it, hides.
 ///
 /// In the agent's frame the wall is the line at `distance` along `towards`; the region lies behind
@@ -17,7 +21,7 @@ pub struct HiddenRegion {
     pub towards: Vector,
     /// Unit vector along the wall, `towards` turned counter-clockwise.
     pub along: Vector,
-    /// Distance d from the agent to the wall's line, 0 ≤ d < h.
+    /// Distance d from the agent to the wall's line, 0 < d < h.
     pub distance: f64,
     /// Where the stretch begins, metres along `along`.
     pub from: f64,
@@ -34,6 +38,7 @@ impl HiddenRegion {
         if !(0.0..support_radius).contains(&distance) {
             return None;
         }
+        let distance = distance.max(LEAST_DISTANCE);
         let towards = -wall.normal;
         let along = perpendicular(towards);
         let half_chord = (support_radius * support_radius - distance * distance).sqrt();

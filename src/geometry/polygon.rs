@@ -25,11 +25,12 @@ pub enum PolygonError {
     #[error("points {0} and {1} are the same; remove one")]
     RepeatedPoint(usize, usize),
     /// All points on one line.
-    #[error("the polygon encloses no area")]
+    #[error("the polygon encloses no area; its points lie on one line")]
     NoArea,
     /// The indices of the points where the two edges begin.
     #[error(
-        "the polygon crosses or touches itself: the edge from point {0} meets the edge from point {1}"
+        "the polygon crosses or touches itself: the edge from point {0} meets the edge from point {1}; \
+         move a point, or make two obstacles of it"
     )]
     SelfIntersection(usize, usize),
     /// The first points of the two edges, metres.

@@ -10,11 +10,17 @@ use crate::math::Vector;
 /// to 10⁶ m, far below anything that matters to a person.
 const CLEARANCE: f64 = 1e-6;
 
-/// Obstacles, their walls in order, and parry's bounding volume hierarchy over them.
+/// The first circle in which a way out of an obstacle is looked for, metres.
+const FIRST_REACH: f64 = 1.0;
+
+/// Obstacles, their walls in order, and parry's bounding volume hierarchies over both.
 #[derive(Debug, Clone)]
 pub struct Walls {
     obstacles: Vec<Polygon>,
     walls: Vec<Wall>,
+    obstacle_index: Bvh,
+    /// Obstacles without end, which are everywhere but in their bounds.
+    unbounded: Vec<usize>,
     index: Bvh,
 }
 
@@ -32,15 +38,19 @@ impl Walls {
                 }));
             }
         }
-        let bounds: Vec<Aabb> = walls
+        let bounds: Vec<Aabb> = walls.iter().map(bounds_of).collect();
+        let around: Vec<Aabb> = obstacles
             .iter()
-            .map(|wall: &Wall| Aabb::from_points([to_parry(wall.start), to_parry(wall.end)]))
+            .map(|polygon| Aabb::from_points(polygon.points().iter().map(|&p| to_parry(p))))
             .collect();
-        let index = Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds);
+        let endless = obstacles.iter().enumerate();
+        let endless = endless.filter(|(_, polygon)| polygon.is_unbounded());
         Self {
+            unbounded: endless.map(|(k, _)| k).collect(),
             obstacles,
             walls,
-            index,
+            obstacle_index: Bvh::from_leaves(BvhBuildStrategy::Binned, &around),
+            index: Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds),
         }
     }
 
@@ -118,24 +128,53 @@ impl Walls {
     /// The nearest point to `p`, a hair outside of walls, that lies in no obstacle: on a wall, or where two
     /// walls meet, at a corner of a room or where obstacles overlap.
     pub fn free_point_near(&self, p: Vector) -> Option<Vector> {
-        let feet = self.walls.iter();
-        let feet = feet.map(|wall| wall.nearest_point(p).point + wall.normal * CLEARANCE);
-        let foot = self.nearest_free(p, feet.collect());
+        let foot = self.free_foot(p);
         let reach = foot.map_or(f64::INFINITY, |(distance, _)| distance);
-        let near: Vec<&Wall> = self
-            .walls
-            .iter()
-            .filter(|wall| (wall.nearest_point(p).point - p).norm() < reach)
-            .collect();
-        let mut corners = Vec::new();
-        for (k, a) in near.iter().enumerate() {
-            corners.extend(near[..k].iter().filter_map(|b| a.corner_with(b, CLEARANCE)));
-        }
-        let corner = self.nearest_free(p, corners);
+        let corner = self.nearest_free(p, self.corners_near(p, reach));
         let nearest = [foot, corner].into_iter().flatten();
         nearest
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .map(|(_, exit)| exit)
+    }
+
+    /// The nearest free one of all walls' points nearest to `p`, looked for in wider and wider circles.
+    fn free_foot(&self, p: Vector) -> Option<(f64, Vector)> {
+        let mut reach = FIRST_REACH;
+        let mut found = Vec::new();
+        loop {
+            found.clear();
+            self.near(p, reach, &mut found);
+            let feet = found.iter().map(|&k| {
+                let wall = self.wall(k);
+                wall.nearest_point(p).point + wall.normal * CLEARANCE
+            });
+            let foot = self.nearest_free(p, feet.collect());
+            let complete = found.len() == self.walls.len() || reach == f64::INFINITY;
+            // A wall out of reach may have its foot that much nearer.
+            if complete || foot.is_some_and(|(distance, _)| distance < reach - CLEARANCE) {
+                return foot;
+            }
+            reach *= 2.0;
+        }
+    }
+
+    /// Where walls meet, of those with a point less than `reach` metres from `p`.
+    fn corners_near(&self, p: Vector, reach: f64) -> Vec<Vector> {
+        let mut near = Vec::new();
+        self.near(p, reach, &mut near);
+        let mut corners = Vec::new();
+        let mut others: Vec<u32> = Vec::new();
+        for &k in &near {
+            let a = self.wall(k);
+            others.clear();
+            let meeting = bounds_of(a).loosened(CLEARANCE);
+            others.extend(self.index.intersect_aabb(&meeting).filter(|&j| j < k));
+            others.retain(|j| near.binary_search(j).is_ok());
+            others.sort_unstable();
+            let crossings = others.iter().map(|&j| self.wall(j));
+            corners.extend(crossings.filter_map(|b| a.corner_with(b, CLEARANCE)));
+        }
+        corners
     }
 
     /// The one of `exits` nearest to `p` that lies in no obstacle, after its distance in metres.
@@ -150,10 +189,17 @@ impl Walls {
 
     /// The first obstacle that contains `p`.
     pub fn obstacle_at(&self, p: Vector) -> Option<usize> {
-        self.obstacles
-            .iter()
-            .position(|polygon| polygon.contains(p))
+        let here = Aabb::from_points([to_parry(p)]);
+        let near = self.obstacle_index.intersect_aabb(&here);
+        near.map(|k| k as usize)
+            .chain(self.unbounded.iter().copied())
+            .filter(|&k| self.obstacles[k].contains(p))
+            .min()
     }
+}
+
+fn bounds_of(wall: &Wall) -> Aabb {
+    Aabb::from_points([to_parry(wall.start), to_parry(wall.end)])
 }
 
 #[cfg(test)]

@@ -11,6 +11,9 @@ use crate::math::Vector;
 use crate::neighbors::BLOCK;
 use crate::pairs::PairCoefficients;
 
+/// So many profiles in a blend: every group of agents has its own copy.
+const MOST_STEPS: usize = 16;
+
 /// A sequence {(Π^j, ρ^j)} of profiles in rising order of density, and the SPH parameters they share.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blend {
@@ -36,6 +39,9 @@ pub enum BlendError {
     /// There is no profile.
     #[error("a blend needs at least one profile")]
     Empty,
+    /// Too many profiles.
+    #[error("{0} profiles in one blend; at most {MOST_STEPS} may be")]
+    TooMany(usize),
     /// Two densities in the wrong order.
     #[error("densities must rise: {1} P/m² follows {0} P/m²")]
     NotRising(f64, f64),
@@ -48,7 +54,7 @@ impl Blend {
     /// Puts profiles together.
     ///
     /// # Errors
-    /// No profile, densities that do not rise, or profiles with different RVO parameters.
+    /// No profile or too many, densities that do not rise, or profiles with different RVO parameters.
     pub fn new(
         name: String,
         sph: SphParameters,
@@ -56,6 +62,9 @@ impl Blend {
     ) -> Result<Self, BlendError> {
         if steps.is_empty() {
             return Err(BlendError::Empty);
+        }
+        if steps.len() > MOST_STEPS {
+            return Err(BlendError::TooMany(steps.len()));
         }
         for pair in steps.windows(2) {
             let (low, high) = (pair[0].at_density, pair[1].at_density);

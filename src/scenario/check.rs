@@ -6,8 +6,10 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::crowd::{Crowd, MOST_NUMBERED};
+use super::crowding;
 use super::error::{Problem, Under, in_plain_words};
 use super::file::{self, File, Object, ProfileChoice, TimeStep};
+use super::need::Need;
 use super::range::{COARSE_EVERY, MAX_SPEED, PREFERRED_SPEED, Range, TIME, TIME_STEP};
 use super::range::{point, region};
 use super::{Scenario, Stop, View, parameters, plan, preset, profiles};
@@ -29,27 +31,42 @@ pub(super) const GOAL_SCALE: Range = Range::at_least(0.0, 1e9);
 /// Times that something is divided by, seconds.
 pub(super) const UNTIL: Range = Range::above(0.0, 1e7);
 
-/// Checks `document`, which is or came from `path`: by it a scenario without a name is called, and in its
-/// folder are the files that the scenario names.
-pub(super) fn scenario(document: &Value, path: &Path) -> Result<Scenario, Problem> {
+/// How large a run of `document` becomes; nothing else in it is checked but names and types.
+pub(super) fn need(document: &Value, path: &Path) -> Result<Need, Problem> {
+    let file = read(&complete(document, path)?)?;
+    let duration_secs = duration(&file)?;
+    Need::of(&file, &first_clock(&file)?, duration_secs)
+}
+
+/// The document with all that it stands for: nothing in it is looked up elsewhere any more. Files that it
+/// names are in the folder of `path`.
+fn complete(document: &Value, path: &Path) -> Result<Value, Problem> {
     let mut document = preset::fill(document);
     without_schema(&mut document)?;
     plan::fill(&mut document, path.parent().unwrap_or(Path::new("")))?;
+    Ok(document)
+}
+
+/// Checks `document`, which is or came from `path`: by it a scenario without a name is called, and in its
+/// folder are the files that the scenario names.
+pub(super) fn scenario(document: &Value, path: &Path) -> Result<Scenario, Problem> {
+    let document = complete(document, path)?;
     let file = read(&document)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name = file.name.clone().unwrap_or_else(|| stem.into_owned());
     if name.is_empty() {
         return Err(Problem::new("name", "must not be empty"));
     }
-    let duration_secs = file.duration_secs.unwrap_or(DEFAULT_DURATION);
-    let duration_secs = TIME.check("duration_secs", duration_secs)?;
+    let duration_secs = duration(&file)?;
     let mut scene = empty_scene(&file)?;
     parameters::check(&file.parameters.0).under("parameters")?;
     let choice = file.profile.clone();
     let choice = choice.unwrap_or_else(|| ProfileChoice::Named(DEFAULT_PROFILE.to_owned()));
     let blend = profiles::blend(&choice, &file.parameters.0).under("profile")?;
     file.goal.map(|goal| point("goal", goal)).transpose()?;
-    let entering = Crowd::new(&file, &blend, &mut scene, duration_secs).enter()?;
+    let need = Need::of(&file, &scene.clock, duration_secs)?;
+    Crowd::new(&file, &blend, &mut scene).enter()?;
+    crowding::check(&file, &scene, duration_secs)?;
     scene.pushes = pushes(&file.events)?;
     if file.time_step_secs == Some(TimeStep::Auto) {
         scene.clock = automatic_clock(&file, &scene)?;
@@ -63,8 +80,9 @@ pub(super) fn scenario(document: &Value, path: &Path) -> Result<Scenario, Proble
         view: view(file.view.as_ref(), &scene).under("view")?,
         debug_agents: match &file.debug_agents {
             Some(ids) => without_repetition(ids)?,
-            None => spread(entering),
+            None => spread(need.entering),
         },
+        entering: need.entering,
         profile_name: blend.name,
         document,
         scene,
@@ -92,14 +110,24 @@ fn read(document: &Value) -> Result<File, Problem> {
     })
 }
 
+fn duration(file: &File) -> Result<f64, Problem> {
+    let duration_secs = file.duration_secs.unwrap_or(DEFAULT_DURATION);
+    TIME.check("duration_secs", duration_secs)
+}
+
+/// The clock, the paper's where the step is to be found.
+fn first_clock(file: &File) -> Result<Clock, Problem> {
+    TIME_STEP.check_given("longest_step_secs", file.longest_step_secs)?;
+    match file.time_step_secs {
+        Some(TimeStep::Given(step)) => clock(file, step),
+        Some(TimeStep::Auto) | None => clock(file, PAPER_TIME_STEP),
+    }
+}
+
 /// Everything but the people.
 fn empty_scene(file: &File) -> Result<Scene, Problem> {
     let paper = Scene::default();
-    let clock = match file.time_step_secs {
-        Some(TimeStep::Given(step)) => clock(file, step)?,
-        Some(TimeStep::Auto) | None => clock(file, PAPER_TIME_STEP)?,
-    };
-    TIME_STEP.check_given("longest_step_secs", file.longest_step_secs)?;
+    let clock = first_clock(file)?;
     let preferred_speed = file.preferred_speed.unwrap_or(paper.preferred_speed);
     let max_speed = file.max_speed.unwrap_or(paper.max_speed);
     let seed = file.seed.unwrap_or(paper.seed);
@@ -140,10 +168,7 @@ fn automatic_clock(file: &File, scene: &Scene) -> Result<Clock, Problem> {
 
 fn pushes(events: &[Object<file::Event>]) -> Result<Vec<Push>, Problem> {
     if events.len() > MOST_NUMBERED {
-        let reason = format!(
-            "{} events; at most {MOST_NUMBERED} are possible",
-            events.len()
-        );
+        let reason = format!("{} events; at most {MOST_NUMBERED} may be", events.len());
         return Err(Problem::new("events", reason));
     }
     let numbered = events.iter().enumerate();
@@ -181,7 +206,7 @@ fn measurements(given: &[file::Measurement]) -> Result<Vec<Measurement>, Problem
         let measurement = measurement(given).under(&place)?;
         for name in measurement.names() {
             if names.contains(&name) {
-                let reason = format!("`{name}` is measured already");
+                let reason = format!("`{name}` is measured already; remove one");
                 return Err(Problem::new(place, reason));
             }
             names.insert(name);
@@ -233,7 +258,10 @@ fn view(given: Option<&Object<file::View>>, scene: &Scene) -> Result<View, Probl
     };
     let region = region("region", given.region)?;
     if region.min.x == region.max.x || region.min.y == region.max.y {
-        return Err(Problem::new("region", "encloses no area"));
+        return Err(Problem::new(
+            "region",
+            "encloses no area: its corners must differ in x and in y",
+        ));
     }
     Ok(View {
         region,
@@ -277,7 +305,7 @@ fn without_repetition(ids: &[u32]) -> Result<Vec<u32>, Problem> {
     let mut seen = BTreeSet::new();
     for (k, id) in ids.iter().enumerate() {
         if !seen.insert(id) {
-            let reason = format!("agent {id} is named twice");
+            let reason = format!("agent {id} is named twice; remove one");
             return Err(Problem::new(format!("debug_agents[{k}]"), reason));
         }
     }

@@ -1,21 +1,22 @@
 //! Agents, grids and sources as given → groups, agents and sources of a scene.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::error::{Problem, Under};
 use super::file::{self, Behaviour, File, Object, ProfileChoice};
 use super::parameters::DENSITY;
 use super::profiles;
-use super::range::{self, COORDINATE, Range, TIME, point};
+use super::range::{self, COORDINATE, Range, point};
 use crate::agents::NewAgent;
 use crate::placement::Grid;
 use crate::profile::Blend;
 use crate::scene::{Goal, Group, Region, Scene, Source};
 
-/// So many agents may enter in one run.
-pub(super) const MOST_AGENTS: u64 = 10_000_000;
 /// Groups and pushes are numbered in 16 bits.
 pub(super) const MOST_NUMBERED: usize = u16::MAX as usize;
+
+/// So many profiles in full, all different: each is a sum of its own over everybody.
+const MOST_CUSTOM: usize = 1_000;
 
 /// D_i, metres.
 pub(super) const RADIUS: Range = Range::at_least(0.01, 10.0);
@@ -34,32 +35,26 @@ pub(super) struct Crowd<'a> {
     file: &'a File,
     default: &'a Blend,
     scene: &'a mut Scene,
-    duration_secs: f64,
-    entering: u64,
     /// Groups of single agents by behaviour.
     shared: BTreeMap<String, u16>,
+    /// The different profiles given in full.
+    custom: BTreeSet<String>,
 }
 
 impl<'a> Crowd<'a> {
     /// `default` is the blend of agents that name none.
-    pub(super) fn new(
-        file: &'a File,
-        default: &'a Blend,
-        scene: &'a mut Scene,
-        duration_secs: f64,
-    ) -> Self {
+    pub(super) fn new(file: &'a File, default: &'a Blend, scene: &'a mut Scene) -> Self {
         Self {
             file,
             default,
             scene,
-            duration_secs,
-            entering: 0,
             shared: BTreeMap::new(),
+            custom: BTreeSet::new(),
         }
     }
 
-    /// Single agents, then grids, then sources; returns how many enter in the whole run.
-    pub(super) fn enter(mut self) -> Result<u64, Problem> {
+    /// Single agents, then grids, then sources, which have been counted.
+    pub(super) fn enter(mut self) -> Result<(), Problem> {
         for (k, Object(agent)) in self.file.agents.iter().enumerate() {
             self.agent(agent).under(&format!("agents[{k}]"))?;
         }
@@ -71,11 +66,10 @@ impl<'a> Crowd<'a> {
             let name = format!("sources[{k}]");
             self.source(source, &name).under(&name)?;
         }
-        Ok(self.entering)
+        Ok(())
     }
 
     fn agent(&mut self, agent: &file::Agent) -> Result<(), Problem> {
-        self.count(1, 1)?;
         let [x, y] = agent.velocity.unwrap_or_default();
         VELOCITY.check("velocity[0]", x)?;
         VELOCITY.check("velocity[1]", y)?;
@@ -97,7 +91,6 @@ impl<'a> Crowd<'a> {
 
     fn grid(&mut self, given: &file::Grid, place: &str) -> Result<(), Problem> {
         let (grid, goal) = self.placed(given)?;
-        self.count(grid.len(), 1)?;
         let name = given.name.as_deref().unwrap_or(place);
         let group = self.group(name, &given.behaviour())?;
         let first_id = self.scene.agents.len() as u32;
@@ -120,15 +113,10 @@ impl<'a> Crowd<'a> {
             grid,
             group: self.group(name, &given.grid().behaviour())?,
             goal,
-            start: TIME.check("start_secs", given.start_secs)?,
-            every: EVERY.check("every_secs", given.every_secs)?,
+            start: given.start_secs,
+            every: given.every_secs,
             times: given.times,
         };
-        let entries = ((self.duration_secs - source.start) / source.every + 1.0).max(0.0) as u64;
-        self.count(
-            grid.len(),
-            entries.min(given.times.map_or(u64::MAX, u64::from)),
-        )?;
         self.scene.sources.push(source);
         Ok(())
     }
@@ -153,7 +141,7 @@ impl<'a> Crowd<'a> {
             }
             if cells > 1 && extent == 0.0 && grid.jitter == 0.0 {
                 let reason = format!(
-                    "{cells} agents would stand on one point: `min` and `max` are 0 m apart"
+                    "{cells} agents would stand on one point: `min` and `max` are 0 m apart; move one, or give jitter"
                 );
                 return Err(Problem::new(key, reason));
             }
@@ -185,19 +173,6 @@ impl<'a> Crowd<'a> {
         Ok([x, y].into())
     }
 
-    /// Notes that `entries` times `agents` will enter.
-    fn count(&mut self, agents: u64, entries: u64) -> Result<(), Problem> {
-        self.entering = self.entering.saturating_add(agents.saturating_mul(entries));
-        if self.entering > MOST_AGENTS {
-            let (so_far, secs) = (self.entering, self.duration_secs);
-            let reason = format!(
-                "too many: with these, {so_far} agents enter within {secs} s; at most {MOST_AGENTS} may"
-            );
-            return Err(Problem::new("", reason));
-        }
-        Ok(())
-    }
-
     /// The group of single agents with this behaviour.
     fn shared_group(&mut self, behaviour: &Behaviour) -> Result<u16, Problem> {
         let key = serde_json::json!([
@@ -219,10 +194,22 @@ impl<'a> Crowd<'a> {
             return Err(Problem::new("name", "must not be empty"));
         }
         if self.scene.groups.len() >= MOST_NUMBERED {
-            let reason = format!("more than {MOST_NUMBERED} different groups of agents");
+            let reason = format!(
+                "more than {MOST_NUMBERED} groups of agents; put several into one grid or source, or give \
+                 single agents the same profile, `remove_within` and `counted`"
+            );
             return Err(Problem::new("", reason));
         }
         let choice: Option<&ProfileChoice> = behaviour.profile.as_ref();
+        if let Some(ProfileChoice::Custom(_)) = choice {
+            self.custom.insert(serde_json::json!(choice).to_string());
+            if self.custom.len() > MOST_CUSTOM {
+                let reason = format!(
+                    "more than {MOST_CUSTOM} different profiles in full; let agents share them"
+                );
+                return Err(Problem::new("profile", reason));
+            }
+        }
         let blend = match choice {
             None => self.default.clone(),
             Some(choice) => profiles::blend(choice, &self.file.parameters.0).under("profile")?,

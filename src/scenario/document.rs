@@ -5,7 +5,7 @@ use std::fmt;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
 
-use super::error::ScenarioError;
+use super::error::{ScenarioError, in_plain_words};
 
 /// Reads `text`, which came from `file`.
 pub(crate) fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
@@ -18,7 +18,7 @@ pub(crate) fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
             file: file.to_owned(),
             line,
             column,
-            reason: said.strip_suffix(&place).unwrap_or(&said).to_owned(),
+            reason: in_plain_words(said.strip_suffix(&place).unwrap_or(&said)),
         }
     })
 }
@@ -131,7 +131,9 @@ impl<'de> Visitor<'de> for DocumentVisitor {
         let mut object = Map::new();
         while let Some(key) = entries.next_key::<String>()? {
             if object.contains_key(&key) {
-                return Err(A::Error::custom(format!("key `{key}` is given twice")));
+                return Err(A::Error::custom(format!(
+                    "key `{key}` is given twice; remove one"
+                )));
             }
             let Document(value) = entries.next_value()?;
             object.insert(key, value);
@@ -168,12 +170,12 @@ mod tests {
         let twice = read("{\"seed\": 1,\n \"seed\": 2}", "f.json").unwrap_err();
         assert_eq!(
             twice.to_string(),
-            "f.json: line 2, column 7: key `seed` is given twice"
+            "f.json: line 2, column 7: key `seed` is given twice; remove one"
         );
         let cut = read("{\"seed\": 1", "f.json").unwrap_err();
         assert_eq!(
             cut.to_string(),
-            "f.json: line 1, column 10: EOF while parsing an object"
+            "f.json: line 1, column 10: the text ends within an object"
         );
         assert!(read(&"[".repeat(100_000), "f").is_err());
     }

@@ -136,19 +136,47 @@ pub(crate) fn in_plain_words(said: &str) -> String {
         Some(given) if is_name => suggestion(given, quoted.skip(1)),
         _ => String::new(),
     };
-    let number = said
-        .strip_suffix("expected f64")
-        .map(|start| format!("{start}expected a number"));
-    let whole = [("expected u32", "2^32"), ("expected u64", "2^64")]
-        .into_iter()
-        .find_map(|(rust, above)| {
-            let start = said.strip_suffix(rust)?;
-            Some(format!(
-                "{start}expected a whole number from 0 to {above} - 1"
-            ))
-        });
-    number.or(whole).unwrap_or_else(|| said.to_owned()) + &near
+    let plain = WORDS.iter().fold(said.to_owned(), |said, (rust, plain)| {
+        said.replacen(rust, plain, 1)
+    });
+    if near.is_empty() {
+        return plain;
+    }
+    plain.replacen(", expected", &format!("{near} Expected"), 1)
 }
+
+/// What serde and serde_json say, and what people say.
+const WORDS: [(&str, &str); 20] = [
+    ("expected f64", "expected a number"),
+    ("expected u32", "expected a whole number from 0 to 2^32 - 1"),
+    ("expected u64", "expected a whole number from 0 to 2^64 - 1"),
+    ("expected an array of length", "expected a list of length"),
+    (
+        "expected fewer elements in array",
+        "expected fewer elements in the list",
+    ),
+    ("expected a sequence", "expected a list"),
+    ("expected a map", "expected an object"),
+    ("expected a boolean", "expected true or false"),
+    ("expected a string", "expected text in quotes"),
+    ("invalid type: sequence", "invalid type: a list"),
+    ("invalid type: map", "invalid type: an object"),
+    ("invalid value: string", "invalid value: text"),
+    ("invalid type: string", "invalid type: text"),
+    ("unknown field", "unknown key"),
+    ("unknown variant", "unknown value"),
+    ("missing field", "missing key"),
+    ("EOF while parsing", "the text ends within"),
+    (
+        "trailing comma",
+        "a comma before a closing bracket; remove it",
+    ),
+    (
+        "trailing characters",
+        "more text after the end of the scenario; remove it",
+    ),
+    ("recursion limit exceeded", "nested more than 127 deep"),
+];
 
 #[cfg(test)]
 mod tests {

@@ -25,10 +25,12 @@
 
 mod check;
 mod crowd;
+mod crowding;
 mod document;
 mod error;
 mod file;
 mod key;
+mod need;
 mod nested;
 mod parameters;
 mod plan;
@@ -43,6 +45,7 @@ mod shipped;
 pub(crate) use document::read as read_document;
 pub use error::{Problem, ScenarioError};
 pub(crate) use error::{in_plain_words, suggestion};
+pub use need::{Need, in_units};
 pub use nested::NESTED;
 pub use preset::Preset;
 pub use schema::schema;
@@ -50,7 +53,7 @@ pub use setting::{Setting, SettingError};
 pub use settings::{SettingDoc, settings};
 pub use shipped::{SHIPPED, Shipped};
 
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use serde_json::Value;
@@ -80,6 +83,8 @@ pub struct Scenario {
     pub view: View,
     /// Ids of agents that a recording lays open; not all of them need ever enter.
     pub debug_agents: Vec<u32>,
+    /// How many enter in the whole run at most; ids are lower than this.
+    pub entering: u64,
     /// The name of the profile of agents that name none.
     pub profile_name: String,
     /// The file as given, with the settings, what its preset stands for and what the files that it names say.
@@ -116,31 +121,7 @@ impl Scenario {
     /// # Errors
     /// Anything wrong with the text or with the settings: the first thing, with its place.
     pub fn parse(text: &str, file: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
-        let given = document::read(text, file)?;
-        let path = Path::new(file);
-        let invalid = |file: String, problem| ScenarioError::Invalid { file, problem };
-        if settings.is_empty() || !given.is_object() {
-            return check::scenario(&given, path).map_err(|p| invalid(file.to_owned(), p));
-        }
-        let mut changed = given.clone();
-        let mut paths = Vec::with_capacity(settings.len());
-        for setting in settings {
-            let applied = setting.apply(&mut changed);
-            paths.push(applied.map_err(|problem| setting.refused(problem))?);
-        }
-        check::scenario(&changed, path).map_err(|problem| {
-            for (path, setting) in paths.iter().zip(settings).rev() {
-                if let Some(problem) = problem.seen_from(path) {
-                    return setting.refused(problem);
-                }
-            }
-            let mut source = file.to_owned();
-            if check::scenario(&given, path).is_ok() {
-                source.push_str(" with");
-                source.extend(settings.iter().map(|setting| format!(" {setting}")));
-            }
-            invalid(source, problem)
-        })
+        checked(text, file, settings, check::scenario)
     }
 
     /// Reads a scenario from a file.
@@ -148,19 +129,8 @@ impl Scenario {
     /// # Errors
     /// The file cannot be read or is too long, or as [`parse`](Self::parse).
     pub fn load(path: &Path, settings: &[Setting]) -> Result<Self, ScenarioError> {
-        let file = path.display().to_string();
-        let unreadable = |reason: String| ScenarioError::Unreadable {
-            file: file.clone(),
-            reason,
-        };
-        let mut text = String::new();
-        std::fs::File::open(path)
-            .and_then(|opened| opened.take(LONGEST_FILE + 1).read_to_string(&mut text))
-            .map_err(|error| unreadable(error.to_string()))?;
-        if text.len() as u64 > LONGEST_FILE {
-            return Err(unreadable(format!("longer than {LONGEST_FILE} bytes")));
-        }
-        Self::parse(&text, &file, settings)
+        let text = read_text(path)?;
+        Self::parse(&text, &path.display().to_string(), settings)
     }
 
     /// One of the scenarios that come with the program.
@@ -168,11 +138,100 @@ impl Scenario {
     /// # Errors
     /// No such name, or as [`parse`](Self::parse) because of the settings.
     pub fn shipped(name: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
-        let found = SHIPPED.iter().find(|shipped| shipped.name == name);
-        let shipped = found.ok_or_else(|| ScenarioError::UnknownName {
-            name: name.to_owned(),
-            known: SHIPPED.map(|shipped| shipped.name).join(", "),
-        })?;
-        Self::parse(shipped.text, &format!("{name}.json"), settings)
+        Self::parse(shipped_text(name)?, &format!("{name}.json"), settings)
     }
+}
+
+impl Need {
+    /// Of the scenario that [`Scenario::parse`] would read, before anybody is placed.
+    ///
+    /// # Errors
+    /// What is wrong with names, types or the number of agents; the rest is checked by
+    /// [`Scenario::parse`].
+    pub fn parse(text: &str, file: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
+        let need = checked(text, file, settings, check::need)?;
+        let text = text.len() as u64;
+        Ok(Self { text, ..need })
+    }
+}
+
+/// The text of one of the scenarios that come with the program.
+///
+/// # Errors
+/// No such name.
+pub fn shipped_text(name: &str) -> Result<&'static str, ScenarioError> {
+    let found = SHIPPED.iter().find(|shipped| shipped.name == name);
+    let shipped = found.ok_or_else(|| ScenarioError::UnknownName {
+        name: name.to_owned(),
+        known: SHIPPED.map(|shipped| shipped.name).join(", "),
+    })?;
+    Ok(shipped.text)
+}
+
+/// The text of a scenario file.
+///
+/// # Errors
+/// The file cannot be read, or is longer than 256 MiB.
+pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
+    let unreadable = |reason: String| ScenarioError::Unreadable {
+        file: path.display().to_string(),
+        reason,
+    };
+    let mut text = String::new();
+    std::fs::File::open(path)
+        .and_then(|opened| opened.take(LONGEST_FILE + 1).read_to_string(&mut text))
+        .map_err(|error| unreadable(unreadable_because(&error)))?;
+    if text.len() as u64 > LONGEST_FILE {
+        let reason = format!("longer than {LONGEST_FILE} bytes; no scenario is");
+        return Err(unreadable(reason));
+    }
+    Ok(text)
+}
+
+/// What the system says about a file, and what may help.
+fn unreadable_because(error: &std::io::Error) -> String {
+    let said = error.to_string();
+    let said = said.split(" (os error").next().unwrap_or_default();
+    match error.kind() {
+        ErrorKind::NotFound => {
+            format!("{said}; `sandbox list` names the scenarios that come with the program")
+        }
+        ErrorKind::IsADirectory => format!("{said}; a scenario is a file"),
+        ErrorKind::InvalidData => "no text in UTF-8; save it as that".to_owned(),
+        _ => said.to_owned(),
+    }
+}
+
+/// What `check` makes of a text, which is or came from `file`, with some settings.
+fn checked<T>(
+    text: &str,
+    file: &str,
+    settings: &[Setting],
+    check: fn(&Value, &Path) -> Result<T, Problem>,
+) -> Result<T, ScenarioError> {
+    let given = document::read(text, file)?;
+    let path = Path::new(file);
+    let invalid = |file: String, problem| ScenarioError::Invalid { file, problem };
+    if settings.is_empty() || !given.is_object() {
+        return check(&given, path).map_err(|p| invalid(file.to_owned(), p));
+    }
+    let mut changed = given.clone();
+    let mut paths = Vec::with_capacity(settings.len());
+    for setting in settings {
+        let applied = setting.apply(&mut changed);
+        paths.push(applied.map_err(|problem| setting.refused(problem))?);
+    }
+    check(&changed, path).map_err(|problem| {
+        for (path, setting) in paths.iter().zip(settings).rev() {
+            if let Some(problem) = problem.seen_from(path) {
+                return setting.refused(problem);
+            }
+        }
+        let mut source = file.to_owned();
+        if check(&given, path).is_ok() {
+            source.push_str(" with");
+            source.extend(settings.iter().map(|setting| format!(" {setting}")));
+        }
+        invalid(source, problem)
+    })
 }

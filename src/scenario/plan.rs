@@ -17,6 +17,11 @@ use crate::geometry::{Area, Polygon, Ring};
 const WALKABLE_AREA: &str = "walkable_area";
 const OBSTACLES: &str = "obstacles";
 
+/// Corners of one ring: to find edges that cross, all that are near each other are compared.
+const MOST_CORNERS: usize = 20_000;
+/// Walls in all.
+const MOST_WALLS: u64 = 1_000_000;
+
 /// Numbers in lists in lists: a point, a ring of points or a list of rings.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Nested {
@@ -128,8 +133,40 @@ fn ring_value(ring: &Ring) -> Value {
     ring.points().iter().map(|p| json!([p.x, p.y])).collect()
 }
 
+/// How many walls a file has, one for every corner.
+pub(super) fn walls(file: &File) -> u64 {
+    let obstacles = file.obstacles.iter().flatten().map(corners).sum::<u64>();
+    let areas = file.walkable_area.iter().flatten().flatten();
+    obstacles + areas.map(|ring| ring.len() as u64).sum::<u64>()
+}
+
+/// Corners in an obstacle's corner, or in one of its rings.
+fn corners(item: &Nested) -> u64 {
+    match item {
+        Nested::List(inner) if matches!(inner.first(), Some(Nested::List(_))) => inner.len() as u64,
+        Nested::List(_) | Nested::Number(_) => 1,
+    }
+}
+
+/// Says if a ring has too many corners to be looked through.
+fn check_length(count: usize) -> Result<(), Problem> {
+    if count <= MOST_CORNERS {
+        return Ok(());
+    }
+    let reason =
+        format!("{count} corners; at most {MOST_CORNERS} may be: make it several obstacles");
+    Err(Problem::new("", reason))
+}
+
 /// The obstacles in their order, then what is round the walkable area.
 pub(super) fn solids(file: &File) -> Result<Vec<Polygon>, Problem> {
+    let walls = walls(file);
+    if walls > MOST_WALLS {
+        let reason = format!(
+            "{walls} corners in all; at most {MOST_WALLS} may be: leave out corners that hardly matter"
+        );
+        return Err(Problem::new(OBSTACLES, reason));
+    }
     let mut solids = Vec::with_capacity(file.obstacles.len() + 1);
     for (k, given) in file.obstacles.iter().enumerate() {
         solids.push(obstacle(given).under(&format!("{OBSTACLES}[{k}]"))?);
@@ -143,6 +180,7 @@ pub(super) fn solids(file: &File) -> Result<Vec<Polygon>, Problem> {
 fn walls_round(polygons: &[Vec<Vec<[f64; 2]>>]) -> Result<Vec<Polygon>, Problem> {
     for (k, rings) in polygons.iter().enumerate() {
         for (r, ring) in rings.iter().enumerate() {
+            check_length(ring.len()).under(&format!("[{k}][{r}]"))?;
             for (c, &corner) in ring.iter().enumerate() {
                 point(&format!("[{k}][{r}][{c}]"), corner)?;
             }
@@ -187,6 +225,7 @@ fn ring(given: &[Nested]) -> Result<Vec<[f64; 2]>, Problem> {
         },
         Nested::Number(_) => Err(Problem::new(format!("[{k}]"), "must be a point, [x, y]")),
     };
+    check_length(given.len())?;
     given.iter().enumerate().map(corner).collect()
 }
 

@@ -14,7 +14,7 @@ pub(super) fn blend(choice: &ProfileChoice, overriding: &Parameters) -> Result<B
     };
     let (min, max) = (blend.sph.rest_density_min, blend.sph.rest_density_max);
     if min > max {
-        let reason = format!("rest_density_min {min} is above rest_density_max {max}");
+        let reason = format!("rest_density_min {min} is above rest_density_max {max}; give both");
         return Err(Problem::new("", reason));
     }
     Ok(blend)
@@ -95,7 +95,10 @@ fn checked(custom: &CustomProfile) -> Result<(), Problem> {
         return Err(Problem::new("", reason));
     }
     if custom.sph.is_some() && custom.navigation.is_none() {
-        return Err(Problem::new("sph", "goes with `navigation` only"));
+        return Err(Problem::new(
+            "sph",
+            "goes with `navigation` only; remove it",
+        ));
     }
     parameters::check(&custom.parameters.0).under("parameters")
 }
@@ -152,8 +155,9 @@ fn shared_by(custom: &CustomProfile, steps: &[Object<Step>]) -> Result<Parameter
         for (key, value) in parameters::given(&own) {
             if let Some((_, other)) = so_far.iter().find(|(k, v)| *k == key && *v != value) {
                 let path = format!("blend[{k}].profile.parameters.{key}");
-                let reason =
-                    format!("all profiles of a blend share it: {value} here, {other} before");
+                let reason = format!(
+                    "all profiles of a blend share it: {value} here, {other} before; give it once"
+                );
                 return Err(Problem::new(path, reason));
             }
         }

@@ -1,0 +1,124 @@
+//! Where more people are put, or more corners, than any place holds: nothing would come of it but a wait.
+
+use rayon::prelude::*;
+
+use super::error::Problem;
+use super::file::{File, Object};
+use super::need;
+use crate::geometry::Walls;
+use crate::math::Vector;
+use crate::placement::Grid;
+use crate::scene::Scene;
+
+/// People, or corners of obstacles, on one square metre. Ten are a crush; what is computed grows with the
+/// square of it.
+const MOST_PER_CELL: usize = 1_000;
+
+/// Refuses crowds that no place holds, and people locked up in obstacles.
+pub(super) fn check(file: &File, scene: &Scene, duration_secs: f64) -> Result<(), Problem> {
+    let corners: Vec<Vector> = scene.walls.iter().map(|wall| wall.start).collect();
+    if let Some((k, count)) = crowded(&corners) {
+        let place = format!("obstacles[{}]", scene.walls.wall(k as u32).obstacle);
+        let reason = format!(
+            "{count} corners of obstacles {}; at most {MOST_PER_CELL} may be: leave out corners that hardly \
+             matter",
+            near(corners[k])
+        );
+        return Err(Problem::new(place, reason));
+    }
+    let people: Vec<Vector> = scene.agents.iter().map(|agent| agent.position).collect();
+    if let Some((k, count)) = crowded(&people) {
+        return Err(Problem::new(place_of(file, k), too_close(count, people[k])));
+    }
+    if let Some((k, reason)) = locked(&scene.walls, &people) {
+        return Err(Problem::new(place_of(file, k), reason));
+    }
+    let last_entry = need::last_entry(file, &scene.clock, duration_secs);
+    for (k, (source, Object(given))) in scene.sources.iter().zip(&file.sources).enumerate() {
+        if need::entries(given, last_entry) == 0 {
+            continue;
+        }
+        let people: Vec<Vector> = source.grid.positions(scene.seed, 0).collect();
+        if let Some((i, count)) = crowded(&people) {
+            return Err(Problem::new(
+                format!("sources[{k}]"),
+                too_close(count, people[i]),
+            ));
+        }
+        // Where jitter puts whom is known only when they enter.
+        let grid = Grid {
+            jitter: 0.0,
+            ..source.grid
+        };
+        let centres: Vec<Vector> = grid.positions(scene.seed, 0).collect();
+        if let Some((_, reason)) = locked(&scene.walls, &centres) {
+            return Err(Problem::new(format!("sources[{k}]"), reason));
+        }
+    }
+    Ok(())
+}
+
+fn too_close(count: usize, p: Vector) -> String {
+    format!(
+        "{count} people {}; at most {MOST_PER_CELL} may stand there: give them more room, or take fewer",
+        near(p)
+    )
+}
+
+fn near(p: Vector) -> String {
+    let (x, y) = (p.x.floor(), p.y.floor());
+    format!(
+        "on the square metre from ({x}, {y}) to ({}, {})",
+        x + 1.0,
+        y + 1.0
+    )
+}
+
+/// What puts agent `id` there at the start.
+fn place_of(file: &File, id: usize) -> String {
+    let mut before = file.agents.len();
+    if id < before {
+        return format!("agents[{id}]");
+    }
+    for (k, Object(grid)) in file.grids.iter().enumerate() {
+        before = before.saturating_add(grid.columns as usize * grid.rows as usize);
+        if id < before {
+            return format!("grids[{k}]");
+        }
+    }
+    String::new()
+}
+
+/// The first of `points` with too many on its square metre, and how many.
+fn crowded(points: &[Vector]) -> Option<(usize, usize)> {
+    if points.len() <= MOST_PER_CELL {
+        return None;
+    }
+    let cell = |p: &Vector| [p.x.floor() as i32, p.y.floor() as i32];
+    let mut cells: Vec<[i32; 2]> = points.iter().map(cell).collect();
+    cells.par_sort_unstable();
+    let full: Vec<&[[i32; 2]]> = cells
+        .chunk_by(|a, b| a == b)
+        .filter(|same| same.len() > MOST_PER_CELL)
+        .collect();
+    points.iter().enumerate().find_map(|(k, p)| {
+        let found = full.binary_search_by_key(&cell(p), |same| same[0]).ok()?;
+        Some((k, full[found].len()))
+    })
+}
+
+/// The first of `people` who is inside an obstacle without a way out, and what is said about it.
+fn locked(walls: &Walls, people: &[Vector]) -> Option<(usize, String)> {
+    people.par_iter().enumerate().find_map_first(|(k, &p)| {
+        let obstacle = walls.obstacle_at(p)?;
+        if walls.free_point_near(p).is_some() {
+            return None;
+        }
+        let reason = format!(
+            "somebody at ({:.2}, {:.2}) is inside obstacles[{obstacle}], and no free point is near; move \
+             them, or the obstacle",
+            p.x, p.y
+        );
+        Some((k, reason))
+    })
+}

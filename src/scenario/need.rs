@@ -1,0 +1,170 @@
+//! How many people enter, and how much memory that takes, told before anybody is placed.
+
+use super::crowd::EVERY;
+use super::error::{Problem, Under};
+use super::file::{File, Object, Source, TimeStep};
+use super::plan;
+use super::range::TIME;
+use crate::clock::{Clock, PAPER_COARSE_STEP};
+
+/// So many agents may enter in one run.
+pub(super) const MOST_AGENTS: u64 = 10_000_000;
+
+/// The program itself with its threads, bytes.
+const PROGRAM: u64 = 12 << 20;
+/// An agent in the scenario, and with everything that the engine keeps of it, bytes. With the program,
+/// measured at 5 P/m² on two threads (peak resident memory, MB, and this estimate):
+///
+/// | agents | sph | rvo | estimate |
+/// |---|---|---|---|
+/// | 1,000 | 10.4 | 10.5 | 13.0 |
+/// | 10,000 | 14.2 | 13.4 | 17.1 |
+/// | 100,000 | 48.6 | 41.5 | 57.6 |
+/// | 1,000,000 | 393 | – | 463 |
+const AGENT: u64 = 450;
+/// The same of an agent that comes later: what grows has room to spare.
+const LATER_AGENT: u64 = 600;
+/// A corner of an obstacle with its wall, and the indices over them, bytes.
+const WALL: u64 = 400;
+/// A byte of a scenario's text as a document and what is made of it, bytes: 100,000 agents one by one, in 2.9 MB
+/// of text, take 228 MB, and 100,000 square obstacles, in 6.5 MB, 322 MB; the estimates are 248 and 595 MB.
+const TEXT: u64 = 65;
+
+/// How large a scenario's run becomes at most.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Need {
+    /// Who is there at the start.
+    pub initial: u64,
+    /// Who enters in the whole run, those among them.
+    pub entering: u64,
+    /// Walls of all obstacles.
+    pub walls: u64,
+    /// Bytes of the scenario's text.
+    pub text: u64,
+}
+
+impl Need {
+    /// Main memory that a run takes at its largest, if nobody leaves, bytes: from what was measured,
+    /// between once and twice of it. What a run writes comes to this.
+    pub fn bytes(&self) -> u64 {
+        let later = self.entering.saturating_sub(self.initial);
+        let parts = [
+            (self.initial, AGENT),
+            (later, LATER_AGENT),
+            (self.walls, WALL),
+            (self.text, TEXT),
+        ];
+        let products = parts.map(|(count, bytes)| count.saturating_mul(bytes));
+        products.into_iter().fold(PROGRAM, u64::saturating_add)
+    }
+
+    /// Counts what `file` asks for, and checks what that depends on; `clock` is its clock, if it gives one.
+    pub(super) fn of(file: &File, clock: &Clock, duration_secs: f64) -> Result<Self, Problem> {
+        let mut need = Self {
+            walls: plan::walls(file),
+            ..Self::default()
+        };
+        let count = |need: &mut Self, place: &str, k: usize, agents: u64| {
+            need.entering = need.entering.saturating_add(agents);
+            if need.entering <= MOST_AGENTS {
+                return Ok(());
+            }
+            let agents = match need.entering {
+                countable @ ..1_000_000_000_000 => countable.to_string(),
+                more => format!("{:.1e}", more as f64),
+            };
+            let reason = format!(
+                "too many: with these, {agents} agents enter within {duration_secs} s, which takes {} of \
+                 memory; at most {MOST_AGENTS} may: take fewer columns, rows or entries",
+                in_units(need.bytes()),
+            );
+            Err(Problem::new(format!("{place}[{k}]"), reason))
+        };
+        for k in 0..file.agents.len() {
+            need.initial += 1;
+            count(&mut need, "agents", k, 1)?;
+        }
+        for (k, Object(grid)) in file.grids.iter().enumerate() {
+            let agents = u64::from(grid.columns) * u64::from(grid.rows);
+            need.initial = need.initial.saturating_add(agents);
+            count(&mut need, "grids", k, agents)?;
+        }
+        let last_entry = last_entry(file, clock, duration_secs);
+        for (k, Object(source)) in file.sources.iter().enumerate() {
+            let place = format!("sources[{k}]");
+            TIME.check("start_secs", source.start_secs).under(&place)?;
+            EVERY.check("every_secs", source.every_secs).under(&place)?;
+            let agents = u64::from(source.columns) * u64::from(source.rows);
+            let agents = agents.saturating_mul(entries(source, last_entry));
+            count(&mut need, "sources", k, agents)?;
+        }
+        Ok(need)
+    }
+}
+
+/// Nobody who is due later enters before the end, seconds.
+pub(super) fn last_entry(file: &File, clock: &Clock, duration_secs: f64) -> f64 {
+    if file.time_step_secs == Some(TimeStep::Auto) {
+        // The step is chosen by who is there; the end is at most half of it late.
+        let longest = file.longest_step_secs.unwrap_or(PAPER_COARSE_STEP);
+        return duration_secs + 0.5 * longest;
+    }
+    let last = clock.frame_at(duration_secs);
+    let coarse = last - last % u64::from(clock.coarse_every());
+    // As `Clock::coarse_frame_at` rounds.
+    (coarse as f64 + 1e-6) * clock.time_step()
+}
+
+/// How often a source lets people in.
+pub(super) fn entries(source: &Source, last_entry: f64) -> u64 {
+    // What is negative is none.
+    let entries = ((last_entry - source.start_secs) / source.every_secs).floor() + 1.0;
+    (entries as u64).min(source.times.map_or(u64::MAX, u64::from))
+}
+
+/// As people read it: three digits.
+pub fn in_units(bytes: u64) -> String {
+    const UNITS: [&str; 6] = ["bytes", "kB", "MB", "GB", "TB", "PB"];
+    let mut value = bytes as f64;
+    let mut unit = 0;
+    while value >= 999.5 && unit + 1 < UNITS.len() {
+        value /= 1000.0;
+        unit += 1;
+    }
+    let digits = match value {
+        value if unit == 0 || value >= 99.95 => 0,
+        value if value >= 9.995 => 1,
+        _ => 2,
+    };
+    format!("{value:.digits$} {}", UNITS[unit])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn amounts_have_three_digits() {
+        for (bytes, text) in [
+            (0, "0 bytes"),
+            (999, "999 bytes"),
+            (1_000, "1.00 kB"),
+            (16_500_000_000, "16.5 GB"),
+            (999_499_999, "999 MB"),
+            (999_500_000, "1.00 GB"),
+            (u64::MAX, "18447 PB"),
+        ] {
+            assert_eq!(in_units(bytes), text);
+        }
+    }
+
+    #[test]
+    fn what_is_without_bounds_needs_all_there_is() {
+        let need = Need {
+            initial: u64::MAX,
+            entering: u64::MAX,
+            ..Need::default()
+        };
+        assert_eq!(need.bytes(), u64::MAX);
+    }
+}

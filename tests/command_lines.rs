@@ -1,0 +1,81 @@
+//! Broken command lines and files, and all that the program says about them, word by word.
+#![cfg(feature = "cli")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::process::Command;
+
+use serde::Deserialize;
+
+/// Files that are there, and what is typed in their folder's terms: `{}` is the folder.
+#[derive(Deserialize)]
+struct Broken {
+    files: BTreeMap<String, String>,
+    lines: Vec<Line>,
+}
+
+/// What is typed, and the lines that stderr then has.
+#[derive(Deserialize)]
+struct Line {
+    typed: Vec<String>,
+    said: Vec<String>,
+}
+
+#[test]
+fn every_broken_command_line_is_refused_in_these_very_words() {
+    let broken: Broken =
+        serde_json::from_str(include_str!("data/broken_command_lines.json")).unwrap();
+    assert!(broken.lines.len() >= 60);
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in &broken.files {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    fs::write(folder.path().join("not_utf8.json"), b"{\"name\": \"\xff\"}").unwrap();
+    let place = folder.path().to_str().unwrap();
+    let possible =
+        |typed: &[String]| cfg!(feature = "recording") || !typed.contains(&"--save".to_owned());
+    for Line { typed, said } in &broken.lines {
+        if !possible(typed) {
+            continue;
+        }
+        let arguments = typed.iter().map(|argument| argument.replace("{}", place));
+        let mut program = Command::new(env!("CARGO_BIN_EXE_sandbox"));
+        let output = program.args(arguments).output().unwrap();
+        let stderr = String::from_utf8(output.stderr)
+            .unwrap()
+            .replace(place, "{}");
+        assert_eq!(stderr.trim_end(), said.join("\n"), "{typed:?}");
+        assert_eq!(output.status.code(), Some(2), "{typed:?}");
+        assert!(output.stdout.is_empty(), "{typed:?}");
+    }
+    // Nothing has been written, and nothing replaced.
+    assert_eq!(
+        fs::read_dir(folder.path()).unwrap().count(),
+        broken.files.len() + 1
+    );
+    for (name, text) in &broken.files {
+        let kept = fs::read_to_string(folder.path().join(name)).unwrap();
+        assert_eq!(kept, *text, "{name}");
+    }
+}
+
+#[cfg(feature = "recording")]
+#[test]
+fn an_agent_to_be_laid_open_who_never_enters_is_named_at_the_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    // The run is over before the second agent comes, which could not be known.
+    let text = r#"{"goal": [0.1, 0], "stop": {"idle_secs": 0.2}, "agents": [{"position": [0, 0]}],
+        "sources": [{"min": [0, 5], "max": [0, 9], "columns": 1, "rows": 1, "every_secs": 9, "start_secs": 9}]}"#;
+    fs::write(path("late.json"), text).unwrap();
+    let (file, save) = (path("late.json"), path("late.rrd"));
+    let typed = ["run", &file, "--save", &save, "--debug-agents", "0,1"];
+    let output = Command::new(env!("CARGO_BIN_EXE_sandbox"))
+        .args(typed)
+        .output()
+        .unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let note = "note: --debug-agents: 1 never entered: only 1 agents did, with ids from 0";
+    assert!(stderr.contains(note), "{stderr}");
+}

@@ -1,0 +1,121 @@
+//! What must hold of any obstacles and any points: for tests and for fuzzing.
+
+use std::f64::consts::PI;
+
+use sandbox::boundary::WallMethod;
+use sandbox::geometry::{Polygon, Walls};
+use sandbox::math::Vector;
+
+/// Rounding of coordinates up to 10⁶ m, and of what is computed from them, metres.
+const ROUNDING: f64 = 1e-8;
+/// How far outside of a wall somebody is put, metres, and some rounding.
+const HAIR: f64 = 2e-6;
+
+/// The obstacles that can be made of some lists of points.
+pub fn obstacles(lists: Vec<Vec<Vector>>) -> Vec<Polygon> {
+    let made = lists.into_iter().map(|points| {
+        let count = points.len();
+        let polygon = Polygon::new(points)?;
+        assert_eq!(polygon.points().len(), count);
+        assert!(polygon.area() > 0.0);
+        Ok::<Polygon, sandbox::geometry::PolygonError>(polygon)
+    });
+    made.filter_map(Result::ok).collect()
+}
+
+/// Asks everything that can be asked about `walls` at `p`, on the way to `goal`, within `radius` metres.
+pub fn check(walls: &Walls, p: Vector, goal: Vector, radius: f64) {
+    let all: Vec<u32> = (0..walls.len() as u32).collect();
+    let near = near(walls, p, radius);
+    shares(walls, &near, p, radius);
+    let inside = walls
+        .obstacles()
+        .iter()
+        .position(|polygon| polygon.contains(p));
+    let distance = |k: &u32| (walls.wall(*k).nearest_point(p).point - p).norm();
+    let nearest = all.iter().map(distance).fold(f64::INFINITY, f64::min);
+    // Within rounding of its boundary nobody is sure to be in an obstacle or not.
+    if nearest > ROUNDING {
+        assert_eq!(walls.obstacle_at(p), inside);
+    }
+    way_out(walls, p);
+    stopped(walls, p, goal, &all);
+}
+
+/// The index finds what brute force finds.
+fn near(walls: &Walls, p: Vector, radius: f64) -> Vec<u32> {
+    let mut found = Vec::new();
+    walls.near(p, radius, &mut found);
+    let is_near = |&k: &u32| {
+        let nearest = walls.wall(k).nearest_point(p).point;
+        (nearest - p).norm_squared() < radius * radius
+    };
+    let expected: Vec<u32> = (0..walls.len() as u32).filter(is_near).collect();
+    assert_eq!(found, expected);
+    let maybe = walls.near_any(&[p], radius);
+    assert!(maybe.is_sorted() && found.iter().all(|k| maybe.contains(k)));
+    found
+}
+
+/// What walls hide lies in the disc, and no integral is more than that over the whole disc.
+fn shares(walls: &Walls, near: &[u32], p: Vector, h: f64) {
+    let disc = PI * h * h;
+    for method in [
+        WallMethod::Representative,
+        WallMethod::Exact,
+        WallMethod::Union,
+    ] {
+        let mut hidden = 0.0;
+        method.shares(walls, near, p, h, |share| {
+            let slack = 1e-6 * disc;
+            assert!(
+                (-slack..=disc + slack).contains(&share.hidden_area),
+                "{share:?}"
+            );
+            assert!(share.kernel.is_finite() && share.gradient.norm().is_finite());
+            if method != WallMethod::Representative {
+                assert!((-1e-6..=1.0 + 1e-6).contains(&share.kernel), "{share:?}");
+            }
+            hidden += share.hidden_area;
+        });
+        if method == WallMethod::Union {
+            assert!(hidden <= disc * (1.0 + 1e-6), "{hidden} of {disc} m²");
+        }
+    }
+}
+
+/// A way out leads out, and no wall has a nearer one.
+fn way_out(walls: &Walls, p: Vector) {
+    let Some(exit) = walls.free_point_near(p) else {
+        return;
+    };
+    assert_eq!(walls.obstacle_at(exit), None);
+    let feet = walls
+        .iter()
+        .map(|wall| wall.nearest_point(p).point + wall.normal * 1e-6);
+    let free = feet.filter(|&foot| walls.obstacle_at(foot).is_none());
+    let nearest = free
+        .map(|foot| (foot - p).norm())
+        .fold(f64::INFINITY, f64::min);
+    assert!(
+        (exit - p).norm() <= nearest + ROUNDING,
+        "{exit} is farther than {nearest} m"
+    );
+    // Nor is it nearer than the nearest wall.
+    let distance = |wall: &sandbox::geometry::Wall| (wall.nearest_point(p).point - p).norm();
+    let least = walls.iter().map(distance).fold(f64::INFINITY, f64::min);
+    assert!((exit - p).norm() >= least - HAIR);
+}
+
+/// A move that is stopped ends on its way, on the free side of the wall that stopped it.
+fn stopped(walls: &Walls, from: Vector, to: Vector, all: &[u32]) {
+    let Some((end, k)) = walls.stop(from, to, all) else {
+        return;
+    };
+    let rounding = 1e-9 * (1.0 + from.norm() + to.norm());
+    assert!((end - from).norm() <= (to - from).norm() + rounding);
+    let aside = (to - from).perp(&(end - from)) / (to - from).norm();
+    assert!(aside.abs() <= rounding, "{aside} m off its way");
+    assert!(walls.wall(k).faces(end), "{end} is behind wall {k}");
+    assert_eq!(walls.first_crossing(from, end, &[k]), None);
+}
