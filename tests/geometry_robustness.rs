@@ -19,7 +19,7 @@ use sandbox::scenario::Scenario;
 use serde_json::{Value, json};
 
 /// Where edges touch, lie on one line, and nearly do so.
-fn coordinate() -> impl Strategy<Value = f64> + Sync + Clone {
+fn coordinate() -> impl Strategy<Value = f64> + Clone {
     prop_oneof![
         4 => (-4..=4_i32).prop_map(f64::from),
         2 => -5.0..5.0,
@@ -29,12 +29,12 @@ fn coordinate() -> impl Strategy<Value = f64> + Sync + Clone {
     ]
 }
 
-fn point() -> impl Strategy<Value = [f64; 2]> + Sync + Clone {
+fn point() -> impl Strategy<Value = [f64; 2]> + Clone {
     [coordinate(), coordinate()]
 }
 
 /// A polygon round a point: simple, whatever its corners.
-fn star() -> impl Strategy<Value = Vec<[f64; 2]>> + Sync {
+fn star() -> impl Strategy<Value = Vec<[f64; 2]>> {
     let size = select(vec![1e-7, 1e-3, 1.0, 10.0, 1e5]);
     let corners = prop::collection::vec(0.01..1.0, 3..40);
     (point(), size, corners).prop_map(|([x, y], size, radii)| {
@@ -48,7 +48,7 @@ fn star() -> impl Strategy<Value = Vec<[f64; 2]>> + Sync {
     })
 }
 
-fn obstacles() -> impl Strategy<Value = Vec<Vec<[f64; 2]>>> + Sync {
+fn obstacles() -> impl Strategy<Value = Vec<Vec<[f64; 2]>>> {
     let any_list = prop::collection::vec(point(), 0..7);
     let [x, y] = [coordinate(), coordinate()];
     let rectangle = (x, y, point()).prop_map(|(x, y, [z, w])| vec![[x, y], [z, y], [z, w], [x, w]]);
@@ -76,7 +76,7 @@ fn what_must_hold_of_walls_holds_of_any() {
 }
 
 /// Anybody whom a file can describe: on one point, in walls, with huge bodies.
-fn agent() -> impl Strategy<Value = Value> + Sync {
+fn agent() -> impl Strategy<Value = Value> {
     let radius = select(vec![0.01, 0.24, 1.0, 10.0, 1e308]);
     let mass = select(vec![1e-6, 1.0, 1e6]);
     let speed = select(vec![0.0, 1.0, -100.0, 100.0]);

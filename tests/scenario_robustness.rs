@@ -39,7 +39,7 @@ const EXTREMES: [f64; 14] = [
 ];
 
 /// Values that break something somewhere.
-fn nasty() -> impl Strategy<Value = Value> + Sync {
+fn nasty() -> impl Strategy<Value = Value> {
     prop_oneof![
         Just(Value::Null),
         any::<bool>().prop_map(Value::from),
@@ -64,7 +64,7 @@ fn nasty() -> impl Strategy<Value = Value> + Sync {
 }
 
 /// JSON of any shape.
-fn any_json() -> impl Strategy<Value = Value> + Sync {
+fn any_json() -> impl Strategy<Value = Value> {
     let known = [
         "profile",
         "blend",
