@@ -30,12 +30,12 @@ pub fn run(list_settings: bool) -> Result<(), Failure> {
         }
         text += &format!("\nprofiles: {}\n", NAMES.join(", "));
     }
-    say(&text)
+    say(text)
 }
 
 /// `sandbox schema`.
 pub fn schema() -> Result<(), Failure> {
-    say(&format!("{:#}\n", scenario::schema()))
+    say(format!("{:#}\n", scenario::schema()))
 }
 
 /// A unit in brackets.

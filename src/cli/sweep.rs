@@ -80,7 +80,7 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     if options.shard.is_none() {
         return merge(&study, &shelf, options);
     }
-    say(&told(&tally, shard, options.json))?;
+    say(told(&tally, shard, options.json))?;
     let failed: Vec<String> = tally
         .failed
         .iter()
@@ -118,9 +118,9 @@ fn list(gathered: &Gathered, options: &SweepOptions) -> Result<(), Failure> {
             cells.retain(|cell| shard.has(number(cell)));
         }
         let cells = json!({ "study": value["study"], "cells": value["cells"] });
-        return say(&format!("{cells}\n"));
+        return say(format!("{cells}\n"));
     }
-    say(&gathered.list(shard))
+    say(gathered.list(shard))
 }
 
 /// Puts together what is there.
@@ -130,9 +130,9 @@ fn merge(study: &Study, shelf: &Shelf, options: &SweepOptions) -> Result<(), Fai
         talk(&format!("note: {} written", path.display()));
     }
     if options.json {
-        say(&format!("{}\n", gathered.json()))?;
+        say(format!("{}\n", gathered.json()))?;
     } else {
-        say(&gathered.text())?;
+        say(gathered.text())?;
     }
     let all = study.cells.iter().zip(&gathered.states);
     let missing: Vec<usize> = all

@@ -111,5 +111,5 @@ fn begin(output: &Output, walls: &Walls, options: &RecordingOptions) -> Result<W
     crowd::log_style(stream)?;
     stats::log_style(stream)?;
     stream.flush_blocking()?;
-    Ok(Writer::start(stream.clone(), Layers::none())?)
+    Writer::start(stream.clone(), Layers::none())
 }

@@ -174,7 +174,7 @@ fn begin(
     layers.log_style(stream)?;
     stats::log_style(stream)?;
     stream.flush_blocking()?;
-    Ok(Writer::start(stream.clone(), layers)?)
+    Writer::start(stream.clone(), layers)
 }
 
 /// Sends what is still in memory, and how it is to be looked at.

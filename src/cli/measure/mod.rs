@@ -67,9 +67,9 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     };
     talk(&format!("note: results are in {}", folder.display()));
     if options.program.json {
-        return say(&format!("{}\n", report.json()));
+        return say(format!("{}\n", report.json()));
     }
-    say(&report.text())
+    say(report.text())
 }
 
 /// Where results go: beside where the user is, not beside the data.
