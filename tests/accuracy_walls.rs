@@ -1,10 +1,8 @@
 //! The wall benchmark: its exact integrals, and that each method does what it is said to do.
 #![cfg(feature = "bench")]
 
-mod common;
-
-use common::quadrature;
-use common::{rectangle, vector};
+use crate::common::quadrature;
+use crate::common::{rectangle, vector};
 use sandbox::accuracy::walls::{
     Case, Integrals, METHODS, Method, Place, Region, SUPPORT_RADIUS, Stored, Volumes, cases,
     measure,

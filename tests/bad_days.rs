@@ -2,14 +2,12 @@
 //! what was found until then is kept.
 #![cfg(all(feature = "cli", target_os = "linux"))]
 
-mod common;
-
 use std::fs::{self, File};
 use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use common::program::{PROGRAM, ended, text, under_way};
+use crate::common::program::{PROGRAM, ended, text, under_way};
 use serde_json::Value;
 
 fn sandbox(arguments: &[&str]) -> Output {

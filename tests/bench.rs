@@ -3,11 +3,10 @@
 //! No test here looks at how long something took.
 #![cfg(feature = "bench")]
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
-use common::{blend, block, room, scene, vector};
+use crate::common;
+use crate::common::{blend, block, room, scene, vector};
 use sandbox::bench::{BENCHMARKS, Plan, Report, SKIPS, everything};
 use sandbox::catalog::NAMES;
 use sandbox::simulation::Simulation;

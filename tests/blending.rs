@@ -1,8 +1,6 @@
 //! Blends (§4.4): weights, continuity, and what is not evaluated.
 
-mod common;
-
-use common::{
+use crate::common::{
     acceleration, blend, blend_with, evaluated, laid_open, person, scene, state, vector, walker,
 };
 use sandbox::agents::NewAgent;

@@ -1,11 +1,9 @@
 //! A run that goes on from a checkpoint is the run that never stopped, to the last bit.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{blend, block, room, scene, vector};
+use crate::common::{blend, block, room, scene, vector};
 use sandbox::catalog::NAMES;
 use sandbox::checkpoint::{Checkpoint, CheckpointError};
 use sandbox::metrics::Metrics;

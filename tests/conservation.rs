@@ -1,9 +1,7 @@
 //! What forces between people conserve: momentum, angular momentum where they are central, energy where
 //! they have a potential.
 
-mod common;
-
-use common::{blend_with, block, rectangle, run, scene, vector};
+use crate::common::{blend_with, block, rectangle, run, scene, vector};
 use sandbox::agents::{Agents, NewAgent};
 use sandbox::catalog::Parameters;
 use sandbox::clock::Clock;

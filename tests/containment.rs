@@ -1,8 +1,9 @@
 //! Nobody passes a wall, however thin, and however hard the crowd presses.
 
-mod common;
-
-use common::{blend, blend_with, block, person, polygon, rectangle, run, scene, vector, walker};
+use crate::common;
+use crate::common::{
+    blend, blend_with, block, person, polygon, rectangle, run, scene, vector, walker,
+};
 use proptest::prelude::*;
 use sandbox::catalog::Parameters;
 use sandbox::geometry::Polygon;

@@ -1,8 +1,6 @@
 //! Orders of convergence: how the error of each integrator falls with the time step.
 
-mod common;
-
-use common::{blend_with, person, run, scene, vector};
+use crate::common::{blend_with, person, run, scene, vector};
 use sandbox::agents::NewAgent;
 use sandbox::catalog::Parameters;
 use sandbox::clock::Clock;

@@ -1,8 +1,7 @@
 //! The same bits, whatever the number of threads and whoever looks on.
 
-mod common;
-
-use common::{bits, blend, block, room, scene, vector};
+use crate::common;
+use crate::common::{bits, blend, block, room, scene, vector};
 use sandbox::catalog::NAMES;
 use sandbox::pairs::Precision;
 use sandbox::profile::Override;

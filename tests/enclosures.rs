@@ -1,8 +1,7 @@
 //! A room whose walls are solid without end is, from the inside, the room with walls of any thickness.
 
-mod common;
-
-use common::{blend, blend_with, block, person, rectangle, run, scene, vector, walker};
+use crate::common;
+use crate::common::{blend, blend_with, block, person, rectangle, run, scene, vector, walker};
 use proptest::prelude::*;
 use sandbox::boundary::WallMethod;
 use sandbox::catalog::{NAMES, Parameters};

@@ -1,8 +1,6 @@
 //! Symmetries and conservation laws of the forces, on evaluated frames.
 
-mod common;
-
-use common::{
+use crate::common::{
     acceleration, blend, blend_with, evaluated, laid_open, person, polygon, room, scene, vector,
     walker,
 };

@@ -2,14 +2,9 @@
 //!
 //! 20,000 cases, more with `BAD_INPUT_TIMES=10 cargo test …`; see `scenario_robustness.rs`.
 
-#[path = "common/bounded.rs"]
-mod bounded;
-#[path = "common/reading.rs"]
-mod reading;
-#[path = "common/wall_checks.rs"]
-mod wall_checks;
-
-use bounded::cases;
+use crate::common::bounded::cases;
+use crate::common::reading;
+use crate::common::wall_checks;
 use proptest::prelude::*;
 use proptest::sample::select;
 use sandbox::boundary::WallMethod;

@@ -1,11 +1,9 @@
 //! Ctrl-C: a run ends with its current frame and closes everything; the second time at once.
 #![cfg(all(feature = "cli", unix))]
 
-mod common;
-
 use std::fs;
 
-use common::program::{ended, text, under_way};
+use crate::common::program::{ended, text, under_way};
 
 /// One person for days.
 const LONG: &str = r#"{"duration_secs": 1e6, "agents": [{"position": [0, 0], "goal": [9, 0]}]}"#;

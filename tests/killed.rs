@@ -1,13 +1,11 @@
 //! `kill -9` at any moment: what was recorded more than two seconds earlier is readable.
 #![cfg(all(feature = "cli", feature = "recording", unix))]
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use common::program::{text, under_way};
+use crate::common::program::{text, under_way};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sandbox::checkpoint::Checkpoint;

@@ -1,12 +1,11 @@
 //! `--spawn` and `--connect`: what is said where nobody looks on, or somebody has gone.
 #![cfg(all(feature = "cli", feature = "recording"))]
 
-mod common;
-
 use std::net::TcpListener;
 use std::process::{Command, Output};
 
-use common::program::PROGRAM;
+use crate::common;
+use crate::common::program::PROGRAM;
 
 fn sandbox(arguments: &[&str]) -> Output {
     let run = ["evacuation", "--until", "0.2"];

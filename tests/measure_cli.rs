@@ -1,14 +1,12 @@
 //! `sandbox measure` as a user runs it.
 #![cfg(feature = "cli")]
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use common::tracks::file;
+use crate::common::tracks::file;
 use serde_json::Value;
 
 fn measure(arguments: &[&str]) -> Output {

@@ -1,12 +1,10 @@
 //! Densities that are measured: the engine's own, those of lattices, and fields that hold everybody.
 #![cfg(feature = "trajectory")]
 
-mod common;
-
 use std::collections::BTreeMap;
 
-use common::tracks::tracks;
-use common::{blend, block, rectangle, room, scene, vector};
+use crate::common::tracks::tracks;
+use crate::common::{blend, block, rectangle, room, scene, vector};
 use rusqlite::Connection;
 use sandbox::boundary::WallMethod;
 use sandbox::floor_plan::parse_wkt;

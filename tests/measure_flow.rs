@@ -1,10 +1,8 @@
 //! Velocities, crossings and fundamental diagrams of motions that are known.
 #![cfg(feature = "trajectory")]
 
-mod common;
-
-use common::tracks::tracks;
-use common::vector;
+use crate::common::tracks::tracks;
+use crate::common::vector;
 use proptest::prelude::*;
 use sandbox::boundary::WallMethod;
 use sandbox::math::Vector;

@@ -1,9 +1,7 @@
 //! Who is missed: nobody with complete lists, whatever the integrator; with coarse ones some agents, but no
 //! wall.
 
-mod common;
-
-use common::{blend, block, rectangle, run, scene, vector};
+use crate::common::{blend, block, rectangle, run, scene, vector};
 use sandbox::agents::NewAgent;
 use sandbox::clock::Clock;
 use sandbox::kernel;

@@ -1,8 +1,7 @@
 //! Mixed precision against double, on the same frozen states.
 
-mod common;
-
-use common::{blend_with, room, scene, vector};
+use crate::common;
+use crate::common::{blend_with, room, scene, vector};
 use proptest::prelude::*;
 use sandbox::agents::NewAgent;
 use sandbox::catalog::Parameters;

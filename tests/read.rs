@@ -1,10 +1,8 @@
 //! Trajectories of other programs, as they are and as they should not be.
 #![cfg(feature = "trajectory")]
 
-mod common;
-
-use common::tracks::{file, read_as};
-use common::vector;
+use crate::common::tracks::{file, read_as};
+use crate::common::vector;
 use rusqlite::Connection;
 use sandbox::trajectory::read::{ReadOptions, Tracks, Unit, read};
 

@@ -1,8 +1,7 @@
 //! RVO's choice against a slow, obvious search, and who takes part in it.
 
-mod common;
-
-use common::{
+use crate::common;
+use crate::common::{
     acceleration, blend, block, evaluated, laid_open, person, rectangle, run, scene, vector, walker,
 };
 use rand::Rng;

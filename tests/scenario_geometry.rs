@@ -1,8 +1,7 @@
 //! Scenarios whose walls come from floor plans.
 #![cfg(feature = "trajectory")]
 
-mod common;
-
+use crate::common;
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -4,12 +4,8 @@
 //! is read is built and runs for some frames. Case by case at most this is held at once: 1 MB, 150 bytes for
 //! every byte of the text, 2 kB for everybody who enters, and 8 bytes for every two of a small crowd.
 
-#[path = "common/bounded.rs"]
-mod bounded;
-#[path = "common/reading.rs"]
-mod reading;
-
-use bounded::cases;
+use crate::common::bounded::cases;
+use crate::common::reading;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use sandbox::scenario::{SHIPPED, Setting};

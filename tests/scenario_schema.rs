@@ -1,13 +1,11 @@
 //! The schema of scenarios allows what the program takes, and knows every key, word and range.
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use common::documents::{count, nasty, replace};
-use common::json_schema::refusal;
+use crate::common::documents::{count, nasty, replace};
+use crate::common::json_schema::refusal;
 use proptest::prelude::*;
 use sandbox::scenario::{SHIPPED, Scenario, schema};
 use serde_json::{Value, json};

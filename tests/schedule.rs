@@ -1,8 +1,6 @@
 //! Who enters, pushes and leaves, and when.
 
-mod common;
-
-use common::{acceleration, blend, block, laid_open, run, scene, state, vector, walker};
+use crate::common::{acceleration, blend, block, laid_open, run, scene, state, vector, walker};
 use sandbox::math::Vector;
 use sandbox::placement::Grid;
 use sandbox::profile::Override;

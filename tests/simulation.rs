@@ -1,8 +1,6 @@
 //! Time stepping, entries, pushes, arrivals and faults, through the public API.
 
-mod common;
-
-use common::{
+use crate::common::{
     blend, blend_with, block, laid_open, person, rectangle, room, run, scene, state, vector,
 };
 use proptest::prelude::*;

@@ -1,8 +1,7 @@
 //! What a scene does not need is not computed, and shows as absent.
 
-mod common;
-
-use common::{blend, blend_with, block, person, rectangle, room, scene, vector};
+use crate::common;
+use crate::common::{blend, blend_with, block, person, rectangle, room, scene, vector};
 use sandbox::boundary::WallMethod;
 use sandbox::catalog::Parameters;
 use sandbox::pairs::Wanted;

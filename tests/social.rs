@@ -1,9 +1,8 @@
 //! Social forces between agents (Eq. 18): sums over crowds against the equation, pair by pair.
 
-mod common;
-
-use common::social::{condition, force, potential, weight};
-use common::{blend, blend_with, scene, vector, walker};
+use crate::common;
+use crate::common::social::{condition, force, potential, weight};
+use crate::common::{blend, blend_with, scene, vector, walker};
 use proptest::prelude::*;
 use rand::Rng;
 use sandbox::agents::NewAgent;

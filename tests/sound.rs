@@ -1,9 +1,7 @@
 //! The linear theory of sound against the engine itself: a patch of a hexagonal lattice is displaced
 //! by a small plane wave, and the acceleration of its middle read.
 
-mod common;
-
-use common::{acceleration, blend_with, evaluated, person, scene, vector};
+use crate::common::{acceleration, blend_with, evaluated, person, scene, vector};
 use sandbox::agents::NewAgent;
 use sandbox::catalog::Parameters;
 use sandbox::density::SphParameters;

@@ -1,11 +1,10 @@
 //! The hard cases: no panic, nothing that is not finite, nobody through a wall, and what was clipped is
 //! told.
 
-mod common;
-
 use std::path::Path;
 
-use common::{blend, blend_with, block, person, rectangle, scene, vector};
+use crate::common;
+use crate::common::{blend, blend_with, block, person, rectangle, scene, vector};
 use sandbox::agents::NewAgent;
 use sandbox::breakdown::Breakdown;
 use sandbox::catalog::{NAMES, Parameters};

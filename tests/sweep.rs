@@ -1,13 +1,11 @@
 //! Studies as they run: shards, what is kept, what fails, and what is put together.
 
-mod common;
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::sync::Mutex;
 
-use common::sweep::{ROOM, cases, column, folder, put, rows};
+use crate::common::sweep::{ROOM, cases, column, folder, put, rows};
 use sandbox::statistics::student_95;
 use sandbox::sweep::{Cell, Gathered, Listener, Shard, Shelf, State, Study, Tally, run};
 

@@ -1,12 +1,10 @@
 //! `sandbox sweep` as a user runs it: exit codes, what goes where, two processes at once.
 #![cfg(feature = "cli")]
 
-mod common;
-
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use common::sweep::{cases, column, folder, number, rows};
+use crate::common::sweep::{cases, column, folder, number, rows};
 use serde_json::Value;
 
 fn sandbox(folder: &Path, arguments: &[&str]) -> Command {

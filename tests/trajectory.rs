@@ -1,13 +1,12 @@
 //! Trajectories are written, read back and compared with the simulation, bit by bit.
 #![cfg(feature = "trajectory")]
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use common::{bits, blend, block, person, polygon, rectangle, room, scene, vector};
+use crate::common;
+use crate::common::{bits, blend, block, person, polygon, rectangle, room, scene, vector};
 use rusqlite::Connection;
 use sandbox::clock::Clock;
 use sandbox::geometry::Polygon;

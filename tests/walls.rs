@@ -1,11 +1,9 @@
 //! The hidden regions P_k and what they integrate to, against quadrature in two dimensions.
 
-mod common;
-
 use std::f64::consts::{PI, TAU};
 
-use common::quadrature::{Integrals, cross, shadow, swept};
-use common::{polygon, rectangle, room, vector};
+use crate::common::quadrature::{Integrals, cross, shadow, swept};
+use crate::common::{polygon, rectangle, room, vector};
 use proptest::prelude::*;
 use sandbox::boundary::{WallMethod, WallShare};
 use sandbox::geometry::{Polygon, Walls};

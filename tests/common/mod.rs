@@ -1,15 +1,18 @@
 //! Scenes that the tests are built from. Each test file uses its own part of this.
 #![allow(dead_code)]
 
+pub mod bounded;
 pub mod documents;
 pub mod json_schema;
 #[cfg(feature = "cli")]
 pub mod program;
 pub mod quadrature;
+pub mod reading;
 pub mod social;
 pub mod sweep;
 #[cfg(feature = "trajectory")]
 pub mod tracks;
+pub mod wall_checks;
 
 use sandbox::agents::NewAgent;
 use sandbox::breakdown::Breakdown;

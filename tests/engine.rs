@@ -1,0 +1,31 @@
+//! What holds of the model, the numerics and the reading of scenarios. One program of all these: to link one
+//! for each file would take longer than to run them.
+
+mod common;
+
+mod architecture;
+mod blending;
+mod conservation;
+mod containment;
+mod convergence;
+mod determinism;
+mod enclosures;
+mod floor_plan;
+mod floor_plan_pieces;
+mod forces;
+mod geometry_robustness;
+mod neighbor_lists;
+mod precision;
+mod reference_states;
+mod rvo;
+mod scenario_errors;
+mod scenario_robustness;
+mod scenario_schema;
+mod scenario_settings;
+mod scenario_shipped;
+mod schedule;
+mod simulation;
+mod skips;
+mod social;
+mod sound;
+mod walls;

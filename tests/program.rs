@@ -1,0 +1,29 @@
+//! What holds of the program, of what it writes and of the studies that it does.
+
+mod common;
+
+mod accuracy;
+mod accuracy_walls;
+mod bad_days;
+mod bench;
+mod checkpoint;
+mod cli;
+mod cli_geometry;
+mod command_lines;
+mod interrupts;
+mod killed;
+mod live;
+mod manual;
+mod measure_cli;
+mod measure_density;
+mod measure_flow;
+mod plot;
+mod read;
+mod recording;
+mod reproduction;
+mod scenario_geometry;
+mod stress;
+mod sweep;
+mod sweep_program;
+mod sweep_study;
+mod trajectory;
