@@ -19,7 +19,7 @@ use sandbox::scenario::Scenario;
 use serde_json::{Value, json};
 
 /// Where edges touch, lie on one line, and nearly do so.
-fn coordinate() -> impl Strategy<Value = f64> + Sync + Clone {
+fn coordinate() -> impl Strategy<Value = f64> + Clone {
     prop_oneof![
         4 => (-4..=4_i32).prop_map(f64::from),
         2 => -5.0..5.0,
@@ -29,12 +29,12 @@ fn coordinate() -> impl Strategy<Value = f64> + Sync + Clone {
     ]
 }
 
-fn point() -> impl Strategy<Value = [f64; 2]> + Sync + Clone {
+fn point() -> impl Strategy<Value = [f64; 2]> + Clone {
     [coordinate(), coordinate()]
 }
 
 /// A polygon round a point: simple, whatever its corners.
-fn star() -> impl Strategy<Value = Vec<[f64; 2]>> + Sync {
+fn star() -> impl Strategy<Value = Vec<[f64; 2]>> {
     let size = select(vec![1e-7, 1e-3, 1.0, 10.0, 1e5]);
     let corners = prop::collection::vec(0.01..1.0, 3..40);
     (point(), size, corners).prop_map(|([x, y], size, radii)| {
@@ -48,7 +48,7 @@ fn star() -> impl Strategy<Value = Vec<[f64; 2]>> + Sync {
     })
 }
 
-fn obstacles() -> impl Strategy<Value = Vec<Vec<[f64; 2]>>> + Sync {
+fn obstacles() -> impl Strategy<Value = Vec<Vec<[f64; 2]>>> {
     let any_list = prop::collection::vec(point(), 0..7);
     let [x, y] = [coordinate(), coordinate()];
     let rectangle = (x, y, point()).prop_map(|(x, y, [z, w])| vec![[x, y], [z, y], [z, w], [x, w]]);
@@ -61,22 +61,26 @@ fn vectors(points: Vec<[f64; 2]>) -> Vec<Vector> {
 
 #[test]
 fn what_must_hold_of_walls_holds_of_any() {
-    let radius = select(vec![0.01, 1.0, 5.0]);
-    let asked = prop::collection::vec((point(), point(), radius), 1..4);
-    cases(10_000, &(obstacles(), asked), |(lists, asked)| {
-        let walls = Walls::new(wall_checks::obstacles(
-            lists.into_iter().map(vectors).collect(),
-        ));
-        for (p, goal, radius) in asked {
-            wall_checks::check(&walls, p.into(), goal.into(), radius);
-        }
-        // Where all walls cross each other there are as many corners as pairs of walls.
-        (1 << 20) + 400 * walls.len() as u64 + 100 * (walls.len() as u64).pow(2)
-    });
+    let radius = || select(vec![0.01, 1.0, 5.0]);
+    let asked = || prop::collection::vec((point(), point(), radius()), 1..4);
+    cases(
+        10_000,
+        || (obstacles(), asked()),
+        |(lists, asked)| {
+            let walls = Walls::new(wall_checks::obstacles(
+                lists.into_iter().map(vectors).collect(),
+            ));
+            for (p, goal, radius) in asked {
+                wall_checks::check(&walls, p.into(), goal.into(), radius);
+            }
+            // Where all walls cross each other there are as many corners as pairs of walls.
+            (1 << 20) + 400 * walls.len() as u64 + 100 * (walls.len() as u64).pow(2)
+        },
+    );
 }
 
 /// Anybody whom a file can describe: on one point, in walls, with huge bodies.
-fn agent() -> impl Strategy<Value = Value> + Sync {
+fn agent() -> impl Strategy<Value = Value> {
     let radius = select(vec![0.01, 0.24, 1.0, 10.0, 1e308]);
     let mass = select(vec![1e-6, 1.0, 1e6]);
     let speed = select(vec![0.0, 1.0, -100.0, 100.0]);
@@ -97,19 +101,20 @@ fn agent() -> impl Strategy<Value = Value> + Sync {
 
 #[test]
 fn any_people_among_any_obstacles_move_or_are_refused() {
-    let people = prop::collection::vec(agent(), 0..20);
-    let method = select(vec!["representative", "exact", "union"]);
-    let integrator = select(vec![
+    let method = || select(vec!["representative", "exact", "union"]);
+    let integrators = [
         "semi-implicit",
         "forward-euler",
         "velocity-verlet",
         "midpoint",
-    ]);
-    let step = select(vec![1e-6, 0.02, 1.0]);
-    let input = (obstacles(), people, method, integrator, step);
+    ];
+    let integrator = || select(integrators.to_vec());
+    let people = || prop::collection::vec(agent(), 0..20);
+    let step = || select(vec![1e-6, 0.02, 1.0]);
+    let input = || (obstacles(), people(), method(), integrator(), step());
     cases(
         10_000,
-        &input,
+        input,
         |(mut lists, agents, method, integrator, step)| {
             // One that is no polygon would hide what the others do.
             lists
