@@ -56,18 +56,22 @@ fn vectors(points: Vec<[f64; 2]>) -> Vec<Vector> {
 
 #[test]
 fn what_must_hold_of_walls_holds_of_any() {
-    let radius = select(vec![0.01, 1.0, 5.0]);
-    let asked = prop::collection::vec((point(), point(), radius), 1..4);
-    cases(10_000, &(obstacles(), asked), |(lists, asked)| {
-        let walls = Walls::new(wall_checks::obstacles(
-            lists.into_iter().map(vectors).collect(),
-        ));
-        for (p, goal, radius) in asked {
-            wall_checks::check(&walls, p.into(), goal.into(), radius);
-        }
-        // Where all walls cross each other there are as many corners as pairs of walls.
-        (1 << 20) + 400 * walls.len() as u64 + 100 * (walls.len() as u64).pow(2)
-    });
+    let radius = || select(vec![0.01, 1.0, 5.0]);
+    let asked = || prop::collection::vec((point(), point(), radius()), 1..4);
+    cases(
+        10_000,
+        || (obstacles(), asked()),
+        |(lists, asked)| {
+            let walls = Walls::new(wall_checks::obstacles(
+                lists.into_iter().map(vectors).collect(),
+            ));
+            for (p, goal, radius) in asked {
+                wall_checks::check(&walls, p.into(), goal.into(), radius);
+            }
+            // Where all walls cross each other there are as many corners as pairs of walls.
+            (1 << 20) + 400 * walls.len() as u64 + 100 * (walls.len() as u64).pow(2)
+        },
+    );
 }
 
 /// Anybody whom a file can describe: on one point, in walls, with huge bodies.
@@ -92,19 +96,20 @@ fn agent() -> impl Strategy<Value = Value> {
 
 #[test]
 fn any_people_among_any_obstacles_move_or_are_refused() {
-    let people = prop::collection::vec(agent(), 0..20);
-    let method = select(vec!["representative", "exact", "union"]);
-    let integrator = select(vec![
+    let method = || select(vec!["representative", "exact", "union"]);
+    let integrators = [
         "semi-implicit",
         "forward-euler",
         "velocity-verlet",
         "midpoint",
-    ]);
-    let step = select(vec![1e-6, 0.02, 1.0]);
-    let input = (obstacles(), people, method, integrator, step);
+    ];
+    let integrator = || select(integrators.to_vec());
+    let people = || prop::collection::vec(agent(), 0..20);
+    let step = || select(vec![1e-6, 0.02, 1.0]);
+    let input = || (obstacles(), people(), method(), integrator(), step());
     cases(
         10_000,
-        &input,
+        input,
         |(mut lists, agents, method, integrator, step)| {
             // One that is no polygon would hide what the others do.
             lists

@@ -181,12 +181,12 @@ fn edit(value: &mut Value, how: u8, by: &Value) {
 
 #[test]
 fn any_text_is_read_or_refused() {
-    cases(10_000, &any::<String>(), |text| read(&text, &[]));
+    cases(10_000, any::<String>, |text| read(&text, &[]));
 }
 
 #[test]
 fn any_json_is_read_or_refused() {
-    cases(20_000, &any_json(), |document| {
+    cases(20_000, any_json, |document| {
         read(&document.to_string(), &[])
     });
 }
@@ -194,10 +194,10 @@ fn any_json_is_read_or_refused() {
 #[test]
 fn a_scenario_with_values_changed_is_read_or_refused() {
     let documents = small_scenarios();
-    let changes = prop::collection::vec((any::<Index>(), 0..12_u8, nasty()), 1..4);
+    let changes = || prop::collection::vec((any::<Index>(), 0..12_u8, nasty()), 1..4);
     cases(
         26_000,
-        &(0..documents.len(), changes),
+        || (0..documents.len(), changes()),
         |(which, changes)| {
             let mut document = documents[which].clone();
             for (index, how, value) in changes {
@@ -212,8 +212,8 @@ fn a_scenario_with_values_changed_is_read_or_refused() {
 #[test]
 fn a_text_that_is_cut_doubled_or_nested_is_read_or_refused() {
     let texts: Vec<String> = small_scenarios().iter().map(Value::to_string).collect();
-    let input = (0..texts.len(), any::<[Index; 3]>(), 0..5_u8, 1..5_000_usize);
-    cases(12_000, &input, |(which, places, how, depth)| {
+    let input = || (0..texts.len(), any::<[Index; 3]>(), 0..5_u8, 1..5_000_usize);
+    cases(12_000, input, |(which, places, how, depth)| {
         let text = &texts[which];
         let [from, to, at] = places.map(|place| place.index(text.len()));
         let (from, to) = (from.min(to), from.max(to));
@@ -240,13 +240,19 @@ fn any_setting_is_taken_or_refused() {
         "stop",
         "grids.0.min.1",
     ];
-    let key = prop_oneof![
-        "[a-z_.0-9]{0,12}",
-        select(known.to_vec()).prop_map(str::to_owned),
-    ];
+    let key = || {
+        prop_oneof![
+            "[a-z_.0-9]{0,12}",
+            select(known.to_vec()).prop_map(str::to_owned),
+        ]
+    };
     let text = small_scenarios().pop().unwrap().to_string();
-    cases(12_000, &(key, nasty()), |(key, value)| {
-        let setting = format!("{key}={value}").parse::<Setting>();
-        setting.map_or(1 << 20, |setting| read(&text, &[setting]))
-    });
+    cases(
+        12_000,
+        || (key(), nasty()),
+        |(key, value)| {
+            let setting = format!("{key}={value}").parse::<Setting>();
+            setting.map_or(1 << 20, |setting| read(&text, &[setting]))
+        },
+    );
 }

@@ -1,7 +1,5 @@
 //! Where more people are put, or more corners, than any place holds: nothing would come of it but a wait.
 
-use rayon::prelude::*;
-
 use super::error::Problem;
 use super::file::{File, Object};
 use super::need;
@@ -96,7 +94,7 @@ fn crowded(points: &[Vector]) -> Option<(usize, usize)> {
     }
     let cell = |p: &Vector| [p.x.floor() as i32, p.y.floor() as i32];
     let mut cells: Vec<[i32; 2]> = points.iter().map(cell).collect();
-    cells.par_sort_unstable();
+    cells.sort_unstable();
     let full: Vec<&[[i32; 2]]> = cells
         .chunk_by(|a, b| a == b)
         .filter(|same| same.len() > MOST_PER_CELL)
@@ -109,7 +107,7 @@ fn crowded(points: &[Vector]) -> Option<(usize, usize)> {
 
 /// The first of `people` who is inside an obstacle without a way out, and what is said about it.
 fn locked(walls: &Walls, people: &[Vector]) -> Option<(usize, String)> {
-    people.par_iter().enumerate().find_map_first(|(k, &p)| {
+    people.iter().enumerate().find_map(|(k, &p)| {
         let obstacle = walls.obstacle_at(p)?;
         if walls.free_point_near(p).is_some() {
             return None;

@@ -146,7 +146,7 @@ pub(crate) fn in_plain_words(said: &str) -> String {
 }
 
 /// What serde and serde_json say, and what people say.
-const WORDS: [(&str, &str); 20] = [
+const WORDS: [(&str, &str); 22] = [
     ("expected f64", "expected a number"),
     ("expected u32", "expected a whole number from 0 to 2^32 - 1"),
     ("expected u64", "expected a whole number from 0 to 2^64 - 1"),
@@ -167,6 +167,14 @@ const WORDS: [(&str, &str); 20] = [
     ("unknown variant", "unknown value"),
     ("missing field", "missing key"),
     ("EOF while parsing", "the text ends within"),
+    (
+        "expected value",
+        "expected a value: a number, text in quotes, true, false, null, a list or an object",
+    ),
+    (
+        "number out of range",
+        "number out of range: the largest is 1.7e308",
+    ),
     (
         "trailing comma",
         "a comma before a closing bracket; remove it",

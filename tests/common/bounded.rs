@@ -6,19 +6,24 @@ use proptest::test_runner::{Config, TestRunner};
 /// Runs `count` cases, `BAD_INPUT_TIMES` times as many where that is set, on the calling thread alone.
 ///
 /// `case` returns the most bytes that it may have held at once.
-pub fn cases<S: Strategy>(count: u32, input: &S, case: impl Fn(S::Value) -> u64) {
+pub fn cases<S: Strategy>(
+    count: u32,
+    input: impl FnOnce() -> S + Send,
+    case: impl Fn(S::Value) -> u64 + Sync,
+) {
     let times = std::env::var("BAD_INPUT_TIMES").map_or(1, |times| times.parse().unwrap());
     let mut config = Config::with_cases(count * times);
     config.failure_persistence = None;
     // What is computed in parallel would else be allocated elsewhere.
-    let alone = rayon::ThreadPoolBuilder::new().num_threads(1);
-    let _pool = alone.use_current_thread().build().unwrap();
-    TestRunner::new(config)
-        .run(input, |value| {
-            let mut most = 0;
-            let held = allocation_counter::measure(|| most = case(value)).bytes_max;
-            prop_assert!(held <= most, "{held} bytes held at once, {most} at most");
-            Ok(())
-        })
-        .unwrap();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    pool.unwrap().install(|| {
+        TestRunner::new(config)
+            .run(&input(), |value| {
+                let mut most = 0;
+                let held = allocation_counter::measure(|| most = case(value)).bytes_max;
+                prop_assert!(held <= most, "{held} bytes held at once, {most} at most");
+                Ok(())
+            })
+            .unwrap();
+    });
 }

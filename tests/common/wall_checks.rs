@@ -114,6 +114,10 @@ fn stopped(walls: &Walls, from: Vector, to: Vector, all: &[u32]) {
     };
     let rounding = 1e-9 * (1.0 + from.norm() + to.norm());
     assert!((end - from).norm() <= (to - from).norm() + rounding);
+    assert!(end.norm().is_finite());
+    if (to - from).norm() < f64::MIN_POSITIVE {
+        return; // without a direction
+    }
     let aside = (to - from).perp(&(end - from)) / (to - from).norm();
     assert!(aside.abs() <= rounding, "{aside} m off its way");
     assert!(walls.wall(k).faces(end), "{end} is behind wall {k}");
