@@ -154,15 +154,15 @@ fn what_a_killed_process_had_claimed_is_free() {
 #[test]
 fn a_cell_that_fails_is_written_down_and_the_others_finish() {
     let (folder, path) = folder(
-        r#"{"scenario": "star.json", "seeds": 2,
-            "grid": {"agents.0.position": [[0, 0], [20, 0], [0, 20]]}}"#,
+        r#"{"scenario": "crack.json", "seeds": 2,
+            "grid": {"sources.0.jitter": [1, 0, 1e-8]}}"#,
     );
     let study = Study::read(&path).unwrap();
     let out = folder.path().join("out");
     let (tally, ear) = run_in(&study, &out, Shard::WHOLE);
     assert_eq!([tally.finished, tally.failed.len()], [4, 2]);
     let (cell, message) = &tally.failed[0];
-    assert_eq!(cell, "cell 1: agents.0.position=[0,0] seed=1");
+    assert_eq!(cell, "cell 1: sources.0.jitter=1 seed=1");
     assert!(message.contains("no free point"), "{message}");
     let mut failed = ear.failed.into_inner().unwrap();
     failed.sort_unstable();

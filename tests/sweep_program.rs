@@ -75,14 +75,13 @@ fn a_cell_is_the_run_that_its_settings_make() {
 
 #[test]
 fn a_failed_cell_is_told_at_the_end_and_the_exit_code_is_1() {
-    let (folder, _) = folder(
-        r#"{"scenario": "star.json", "grid": {"agents.0.position": [[0, 0], [20, 0], [0, 20]]}}"#,
-    );
+    let (folder, _) =
+        folder(r#"{"scenario": "crack.json", "grid": {"sources.0.jitter": [1, 0, 1e-8]}}"#);
     let (code, stdout, stderr) = run(folder.path(), &["sweep", "study.json", "--out", "out"]);
     assert_eq!(code, Some(1));
     assert!(stderr.contains("error: 1 of 3 cells failed"), "{stderr}");
     assert!(
-        stderr.contains("cell 1: agents.0.position=[0,0] seed=1: agent 0"),
+        stderr.contains("cell 1: sources.0.jitter=1 seed=1: agent 0"),
         "{stderr}"
     );
     assert!(

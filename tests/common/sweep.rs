@@ -12,25 +12,20 @@ pub const ROOM: &str = r#"{"goal": [10, 1], "profile": "sph", "duration_secs": 0
     "grids": [{"min": [0, 0], "max": [2, 2], "columns": 3, "rows": 3, "jitter": 0.1}],
     "measurements": [{"density": {"at_secs": 0.2}}, {"evacuated": {}}]}"#;
 
-/// One person, 2 m away from or in the middle of a star that nobody is let out of: a run that cannot begin.
-pub fn star() -> String {
-    let corner = |k: u32| {
-        let radius = if k.is_multiple_of(2) { 1.0 } else { 10.0 };
-        let (sin, cos) = (std::f64::consts::PI * f64::from(k) / 8.0).sin_cos();
-        vec![radius * cos, radius * sin]
-    };
-    let corners: Vec<Vec<f64>> = (0..16).map(corner).collect();
-    format!(
-        r#"{{"goal": [40, 0], "duration_secs": 0.1, "obstacles": [{corners:?}],
-        "agents": [{{"position": [20, 0]}}]}}"#
-    )
-}
+/// One person in a crack between two walls that fill all that is round it: somebody whom jitter puts beside it
+/// is let out nowhere, a run that fails when it begins.
+pub const CRACK: &str = r#"{"goal": [2, 40], "duration_secs": 0.1,
+    "walkable_area": [[[[0, 0], [4, 0], [4, 4], [0, 4]]]],
+    "obstacles": [[[-1, -1], [2, -1], [2, 5], [-1, 5]],
+                  [[2.0000005, -1], [5, -1], [5, 5], [2.0000005, 5]]],
+    "sources": [{"min": [2.00000025, 2], "max": [2.00000025, 2], "columns": 1, "rows": 1,
+                 "every_secs": 1, "times": 1}]}"#;
 
-/// A folder with the scenarios `room.json` and `star.json`, and `study.json`.
+/// A folder with the scenarios `room.json` and `crack.json`, and `study.json`.
 pub fn folder(study: &str) -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("room.json"), ROOM).unwrap();
-    fs::write(folder.path().join("star.json"), star()).unwrap();
+    fs::write(folder.path().join("crack.json"), CRACK).unwrap();
     let path = put(folder.path(), study);
     (folder, path)
 }
