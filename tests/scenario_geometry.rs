@@ -152,9 +152,10 @@ fn a_plan_of_the_command_line_takes_the_place_of_the_scenarios_walls() {
         "an open plane"
     );
     // Where a scenario names its own file, settings do, too.
-    let set = "walkable_area=plans/kiosk.wkt".parse::<Setting>().unwrap();
-    let walls = Scenario::load(&path, &[set]).unwrap().scene.walls;
-    assert_eq!(walls.obstacle_at([5.0, 5.0].into()), Some(1));
+    let set = ["walkable_area=plans/kiosk.wkt", "obstacles=[]"]
+        .map(|set| set.parse::<Setting>().unwrap());
+    let walls = Scenario::load(&path, &set).unwrap().scene.walls;
+    assert_eq!(walls.obstacle_at([5.0, 5.0].into()), Some(0));
 }
 
 #[test]

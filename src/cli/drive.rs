@@ -21,10 +21,10 @@ use crate::stability::{FITTED, Mode, Scheme};
 
 /// `sandbox evacuation|crossing|concert|plaza|run`.
 pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
+    use_threads(options.scene.program.threads)?;
     let writing = memory::of_writing(&options.output);
     let until = options.output.until.map(|secs| ("--until", secs));
     let scenario = scenario(source, &options.scene, until, writing)?;
-    use_threads(options.scene.program.threads)?;
     warn_of_the_step(&scenario.scene);
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     let metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
@@ -39,6 +39,7 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
 
 /// `sandbox resume`.
 pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
+    use_threads(options.program.threads)?;
     let checkpoint = Checkpoint::read(&options.file)?;
     if !checkpoint.is_of_this_engine() {
         talk(&format!(
@@ -56,7 +57,6 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
     let need = checkpoint.need(until.as_slice())?;
     memory::check(&file, &need, memory::of_writing(&options.output))?;
     let scenario = checkpoint.scenario(until.as_slice())?;
-    use_threads(options.program.threads)?;
     let (simulation, metrics) = checkpoint.resume(&scenario)?;
     go_on(
         &scenario,

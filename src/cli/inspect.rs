@@ -11,13 +11,13 @@ use crate::pairs::Precision;
 use crate::simulation::Simulation;
 
 pub fn run(options: &InspectOptions) -> Result<(), Failure> {
+    use_threads(options.scene.program.threads)?;
     let source = Source::named(&options.scenario);
     let mut scenario = read(&source, &options.scene, None, 0)?;
     if options.at > scenario.duration_secs {
         // Sources go on until then.
         scenario = read(&source, &options.scene, Some(("--at", options.at)), 0)?;
     }
-    use_threads(options.scene.program.threads)?;
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     // The rest density follows the density's history, so every frame needs it.
     simulation.request_density_until(u64::MAX);

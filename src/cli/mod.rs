@@ -195,7 +195,7 @@ fn talk(line: &str) {
     writeln!(std::io::stderr(), "{line}").ok();
 }
 
-/// Makes rayon use so many threads.
+/// Makes rayon use so many threads; to be called before anything else, which may compute in parallel.
 fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
     if let Some(threads) = threads {
         rayon::ThreadPoolBuilder::new()
