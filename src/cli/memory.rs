@@ -83,7 +83,7 @@ mod tests {
         assert_eq!(refused.exit_code(), 2);
         assert_eq!(
             refused.to_string(),
-            "f.json: 1000000 agents (600000 of them from sources) and 12 walls would take 653 MB of memory \
+            "f.json: 1000000 agents (600000 of them from sources) and 12 walls would take 723 MB of memory \
              (100 MB of them to write files), and this machine has 256 MB: take fewer agents, a shorter run (--until) if they come from sources, \
              or another machine"
         );

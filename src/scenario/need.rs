@@ -17,17 +17,17 @@ const PROGRAM: u64 = 12 << 20;
 ///
 /// | agents | sph | rvo | estimate |
 /// |---|---|---|---|
-/// | 1,000 | 10.4 | 10.5 | 13.0 |
-/// | 10,000 | 14.2 | 13.4 | 17.1 |
-/// | 100,000 | 48.6 | 41.5 | 57.6 |
-/// | 1,000,000 | 393 | – | 463 |
-const AGENT: u64 = 450;
+/// | 1,000 | 9.1 | 9.2 | 13.1 |
+/// | 10,000 | 13.4 | 13.0 | 18.1 |
+/// | 100,000 | 54.8 | 47.1 | 67.6 |
+/// | 1,000,000 | 465 | – | 563 |
+const AGENT: u64 = 550;
 /// The same of an agent that comes later: what grows has room to spare.
-const LATER_AGENT: u64 = 600;
+const LATER_AGENT: u64 = 650;
 /// A corner of an obstacle with its wall, and the indices over them, bytes.
 const WALL: u64 = 400;
 /// A byte of a scenario's text as a document and what is made of it, bytes: 100,000 agents one by one, in 2.9 MB
-/// of text, take 228 MB, and 100,000 square obstacles, in 6.5 MB, 322 MB; the estimates are 248 and 595 MB.
+/// of text, take 228 MB, and 100,000 square obstacles, in 6.5 MB, 322 MB; the estimates are 258 and 595 MB.
 const TEXT: u64 = 65;
 
 /// How large a scenario's run becomes at most.
