@@ -173,7 +173,7 @@ fn a_cell_that_fails_is_written_down_and_the_others_finish() {
         column(&table, "status")[..3],
         ["failed", "failed", "finished"]
     );
-    assert_eq!(column(&table, "error")[1], *message);
+    assert_eq!(column(&table, "error")[0], *message);
     assert_eq!(column(&table, "state_sha256")[1], "");
     assert_eq!(
         column(&rows(&out.join("study-summary.csv")), "runs"),

@@ -196,7 +196,7 @@ fn what_is_no_json_is_reported_with_line_and_column() {
     let said = |text: &str| read(folder.path(), text).err().unwrap();
     assert_eq!(
         said("{\"scenario\": \"evacuation\",\n \"seeds\": 2,}"),
-        "study.json: line 2, column 13: trailing comma"
+        "study.json: line 2, column 13: a comma before a closing bracket; remove it"
     );
     assert_eq!(
         said("{\"grid\": {\"seed\": [1],\n \"seed\": [2]}}"),

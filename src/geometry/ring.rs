@@ -18,7 +18,7 @@ impl Ring {
     /// Checks `points` (metres, either orientation, the last not repeating the first) and orients them.
     ///
     /// # Errors
-    /// Fewer than three points, a non-finite or repeated point, no area, or edges that meet anywhere
+    /// Fewer than three points, a non-finite or repeated point, no area but rounding, or edges that meet anywhere
     /// but at the corner they share. Indices count from 0 in the order given.
     pub fn new(mut points: Vec<Vector>) -> Result<Self, PolygonError> {
         let count = points.len();
@@ -37,7 +37,9 @@ impl Ring {
             return Err(PolygonError::SelfIntersection(i, j));
         }
         let area = signed_area(&points);
-        if area == 0.0 {
+        let reach = points.iter().map(|p| (p - points[0]).norm_squared());
+        // What is less than rounding may have either sign.
+        if area.abs() <= f64::EPSILON * reach.fold(0.0, f64::max) {
             return Err(PolygonError::NoArea);
         }
         if area < 0.0 {

@@ -96,8 +96,8 @@ impl Wall {
         }
     }
 
-    /// The point `clearance` metres before both this wall and another at the place where they cross; `None`
-    /// where they do not.
+    /// The point `clearance` metres before both this wall and another at the place where they cross or meet;
+    /// `None` where they do not, and before the tip of a spike, which is farther from both.
     pub fn corner_with(&self, other: &Self, clearance: f64) -> Option<Vector> {
         let sine = self.tangent.perp(&other.tangent);
         let along = (other.start - self.start).perp(&other.tangent) / sine;
@@ -106,7 +106,12 @@ impl Wall {
         let crosses = self.reaches(along) && other.reaches(there);
         let cosine = self.normal.dot(&other.normal);
         let out = (self.normal + other.normal) * (clearance / (1.0 + cosine));
-        (crosses && out.norm().is_finite()).then_some(point + out)
+        let corner = point + out;
+        let is_before = |wall: &Self| {
+            let gap = (wall.nearest_point(corner).point - corner).norm();
+            gap <= 2.0 * clearance // of rounding, too
+        };
+        (crosses && is_before(self) && is_before(other)).then_some(corner)
     }
 
     /// The fraction of the way from `from` (on the free side) to `to` at which this wall is crossed
