@@ -194,7 +194,7 @@ fn words_are_those_that_the_parser_knows() {
 }
 
 /// What no schema can say: how values relate to each other, and geometry.
-const RELATIONS: [&str; 20] = [
+const RELATIONS: [&str; 21] = [
     "lower left corner comes first",
     "too many",
     "is measured already",
@@ -213,6 +213,7 @@ const RELATIONS: [&str; 20] = [
     "is above rest_density_max",
     "key `seed` is given twice",
     "may stand there",
+    "floating point `1.8446744073709552e+19`", // a whole number to a schema
     "profiles in one blend",
     "no free point is near",
 ];

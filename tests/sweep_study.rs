@@ -200,7 +200,7 @@ fn what_is_no_json_is_reported_with_line_and_column() {
     );
     assert_eq!(
         said("{\"grid\": {\"seed\": [1],\n \"seed\": [2]}}"),
-        "study.json: line 2, column 7: key `seed` is given twice"
+        "study.json: line 2, column 7: key `seed` is given twice; remove one"
     );
     let missing = Study::read(&folder.path().join("no.json")).unwrap_err();
     assert!(missing.to_string().contains("no.json: No such file"));
