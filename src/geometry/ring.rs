@@ -78,7 +78,9 @@ impl Ring {
 /// Does `p` lie inside the outline `points`, whichever way round it goes?
 pub(super) fn encloses(points: &[Vector], p: Vector) -> bool {
     let points: Vec<_> = points.iter().map(|&p| to_parry(p)).collect();
-    point_in_poly2d(to_parry(p), &points)
+    let p = to_parry(p);
+    // Beside an edge that rises by less than rounding parry takes points before its start for inside.
+    Aabb::from_points(points.iter().copied()).contains_local_point(p) && point_in_poly2d(p, &points)
 }
 
 /// The shoelace formula, relative to the first point so that far-away polygons keep their digits.

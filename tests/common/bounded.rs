@@ -1,5 +1,7 @@
 //! Many cases of anything, each with a bound on the memory that it takes.
 
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
@@ -19,8 +21,11 @@ pub fn cases<S: Strategy>(
     pool.unwrap().install(|| {
         TestRunner::new(config)
             .run(&input(), |value| {
-                let mut most = 0;
-                let held = allocation_counter::measure(|| most = case(value)).bytes_max;
+                // A panic that passed through the counter would count as one that is still measured.
+                let mut ended = Ok(0);
+                let counted = || ended = catch_unwind(AssertUnwindSafe(|| case(value)));
+                let held = allocation_counter::measure(counted).bytes_max;
+                let most = ended.unwrap_or_else(|panic| resume_unwind(panic));
                 prop_assert!(held <= most, "{held} bytes held at once, {most} at most");
                 Ok(())
             })
