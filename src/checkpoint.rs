@@ -18,7 +18,7 @@ use crate::simulation::{Simulation, State, StateError};
 /// How every file begins.
 const MAGIC: &[u8] = b"sandbox checkpoint\n";
 /// To be raised with whatever changes what a file holds.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// The engine's sources: another engine goes on otherwise.
 const ENGINE: &str = env!("SANDBOX_ENGINE");
 

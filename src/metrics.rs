@@ -18,7 +18,7 @@ pub enum Measurement {
         /// n, at least 2.
         arrivals: usize,
     },
-    /// Counted arrivals until a time in seconds, over that time, P/s.
+    /// Counted arrivals until the frame nearest to a time in seconds, over the time of that frame, P/s.
     FlowUntil {
         /// The time, seconds.
         until: f64,
@@ -119,7 +119,7 @@ impl Metrics {
 
     /// What has been measured so far.
     pub fn results(&self, simulation: &Simulation) -> Vec<Metric> {
-        let end = simulation.frame().clock.time();
+        let clock = simulation.frame().clock;
         let counted = simulation
             .outcome()
             .arrivals
@@ -135,8 +135,10 @@ impl Metrics {
             }
             Measurement::FlowOfFirst { arrivals } => vec![flow_of_first(&times, *arrivals)],
             Measurement::FlowUntil { until } => {
-                let count = times.iter().filter(|&&time| time <= *until).count();
-                vec![(end >= *until).then(|| count as f64 / until)]
+                let due = clock.frame_at(*until);
+                let end = clock.time_at(due);
+                let count = times.iter().filter(|&&time| time <= end).count();
+                vec![(clock.frame() >= due).then(|| count as f64 / end)]
             }
             Measurement::Evacuated => vec![Some(times.len() as f64)],
         };

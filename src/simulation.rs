@@ -169,8 +169,9 @@ impl Simulation {
         self.needs.density || self.clock.frame() < self.density_until
     }
 
-    /// Asks for the density in every frame before `frame`, though no force reads it: for a metric, a
-    /// colour, a breakdown.
+    /// Requests the density in every frame before `frame`, though no force reads it: for a metric, a
+    /// color, a breakdown, a checkpoint. A request from the first frame on gives all observers the same
+    /// densities; after a gap the mean density ρ̂ starts anew. It never changes the motion or the digest.
     pub fn request_density_until(&mut self, frame: u64) {
         self.density_until = self.density_until.max(frame);
     }

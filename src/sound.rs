@@ -49,8 +49,8 @@ pub struct Contacts {
     pub density: Option<f64>,
 }
 
-/// The contacts of everybody in a region; `None` if nobody is there, and without neighbour lists of
-/// contact range.
+/// The contacts of all agents in a region; `None` if the region is empty. The frame's neighbor lists must
+/// reach as far as contacts do.
 pub fn contacts(frame: &Frame, region: &Region) -> Option<Contacts> {
     let agents = frame.agents;
     let inside: Vec<usize> = (0..agents.len())
@@ -58,9 +58,9 @@ pub fn contacts(frame: &Frame, region: &Region) -> Option<Contacts> {
         .collect();
     let count = inside.len() as f64;
     let (mut modulus, mut touching) = (0.0, 0usize);
+    let widest = agents.radius.iter().copied().fold(0.0, f64::max);
     for &i in &inside {
-        // The widest disc is 0.265 m (§5.6).
-        for (j, r_ij) in frame.near(i, 1.0) {
+        for (j, r_ij) in frame.near(i, agents.radius[i] + widest) {
             let reach = agents.radius[i] + agents.radius[j];
             if r_ij.norm() < reach {
                 modulus += 0.5 * stiffness(r_ij, reach) * r_ij.x * r_ij.x / agents.mass[i];

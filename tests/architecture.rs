@@ -224,6 +224,27 @@ fn no_file_is_longer_than_four_hundred_lines() {
 }
 
 #[test]
+fn every_test_file_is_part_of_a_test_program() {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
+    let programs = ["engine", "program"];
+    let lists = programs.map(|name| fs::read_to_string(tests.join(format!("{name}.rs"))).unwrap());
+    for entry in fs::read_dir(&tests).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        if path.extension().is_some_and(|extension| extension == "rs") && !programs.contains(&name)
+        {
+            let listed = lists
+                .iter()
+                .any(|list| list.contains(&format!("\nmod {name};\n")));
+            assert!(
+                listed,
+                "tests/{name}.rs is in no test program: its tests never run"
+            );
+        }
+    }
+}
+
+#[test]
 fn the_check_itself_sees_what_it_should() {
     let text = "use crate::{agents::Agents, math::{Vector, direction}, frame};\nlet x = crate::kernel::density(0.0);";
     assert_eq!(

@@ -8,6 +8,7 @@ use sandbox::agents::NewAgent;
 use sandbox::catalog::{NAMES, Parameters};
 use sandbox::clock::Clock;
 use sandbox::math::Vector;
+use sandbox::metrics::{Measurement, Metrics};
 use sandbox::scene::Integrator;
 use sandbox::simulation::{Fault, Simulation};
 
@@ -206,4 +207,22 @@ fn a_room_of_a_hundred_empties_and_every_density_is_positive() {
     assert_eq!(arrivals.len(), 100);
     assert!(arrivals.windows(2).all(|pair| pair[0].time <= pair[1].time));
     assert_eq!(simulation.outcome().contained_moves, 0);
+}
+
+#[test]
+fn a_flow_until_a_time_has_a_value_at_any_time_step() {
+    for time_step in [0.02, 0.0169, 0.03, 0.007] {
+        let mut scene = alone(Integrator::SemiImplicit, time_step).scene().clone();
+        scene.agents = vec![person(Vector::zeros(), vector(1.0, 0.0))];
+        scene.groups[0].removal_radius = Some(0.5);
+        scene.groups[0].counted = true;
+        let mut simulation = Simulation::new(scene).unwrap();
+        let metrics = Metrics::new(vec![Measurement::FlowUntil { until: 2.0 }], &mut simulation);
+        let due = simulation.frame().clock.frame_at(2.0);
+        run(&mut simulation, due - 1);
+        assert_eq!(metrics.results(&simulation)[0].value, None);
+        run(&mut simulation, 1);
+        let flow = metrics.results(&simulation)[0].value.unwrap();
+        assert!((flow - 0.5).abs() < 0.01, "{time_step} s: {flow}");
+    }
 }

@@ -111,6 +111,20 @@ fn switched_off_terms_need_nothing() {
 }
 
 #[test]
+fn looking_for_arrivals_is_a_stage_that_scenes_without_removal_skip() {
+    let mut simulation = crowd(blend("sph"));
+    common::run(&mut simulation, 3);
+    assert!(!stages(&simulation).contains(&Stage::Removal));
+    let removal = Needs {
+        removal: true,
+        ..*simulation.needs()
+    };
+    simulation.pay_for(&removal);
+    common::run(&mut simulation, 3);
+    assert!(stages(&simulation).contains(&Stage::Removal));
+}
+
+#[test]
 fn who_feels_nobody_still_walks() {
     let none = Parameters {
         gas_constant: Some(0.0),

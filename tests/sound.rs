@@ -106,3 +106,20 @@ fn the_modulus_of_a_lattice_is_measured_as_computed() {
     assert_eq!(contacts.per_agent, 6.0);
     assert!((contacts.modulus / sound::touching_modulus(0.48) - 1.0).abs() < 1e-3);
 }
+
+#[test]
+fn contacts_of_wide_discs_count_too() {
+    let mut scene = scene(Vec::new(), blend_with("sph", &Parameters::default()));
+    let wide = |x: f64| NewAgent {
+        radius: Some(3.0),
+        ..person(vector(x, 0.0), vector(x, 0.0))
+    };
+    scene.agents = vec![wide(0.0), wide(5.5)];
+    let simulation = evaluated(scene);
+    let everywhere = Region {
+        min: vector(-1.0, -1.0),
+        max: vector(9.0, 1.0),
+    };
+    let found = sound::contacts(&simulation.frame(), &everywhere).unwrap();
+    assert_eq!(found.per_agent, 1.0);
+}

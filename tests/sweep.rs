@@ -231,6 +231,18 @@ fn a_damaged_result_is_computed_again() {
 }
 
 #[test]
+fn cells_that_say_the_same_are_computed_once_and_counted_as_repeated() {
+    let (folder, path) = folder(
+        r#"{"scenario": "room.json", "list": [{"seed": 1}, {"seed": 2}, {"seed": 1, "profile": "sph"}]}"#,
+    );
+    let study = Study::read(&path).unwrap();
+    let out = folder.path().join("out");
+    let counts = |tally: &Tally| [tally.cells, tally.finished, tally.kept, tally.repeated];
+    assert_eq!(counts(&run_in(&study, &out, Shard::WHOLE).0), [3, 2, 0, 1]);
+    assert_eq!(counts(&run_in(&study, &out, Shard::WHOLE).0), [3, 0, 2, 1]);
+}
+
+#[test]
 fn the_summary_has_means_over_seeds_with_their_intervals() {
     let (folder, path) = folder(GRID);
     let study = Study::read(&path).unwrap();

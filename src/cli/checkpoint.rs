@@ -24,10 +24,12 @@ impl Checkpoints {
     pub fn create(
         options: &CheckpointOptions,
         force: bool,
-        simulation: &Simulation,
+        simulation: &mut Simulation,
     ) -> Result<Self, Failure> {
         if let Some(path) = &options.checkpoint {
             check_free("--checkpoint", path, force)?;
+            // A resumed run may record densities that no force reads here.
+            simulation.request_density_until(u64::MAX);
         }
         let clock = simulation.frame().clock;
         let every = clock.frame_at(options.checkpoint_every).max(1);

@@ -78,7 +78,7 @@ fn go_on(
     let duration = scenario.duration_secs;
     trajectory::check(&options.trajectory, program.force, scenario)?;
     let interrupt = Interrupt::listen().map_err(|error| Failure::Output(error.to_string()))?;
-    let mut checkpoints = Checkpoints::create(&options.checkpoint, program.force, &simulation)?;
+    let mut checkpoints = Checkpoints::create(&options.checkpoint, program.force, &mut simulation)?;
     let mut output = Output::create(&options.record, program.force, scenario, &mut simulation)?;
     let mut trajectories = Trajectories::create(&options.trajectory, scenario, &mut simulation)?;
     let mut interrupted = None;

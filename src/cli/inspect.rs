@@ -49,13 +49,19 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     say(format!("t = {time:.2} s, frame {frame}\n{tables}"))
 }
 
-/// On to a moment in seconds, though the scenario may have come to its own end before. The state is
-/// that of a run; only the last frame is computed in double precision throughout.
+/// Advances to a moment in seconds, even beyond the scenario's own end; stops early when no agent is left.
+/// The state is that of a run; only the last frame is computed in double precision throughout.
 fn go_to(at: f64, simulation: &mut Simulation, progress: &Progress) -> Result<(), Failure> {
     let last = simulation.frame().clock.frame_at(at);
     while simulation.frame().clock.frame() < last {
         progress.show(simulation);
         simulation.step()?;
+        if simulation.frame().agents.is_empty() && !simulation.expects_agents() {
+            let time = simulation.frame().clock.time();
+            return Err(Failure::Input(format!(
+                "--at {at}: no agent is left then: the last one leaves at {time:.2} s"
+            )));
+        }
     }
     simulation.set_precision(Precision::Double);
     Ok(simulation.evaluate()?)

@@ -149,12 +149,26 @@ fn scenario(
         (until_flag, "duration_secs", until),
         ("--time-step", "time_step_secs", scene.time_step.clone()),
     ];
+    let typed: Vec<Setting> = scene
+        .set
+        .iter()
+        .map(|text| setting(text))
+        .collect::<Result<_, _>>()?;
     let mut settings = Vec::new();
+    let mut last = None;
     for (flag, key, value) in flags {
-        if let Some(value) = value {
-            let setting = setting(&format!("{key}={value}"))?;
-            settings.push(setting.typed_as(format!("{flag} {value}")));
+        let Some(value) = value else { continue };
+        let setting = setting(&format!("{key}={value}"))?.typed_as(format!("{flag} {value}"));
+        if flag == "--at" {
+            last = Some(setting); // a moment beyond the end moves the end, however it was given
+            continue;
         }
+        if let Some(other) = typed.iter().find(|other| other.path() == setting.path()) {
+            return Err(Failure::Input(format!(
+                "{setting} and {other} set the same key: give one of them"
+            )));
+        }
+        settings.push(setting);
     }
     if let Some(path) = &scene.geometry {
         let text = format!("--geometry {}", path.display());
@@ -162,9 +176,7 @@ fn scenario(
         let plan = plan.map_err(|error| Failure::Input(format!("--geometry {error}")))?;
         settings.extend(Setting::floor_plan(&plan, &text));
     }
-    for text in &scene.set {
-        settings.push(setting(text)?);
-    }
+    settings.extend(typed.into_iter().chain(last));
     let (text, file) = match source {
         Source::Shipped(name) => (shipped_text(name)?.to_owned(), format!("{name}.json")),
         Source::File(path) => (read_text(path)?, path.display().to_string()),

@@ -183,6 +183,7 @@ fn told(tally: &Tally, shard: Shard, as_json: bool) -> String {
     let Tally {
         cells,
         kept,
+        repeated,
         finished,
         by_others,
         failed,
@@ -195,13 +196,18 @@ fn told(tally: &Tally, shard: Shard, as_json: bool) -> String {
             "shard": shard.to_string(),
             "cells": cells,
             "kept": kept + by_others,
+            "repeated": repeated,
             "finished": finished,
             "failed": failed.collect::<Vec<_>>(),
         });
         return format!("{told}\n");
     }
+    let repeated = match repeated {
+        0 => String::new(),
+        repeated => format!(", {repeated} same as another cell"),
+    };
     format!(
-        "shard {shard}: {cells} cell(s); {finished} finished now, {} before, {} failed\n",
+        "shard {shard}: {cells} cell(s); {finished} finished now, {} before, {} failed{repeated}\n",
         kept + by_others,
         failed.len()
     )

@@ -163,7 +163,16 @@ fn automatic_clock(file: &File, scene: &Scene) -> Result<Clock, Problem> {
         Problem::new("time_step_secs", reason)
     })?;
     let longest = file.longest_step_secs.unwrap_or(PAPER_COARSE_STEP);
-    clock(file, step.min(longest))
+    let step = step.min(longest);
+    TIME_STEP.check("time_step_secs", step).map_err(|_| {
+        let reason = format!(
+            "`auto` finds no step: this crowd is so stiff that it needs {step:e} s, below the smallest step of \
+             {:e} s; lower gas_constant, the stiffnesses or viscosity, or raise the masses",
+            TIME_STEP.lowest()
+        );
+        Problem::new("time_step_secs", reason)
+    })?;
+    clock(file, step)
 }
 
 fn pushes(events: &[Object<file::Event>]) -> Result<Vec<Push>, Problem> {

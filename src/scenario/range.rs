@@ -47,6 +47,11 @@ impl Range {
         }
     }
 
+    /// The lower bound.
+    pub(super) fn lowest(&self) -> f64 {
+        self.lowest
+    }
+
     /// The same as JSON Schema of a `number` or `integer`.
     pub(super) fn schema(&self, number: &str) -> Value {
         let lowest = if self.open {

@@ -6,10 +6,12 @@ use super::Simulation;
 use crate::math::Vector;
 
 impl Simulation {
-    /// SHA-256, as 64 hexadecimal digits, of the frame's number, of everybody's id, position, velocity and
-    /// mean density by id, and of all arrivals: the same for two runs that are the same to the last bit,
-    /// whatever the order in memory.
+    /// SHA-256, as 64 hexadecimal digits, of the frame number, of the id, position, velocity and mean density of
+    /// all agents in the order of their ids, and of all arrivals. It is independent of the order in memory, of the
+    /// number of threads, and of what is observed: the mean density ρ̂ is part of the state only where a
+    /// force reads it ([`Needs::density`](crate::scene::Needs::density)), and is left out elsewhere.
     pub fn digest(&self) -> String {
+        let has_mean_density = self.scene.needs().density;
         let mut hasher = Sha256::new();
         hasher.update(self.clock.frame().to_le_bytes());
         let agents = &self.agents;
@@ -19,7 +21,9 @@ impl Simulation {
             hasher.update(agents.id[i].to_le_bytes());
             add(&mut hasher, agents.position[i]);
             add(&mut hasher, agents.velocity[i]);
-            hasher.update(agents.mean_density[i].to_bits().to_le_bytes());
+            if has_mean_density {
+                hasher.update(agents.mean_density[i].to_bits().to_le_bytes());
+            }
         }
         for arrival in &self.outcome.arrivals {
             hasher.update(arrival.id.to_le_bytes());

@@ -25,7 +25,9 @@ impl Simulation {
         self.clock.advance();
         self.evaluated = false;
         if self.needs.removal {
-            self.remove_arrivals();
+            let mut stages = std::mem::take(&mut self.stages);
+            stages.time(Stage::Removal, || self.remove_arrivals());
+            self.stages = stages;
         }
         self.stages.count_frame();
         Ok(())
@@ -176,32 +178,36 @@ impl Simulation {
     }
 
     fn remove_arrivals(&mut self) {
-        let time = self.clock.time();
-        let agents = &self.agents;
-        let mut staying: Vec<u32> = Vec::new();
-        let mut arrivals = Vec::new();
-        for i in 0..agents.len() {
-            let group = &self.scene.groups[usize::from(agents.group[i])];
-            let distance = (agents.goal[i] - agents.position[i]).norm();
-            if group
+        let has_arrived = |i: usize| {
+            let group = &self.scene.groups[usize::from(self.agents.group[i])];
+            let distance = (self.agents.goal[i] - self.agents.position[i]).norm();
+            group
                 .removal_radius
                 .is_some_and(|radius| distance <= radius)
-            {
-                arrivals.push(Arrival {
-                    id: agents.id[i],
-                    time,
-                    position: agents.position[i],
-                    counted: group.counted,
-                });
-            } else {
-                staying.push(i as u32);
-            }
+        };
+        let agents = (0..self.agents.len()).into_par_iter();
+        // Hardly any frame has an arrival: nothing is allocated in the others.
+        if !agents.with_min_len(TASK * BLOCK).any(has_arrived) {
+            return;
         }
-        if !arrivals.is_empty() {
-            arrivals.sort_by_key(|arrival| arrival.id);
-            self.outcome.arrivals.append(&mut arrivals);
-            self.agents.arrange(&staying);
-            self.crowd_changed = true;
+        let (arrived, staying): (Vec<u32>, Vec<u32>) =
+            (0..self.agents.len() as u32).partition(|&i| has_arrived(i as usize));
+        let mut arrivals: Vec<Arrival> = arrived
+            .into_iter()
+            .map(|i| self.arrival(i as usize))
+            .collect();
+        arrivals.sort_by_key(|arrival| arrival.id);
+        self.outcome.arrivals.append(&mut arrivals);
+        self.agents.arrange(&staying);
+        self.crowd_changed = true;
+    }
+
+    fn arrival(&self, i: usize) -> Arrival {
+        Arrival {
+            id: self.agents.id[i],
+            time: self.clock.time(),
+            position: self.agents.position[i],
+            counted: self.scene.groups[usize::from(self.agents.group[i])].counted,
         }
     }
 }

@@ -19,11 +19,13 @@ pub enum Stage {
     Acceleration,
     /// Step 5.
     Integration,
+    /// Removing agents that have reached their goal.
+    Removal,
 }
 
 impl Stage {
     /// All stages in the order of the loop.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Sort,
         Self::Neighbors,
         Self::DensityAndPressure,
@@ -31,6 +33,7 @@ impl Stage {
         Self::Rvo,
         Self::Acceleration,
         Self::Integration,
+        Self::Removal,
     ];
 
     /// Its name in reports.
@@ -43,6 +46,7 @@ impl Stage {
             Self::Rvo => "rvo",
             Self::Acceleration => "acceleration",
             Self::Integration => "integration",
+            Self::Removal => "removal",
         }
     }
 }

@@ -8,7 +8,10 @@ use crate::agents::Agents;
 use crate::math::{Vector, pairs_of};
 use crate::scene::Scene;
 
-/// What an evaluated frame and a scene do not say by themselves.
+/// The state: what the future of a run depends on, beside its scene. Fields such as densities, pressures and
+/// forces are computed from it. Where no force reads the density, the mean density ρ̂ belongs to the observers
+/// ([`Simulation::request_density_until`]): it is in the state while it is requested, so that a resumed run
+/// observes the same densities.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct State {
     frame: u64,
@@ -20,7 +23,6 @@ pub struct State {
     crowd_changed: bool,
     schedule: Schedule,
     outcome: Outcome,
-    density_until: u64,
     /// Was there a density in this frame?
     has_density: bool,
 }
@@ -40,7 +42,6 @@ impl Simulation {
             crowd_changed: self.crowd_changed,
             schedule: self.schedule.clone(),
             outcome: self.outcome.clone(),
-            density_until: self.density_until,
             has_density: !self.fields.density.is_empty(),
         }
     }
@@ -63,14 +64,12 @@ impl Simulation {
             crowd_changed,
             schedule,
             outcome,
-            density_until,
             has_density,
         } = state;
         simulation.clock.go_to(frame);
         simulation.agents = agents;
         simulation.schedule = schedule;
         simulation.outcome = outcome;
-        simulation.density_until = density_until;
         simulation.crowd_changed = crowd_changed;
         if !crowd_changed {
             simulation.list_again(sorted_at)?;

@@ -46,6 +46,8 @@ pub struct Tally {
     pub cells: usize,
     /// Those whose results were there before.
     pub kept: usize,
+    /// Those with the same scenario, settings and seed as an earlier cell, whose result they share.
+    pub repeated: usize,
     /// Those finished now.
     pub finished: usize,
     /// Those finished meanwhile by another process.
@@ -89,7 +91,11 @@ pub fn run(
             listener.notes(&format!("{reason}; it is computed again"));
             None
         });
-        if result.is_some() || !seen.insert(cell.key()) {
+        if !seen.insert(cell.key()) {
+            tally.repeated += 1;
+            continue;
+        }
+        if result.is_some() {
             tally.kept += 1;
             continue;
         }

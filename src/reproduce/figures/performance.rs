@@ -37,6 +37,7 @@ fn task(stage: Stage) -> &'static str {
         Stage::Acceleration => "5 acceleration",
         Stage::Integration => "6 integration",
         Stage::Rvo => "velocity obstacles",
+        Stage::Removal => "removal",
     }
 }
 
@@ -50,10 +51,11 @@ fn sheet(times: &[FrameTime], machine: &str) -> Sheet {
         Stage::Acceleration,
         Stage::Integration,
         Stage::Rvo,
+        Stage::Removal,
     ];
     let mut marks = Vec::new();
     let agents = |time: &FrameTime| time.agents as f64;
-    for (stage, color) in order.into_iter().zip(LINES) {
+    for (stage, color) in order.into_iter().zip(LINES.into_iter().cycle()) {
         let point = |time: &FrameTime| Some([agents(time), time.of_stage(stage)?]);
         let points: Vec<[f64; 2]> = times.iter().filter_map(point).collect();
         if !points.is_empty() {
