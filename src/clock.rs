@@ -5,6 +5,9 @@ pub const PAPER_TIME_STEP: f64 = 0.02;
 /// Δt_coarse of the paper, seconds.
 pub const PAPER_COARSE_STEP: f64 = 0.1;
 
+/// The shortest Δt_fine that a scenario may have, seconds.
+pub const SHORTEST_TIME_STEP: f64 = 1e-6;
+
 /// Counts fine frames; every time is derived from the count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clock {

@@ -12,6 +12,7 @@ use super::report::Report;
 use super::trajectory::{self, Trajectories};
 use super::{Failure, memory, say, scenario, setting, talk, use_threads};
 use crate::checkpoint::Checkpoint;
+use crate::clock::SHORTEST_TIME_STEP;
 use crate::drive::{Then, drive, unless_over};
 use crate::metrics::Metrics;
 use crate::scenario::{Scenario, Setting};
@@ -122,11 +123,17 @@ fn warn_of_the_step(scene: &Scene) {
     let mode = Mode::of(scene);
     let (step, largest) = (scene.clock.time_step(), mode.largest_step(scheme, &FITTED));
     if step > largest {
+        let automatic = mode.time_step(scheme);
+        let advice = if automatic >= SHORTEST_TIME_STEP {
+            format!("--time-step auto takes {automatic}")
+        } else {
+            "no step that is allowed is short enough: lower the stiffness or raise the masses"
+                .to_owned()
+        };
         talk(&format!(
             "warning: time_step_secs {step} is {:.1} times {largest:.4}, the longest at which a crowd comes to \
-             rest; --time-step auto takes {}",
+             rest; {advice}",
             step / largest,
-            mode.time_step(scheme),
         ));
     }
 }

@@ -13,7 +13,7 @@ use super::need::Need;
 use super::range::{COARSE_EVERY, MAX_SPEED, PREFERRED_SPEED, Range, TIME, TIME_STEP};
 use super::range::{point, region};
 use super::{Scenario, Stop, View, parameters, plan, preset, profiles};
-use crate::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP};
+use crate::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::math::Vector;
 use crate::metrics::Measurement;
 use crate::profile::Override;
@@ -164,14 +164,13 @@ fn automatic_clock(file: &File, scene: &Scene) -> Result<Clock, Problem> {
     })?;
     let longest = file.longest_step_secs.unwrap_or(PAPER_COARSE_STEP);
     let step = step.min(longest);
-    TIME_STEP.check("time_step_secs", step).map_err(|_| {
+    if step < SHORTEST_TIME_STEP {
         let reason = format!(
-            "`auto` finds no step: this crowd is so stiff that it needs {step:e} s, below the smallest step of \
-             {:e} s; lower gas_constant, the stiffnesses or viscosity, or raise the masses",
-            TIME_STEP.lowest()
+            "`auto` finds no step: this crowd is so stiff that it needs {step:e} s, below the shortest step of \
+             {SHORTEST_TIME_STEP:e} s; lower gas_constant, viscosity or the stiffnesses, or raise the masses"
         );
-        Problem::new("time_step_secs", reason)
-    })?;
+        return Err(Problem::new("time_step_secs", reason));
+    }
     clock(file, step)
 }
 

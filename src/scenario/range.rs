@@ -5,6 +5,7 @@ use std::fmt;
 use serde_json::{Value, json};
 
 use super::error::Problem;
+use crate::clock::SHORTEST_TIME_STEP;
 use crate::math::Vector;
 use crate::scene::Region;
 
@@ -22,7 +23,7 @@ pub(super) const COORDINATE: Range = Range::at_least(-1e6, 1e6);
 /// Times and durations, seconds.
 pub(super) const TIME: Range = Range::at_least(0.0, 1e7);
 /// Δt_fine, seconds.
-pub(super) const TIME_STEP: Range = Range::at_least(1e-6, 1.0);
+pub(super) const TIME_STEP: Range = Range::at_least(SHORTEST_TIME_STEP, 1.0);
 /// Δt_coarse in frames.
 pub(super) const COARSE_EVERY: Range = Range::at_least(1.0, 1e6);
 /// s_pref, m/s.
@@ -45,11 +46,6 @@ impl Range {
             open: true,
             highest,
         }
-    }
-
-    /// The lower bound.
-    pub(super) fn lowest(&self) -> f64 {
-        self.lowest
     }
 
     /// The same as JSON Schema of a `number` or `integer`.
