@@ -73,15 +73,14 @@ fn collect(
     let found = match &geometry.value {
         GeometryValue::Polygon { coordinates } if coordinates.is_empty() => return empty(),
         GeometryValue::Polygon { coordinates } => {
-            shapes.push(shape(coordinates, place.to_owned(), is_obstacle));
+            shapes.push(shape(coordinates, place.to_owned(), is_obstacle)?);
             return Ok(());
         }
         GeometryValue::MultiPolygon { coordinates } if coordinates.is_empty() => return empty(),
         GeometryValue::MultiPolygon { coordinates } => {
-            let numbered = coordinates.iter().enumerate();
-            shapes.extend(
-                numbered.map(|(k, rings)| shape(rings, part(place, "polygon", k), is_obstacle)),
-            );
+            for (k, rings) in coordinates.iter().enumerate() {
+                shapes.push(shape(rings, part(place, "polygon", k), is_obstacle)?);
+            }
             return Ok(());
         }
         GeometryValue::GeometryCollection { geometries } if geometries.is_empty() => {
@@ -101,11 +100,30 @@ fn collect(
     })
 }
 
-fn shape(rings: &[Vec<Position>], place: String, is_obstacle: bool) -> Shape {
-    let points = |ring: &Vec<Position>| ring.iter().map(|p| [p[0], p[1]]).collect();
-    Shape {
-        place,
-        rings: rings.iter().map(points).collect(),
-        is_obstacle,
+fn shape(
+    rings: &[Vec<Position>],
+    place: String,
+    is_obstacle: bool,
+) -> Result<Shape, FloorPlanError> {
+    let mut points = Vec::with_capacity(rings.len());
+    for (r, ring) in rings.iter().enumerate() {
+        let point = |(k, position): (usize, &Position)| match position.as_slice() {
+            [x, y, ..] => Ok([*x, *y]),
+            few => Err(FloorPlanError::Ring {
+                place: part(&part(&place, "ring", r), "position", k),
+                reason: format!("has {} number(s); write [x, y]", few.len()),
+            }),
+        };
+        points.push(
+            ring.iter()
+                .enumerate()
+                .map(point)
+                .collect::<Result<_, _>>()?,
+        );
     }
+    Ok(Shape {
+        place,
+        rings: points,
+        is_obstacle,
+    })
 }

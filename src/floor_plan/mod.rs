@@ -17,7 +17,7 @@ mod unite;
 mod wkt;
 
 pub use error::FloorPlanError;
-pub use unite::restore_corners;
+pub use unite::{Rings, free};
 
 use std::io::Read;
 use std::path::Path;
@@ -27,8 +27,6 @@ use shape::Shape;
 
 /// A longer file is refused, bytes.
 const LONGEST_FILE: u64 = 1 << 28;
-/// x and y are within ± this, metres: walls and contacts keep their digits up to here.
-const FARTHEST: f64 = 1e6;
 /// What a person needs to stand, m².
 const STANDING_ROOM: f64 = 0.18;
 /// Obstacles that are all within so many metres are a mistake.
@@ -156,13 +154,6 @@ impl FloorPlan {
         for shape in shapes {
             let area = shape.area()?;
             for p in area.exterior.points() {
-                if p.amax() > FARTHEST {
-                    return Err(FloorPlanError::TooFar {
-                        place: shape.place,
-                        x: p.x,
-                        y: p.y,
-                    });
-                }
                 low = [low[0].min(p.x), low[1].min(p.y)];
                 high = [high[0].max(p.x), high[1].max(p.y)];
             }

@@ -4,8 +4,10 @@ use super::error::FloorPlanError;
 use crate::geometry::{Area, Polygon, PolygonError, Ring};
 use crate::math::Vector;
 
+/// x and y are within ± this, metres: walls and contacts keep their digits up to here.
+const FARTHEST: f64 = 1e6;
 /// Points nearer to each other are one, metres: the engine tells no smaller lengths.
-const SAME: f64 = 1e-6;
+pub const SAME: f64 = 1e-6;
 
 /// A polygon as given.
 #[derive(Debug, Clone)]
@@ -21,6 +23,14 @@ pub struct Shape {
 impl Shape {
     /// The rings, checked one by one; holes of obstacles also as to where they are.
     pub fn area(&self) -> Result<Area, FloorPlanError> {
+        let points = self.rings.iter().flatten();
+        if let Some(&[x, y]) = points
+            .clone()
+            .find(|p| p.iter().any(|x| x.abs() > FARTHEST))
+        {
+            let place = self.place.clone();
+            return Err(FloorPlanError::TooFar { place, x, y });
+        }
         let mut rings = Vec::with_capacity(self.rings.len());
         for (k, points) in self.rings.iter().enumerate() {
             let name = match k {
@@ -64,11 +74,12 @@ fn ring(points: &[[f64; 2]]) -> Result<Ring, String> {
             format!("has {count} different point(s); it needs at least 3")
         }
         PolygonError::SelfIntersection(i, j) => {
-            let place = meeting(&points, i, j);
-            format!(
-                "crosses or touches itself at ({}, {}); draw it as rings that do not",
-                place.x, place.y
-            )
+            let edge = |k: usize| {
+                let [a, b] = [points[k], points[(k + 1) % points.len()]];
+                format!("the edge from ({}, {}) to ({}, {})", a.x, a.y, b.x, b.y)
+            };
+            let (one, other) = (edge(i), edge(j));
+            format!("crosses or touches itself: {one} meets {other}; draw it as rings that do not")
         }
         PolygonError::NoArea => format!(
             "encloses no area: all points are on a line, from ({}, {})",
@@ -79,7 +90,7 @@ fn ring(points: &[[f64; 2]]) -> Result<Ring, String> {
 }
 
 /// The points without those that repeat the one before, and the last if it repeats the first.
-pub fn distinct(points: impl Iterator<Item = Vector>) -> Vec<Vector> {
+fn distinct(points: impl Iterator<Item = Vector>) -> Vec<Vector> {
     let mut kept: Vec<Vector> = Vec::new();
     let same = |a: &Vector, b: &Vector| (a - b).norm() < SAME;
     for p in points {
@@ -91,18 +102,4 @@ pub fn distinct(points: impl Iterator<Item = Vector>) -> Vec<Vector> {
         kept.pop();
     }
     kept
-}
-
-/// Where the edges from points `i` and `j` meet.
-fn meeting(points: &[Vector], i: usize, j: usize) -> Vector {
-    let edge = |k: usize| (points[k], points[(k + 1) % points.len()]);
-    let ((a, b), (c, d)) = (edge(i), edge(j));
-    let (along, across) = (b - a, d - c);
-    let sine = along.perp(&across);
-    if sine == 0.0 {
-        // On one line: an end of one that lies on the other.
-        let on = |p: &&Vector| (**p - a).dot(&along) * (**p - b).dot(&along) <= 0.0;
-        return [c, d].iter().find(on).copied().unwrap_or(a);
-    }
-    a + along * ((c - a).perp(&across) / sine)
 }

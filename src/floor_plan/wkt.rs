@@ -13,9 +13,12 @@ pub(super) const IN_DEGREES: [u32; 16] = [
     4326, 4979, 4258, 4937, 4269, 4267, 4277, 4230, 4283, 7844, 4490, 4612, 6668, 4674, 4171, 4312,
 ];
 
+/// Parentheses in each other: the parser takes some stack for every one. Three suffice without collections.
+const DEEPEST: usize = 64;
+
 /// The polygons of `text`: one geometry or several.
 pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
-    let pieces = pieces(text);
+    let pieces = pieces(text)?;
     let several = pieces.len() > 1;
     let mut shapes = Vec::new();
     for (line, piece) in pieces {
@@ -34,30 +37,41 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
 }
 
 /// The geometries that stand one after the other, with the lines they begin on, from 1.
-fn pieces(text: &str) -> Vec<(usize, &str)> {
-    let (mut depth, mut start, mut found) = (0_usize, 0, Vec::new());
-    let mut push = |start: usize, end: usize| {
-        let piece = text[start..end].trim_matches(|c: char| c.is_whitespace() || c == ';');
-        if !piece.is_empty() {
-            let before = text[..end].rfind(piece).unwrap_or(start);
-            found.push((1 + text[..before].matches('\n').count(), piece));
-        }
-    };
+fn pieces(text: &str) -> Result<Vec<(usize, &str)>, FloorPlanError> {
+    let between = |c: char| c.is_whitespace() || c == ';';
+    let (mut depth, mut found) = (0_usize, Vec::new());
+    // The number of the line, and where it begins.
+    let (mut line, mut line_start) = (1, 0);
+    // Where the piece begins that is being read.
+    let mut begun: Option<(usize, usize)> = None;
     for (at, c) in text.char_indices() {
+        if begun.is_none() && !between(c) {
+            begun = Some((line, at));
+        }
         match c {
+            '\n' => (line, line_start) = (line + 1, at + 1),
+            '(' if depth == DEEPEST => {
+                let column = 1 + text[line_start..at].chars().count();
+                let reason = format!(
+                    "line {line}, column {column}: more than {DEEPEST} parentheses are open"
+                );
+                return Err(FloorPlanError::Syntax {
+                    format: "WKT",
+                    reason,
+                });
+            }
             '(' => depth += 1,
             ')' => {
                 depth = depth.saturating_sub(1);
                 if depth == 0 {
-                    push(start, at + 1);
-                    start = at + 1;
+                    found.extend(begun.take().map(|(line, start)| (line, &text[start..=at])));
                 }
             }
             _ => {}
         }
     }
-    push(start, text.len());
-    found
+    found.extend(begun.map(|(line, start)| (line, text[start..].trim_end_matches(between))));
+    Ok(found)
 }
 
 /// PostGIS writes `SRID=25832;POLYGON …`.

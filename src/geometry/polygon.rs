@@ -3,13 +3,12 @@
 use parry2d::bounding_volume::Aabb;
 use parry2d::partitioning::{Bvh, BvhBuildStrategy};
 
-use super::ring::{Ring, encloses, signed_area};
+use super::ring::{Ring, TOUCHING, encloses, signed_area};
+use super::ring_index::{AreaIndex, RingIndex};
 use super::to_parry;
 use crate::math::Vector;
 
-/// Edges of different rings may cross by so much, metres, or by so much of the whole extent: floor plans have
-/// corners that touch an edge but for their rounding.
-const TOUCHING: f64 = 1e-6;
+/// Edges of different rings may cross by [`TOUCHING`], or by so much of the whole extent.
 const TOUCHING_PART: f64 = 1e-8;
 
 /// Why points or rings are not an obstacle.
@@ -190,35 +189,25 @@ fn check(areas: &[Area]) -> Result<(), PolygonError> {
         return Err(PolygonError::Crossing(a, b));
     }
     // Rings that do not cross are inside each other or not, wholly.
-    for (k, area) in areas.iter().enumerate() {
+    for area in areas {
+        let holes = RingIndex::new(area.holes.iter().collect());
+        let outline = RingIndex::new(vec![&area.exterior]);
         for (h, hole) in area.holes.iter().enumerate() {
-            let others = || area.holes[..h].iter().chain(&area.holes[h + 1..]);
-            let within = |outer: &Ring| outer.contains(middle(hole));
-            if !within(&area.exterior) || others().any(within) {
+            let place = hole.inner_point();
+            let in_another = holes.around(place).into_iter().any(|other| other != h);
+            if in_another || outline.around(place).is_empty() {
                 return Err(PolygonError::StrayHole(hole.points()[0]));
             }
         }
-        let place = middle(&area.exterior);
-        let mut others = areas[..k].iter().chain(&areas[k + 1..]);
-        if others.any(|other| other.contains(place)) {
+    }
+    let index = AreaIndex::new(areas);
+    for (k, area) in areas.iter().enumerate() {
+        let around = index.around(area.exterior.inner_point());
+        if around.into_iter().any(|other| other != k) {
             return Err(PolygonError::Overlap(area.exterior.points()[0]));
         }
     }
     Ok(())
-}
-
-/// A point inside of the ring, a hair from the middle of its longest edge: rings that touch it do so
-/// elsewhere, or along an edge.
-fn middle(ring: &Ring) -> Vector {
-    let points = ring.points();
-    let edge = |k: usize| (points[k], points[(k + 1) % points.len()]);
-    let length = |&(a, b): &(Vector, Vector)| (b - a).norm_squared();
-    let edges = (0..points.len()).map(edge);
-    let longest = edges.max_by(|a, b| length(a).total_cmp(&length(b)));
-    longest.map_or(points[0], |(a, b)| {
-        let inwards = crate::math::perpendicular(b - a) / (b - a).norm();
-        (a + b) * 0.5 + inwards * TOUCHING
-    })
 }
 
 /// The first points of two edges of different rings that cross.

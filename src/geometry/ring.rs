@@ -5,7 +5,11 @@ use parry2d::partitioning::{Bvh, BvhBuildStrategy};
 use parry2d::utils::{point_in_poly2d, segments_intersection2d};
 
 use super::{PolygonError, to_parry};
-use crate::math::{Vector, is_finite};
+use crate::math::{Vector, is_finite, perpendicular};
+
+/// Edges of different rings may cross by so much, metres: floor plans have corners that touch an edge but
+/// for their rounding.
+pub(super) const TOUCHING: f64 = 1e-6;
 
 /// A closed outline that neither crosses nor touches itself, counter-clockwise. Its first point is the first
 /// one given.
@@ -61,6 +65,19 @@ impl Ring {
     /// Does `p` lie inside? Undecided within rounding of the boundary.
     pub fn contains(&self, p: Vector) -> bool {
         encloses(&self.points, p)
+    }
+
+    /// A point inside, [`TOUCHING`] from the middle of the longest edge: rings that touch this one do so
+    /// elsewhere, or along an edge.
+    pub(super) fn inner_point(&self) -> Vector {
+        let edge = |k: usize| (self.points[k], self.points[(k + 1) % self.points.len()]);
+        let length = |&(a, b): &(Vector, Vector)| (b - a).norm_squared();
+        let edges = (0..self.points.len()).map(edge);
+        let longest = edges.max_by(|a, b| length(a).total_cmp(&length(b)));
+        longest.map_or(self.points[0], |(a, b)| {
+            let inwards = perpendicular(b - a) / (b - a).norm();
+            (a + b) * 0.5 + inwards * TOUCHING
+        })
     }
 
     /// The corners with what is enclosed on the right.

@@ -5,12 +5,12 @@
 //! wall. PedPy takes one part only; where people walk in several the text is a `MULTIPOLYGON`, of which
 //! its user must choose.
 
-use geo::bool_ops::FillRule;
-use geo::{BooleanOps, BoundingRect, Contains, Coord, CoordsIter, LineString};
-use geo::{MultiPolygon, Point, Polygon, Rect};
+use std::collections::BTreeSet;
 
 use super::Row;
-use crate::floor_plan::restore_corners;
+use super::error::Cause;
+use crate::floor_plan::{Rings, free};
+use crate::geometry::{Area, AreaIndex};
 use crate::math::Vector;
 use crate::scene::{Goal, Region};
 use crate::simulation::Simulation;
@@ -20,12 +20,13 @@ const MARGIN: f64 = 5.0;
 
 /// What the walkable area is cut out of, and by what.
 pub struct WalkableArea {
-    bounds: Rect,
-    /// The rings of what is solid outside.
-    floors: Vec<MultiPolygon>,
-    /// The rings of what is solid inside.
-    obstacles: MultiPolygon,
-    entries: Vec<Point>,
+    /// The lowest and highest x and y of the rectangle.
+    bounds: [Vector; 2],
+    /// What is solid without end, each from the side of the floor.
+    floors: Vec<Rings>,
+    /// What is solid inside.
+    obstacles: Rings,
+    entries: Vec<Vector>,
 }
 
 impl WalkableArea {
@@ -36,7 +37,7 @@ impl WalkableArea {
         let mut entries = agents.position.clone();
         let mut goals = agents.goal.clone();
         for source in &scene.sources {
-            let entry = |p| free(simulation, p);
+            let entry = |p| entrance(simulation, p);
             let positions: Vec<Vector> = source.grid.positions(scene.seed, 0).collect();
             goals.extend(positions.iter().map(|&p| match source.goal {
                 Goal::Point(goal) => goal,
@@ -51,36 +52,36 @@ impl WalkableArea {
             [low.inf(p), high.sup(p)]
         });
         let margin = Vector::new(MARGIN, MARGIN);
-        let ring = |points: &[Vector]| LineString::from_iter(points.iter().map(|&p| coord(p)));
-        let rings = |obstacle: &crate::geometry::Polygon| -> MultiPolygon {
-            let rings = obstacle.rings();
-            rings.map(|r| Polygon::new(ring(r), Vec::new())).collect()
-        };
-        let (unbounded, bodies): (Vec<_>, Vec<_>) = obstacles
-            .iter()
-            .partition(|obstacle| obstacle.is_unbounded());
+        let (mut floors, mut bodies) = (Vec::new(), Rings::new());
+        for obstacle in obstacles {
+            let rings = obstacle.rings().map(<[Vector]>::to_vec);
+            if obstacle.is_unbounded() {
+                let reversed = |mut ring: Vec<Vector>| {
+                    ring.reverse();
+                    ring
+                };
+                floors.push(rings.map(reversed).collect());
+            } else {
+                bodies.extend(rings);
+            }
+        }
         Self {
-            bounds: Rect::new(coord(min - margin), coord(max + margin)),
-            floors: unbounded.into_iter().map(rings).collect(),
-            obstacles: bodies.into_iter().flat_map(rings).collect(),
-            entries: entries.into_iter().map(|p| coord(p).into()).collect(),
+            bounds: [min - margin, max + margin],
+            floors,
+            obstacles: bodies,
+            entries,
         }
     }
 
     /// Makes room for everybody; was there none?
     pub fn reach(&mut self, rows: &[Row<'_>]) -> bool {
-        let places = rows.iter().map(|row| Coord {
-            x: row.pos_x,
-            y: row.pos_y,
-        });
         let mut grown = false;
-        for place in places {
-            if !self.bounds.contains(&place) {
-                let (low, high) = (self.bounds.min(), self.bounds.max());
-                self.bounds = Rect::new(
-                    (low.x.min(place.x - MARGIN), low.y.min(place.y - MARGIN)),
-                    (high.x.max(place.x + MARGIN), high.y.max(place.y + MARGIN)),
-                );
+        for row in rows {
+            let place = Vector::new(row.pos_x, row.pos_y);
+            let [low, high] = self.bounds;
+            if (place - low).min() <= 0.0 || (high - place).min() <= 0.0 {
+                let margin = Vector::new(MARGIN, MARGIN);
+                self.bounds = [low.inf(&(place - margin)), high.sup(&(place + margin))];
                 grown = true;
             }
         }
@@ -88,61 +89,62 @@ impl WalkableArea {
     }
 
     /// The area as WKT, and its lowest and highest x and y.
-    pub fn cut_out(&self) -> (String, [f64; 4]) {
-        let mut free = MultiPolygon::from(self.bounds.to_polygon());
-        for floor in &self.floors {
-            free = free.intersection_with_fill_rule(floor, FillRule::EvenOdd);
-        }
-        // Nonzero: where two obstacles overlap, nobody walks either; the holes of one turn the other way.
-        free = free.difference_with_fill_rule(&self.obstacles, FillRule::NonZero);
-        self.restore_corners(&mut free);
-        let holds_somebody = |part: &Polygon| self.entries.iter().any(|p| part.contains(p));
-        let walked: Vec<Polygon> = free
-            .iter()
-            .filter(|part| holds_somebody(part))
-            .cloned()
-            .collect();
+    ///
+    /// # Errors
+    /// As [`free`].
+    pub fn cut_out(&self) -> Result<(String, [f64; 4]), Cause> {
+        let [low, high] = self.bounds;
+        let rectangle = [
+            low,
+            Vector::new(high.x, low.y),
+            high,
+            Vector::new(low.x, high.y),
+        ];
+        let everything = [vec![rectangle.to_vec()]];
+        // The rectangle holds all floors.
+        let floors: &[Rings] = match self.floors.as_slice() {
+            [] => &everything,
+            floors => floors,
+        };
+        let mut areas = free(floors, &self.obstacles)?;
+        let index = AreaIndex::new(&areas);
+        let walked: BTreeSet<usize> = self.entries.iter().flat_map(|&p| index.around(p)).collect();
         if !walked.is_empty() {
-            free = MultiPolygon(walked);
+            let numbered = areas.into_iter().enumerate();
+            areas = numbered
+                .filter(|(k, _)| walked.contains(k))
+                .map(|(_, area)| area)
+                .collect();
         }
-        let around = free.bounding_rect().unwrap_or(self.bounds);
-        let (min, max) = (around.min(), around.max());
-        (wkt(&free), [min.x, min.y, max.x, max.y])
-    }
-
-    /// Corners as they were given, to the last bit.
-    fn restore_corners(&self, area: &mut MultiPolygon) {
-        let extent = self.bounds.width().max(self.bounds.height());
-        let floors = self.floors.iter().flat_map(|floor| floor.coords_iter());
-        let mut given: Vec<Coord> = self.obstacles.coords_iter().chain(floors).collect();
-        given.extend(self.bounds.coords_iter());
-        restore_corners(area, given, extent);
+        let corners = areas.iter().flat_map(|area| area.exterior.points());
+        let around = corners.copied().map(|p| [p, p]);
+        let around = around.reduce(|[low, high], [p, _]| [low.inf(&p), high.sup(&p)]);
+        let [min, max] = around.unwrap_or(self.bounds);
+        Ok((wkt(&areas), [min.x, min.y, max.x, max.y]))
     }
 }
 
 /// Where somebody who enters at `p` is put.
-fn free(simulation: &Simulation, p: Vector) -> Vector {
+fn entrance(simulation: &Simulation, p: Vector) -> Vector {
     let walls = &simulation.scene().walls;
     let inside = walls.obstacle_at(p).is_some();
     let exit = inside.then(|| walls.free_point_near(p)).flatten();
     exit.unwrap_or(p)
 }
 
-fn coord(p: Vector) -> Coord {
-    Coord { x: p.x, y: p.y }
-}
-
-/// Well-known text: one polygon as such, several as a multipolygon.
-fn wkt(area: &MultiPolygon) -> String {
-    let ring = |ring: &LineString| {
-        let points: Vec<String> = ring.coords().map(|c| format!("{} {}", c.x, c.y)).collect();
-        format!("({})", points.join(", "))
+/// Well-known text: one polygon as such, several as a multipolygon; holes clockwise.
+fn wkt(areas: &[Area]) -> String {
+    let ring = |points: &mut dyn Iterator<Item = &Vector>| {
+        let points: Vec<String> = points.map(|p| format!("{} {}", p.x, p.y)).collect();
+        format!("({}, {})", points.join(", "), points[0])
     };
-    let polygon = |polygon: &Polygon| {
-        let rings = std::iter::once(polygon.exterior()).chain(polygon.interiors());
-        format!("({})", rings.map(ring).collect::<Vec<_>>().join(", "))
+    let polygon = |area: &Area| {
+        let holes = area.holes.iter();
+        let holes = holes.map(|hole| ring(&mut hole.points().iter().rev()));
+        let rings = std::iter::once(ring(&mut area.exterior.points().iter())).chain(holes);
+        format!("({})", rings.collect::<Vec<_>>().join(", "))
     };
-    let polygons: Vec<String> = area.iter().map(polygon).collect();
+    let polygons: Vec<String> = areas.iter().map(polygon).collect();
     match polygons.as_slice() {
         [polygon] => format!("POLYGON {polygon}"),
         polygons => format!("MULTIPOLYGON ({})", polygons.join(", ")),

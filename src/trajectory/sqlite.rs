@@ -71,8 +71,8 @@ impl Sqlite {
         self.connection.execute(insert, params![key, value])
     }
 
-    fn write_area(&self) -> rusqlite::Result<()> {
-        let (wkt, bounds) = self.area.cut_out();
+    fn write_area(&self) -> Result<(), Cause> {
+        let (wkt, bounds) = self.area.cut_out()?;
         let insert = "INSERT OR REPLACE INTO geometry VALUES (?, ?)";
         self.connection.execute(insert, params![GEOMETRY, wkt])?;
         for (key, value) in ["xmin", "ymin", "xmax", "ymax"].iter().zip(bounds) {
@@ -106,7 +106,7 @@ impl Sqlite {
         Ok(())
     }
 
-    fn add(&mut self, frame: u64, rows: &[Row<'_>]) -> rusqlite::Result<()> {
+    fn add(&mut self, frame: u64, rows: &[Row<'_>]) -> Result<(), Cause> {
         if self.connection.is_autocommit() {
             self.connection.execute_batch("BEGIN")?;
         }
@@ -118,7 +118,7 @@ impl Sqlite {
         if self.committed_at.elapsed() < COMMIT_EVERY {
             return Ok(());
         }
-        self.commit()
+        Ok(self.commit()?)
     }
 
     fn commit(&mut self) -> rusqlite::Result<()> {
@@ -131,14 +131,14 @@ impl Sqlite {
     }
 
     /// Half a frame helps nobody.
-    fn or_forget(&mut self, result: rusqlite::Result<()>) -> Result<(), Cause> {
+    fn or_forget(&mut self, result: Result<(), Cause>) -> Result<(), Cause> {
         if result.is_err() {
             self.pending = 0;
             // SQLite may have done so itself; on a full disk it leaves the last part to the next read.
             self.connection.execute_batch("ROLLBACK").ok();
             self.connection.execute_batch("SELECT 1 FROM geometry").ok();
         }
-        Ok(result?)
+        result
     }
 }
 
@@ -150,7 +150,7 @@ impl Sink for Sqlite {
 
     fn finish(&mut self) -> Result<(), Cause> {
         let committed = self.commit();
-        self.or_forget(committed)
+        self.or_forget(committed.map_err(Cause::from))
     }
 
     fn kept(&self) -> u64 {

@@ -90,10 +90,21 @@ fn metadata(connection: &Connection, key: &str) -> Option<f64> {
     (f64::is_finite(number) && number > 0.0).then_some(number)
 }
 
-/// The walkable areas, in no order: one, but where doors are opened and closed.
+/// The walkable areas as text, in no order: one, but where doors are opened and closed. What is no text is no
+/// floor plan either: the reader of floor plans refuses it, if it is asked.
 fn walkable(connection: &Connection) -> rusqlite::Result<Vec<String>> {
     let Ok(mut query) = connection.prepare("SELECT DISTINCT wkt FROM geometry") else {
         return Ok(Vec::new());
     };
-    query.query_map([], |row| row.get(0))?.collect()
+    let text = |row: &Row| {
+        Ok(match row.get_ref(0)? {
+            ValueRef::Text(text) | ValueRef::Blob(text) => {
+                String::from_utf8_lossy(text).into_owned()
+            }
+            ValueRef::Null => String::new(),
+            ValueRef::Integer(number) => number.to_string(),
+            ValueRef::Real(number) => number.to_string(),
+        })
+    };
+    query.query_map([], text)?.collect()
 }
