@@ -57,6 +57,57 @@ fn a_floor_plan_that_is_none_is_refused_with_its_name_and_exit_code_2() {
     assert!(said(&missing).contains("--geometry no/such.geojson: cannot be read"));
 }
 
+/// A trajectory of two people with this geometry.
+#[cfg(feature = "trajectory")]
+fn trajectory(folder: &std::path::Path, wkt: Option<String>) -> String {
+    let path = folder.join("run.sqlite");
+    let file = rusqlite::Connection::open(&path).unwrap();
+    let tables = "DROP TABLE IF EXISTS geometry;
+        CREATE TABLE geometry (hash INTEGER, wkt TEXT);
+        CREATE TABLE IF NOT EXISTS metadata AS SELECT 'fps' AS key, '10' AS value;
+        CREATE TABLE IF NOT EXISTS trajectory_data AS
+        WITH RECURSIVE frames (frame) AS (SELECT 0 UNION ALL SELECT frame + 1 FROM frames LIMIT 20)
+        SELECT frame, id, 0.1 * frame + id AS pos_x, 5.0 AS pos_y
+        FROM frames, (SELECT 1 AS id UNION SELECT 2)";
+    file.execute_batch(tables).unwrap();
+    file.execute("INSERT INTO geometry VALUES (1, ?)", [wkt])
+        .unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+#[cfg(feature = "trajectory")]
+fn the_geometry_of_a_trajectory_is_read_as_carefully_as_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let out = out.to_str().unwrap();
+    for (wkt, reason) in [
+        (None, "has no polygons"),
+        (
+            Some("GEOMETRYCOLLECTION (".repeat(20_000)),
+            "no WKT: line 1, column 1300: more than 64 parentheses are open",
+        ),
+    ] {
+        let file = trajectory(folder.path(), wkt);
+        let output = sandbox(&["measure", &file, "--out", out]);
+        let fix = "give one by --geometry, or none by --geometry none";
+        let expected = format!("error: {file}: its geometry: {reason}; {fix}\n");
+        assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+        assert!(said(&output).ends_with(&expected), "{}", said(&output));
+        let without = sandbox(&[
+            "measure",
+            &file,
+            "--out",
+            out,
+            "--geometry",
+            "none",
+            "--force",
+        ]);
+        assert_eq!(without.status.code(), Some(0), "{}", said(&without));
+        std::fs::remove_dir_all(out).unwrap();
+    }
+}
+
 #[test]
 fn the_schema_is_one_json_object_on_stdout() {
     let output = sandbox(&["schema"]);

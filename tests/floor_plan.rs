@@ -227,16 +227,31 @@ fn what_is_no_floor_plan_is_refused_with_the_place_and_the_fix() {
         ),
         (
             "POLYGON ((0 0, 4 4, 4 0, 0 4))",
-            vec!["the outline crosses or touches itself at (2, 2)"],
+            vec![
+                "the outline crosses or touches itself: the edge from (0, 0) to (4, 4) meets the edge from \
+                 (4, 0) to (0, 4)",
+            ],
         ),
         (
             "POLYGON ((0 0, 9 0, 9 9), (5 1, 8 1, 6 1))",
-            vec!["hole 1", "itself at", "1)"],
+            vec!["hole 1 crosses", "the edge from (5, 1) to (8, 1)"],
         ),
         ("POLYGON ((0 0, 1 1, 0 0))", vec!["2 different point(s)"]),
         (
             "POLYGON ((0 0, 9 0, 9 9))\nPOLYGON ((2000000 0, 2000009 0, 2000009 9))",
             vec!["line 2", "(2000000, 0)", "origin"],
+        ),
+        (
+            "POLYGON ((0 0, 9 0, 9 9), (1 1, 2 1, 1e300 2))",
+            vec!["(1e300, 2) is out of range"],
+        ),
+        (
+            r#"{"type": "Polygon", "coordinates": [[[0, 0], [1], [1, 1]]]}"#,
+            vec!["ring 1, position 2: has 1 number(s); write [x, y]"],
+        ),
+        (
+            r#"{"type": "MultiPolygon", "coordinates": [[[[0, 0], [9, 0], [9, 9]], [[]]]]}"#,
+            vec!["polygon 1, ring 2, position 1: has 0 number(s)"],
         ),
     ] {
         let error = read("hall.plan", text).unwrap_err().to_string();
@@ -257,4 +272,37 @@ fn what_is_no_floor_plan_is_refused_with_the_place_and_the_fix() {
             .to_string()
             .starts_with("no/such.wkt: cannot be read")
     );
+}
+
+#[test]
+fn plans_nested_deeper_than_any_is_are_refused_with_their_place_on_a_thread_with_little_stack() {
+    let wkt = |depth: usize| format!("\n{}", "GEOMETRYCOLLECTION (".repeat(depth));
+    let json = |depth: usize| {
+        let open = r#"{"type": "GeometryCollection", "geometries": ["#.repeat(depth);
+        format!("{open}{}", "]}".repeat(depth))
+    };
+    let said = |text: String| {
+        let thread = std::thread::Builder::new().stack_size(1 << 20);
+        let read = move || floor_plan::parse(&text).unwrap_err().to_string();
+        thread.spawn(read).unwrap().join().unwrap()
+    };
+    for depth in [65, 2_000, 20_000, 1_000_000] {
+        assert_eq!(
+            said(wkt(depth)),
+            "no WKT: line 2, column 1300: more than 64 parentheses are open"
+        );
+    }
+    assert!(said(wkt(64)).starts_with("no WKT: line 2: "));
+    assert_eq!(
+        said(json(60)),
+        format!("{}the geometry is empty; remove it", nested_place(59))
+    );
+    for depth in [70, 20_000] {
+        assert!(said(json(depth)).starts_with("no GeoJSON: recursion limit exceeded at line 1"));
+    }
+}
+
+/// The first geometry in the first one, and so on.
+fn nested_place(depth: usize) -> String {
+    format!("{}: ", vec!["geometry 1"; depth].join(", "))
 }

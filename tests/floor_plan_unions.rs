@@ -1,13 +1,16 @@
-//! Floor plans of pieces that touch at corners, along edges and in several places, on coarse grids and turned.
+//! Floor plans of pieces that touch at corners, along edges and in several places, on coarse grids; and of
+//! very many pieces.
 
-use geo::{Contains, LineString, MultiPolygon, Point, Polygon};
+use std::time::Instant;
+
+use crate::common::plans::{Ring, contains, margin, multipolygon, rings};
+use geo::{LineString, Polygon, Validation};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use sandbox::floor_plan::{FloorPlan, FloorPlanError, parse_wkt};
-use sandbox::geometry::Walls;
+use sandbox::floor_plan::{self, FloorPlan, FloorPlanError};
+use sandbox::geometry::{Area, Walls};
 use sandbox::math::Vector;
-
-type Ring = Vec<[f64; 2]>;
+use serde_json::json;
 
 /// Three rooms of which one has a corner on the diagonal of another.
 const ON_A_DIAGONAL: &str = "MULTIPOLYGON (((.8 .8,.9 .8,.9 1,.8 1,.8 .8)),\
@@ -21,38 +24,67 @@ const ELEVEN: &str = "MULTIPOLYGON (((5 5,7 5,5 7,5 5)),((5 3,7 3,7 4,5 4,5 3)),
     ((4 1,6 1,4 3,4 1)),((4 5,5 5,5 7,4 7,4 5)),((6 2,8 2,6 4,6 2)),((6 0,7 0,7 2,6 2,6 0)),\
     ((6 3,8 3,8 5,6 5,6 3)))";
 
-/// The walls of a plan, after it has been written out and read again.
-fn walls(plan: &FloorPlan) -> Result<Walls, FloorPlanError> {
-    let points =
-        |ring: &sandbox::geometry::Ring| ring.points().iter().map(|p| [p.x, p.y]).collect();
-    let rings = plan
-        .walkable
-        .iter()
-        .map(|area| area.rings().map(points).collect());
-    let again = FloorPlan::walkable(&rings.collect::<Vec<_>>())?;
-    assert_eq!(again.walkable.len(), plan.walkable.len());
-    let areas = |plan: &FloorPlan| plan.walkable.iter().map(|area| area.area()).sum::<f64>();
-    assert!((areas(&again) - areas(plan)).abs() < 1e-6);
-    Ok(Walls::new(again.solids().unwrap()))
+/// The rings of an area.
+fn given(area: &Area) -> Vec<Ring> {
+    let rings = area.rings().map(|ring| ring.points().iter());
+    rings
+        .map(|points| points.map(|p| [p.x, p.y]).collect())
+        .collect()
+}
+
+/// The walls of a plan after it has been written and read again, if all its rings are valid to `geo`.
+fn walls(plan: &FloorPlan, text: &str) -> Walls {
+    let written: Vec<Vec<Ring>> = plan.walkable.iter().map(given).collect();
+    for rings in &written {
+        for ring in rings {
+            let alone = Polygon::new(LineString::from(ring.clone()), Vec::new());
+            assert!(alone.is_valid(), "{text}: {ring:?}");
+        }
+    }
+    let again = FloorPlan::walkable(&written).unwrap_or_else(|error| panic!("{text}: {error}"));
+    let size = |plan: &FloorPlan| plan.walkable.iter().map(Area::area).sum::<f64>();
+    assert!((size(&again) - size(plan)).abs() < 1e-6, "{text}");
+    Walls::new(again.solids().unwrap())
+}
+
+/// Reads rooms and compares what is free with what they cover, at random places up to `reach` metres.
+fn check(random: &mut ChaCha8Rng, rooms: &[Ring], text: &str, reach: f64) {
+    let plan = match floor_plan::parse(text) {
+        Err(FloorPlanError::TooSmall { .. }) => return assert!(reach < 1.5, "{text}"),
+        plan => plan.unwrap_or_else(|error| panic!("{text}: {error}")),
+    };
+    let walls = walls(&plan, text);
+    for _ in 0..40 {
+        let p = Vector::new(
+            random.random_range(-0.1..1.0),
+            random.random_range(-0.1..1.0),
+        ) * reach;
+        if margin(rooms, p) > 1e-5 {
+            let covered = rooms.iter().any(|room| contains(room, p));
+            assert_eq!(walls.obstacle_at(p).is_none(), covered, "{text}: {p}");
+        }
+    }
 }
 
 #[test]
-fn rooms_that_touch_at_a_corner_on_a_diagonal_are_one_plan() {
-    for (text, area) in [(ON_A_DIAGONAL, 0.02 + 0.02 + 0.02), (ELEVEN, 0.0)] {
-        let plan = parse_wkt(text).unwrap();
-        let found: f64 = plan.walkable.iter().map(|area| area.area()).sum();
-        if area > 0.0 {
-            assert!((found - area).abs() < 1e-9, "{found}");
-        }
-        walls(&plan).unwrap();
+fn rooms_that_touch_in_places_of_rounding_are_one_plan() {
+    let mut random = ChaCha8Rng::seed_from_u64(2);
+    for (text, reach) in [(ON_A_DIAGONAL, 1.5), (ELEVEN, 9.0)] {
+        check(&mut random, &rings(text), text, reach);
     }
 }
 
 /// A simple polygon: a rectangle, a triangle or a diamond, on a grid of `unit`.
-fn piece(random: &mut ChaCha8Rng, unit: f64) -> Ring {
-    let [x, y, w, h]: [i32; 4] =
-        std::array::from_fn(|k| random.random_range(if k < 2 { 0..7 } else { 1..4 }));
-    let corners = match random.random_range(0..5) {
+fn room(random: &mut ChaCha8Rng, unit: f64) -> Ring {
+    let mut up_to = |low: i32, high: i32| random.random_range(low..high);
+    let [x, y, w, h, kind] = [
+        up_to(0, 7),
+        up_to(0, 7),
+        up_to(1, 4),
+        up_to(1, 4),
+        up_to(0, 5),
+    ];
+    let corners = match kind {
         0 | 1 => vec![[x, y], [x + w, y], [x + w, y + h], [x, y + h]],
         2 => vec![[x, y], [x + w, y], [x, y + w]],
         3 => vec![[x + w, y + w], [x, y + w], [x + w, y]],
@@ -63,42 +95,9 @@ fn piece(random: &mut ChaCha8Rng, unit: f64) -> Ring {
             [x, y + w],
         ],
     };
-    // 7 × 0.1 = 0.7000000000000001.
-    corners
-        .into_iter()
-        .map(|p| p.map(|c| f64::from(c) * unit))
-        .collect()
-}
-
-fn multipolygon(rings: &[Ring]) -> String {
-    let point = |[x, y]: &[f64; 2]| format!("{x} {y}");
-    let ring = |ring: &Ring| {
-        format!(
-            "(({}))",
-            ring.iter().map(point).collect::<Vec<_>>().join(",")
-        )
-    };
-    format!(
-        "MULTIPOLYGON ({})",
-        rings.iter().map(ring).collect::<Vec<_>>().join(",")
-    )
-}
-
-fn to_geo(ring: &Ring) -> Polygon {
-    Polygon::new(LineString::from(ring.clone()), Vec::new())
-}
-
-/// How far `p` is from the nearest edge of `rings`.
-fn margin(rings: &[Ring], p: Vector) -> f64 {
-    let edges = rings
-        .iter()
-        .flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
-    let distance = |(&a, &b): (&[f64; 2], &[f64; 2])| {
-        let [a, b] = [a, b].map(Vector::from);
-        let along = (b - a).dot(&(p - a)) / (b - a).norm_squared();
-        (a + (b - a) * along.clamp(0.0, 1.0) - p).norm()
-    };
-    edges.map(distance).fold(f64::INFINITY, f64::min)
+    // Tenths: 7 × 0.1 is 0.7000000000000001.
+    let place = |p: [i32; 2]| p.map(|c| f64::from(c) * unit);
+    corners.into_iter().map(place).collect()
 }
 
 #[test]
@@ -107,25 +106,67 @@ fn unions_of_rooms_on_a_coarse_grid_are_read_and_are_what_the_rooms_cover() {
     for case in 0..2000 {
         let unit = [1.0, 0.5, 0.1][case % 3];
         let count = random.random_range(1..13);
-        let rings: Vec<Ring> = (0..count).map(|_| piece(&mut random, unit)).collect();
-        let given = MultiPolygon::from_iter(rings.iter().map(to_geo));
-        let text = multipolygon(&rings);
-        let plan = match parse_wkt(&text) {
-            Err(FloorPlanError::TooSmall { .. } | FloorPlanError::NoRoom) => continue,
-            plan => plan.unwrap_or_else(|error| panic!("{text}: {error}")),
+        let rooms: Vec<Ring> = (0..count).map(|_| room(&mut random, unit)).collect();
+        let polygons: Vec<Vec<Ring>> = rooms.iter().map(|room| vec![room.clone()]).collect();
+        check(&mut random, &rooms, &multipolygon(&polygons), 13.0 * unit);
+    }
+}
+
+fn square(k: usize, columns: usize) -> Ring {
+    let [x, y] = [k % columns, k / columns].map(|c| 2.0 * c as f64);
+    vec![[x, y], [x + 1.0, y], [x + 1.0, y + 1.0], [x, y + 1.0]]
+}
+
+/// The shortest of some times, seconds.
+fn seconds(read: impl Fn()) -> f64 {
+    let once = |_| {
+        let start = Instant::now();
+        read();
+        start.elapsed().as_secs_f64()
+    };
+    (0..3).map(once).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn four_times_as_many_pieces_do_not_take_sixteen_times_as_long() {
+    let lines = |n: usize| {
+        let squares = (0..n).map(|k| multipolygon(&[vec![square(k, 50)]]));
+        let text = squares.collect::<Vec<_>>().join("\n");
+        seconds(|| assert_eq!(floor_plan::parse(&text).unwrap().solids().unwrap().len(), 1))
+    };
+    let features = |n: usize| {
+        let feature = |k| {
+            json!({"type": "Feature", "properties": null,
+            "geometry": {"type": "Polygon", "coordinates": [square(k, n)]}})
         };
-        let walls = walls(&plan).unwrap_or_else(|error| panic!("{text}: {error}"));
-        for _ in 0..40 {
-            let p = Vector::new(
-                random.random_range(-1.0..12.0),
-                random.random_range(-1.0..12.0),
-            ) * unit;
-            if margin(&rings, p) > 1e-5 {
-                let covered = given
-                    .iter()
-                    .any(|piece| piece.contains(&Point::new(p.x, p.y)));
-                assert_eq!(walls.obstacle_at(p).is_none(), covered, "{text}: {p}");
-            }
-        }
+        let features: Vec<_> = (0..n).map(feature).collect();
+        let text = json!({"type": "FeatureCollection", "features": features}).to_string();
+        seconds(|| assert_eq!(floor_plan::parse(&text).unwrap().walkable.len(), n))
+    };
+    let holes = |n: usize| {
+        let side = 2.0 * n as f64;
+        let outline = vec![[-1.0, -1.0], [side, -1.0], [side, side], [-1.0, side]];
+        let mut rings = vec![outline];
+        rings.extend((0..n).map(|k| square(k, 50)));
+        seconds(|| {
+            let plan = FloorPlan::walkable(std::slice::from_ref(&rings)).unwrap();
+            assert_eq!(plan.walkable[0].holes.len(), n);
+            plan.solids().unwrap();
+            FloorPlan::obstacle(&rings).unwrap();
+        })
+    };
+    let empty = |n: usize| {
+        let text = "()".repeat(50 * n);
+        seconds(|| assert!(floor_plan::parse(&text).is_err()))
+    };
+    let kinds: [(&str, &dyn Fn(usize) -> f64); 4] = [
+        ("lines", &lines),
+        ("features", &features),
+        ("holes", &holes),
+        ("empty", &empty),
+    ];
+    for (kind, time) in kinds {
+        let [few, many] = [2_000, 8_000].map(time);
+        assert!(many < 10.0 * few, "{kind}: {few} s, {many} s");
     }
 }

@@ -27,3 +27,4 @@ mod sweep;
 mod sweep_program;
 mod sweep_study;
 mod trajectory;
+mod trajectory_area;

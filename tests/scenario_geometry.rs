@@ -97,7 +97,9 @@ fn what_is_wrong_with_a_plan_is_said_with_the_scenario_the_key_and_the_file() {
         ),
         (
             json!({"walkable_area": [[[[0, 0], [4, 4], [4, 0], [0, 4]]]]}),
-            vec!["walkable_area[0]: the outline crosses or touches itself at (2, 2)"],
+            vec![
+                "walkable_area[0]: the outline crosses or touches itself: the edge from (0, 0) to (4, 4)",
+            ],
         ),
         (
             json!({"walkable_area": [[[[0, 0], [4, 4], [4, 2e6]]]]}),

@@ -29,6 +29,8 @@ use shape::Shape;
 const LONGEST_FILE: u64 = 1 << 28;
 /// What a person needs to stand, m².
 const STANDING_ROOM: f64 = 0.18;
+/// A plan without standing room that is shorter than this, metres, must be a mistake.
+const SHORT: f64 = 1.0;
 /// Obstacles that are all within so many metres are a mistake.
 const LEAST_EXTENT: f64 = 0.01;
 
@@ -47,7 +49,7 @@ pub struct FloorPlan {
 /// # Errors
 /// The file cannot be read, is neither, or makes no floor plan: what and where, after the file's name.
 pub fn read(path: &Path) -> Result<FloorPlan, FloorPlanError> {
-    in_file(path, |text| FloorPlan::of(shapes(text)?))
+    in_file(path, parse)
 }
 
 /// Reads a file of which everything is an obstacle.
@@ -62,6 +64,14 @@ pub fn read_obstacles(path: &Path) -> Result<FloorPlan, FloorPlanError> {
         }
         FloorPlan::of(shapes)
     })
+}
+
+/// Reads GeoJSON if `text` begins with `{`, else WKT.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(text: &str) -> Result<FloorPlan, FloorPlanError> {
+    FloorPlan::of(shapes(text)?)
 }
 
 /// Reads well-known text, all of it walkable area: a file's, or what a trajectory's `geometry` table holds.
@@ -173,14 +183,15 @@ impl FloorPlan {
                 obstacles,
             });
         }
-        let whole: f64 = walkable.iter().map(Area::area).fold(0.0, f64::max);
+        let largest = |areas: &[Area]| areas.iter().map(Area::area).fold(0.0, f64::max);
+        let whole = largest(&walkable);
         let walkable = unite::without(&walkable, &obstacles)?;
-        let largest = walkable.iter().map(Area::area).fold(0.0, f64::max);
-        if largest < STANDING_ROOM {
-            return Err(match whole < STANDING_ROOM {
-                true => FloorPlanError::TooSmall { width, height },
-                false => FloorPlanError::NoRoom,
-            });
+        let room = largest(&walkable);
+        if room == 0.0 || whole < STANDING_ROOM && width.max(height) < SHORT {
+            return Err(FloorPlanError::TooSmall { width, height });
+        }
+        if room < STANDING_ROOM && !obstacles.is_empty() {
+            return Err(FloorPlanError::NoRoom);
         }
         Ok(Self {
             walkable,

@@ -221,6 +221,35 @@ mod tests {
     }
 
     #[test]
+    fn the_picture_of_holes_that_touch_the_outline_and_each_other_is_what_the_engine_takes_for_solid()
+     {
+        let ring = |corners: &[[f64; 2]]| {
+            Ring::new(corners.iter().map(|&p| Vector::from(p)).collect()).unwrap()
+        };
+        let floor = Area {
+            exterior: ring(&[[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]),
+            holes: vec![
+                ring(&[[10.0, 10.0], [5.0, 8.0], [5.0, 5.0], [8.0, 5.0]]),
+                ring(&[[5.0, 5.0], [2.0, 4.0], [4.0, 2.0]]),
+                ring(&[[0.0, 6.0], [1.0, 7.0], [0.0, 8.0]]),
+            ],
+        };
+        let walls = Polygon::enclosing(vec![floor]).unwrap();
+        let raster = Raster::of(std::slice::from_ref(&walls));
+        for (k, &pixel) in raster.pixels.iter().enumerate() {
+            let place = Vector::new((k % raster.columns) as f64, (k / raster.columns) as f64);
+            let p = raster.min + (place + Vector::repeat(0.5)) * raster.cell;
+            let nearest = walls.edges().map(|(a, b)| {
+                let along = (b - a).dot(&(p - a)) / (b - a).norm_squared();
+                (a + (b - a) * along.clamp(0.0, 1.0) - p).norm()
+            });
+            if nearest.fold(f64::INFINITY, f64::min) > 1e-6 {
+                assert_eq!(pixel == 1, walls.contains(p), "{p}");
+            }
+        }
+    }
+
+    #[test]
     fn the_picture_of_an_enclosure_leaves_the_floor_free_and_has_a_margin() {
         let square = |low: f64, high: f64| {
             let corners = [[low, low], [high, low], [high, high], [low, high]];

@@ -4,6 +4,8 @@
 pub mod bounded;
 pub mod documents;
 pub mod json_schema;
+pub mod plan_reading;
+pub mod plans;
 #[cfg(feature = "cli")]
 pub mod program;
 pub mod quadrature;

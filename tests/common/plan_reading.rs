@@ -1,0 +1,74 @@
+//! Reads any text as a floor plan: for tests and for fuzzing.
+
+use sandbox::floor_plan::{self, FloorPlan, FloorPlanError};
+use sandbox::geometry::{Area, Walls};
+
+/// Ends in walls that can be asked, or in an error at a place that is in the text.
+pub fn read(text: &str) {
+    let plan = match floor_plan::parse(text) {
+        Ok(plan) => plan,
+        Err(error) => return check_place(text, &error),
+    };
+    let rings = |area: &Area| -> Vec<Vec<[f64; 2]>> {
+        let points = area.rings().map(|ring| ring.points().iter());
+        points
+            .map(|points| points.map(|p| [p.x, p.y]).collect())
+            .collect()
+    };
+    let written: Vec<_> = plan.walkable.iter().map(rings).collect();
+    if !written.is_empty() {
+        // What is read and written is the same plan again; its areas are obstacles as well.
+        let again = FloorPlan::walkable(&written).unwrap();
+        let size = |plan: &FloorPlan| plan.walkable.iter().map(Area::area).sum::<f64>();
+        let edge = |area: &Area| -> f64 {
+            let points = area.rings().flat_map(|ring| ring.points());
+            points.map(|p| p.amax()).fold(1.0, f64::max)
+        };
+        let reach = plan.walkable.iter().map(edge).fold(1.0, f64::max);
+        let corners = written.iter().flatten().map(Vec::len).sum::<usize>();
+        let rounding = 1e-5 * reach * corners as f64;
+        assert!((size(&again) - size(&plan)).abs() < rounding, "{again:?}");
+        for rings in &written {
+            FloorPlan::obstacle(rings).unwrap();
+        }
+    }
+    let walls = Walls::new(plan.solids().unwrap());
+    for wall in walls.iter() {
+        assert!(wall.start.amax() <= 1e6 && wall.length() > 0.0);
+        walls.obstacle_at((wall.start + wall.end) * 0.5);
+    }
+}
+
+/// Every point that a message names is one of the text.
+fn check_place(text: &str, error: &FloorPlanError) {
+    let said = error.to_string();
+    assert!(!said.is_empty() && !said.contains("near ("), "{said}");
+    if !matches!(
+        error,
+        FloorPlanError::Ring { .. } | FloorPlanError::TooFar { .. }
+    ) {
+        return;
+    }
+    let is_number = |c: char| c.is_ascii_digit() || "+-.eE".contains(c);
+    let drawn = |number: f64| {
+        let given = text
+            .split(|c| !is_number(c))
+            .filter_map(|n| n.parse::<f64>().ok());
+        given
+            .into_iter()
+            .any(|n| n == number || n.is_nan() && number.is_nan())
+    };
+    for point in said
+        .split('(')
+        .skip(1)
+        .filter_map(|part| part.split(')').next())
+    {
+        let Some((x, y)) = point.split_once(", ") else {
+            continue;
+        };
+        if let (Ok(x), Ok(y)) = (x.parse::<f64>(), y.parse::<f64>()) {
+            let finite = x.is_finite() && y.is_finite();
+            assert!(!finite || drawn(x) && drawn(y), "({x}, {y}): {said}");
+        }
+    }
+}
