@@ -242,8 +242,8 @@ fn what_is_no_floor_plan_is_refused_with_the_place_and_the_fix() {
             vec!["line 2", "(2000000, 0)", "origin"],
         ),
         (
-            "POLYGON ((0 0, 9 0, 9 9), (1 1, 2 1, 1e300 2))",
-            vec!["(1e300, 2) is out of range"],
+            "POLYGON ((0 0, 9 0, 9 9), (1 1, 2 1, 1e7 2))",
+            vec!["(10000000, 2) is out of range"],
         ),
         (
             r#"{"type": "Polygon", "coordinates": [[[0, 0], [1], [1, 1]]]}"#,

@@ -23,6 +23,7 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::geometry::{Area, Polygon, PolygonError};
+use crate::math::Vector;
 use shape::Shape;
 
 /// A longer file is refused, bytes.
@@ -160,20 +161,15 @@ impl FloorPlan {
             return Err(FloorPlanError::Empty);
         }
         let (mut walkable, mut obstacles) = (Vec::new(), Vec::new());
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for shape in shapes {
             let area = shape.area()?;
-            for p in area.exterior.points() {
-                low = [low[0].min(p.x), low[1].min(p.y)];
-                high = [high[0].max(p.x), high[1].max(p.y)];
-            }
             if shape.is_obstacle {
                 obstacles.push(area);
             } else {
                 walkable.push(area);
             }
         }
-        let [width, height] = [high[0] - low[0], high[1] - low[1]];
+        let [width, height] = extent(walkable.iter().chain(&obstacles));
         if walkable.is_empty() {
             if width.max(height) < LEAST_EXTENT {
                 return Err(FloorPlanError::TooSmall { width, height });
@@ -187,15 +183,25 @@ impl FloorPlan {
         let whole = largest(&walkable);
         let walkable = unite::without(&walkable, &obstacles)?;
         let room = largest(&walkable);
-        if room == 0.0 || whole < STANDING_ROOM && width.max(height) < SHORT {
-            return Err(FloorPlanError::TooSmall { width, height });
-        }
-        if room < STANDING_ROOM && !obstacles.is_empty() {
-            return Err(FloorPlanError::NoRoom);
+        let [along, across] = extent(walkable.iter());
+        let is_short = along.max(across) < SHORT;
+        if room < STANDING_ROOM && (is_short || !obstacles.is_empty()) {
+            return Err(match whole < STANDING_ROOM {
+                true => FloorPlanError::TooSmall { width, height },
+                false => FloorPlanError::NoRoom,
+            });
         }
         Ok(Self {
             walkable,
             obstacles: Vec::new(),
         })
     }
+}
+
+/// Along x and along y, metres; negative without areas.
+fn extent<'a>(areas: impl Iterator<Item = &'a Area>) -> [f64; 2] {
+    let points = areas.flat_map(|area| area.exterior.points());
+    let none = [f64::INFINITY, f64::NEG_INFINITY].map(Vector::repeat);
+    let [low, high] = points.fold(none, |[low, high], p| [low.inf(p), high.sup(p)]);
+    [high.x - low.x, high.y - low.y]
 }
