@@ -1,8 +1,8 @@
 //! Checkpoints: a run written down whole, to be gone on with after a crash as if it had never stopped.
 //!
 //! A file is a line of text, the format's version, a SHA-256 of what follows, and that: the scenario as JSON,
-//! the state and what was measured so far, in postcard's encoding. It is written to a temporary name beside
-//! its own and renamed when it is whole: whatever happens, a checkpoint of before is not lost.
+//! the state and what was measured so far, in postcard's encoding. It is written [whole](write_whole):
+//! whatever happens, a checkpoint of before is not lost.
 
 use std::fs;
 use std::io::Write;
@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::metrics::Metrics;
+use crate::outputs::write_whole;
 use crate::scenario::{Need, Scenario, ScenarioError, Setting};
 use crate::simulation::{Simulation, State, StateError};
 
@@ -125,31 +126,24 @@ impl Checkpoint {
         Ok((simulation, metrics))
     }
 
-    /// Writes it, whole or not at all.
+    /// Writes it, whole or not at all, through symbolic links.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// The file cannot be written, or is no regular file.
     pub fn write(&self, path: &Path) -> Result<(), CheckpointError> {
         let failed = |reason: String| CheckpointError::Unwritable {
             path: path.to_owned(),
             reason,
         };
         let payload = postcard::to_stdvec(self).map_err(|error| failed(error.to_string()))?;
-        let folder = match path.parent() {
-            Some(folder) if folder != Path::new("") => folder,
-            _ => Path::new("."),
-        };
-        let written = tempfile::NamedTempFile::new_in(folder).and_then(|mut file| {
+        let written = write_whole(path, |file| {
             file.write_all(MAGIC)?;
             file.write_all(&VERSION.to_le_bytes())?;
             file.write_all(&Sha256::digest(&payload))?;
             file.write_all(&payload)?;
-            file.as_file().sync_all()?;
-            file.persist(path).map_err(|error| error.error)
+            file.sync_all()
         });
-        written
-            .map(|_| ())
-            .map_err(|error| failed(error.to_string()))
+        written.map_err(|error| failed(error.to_string()))
     }
 
     /// Reads it.

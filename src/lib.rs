@@ -69,6 +69,8 @@ pub mod scenario;
 
 pub mod drive;
 
+pub mod outputs;
+
 pub mod checkpoint;
 
 pub mod summary;

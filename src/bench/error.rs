@@ -36,9 +36,6 @@ pub enum BenchError {
         /// What it said last.
         reason: String,
     },
-    /// There is a result already.
-    #[error("{}: exists already; give --force to replace it", .0.display())]
-    Exists(PathBuf),
     /// A result cannot be written.
     #[error("cannot write {}: {reason}", path.display())]
     Unwritable {

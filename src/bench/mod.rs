@@ -21,7 +21,7 @@ mod timing;
 pub use crowd::{Aim, Crowd};
 pub use error::BenchError;
 pub use machine::{Machine, Memory, main_memory};
-pub use report::{Findings, Report, Setting, check_free, make_folder};
+pub use report::{Findings, Report, Setting, files};
 pub use skips::{SKIPS, Skip, everything};
 pub use spread::{Spread, ratios};
 pub use timing::{Contender, alternate};

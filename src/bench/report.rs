@@ -1,7 +1,7 @@
 //! What was measured: as text, as JSON, as files.
 
 use std::fs;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -10,10 +10,10 @@ use serde_json::{Value, json};
 use super::Plan;
 use super::error::BenchError;
 use super::machine::Machine;
+use crate::outputs::write_whole;
 use crate::pairs::Vectors;
 #[cfg(feature = "plot")]
 use crate::plot::Sheet;
-use crate::reproduce::write_whole;
 use crate::table::Table;
 
 /// What everything was measured with.
@@ -119,22 +119,15 @@ impl Report {
     /// A file cannot be written.
     pub fn save(&self, folder: &Path) -> Result<Vec<PathBuf>, BenchError> {
         let written = files(self.name, folder);
-        make_folder(folder)?;
+        fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))?;
         let path = &written[0];
         let json = format!("{:#}\n", self.json());
-        write_whole(path, json.as_bytes()).map_err(|error| unwritable(path, &error))?;
+        let saved = write_whole(path, |file| file.write_all(json.as_bytes()));
+        saved.map_err(|error| unwritable(path, &error))?;
         #[cfg(feature = "plot")]
         self.findings.sheet.save(&folder.join(self.name))?;
         Ok(written)
     }
-}
-
-/// Makes the folder for results, better before anything is measured than after.
-///
-/// # Errors
-/// It cannot be made.
-pub fn make_folder(folder: &Path) -> Result<(), BenchError> {
-    fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))
 }
 
 fn unwritable(path: &Path, error: &io::Error) -> BenchError {
@@ -145,7 +138,7 @@ fn unwritable(path: &Path, error: &io::Error) -> BenchError {
 }
 
 /// The files that a benchmark writes into a folder, the JSON first.
-fn files(name: &str, folder: &Path) -> Vec<PathBuf> {
+pub fn files(name: &str, folder: &Path) -> Vec<PathBuf> {
     let extensions: &[&str] = if cfg!(feature = "plot") {
         &["json", "svg", "png"]
     } else {
@@ -153,17 +146,6 @@ fn files(name: &str, folder: &Path) -> Vec<PathBuf> {
     };
     let file = |extension: &&str| folder.join(format!("{name}.{extension}"));
     extensions.iter().map(file).collect()
-}
-
-/// Refuses to replace the results of a benchmark, before anything is measured.
-///
-/// # Errors
-/// One of its files is there.
-pub fn check_free(name: &str, folder: &Path) -> Result<(), BenchError> {
-    match files(name, folder).into_iter().find(|path| path.exists()) {
-        Some(path) => Err(BenchError::Exists(path)),
-        None => Ok(()),
-    }
 }
 
 #[cfg(test)]

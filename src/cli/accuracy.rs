@@ -61,7 +61,7 @@ pub fn scenes() -> Vec<&'static str> {
 pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
     use_threads(options.threads)?;
     if let Some(file) = &options.update {
-        check(file)?;
+        check(file, &options.out)?;
     }
     let store = Store::open(&options.out)?;
     let wanted = |name: &str| options.scene.is_empty() || options.scene.iter().any(|s| s == name);

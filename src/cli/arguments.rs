@@ -6,7 +6,9 @@ use clap::builder::PossibleValuesParser;
 use clap::{ArgGroup, Args, Parser, Subcommand};
 use clap_complete::Shell;
 
-use super::values::{every_frames, frame_rate, id, positive_seconds, seconds, seed, threads};
+use super::values::{
+    every_frames, frame_rate, id, positive_seconds, recording, seconds, seed, threads,
+};
 use super::{accuracy, bench, measure, reproduce, stress, sweep};
 use crate::scenario::{Preset, SHIPPED};
 
@@ -190,7 +192,7 @@ pub struct OutputOptions {
 /// What can be gone on with after a crash.
 #[derive(Args)]
 pub struct CheckpointOptions {
-    /// Write checkpoints to this file, each in place of the one before
+    /// Write checkpoints to this file, each in place of the one before, and one at the end of a run that has none
     #[arg(long, value_name = "FILE")]
     pub checkpoint: Option<PathBuf>,
     /// Every so many simulated seconds
@@ -203,7 +205,7 @@ pub struct CheckpointOptions {
 #[command(group(ArgGroup::new("record").multiple(true).args(["save", "spawn", "connect"])))]
 pub struct RecordOptions {
     /// Write a recording for the Rerun viewer
-    #[arg(long, value_name = "FILE.rrd")]
+    #[arg(long, value_name = "FILE.rrd", value_parser = recording())]
     pub save: Option<PathBuf>,
     /// Show the run in a Rerun viewer while it goes on; starts one if none is there
     #[arg(long)]
@@ -263,7 +265,7 @@ pub struct InspectOptions {
     #[arg(long, value_name = "SECS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = seconds)]
     pub at: f64,
     /// Write the same as a recording for the Rerun viewer
-    #[arg(long, value_name = "FILE.rrd")]
+    #[arg(long, value_name = "FILE.rrd", value_parser = recording())]
     pub save: Option<PathBuf>,
 }
 

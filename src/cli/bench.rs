@@ -7,7 +7,8 @@ use clap::builder::PossibleValuesParser;
 
 use super::values::{repeats, threads};
 use super::{Failure, say, talk, use_threads};
-use crate::bench::{BENCHMARKS, BenchError, Plan, Report, check_free, make_folder};
+use crate::bench::{BENCHMARKS, BenchError, Plan, Report, files};
+use crate::outputs::{Manner, Outputs};
 
 /// What may be typed.
 pub const EXAMPLES: &str = "\
@@ -69,10 +70,12 @@ pub fn run(options: &BenchOptions) -> Result<(), Failure> {
     let benchmark =
         found.ok_or_else(|| Failure::Input(format!("{}: no benchmark", options.what)))?;
     if let Some(folder) = &options.out {
-        if !options.force {
-            check_free(benchmark.name, folder)?;
+        let mut outputs = Outputs::new(options.force);
+        outputs.writes("--out", folder, Manner::Folder);
+        for file in files(benchmark.name, folder) {
+            outputs.writes("--out", &file, Manner::Beside);
         }
-        make_folder(folder)?;
+        outputs.check()?;
     }
     use_threads(options.threads)?;
     let plan = Plan {
@@ -107,9 +110,6 @@ fn save(report: &Report, folder: &Path) -> Result<(), Failure> {
 
 impl From<BenchError> for Failure {
     fn from(error: BenchError) -> Self {
-        match error {
-            BenchError::Exists(_) => Self::Input(format!("--out {error}")),
-            error => Self::Output(error.to_string()),
-        }
+        Self::Output(error.to_string())
     }
 }

@@ -5,16 +5,17 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::arguments::{
     OutputOptions, ProgramOptions, RecordOptions, ResumeOptions, RunOptions, Source,
 };
-use super::checkpoint::Checkpoints;
+use super::checkpoint::{Checkpoints, Moment};
 use super::interrupt::Interrupt;
-use super::output::{Output, laid_open};
+use super::output::{Output, check, laid_open};
 use super::report::Report;
-use super::trajectory::{self, Trajectories};
+use super::trajectory::Trajectories;
 use super::{Failure, memory, say, scenario, setting, talk, use_threads};
 use crate::checkpoint::Checkpoint;
-use crate::clock::SHORTEST_TIME_STEP;
+use crate::clock::{Clock, SHORTEST_TIME_STEP};
 use crate::drive::{Then, drive, unless_over};
 use crate::metrics::Metrics;
+use crate::outputs::Outputs;
 use crate::scenario::{Scenario, Setting};
 use crate::scene::Scene;
 use crate::simulation::{EventKind, Simulation};
@@ -25,7 +26,9 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     use_threads(options.scene.program.threads)?;
     let writing = memory::of_writing(&options.output);
     let until = options.output.until.map(|secs| ("--until", secs));
-    let scenario = scenario(source, &options.scene, until, writing)?;
+    let mut outputs = Outputs::new(options.scene.program.force);
+    let scenario = scenario(source, &options.scene, until, writing, &mut outputs)?;
+    check(outputs, &options.output, &scenario)?;
     warn_of_the_step(&scenario.scene);
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     let metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
@@ -59,6 +62,10 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
     memory::check(&file, &need, memory::of_writing(&options.output))?;
     let scenario = checkpoint.scenario(until.as_slice())?;
     let (simulation, metrics) = checkpoint.resume(&scenario)?;
+    refuse_the_past(options, simulation.frame().clock)?;
+    let mut outputs = Outputs::new(options.program.force);
+    outputs.goes_on_with("the checkpoint", &options.file, "--checkpoint");
+    check(outputs, &options.output, &scenario)?;
     go_on(
         &scenario,
         simulation,
@@ -66,6 +73,18 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
         &options.program,
         &options.output,
     )
+}
+
+/// Refuses an end before the checkpoint's time, which the run has passed.
+fn refuse_the_past(options: &ResumeOptions, clock: &Clock) -> Result<(), Failure> {
+    match options.output.until {
+        Some(until) if clock.frame_at(until) < clock.frame() => Err(Failure::Input(format!(
+            "--until {until}: the checkpoint {} is of {:.2} s; give a later time",
+            options.file.display(),
+            clock.time()
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// From where a simulation is to its end.
@@ -77,10 +96,10 @@ fn go_on(
     options: &OutputOptions,
 ) -> Result<(), Failure> {
     let duration = scenario.duration_secs;
-    trajectory::check(&options.trajectory, program.force, scenario)?;
+    let last_frame = simulation.frame().clock.frame_at(duration);
     let interrupt = Interrupt::listen().map_err(|error| Failure::Output(error.to_string()))?;
-    let mut checkpoints = Checkpoints::create(&options.checkpoint, program.force, &mut simulation)?;
-    let mut output = Output::create(&options.record, program.force, scenario, &mut simulation)?;
+    let mut checkpoints = Checkpoints::create(&options.checkpoint, &mut simulation);
+    let mut output = Output::create(&options.record, scenario, &mut simulation)?;
     let mut trajectories = Trajectories::create(&options.trajectory, scenario, &mut simulation)?;
     let mut interrupted = None;
     let progress = Progress::new(duration);
@@ -96,13 +115,20 @@ fn go_on(
             if then == Then::GoOn {
                 interrupted = interrupt.exit_code();
             }
-            checkpoints.write(scenario, simulation, &metrics, interrupted.is_some())?;
+            let is_last = then == Then::Stop || simulation.frame().clock.frame() >= last_frame;
+            let moment = match interrupted {
+                Some(_) => Moment::Interrupted,
+                None if is_last => Moment::Last,
+                None => Moment::Underway,
+            };
+            checkpoints.write(scenario, simulation, &metrics, moment);
             Ok::<Then, Failure>(interrupted.map_or(then, |_| Then::Stop))
         })
     });
     progress.finish();
     // What was recorded is kept, whatever ended the run.
-    let saved = output.finish().and(trajectories.finish());
+    let (recorded, traced) = (output.finish(), trajectories.finish());
+    let saved = recorded.and(traced).and(checkpoints.finish());
     driven.map_err(|failure| failure.laid_open(&mut simulation))?;
     report_oddities(&simulation);
     report_absent(&options.record, &simulation);

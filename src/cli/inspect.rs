@@ -7,17 +7,24 @@ use super::drive::Progress;
 use super::output;
 use super::{Failure, say, scenario as read, use_threads};
 use crate::breakdown::Breakdown;
+use crate::outputs::{Manner, Outputs};
 use crate::pairs::Precision;
 use crate::simulation::Simulation;
 
 pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     use_threads(options.scene.program.threads)?;
     let source = Source::named(&options.scenario);
-    let mut scenario = read(&source, &options.scene, None, 0)?;
+    let mut outputs = Outputs::new(options.scene.program.force);
+    let mut scenario = read(&source, &options.scene, None, 0, &mut outputs)?;
     if options.at > scenario.duration_secs {
         // Sources go on until then.
-        scenario = read(&source, &options.scene, Some(("--at", options.at)), 0)?;
+        let at = Some(("--at", options.at));
+        scenario = read(&source, &options.scene, at, 0, &mut outputs)?;
     }
+    if let Some(path) = &options.save {
+        outputs.writes("--save", path, Manner::InPlace);
+    }
+    outputs.check()?;
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     // The rest density follows the density's history, so every frame needs it.
     simulation.request_density_until(u64::MAX);
@@ -28,13 +35,7 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     let breakdowns = breakdowns(&simulation, options)?;
     if let Some(path) = &options.save {
         let ids = breakdowns.iter().map(|breakdown| breakdown.id).collect();
-        output::save_moment(
-            path,
-            options.scene.program.force,
-            &scenario,
-            &simulation,
-            ids,
-        )?;
+        output::save_moment(path, &scenario, &simulation, ids)?;
     }
     let clock = simulation.frame().clock;
     let (time, frame) = (clock.time(), clock.frame());

@@ -10,6 +10,7 @@ use clap_mangen::{Man, generate_to};
 
 use super::arguments::Arguments;
 use super::{Failure, say};
+use crate::outputs::{Manner, Outputs};
 
 /// `sandbox completions`.
 pub fn completions(shell: Shell) -> Result<(), Failure> {
@@ -27,6 +28,9 @@ pub fn man(folder: Option<&Path>) -> Result<(), Failure> {
     if let Some(folder) = folder {
         let path = folder.display();
         let failed = |error: io::Error| Failure::Output(format!("cannot write {path}: {error}"));
+        let mut outputs = Outputs::new(true);
+        outputs.writes("--out", folder, Manner::Folder);
+        outputs.check()?;
         fs::create_dir_all(folder).map_err(failed)?;
         return generate_to(command, folder).map_err(failed);
     }

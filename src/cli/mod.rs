@@ -28,6 +28,7 @@ use clap::Parser;
 
 use crate::breakdown::Breakdown;
 use crate::floor_plan;
+use crate::outputs::{Outputs, OutputsError};
 use crate::reproduce::ReproduceError;
 use crate::scenario::{Need, Scenario, ScenarioError, Setting, read_text, shipped_text};
 use crate::simulation::{Fault, Simulation};
@@ -75,6 +76,15 @@ impl Failure {
             Self::Scenario(_) | Self::Input(_) => 2,
             Self::Fault(_) | Self::LaidOpen { .. } | Self::Output(_) | Self::Reproduce(_) => 1,
             Self::Interrupted { exit_code, .. } => *exit_code,
+        }
+    }
+}
+
+impl From<OutputsError> for Failure {
+    fn from(error: OutputsError) -> Self {
+        match error {
+            OutputsError::Unwritable { .. } => Self::Output(error.to_string()),
+            error => Self::Input(error.to_string()),
         }
     }
 }
@@ -131,13 +141,13 @@ fn run(command: Command) -> Result<(), Failure> {
 }
 
 /// Reads a scenario with the settings of the command line, among them its end, after the flag that gives
-/// it; what is written of it takes `writing` bytes of
-/// memory per agent.
+/// it; what is written of it takes `writing` bytes of memory per agent. `outputs` learns what was read.
 fn scenario(
     source: &Source,
     scene: &arguments::SceneOptions,
     until: Option<(&str, f64)>,
     writing: u64,
+    outputs: &mut Outputs,
 ) -> Result<Scenario, Failure> {
     let (until_flag, until) =
         until.map_or(("", None), |(flag, secs)| (flag, Some(secs.to_string())));
@@ -172,6 +182,7 @@ fn scenario(
     }
     if let Some(path) = &scene.geometry {
         let text = format!("--geometry {}", path.display());
+        outputs.reads("--geometry", path);
         let plan = floor_plan::read(path);
         let plan = plan.map_err(|error| Failure::Input(format!("--geometry {error}")))?;
         settings.extend(Setting::floor_plan(&plan, &text));
@@ -182,7 +193,14 @@ fn scenario(
         Source::File(path) => (read_text(path)?, path.display().to_string()),
     };
     memory::check(&file, &Need::parse(&text, &file, &settings)?, writing)?;
-    Ok(Scenario::parse(&text, &file, &settings)?)
+    let scenario = Scenario::parse(&text, &file, &settings)?;
+    if let Source::File(path) = source {
+        outputs.reads("the scenario", path);
+    }
+    for (key, path) in &scenario.files {
+        outputs.reads(key, path);
+    }
+    Ok(scenario)
 }
 
 fn setting(text: &str) -> Result<Setting, Failure> {

@@ -1,21 +1,36 @@
-//! Recordings, as far as the command line is concerned.
+//! What a run writes beside its results, as far as the command line is concerned.
 
 use std::path::Path;
 
-use super::Failure;
-use super::arguments::RecordOptions;
+use super::arguments::{OutputOptions, RecordOptions};
+use super::{Failure, trajectory};
+use crate::outputs::{Manner, Outputs};
 use crate::scenario::Scenario;
 use crate::simulation::Simulation;
 
-/// Refuses to replace a file unless told so, before anything is computed.
-pub fn check_free(flag: &str, path: &Path, force: bool) -> Result<(), Failure> {
-    if path.exists() && !force {
-        let path = path.display();
+/// Refuses outputs that cannot be, before any file is touched.
+pub fn check(
+    mut outputs: Outputs,
+    options: &OutputOptions,
+    scenario: &Scenario,
+) -> Result<(), Failure> {
+    trajectory::add(&mut outputs, &options.trajectory, scenario)?;
+    let record = &options.record;
+    let (clock, end) = (&scenario.scene.clock, scenario.duration_secs);
+    if clock.frame_at(record.record_from) > clock.frame_at(end) {
         return Err(Failure::Input(format!(
-            "{flag} {path}: exists already; give --force to replace it"
+            "--record-from {}: the run ends at {end} s, so that nothing would be recorded; give an earlier time, \
+             or a later end with --until",
+            record.record_from
         )));
     }
-    Ok(())
+    if let Some(path) = &record.save {
+        outputs.writes("--save", path, Manner::InPlace);
+    }
+    if let Some(path) = &options.checkpoint.checkpoint {
+        outputs.writes("--checkpoint", path, Manner::Whole);
+    }
+    Ok(outputs.check()?)
 }
 
 /// The ids that `--debug-agents` names; none for `all` and `none`.
@@ -49,13 +64,14 @@ mod with_recording {
         recorder: Option<Recorder>,
         every: u64,
         from: u64,
+        /// Frames in the recording.
+        recorded: u64,
     }
 
     impl Output {
         /// Opens the recording, if one is asked for.
         pub fn create(
             record: &RecordOptions,
-            force: bool,
             scenario: &Scenario,
             simulation: &mut Simulation,
         ) -> Result<Self, Failure> {
@@ -63,9 +79,6 @@ mod with_recording {
             let recorder = match destination(record)? {
                 None => None,
                 Some(to) => {
-                    if let Some(path) = &to.file {
-                        check_free("--save", path, force)?;
-                    }
                     simulation.request_density_until(u64::MAX);
                     let view = recording_options(scenario, debug, record.record_from);
                     Some(Recorder::create(to, simulation, &view)?)
@@ -75,6 +88,7 @@ mod with_recording {
                 recorder,
                 every: record.record_every,
                 from: simulation.frame().clock.frame_at(record.record_from),
+                recorded: 0,
             })
         }
 
@@ -86,12 +100,19 @@ mod with_recording {
                 && frame.is_multiple_of(self.every)
             {
                 recorder.log(simulation, ms_per_frame)?;
+                self.recorded += 1;
             }
             Ok(())
         }
 
         /// Closes the recording.
         pub fn finish(self) -> Result<(), Failure> {
+            if self.recorder.is_some() && self.recorded == 0 {
+                talk(
+                    "note: no frame was recorded: the run ended before the first that --record-from and \
+                     --record-every ask for",
+                );
+            }
             match self.recorder.map_or(Ok(()), Recorder::finish) {
                 // Whoever closes a window has seen enough.
                 Err(gone @ RecordingError::ViewerGone { .. }) => {
@@ -121,12 +142,10 @@ mod with_recording {
     /// Writes one evaluated frame with some agents laid open.
     pub fn save_moment(
         path: &Path,
-        force: bool,
         scenario: &Scenario,
         simulation: &Simulation,
         ids: Vec<u32>,
     ) -> Result<(), Failure> {
-        check_free("--save", path, force)?;
         let now = simulation.frame().clock.time();
         let mut options = recording_options(scenario, DebugAgents::Ids(ids), now);
         options.opens_at = now;
@@ -212,7 +231,6 @@ mod without_recording {
     impl Output {
         pub fn create(
             record: &RecordOptions,
-            _: bool,
             _: &Scenario,
             _: &mut Simulation,
         ) -> Result<Self, Failure> {

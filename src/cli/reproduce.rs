@@ -60,7 +60,7 @@ pub fn about() -> String {
 pub fn run(options: &ReproduceOptions) -> Result<(), Failure> {
     use_threads(options.threads)?;
     if let Some(file) = &options.update {
-        check(file)?;
+        check(file, &options.out)?;
     }
     let store = Store::open(&options.out)?;
     let plan = Plan {

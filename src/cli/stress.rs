@@ -30,7 +30,7 @@ pub struct StressOptions {
 pub fn run(options: &StressOptions) -> Result<(), Failure> {
     use_threads(options.threads)?;
     if let Some(file) = &options.update {
-        check(file)?;
+        check(file, &options.out)?;
     }
     let store = Store::open(&options.out)?;
     let detail = Detail {

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::watch::Watch;
 use super::{Failure, say, talk, use_threads};
+use crate::outputs::{Manner, Outputs};
 use crate::sweep::{Gathered, Shard, Shelf, State, Study, StudyError, Tally, run as run_shard};
 
 /// What a study may look like.
@@ -68,9 +69,10 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
             let reason = format!("{folder}: no study was begun there; name its folder with --out");
             return Err(Failure::Input(reason));
         }
+        check_outputs(&study, &shelf, options)?;
         return merge(&study, &shelf, options);
     }
-    check_free(&study, &shelf, options.force)?;
+    check_outputs(&study, &shelf, options)?;
     let shelf = Shelf::open(&folder)?;
     let watch = Watch::new();
     let shard = options.shard.unwrap_or(Shard::WHOLE);
@@ -93,20 +95,19 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     }
 }
 
-/// A folder that this program did not make may have files of these names that are somebody's.
-fn check_free(study: &Study, shelf: &Shelf, force: bool) -> Result<(), Failure> {
-    if force || shelf.is_begun() {
-        return Ok(());
+/// Refuses results that cannot be written, or that would replace what the study is read from. A folder that this
+/// program did not make may have files of these names that are somebody's.
+fn check_outputs(study: &Study, shelf: &Shelf, options: &SweepOptions) -> Result<(), Failure> {
+    let mut outputs = Outputs::new(options.force || shelf.is_begun());
+    outputs.reads("the study", &options.file);
+    for path in study.inputs() {
+        outputs.reads("the study's", path);
     }
-    let paths = study.files().map(|file| shelf.folder().join(file));
-    match paths.iter().find(|path| path.exists()) {
-        None => Ok(()),
-        Some(path) => Err(Failure::Input(format!(
-            "{}: is there already, and no study was begun in this folder; give another one with --out, or \
-             replace the file with --force",
-            path.display()
-        ))),
+    for file in study.files() {
+        // Others may begin the same study at the same time, so that nothing is tried that is not there.
+        outputs.writes("--out", &shelf.folder().join(file), Manner::Beside);
     }
+    Ok(outputs.check()?)
 }
 
 fn list(gathered: &Gathered, options: &SweepOptions) -> Result<(), Failure> {

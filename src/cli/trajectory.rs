@@ -2,23 +2,28 @@
 
 use super::Failure;
 use super::arguments::TrajectoryOptions;
-use super::output::check_free;
+use crate::outputs::{Manner, Outputs};
 use crate::scenario::Scenario;
 use crate::simulation::Simulation;
-use crate::trajectory::{Format, Trajectory, TrajectoryError, frames_between};
+use crate::trajectory::{Format, Trajectory, TrajectoryError, frames_between, journal};
 
-/// Refuses what cannot be, before any file is touched.
-pub fn check(options: &TrajectoryOptions, force: bool, scenario: &Scenario) -> Result<(), Failure> {
-    let files = &options.files;
-    for (k, path) in files.iter().enumerate() {
-        Format::of(path)?;
-        check_free("--trajectory", path, force)?;
-        if files[..k].contains(path) {
-            let path = path.display();
-            return Err(Failure::Input(format!("--trajectory {path}: given twice")));
+/// Adds the trajectories to `outputs`.
+pub fn add(
+    outputs: &mut Outputs,
+    options: &TrajectoryOptions,
+    scenario: &Scenario,
+) -> Result<(), Failure> {
+    let option = "--trajectory";
+    for path in &options.files {
+        let format = Format::of(path)?;
+        outputs.writes(option, path, Manner::InPlace);
+        if format == Format::Sqlite {
+            // SQLite's own file, which goes with every commit.
+            let journal = journal(path).map_err(|error| Failure::Output(error.to_string()))?;
+            outputs.writes(option, &journal, Manner::Beside);
         }
     }
-    if !files.is_empty() {
+    if !options.files.is_empty() {
         frames_between(&scenario.scene.clock, options.fps)?;
     }
     Ok(())

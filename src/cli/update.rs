@@ -1,17 +1,28 @@
 //! Texts put into a document that has places for them.
 
 use std::fs;
-use std::io;
+use std::io::{self, Write};
 use std::path::Path;
 
 use super::Failure;
-use crate::reproduce::{put_between, write_whole};
+use crate::outputs::{Manner, Outputs, write_whole};
+use crate::reproduce::put_between;
 
-/// Is the file there? Better told before hours of computing than after.
-pub fn check(file: &Path) -> Result<(), Failure> {
-    fs::metadata(file)
-        .map(|_| ())
-        .map_err(|error| failed(file, &error))
+/// Can the file be updated, and does no result replace it? Better told before hours of computing than after.
+pub fn check(file: &Path, out: &Path) -> Result<(), Failure> {
+    let place = fs::canonicalize(file).map_err(|error| failed(file, &error))?;
+    let mut outputs = Outputs::new(true);
+    outputs.writes("--update", file, Manner::Whole);
+    outputs.check()?;
+    let results = fs::canonicalize(out).ok();
+    if results.is_some() && place.parent() == results.as_deref() {
+        return Err(Failure::Input(format!(
+            "--update {}: lies in the folder of --out {}, whose files are replaced; give another folder",
+            file.display(),
+            out.display()
+        )));
+    }
+    Ok(())
 }
 
 /// Puts texts into the places that a file has for them.
@@ -20,14 +31,13 @@ pub fn update<'a>(
     texts: impl Iterator<Item = (&'a str, &'a str)>,
 ) -> Result<(), Failure> {
     let put = || {
-        let target = fs::canonicalize(file)?; // not in the place of a link
-        let mut document = fs::read_to_string(&target)?;
+        let mut document = fs::read_to_string(file)?;
         for (name, text) in texts {
             if let Some(changed) = put_between(&document, name, text) {
                 document = changed;
             }
         }
-        write_whole(&target, document.as_bytes())
+        write_whole(file, |whole| whole.write_all(document.as_bytes()))
     };
     put().map_err(|error| failed(file, &error))
 }

@@ -1,5 +1,9 @@
 //! What may be typed for a value.
 
+use std::path::PathBuf;
+
+use clap::builder::{PathBufValueParser, TypedValueParser};
+
 pub fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(value) if (0.0..=1e9).contains(&value) => Ok(value),
@@ -50,4 +54,12 @@ pub fn every_frames(text: &str) -> Result<u64, &'static str> {
         Ok(frames @ 1..) => Ok(frames),
         _ => Err("not a number of frames, 1 or more"),
     }
+}
+
+/// A path whose name the Rerun viewer knows for a recording's.
+pub fn recording() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| match path.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("rrd") => Ok(path),
+        _ => Err("a recording's name must end in .rrd"),
+    })
 }

@@ -28,7 +28,7 @@ pub use published::{CrossingRow, EvacuationRow, Published, Table, published};
 pub use ranking::{Ranked, Ranking, rankings};
 pub use runner::{Listener, Results, run};
 pub use snapshot::{Snapshot, SnapshotAt};
-pub use store::{Store, write_whole};
+pub use store::Store;
 pub use table1::{Row, case as table1_case};
 pub use table2::Table as CrossingTable;
 pub use text::put_between;

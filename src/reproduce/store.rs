@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::case::{Case, CaseResult, Key};
 use super::error::ReproduceError;
+use crate::outputs::{try_folder, write_whole};
 
 /// A folder with finished cases in `cases/`, and beside it what was made of them.
 #[derive(Debug, Clone)]
@@ -45,7 +46,7 @@ impl Store {
         let store = Self::at(folder);
         let cases = store.cases();
         // Better known now than when the first case is finished.
-        let writable = fs::create_dir_all(&cases).and_then(|()| temporary_in(&cases));
+        let writable = fs::create_dir_all(&cases).and_then(|()| try_folder(&cases));
         writable.map_err(|error| store.unwritable(folder, &error))?;
         Ok(store)
     }
@@ -73,7 +74,8 @@ impl Store {
     /// It cannot be written.
     pub fn write(&self, file: &str, contents: &[u8]) -> Result<PathBuf, ReproduceError> {
         let path = self.path(file);
-        write_whole(&path, contents).map_err(|error| self.unwritable(&path, &error))?;
+        let written = write_whole(&path, |file| file.write_all(contents));
+        written.map_err(|error| self.unwritable(&path, &error))?;
         Ok(path)
     }
 
@@ -143,29 +145,4 @@ fn is_case(file: &fs::DirEntry) -> bool {
     file.path()
         .extension()
         .is_some_and(|extension| extension == "json")
-}
-
-/// Writes a file, whole or not at all.
-///
-/// # Errors
-/// It cannot be written; one that was there before is as it was.
-pub fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    let mut temporary = temporary_in(folder.unwrap_or(Path::new(".")))?;
-    temporary.write_all(contents)?;
-    temporary.persist(path)?;
-    Ok(())
-}
-
-/// A file to be renamed when it is whole, as readable as any other new one.
-fn temporary_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666)); // less what the umask takes
-    }
-    builder.tempfile_in(folder)
 }

@@ -1,7 +1,7 @@
 //! What a file says → a scenario that can run, or the first thing that is wrong with it.
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
@@ -33,24 +33,27 @@ pub(super) const UNTIL: Range = Range::above(0.0, 1e7);
 
 /// How large a run of `document` becomes; nothing else in it is checked but names and types.
 pub(super) fn need(document: &Value, path: &Path) -> Result<Need, Problem> {
-    let file = read(&complete(document, path)?)?;
+    let file = read(&complete(document, path)?.0)?;
     let duration_secs = duration(&file)?;
     Need::of(&file, &first_clock(&file)?, duration_secs)
 }
 
 /// The document with all that it stands for: nothing in it is looked up elsewhere any more. Files that it
-/// names are in the folder of `path`.
-fn complete(document: &Value, path: &Path) -> Result<Value, Problem> {
+/// names are in the folder of `path`, and returned with their keys.
+fn complete(
+    document: &Value,
+    path: &Path,
+) -> Result<(Value, Vec<(&'static str, PathBuf)>), Problem> {
     let mut document = preset::fill(document);
     without_schema(&mut document)?;
-    plan::fill(&mut document, path.parent().unwrap_or(Path::new("")))?;
-    Ok(document)
+    let files = plan::fill(&mut document, path.parent().unwrap_or(Path::new("")))?;
+    Ok((document, files))
 }
 
 /// Checks `document`, which is or came from `path`: by it a scenario without a name is called, and in its
 /// folder are the files that the scenario names.
 pub(super) fn scenario(document: &Value, path: &Path) -> Result<Scenario, Problem> {
-    let document = complete(document, path)?;
+    let (document, files) = complete(document, path)?;
     let file = read(&document)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name = file.name.clone().unwrap_or_else(|| stem.into_owned());
@@ -85,6 +88,7 @@ pub(super) fn scenario(document: &Value, path: &Path) -> Result<Scenario, Proble
         entering: need.entering,
         profile_name: blend.name,
         document,
+        files,
         scene,
     })
 }

@@ -54,7 +54,7 @@ pub use settings::{SettingDoc, settings};
 pub use shipped::{SHIPPED, Shipped};
 
 use std::io::{ErrorKind, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
@@ -89,6 +89,8 @@ pub struct Scenario {
     pub profile_name: String,
     /// The file as given, with the settings, what its preset stands for and what the files that it names say.
     pub document: Value,
+    /// The floor plans that it was read from, each with the key that names it.
+    pub files: Vec<(&'static str, PathBuf)>,
 }
 
 /// When a run stops before its end.

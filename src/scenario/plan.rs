@@ -1,7 +1,7 @@
 //! Walkable areas and obstacles: written out in a scenario, or in files that it names.
 
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::de::{Deserialize, Deserializer, SeqAccess, Visitor};
 use serde_json::{Value, json};
@@ -66,10 +66,14 @@ impl<'de> Visitor<'de> for NestedVisitor {
 }
 
 /// Puts what files say in the place of their names, which are relative to `folder`: the document says
-/// everything itself then.
-pub(super) fn fill(document: &mut Value, folder: &Path) -> Result<(), Problem> {
+/// everything itself then. Returns the files, each with its key.
+pub(super) fn fill(
+    document: &mut Value,
+    folder: &Path,
+) -> Result<Vec<(&'static str, PathBuf)>, Problem> {
+    let mut files = Vec::new();
     let Value::Object(document) = document else {
-        return Ok(());
+        return Ok(files);
     };
     for (key, read) in [
         (WALKABLE_AREA, floor_plan::read as fn(&Path) -> _),
@@ -83,8 +87,9 @@ pub(super) fn fill(document: &mut Value, folder: &Path) -> Result<(), Problem> {
                 return Err(Problem::new(key, reason));
             }
         };
-        let plan: FloorPlan =
-            read(&folder.join(name)).map_err(|error| problem(error).under(key))?;
+        let path = folder.join(name);
+        let plan: FloorPlan = read(&path).map_err(|error| problem(error).under(key))?;
+        files.push((key, path));
         let value = match key {
             OBSTACLES => obstacles_value(&plan),
             _ if plan.walkable.is_empty() => {
@@ -96,7 +101,7 @@ pub(super) fn fill(document: &mut Value, folder: &Path) -> Result<(), Problem> {
         };
         document.insert(key.to_owned(), value);
     }
-    Ok(())
+    Ok(files)
 }
 
 impl Setting {

@@ -1,7 +1,7 @@
 //! One cell of a study: a scenario with its settings and seed.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -50,6 +50,8 @@ pub struct Cell {
     pub expected_secs: f64,
     pub(super) source: Source,
     pub(super) settings: Vec<Setting>,
+    /// The floor plans that its scenario names.
+    plans: Vec<PathBuf>,
     /// What its result is known by.
     key: String,
 }
@@ -75,7 +77,17 @@ impl Cell {
             key: key(&scenario),
             source,
             settings,
+            plans: scenario.files.into_iter().map(|(_, path)| path).collect(),
         })
+    }
+
+    /// The files that it is read from, without the study's.
+    pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
+        let own = match &self.source {
+            Source::File(path) => Some(path),
+            Source::Shipped(_) => None,
+        };
+        own.into_iter().chain(&self.plans).map(PathBuf::as_path)
     }
 
     /// The scenario with the settings in it.

@@ -1,5 +1,6 @@
 //! What a study's file says → its cells, checked.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use rayon::prelude::*;
@@ -15,6 +16,11 @@ use crate::scenario::{Problem, ScenarioError, Setting, in_plain_words, read_docu
 
 /// A study with more cells is taken for a mistake.
 const MOST_CELLS: usize = 100_000;
+
+/// A longer name, with what results add to it, would be too long for a file's, bytes.
+const LONGEST_NAME: usize = 200;
+/// Letters of a name that a message repeats.
+const MOST_SHOWN: usize = 40;
 
 /// The whole file.
 #[derive(Debug, Default, Deserialize)]
@@ -51,6 +57,11 @@ impl Study {
         self.axes.iter().any(|axis| axis == "seed")
     }
 
+    /// The files that its scenarios are read from, each once.
+    pub fn inputs(&self) -> BTreeSet<&Path> {
+        self.cells.iter().flat_map(Cell::files).collect()
+    }
+
     /// Reads a study, and checks the scenario of every cell.
     ///
     /// # Errors
@@ -71,10 +82,7 @@ impl Study {
         let written = parse(&text).map_err(invalid)?;
         let plan = Plan::new(&written, folder).map_err(invalid)?;
         let name = written.name.unwrap_or_else(|| stem.into_owned());
-        if name.is_empty() || name.starts_with('.') || name.contains(['/', '\\']) {
-            let reason = format!("must be fit for a file's name, not {name:?}");
-            return Err(invalid(problem("name", reason)).into());
-        }
+        check_name(&name).map_err(invalid)?;
         let cells: Vec<Result<Cell, ScenarioError>> = (0..plan.count)
             .into_par_iter()
             .map(|index| plan.cell(index))
@@ -98,6 +106,28 @@ impl Study {
             axes: plan.names,
         })
     }
+}
+
+/// Is a name fit for the results' files on every system?
+fn check_name(name: &str) -> Result<(), Problem> {
+    let reason = if name.is_empty() {
+        "it is empty"
+    } else if name.starts_with('.') {
+        "it begins with a dot"
+    } else if name.contains(|c: char| "/\\<>:\"|?*".contains(c) || c.is_control()) {
+        "it has one of / \\ < > : \" | ? * or a control character"
+    } else if name.len() > LONGEST_NAME {
+        "it is too long"
+    } else {
+        return Ok(());
+    };
+    let shown: String = name.chars().take(MOST_SHOWN).collect();
+    let cut = if shown.len() < name.len() { " …" } else { "" };
+    let reason = format!(
+        "must be fit for a file's name, not {shown:?}{cut}: {reason}; give a `name` without these of at most \
+         {LONGEST_NAME} bytes"
+    );
+    Err(problem("name", reason))
 }
 
 /// Names and types.

@@ -20,6 +20,7 @@ mod sqlite;
 
 pub use error::TrajectoryError;
 pub use row::Row;
+pub use sqlite::journal;
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};

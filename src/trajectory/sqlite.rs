@@ -1,6 +1,6 @@
 //! JuPedSim's SQLite format, version 2.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use std::{fs, io};
 
@@ -9,6 +9,7 @@ use rusqlite::{Connection, params};
 use super::area::WalkableArea;
 use super::error::Cause;
 use super::{Row, Sink};
+use crate::outputs::followed;
 
 /// How much of a run that is cut short may be lost, at most a frame more.
 const COMMIT_EVERY: Duration = Duration::from_secs(1);
@@ -49,7 +50,8 @@ impl Sqlite {
     /// Makes the tables in an empty file.
     pub fn create(path: &Path, area: WalkableArea, fps: f64) -> Result<Self, Cause> {
         forget_journal(path)?;
-        let connection = Connection::open(path)?;
+        // A name that begins with `file:` would be a URI.
+        let connection = Connection::open(fs::canonicalize(path)?)?;
         connection.execute_batch("BEGIN")?;
         connection.execute_batch(TABLES)?;
         let sqlite = Self {
@@ -160,10 +162,18 @@ impl Sink for Sqlite {
 
 /// The journal of a run that was cut short is not that of the file which replaces it.
 fn forget_journal(path: &Path) -> io::Result<()> {
-    let mut journal = path.as_os_str().to_owned();
-    journal.push("-journal");
-    match fs::remove_file(journal) {
+    match fs::remove_file(journal(path)?) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
         _ => Ok(()),
     }
+}
+
+/// SQLite's journal of a database: beside the file that symbolic links lead to.
+///
+/// # Errors
+/// Links cannot be followed.
+pub fn journal(database: &Path) -> io::Result<PathBuf> {
+    let mut journal = followed(database)?.into_os_string();
+    journal.push("-journal");
+    Ok(journal.into())
 }

@@ -5,11 +5,10 @@ mod extras;
 
 pub use arguments::MeasureOptions;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::output::check_free;
 use super::{Failure, say, talk, use_threads};
 use crate::boundary::WallMethod;
 use crate::floor_plan::{self, FloorPlan};
@@ -17,6 +16,7 @@ use crate::measure::{
     Behind, Kernel, MOST_HIDDEN, MeasureError, Measured, Options, OutputError, Report, Results,
     Site, check, measure, speed,
 };
+use crate::outputs::{Manner, Outputs};
 use crate::trajectory::read::{ReadError, ReadOptions, Tracks, Unit, read};
 
 /// Instead of a floor plan.
@@ -25,13 +25,7 @@ const NO_WALLS: &str = "none";
 pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     use_threads(options.program.threads)?;
     let folder = folder(options);
-    for name in Results::FILES
-        .into_iter()
-        .map(str::to_owned)
-        .chain(extras::names())
-    {
-        check_free("--out", &folder.join(name), options.program.force)?;
-    }
+    check_outputs(options, &folder)?;
     let tracks = read(
         &options.trajectory,
         &ReadOptions {
@@ -70,6 +64,21 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
         return say(format!("{}\n", report.json()));
     }
     say(report.text())
+}
+
+/// Refuses results that cannot be written, or that would replace what is measured.
+fn check_outputs(options: &MeasureOptions, folder: &Path) -> Result<(), Failure> {
+    let mut outputs = Outputs::new(options.program.force);
+    outputs.reads("the trajectories", &options.trajectory);
+    if let Some(plan) = &options.geometry {
+        outputs.reads("--geometry", plan);
+    }
+    outputs.writes("--out", folder, Manner::Folder);
+    let names = Results::FILES.into_iter().map(str::to_owned);
+    for name in names.chain(extras::names()) {
+        outputs.writes("--out", &folder.join(name), Manner::Beside);
+    }
+    Ok(outputs.check()?)
 }
 
 /// Where results go: beside where the user is, not beside the data.
