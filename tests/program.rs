@@ -17,6 +17,7 @@ mod manual;
 mod measure_cli;
 mod measure_density;
 mod measure_flow;
+mod outputs;
 mod plot;
 mod read;
 mod recording;

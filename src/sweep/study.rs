@@ -124,7 +124,7 @@ fn check_name(name: &str) -> Result<(), Problem> {
     let shown: String = name.chars().take(MOST_SHOWN).collect();
     let cut = if shown.len() < name.len() { " …" } else { "" };
     let reason = format!(
-        "must be fit for a file's name, not {shown:?}{cut}: {reason}; give a `name` without these of at most \
+        "must be fit for a file's name, not {shown:?}{cut}: {reason}; give a `name` without these, of at most \
          {LONGEST_NAME} bytes"
     );
     Err(problem("name", reason))

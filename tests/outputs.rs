@@ -1,0 +1,437 @@
+//! Every output is tried before anything is computed: no file is lost to another, none is left behind.
+#![cfg(all(feature = "cli", unix))]
+
+use std::collections::BTreeMap;
+use std::fs::{self, Permissions};
+use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, symlink};
+use std::os::unix::process::CommandExt;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use sandbox::checkpoint::Checkpoint;
+use sandbox::outputs::{Manner, Outputs, OutputsError, write_whole};
+use tempfile::TempDir;
+
+use crate::common::program::PROGRAM;
+
+const SCENARIO: &str = r#"{"goal": [9, 0], "duration_secs": 1, "agents": [{"position": [0, 0]}]}"#;
+
+/// A folder with inputs, links and a checkpoint of 1 s.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("s.json"), SCENARIO).unwrap();
+    fs::write(at("area.csv"), "POLYGON ((-5 -5, 20 -5, 20 5, -5 5))").unwrap();
+    let planned = SCENARIO.replacen('{', r#"{"walkable_area": "area.csv", "#, 1);
+    fs::write(at("planned.json"), planned).unwrap();
+    fs::create_dir(at("dir")).unwrap();
+    symlink("dir", at("linked")).unwrap();
+    symlink("s.json", at("link.csv")).unwrap();
+    symlink("s.json", at("link.rrd")).unwrap();
+    symlink("new", at("dangling.csv")).unwrap();
+    fs::hard_link(at("s.json"), at("hard.csv")).unwrap();
+    fs::write(at("tracks.txt"), "# framerate: 10\n1 0 0 0\n1 1 1 0\n").unwrap();
+    let written = run(folder.path(), "run s.json --checkpoint c");
+    assert_eq!(written.status.code(), Some(0), "{}", said(&written));
+    folder
+}
+
+fn run(folder: &Path, typed: &str) -> Output {
+    let mut program = Command::new(PROGRAM);
+    program.args(typed.split(' ')).current_dir(folder);
+    program.output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// All that is in a folder: names, and what regular files hold.
+fn contents(folder: &Path) -> BTreeMap<String, Option<Vec<u8>>> {
+    let entries = fs::read_dir(folder).unwrap().flatten();
+    let content = |path: &Path| path.is_file().then(|| fs::read(path).unwrap());
+    entries
+        .map(|entry| {
+            let name = entry.file_name().into_string().unwrap();
+            (name, content(&entry.path()))
+        })
+        .collect()
+}
+
+/// Refused with an exit code and a message, and without a trace.
+fn refused(folder: &Path, typed: &str, code: i32, words: &[&str]) {
+    let before = contents(folder);
+    let output = run(folder, typed);
+    let stderr = said(&output);
+    assert_eq!(output.status.code(), Some(code), "{typed}: {stderr}");
+    for word in words {
+        assert!(stderr.contains(word), "{typed}: no {word:?} in {stderr}");
+    }
+    assert!(output.stdout.is_empty(), "{typed}");
+    assert_eq!(contents(folder), before, "{typed}");
+    assert_eq!(contents(&folder.join("dir")), BTreeMap::new(), "{typed}");
+}
+
+#[test]
+fn two_outputs_of_one_file_are_refused_whatever_they_are_called() {
+    let folder = folder();
+    for (files, names) in [
+        (
+            "--trajectory a.csv --trajectory ./a.csv",
+            ["a.csv", "./a.csv"],
+        ),
+        (
+            "--trajectory a.csv --trajectory dir/../a.csv",
+            ["a.csv", "dir/../a.csv"],
+        ),
+        (
+            "--trajectory dir/a.db --trajectory linked/a.db",
+            ["dir/a.db", "linked/a.db"],
+        ),
+        (
+            "--trajectory dangling.csv --checkpoint new",
+            ["dangling.csv", "new"],
+        ),
+        (
+            "--trajectory a.csv --checkpoint a.csv",
+            ["--trajectory a.csv", "--checkpoint a.csv"],
+        ),
+        (
+            "--trajectory a.db --checkpoint a.db-journal",
+            ["a.db-journal", "--checkpoint"],
+        ),
+    ] {
+        let typed = format!("run s.json {files} --force");
+        refused(
+            folder.path(),
+            &typed,
+            2,
+            &[names[0], names[1], "are one file"],
+        );
+    }
+    // Many may write to a device.
+    let null = folder.path().join("null.csv");
+    symlink("/dev/null", null).unwrap();
+    let typed = "run s.json --trajectory null.csv --trajectory null.csv --force";
+    assert_eq!(run(folder.path(), typed).status.code(), Some(0));
+}
+
+#[test]
+fn an_input_is_never_replaced() {
+    let folder = folder();
+    fs::copy(folder.path().join("c"), folder.path().join("c.csv")).unwrap();
+    let json = r#"{"scenario": "planned.json", "name": "area"}"#;
+    fs::write(folder.path().join("study.json"), json).unwrap();
+    fs::create_dir(folder.path().join("cases")).unwrap();
+    for (typed, names) in [
+        (
+            "run s.json --trajectory link.csv",
+            ["--trajectory link.csv", "the scenario s.json"],
+        ),
+        (
+            "run s.json --trajectory hard.csv",
+            ["--trajectory hard.csv", "the scenario s.json"],
+        ),
+        (
+            "run s.json --checkpoint dir/../s.json",
+            ["--checkpoint dir/../s.json", "s.json"],
+        ),
+        (
+            "run planned.json --trajectory area.csv",
+            ["--trajectory", "walkable_area area.csv"],
+        ),
+        (
+            "run s.json --geometry area.csv --trajectory area.csv",
+            ["--trajectory", "--geometry area.csv"],
+        ),
+        (
+            "resume c.csv --trajectory c.csv",
+            ["--trajectory c.csv", "the checkpoint c.csv"],
+        ),
+        ("sweep study.json --out .", ["--out ./area.csv", "area.csv"]),
+    ] {
+        let message = [names[0], names[1], "an input is never replaced"];
+        refused(folder.path(), &format!("{typed} --force"), 2, &message);
+    }
+    fs::rename(
+        folder.path().join("tracks.txt"),
+        folder.path().join("agents.csv"),
+    )
+    .unwrap();
+    let typed = "measure agents.csv --out . --force";
+    refused(
+        folder.path(),
+        typed,
+        2,
+        &["--out ./agents.csv", "the trajectories agents.csv"],
+    );
+}
+
+#[cfg(feature = "recording")]
+#[test]
+fn a_recording_replaces_no_scenario_and_has_its_extension() {
+    let folder = folder();
+    let inspect = "inspect s.json --agent 0 --force --save";
+    for run in ["run s.json --force --save", inspect] {
+        let words = ["--save link.rrd", "the scenario s.json", "are one file"];
+        refused(folder.path(), &format!("{run} link.rrd"), 2, &words);
+        let words = ["'s.json'", "--save", "must end in .rrd"];
+        refused(folder.path(), &format!("{run} s.json"), 2, &words);
+        refused(
+            folder.path(),
+            &format!("{run} no/x.rrd"),
+            1,
+            &["--save no/x.rrd: cannot be"],
+        );
+        fs::create_dir_all(folder.path().join("d.rrd")).unwrap();
+        refused(
+            folder.path(),
+            &format!("{run} d.rrd"),
+            1,
+            &["--save d.rrd", "is a folder"],
+        );
+    }
+}
+
+#[test]
+fn a_resumed_run_goes_on_writing_into_its_own_checkpoint() {
+    let folder = folder();
+    let first = fs::read(folder.path().join("c")).unwrap();
+    let goes_on = run(folder.path(), "resume c --checkpoint ./c --until 2");
+    assert_eq!(goes_on.status.code(), Some(0), "{}", said(&goes_on));
+    assert_ne!(fs::read(folder.path().join("c")).unwrap(), first);
+    let words = ["--until 1:", "the checkpoint c is of 2.00 s"];
+    refused(folder.path(), "resume c --until 1", 2, &words);
+    // No other output may be the checkpoint, nor the checkpoint another file.
+    fs::copy(folder.path().join("c"), folder.path().join("d")).unwrap();
+    refused(
+        folder.path(),
+        "resume c --checkpoint d",
+        2,
+        &["d: exists already"],
+    );
+}
+
+#[test]
+fn a_path_that_cannot_be_written_is_refused_in_plain_words() {
+    let folder = folder();
+    for (typed, words) in [
+        (
+            "run s.json --checkpoint no/c",
+            "--checkpoint no/c: cannot be written: No such",
+        ),
+        (
+            "run s.json --force --checkpoint dir",
+            "--checkpoint dir: cannot be written: it is a folder",
+        ),
+        (
+            "run s.json --checkpoint s.json/c",
+            "--checkpoint s.json/c: cannot be written: Not a",
+        ),
+        (
+            "run s.json --trajectory a.csv --checkpoint no/c",
+            "--checkpoint no/c",
+        ),
+        (
+            "measure tracks.txt --out dir/new/s --geometry none --cell 0",
+            "--cell",
+        ),
+        (
+            "measure tracks.txt --out s.json",
+            "--out s.json: cannot be written: Not a",
+        ),
+    ] {
+        let code = if words == "--cell" { 2 } else { 1 };
+        refused(folder.path(), typed, code, &[words]);
+    }
+    refused(
+        folder.path(),
+        "measure no.txt --out dir/new/s",
+        2,
+        &["no.txt"],
+    );
+    // To root every file is writable.
+    let file = folder.path().join("theirs.csv");
+    fs::write(&file, "theirs").unwrap();
+    fs::set_permissions(&file, Permissions::from_mode(0o444)).unwrap();
+    fs::set_permissions(folder.path(), Permissions::from_mode(0o777)).unwrap();
+    for option in ["--trajectory", "--checkpoint"] {
+        let mut program = Command::new(PROGRAM);
+        if fs::metadata(&file).unwrap().uid() == 0 {
+            program.uid(65534);
+        }
+        let typed = ["run", "s.json", "--force", option, "theirs.csv"];
+        let output = program.args(typed).current_dir(&folder).output().unwrap();
+        let words = format!("{option} theirs.csv: cannot be written: Permission denied");
+        assert!(said(&output).contains(&words), "{}", said(&output));
+        assert_eq!(output.status.code(), Some(1));
+        assert_eq!(fs::read(&file).unwrap(), b"theirs");
+    }
+}
+
+#[test]
+fn a_checkpoint_is_written_through_links_and_replaces_no_device() {
+    let folder = folder();
+    symlink("dir/c", folder.path().join("link")).unwrap();
+    for force in ["", " --force"] {
+        let output = run(
+            folder.path(),
+            &format!("run s.json --checkpoint link{force}"),
+        );
+        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        assert!(folder.path().join("link").is_symlink());
+        assert!(Checkpoint::read(&folder.path().join("dir/c")).is_ok());
+    }
+    fs::remove_file(folder.path().join("dir/c")).unwrap();
+    let fifo = folder.path().join("fifo");
+    let made = Command::new("mkfifo").arg(&fifo).status().unwrap();
+    assert!(made.success());
+    refused(
+        folder.path(),
+        "run s.json --force --checkpoint fifo",
+        1,
+        &["FIFO"],
+    );
+    assert!(fs::metadata(&fifo).unwrap().file_type().is_fifo());
+    let typed = "run s.json --force --checkpoint /dev/null";
+    refused(
+        folder.path(),
+        typed,
+        1,
+        &["/dev/null: cannot be written: it is a device"],
+    );
+    assert!(
+        fs::metadata("/dev/null")
+            .unwrap()
+            .file_type()
+            .is_char_device()
+    );
+}
+
+#[test]
+fn the_umask_decides_who_may_read_a_checkpoint() {
+    let folder = folder();
+    for (umask, mode) in [("022", 0o644), ("027", 0o640), ("077", 0o600)] {
+        let file = folder.path().join(umask);
+        let script = format!(r#"umask {umask}; exec "$0" run s.json --checkpoint {umask}"#);
+        let mut shell = Command::new("sh");
+        let shell = shell.args(["-c", &script, PROGRAM]).current_dir(&folder);
+        assert!(shell.output().unwrap().status.success());
+        assert_eq!(fs::metadata(&file).unwrap().mode() & 0o777, mode, "{umask}");
+    }
+    // A file that was there keeps its own.
+    let file = folder.path().join("077");
+    run(folder.path(), "run s.json --checkpoint 077 --force");
+    assert_eq!(fs::metadata(&file).unwrap().mode() & 0o777, 0o600);
+}
+
+#[test]
+fn a_run_outlives_a_checkpoint_that_cannot_be_written() {
+    let folder = folder();
+    // 400 people enter after a second: their checkpoint is too long for the disk.
+    let text = r#"{"goal": [99, 0], "duration_secs": 1.9, "agents": [{"position": [0, 0]}], "sources": [
+        {"min": [0, 2], "max": [10, 12], "columns": 20, "rows": 20, "every_secs": 9, "start_secs": 1}]}"#;
+    fs::write(folder.path().join("grows.json"), text).unwrap();
+    let command =
+        r#"trap "" XFSZ; ulimit -f 8; exec "$0" run grows.json --json --checkpoint g "$@""#;
+    let more = [
+        "--checkpoint-every",
+        "0.5",
+        "--trajectory",
+        "g.txt",
+        "--trajectory-fps",
+        "0.5",
+    ];
+    let mut bash = Command::new("bash");
+    let bash = bash.args(["-c", command, PROGRAM]).args(more);
+    let output = bash.current_dir(&folder).output().unwrap();
+    let stderr = said(&output);
+    assert_eq!(output.status.code(), Some(1), "{stderr}");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(
+        [&report["frames"], &report["agents"]],
+        [95, 401],
+        "{stderr}"
+    );
+    let error = stderr.lines().last().unwrap();
+    assert!(
+        error.starts_with("error: --checkpoint g: cannot be written: File too large"),
+        "{error}"
+    );
+    assert!(
+        error.ends_with("; the checkpoint of 0.50 s is kept"),
+        "{error}"
+    );
+    assert!(!stderr.contains(".tmp"), "{stderr}");
+    assert!(Checkpoint::read(&folder.path().join("g")).is_ok());
+    assert!(
+        fs::read_to_string(folder.path().join("g.txt"))
+            .unwrap()
+            .ends_with("0\n")
+    );
+    let names = contents(folder.path());
+    assert!(
+        names.keys().all(|name| !name.starts_with(".tmp")),
+        "{names:?}"
+    );
+}
+
+#[test]
+fn a_recording_from_beyond_the_end_is_refused_or_told() {
+    if cfg!(not(feature = "recording")) {
+        return;
+    }
+    let folder = folder();
+    let typed = "run s.json --save a.rrd --record-from 30";
+    refused(
+        folder.path(),
+        typed,
+        2,
+        &["--record-from 30: the run ends at 1 s"],
+    );
+    let stops = SCENARIO.replacen('{', r#"{"stop": {"idle_secs": 0.2}, "#, 1);
+    fs::write(folder.path().join("stops.json"), stops).unwrap();
+    let typed = "run stops.json --save a.rrd --record-from 0.9";
+    let output = run(folder.path(), typed);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(
+        said(&output).contains("note: no frame was recorded"),
+        "{}",
+        said(&output)
+    );
+}
+
+#[test]
+fn a_file_that_is_updated_lies_outside_of_the_results() {
+    let folder = folder();
+    fs::write(folder.path().join("report.md"), "mine").unwrap();
+    for command in ["stress --quick", "accuracy --quick", "reproduce table1"] {
+        let typed = format!("{command} --out . --update report.md");
+        refused(folder.path(), &typed, 2, &["--update report.md", "--out ."]);
+        let typed = format!("{command} --out new --update dir");
+        refused(
+            folder.path(),
+            &typed,
+            1,
+            &["--update dir", "it is a folder"],
+        );
+    }
+}
+
+#[test]
+fn a_file_is_replaced_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "before").unwrap();
+    let failed = write_whole(&file, |_| Err(std::io::Error::other("full")));
+    assert!(failed.is_err());
+    let all = BTreeMap::from([("file".to_owned(), Some(b"before".to_vec()))]);
+    assert_eq!(contents(folder.path()), all);
+    symlink("round", folder.path().join("round")).unwrap();
+    let mut outputs = Outputs::new(true);
+    outputs.writes("--out", &folder.path().join("round"), Manner::Whole);
+    assert!(matches!(
+        outputs.check(),
+        Err(OutputsError::Unwritable { .. })
+    ));
+}
