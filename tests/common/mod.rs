@@ -6,6 +6,8 @@ pub mod documents;
 pub mod json_schema;
 pub mod plan_reading;
 pub mod plans;
+#[cfg(all(feature = "cli", unix))]
+pub mod outputs;
 #[cfg(feature = "cli")]
 pub mod program;
 pub mod quadrature;
