@@ -234,19 +234,6 @@ fn a_checkpoint_is_written_through_links_and_replaces_no_device() {
         &["FIFO"],
     );
     assert!(fs::metadata(&fifo).unwrap().file_type().is_fifo());
-    let typed = "run s.json --force --checkpoint /dev/null";
-    refused(
-        folder.path(),
-        typed,
-        1,
-        &["/dev/null: cannot be written: it is a device"],
-    );
-    assert!(
-        fs::metadata("/dev/null")
-            .unwrap()
-            .file_type()
-            .is_char_device()
-    );
 }
 
 #[test]

@@ -83,16 +83,18 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
     let report = accuracy(&plan, &store, &watch);
     watch.ends();
     let report = report?;
-    if let Some(file) = &options.update {
+    // What was found is told even if it cannot be kept.
+    let updated = options.update.as_ref().map_or(Ok(()), |file| {
         let parts = report.parts();
         let texts = parts
             .iter()
             .map(|(name, text)| (name.as_str(), text.as_str()));
-        update(file, texts)?;
-    }
+        update(file, texts)
+    });
     if options.json {
-        say(format!("{}\n", report.json()))
+        say(format!("{}\n", report.json()))?;
     } else {
-        say(report.text())
+        say(report.text())?;
     }
+    updated
 }

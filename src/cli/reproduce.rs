@@ -75,9 +75,11 @@ pub fn run(options: &ReproduceOptions) -> Result<(), Failure> {
     let said = reproduce(&products, &plan, &store, &watch);
     watch.ends();
     let said = said?;
-    if let Some(file) = &options.update {
+    // What was found is told even if it cannot be kept.
+    let updated = options.update.as_ref().map_or(Ok(()), |file| {
         let names = products.iter().map(|product| product.name);
-        update(file, names.zip(said.iter().map(String::as_str)))?;
-    }
-    said.iter().try_for_each(say)
+        update(file, names.zip(said.iter().map(String::as_str)))
+    });
+    said.iter().try_for_each(say)?;
+    updated
 }

@@ -41,13 +41,15 @@ pub fn run(options: &StressOptions) -> Result<(), Failure> {
     watch.ends();
     let report = report?;
     let parts = report.parts();
-    if let Some(file) = &options.update {
+    // What was found is told even if it cannot be kept.
+    let updated = options.update.as_ref().map_or(Ok(()), |file| {
         let texts = parts.iter().map(|(name, text)| (*name, text.as_str()));
-        update(file, texts)?;
-    }
+        update(file, texts)
+    });
     parts
         .iter()
         .try_for_each(|(_, text)| say(format!("{text}\n")))?;
+    updated?;
     let failures = report.failures();
     if failures.is_empty() {
         Ok(())
