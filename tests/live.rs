@@ -1,11 +1,14 @@
 //! `--spawn` and `--connect`: what is said where nobody looks on, or somebody has gone.
 #![cfg(all(feature = "cli", feature = "recording"))]
 
-use std::net::TcpListener;
+use std::io::Read;
+use std::net::{TcpListener, TcpStream};
+use std::path::Path;
 use std::process::{Command, Output};
 
 use crate::common;
-use crate::common::program::PROGRAM;
+use crate::common::program::{PROGRAM, ended, text, under_way};
+use sandbox::recording::Recording;
 
 fn sandbox(arguments: &[&str]) -> Output {
     let run = ["evacuation", "--until", "0.2"];
@@ -74,9 +77,150 @@ fn a_viewer_that_goes_away_is_a_note_and_the_file_is_whole() {
     let output = sandbox(&["--connect", &address, "--save", file]);
     let said = said(&output);
     assert_eq!(output.status.code(), Some(0), "{said}");
-    let note = "note: the viewer went away before the run had ended: ";
-    assert_eq!(said.matches(note).count(), 1, "{said}");
-    let recording = sandbox::recording::Recording::read(&path).unwrap();
+    assert_eq!(said.matches(&note(&address)).count(), 1, "{said}");
+    let recording = Recording::read(&path).unwrap();
     let crowd = recording.pairs("/world/agents", "Points2D:positions");
     assert_eq!(crowd.len(), 3, "frames 0, 5 and 10");
+}
+
+fn note(address: &str) -> String {
+    format!("note: the viewer at rerun+http://{address}/proxy went away before the run had ended: ")
+}
+
+/// A viewer that gives every connection to `then`, each on a thread of its own; its address.
+fn viewer(then: fn(TcpStream)) -> String {
+    let viewer = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = viewer.local_addr().unwrap().to_string();
+    std::thread::spawn(move || {
+        for connection in viewer.incoming() {
+            let connection = connection.unwrap();
+            std::thread::spawn(move || then(connection));
+        }
+    });
+    address
+}
+
+/// Accepts, and neither reads nor answers: a viewer that is frozen, or behind a line that was cut.
+fn silent(connection: TcpStream) {
+    std::thread::park();
+    drop(connection);
+}
+
+/// Reads as much as rerun sends before a viewer has answered, then is silent.
+fn falls_silent(mut connection: TcpStream) {
+    connection.read_exact(&mut [0; 20_000]).ok();
+    silent(connection);
+}
+
+/// Reads the same, then closes the connection.
+fn closes(mut connection: TcpStream) {
+    connection.read_exact(&mut [0; 20_000]).ok();
+}
+
+/// What the crowd does in a recording.
+fn crowd(path: &Path) -> impl PartialEq {
+    let recording = Recording::read(path).unwrap();
+    let positions = recording.pairs("/world/agents", "Points2D:positions");
+    assert!(!positions.is_empty());
+    let speeds = recording.numbers("/stats/speed", "Scalars:scalars");
+    assert!(!speeds.is_empty());
+    (recording.entities(), positions, speeds)
+}
+
+#[test]
+fn a_viewer_that_takes_nothing_holds_up_neither_the_run_nor_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |name: &str, more: &[&str]| {
+        let file = folder.path().join(name);
+        let mut program = Command::new("timeout"); // against a run that hangs
+        let output = program
+            .args(["--signal=KILL", "60", PROGRAM, "evacuation", "--until", "2"])
+            .args(["--record-every", "1", "--json", "--save", text(&file)])
+            .args(more)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(0), "{name}: {}", said(&output));
+        let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        (said(&output), report["state_sha256"].clone(), crowd(&file))
+    };
+    let (_, state, alone) = run("alone.rrd", &[]);
+    let viewers: [(&str, fn(TcpStream)); 3] = [
+        ("silent.rrd", silent),
+        ("falls_silent.rrd", falls_silent),
+        ("closes.rrd", closes),
+    ];
+    for (name, then) in viewers {
+        let address = viewer(then);
+        let (said, hash, recorded) = run(name, &["--connect", &address]);
+        assert_eq!(said.matches(&note(&address)).count(), 1, "{name}: {said}");
+        let silent = said.contains("it took no data for 2 s");
+        assert_eq!(silent, name != "closes.rrd", "{said}");
+        assert_eq!(hash, state, "{name}");
+        assert!(recorded == alone, "{name}");
+    }
+}
+
+#[test]
+fn a_run_that_waits_for_a_viewer_can_be_interrupted() {
+    let folder = tempfile::tempdir().unwrap();
+    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+        let file = folder.path().join(signal).with_extension("rrd");
+        let address = viewer(silent);
+        let run = ["concert", "--json", "--record-every", "1"];
+        let more = ["--connect", &address, "--save", text(&file)];
+        let child = under_way(&[&run[..], &more].concat(), &[(&file, 1_000)]);
+        let output = ended(
+            child,
+            &format!("kill -{signal} $1; sleep 60; kill -KILL $1"),
+        );
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(code), "{said}");
+        assert_eq!(said.matches(&note(&address)).count(), 1, "{said}");
+        let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(report["interrupted"], true);
+        let _ = crowd(&file);
+    }
+}
+
+#[test]
+fn rerun_off_in_the_environment_is_refused_before_anything_is_computed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (rrd, csv) = ("x.rrd", "w.txt");
+    std::fs::write(
+        folder.path().join(csv),
+        "# framerate: 10\n1 0 0 0\n1 1 0.1 0\n",
+    )
+    .unwrap();
+    let viewer = viewer(silent);
+    let commands: [&[&str]; 4] = [
+        &["evacuation", "--until", "1", "--save", rrd],
+        &["evacuation", "--until", "1", "--connect", &viewer],
+        &["inspect", "evacuation", "--agent", "1", "--save", rrd],
+        &["measure", csv, "--geometry", "none", "--out", "m"],
+    ];
+    let run = |command: &[&str], value: &str| {
+        let mut program = Command::new(PROGRAM);
+        let program = program.args(command).env("RERUN", value);
+        program.current_dir(folder.path()).output().unwrap()
+    };
+    for command in commands {
+        for value in ["off", "0", "FALSE"] {
+            let output = run(command, value);
+            assert_eq!(output.status.code(), Some(2), "{command:?}");
+            assert_eq!(
+                said(&output),
+                format!(
+                    "error: RERUN={value} in the environment switches recordings off: unset it, or set it to on\n"
+                )
+            );
+            assert!(output.stdout.is_empty());
+            let files = std::fs::read_dir(folder.path()).unwrap().count();
+            assert_eq!(files, 1, "{command:?}");
+        }
+    }
+    // Without a recording it means nothing; and rerun takes other values for none at all.
+    assert_eq!(run(&commands[0][..3], "off").status.code(), Some(0));
+    let output = run(commands[0], "no");
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let _ = crowd(&folder.path().join(rrd));
 }

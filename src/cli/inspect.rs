@@ -13,6 +13,9 @@ use crate::simulation::Simulation;
 
 pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     use_threads(options.scene.program.threads)?;
+    if options.save.is_some() {
+        output::check_enabled()?;
+    }
     let source = Source::named(&options.scenario);
     let mut outputs = Outputs::new(options.scene.program.force);
     let mut scenario = read(&source, &options.scene, None, 0, &mut outputs)?;

@@ -48,14 +48,14 @@ pub fn laid_open(record: &RecordOptions) -> Result<Option<Vec<u32>>, Failure> {
 }
 
 #[cfg(feature = "recording")]
-pub use with_recording::{Output, save_moment};
+pub use with_recording::{Output, check_enabled, save_moment};
 
 #[cfg(feature = "recording")]
 mod with_recording {
     use super::super::talk;
     use super::*;
     use crate::recording::{
-        DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer,
+        self, DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer,
     };
     use crate::scene::Region;
 
@@ -139,6 +139,11 @@ mod with_recording {
         Ok(asked.then_some(Destination { file, viewer }))
     }
 
+    /// Refuses to record where the environment switches recordings off.
+    pub fn check_enabled() -> Result<(), Failure> {
+        Ok(recording::check_enabled()?)
+    }
+
     /// Writes one evaluated frame with some agents laid open.
     pub fn save_moment(
         path: &Path,
@@ -213,13 +218,16 @@ mod with_recording {
 
     impl From<RecordingError> for Failure {
         fn from(error: RecordingError) -> Self {
-            Self::Output(error.to_string())
+            match error {
+                RecordingError::SwitchedOff(_) => Self::Input(error.to_string()),
+                _ => Self::Output(error.to_string()),
+            }
         }
     }
 }
 
 #[cfg(not(feature = "recording"))]
-pub use without_recording::{Output, save_moment};
+pub use without_recording::{Output, check_enabled, save_moment};
 
 #[cfg(not(feature = "recording"))]
 mod without_recording {
@@ -258,6 +266,10 @@ mod without_recording {
         pub fn finish(self) -> Result<(), Failure> {
             Ok(())
         }
+    }
+
+    pub fn check_enabled() -> Result<(), Failure> {
+        Ok(())
     }
 
     pub fn save_moment(

@@ -28,6 +28,9 @@ pub enum Cause {
 /// A recording could not be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
+    /// Rerun is switched off by its environment variable.
+    #[error("RERUN={0} in the environment switches recordings off: unset it, or set it to on")]
+    SwitchedOff(String),
     /// It cannot be written.
     #[error("cannot write {}: {cause}; {}", path.display(), kept(path))]
     Unwritten {
@@ -55,9 +58,11 @@ pub enum RecordingError {
         /// Why.
         reason: String,
     },
-    /// The viewer was closed, or the connection broke; a file beside it is whole.
-    #[error("the viewer went away before the run had ended: {reason}")]
+    /// The viewer was closed, froze, or the connection broke; a file beside it is whole.
+    #[error("the viewer at {address} went away before the run had ended: {reason}")]
     ViewerGone {
+        /// Where.
+        address: String,
         /// What rerun says.
         reason: String,
     },

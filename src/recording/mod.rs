@@ -23,6 +23,7 @@ mod layers;
 mod measured;
 mod output;
 mod read;
+mod relay;
 mod snapshot;
 mod stats;
 mod text;
@@ -33,7 +34,7 @@ pub use debug::DebugAgents;
 pub use error::RecordingError;
 pub use layers::METRES_PER_ACCELERATION;
 pub use measured::{MeasuredPerson, MeasuredRecorder};
-pub use output::Destination;
+pub use output::{Destination, check_enabled};
 pub use read::Recording;
 pub use viewer::{Address, AddressError, Viewer};
 
@@ -139,7 +140,8 @@ impl Recorder {
     /// Sends what is still in memory, closes the file and checks that it is whole.
     ///
     /// # Errors
-    /// Something could not be written: the disk is full, for example. Else, the viewer has gone.
+    /// Something could not be written: the disk is full, for example. Else, the viewer is gone or has taken
+    /// no data for 2 s.
     pub fn finish(mut self) -> Result<(), RecordingError> {
         let opening = Opening::Whole(self.focus);
         let ended = end(

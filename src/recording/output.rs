@@ -10,7 +10,7 @@ use rerun::{RecordingStream, RecordingStreamBuilder};
 use super::error::{Cause, RecordingError};
 use super::file::{Failure, FileSink};
 use super::read;
-use super::viewer::Viewer;
+use super::viewer::{Address, Viewer};
 
 /// The viewer keeps its own settings per application.
 pub const APPLICATION: &str = "sandbox";
@@ -42,9 +42,8 @@ pub struct Output {
     file: Option<PathBuf>,
     /// What went wrong with the file.
     file_failure: Failure,
-    /// What became of the viewer.
-    viewer_failure: Failure,
-    is_live: bool,
+    /// Where the viewer is, and what became of it.
+    viewer: Option<(Address, Failure)>,
     /// Where messages enter.
     pub stream: RecordingStream,
 }
@@ -53,18 +52,21 @@ impl Output {
     /// Opens a recording called `name`; two of the same name and `id` are one to a viewer that reads both
     /// files.
     pub fn open(to: &Destination, name: &str, id: String) -> Result<Self, RecordingError> {
-        let viewer = to.viewer.as_ref().map(Viewer::connect).transpose()?;
+        check_enabled()?;
+        let sink = to.viewer.as_ref().map(Viewer::connect).transpose()?;
+        let viewer = sink
+            .as_ref()
+            .map(|sink| (sink.address().clone(), sink.failure()));
         let is_live = viewer.is_some();
-        let (mut file_failure, mut viewer_failure) = (Failure::default(), Failure::default());
+        let mut file_failure = Failure::default();
         let open = || -> Result<RecordingStream, Cause> {
             let mut sinks: Vec<Box<dyn LogSink>> = Vec::new();
             if let Some(path) = &to.file {
-                let sink = FileSink::create(path)?;
-                file_failure = sink.failure();
-                sinks.push(Box::new(sink));
+                let file = FileSink::create(path)?;
+                file_failure = file.failure();
+                sinks.push(Box::new(file));
             }
-            if let Some(sink) = viewer {
-                viewer_failure = sink.failure();
+            if let Some(sink) = sink {
                 sinks.push(Box::new(sink));
             }
             let builder = RecordingStreamBuilder::new(APPLICATION).batcher_config(batches(is_live));
@@ -85,15 +87,14 @@ impl Output {
         Ok(Self {
             file: to.file.clone(),
             file_failure,
-            viewer_failure,
-            is_live,
+            viewer,
             stream,
         })
     }
 
     /// Does somebody look on?
     pub fn is_live(&self) -> bool {
-        self.is_live
+        self.viewer.is_some()
     }
 
     /// What went wrong, with where.
@@ -104,7 +105,7 @@ impl Output {
     /// Closes the file, once everything has been sent, and checks that it is whole.
     ///
     /// # Errors
-    /// It is not. Else, the viewer has gone.
+    /// It is not. Else, the viewer is gone or has taken no data for 2 s.
     pub fn close(self) -> Result<(), RecordingError> {
         self.checked(self.stream.flush_blocking().map_err(Cause::from))?;
         drop(self.stream); // And with it the sinks; that of the file adds the index and waits for it.
@@ -113,11 +114,26 @@ impl Output {
             return Err(RecordingError::unwritten(file, &Cause::File(reason)));
         }
         file.map_or(Ok(()), read::check_footer)?;
-        match self.viewer_failure.reason() {
-            Some(reason) => Err(RecordingError::ViewerGone { reason }),
-            None => Ok(()),
-        }
+        let gone = |(address, failure): (Address, Failure)| {
+            let address = address.to_string();
+            let gone = |reason| RecordingError::ViewerGone { address, reason };
+            failure.reason().map(gone)
+        };
+        self.viewer.and_then(gone).map_or(Ok(()), Err)
     }
+}
+
+/// Checks that the environment variable `RERUN` does not switch recordings off. A stream could be enabled in
+/// spite of it, but not the one that rerun makes for a layout.
+///
+/// # Errors
+/// It does.
+pub fn check_enabled() -> Result<(), RecordingError> {
+    if rerun::decide_logging_enabled(true) {
+        return Ok(());
+    }
+    let value = std::env::var("RERUN").unwrap_or_default();
+    Err(RecordingError::SwitchedOff(value))
 }
 
 /// The crowd's rows fill a chunk by their size, all others by the passing of so much time.

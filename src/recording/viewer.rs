@@ -3,6 +3,7 @@
 use std::fmt;
 use std::net::{TcpStream, ToSocketAddrs};
 use std::str::FromStr;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -14,9 +15,12 @@ use rerun::{DEFAULT_SERVER_PORT, SpawnError, SpawnOptions};
 
 use super::error::RecordingError;
 use super::file::Failure;
+use super::relay::Relay;
 
-/// What does not answer within this time is not there.
-const PATIENCE: Duration = Duration::from_secs(3);
+/// An address that does not accept a connection within this time has no viewer.
+const CONNECTING: Duration = Duration::from_secs(3);
+/// A viewer that takes nothing for this time, while the run waits for it, gets no more data.
+const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Which viewer shows a run while it goes on.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -75,29 +79,19 @@ impl Viewer {
             .map_err(|error| no_viewer(error.to_string()))?;
         let mut refusal = "no such host".to_owned();
         let answers = places.any(|place| {
-            let answer = TcpStream::connect_timeout(&place, PATIENCE);
+            let answer = TcpStream::connect_timeout(&place, CONNECTING);
             answer.map_err(|error| refusal = error.to_string()).is_ok()
         });
         if !answers {
             return Err(no_viewer(refusal));
         }
-        Ok(ViewerSink {
-            stream: GrpcSink::new(address.0.clone()),
-            failure: Failure::default(),
-            has_layout: AtomicBool::new(false),
-        })
+        ViewerSink::open(address.clone()).map_err(|error| no_viewer(error.to_string()))
     }
 }
 
 /// Starts a viewer, unless one runs already.
 fn spawn() -> Result<Address, RecordingError> {
-    let options = SpawnOptions {
-        wait_for_bind: true,
-        // It shares our stderr.
-        extra_env: vec![("RUST_LOG".to_owned(), "error".to_owned())],
-        ..SpawnOptions::default()
-    };
-    let viewer = rerun::spawn(&options).map_err(|error| RecordingError::NotSpawned {
+    let viewer = rerun::spawn(&spawn_options()).map_err(|error| RecordingError::NotSpawned {
         reason: match error {
             SpawnError::Io(error) => error.to_string(),
             SpawnError::ExecutableNotFound { .. } | SpawnError::ExecutableNotFoundInPath { .. } => {
@@ -113,20 +107,73 @@ fn spawn() -> Result<Address, RecordingError> {
         })
 }
 
-/// A viewer at the other end of a connection. That it goes away fails nothing: it is closed by whoever has
-/// seen enough.
+/// A new viewer listens on this machine's own address only; rerun's default is all addresses.
+fn spawn_options() -> SpawnOptions {
+    SpawnOptions {
+        wait_for_bind: true,
+        extra_args: ["--bind", "127.0.0.1"].map(str::to_owned).to_vec(),
+        // It shares our stderr.
+        extra_env: vec![("RUST_LOG".to_owned(), "error".to_owned())],
+        ..SpawnOptions::default()
+    }
+}
+
+/// A viewer at the other end of a connection, fed by a thread of its own: rerun's sink waits without end for a
+/// viewer that has accepted the connection and reads nothing. A viewer that is gone does not end the run.
 pub struct ViewerSink {
-    stream: GrpcSink,
+    relay: Arc<Relay<LogMsg>>,
+    address: Address,
     failure: Failure,
-    /// The layout of a file's end is not for who has watched, and moved it.
+    /// The layout of a file's end is not for a viewer whose user may have changed it.
     has_layout: AtomicBool,
 }
 
 impl ViewerSink {
+    fn open(address: Address) -> std::io::Result<Self> {
+        let relay = Arc::new(Relay::new(PATIENCE));
+        let (queue, uri) = (Arc::clone(&relay), address.0.clone());
+        let failure = Failure::default();
+        let seen = failure.clone();
+        // Never joined: it may wait for the viewer until the process ends.
+        std::thread::Builder::new()
+            .name("viewer".to_owned())
+            .spawn(move || feed(&queue, GrpcSink::new(uri), &seen))?;
+        Ok(Self {
+            relay,
+            address,
+            failure,
+            has_layout: AtomicBool::new(false),
+        })
+    }
+
     /// How it went away, to be looked at while the sink is used and when it is gone.
     pub fn failure(&self) -> Failure {
         self.failure.clone()
     }
+
+    /// Where the viewer is.
+    pub fn address(&self) -> &Address {
+        &self.address
+    }
+
+    fn give_up(&self) {
+        let secs = PATIENCE.as_secs();
+        self.failure.is(&format!("it took no data for {secs} s"));
+    }
+}
+
+/// Passes everything on; then waits for the viewer to confirm the end of the data.
+fn feed(queue: &Relay<LogMsg>, stream: GrpcSink, failure: &Failure) {
+    while let Some(message) = queue.take() {
+        stream.send(message);
+        // Without this, messages would wait in rerun's own queue, which does not show whether it moves.
+        if let Err(error) = stream.flush_blocking(Duration::MAX) {
+            failure.is(&error);
+            break;
+        }
+    }
+    drop(stream);
+    queue.end();
 }
 
 impl LogSink for ViewerSink {
@@ -138,14 +185,23 @@ impl LogSink for ViewerSink {
         if matches!(message, LogMsg::BlueprintActivationCommand(_)) {
             self.has_layout.store(true, Ordering::Relaxed);
         }
-        self.stream.send(message);
+        if self.relay.send(message).is_err() {
+            self.give_up();
+        }
     }
 
-    fn flush_blocking(&self, timeout: Duration) -> Result<(), SinkFlushError> {
-        if let Err(error) = self.stream.flush_blocking(timeout) {
-            self.failure.is(&error);
-        }
+    /// Does not wait: messages keep their order, and the sink's end waits for them.
+    fn flush_blocking(&self, _: Duration) -> Result<(), SinkFlushError> {
         Ok(())
+    }
+}
+
+impl Drop for ViewerSink {
+    /// Waits for the viewer, as long as it takes data.
+    fn drop(&mut self) {
+        if self.relay.close().is_err() {
+            self.give_up();
+        }
     }
 }
 
@@ -173,5 +229,11 @@ mod tests {
         ] {
             assert_eq!(address(wrong), Err(AddressError), "{wrong}");
         }
+    }
+
+    #[test]
+    fn a_started_viewer_listens_on_this_machine_only() {
+        let options = spawn_options();
+        assert_eq!(options.extra_args, ["--bind", "127.0.0.1"]);
     }
 }

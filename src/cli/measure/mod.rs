@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::output::check_enabled;
 use super::{Failure, say, talk, use_threads};
 use crate::boundary::WallMethod;
 use crate::floor_plan::{self, FloorPlan};
@@ -23,6 +24,7 @@ use crate::trajectory::read::{ReadError, ReadOptions, Tracks, Unit, read};
 const NO_WALLS: &str = "none";
 
 pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
+    check_enabled()?;
     use_threads(options.program.threads)?;
     let folder = folder(options);
     check_outputs(options, &folder)?;
