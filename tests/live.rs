@@ -118,7 +118,7 @@ fn closes(mut connection: TcpStream) {
 }
 
 /// What the crowd does in a recording.
-fn crowd(path: &Path) -> impl PartialEq {
+fn crowd(path: &Path) -> impl PartialEq + use<> {
     let recording = Recording::read(path).unwrap();
     let positions = recording.pairs("/world/agents", "Points2D:positions");
     assert!(!positions.is_empty());

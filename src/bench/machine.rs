@@ -1,6 +1,7 @@
 //! What is measured on. The only place that names sysinfo.
 
 use std::fmt;
+use std::path::Path;
 
 use serde::Serialize;
 use sysinfo::{CpuRefreshKind, System};
@@ -50,18 +51,44 @@ impl Machine {
     }
 }
 
-/// Main memory that this process may use, bytes: the machine's, or less where its control group has a
-/// limit; `None` where the system does not say.
+/// Main memory that this process may use, bytes: the machine's, or less where its control group or one of the
+/// groups around it has a limit; `None` where the system does not say.
 pub fn main_memory() -> Option<u64> {
     let mut system = System::new();
     system.refresh_memory();
-    let limit = system.cgroup_limits().map(|limits| limits.total_memory);
-    let memory = [Some(system.total_memory()), limit];
+    let memory = [Some(system.total_memory()), group_limit(Path::new("/"))];
     memory
         .into_iter()
         .flatten()
         .filter(|&bytes| bytes > 0)
         .min()
+}
+
+/// The smallest limit on the memory of this process's control group and of those around it, bytes, by the
+/// files below `root`: version 2 of control groups, and the memory controller of version 1.
+fn group_limit(root: &Path) -> Option<u64> {
+    let groups = std::fs::read_to_string(root.join("proc/self/cgroup")).ok()?;
+    let mounts = root.join("sys/fs/cgroup");
+    let limits = groups.lines().flat_map(|line| {
+        // hierarchy:controllers:path
+        let mut fields = line.splitn(3, ':').skip(1);
+        let (controllers, group) = (fields.next().unwrap_or(""), fields.next().unwrap_or("/"));
+        let (mount, file) = match controllers {
+            "" => (mounts.clone(), "memory.max"),
+            _ if controllers.split(',').any(|name| name == "memory") => {
+                (mounts.join("memory"), "memory.limit_in_bytes")
+            }
+            _ => return Vec::new(),
+        };
+        // In a container some of the path may lie outside of what is mounted: what is missing has no limit.
+        let groups = Path::new(group.trim_start_matches('/')).ancestors();
+        let limit = |group| {
+            let text = std::fs::read_to_string(mount.join(group).join(file)).ok()?;
+            text.trim().parse::<u64>().ok() // `max` is none
+        };
+        groups.filter_map(limit).collect()
+    });
+    limits.min()
 }
 
 impl fmt::Display for Machine {
@@ -114,5 +141,58 @@ mod tests {
         let memory = Memory::read(status).unwrap();
         assert_eq!((memory.resident, memory.peak), (1 << 20, 1 << 21));
         assert_eq!(Memory::read("VmRSS:\t 1024 kB\n"), None);
+    }
+
+    /// A tree of files, as `group_limit` reads them.
+    fn limit(files: &[(&str, &str)]) -> Option<u64> {
+        let root = tempfile::tempdir().unwrap();
+        for (path, text) in files {
+            let path = root.path().join(path);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        }
+        group_limit(root.path())
+    }
+
+    #[test]
+    fn the_smallest_limit_of_nested_groups_holds() {
+        let own = ("proc/self/cgroup", "0::/user.slice/job.scope/step\n");
+        let group = "sys/fs/cgroup/user.slice";
+        let [outer, job, step] =
+            ["", "/job.scope", "/job.scope/step"].map(|path| format!("{group}{path}/memory.max"));
+        let root = ("sys/fs/cgroup/memory.max", "max\n");
+        let nested = |texts: [&str; 3]| {
+            let [a, b, c] = texts;
+            limit(&[own, root, (&outer, a), (&job, b), (&step, c)])
+        };
+        assert_eq!(nested(["max\n", "max\n", "1000\n"]), Some(1000));
+        assert_eq!(nested(["max\n", "500\n", "1000\n"]), Some(500));
+        assert_eq!(nested(["300\n", "500\n", "max\n"]), Some(300));
+        assert_eq!(nested(["max\n", "max\n", "max\n"]), None);
+        // In a container its own group is the root of what is mounted.
+        assert_eq!(
+            limit(&[own, ("sys/fs/cgroup/memory.max", "700\n")]),
+            Some(700)
+        );
+    }
+
+    #[test]
+    fn the_memory_controller_of_version_1_is_read() {
+        let groups = "12:cpu,cpuacct:/other\n4:memory:/slurm/job_7\n0::/\n";
+        let own = ("proc/self/cgroup", groups);
+        let file = |path: &str| format!("sys/fs/cgroup/memory{path}/memory.limit_in_bytes");
+        let [root, outer, job] = [file(""), file("/slurm"), file("/slurm/job_7")];
+        let none = "9223372036854771712\n";
+        let other = ("sys/fs/cgroup/memory/other/memory.limit_in_bytes", "1\n");
+        let limits = |a, b| limit(&[own, other, (&root, none), (&outer, a), (&job, b)]);
+        assert_eq!(limits(none, "2000\n"), Some(2000));
+        assert_eq!(limits("1500\n", "2000\n"), Some(1500));
+        assert_eq!(limits(none, none), Some(9_223_372_036_854_771_712));
+    }
+
+    #[test]
+    fn without_control_groups_there_is_no_limit() {
+        assert_eq!(limit(&[]), None);
+        assert_eq!(limit(&[("proc/self/cgroup", "0::/a\n")]), None);
     }
 }

@@ -59,8 +59,10 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
     let until: Option<Setting> = until.transpose()?;
     let file = options.file.display().to_string();
     let need = checkpoint.need(until.as_slice())?;
-    memory::check(&file, &need, memory::of_writing(&options.output))?;
+    let writing = memory::of_writing(&options.output);
+    memory::check(&file, &need, writing)?;
     let scenario = checkpoint.scenario(until.as_slice())?;
+    memory::check(&file, &need.with_lists(&scenario.scene), writing)?;
     let (simulation, metrics) = checkpoint.resume(&scenario)?;
     refuse_the_past(options, simulation.frame().clock)?;
     let mut outputs = Outputs::new(options.program.force);

@@ -5,7 +5,7 @@ use serde_json::json;
 use super::arguments::{InspectOptions, Source};
 use super::drive::Progress;
 use super::output;
-use super::{Failure, say, scenario as read, use_threads};
+use super::{Failure, memory, say, scenario as read, use_threads};
 use crate::breakdown::Breakdown;
 use crate::outputs::{Manner, Outputs};
 use crate::pairs::Precision;
@@ -17,12 +17,13 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
         output::check_enabled()?;
     }
     let source = Source::named(&options.scenario);
+    let writing = memory::of_inspecting(options.save.is_some(), options.all);
     let mut outputs = Outputs::new(options.scene.program.force);
-    let mut scenario = read(&source, &options.scene, None, 0, &mut outputs)?;
+    let mut scenario = read(&source, &options.scene, None, writing, &mut outputs)?;
     if options.at > scenario.duration_secs {
         // Sources go on until then.
         let at = Some(("--at", options.at));
-        scenario = read(&source, &options.scene, at, 0, &mut outputs)?;
+        scenario = read(&source, &options.scene, at, writing, &mut outputs)?;
     }
     if let Some(path) = &options.save {
         outputs.writes("--save", path, Manner::InPlace);
@@ -35,22 +36,33 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     let went = rayon::scope(|_| go_to(options.at, &mut simulation, &progress));
     progress.finish();
     went.map_err(|failure| failure.laid_open(&mut simulation))?;
-    let breakdowns = breakdowns(&simulation, options)?;
+    let inspected = inspected(&simulation, options)?;
     if let Some(path) = &options.save {
-        let ids = breakdowns.iter().map(|breakdown| breakdown.id).collect();
+        let ids = inspected.iter().map(|&(id, _)| id).collect();
         output::save_moment(path, &scenario, &simulation, ids)?;
     }
     let clock = simulation.frame().clock;
     let (time, frame) = (clock.time(), clock.frame());
-    if options.scene.program.json {
-        let object = json!({"time_secs": time, "frame": frame, "agents": breakdowns});
-        return say(format!("{object}\n"));
+    let as_json = options.scene.program.json;
+    // Agent by agent: breakdowns of a whole crowd would take far more memory than the run.
+    say(match as_json {
+        true => "{\"agents\":[".to_owned(),
+        false => format!("t = {time:.2} s, frame {frame}\n"),
+    })?;
+    for (k, &(id, i)) in inspected.iter().enumerate() {
+        let breakdown = Breakdown::of(&simulation, i).ok_or_else(|| absent(&simulation, id))?;
+        say(match as_json {
+            true => format!("{}{}", if k > 0 { "," } else { "" }, json!(breakdown)),
+            false => format!("\n{breakdown}"),
+        })?;
     }
-    let tables: String = breakdowns
-        .iter()
-        .map(|agent| format!("\n{agent}"))
-        .collect();
-    say(format!("t = {time:.2} s, frame {frame}\n{tables}"))
+    match as_json {
+        true => say(format!(
+            "],\"frame\":{frame},\"time_secs\":{}}}\n",
+            json!(time)
+        )),
+        false => Ok(()),
+    }
 }
 
 /// Advances to a moment in seconds, even beyond the scenario's own end; stops early when no agent is left.
@@ -71,25 +83,22 @@ fn go_to(at: f64, simulation: &mut Simulation, progress: &Progress) -> Result<()
     Ok(simulation.evaluate()?)
 }
 
-fn breakdowns(
+/// Ids and indices of the agents that are asked for.
+fn inspected(
     simulation: &Simulation,
     options: &InspectOptions,
-) -> Result<Vec<Breakdown>, Failure> {
+) -> Result<Vec<(u32, usize)>, Failure> {
     let agents = simulation.frame().agents;
-    let mut ids = if options.all {
-        agents.id.clone()
-    } else {
-        options.agent.clone()
-    };
     if options.all {
-        ids.sort_unstable();
+        let mut all: Vec<_> = agents.id.iter().copied().zip(0..).collect();
+        all.sort_unstable();
+        return Ok(all);
     }
-    ids.into_iter()
-        .map(|id| {
-            let i = agents.index_of(id).ok_or_else(|| absent(simulation, id))?;
-            Breakdown::of(simulation, i).ok_or_else(|| absent(simulation, id))
-        })
-        .collect()
+    let index = |&id: &u32| {
+        let i = agents.index_of(id).ok_or_else(|| absent(simulation, id))?;
+        Ok((id, i))
+    };
+    options.agent.iter().map(index).collect()
 }
 
 fn absent(simulation: &Simulation, id: u32) -> Failure {

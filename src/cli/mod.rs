@@ -192,8 +192,10 @@ fn scenario(
         Source::Shipped(name) => (shipped_text(name)?.to_owned(), format!("{name}.json")),
         Source::File(path) => (read_text(path)?, path.display().to_string()),
     };
-    memory::check(&file, &Need::parse(&text, &file, &settings)?, writing)?;
+    let need = Need::parse(&text, &file, &settings)?;
+    memory::check(&file, &need, writing)?;
     let scenario = Scenario::parse(&text, &file, &settings)?;
+    memory::check(&file, &need.with_lists(&scenario.scene), writing)?;
     if let Source::File(path) = source {
         outputs.reads("the scenario", path);
     }
@@ -225,13 +227,31 @@ fn talk(line: &str) {
     writeln!(std::io::stderr(), "{line}").ok();
 }
 
-/// Makes rayon use so many threads; to be called before anything else, which may compute in parallel.
+/// Where rayon looks for a number of threads, in this order.
+const THREADS: [&str; 2] = ["RAYON_NUM_THREADS", "RAYON_RS_NUM_CPUS"];
+
+/// Makes rayon use so many threads, else as many as the environment says, else all cores; to be called before
+/// anything else, which may compute in parallel.
 fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
-    if let Some(threads) = threads {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build_global()
-            .map_err(|error| Failure::Output(format!("--threads {threads}: {error}")))?;
-    }
-    Ok(())
+    let given = THREADS.into_iter().find_map(|name| {
+        Some((
+            name,
+            std::env::var(name).ok().filter(|text| !text.is_empty())?,
+        ))
+    });
+    let (source, threads) = match (threads, given) {
+        (Some(threads), _) => ("--threads", threads),
+        (None, Some((name, text))) => match values::threads(&text) {
+            Ok(threads) => (name, threads),
+            Err(error) => {
+                let reason = format!("{name}={text} in the environment: {error}");
+                return Err(Failure::Input(reason));
+            }
+        },
+        (None, None) => return Ok(()),
+    };
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()
+        .map_err(|error| Failure::Output(format!("{source} {threads}: {error}")))
 }

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::watch::Watch;
 use super::{Failure, say, talk, use_threads};
+use crate::bench::main_memory;
 use crate::outputs::{Manner, Outputs};
 use crate::sweep::{Gathered, Shard, Shelf, State, Study, StudyError, Tally, run as run_shard};
 
@@ -54,7 +55,10 @@ pub struct SweepOptions {
 
 pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     use_threads(options.threads)?;
-    let study = Study::read(&options.file)?;
+    // What is only listed or put together may have been computed on a larger machine.
+    let computes = !options.list && !options.merge;
+    let memory = computes.then(main_memory).flatten();
+    let study = Study::read_within(&options.file, memory)?;
     let folder = options
         .out
         .clone()

@@ -41,11 +41,12 @@ mod schema;
 mod setting;
 mod settings;
 mod shipped;
+mod wall_lists;
 
 pub(crate) use document::read as read_document;
 pub use error::{Problem, ScenarioError};
 pub(crate) use error::{in_plain_words, suggestion};
-pub use need::{Need, in_units};
+pub use need::{Need, TooLarge, in_units};
 pub use nested::NESTED;
 pub use preset::Preset;
 pub use schema::schema;

@@ -5,7 +5,9 @@ use super::error::{Problem, Under};
 use super::file::{File, Object, Source, TimeStep};
 use super::plan;
 use super::range::TIME;
+use super::wall_lists;
 use crate::clock::{Clock, PAPER_COARSE_STEP};
+use crate::scene::Scene;
 
 /// So many agents may enter in one run.
 pub(super) const MOST_AGENTS: u64 = 10_000_000;
@@ -30,6 +32,14 @@ const WALL: u64 = 400;
 /// of text, take 228 MB, and 100,000 square obstacles, in 6.5 MB, 322 MB; the estimates are 258 and 595 MB.
 const TEXT: u64 = 65;
 
+/// An entry in the lists of walls near agents, bytes; the lists' memory grows in steps.
+const LISTED: u64 = 5;
+
+/// A run needs more memory than there is.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct TooLarge(String);
+
 /// How large a scenario's run becomes at most.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Need {
@@ -41,6 +51,9 @@ pub struct Need {
     pub walls: u64,
     /// Bytes of the scenario's text.
     pub text: u64,
+    /// Entries in the lists of walls near agents; known once the walls are, see
+    /// [`with_lists`](Self::with_lists).
+    pub listed: u64,
 }
 
 impl Need {
@@ -53,9 +66,58 @@ impl Need {
             (later, LATER_AGENT),
             (self.walls, WALL),
             (self.text, TEXT),
+            (self.listed, LISTED),
         ];
         let products = parts.map(|(count, bytes)| count.saturating_mul(bytes));
         products.into_iter().fold(PROGRAM, u64::saturating_add)
+    }
+
+    /// The same with the lists of walls near agents, in which `scene`'s ranges and walls count.
+    pub fn with_lists(self, scene: &Scene) -> Self {
+        Self {
+            listed: wall_lists::entries(scene, self.entering),
+            ..self
+        }
+    }
+
+    /// Checks that a run fits into `there` bytes of memory; `file` is what messages call its scenario, and its
+    /// outputs take `output` bytes per agent.
+    ///
+    /// # Errors
+    /// It does not, with the estimate.
+    pub fn check(&self, file: &str, output: u64, there: u64) -> Result<(), TooLarge> {
+        let output = self.entering.saturating_mul(output);
+        let estimate = self.bytes().saturating_add(output);
+        if estimate <= there {
+            return Ok(());
+        }
+        let (later, agents) = (self.entering - self.initial, self.entering);
+        let entering = match later {
+            0 => String::new(),
+            later => format!(" ({later} of them from sources)"),
+        };
+        let listed = self.listed.saturating_mul(LISTED);
+        let parts = [
+            (output, "to write files"),
+            (listed, "to list walls near agents"),
+        ];
+        let parts = parts.into_iter().filter(|&(bytes, _)| bytes > 0);
+        let parts = parts.map(|(bytes, what)| format!("{} of them {what}", in_units(bytes)));
+        let parts = match parts.collect::<Vec<_>>().join(", ") {
+            none if none.is_empty() => none,
+            some => format!(" ({some})"),
+        };
+        let smaller = match listed > estimate / 2 {
+            true => "smaller avoidance_radius and support_radius, ",
+            false => "",
+        };
+        Err(TooLarge(format!(
+            "{file}: {agents} agents{entering} and {} walls would take {} of memory{parts}, and this machine has \
+             {}: take {smaller}fewer agents, a shorter run (--until) if they come from sources, or another machine",
+            self.walls,
+            in_units(estimate),
+            in_units(there),
+        )))
     }
 
     /// Counts what `file` asks for, and checks what that depends on; `clock` is its clock, if it gives one.
@@ -156,6 +218,44 @@ mod tests {
         ] {
             assert_eq!(in_units(bytes), text);
         }
+    }
+
+    const NEED: Need = Need {
+        initial: 400_000,
+        entering: 1_000_000,
+        walls: 12,
+        text: 1_000,
+        listed: 0,
+    };
+
+    #[test]
+    fn what_is_larger_than_the_machine_is_refused_with_the_estimate_and_the_fix() {
+        assert_eq!(NEED.check("f.json", 0, NEED.bytes()), Ok(()));
+        assert_eq!(
+            NEED.check("f.json", 100, 256_000_000)
+                .unwrap_err()
+                .to_string(),
+            "f.json: 1000000 agents (600000 of them from sources) and 12 walls would take 723 MB of memory \
+             (100 MB of them to write files), and this machine has 256 MB: take fewer agents, a shorter run \
+             (--until) if they come from sources, or another machine"
+        );
+    }
+
+    #[test]
+    fn lists_of_walls_count() {
+        let need = Need {
+            listed: 1_000_000_000,
+            ..NEED
+        };
+        let said = need.check("f.json", 0, 1 << 30).unwrap_err().to_string();
+        assert!(
+            said.contains("5.62 GB of memory (5.00 GB of them to list walls near agents)"),
+            "{said}"
+        );
+        assert!(
+            said.contains("take smaller avoidance_radius and support_radius, "),
+            "{said}"
+        );
     }
 
     #[test]

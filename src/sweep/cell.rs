@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use crate::scenario::{SHIPPED, Scenario, ScenarioError, Setting};
+use super::CellError;
+use super::memory::Memory;
+use crate::scenario::{Need, SHIPPED, Scenario, ScenarioError, Setting, read_text, shipped_text};
 
 /// The engine's sources, in 16 letters: a result of another engine is not taken for one of this.
 const ENGINE: &str = env!("SANDBOX_ENGINE");
@@ -29,11 +31,17 @@ impl Source {
         Some(Self::Shipped(found.name))
     }
 
-    fn scenario(&self, settings: &[Setting]) -> Result<Scenario, ScenarioError> {
+    /// The scenario's text, and what messages call its file.
+    fn text(&self) -> Result<(String, String), ScenarioError> {
         match self {
-            Self::Shipped(name) => Scenario::shipped(name, settings),
-            Self::File(path) => Scenario::load(path, settings),
+            Self::Shipped(name) => Ok((shipped_text(name)?.to_owned(), format!("{name}.json"))),
+            Self::File(path) => Ok((read_text(path)?, path.display().to_string())),
         }
+    }
+
+    fn scenario(&self, settings: &[Setting]) -> Result<Scenario, ScenarioError> {
+        let (text, file) = self.text()?;
+        Scenario::parse(&text, &file, settings)
     }
 }
 
@@ -48,6 +56,8 @@ pub struct Cell {
     pub seed: u64,
     /// Roughly how long it takes on one core, seconds.
     pub expected_secs: f64,
+    /// How much memory it takes.
+    pub need: Need,
     pub(super) source: Source,
     pub(super) settings: Vec<Setting>,
     /// The floor plans that its scenario names.
@@ -60,20 +70,29 @@ impl Cell {
     /// A cell, checked; its scenario itself is read again when it runs.
     ///
     /// # Errors
-    /// Its scenario or a setting makes no sense.
+    /// Its scenario or a setting makes no sense, or it needs more memory than there is.
     pub(super) fn new(
         number: usize,
         values: Vec<(String, Value)>,
         source: Source,
         settings: Vec<Setting>,
-    ) -> Result<Self, ScenarioError> {
-        let scenario = source.scenario(&settings)?;
+        memory: &Memory,
+    ) -> Result<Self, CellError> {
+        let (text, file) = source.text()?;
+        let check = |need: &Need| need.check(&file, 0, memory.limit().unwrap_or(u64::MAX));
+        let need = Need::parse(&text, &file, &settings)?;
+        check(&need)?;
+        let _lent = memory.lend(need.bytes());
+        let scenario = Scenario::parse(&text, &file, &settings)?;
+        let need = need.with_lists(&scenario.scene);
+        check(&need)?;
         let given = scenario.document.get("seed").and_then(Value::as_u64);
         Ok(Self {
             number,
             values,
             seed: given.unwrap_or(scenario.scene.seed),
             expected_secs: expected_secs(&scenario),
+            need,
             key: key(&scenario),
             source,
             settings,

@@ -25,6 +25,7 @@ mod choice;
 mod entries;
 mod gathered;
 mod kept;
+mod memory;
 mod runner;
 mod seeds;
 mod shard;
@@ -38,7 +39,8 @@ pub use runner::{Listener, Tally, run};
 pub use shard::Shard;
 pub use study::Study;
 
-use crate::scenario::{Problem, ScenarioError};
+use crate::reproduce::ReproduceError;
+use crate::scenario::{Problem, ScenarioError, TooLarge};
 
 /// Why a study makes no sense.
 #[derive(Debug, thiserror::Error)]
@@ -54,8 +56,22 @@ pub enum StudyError {
         /// The cell's number.
         cell: usize,
         /// What is wrong with its scenario.
-        error: ScenarioError,
+        error: CellError,
     },
+    /// The cells cannot be checked side by side.
+    #[error(transparent)]
+    Machine(#[from] ReproduceError),
+}
+
+/// Why a cell cannot be computed.
+#[derive(Debug, thiserror::Error)]
+pub enum CellError {
+    /// Its scenario or its settings make no sense.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// It needs more memory than there is.
+    #[error(transparent)]
+    TooLarge(#[from] TooLarge),
 }
 
 /// Something wrong at a place of the study's file.

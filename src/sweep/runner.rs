@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use super::cell::Cell;
 use super::kept::{CellResult, Failure, Shelf};
+use super::memory::Memory;
 use super::{Shard, Study};
 use crate::drive::{Then, drive, unless_over};
 use crate::job::side_by_side;
@@ -66,12 +67,13 @@ enum End {
 /// A cell to be computed.
 struct Todo<'a> {
     cell: &'a Cell,
+    memory: &'a Memory,
     /// How often it was tried before.
     attempts: u32,
 }
 
 /// Computes the cells of a shard that `shelf` does not have, the longest first, side by side on as many
-/// threads as rayon has, each on one; every one is kept as soon as it is finished. What another process is
+/// threads as rayon has, each on one, but only as many at once as fit into the study's memory; every one is kept as soon as it is finished. What another process is
 /// computing is waited for at the end, and computed only if that process goes without a result.
 ///
 /// # Errors
@@ -82,6 +84,7 @@ pub fn run(
     shelf: &Shelf,
     listener: &dyn Listener,
 ) -> Result<Tally, ReproduceError> {
+    let memory = Memory::new(study.memory);
     let mut tally = Tally::default();
     let mut todo = Vec::new();
     let mut seen = HashSet::new();
@@ -100,7 +103,11 @@ pub fn run(
             continue;
         }
         let attempts = shelf.failure(cell).map_or(0, |failure| failure.attempts);
-        todo.push(Todo { cell, attempts });
+        todo.push(Todo {
+            cell,
+            memory: &memory,
+            attempts,
+        });
     }
     todo.sort_by(|a, b| b.cell.expected_secs.total_cmp(&a.cell.expected_secs));
     let seconds = todo.iter().map(|todo| todo.cell.expected_secs).sum();
@@ -176,7 +183,9 @@ impl Todo<'_> {
                 told = due;
             }
         };
+        let lent = self.memory.lend(self.cell.need.bytes());
         let computed = caught(|| compute(self.cell, &mut tell));
+        drop(lent);
         tell(1.0);
         match computed {
             Ok(result) => {

@@ -2,16 +2,18 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
-use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::Value;
 
 use super::cell::{Cell, Source};
 use super::choice::{Choice, Meaning, SCENARIO, axis, choices, same, source};
 use super::entries::Entries;
+use super::memory::Memory;
 use super::seeds::Seeds;
-use super::{StudyError, problem};
+use super::{CellError, StudyError, problem};
+use crate::job::side_by_side;
 use crate::scenario::{Problem, ScenarioError, Setting, in_plain_words, read_document};
 
 /// A study with more cells is taken for a mistake.
@@ -49,6 +51,8 @@ pub struct Study {
     pub seeds: usize,
     /// In the order of their numbers; seeds change first, then the grid's last key, the list last.
     pub cells: Vec<Cell>,
+    /// Bytes of memory that cells share; `None` without a limit.
+    pub memory: Option<u64>,
 }
 
 impl Study {
@@ -67,6 +71,15 @@ impl Study {
     /// # Errors
     /// The first thing that is wrong, with its place in the file or the cell.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
+        Self::read_within(path, None)
+    }
+
+    /// The same on a machine with so many bytes of memory: cells are checked and computed only as many at once
+    /// as fit into it.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read), or a cell alone needs more memory.
+    pub fn read_within(path: &Path, memory: Option<u64>) -> Result<Self, StudyError> {
         let file = path.display().to_string();
         let text = std::fs::read_to_string(path).map_err(|error| ScenarioError::Unreadable {
             file: file.clone(),
@@ -83,11 +96,18 @@ impl Study {
         let plan = Plan::new(&written, folder).map_err(invalid)?;
         let name = written.name.unwrap_or_else(|| stem.into_owned());
         check_name(&name).map_err(invalid)?;
-        let cells: Vec<Result<Cell, ScenarioError>> = (0..plan.count)
-            .into_par_iter()
-            .map(|index| plan.cell(index))
-            .collect();
-        let failed = |(index, cell): (usize, Result<Cell, ScenarioError>)| {
+        let shared = Memory::new(memory);
+        let cells = Mutex::new(Vec::with_capacity(plan.count));
+        // Not on rayon's threads, which could take up another cell while they work on one that holds memory.
+        side_by_side(plan.count, |index| {
+            let cell = plan.cell(index, &shared);
+            let mut cells = cells.lock().unwrap_or_else(PoisonError::into_inner);
+            cells.push((index, cell));
+            Ok(())
+        })?;
+        let mut cells = cells.into_inner().unwrap_or_else(PoisonError::into_inner);
+        cells.sort_by_key(|&(index, _)| index);
+        let failed = |(index, cell): (usize, Result<Cell, CellError>)| {
             cell.map_err(|error| StudyError::Cell {
                 file: file.clone(),
                 cell: index + 1,
@@ -97,12 +117,9 @@ impl Study {
         Ok(Self {
             name,
             document,
+            memory,
             seeds: plan.seeds.len(),
-            cells: cells
-                .into_iter()
-                .enumerate()
-                .map(failed)
-                .collect::<Result<_, _>>()?,
+            cells: cells.into_iter().map(failed).collect::<Result<_, _>>()?,
             axes: plan.names,
         })
     }
@@ -254,7 +271,7 @@ impl Plan {
     }
 
     /// A cell by its place, from 0.
-    fn cell(&self, index: usize) -> Result<Cell, ScenarioError> {
+    fn cell(&self, index: usize, memory: &Memory) -> Result<Cell, CellError> {
         let mut rest = index;
         let mut digit = |size: usize| {
             let digit = rest % size;
@@ -282,7 +299,7 @@ impl Plan {
         let values = varied
             .iter()
             .map(|choice| (choice.key.clone(), choice.value.clone()));
-        Cell::new(index + 1, values.collect(), scenario, settings)
+        Cell::new(index + 1, values.collect(), scenario, settings, memory)
     }
 }
 

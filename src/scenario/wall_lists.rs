@@ -1,0 +1,199 @@
+//! An upper bound on the lists of walls near agents, found before any list is made.
+
+use crate::geometry::{Wall, Walls};
+use crate::math::Vector;
+use crate::scene::Scene;
+
+/// Cells per side at most.
+const MOST_CELLS: f64 = 1024.0;
+/// Cells per reach: with more of them the bound is tighter.
+const CELLS_PER_REACH: f64 = 4.0;
+/// Below this, a few megabytes, the plain product of agents and walls is a good enough bound.
+const FEW_ENTRIES: u64 = 1 << 20;
+/// More agents than this do not stand on a square meter: twice what the paper's crowds reach.
+const DENSEST: f64 = 20.0;
+
+/// Entries of all lists of walls of a crowd of `agents`, at most.
+///
+/// Agents move, so the bound puts them where the lists are longest, as densely as they can stand.
+pub(super) fn entries(scene: &Scene, agents: u64) -> u64 {
+    let ranges = scene.ranges(&scene.needs());
+    let radii = scene.agents.iter().filter_map(|agent| agent.radius);
+    let widest = radii.fold(ranges.support.max(ranges.longest_step), f64::max);
+    let reaches = [Some(widest), ranges.avoidance];
+    let bounds = reaches.into_iter().flatten();
+    let bounds = bounds.map(|reach| bound(&scene.walls, reach + ranges.drift, agents));
+    bounds.fold(0, u64::saturating_add)
+}
+
+fn bound(walls: &Walls, reach: f64, agents: u64) -> u64 {
+    let every = agents.saturating_mul(walls.len() as u64);
+    if every <= FEW_ENTRIES {
+        return every;
+    }
+    let cells = Cells::over(walls, reach);
+    let mut counts = cells.count(walls, reach);
+    counts.sort_unstable_by(|a, b| b.cmp(a));
+    let capacity = ((DENSEST * cells.side * cells.side).ceil() as u64).max(1);
+    let (mut left, mut entries) = (agents, 0_u64);
+    for walls in counts {
+        if left == 0 || walls == 0 {
+            break;
+        }
+        let here = left.min(capacity);
+        entries = entries.saturating_add(here.saturating_mul(walls));
+        left -= here;
+    }
+    entries
+}
+
+/// Square cells over everything within reach of a wall.
+struct Cells {
+    corner: Vector,
+    side: f64,
+    columns: usize,
+    rows: usize,
+}
+
+impl Cells {
+    fn over(walls: &Walls, reach: f64) -> Self {
+        let ends = || walls.iter().flat_map(|wall| [wall.start, wall.end]);
+        let first = ends().next().unwrap_or(Vector::zeros());
+        let (min, max) = ends().fold((first, first), |(min, max), p| (min.inf(&p), max.sup(&p)));
+        let margin = Vector::repeat(reach);
+        let (corner, size) = (min - margin, max - min + 2.0 * margin);
+        let side = (reach / CELLS_PER_REACH).max(size.amax() / MOST_CELLS);
+        let cells = |length: f64| (length / side).floor() as usize + 1;
+        Self {
+            corner,
+            side,
+            columns: cells(size.x),
+            rows: cells(size.y),
+        }
+    }
+
+    /// By cell, how many walls may be within `reach` of a point in it: every wall counts in the square cells
+    /// around its part in a row of cells and the reach above and below.
+    fn count(&self, walls: &Walls, reach: f64) -> Vec<u64> {
+        let width = self.columns + 1;
+        // First the differences between neighbors in a row.
+        let mut counts = vec![0_i64; width * self.rows];
+        for wall in walls.iter() {
+            let (low, high) = (
+                wall.start.y.min(wall.end.y) - reach,
+                wall.start.y.max(wall.end.y) + reach,
+            );
+            let [first, last] = [low, high].map(|y| self.place(y - self.corner.y, self.rows));
+            for row in first..=last {
+                let y = self.corner.y + row as f64 * self.side;
+                let Some([left, right]) = span(wall, y - reach, y + self.side + reach) else {
+                    continue;
+                };
+                let [left, right] = [left - reach, right + reach]
+                    .map(|x| self.place(x - self.corner.x, self.columns));
+                counts[row * width + left] += 1;
+                counts[row * width + right + 1] -= 1;
+            }
+        }
+        let rows = counts.chunks_exact(width).flat_map(|row| {
+            row[..self.columns].iter().scan(0_i64, |sum, difference| {
+                *sum += difference;
+                Some(sum.unsigned_abs())
+            })
+        });
+        rows.collect()
+    }
+
+    /// Which cell of so many a coordinate is in.
+    fn place(&self, along: f64, cells: usize) -> usize {
+        ((along / self.side).floor() as usize).min(cells - 1)
+    }
+}
+
+/// From where to where in x a wall goes between two heights.
+fn span(wall: &Wall, low: f64, high: f64) -> Option<[f64; 2]> {
+    let (a, b) = match wall.start.y <= wall.end.y {
+        true => (wall.start, wall.end),
+        false => (wall.end, wall.start),
+    };
+    if b.y < low || a.y > high {
+        return None;
+    }
+    let rise = b.y - a.y;
+    let at = |y: f64| match rise > 0.0 {
+        true => a.x + (b.x - a.x) * ((y - a.y) / rise).clamp(0.0, 1.0),
+        false => a.x,
+    };
+    let ends = match rise > 0.0 {
+        true => [at(low), at(high)],
+        false => [a.x, b.x],
+    };
+    Some([ends[0].min(ends[1]), ends[0].max(ends[1])])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Polygon;
+    use crate::random::{Purpose, stream};
+    use rand::Rng;
+
+    fn squares(count: usize, side: f64, span: f64) -> Walls {
+        let mut rng = stream(3, Purpose::Placement, 0, 0);
+        let polygon = |_| {
+            let [x, y] = [0; 2].map(|_| rng.random_range(0.0..span));
+            let corners = [[x, y], [x + side, y], [x + side, y + side], [x, y + side]];
+            Polygon::new(corners.map(Vector::from).to_vec()).unwrap()
+        };
+        Walls::new((0..count).map(polygon).collect())
+    }
+
+    #[test]
+    fn no_place_has_more_walls_within_reach_than_its_cell() {
+        for (count, side, span, reach) in [
+            (300, 0.5, 40.0, 3.0),
+            (20, 30.0, 40.0, 3.0),
+            (40, 1.0, 5000.0, 2.0),
+        ] {
+            let walls = squares(count, side, span);
+            let cells = Cells::over(&walls, reach);
+            let counts = cells.count(&walls, reach);
+            let mut rng = stream(4, Purpose::Placement, 0, 0);
+            for _ in 0..2000 {
+                let p = Vector::new(rng.random_range(0.0..span), rng.random_range(0.0..span));
+                let mut near = Vec::new();
+                walls.near(p, reach, &mut near);
+                let place = p - cells.corner;
+                let row = cells.place(place.y, cells.rows);
+                let column = cells.place(place.x, cells.columns);
+                let bound = counts[row * cells.columns + column];
+                assert!(near.len() as u64 <= bound, "{} {bound}", near.len());
+            }
+        }
+    }
+
+    #[test]
+    fn the_bound_is_at_most_three_times_the_lists_of_a_uniform_scene() {
+        let walls = squares(2000, 0.5, 100.0);
+        let near = |p: Vector| {
+            let mut near = Vec::new();
+            walls.near(p, 10.0, &mut near);
+            near.len() as u64
+        };
+        let mut rng = stream(5, Purpose::Placement, 0, 0);
+        let places = std::iter::repeat_with(|| {
+            Vector::new(rng.random_range(20.0..80.0), rng.random_range(20.0..80.0))
+        });
+        let listed: u64 = places.take(1000).map(near).sum();
+        // Fewer agents than that find room in the cells with the most walls.
+        let bound = bound(&walls, 10.0, 1000);
+        assert!((listed..3 * listed).contains(&bound), "{listed} {bound}");
+    }
+
+    #[test]
+    fn walls_without_agents_and_agents_without_walls_have_no_lists() {
+        assert_eq!(bound(&squares(3, 1.0, 9.0), 5.0, 0), 0);
+        assert_eq!(bound(&Walls::new(Vec::new()), 5.0, 9), 0);
+        assert_eq!(bound(&squares(1, 1.0, 9.0), 5.0, 9), 36);
+    }
+}
