@@ -329,3 +329,30 @@ fn what_cannot_be_reproduced_is_told_in_plain_words() {
     let missing = missing.to_str().unwrap();
     refused(&["reproduce", "table1", "--update", missing], 1, &[missing]);
 }
+
+#[test]
+fn numbers_of_threads_from_the_environment_have_the_bounds_of_the_option() {
+    let run = |name: &str, text: &str, more: &[&str]| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_sandbox"));
+        let program = program.args(["evacuation", "--until", "0", "--json"]);
+        program.args(more).env(name, text).output().unwrap()
+    };
+    for name in ["RAYON_NUM_THREADS", "RAYON_RS_NUM_CPUS"] {
+        for text in ["0", "1025", "100000", "many"] {
+            let output = run(name, text, &[]);
+            assert_eq!(output.status.code(), Some(2), "{name}={text}");
+            assert_eq!(
+                String::from_utf8_lossy(&output.stderr),
+                format!(
+                    "error: {name}={text} in the environment: not a number of threads between 1 and 1024\n"
+                )
+            );
+            assert!(output.stdout.is_empty());
+        }
+        for (text, more, threads) in [("3", &[][..], 3), ("100000", &["--threads", "2"], 2)] {
+            let output = run(name, text, more);
+            let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+            assert_eq!(report["threads"], threads, "{name}={text}");
+        }
+    }
+}

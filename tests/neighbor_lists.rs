@@ -6,6 +6,7 @@ use sandbox::agents::NewAgent;
 use sandbox::clock::Clock;
 use sandbox::kernel;
 use sandbox::neighbors::ListPolicy;
+use sandbox::scenario::{Need, Scenario};
 use sandbox::scene::{Integrator, Scene};
 use sandbox::simulation::Simulation;
 
@@ -88,4 +89,44 @@ fn the_midpoint_method_sees_everybody_half_a_frame_ahead() {
     let ranges = finest.scene().ranges(finest.needs());
     let half_a_move = 0.5 * finest.scene().max_speed * 0.08;
     assert!(ranges.margin >= 0.5 * sandbox::neighbors::SKIN + half_a_move);
+}
+
+/// Agents among round pillars, all of which are within reach of everybody.
+fn pillars() -> String {
+    let pillar = |k: usize| {
+        let center = [2.0 * (k % 16) as f64, 2.0 * (k / 16) as f64];
+        let corners = (0..40).map(|c| {
+            let angle = f64::from(c) * std::f64::consts::TAU / 40.0;
+            [center[0] + 0.3 * angle.cos(), center[1] + 0.3 * angle.sin()]
+        });
+        corners.collect::<Vec<_>>()
+    };
+    serde_json::json!({
+        "parameters": {"support_radius": 100},
+        "obstacles": (0..256).map(pillar).collect::<Vec<_>>(),
+        "grids": [{"min": [1, 1], "max": [29, 29], "columns": 15, "rows": 15, "goal": [0, 0]}],
+    })
+    .to_string()
+}
+
+#[test]
+fn the_estimate_of_memory_covers_lists_of_walls() {
+    let text = pillars();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let (held, need) = pool.unwrap().install(|| {
+        let mut need = Need::default();
+        let held = allocation_counter::measure(|| {
+            let scene = Scenario::parse(&text, "pillars", &[]).unwrap().scene;
+            let parsed = Need::parse(&text, "pillars", &[]).unwrap();
+            need = parsed.with_lists(&scene);
+            let mut simulation = Simulation::new(scene).unwrap();
+            simulation.evaluate().unwrap();
+        });
+        (held.bytes_max, need)
+    });
+    assert_eq!(need.listed, 225 * 256 * 40, "every wall, for every agent");
+    let estimate = need.bytes();
+    assert!((held..5 * held).contains(&estimate), "{held} {estimate}");
+    let without = Need { listed: 0, ..need };
+    assert!(estimate > without.bytes() + 4 * need.listed);
 }

@@ -292,3 +292,24 @@ fn what_is_missing_has_a_row_as_well() {
         "one value has no interval"
     );
 }
+
+#[test]
+fn a_study_with_memory_for_one_cell_at_a_time_gives_the_same() {
+    let (folder, path) = folder(GRID);
+    let study = Study::read(&path).unwrap();
+    let bytes = study.cells.iter().map(|cell| cell.need.bytes()).max();
+    let tight = Study::read_within(&path, bytes).unwrap();
+    let cells = [(study, "free"), (tight, "tight")].map(|(study, name)| {
+        let out = folder.path().join(name);
+        let (tally, _) = run_in(&study, &out, Shard::WHOLE);
+        assert_eq!([tally.cells, tally.finished], [12, 12]);
+        let shelf = Shelf::at(&out);
+        let states = Gathered::of(&study, &shelf).states.into_iter();
+        let summary = |state| match state {
+            State::Finished(result) => result.summary,
+            _ => panic!("not finished"),
+        };
+        states.map(summary).collect::<Vec<_>>()
+    });
+    assert!(cells[0] == cells[1]);
+}

@@ -11,6 +11,8 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
+use crate::common::sweep::folder;
+
 /// Three people who walk freely.
 const SCENARIO: &str = r#"{"goal": [10, 0], "profile": "sph", "duration_secs": 1,
     "grids": [{"min": [0, 0], "max": [3, 1], "columns": 3, "rows": 1}]}"#;
@@ -214,4 +216,23 @@ fn a_broken_scenario_is_named_with_its_file() {
         read(folder.path(), r#"{"scenario": "bad.json"}"#).unwrap_err(),
         "study.json: cell 1: bad.json: max_speed: must be above 0 and at most 100, not 0"
     );
+}
+
+#[test]
+fn a_cell_that_does_not_fit_into_memory_is_refused_before_anything_is_computed() {
+    let text = r#"{"scenario": "room.json", "grid": {"grids.0.columns": [3, 2000], "grids.0.max.0": [900]}}"#;
+    let (_folder, path) = folder(text);
+    let all = Study::read_within(&path, Some(1 << 30)).unwrap();
+    let [small, large] = [0, 1].map(|cell| all.cells[cell].need.bytes());
+    assert!(large > small + 2_000_000, "{small} {large}");
+    let error = Study::read_within(&path, Some(large - 1))
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains(": cell 2: "), "{error}");
+    assert!(
+        error.contains("6000 agents and 4 walls would take "),
+        "{error}"
+    );
+    assert!(error.contains(", and this machine has "), "{error}");
+    assert!(Study::read_within(&path, Some(large)).is_ok());
 }
