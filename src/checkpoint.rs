@@ -4,13 +4,14 @@
 //! the state and what was measured so far, in postcard's encoding. It is written [whole](write_whole):
 //! whatever happens, a checkpoint of before is not lost.
 
-use std::fs;
-use std::io::Write;
+use std::fs::File;
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::input;
 use crate::metrics::Metrics;
 use crate::outputs::write_whole;
 use crate::scenario::{Need, Scenario, ScenarioError, Setting};
@@ -20,6 +21,8 @@ use crate::simulation::{Simulation, State, StateError};
 const MAGIC: &[u8] = b"sandbox checkpoint\n";
 /// To be raised with whatever changes what a file holds.
 const VERSION: u32 = 2;
+/// A longer file is refused, bytes: that of the largest run, with ten million agents, has 2 GB.
+const LONGEST: u64 = 1 << 32;
 /// The engine's sources: another engine goes on otherwise.
 const ENGINE: &str = env!("SANDBOX_ENGINE");
 
@@ -151,10 +154,26 @@ impl Checkpoint {
     /// # Errors
     /// There is no such file, or it is no checkpoint of this version that is as it was written.
     pub fn read(path: &Path) -> Result<Self, CheckpointError> {
-        let bytes = fs::read(path).map_err(|error| CheckpointError::Unreadable {
+        let unreadable = |error: io::Error| CheckpointError::Unreadable {
             path: path.to_owned(),
             reason: error.to_string(),
-        })?;
+        };
+        let mut file = File::open(path).map_err(unreadable)?;
+        let start = Read::by_ref(&mut file).take(MAGIC.len() as u64);
+        let start = input::rest(start, LONGEST).map_err(unreadable)?;
+        if start != MAGIC {
+            return Err(CheckpointError::Foreign(path.to_owned())); // however long it is
+        }
+        let bytes =
+            input::rest(Read::chain(start.as_slice(), file), LONGEST).map_err(unreadable)?;
+        Self::parse(&bytes, path)
+    }
+
+    /// Reads it from bytes; `path` is what messages call it.
+    ///
+    /// # Errors
+    /// It is no checkpoint of this version that is as it was written.
+    pub fn parse(bytes: &[u8], path: &Path) -> Result<Self, CheckpointError> {
         let damaged = |reason: &str| CheckpointError::Damaged {
             path: path.to_owned(),
             reason: reason.to_owned(),

@@ -1,7 +1,6 @@
 //! Work in pieces, side by side over the threads; what is finished is kept, and not done again.
 
 use std::collections::hash_map::DefaultHasher;
-use std::fs;
 use std::hash::{Hash, Hasher};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -11,6 +10,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::input::{self, LONGEST_TEXT};
 use crate::reproduce::{ReproduceError, Store};
 
 /// The engine's sources, in 16 letters: what another engine did is not taken for this one's.
@@ -105,7 +105,7 @@ impl Job {
     }
 
     fn kept(&self, store: &Store) -> Option<Value> {
-        let text = fs::read(store.path(&self.file())).ok()?;
+        let text = input::bytes(&store.path(&self.file()), LONGEST_TEXT).ok()?;
         let kept: Kept = serde_json::from_slice(&text).ok()?;
         (kept.identity == self.identity()).then_some(kept.result)
     }

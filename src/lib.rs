@@ -25,6 +25,10 @@ pub mod math;
 
 pub mod random;
 
+pub mod quote;
+
+pub mod input;
+
 pub mod geometry;
 
 pub mod floor_plan;

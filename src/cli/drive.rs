@@ -16,6 +16,7 @@ use crate::clock::{Clock, SHORTEST_TIME_STEP};
 use crate::drive::{Then, drive, unless_over};
 use crate::metrics::Metrics;
 use crate::outputs::Outputs;
+use crate::quote::shown;
 use crate::scenario::{Scenario, Setting};
 use crate::scene::Scene;
 use crate::simulation::{EventKind, Simulation};
@@ -193,7 +194,8 @@ fn report_oddities(simulation: &Simulation) {
     }
     for event in simulation.events() {
         if event.kind == EventKind::PushBegan(0) {
-            talk(&format!("note: nobody stood where {:?} began", event.name));
+            let name = shown(&event.name);
+            talk(&format!("note: nobody stood where \"{name}\" began"));
         }
     }
 }

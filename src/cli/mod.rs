@@ -29,6 +29,7 @@ use clap::Parser;
 use crate::breakdown::Breakdown;
 use crate::floor_plan;
 use crate::outputs::{Outputs, OutputsError};
+use crate::quote::{printable, shown};
 use crate::reproduce::ReproduceError;
 use crate::scenario::{Need, Scenario, ScenarioError, Setting, read_text, shipped_text};
 use crate::simulation::{Fault, Simulation};
@@ -168,7 +169,8 @@ fn scenario(
     let mut last = None;
     for (flag, key, value) in flags {
         let Some(value) = value else { continue };
-        let setting = setting(&format!("{key}={value}"))?.typed_as(format!("{flag} {value}"));
+        let setting = setting(&format!("{key}={value}"))?;
+        let setting = setting.typed_as(format!("{flag} {}", shown(&value)));
         if flag == "--at" {
             last = Some(setting); // a moment beyond the end moves the end, however it was given
             continue;
@@ -207,7 +209,7 @@ fn scenario(
 
 fn setting(text: &str) -> Result<Setting, Failure> {
     text.parse()
-        .map_err(|error| Failure::Input(format!("--set {text}: {error}")))
+        .map_err(|error| Failure::Input(format!("--set {}: {error}", shown(text))))
 }
 
 /// Writes results to stdout; a reader that has gone (`| head`) is no failure.
@@ -222,9 +224,10 @@ fn say(text: impl AsRef<[u8]>) -> Result<(), Failure> {
     }
 }
 
-/// Writes a line to stderr; where that is not possible nothing is lost that the exit code does not tell.
+/// Writes a line to stderr, without anything that a terminal obeys; where that is not possible nothing is lost
+/// that the exit code does not tell.
 fn talk(line: &str) {
-    writeln!(std::io::stderr(), "{line}").ok();
+    writeln!(std::io::stderr(), "{}", printable(line)).ok();
 }
 
 /// Where rayon looks for a number of threads, in this order.

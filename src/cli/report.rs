@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::metrics::{Metric, Metrics};
+use crate::quote::shown;
 use crate::scenario::Scenario;
 use crate::simulation::Simulation;
 use crate::summary::{Summary, value};
@@ -62,8 +63,8 @@ impl<'a> Report<'a> {
         let frame = self.simulation.frame();
         let mut text = format!(
             "{} ({}), seed {}: {} agents, {:.2} s in {} frames{}\n",
-            self.scenario.name,
-            self.scenario.profile_name,
+            shown(&self.scenario.name),
+            shown(&self.scenario.profile_name),
             self.simulation.scene().seed,
             frame.agents.entered(),
             frame.clock.time(),

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::Failure;
+use crate::input;
 use crate::outputs::{Manner, Outputs, write_whole};
 use crate::reproduce::put_between;
 
@@ -31,7 +32,7 @@ pub fn update<'a>(
     texts: impl Iterator<Item = (&'a str, &'a str)>,
 ) -> Result<(), Failure> {
     let put = || {
-        let mut document = fs::read_to_string(file)?;
+        let mut document = input::text(file)?;
         for (name, text) in texts {
             if let Some(changed) = put_between(&document, name, text) {
                 document = changed;

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::trajectory::read::FRAME_RATES;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
 pub fn seconds(text: &str) -> Result<f64, String> {
@@ -13,7 +14,7 @@ pub fn seconds(text: &str) -> Result<f64, String> {
 
 pub fn frame_rate(text: &str) -> Result<f64, String> {
     match text.parse() {
-        Ok(fps) if (1e-6..=1e6).contains(&fps) => Ok(fps),
+        Ok(fps) if FRAME_RATES.contains(&fps) => Ok(fps),
         _ => Err("not a number of frames per second above 0".to_owned()),
     }
 }

@@ -2,11 +2,13 @@
 
 use std::path::PathBuf;
 
+use crate::quote::{shown, shown_message};
+
 /// Why a file or text is no floor plan, and what to do about it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FloorPlanError {
     /// Something is wrong with a file.
-    #[error("{}: {error}", path.display())]
+    #[error("{}: {error}", shown_message(&path.display().to_string()))]
     File {
         /// The file.
         path: PathBuf,
@@ -17,7 +19,7 @@ pub enum FloorPlanError {
     #[error("cannot be read: {0}")]
     Unreadable(String),
     /// The text is not what it begins as.
-    #[error("no {format}: {reason}")]
+    #[error("no {format}: {}", shown_message(reason))]
     Syntax {
         /// WKT or GeoJSON.
         format: &'static str,
@@ -40,7 +42,8 @@ pub enum FloorPlanError {
     Empty,
     /// Degrees, as the file says itself.
     #[error(
-        "the coordinates are degrees ({0}); a floor plan is in metres: project it, to UTM for example"
+        "the coordinates are degrees ({}); a floor plan is in metres: project it, to UTM for example",
+        shown(.0)
     )]
     Degrees(String),
     /// So small that it must be a mistake, metres.
@@ -85,6 +88,6 @@ fn at(place: &str) -> String {
     if place.is_empty() {
         String::new()
     } else {
-        format!("{place}: ")
+        format!("{}: ", shown(place))
     }
 }

@@ -19,15 +19,13 @@ mod wkt;
 pub use error::FloorPlanError;
 pub use unite::{Rings, free};
 
-use std::io::Read;
 use std::path::Path;
 
 use crate::geometry::{Area, Polygon, PolygonError};
+use crate::input;
 use crate::math::Vector;
 use shape::Shape;
 
-/// A longer file is refused, bytes.
-const LONGEST_FILE: u64 = 1 << 28;
 /// What a person needs to stand, m².
 const STANDING_ROOM: f64 = 0.18;
 /// A plan without standing room that is shorter than this, metres, must be a mistake.
@@ -92,14 +90,8 @@ fn in_file(
         path: path.to_owned(),
         error: Box::new(error),
     };
-    let mut text = String::new();
-    std::fs::File::open(path)
-        .and_then(|file| file.take(LONGEST_FILE + 1).read_to_string(&mut text))
-        .map_err(|error| within(FloorPlanError::Unreadable(error.to_string())))?;
-    if text.len() as u64 > LONGEST_FILE {
-        let reason = format!("longer than {LONGEST_FILE} bytes");
-        return Err(within(FloorPlanError::Unreadable(reason)));
-    }
+    let text =
+        input::text(path).map_err(|error| within(FloorPlanError::Unreadable(error.to_string())))?;
     parse(text.trim_start_matches('\u{feff}')).map_err(within)
 }
 

@@ -1,5 +1,7 @@
 //! Fundamental diagrams: density, speed and flow in a region, person by person and frame by frame.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::Moment;
@@ -77,10 +79,10 @@ pub struct Diagram {
     pub region: Option<Region>,
     /// Frame by frame; those without anybody there are not among them.
     pub frames: Vec<FrameMean>,
-    /// Classes of [`CLASS`] from 0 up, of persons in single frames.
-    pub of_persons: Vec<Class>,
+    /// Classes of [`CLASS`] by their number, from 0 up, of persons in single frames; empty ones are missing.
+    pub of_persons: BTreeMap<usize, Class>,
     /// The same, of means over frames.
-    pub of_frames: Vec<Class>,
+    pub of_frames: BTreeMap<usize, Class>,
 }
 
 impl Diagram {
@@ -89,8 +91,8 @@ impl Diagram {
         Self {
             region,
             frames: Vec::new(),
-            of_persons: Vec::new(),
-            of_frames: Vec::new(),
+            of_persons: BTreeMap::new(),
+            of_frames: BTreeMap::new(),
         }
     }
 
@@ -127,10 +129,6 @@ impl Diagram {
 }
 
 /// The class that a density is in.
-fn class(classes: &mut Vec<Class>, density: f64) -> &mut Class {
-    let k = (density / CLASS) as usize;
-    if classes.len() <= k {
-        classes.resize(k + 1, Class::default());
-    }
-    &mut classes[k]
+fn class(classes: &mut BTreeMap<usize, Class>, density: f64) -> &mut Class {
+    classes.entry((density / CLASS) as usize).or_default()
 }

@@ -221,9 +221,8 @@ fn class_rows((k, diagram): (usize, &Diagram)) -> impl Iterator<Item = ClassRow>
         ("frames", &diagram.of_frames),
     ];
     kinds.into_iter().flat_map(move |(of, classes)| {
-        let filled = classes.iter().enumerate();
-        let filled = filled.filter(|(_, class)| class.density.count > 0);
-        filled.map(move |(number, class)| class_row(k + 1, of, number, class))
+        let rows = classes.iter();
+        rows.map(move |(&number, class)| class_row(k + 1, of, number, class))
     })
 }
 
@@ -232,7 +231,7 @@ fn class_row(region: usize, of: &'static str, number: usize, class: &Class) -> C
         region,
         of,
         density_from: number as f64 * CLASS,
-        density_to: (number + 1) as f64 * CLASS,
+        density_to: (number as f64 + 1.0) * CLASS,
         count: class.density.count,
         density_mean: class.density.mean,
         density_std: class.density.deviation(),

@@ -92,7 +92,11 @@ fn maps(measured: &Measured, walls: &Walls) -> Sheet {
 
 /// Speed and flow over density: means of frames as dots, classes of persons with their deviations.
 fn diagrams(diagrams: &[Diagram]) -> Sheet {
-    let classes = || diagrams.iter().flat_map(|diagram| &diagram.of_persons);
+    let classes = || {
+        diagrams
+            .iter()
+            .flat_map(|diagram| diagram.of_persons.values())
+    };
     let top = |of: fn(&Class) -> &Spread| {
         let tops = classes().map(of).filter(|spread| spread.count > 0);
         let classes = tops.map(|spread| spread.mean + spread.deviation());
@@ -111,7 +115,7 @@ fn diagrams(diagrams: &[Diagram]) -> Sheet {
         for (k, diagram) in diagrams.iter().enumerate() {
             let filled = diagram
                 .of_persons
-                .iter()
+                .values()
                 .filter(|class| of(class).count > 0);
             let points: Vec<Point> = filled
                 .map(|class| Point {

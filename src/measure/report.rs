@@ -1,5 +1,7 @@
 //! What was measured, in a few lines or as one object.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use serde_json::{Value, json};
 
 use super::{CLASS, Class, Crossings, Diagram, Measured, Options, Spread};
@@ -174,14 +176,11 @@ fn classes(diagram: &Diagram) -> Table {
     ];
     let mut table = Table::new(1, &head);
     let none = Class::default();
-    let count = diagram.of_persons.len().max(diagram.of_frames.len());
-    for k in 0..count {
+    let numbers = diagram.of_persons.keys().chain(diagram.of_frames.keys());
+    for k in numbers.collect::<BTreeSet<_>>() {
         let persons = diagram.of_persons.get(k).unwrap_or(&none);
         let frames = diagram.of_frames.get(k).unwrap_or(&none);
-        if persons.density.count + frames.density.count == 0 {
-            continue;
-        }
-        let from = k as f64 * CLASS;
+        let from = *k as f64 * CLASS;
         let number = |spread: &Spread, value: f64| match spread.count {
             0 => "–".to_owned(),
             _ => format!("{value:.3}"),
@@ -233,22 +232,18 @@ fn line(crossings: &Crossings) -> Value {
 }
 
 fn diagram(diagram: &Diagram) -> Value {
-    let kind = |classes: &[Class]| {
-        let filled = classes
-            .iter()
-            .enumerate()
-            .filter(|(_, class)| class.density.count > 0);
-        let class = |(k, class): (usize, &Class)| {
+    let kind = |classes: &BTreeMap<usize, Class>| {
+        let class = |(&k, class): (&usize, &Class)| {
             json!({
                 "density_from": k as f64 * CLASS,
-                "density_to": (k + 1) as f64 * CLASS,
+                "density_to": (k as f64 + 1.0) * CLASS,
                 "count": class.density.count,
                 "density": spread(&class.density),
                 "speed": spread(&class.speed),
                 "flow": spread(&class.flow),
             })
         };
-        filled.map(class).collect::<Vec<_>>()
+        classes.iter().map(class).collect::<Vec<_>>()
     };
     json!({
         "region": diagram.region.map(|region| [region.min, region.max].map(|p| [p.x, p.y])),

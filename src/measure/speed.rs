@@ -13,7 +13,7 @@ pub const FRAMES: i64 = 5;
 /// it; `None` where both are. Frames in which the person is missing are missing: no motion is measured
 /// across.
 pub fn velocities(tracks: &Tracks, reach: i64) -> Vec<Option<Vector>> {
-    let frames = reach * tracks.step;
+    let frames = reach.saturating_mul(tracks.step);
     let people = (0..tracks.ids.len()).into_par_iter();
     let of_people: Vec<Vec<Option<Vector>>> = people
         .map(|p| {
@@ -24,7 +24,7 @@ pub fn velocities(tracks: &Tracks, reach: i64) -> Vec<Option<Vector>> {
                 .collect();
             // So many rows away and so many frames: nothing is missing in between.
             let at = |k: Option<usize>, offset: i64, here: i64| {
-                let k = k.filter(|&k| frame.get(k) == Some(&(here + offset)))?;
+                let k = k.filter(|&k| frame.get(k) == Some(&here.saturating_add(offset)))?;
                 Some((frame[k], tracks.position[rows[k] as usize]))
             };
             let reach = reach as usize;

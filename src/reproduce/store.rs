@@ -8,7 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use super::case::{Case, CaseResult, Key};
 use super::error::ReproduceError;
+use crate::input::{self, LONGEST_TEXT};
 use crate::outputs::{try_folder, write_whole};
+use crate::quote::shown_message;
 
 /// A folder with finished cases in `cases/`, and beside it what was made of them.
 #[derive(Debug, Clone)]
@@ -96,13 +98,13 @@ impl Store {
 
     /// What is known of a case.
     pub fn find(&self, case: &Case, key: &Key) -> Found {
-        let text = match fs::read(self.case_path(key)) {
+        let text = match input::bytes(&self.case_path(key), LONGEST_TEXT) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Found::Nothing,
             Err(error) => return Found::Damaged(error.to_string()),
         };
         match serde_json::from_slice::<Kept>(&text) {
-            Err(error) => Found::Damaged(error.to_string()),
+            Err(error) => Found::Damaged(shown_message(&error.to_string())),
             Ok(kept) if kept.identity != key.identity => {
                 Found::Damaged("it is about another case".to_owned())
             }

@@ -30,6 +30,9 @@ pub(super) const EVERY: Range = Range::above(0.0, 1e7);
 /// Initial speeds, m/s.
 pub(super) const VELOCITY: Range = Range::at_least(-100.0, 100.0);
 
+/// A speed that was cut to `max_speed` may be this part above it, by rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// Fills a scene with people.
 pub(super) struct Crowd<'a> {
     file: &'a File,
@@ -73,6 +76,13 @@ impl<'a> Crowd<'a> {
         let [x, y] = agent.velocity.unwrap_or_default();
         VELOCITY.check("velocity[0]", x)?;
         VELOCITY.check("velocity[1]", y)?;
+        let (speed, most) = (x.hypot(y), self.scene.max_speed);
+        if speed > most * (1.0 + ROUNDING) {
+            let reason = format!(
+                "its speed, {speed} m/s, is above max_speed {most}; give a slower one, or raise max_speed"
+            );
+            return Err(Problem::new("velocity", reason));
+        }
         let position = point("position", agent.position)?;
         let goal = match agent.goal {
             Some(goal) => point("goal", goal)?,

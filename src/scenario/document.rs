@@ -6,6 +6,7 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor}
 use serde_json::{Map, Number, Value};
 
 use super::error::{ScenarioError, in_plain_words};
+use crate::quote::shown;
 
 /// Reads `text`, which came from `file`.
 pub(crate) fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
@@ -132,7 +133,8 @@ impl<'de> Visitor<'de> for DocumentVisitor {
         while let Some(key) = entries.next_key::<String>()? {
             if object.contains_key(&key) {
                 return Err(A::Error::custom(format!(
-                    "key `{key}` is given twice; remove one"
+                    "key `{}` is given twice; remove one",
+                    shown(&key)
                 )));
             }
             let Document(value) = entries.next_value()?;

@@ -1,5 +1,7 @@
 //! What can be wrong with a scenario, and where.
 
+use crate::quote::shown;
+
 /// Why a scenario cannot be run; displays as `FILE: key.path[3].key: reason`.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ScenarioError {
@@ -40,7 +42,7 @@ pub enum ScenarioError {
         problem: Problem,
     },
     /// No scenario of this name comes with the program.
-    #[error("no scenario is called `{name}`; there are {known}")]
+    #[error("no scenario is called `{}`; there are {known}", shown(name))]
     UnknownName {
         /// The name asked for.
         name: String,
@@ -63,7 +65,7 @@ impl std::fmt::Display for Problem {
         if self.path.is_empty() {
             f.write_str(&self.reason)
         } else {
-            write!(f, "{}: {}", self.path, self.reason)
+            write!(f, "{}: {}", shown(&self.path), self.reason)
         }
     }
 }
@@ -121,6 +123,7 @@ pub(crate) fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a st
     let most = (given.len() / 4).max(1);
     known
         .into_iter()
+        .filter(|name| given.len() < 2 * name.len()) // else more than its own letters would have to go
         .map(|name| (slips(name), name))
         .filter(|&(slips, name)| slips <= most && slips < name.len())
         .min()
@@ -130,19 +133,41 @@ pub(crate) fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a st
 
 /// What serde says about a document, for people who write no Rust, with a suggestion.
 pub(crate) fn in_plain_words(said: &str) -> String {
-    let quoted = said.split('`').skip(1).step_by(2);
+    let (head, given, tail) = around_the_given(said);
     let is_name = said.starts_with("unknown field") || said.starts_with("unknown variant");
-    let near = match quoted.clone().next() {
-        Some(given) if is_name => suggestion(given, quoted.skip(1)),
-        _ => String::new(),
+    let near = match is_name {
+        true => suggestion(given, tail.split('`').skip(2).step_by(2)),
+        false => String::new(),
     };
-    let plain = WORDS.iter().fold(said.to_owned(), |said, (rust, plain)| {
-        said.replacen(rust, plain, 1)
+    let plain = |words: &str| {
+        WORDS.iter().fold(words.to_owned(), |said, (rust, plain)| {
+            said.replacen(rust, plain, 1)
+        })
+    };
+    let tail = match near.is_empty() {
+        true => plain(tail),
+        false => plain(tail).replacen(", expected", &format!("{near} Expected"), 1),
+    };
+    format!("{}{}{tail}", plain(head), shown(given))
+}
+
+/// A message of serde's before, in and after the text of the document that it repeats, if it repeats any.
+fn around_the_given(said: &str) -> (&str, &str, &str) {
+    const BEFORE: [&str; 4] = [
+        "unknown field `",
+        "unknown variant `",
+        "invalid type: string \"",
+        "invalid value: string \"",
+    ];
+    let around = BEFORE.iter().find_map(|before| {
+        let start = said.starts_with(before).then_some(before.len())?;
+        let quote = &before[before.len() - 1..];
+        let ends = [", expected ", ", there are no "].map(|next| format!("{quote}{next}"));
+        let end = ends.iter().find_map(|end| said.rfind(end));
+        Some((start, end.filter(|&end| end >= start)?))
     });
-    if near.is_empty() {
-        return plain;
-    }
-    plain.replacen(", expected", &format!("{near} Expected"), 1)
+    let (start, end) = around.unwrap_or((said.len(), said.len()));
+    (&said[..start], &said[start..end], &said[end..])
 }
 
 /// What serde and serde_json say, and what people say.
@@ -196,6 +221,31 @@ mod tests {
         let problem = problem.under("goal").under("agents[3]").unwrap_err();
         assert_eq!(problem.to_string(), "agents[3].goal[1]: no");
         assert_eq!(Problem::new("", "no").under("a").to_string(), "a: no");
+    }
+
+    #[test]
+    fn what_is_repeated_is_short_and_harmless() {
+        let long = "k".repeat(100_000);
+        let cut = format!("{}… (100000 characters)", "k".repeat(80));
+        assert_eq!(
+            in_plain_words(&format!("unknown field `{long}`, expected one of `a`, `b`")),
+            format!("unknown key `{cut}`, expected one of `a`, `b`")
+        );
+        assert_eq!(
+            in_plain_words("unknown field `a`, expected `\u{1b}`, expected `seed`"),
+            "unknown key `a`, expected `\\u{1b}`, expected `seed`"
+        );
+        assert_eq!(
+            in_plain_words("unknown variant `sfp`, expected `sf` or `rvo`"),
+            "unknown value `sfp`; did you mean `sf`? Expected `sf` or `rvo`"
+        );
+        assert_eq!(
+            in_plain_words(&format!("invalid type: string \"{long}\", expected f64")),
+            format!("invalid type: text \"{cut}\", expected a number")
+        );
+        assert_eq!(suggestion(&long, ["seed"]), "");
+        let problem = Problem::new(format!("a.\u{7}{long}"), "no").to_string();
+        assert!(problem.len() < 200 && problem.starts_with("a.\\u{7}kkk"));
     }
 
     #[test]

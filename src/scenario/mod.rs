@@ -54,16 +54,14 @@ pub use setting::{Setting, SettingError};
 pub use settings::{SettingDoc, settings};
 pub use shipped::{SHIPPED, Shipped};
 
-use std::io::{ErrorKind, Read};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+use crate::input;
 use crate::metrics::Measurement;
 use crate::scene::{Region, Scene};
-
-/// A longer file is refused, bytes.
-const LONGEST_FILE: u64 = 1 << 28;
 
 /// A checked scenario: what to simulate, for how long, and what to look at.
 #[derive(Debug, Clone)]
@@ -180,15 +178,7 @@ pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
         file: path.display().to_string(),
         reason,
     };
-    let mut text = String::new();
-    std::fs::File::open(path)
-        .and_then(|opened| opened.take(LONGEST_FILE + 1).read_to_string(&mut text))
-        .map_err(|error| unreadable(unreadable_because(&error)))?;
-    if text.len() as u64 > LONGEST_FILE {
-        let reason = format!("longer than {LONGEST_FILE} bytes; no scenario is");
-        return Err(unreadable(reason));
-    }
-    Ok(text)
+    input::text(path).map_err(|error| unreadable(unreadable_because(&error)))
 }
 
 /// What the system says about a file, and what may help.
@@ -200,7 +190,8 @@ fn unreadable_because(error: &std::io::Error) -> String {
             format!("{said}; `sandbox list` names the scenarios that come with the program")
         }
         ErrorKind::IsADirectory => format!("{said}; a scenario is a file"),
-        ErrorKind::InvalidData => "no text in UTF-8; save it as that".to_owned(),
+        ErrorKind::InvalidData => format!("{said}; save it as that"),
+        ErrorKind::FileTooLarge => format!("{said}; no scenario is"),
         _ => said.to_owned(),
     }
 }

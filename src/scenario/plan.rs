@@ -12,6 +12,7 @@ use super::range::point;
 use super::setting::Setting;
 use crate::floor_plan::{self, FloorPlan, FloorPlanError};
 use crate::geometry::{Area, Polygon, Ring};
+use crate::quote::shown;
 
 /// The keys that may name a file.
 const WALKABLE_AREA: &str = "walkable_area";
@@ -93,8 +94,10 @@ pub(super) fn fill(
         let value = match key {
             OBSTACLES => obstacles_value(&plan),
             _ if plan.walkable.is_empty() => {
-                let reason =
-                    format!("{name}: has nothing but obstacles; name it under `obstacles`");
+                let reason = format!(
+                    "{}: has nothing but obstacles; name it under `obstacles`",
+                    shown(name)
+                );
                 return Err(Problem::new(key, reason));
             }
             _ => walkable_value(&plan),

@@ -5,6 +5,7 @@ use super::file::{CustomProfile, Object, ProfileChoice, Step};
 use super::parameters::{self, DENSITY};
 use crate::catalog::{self, NAMES, Parameters};
 use crate::profile::{Blend, BlendStep, Profile};
+use crate::quote::shown;
 
 /// The blend that is meant; `overriding` are the scenario-wide values, which go before its own.
 pub(super) fn blend(choice: &ProfileChoice, overriding: &Parameters) -> Result<Blend, Problem> {
@@ -31,7 +32,10 @@ fn unknown(name: &str) -> Problem {
     let near = suggestion(name, NAMES);
     Problem::new(
         "",
-        format!("no profile is called `{name}`{near} (there are {names})"),
+        format!(
+            "no profile is called `{}`{near} (there are {names})",
+            shown(name)
+        ),
     )
 }
 

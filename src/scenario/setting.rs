@@ -7,6 +7,7 @@ use serde_json::{Map, Value};
 use super::error::{Problem, ScenarioError, suggestion};
 use super::parameters;
 use super::settings::{TEXTS, settings};
+use crate::quote::shown;
 
 /// One change: `viscosity=5`, `seed=7`, `profile=sf`, `sources.0.rows=50`.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,7 +25,10 @@ pub enum SettingError {
     #[error("a setting is written key=value")]
     NoValue,
     /// No such key.
-    #[error("unknown setting `{key}`{suggestion} (`sandbox list --settings` shows them all)")]
+    #[error(
+        "unknown setting `{}`{suggestion} (`sandbox list --settings` shows them all)",
+        shown(key)
+    )]
     UnknownKey {
         /// The key as given.
         key: String,
@@ -46,7 +50,7 @@ impl FromStr for Setting {
         } else {
             serde_json::from_str(value).unwrap_or_else(|_| as_text())
         };
-        Self::new(key, value, format!("--set {text}"))
+        Self::new(key, value, format!("--set {}", shown(text)))
     }
 }
 
@@ -145,18 +149,23 @@ fn inner<'a>(
             let whole = if path.is_empty() { "the file" } else { path };
             (
                 object.get_mut(segment),
-                format!("{whole} has no `{segment}`"),
+                format!("{} has no `{}`", shown(whole), shown(segment)),
             )
         }
         Value::Array(list) => {
             let reason = format!(
-                "{path} has no element `{segment}`: there are {}, counted from 0",
+                "{} has no element `{}`: there are {}, counted from 0",
+                shown(path),
+                shown(segment),
                 list.len()
             );
             let index = segment.parse::<usize>().ok();
             (index.and_then(|index| list.get_mut(index)), reason)
         }
-        _ => (None, format!("{path} is neither an object nor a list")),
+        _ => (
+            None,
+            format!("{} is neither an object nor a list", shown(path)),
+        ),
     };
     found.ok_or_else(|| Problem::new("", reason))
 }

@@ -8,6 +8,7 @@ use sha2::{Digest, Sha256};
 
 use super::CellError;
 use super::memory::Memory;
+use crate::quote::shown;
 use crate::scenario::{Need, SHIPPED, Scenario, ScenarioError, Setting, read_text, shipped_text};
 
 /// The engine's sources, in 16 letters: a result of another engine is not taken for one of this.
@@ -133,7 +134,7 @@ impl fmt::Display for Cell {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "cell {}:", self.number)?;
         for (name, value) in &self.values {
-            write!(f, " {name}={}", short(value))?;
+            write!(f, " {}={}", shown(name), short(value))?;
         }
         if self.values.iter().all(|(name, _)| name != "seed") {
             write!(f, " seed={}", self.seed)?;
@@ -150,15 +151,9 @@ pub(super) fn plain(value: &Value) -> String {
     }
 }
 
-/// The same; what is long is cut.
+/// The same, as messages repeat it.
 pub(super) fn short(value: &Value) -> String {
-    /// More letters tell nobody anything.
-    const LONGEST: usize = 40;
-    let text = plain(value);
-    if text.chars().count() <= LONGEST {
-        return text;
-    }
-    text.chars().take(LONGEST).chain(['…']).collect()
+    shown(&plain(value))
 }
 
 fn key(scenario: &Scenario) -> String {

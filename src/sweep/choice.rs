@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::cell::{Source, short};
 use super::entries::Entries;
 use super::problem;
+use crate::quote::shown;
 use crate::scenario::{Problem, SHIPPED, Setting, suggestion};
 
 /// The key of the scenario, which may be varied like a setting.
@@ -66,7 +67,7 @@ pub(super) fn choices(
         if let Some(other) = choices.iter().find(|other| other.is_as(&choice)) {
             return Err(problem(
                 choice.place,
-                format!("is the same as {}", other.key),
+                format!("is the same as {}", shown(&other.key)),
             ));
         }
         choices.push(choice);
@@ -108,7 +109,7 @@ fn choice(
             return Err(problem(place, "belongs at the top of the study"));
         }
         _ => {
-            let text = format!("{place}={}", short(value));
+            let text = format!("{}={}", shown(place), short(value));
             let setting = Setting::new(key, value.clone(), text);
             Meaning::Setting(setting.map_err(|error| problem(inside, error.to_string()))?)
         }
@@ -132,9 +133,10 @@ pub(super) fn source(name: &str, place: &str, folder: &Path) -> Result<Source, P
     }
     let known = SHIPPED.map(|shipped| shipped.name);
     let reason = format!(
-        "no scenario is called `{name}` (there are {}), and there is no file {}{}",
+        "no scenario is called `{}` (there are {}), and there is no file {}{}",
+        shown(name),
         known.join(", "),
-        path.display(),
+        shown(&path.display().to_string()),
         suggestion(name, known),
     );
     Err(problem(place, reason))

@@ -8,6 +8,8 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::cell::Cell;
+use crate::input::{self, LONGEST_TEXT};
+use crate::quote::shown_message;
 use crate::reproduce::{ReproduceError, Store};
 use crate::summary::Summary;
 
@@ -165,8 +167,8 @@ impl Shelf {
 
     fn read<T: DeserializeOwned>(&self, cell: &Cell, kind: &str) -> Result<Option<T>, String> {
         let path = self.path(cell, kind);
-        let damaged = |reason: String| format!("{}: {reason}", path.display());
-        let text = match fs::read(&path) {
+        let damaged = |reason: String| format!("{}: {}", path.display(), shown_message(&reason));
+        let text = match input::bytes(&path, LONGEST_TEXT) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             read => read.map_err(|error| damaged(error.to_string()))?,
         };

@@ -12,6 +12,7 @@ use super::{Shard, Study};
 use crate::drive::{Then, drive, unless_over};
 use crate::job::side_by_side;
 use crate::metrics::Metrics;
+use crate::quote::shown;
 use crate::reproduce::ReproduceError;
 use crate::scenario::Scenario;
 use crate::simulation::{Fault, Simulation};
@@ -212,7 +213,7 @@ fn compute(cell: &Cell, tell: &mut dyn FnMut(f64)) -> Result<CellResult, String>
     if !cell.is_of(&scenario) {
         return Err(format!(
             "{} has changed since the study was read",
-            scenario.name
+            shown(&scenario.name)
         ));
     }
     simulated(&scenario, tell).map_err(|fault| fault.to_string())

@@ -13,7 +13,9 @@ use super::entries::Entries;
 use super::memory::Memory;
 use super::seeds::Seeds;
 use super::{CellError, StudyError, problem};
+use crate::input;
 use crate::job::side_by_side;
+use crate::quote::shown;
 use crate::scenario::{Problem, ScenarioError, Setting, in_plain_words, read_document};
 
 /// A study with more cells is taken for a mistake.
@@ -21,8 +23,6 @@ const MOST_CELLS: usize = 100_000;
 
 /// A longer name, with what results add to it, would be too long for a file's, bytes.
 const LONGEST_NAME: usize = 200;
-/// Letters of a name that a message repeats.
-const MOST_SHOWN: usize = 40;
 
 /// The whole file.
 #[derive(Debug, Default, Deserialize)]
@@ -80,19 +80,32 @@ impl Study {
     /// # Errors
     /// As [`read`](Self::read), or a cell alone needs more memory.
     pub fn read_within(path: &Path, memory: Option<u64>) -> Result<Self, StudyError> {
-        let file = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|error| ScenarioError::Unreadable {
-            file: file.clone(),
+        let text = input::text(path).map_err(|error| ScenarioError::Unreadable {
+            file: path.display().to_string(),
             reason: error.to_string(),
         })?;
+        Self::parse_within(&text, path, memory)
+    }
+
+    /// Reads a study from JSON; `path` is what messages call it, and files that it names are in that one's
+    /// folder.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn parse(text: &str, path: &Path) -> Result<Self, StudyError> {
+        Self::parse_within(text, path, None)
+    }
+
+    fn parse_within(text: &str, path: &Path, memory: Option<u64>) -> Result<Self, StudyError> {
+        let file = path.display().to_string();
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let folder = path.parent().unwrap_or(Path::new(""));
         let invalid = |problem| ScenarioError::Invalid {
             file: file.clone(),
             problem,
         };
-        let document = read_document(&text, &file)?;
-        let written = parse(&text).map_err(invalid)?;
+        let document = read_document(text, &file)?;
+        let written = parse(text).map_err(invalid)?;
         let plan = Plan::new(&written, folder).map_err(invalid)?;
         let name = written.name.unwrap_or_else(|| stem.into_owned());
         check_name(&name).map_err(invalid)?;
@@ -138,11 +151,10 @@ fn check_name(name: &str) -> Result<(), Problem> {
     } else {
         return Ok(());
     };
-    let shown: String = name.chars().take(MOST_SHOWN).collect();
-    let cut = if shown.len() < name.len() { " …" } else { "" };
     let reason = format!(
-        "must be fit for a file's name, not {shown:?}{cut}: {reason}; give a `name` without these, of at most \
-         {LONGEST_NAME} bytes"
+        "must be fit for a file's name, not \"{}\": {reason}; give a `name` without these, of at most \
+         {LONGEST_NAME} bytes",
+        shown(name)
     );
     Err(problem("name", reason))
 }
@@ -240,7 +252,7 @@ impl Plan {
         }
         let seed = self.seeds[0].as_ref();
         let refuse = |choice: &Choice, other: String| {
-            let reason = format!("is also given by {other}; give it in one of them");
+            let reason = format!("is also given by {}; give it in one of them", shown(&other));
             Err(problem(&choice.place, reason))
         };
         let axes: Vec<&Choice> = self.grid.iter().filter_map(|axis| axis.first()).collect();
@@ -252,7 +264,10 @@ impl Plan {
                 return refuse(other, axis);
             }
             if let Some(other) = axes[..k].iter().find(|other| other.is_as(choice)) {
-                return Err(problem(axis, format!("is the same as grid.{}", other.key)));
+                return Err(problem(
+                    axis,
+                    format!("is the same as grid.{}", shown(&other.key)),
+                ));
             }
         }
         let all = self

@@ -5,6 +5,7 @@ use serde_json::Value;
 use super::cell::{Cell, plain, short};
 use super::gathered::{Gathered, Mean, State};
 use super::{CellResult, Shard, Study};
+use crate::quote::shown;
 use crate::table::Table;
 
 /// Columns about a run that are no measurements, before and after which others stand.
@@ -94,7 +95,7 @@ pub(super) fn summary(gathered: &Gathered) -> Table {
 /// The same for a terminal: mean ± half the interval.
 pub(super) fn text(gathered: &Gathered) -> Table {
     let study = gathered.study;
-    let mut head = study.axes.clone();
+    let mut head: Vec<String> = study.axes.iter().map(|axis| shown(axis)).collect();
     head.push("runs".to_owned());
     head.extend(gathered.numbers());
     let rows = gathered.combinations().into_iter().map(|combination| {
@@ -133,7 +134,8 @@ impl Gathered<'_> {
                 row.push(state.name().to_owned());
                 row
             });
-        let mut head = columns(self.study);
+        let names = columns(self.study);
+        let mut head: Vec<String> = names.iter().map(|name| shown(name)).collect();
         head.push("status".to_owned());
         let table = Table {
             words: head.len(),

@@ -4,10 +4,10 @@
 pub mod bounded;
 pub mod documents;
 pub mod json_schema;
-pub mod plan_reading;
-pub mod plans;
 #[cfg(all(feature = "cli", unix))]
 pub mod outputs;
+pub mod plan_reading;
+pub mod plans;
 #[cfg(feature = "cli")]
 pub mod program;
 pub mod quadrature;

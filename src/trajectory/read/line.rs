@@ -3,6 +3,7 @@
 use super::Unit;
 use super::tracks::Entry;
 use crate::math::Vector;
+use crate::quote::shown;
 
 /// Names that mean the same; the first is ours.
 const IDS: [&str; 5] = ["id", "persid", "personid", "ped_id", "pid"];
@@ -59,7 +60,8 @@ impl Columns {
                 Some(unit) => Some(unit),
                 None => {
                     return Some(Err(format!(
-                        "the unit {name:?} is not known; m and cm are, or give --unit"
+                        "the unit \"{}\" is not known; m and cm are, or give --unit",
+                        shown(name)
                     )));
                 }
             },
@@ -81,17 +83,15 @@ impl Columns {
         };
         let whole = |place: usize, what: &str| {
             let text = cell(place, what)?;
-            whole(text).ok_or_else(|| format!("the {what} {text:?} is not a whole number"))
+            whole(text)
+                .ok_or_else(|| format!("the {what} \"{}\" is not a whole number", shown(text)))
         };
         let finite = |place: usize, what: &str| {
             let text = cell(place, what)?;
             let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-            number.ok_or_else(|| format!("{what} is {text:?}, not a finite number"))
+            number.ok_or_else(|| format!("{what} is \"{}\", not a finite number", shown(text)))
         };
         let mass = self.mass.map_or(Ok(1.0), |place| finite(place, "mass"))?;
-        if mass < 0.0 {
-            return Err(format!("the mass {mass} is below 0"));
-        }
         Ok(Entry {
             id: whole(self.id, "id")?,
             frame: whole(self.frame, "frame")?,
@@ -130,13 +130,26 @@ pub fn words(text: &str) -> Vec<String> {
     words
 }
 
-/// The first number after the word framerate.
-pub fn frame_rate(comment: &str) -> Option<f64> {
+/// The first number after the word framerate, as it stands there.
+pub fn frame_rate(comment: &str) -> Option<String> {
     let lower = comment.to_lowercase();
     let after = ["framerate", "frame rate"];
     let rest = after.iter().find_map(|word| lower.split_once(word))?.1;
-    let mut numbers = rest.split(|c: char| !c.is_ascii_digit() && c != '.');
-    numbers.find_map(|text| text.parse().ok().filter(|fps| *fps > 0.0))
+    let mut words = rest.split(|c: char| c.is_whitespace() || ":=,;()[]".contains(c));
+    words.find_map(number)
+}
+
+/// The number that a word is or begins with.
+fn number(word: &str) -> Option<String> {
+    if word.parse::<f64>().is_ok() {
+        return Some(word.to_owned()); // also `nan` and `inf`
+    }
+    let is_part = |c: char| c.is_ascii_digit() || "+-.e".contains(c);
+    let mut start: String = word.chars().take_while(|&c| is_part(c)).take(40).collect();
+    while !start.is_empty() && start.parse::<f64>().is_err() {
+        start.pop();
+    }
+    (!start.is_empty()).then_some(start)
 }
 
 #[cfg(test)]
@@ -150,8 +163,14 @@ mod tests {
             ("framerate: 16 fps", 16.0),
             (" Framerate = 25", 25.0),
             ("frame rate: 12.5 (camera 3)", 12.5),
+            ("framerate=30fps, of 2 cameras", 30.0),
+            ("framerate information: 1e1/s", 10.0),
+            ("framerate: 1e-300", 1e-300),
+            ("framerate: -5", -5.0),
+            ("framerate: inf", f64::INFINITY),
         ] {
-            assert_eq!(frame_rate(comment), Some(fps), "{comment}");
+            let found = frame_rate(comment).map(|text| text.parse().unwrap());
+            assert_eq!(found, Some(fps), "{comment}");
         }
         assert_eq!(frame_rate(" framerate: unknown"), None);
         assert_eq!(frame_rate(" 25 frames"), None);

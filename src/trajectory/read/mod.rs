@@ -19,7 +19,13 @@ pub use tracks::Tracks;
 
 use std::fs::File;
 use std::io::Read;
+use std::ops::RangeInclusive;
 use std::path::Path;
+
+use crate::quote::shown;
+
+/// Frames per second that a trajectory may have.
+pub const FRAME_RATES: RangeInclusive<f64> = 1e-6..=1e6;
 
 /// What coordinates in a file count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,6 +64,16 @@ pub struct ReadOptions {
     pub fps: Option<f64>,
 }
 
+impl ReadOptions {
+    /// A file's own frame rate; a bad one does not matter where another one is given.
+    fn own_rate(&self, rate: Result<f64, String>) -> Result<Option<f64>, String> {
+        match rate {
+            Err(_) if self.fps.is_some() => Ok(None),
+            rate => rate.map(Some),
+        }
+    }
+}
+
 /// Reads the trajectories in a file, whatever its format.
 ///
 /// # Errors
@@ -73,13 +89,32 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
     if start == magic {
         return sqlite::read(path, options);
     }
-    let rest = std::io::Cursor::new(start).chain(file);
+    read_text(path, Read::chain(start.as_slice(), file), options)
+}
+
+/// Reads the trajectories in a text; `path` is what messages call it, and its extension tells the format.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_text(path: &Path, text: impl Read, options: &ReadOptions) -> Result<Tracks, ReadError> {
     let is_csv = path
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("csv"));
     if is_csv {
-        text::read_csv(path, rest, options)
+        text::read_csv(path, text, options)
     } else {
-        text::read_text(path, rest, options)
+        text::read_text(path, text, options)
     }
+}
+
+/// A frame rate that a file gives, as it stands there, if one can be.
+fn frame_rate(text: &str) -> Result<f64, String> {
+    let fps = text.parse().ok().filter(|fps| FRAME_RATES.contains(fps));
+    fps.ok_or_else(|| {
+        let (least, most) = (FRAME_RATES.start(), FRAME_RATES.end());
+        format!(
+            "the frame rate \"{}\" is not a number between {least:e} and {most:e}; give --fps",
+            shown(text)
+        )
+    })
 }

@@ -7,8 +7,11 @@ use rusqlite::{Connection, OpenFlags, Row};
 
 use super::error::ReadError;
 use super::tracks::{Contents, Entry, Tracks};
-use super::{ReadOptions, Unit};
+use super::{ReadOptions, Unit, frame_rate};
 use crate::math::Vector;
+
+/// A row takes more of a file, bytes: its place in a page, its length, its number and a type for each column.
+const LEAST_ROW: u64 = 8;
 
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
     let failed = |error: rusqlite::Error| ReadError::file(path, error.to_string());
@@ -31,7 +34,7 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
     let mut contents = Contents {
         unit: Some(Unit::Metre),
         has_mass,
-        fps: metadata(&connection, "fps"),
+        fps: frames_per_second(&connection, options).map_err(|what| ReadError::file(path, what))?,
         walkable: walkable(&connection).map_err(failed)?,
         place: "row",
         ..Contents::default()
@@ -41,8 +44,16 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
     let mut query = connection.prepare(&query).map_err(failed)?;
     let mut rows = query.query([]).map_err(failed)?;
     let mut line = 0;
+    let most = path
+        .metadata()
+        .map_or(u64::MAX, |about| about.len() / LEAST_ROW);
     while let Some(row) = rows.next().map_err(failed)? {
         line += 1;
+        if line > most {
+            let problem =
+                "trajectory_data has more rows than fit into the file: it is damaged, or a view";
+            return Err(ReadError::file(path, problem));
+        }
         let entry = entry(row, line);
         let entry = entry.map_err(|what| {
             ReadError::file(path, format!("row {line} of trajectory_data: {what}"))
@@ -62,15 +73,11 @@ fn entry(row: &Row, line: u64) -> Result<Entry, String> {
         Ok(ValueRef::Integer(number)) => Ok(number as f64),
         _ => Err(format!("{what} is not a finite number")),
     };
-    let mass = finite(4, "mass")?;
-    if mass < 0.0 {
-        return Err(format!("the mass {mass} is below 0"));
-    }
     Ok(Entry {
         frame: whole(0, "frame")?,
         id: whole(1, "id")?,
         position: Vector::new(finite(2, "pos_x")?, finite(3, "pos_y")?),
-        mass,
+        mass: finite(4, "mass")?,
         line,
     })
 }
@@ -82,12 +89,18 @@ fn columns(connection: &Connection, table: &str) -> rusqlite::Result<Vec<String>
     names.collect()
 }
 
-/// A number among the metadata.
-fn metadata(connection: &Connection, key: &str) -> Option<f64> {
-    let query = "SELECT CAST(value AS TEXT) FROM metadata WHERE key = ?";
-    let text: String = connection.query_row(query, [key], |row| row.get(0)).ok()?;
-    let number = text.trim().parse().ok()?;
-    (f64::is_finite(number) && number > 0.0).then_some(number)
+/// The frame rate among the metadata, if it is there.
+fn frames_per_second(
+    connection: &Connection,
+    options: &ReadOptions,
+) -> Result<Option<f64>, String> {
+    let query = "SELECT CAST(value AS TEXT) FROM metadata WHERE key = 'fps'";
+    let text = connection.query_row(query, [], |row| row.get::<_, String>(0));
+    let Ok(text) = text else {
+        return Ok(None);
+    };
+    let rate = options.own_rate(frame_rate(text.trim()));
+    rate.map_err(|problem| format!("metadata: {problem}"))
 }
 
 /// The walkable areas as text, in no order: one, but where doors are opened and closed. What is no text is no

@@ -4,9 +4,10 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 use super::error::ReadError;
-use super::line::{Columns, frame_rate, words};
+use super::line::{self, Columns, words};
 use super::tracks::{Contents, Tracks};
-use super::{ReadOptions, Unit};
+use super::{FRAME_RATES, ReadOptions, Unit, frame_rate};
+use crate::input::Lines;
 
 /// The text of PeTrack and the Pedestrian Dynamics Data Archive.
 pub fn read_text(path: &Path, file: impl Read, options: &ReadOptions) -> Result<Tracks, ReadError> {
@@ -14,7 +15,7 @@ pub fn read_text(path: &Path, file: impl Read, options: &ReadOptions) -> Result<
         place: "line",
         ..Contents::default()
     };
-    let mut reader = BufReader::with_capacity(1 << 20, file);
+    let mut reader = BufReader::with_capacity(1 << 20, Lines::new(file));
     let mut columns = Columns::default();
     let (mut bytes, mut number) = (Vec::new(), 0);
     let failed = |line, problem: String| ReadError::line(path, line, problem);
@@ -24,12 +25,13 @@ pub fn read_text(path: &Path, file: impl Read, options: &ReadOptions) -> Result<
         if read.map_err(|error| failed(number + 1, error.to_string()))? == 0 {
             break;
         }
+        reader.get_mut().next_line();
         number += 1;
         // Who wrote a comment in another encoding has good numbers all the same.
         let text = String::from_utf8_lossy(&bytes);
         let line = text.trim_start_matches('\u{feff}').trim();
         if let Some(comment) = line.strip_prefix(['#', '%']) {
-            heed(comment, &mut columns, &mut contents)
+            heed(comment, &mut columns, &mut contents, options)
                 .map_err(|problem| failed(number, problem))?;
             continue;
         }
@@ -56,11 +58,20 @@ pub fn read_text(path: &Path, file: impl Read, options: &ReadOptions) -> Result<
 }
 
 /// What a comment says of the numbers below it.
-fn heed(comment: &str, columns: &mut Columns, contents: &mut Contents) -> Result<(), String> {
+fn heed(
+    comment: &str,
+    columns: &mut Columns,
+    contents: &mut Contents,
+    options: &ReadOptions,
+) -> Result<(), String> {
     if named(comment, columns, contents)? {
         return Ok(());
     }
-    contents.fps = contents.fps.or(frame_rate(comment));
+    if contents.fps.is_none()
+        && let Some(text) = line::frame_rate(comment)
+    {
+        contents.fps = options.own_rate(frame_rate(&text))?;
+    }
     let words = words(&comment.to_lowercase());
     let unit = words
         .windows(2)
@@ -92,12 +103,17 @@ pub fn read_csv(path: &Path, file: impl Read, options: &ReadOptions) -> Result<T
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .flexible(true)
-        .from_reader(BufReader::with_capacity(1 << 20, file));
-    let unreadable = |error: csv::Error| {
-        let line = error.position().map_or(1, csv::Position::line);
+        .buffer_capacity(1 << 20)
+        .from_reader(Lines::new(file));
+    let unreadable = |error: csv::Error, begun: u64| {
+        let line = error.position().map_or(begun, csv::Position::line);
         ReadError::line(path, line, error.to_string())
     };
-    let header = reader.headers().map_err(unreadable)?.clone();
+    let header = reader
+        .headers()
+        .map_err(|error| unreadable(error, 1))?
+        .clone();
+    reader.get_mut().next_line();
     let names: Vec<&str> = header.iter().collect();
     let head = |problem: String| ReadError::line(path, 1, problem);
     let missing = || head("the first line must name the columns id, frame, x and y".to_owned());
@@ -111,13 +127,20 @@ pub fn read_csv(path: &Path, file: impl Read, options: &ReadOptions) -> Result<T
         ..Contents::default()
     };
     let mut record = csv::StringRecord::new();
-    while reader.read_record(&mut record).map_err(unreadable)? {
+    loop {
+        let begun = reader.position().line();
+        let read = reader.read_record(&mut record);
+        if !read.map_err(|error| unreadable(error, begun))? {
+            break;
+        }
+        reader.get_mut().next_line();
         let line = record.position().map_or(0, csv::Position::line);
         let cells: Vec<&str> = record.iter().collect();
         let failed = |problem| ReadError::line(path, line, problem);
         let entry = columns.entry(&cells, line).map_err(failed)?;
         if contents.fps.is_none() && entry.frame > 0 {
-            contents.fps = rate(&cells, &columns, entry.frame);
+            let rate = rate(&cells, &columns, entry.frame).map(|rate| options.own_rate(rate));
+            contents.fps = rate.transpose().map_err(failed)?.flatten();
         }
         contents.entries.push(entry);
     }
@@ -125,10 +148,15 @@ pub fn read_csv(path: &Path, file: impl Read, options: &ReadOptions) -> Result<T
 }
 
 /// Frames per second, if there are times: nine digits of it, for times are rounded.
-fn rate(cells: &[&str], columns: &Columns, frame: i64) -> Option<f64> {
+fn rate(cells: &[&str], columns: &Columns, frame: i64) -> Option<Result<f64, String>> {
     let time: f64 = cells.get(columns.time?)?.parse().ok()?;
     let fps = frame as f64 / time;
+    if !FRAME_RATES.contains(&fps) {
+        let reason = format!(
+            "frame {frame} at {time:e} s makes {fps:e} frames per second: frame f is at f / fps; give --fps"
+        );
+        return Some(Err(reason));
+    }
     let unit = 10_f64.powi(8 - fps.log10().floor() as i32);
-    let rounded = (fps * unit).round() / unit;
-    (rounded.is_finite() && rounded > 0.0).then_some(rounded)
+    Some(Ok((fps * unit).round() / unit))
 }

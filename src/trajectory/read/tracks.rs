@@ -13,6 +13,13 @@ use crate::math::Vector;
 /// Half of all steps are faster than this, m/s: nobody's are, so the unit must be another one.
 const TOO_FAST: f64 = 10.0;
 
+/// Frame numbers within ± this are exact in double precision, and so are the times between them.
+const LAST_FRAME: i64 = 1 << 53;
+/// x and y are within ± this, metres: any place in a projection of the Earth, and squares keep their digits.
+const FARTHEST: f64 = 1e9;
+/// Masses are at most this.
+const HEAVIEST: f64 = 1e6;
+
 /// One person in one frame, as read.
 #[derive(Debug, Clone, Copy)]
 pub struct Entry {
@@ -23,6 +30,29 @@ pub struct Entry {
     pub mass: f64,
     /// Where in the file, from 1.
     pub line: u64,
+}
+
+impl Entry {
+    /// Is everything within what can be computed with, at this place in metres?
+    fn check(&self, at: Vector) -> Result<(), String> {
+        if !(-LAST_FRAME..=LAST_FRAME).contains(&self.frame) {
+            return Err(format!(
+                "the frame {} is out of range: at most 2^53 = {LAST_FRAME} before or after 0",
+                self.frame
+            ));
+        }
+        if at.amax() > FARTHEST {
+            return Err(format!(
+                "({:e}, {:e}) m is out of range: x and y must be at least -{FARTHEST:e} and at most {FARTHEST:e} m",
+                at.x, at.y
+            ));
+        }
+        match self.mass {
+            mass if mass < 0.0 => Err(format!("the mass {mass:e} is below 0")),
+            mass if mass > HEAVIEST => Err(format!("the mass {mass:e} is above {HEAVIEST:e}")),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// What a file said.
@@ -86,8 +116,18 @@ impl Tracks {
         }
         let fps = frame_rate(path, &contents, options, &mut notes)?;
         let unit = unit(&contents, options, &mut notes);
+        let metres = unit.unwrap_or(Unit::Metre).metres();
+        let in_metres = |v: Vector| if metres == 1.0 { v } else { v * metres };
         let place = contents.place;
+        let refused = |line: u64, problem: String| match place {
+            "line" => ReadError::line(path, line, problem),
+            _ => ReadError::file(path, format!("{place} {line}: {problem}")),
+        };
         let mut entries = std::mem::take(&mut contents.entries);
+        for entry in &entries {
+            let checked = entry.check(in_metres(entry.position));
+            checked.map_err(|problem| refused(entry.line, problem))?;
+        }
         entries.par_sort_unstable_by_key(|entry| (entry.frame, entry.id, entry.line));
         let same = |pair: &&[Entry]| (pair[0].frame, pair[0].id) == (pair[1].frame, pair[1].id);
         if let Some(pair) = entries.windows(2).find(same) {
@@ -95,18 +135,13 @@ impl Tracks {
                 "person {} is in frame {} already, by {place} {}; each may be there once: remove one",
                 pair[1].id, pair[1].frame, pair[0].line
             );
-            return Err(match place {
-                "line" => ReadError::line(path, pair[1].line, problem),
-                _ => ReadError::file(path, format!("{place} {}: {problem}", pair[1].line)),
-            });
+            return Err(refused(pair[1].line, problem));
         }
         let mut ids: Vec<i64> = entries.iter().map(|entry| entry.id).collect();
         ids.par_sort_unstable();
         ids.dedup();
         let number = |id: i64| ids.partition_point(|&other| other < id) as u32;
         let person: Vec<u32> = entries.par_iter().map(|entry| number(entry.id)).collect();
-        let metres = unit.unwrap_or(Unit::Metre).metres();
-        let in_metres = |v: Vector| if metres == 1.0 { v } else { v * metres };
         let masses = contents
             .has_mass
             .then(|| entries.iter().map(|entry| entry.mass).collect());

@@ -1,0 +1,76 @@
+//! Files that are read whole, and lines: none that is longer than anything meant to be read so.
+
+use std::fs::File;
+use std::io::{Error, ErrorKind, Read, Result};
+use std::path::Path;
+
+/// A longer text is refused, bytes: a scenario of ten million corners has 200 MB.
+pub const LONGEST_TEXT: u64 = 1 << 28;
+/// About as long is a line at most, bytes.
+pub const LONGEST_LINE: u64 = 1 << 20;
+
+/// A whole file.
+///
+/// # Errors
+/// It cannot be read, or has more than `most` bytes.
+pub fn bytes(path: &Path, most: u64) -> Result<Vec<u8>> {
+    rest(File::open(path)?, most)
+}
+
+/// A whole text.
+///
+/// # Errors
+/// The file cannot be read, has more than [`LONGEST_TEXT`] bytes, or is not UTF-8.
+pub fn text(path: &Path) -> Result<String> {
+    let text = String::from_utf8(bytes(path, LONGEST_TEXT)?);
+    text.map_err(|_| Error::new(ErrorKind::InvalidData, "no text in UTF-8"))
+}
+
+/// What is left to be read.
+///
+/// # Errors
+/// It cannot be read, or is more than `most` bytes.
+pub fn rest(file: impl Read, most: u64) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    file.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        let reason = format!("longer than {most} bytes");
+        return Err(Error::new(ErrorKind::FileTooLarge, reason));
+    }
+    Ok(bytes)
+}
+
+/// Reads on for about [`LONGEST_LINE`] bytes at a time, then fails unless [`next_line`](Self::next_line) was
+/// called: under a buffered reader of lines, a line that never ends takes no more memory.
+pub struct Lines<R> {
+    file: R,
+    left: u64,
+}
+
+impl<R: Read> Lines<R> {
+    /// Of a file.
+    pub fn new(file: R) -> Self {
+        Self {
+            file,
+            left: LONGEST_LINE,
+        }
+    }
+
+    /// A line was complete.
+    pub fn next_line(&mut self) {
+        self.left = LONGEST_LINE;
+    }
+}
+
+impl<R: Read> Read for Lines<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> Result<usize> {
+        if self.left == 0 {
+            let reason = format!("the line is longer than {LONGEST_LINE} bytes");
+            return Err(Error::new(ErrorKind::FileTooLarge, reason));
+        }
+        let most = buffer.len().min(self.left as usize);
+        let read = self.file.read(&mut buffer[..most])?;
+        self.left -= read as u64;
+        Ok(read)
+    }
+}
