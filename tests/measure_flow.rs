@@ -1,13 +1,16 @@
 //! Velocities, crossings and fundamental diagrams of motions that are known.
 #![cfg(feature = "trajectory")]
 
+use std::collections::BTreeMap;
+
 use crate::common::tracks::tracks;
 use crate::common::vector;
 use proptest::prelude::*;
 use sandbox::boundary::WallMethod;
 use sandbox::math::Vector;
 use sandbox::measure::{
-    Behind, CLASS, Crossings, Kernel, Line, MeasureError, Measured, Options, Site, measure, speed,
+    Behind, CLASS, Class, Crossings, Kernel, Line, MeasureError, Measured, Options, Site, measure,
+    speed,
 };
 use sandbox::scene::Region;
 use sandbox::trajectory::read::Tracks;

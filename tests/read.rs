@@ -180,6 +180,82 @@ fn mistakes_are_named_with_their_line_and_the_fix() {
 }
 
 #[test]
+fn numbers_beyond_what_can_be_computed_with_are_refused_with_their_line() {
+    let frames = "out of range: at most 2^53 = 9007199254740992 before or after 0";
+    let place = "m is out of range: x and y must be at least -1e9 and at most 1e9 m";
+    for (rows, expected) in [
+        (
+            "1 -9223372036854775808 0 0\n1 9223372036854775807 0.1 0\n2 0 1 1\n",
+            format!("a.txt:2: the frame -9223372036854775808 is {frames}"),
+        ),
+        (
+            "1 0 0 0\n1 9007199254740993 0 0\n",
+            format!("a.txt:3: the frame 9007199254740993 is {frames}"),
+        ),
+        ("1 0 1e300 0\n", format!("a.txt:2: (1e300, 0e0) {place}")),
+        ("1 0 0 -1.1e9\n", format!("a.txt:2: (0e0, -1.1e9) {place}")),
+    ] {
+        let text = format!("# framerate: 10\n{rows}");
+        assert_eq!(read_as("a.txt", &text, &PLAIN).unwrap_err(), expected);
+    }
+    let heavy = "id,frame,x,y,time,mass\n1,0,0,0,0,1\n1,1,0,0,0.1,1e300\n";
+    assert_eq!(
+        read_as("a.csv", heavy, &PLAIN).unwrap_err(),
+        "a.csv:3: the mass 1e300 is above 1e6"
+    );
+    let far = "# framerate: 10\n# in m\n-9223372036854775808 -9007199254740992 -1e9 1e9\n\
+               9223372036854775807 9007199254740992 0 0\n";
+    let tracks = read_text(far);
+    assert_eq!(tracks.span(), (1 << 54) + 1);
+    assert_eq!(tracks.ids, [i64::MIN, i64::MAX]);
+}
+
+#[test]
+fn frame_rates_that_no_film_has_are_refused_with_their_line() {
+    let words = |fps: &str| {
+        format!("the frame rate \"{fps}\" is not a number between 1e-6 and 1e6; give --fps")
+    };
+    let given = ReadOptions {
+        fps: Some(5.0),
+        ..PLAIN
+    };
+    for fps in ["1e-300", "1e300", "nan", "0", "-5", "inf", "0.0"] {
+        let text = format!("# a film\n# framerate: {fps} fps\n1 0 0 0\n");
+        let expected = format!("a.txt:2: {}", words(fps));
+        assert_eq!(read_as("a.txt", &text, &PLAIN).unwrap_err(), expected);
+        assert_eq!(read_as("a.txt", &text, &given).unwrap().fps, 5.0);
+    }
+    for (time, fps) in [
+        ("0", "inf"),
+        ("1e300", "1e-300"),
+        ("-1", "-1e0"),
+        ("NaN", "NaN"),
+    ] {
+        let text = format!("id,frame,x,y,time\n1,0,0,0,0\n1,1,0,0,{time}\n");
+        let said = read_as("a.csv", &text, &PLAIN).unwrap_err();
+        assert!(said.starts_with("a.csv:3: frame 1 at "), "{said}");
+        let end = format!("makes {fps} frames per second: frame f is at f / fps; give --fps");
+        assert!(said.ends_with(&end), "{said}");
+        assert_eq!(read_as("a.csv", &text, &given).unwrap().fps, 5.0);
+    }
+    let (_folder, path) = file("jps.sqlite", "");
+    let connection = Connection::open(&path).unwrap();
+    connection
+        .execute_batch(
+            "CREATE TABLE trajectory_data (frame, id, pos_x, pos_y);
+             CREATE TABLE metadata (key, value);
+             INSERT INTO trajectory_data VALUES (0, 1, 2.0, 2.0);
+             INSERT INTO metadata VALUES ('fps', '1e-300');",
+        )
+        .unwrap();
+    drop(connection);
+    let said = read(&path, &PLAIN).unwrap_err().to_string();
+    let expected = format!("{}: metadata: {}", path.display(), words("1e-300"));
+    assert_eq!(said, expected);
+    assert_eq!(read(&path, &given).unwrap().fps, 5.0);
+}
+
+#[test]
 fn gaps_and_empty_frames_and_odd_steps_are_noted() {
     let tracks =
         read_text("# framerate: 10\n# in m\n1 0 0 0\n1 1 0 0\n1 4 0 0\n1 5 0 0\n2 1 5 5\n");

@@ -1,5 +1,6 @@
 //! A setting at its place in a study's file.
 
+use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
@@ -7,6 +8,7 @@ use serde_json::Value;
 use super::cell::{Source, short};
 use super::entries::Entries;
 use super::problem;
+use super::study::MOST_CELLS;
 use crate::quote::shown;
 use crate::scenario::{Problem, SHIPPED, Setting, suggestion};
 
@@ -46,13 +48,16 @@ impl Choice {
     }
 }
 
-/// Do two objects say the same, in whatever order?
-pub(super) fn same(one: &[Choice], other: &[Choice]) -> bool {
-    let has = |choice: &Choice| {
-        let mut others = other.iter();
-        others.any(|other| other.is_as(choice) && other.value == choice.value)
-    };
-    one.len() == other.len() && one.iter().all(has)
+/// What an object says, in whatever order: two that say the same are equal.
+pub(super) fn said(choices: &[Choice]) -> BTreeSet<(Option<&[String]>, String)> {
+    let said = choices.iter().map(|choice| {
+        let path = match &choice.meaning {
+            Meaning::Setting(setting) => Some(setting.path()),
+            Meaning::Scenario(_) => None,
+        };
+        (path, choice.value.to_string())
+    });
+    said.collect()
 }
 
 /// The settings of an object at `place`; with a folder, a scenario may be among them.
@@ -83,7 +88,18 @@ pub(super) fn axis(key: &str, values: &Value, folder: &Path) -> Result<Vec<Choic
         Some(values) if values.is_empty() => return Err(problem(place, "must not be empty")),
         Some(values) => values,
     };
-    if let Some(k) = (1..values.len()).find(|&k| values[..k].contains(&values[k])) {
+    if values.len() > MOST_CELLS {
+        let reason = format!(
+            "has {} values; at most {MOST_CELLS} cells are allowed",
+            values.len()
+        );
+        return Err(problem(place, reason));
+    }
+    let mut seen = HashSet::new();
+    if let Some(k) = values
+        .iter()
+        .position(|value| !seen.insert(value.to_string()))
+    {
         let reason = format!("{} is given twice", short(&values[k]));
         return Err(problem(format!("{place}[{k}]"), reason));
     }

@@ -1,5 +1,6 @@
 //! `seeds`: how many, or which.
 
+use std::collections::HashSet;
 use std::fmt;
 
 use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Unexpected, Visitor};
@@ -26,9 +27,12 @@ impl Seeds {
             }
             Self::Count(count) => Ok((1..=*count).collect()),
             Self::List(list) if list.is_empty() => Err(problem("seeds", "must not be empty")),
+            Self::List(list) if list.len() > most => {
+                Err(problem("seeds", format!("must be at most {most}")))
+            }
             Self::List(list) => {
-                let twice = (1..list.len()).find(|&k| list[..k].contains(&list[k]));
-                match twice {
+                let mut seen = HashSet::new();
+                match list.iter().position(|seed| !seen.insert(seed)) {
                     Some(k) => Err(problem(
                         format!("seeds[{k}]"),
                         format!("{} is given twice", list[k]),

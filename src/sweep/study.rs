@@ -1,6 +1,6 @@
 //! What a study's file says → its cells, checked.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
@@ -8,7 +8,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::cell::{Cell, Source};
-use super::choice::{Choice, Meaning, SCENARIO, axis, choices, same, source};
+use super::choice::{Choice, Meaning, SCENARIO, axis, choices, said, source};
 use super::entries::Entries;
 use super::memory::Memory;
 use super::seeds::Seeds;
@@ -19,7 +19,7 @@ use crate::quote::shown;
 use crate::scenario::{Problem, ScenarioError, Setting, in_plain_words, read_document};
 
 /// A study with more cells is taken for a mistake.
-const MOST_CELLS: usize = 100_000;
+pub(super) const MOST_CELLS: usize = 100_000;
 
 /// A longer name, with what results add to it, would be too long for a file's, bytes.
 const LONGEST_NAME: usize = 200;
@@ -196,6 +196,10 @@ impl Plan {
         let rows: Vec<Vec<Choice>> = match &file.list {
             None => vec![Vec::new()],
             Some(list) if list.is_empty() => return Err(problem("list", "must not be empty")),
+            Some(list) if list.len() > MOST_CELLS => {
+                let reason = format!("has {} cells; at most {MOST_CELLS} are allowed", list.len());
+                return Err(problem("list", reason));
+            }
             Some(list) => {
                 let row = |(k, row)| choices(row, &format!("list[{k}]"), Some(folder));
                 list.iter().enumerate().map(row).collect::<Result<_, _>>()?
@@ -244,8 +248,9 @@ impl Plan {
 
     /// A setting that another one always goes before means nothing, and nothing is run twice.
     fn refuse_repetitions(&self) -> Result<(), Problem> {
+        let mut seen = HashMap::new();
         for (k, row) in self.rows.iter().enumerate() {
-            if let Some(other) = self.rows[..k].iter().position(|other| same(other, row)) {
+            if let Some(other) = seen.insert(said(row), k) {
                 let reason = format!("is the same as list[{other}]");
                 return Err(problem(format!("list[{k}]"), reason));
             }

@@ -12,6 +12,10 @@ pub mod plans;
 pub mod program;
 pub mod quadrature;
 pub mod reading;
+pub mod reading_checkpoints;
+pub mod reading_studies;
+#[cfg(feature = "trajectory")]
+pub mod reading_trajectories;
 pub mod social;
 pub mod sweep;
 #[cfg(feature = "trajectory")]

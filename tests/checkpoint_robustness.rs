@@ -1,0 +1,131 @@
+//! Whatever a checkpoint's file holds, reading it and going on ends in finite numbers or in an error, in little
+//! memory.
+//!
+//! 100,000 cases; more with `BAD_INPUT_TIMES=10 cargo test …`. At most this is held at once: 2 MB and 300 bytes
+//! for every byte of the file.
+
+use std::fs::{self, File};
+use std::io::Write;
+
+use crate::common::bounded::cases;
+use crate::common::reading_checkpoints::{read, sealed};
+use proptest::prelude::*;
+use proptest::sample::Index;
+use sandbox::checkpoint::Checkpoint;
+use sandbox::metrics::Metrics;
+use sandbox::scenario::Scenario;
+use sandbox::simulation::Simulation;
+
+/// Few people, latecomers, a push and a wall.
+const SCENARIO: &str = r#"{
+  "goal": [9, 1], "profile": "sf->sph", "obstacles": [[[3, 0], [4, 0], [4, 0.5]]], "duration_secs": 9,
+  "agents": [{"position": [1, 1], "velocity": [1, 0]}, {"position": [1.5, 1]}, {"position": [1, 1.6]}],
+  "sources": [{"min": [0, 3], "max": [0, 4], "columns": 1, "rows": 2, "every_secs": 0.1, "times": 3}],
+  "events": [{"at_secs": 0.1, "for_secs": 1, "region": [[0, 0], [5, 5]], "goal_scale": 3}],
+  "measurements": [{"density": {"at_secs": 0.1}}, {"density": {"at_secs": 5, "region": [[0, 0], [5, 5]]}}]
+}"#;
+
+/// The length of what precedes the payload: a line, the version, the checksum.
+const HEAD: usize = 19 + 4 + 32;
+
+fn most(bytes: usize) -> u64 {
+    (2 << 20) + 300 * bytes as u64
+}
+
+/// A checkpoint of a run under way.
+fn whole() -> Vec<u8> {
+    let scenario = Scenario::parse(SCENARIO, "f.json", &[]).unwrap();
+    let mut simulation = Simulation::new(scenario.scene.clone()).unwrap();
+    let mut metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
+    for _ in 0..12 {
+        simulation.step().unwrap();
+        metrics.observe(&mut simulation);
+    }
+    simulation.evaluate().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("c");
+    Checkpoint::of(&scenario, &simulation, &metrics)
+        .write(&path)
+        .unwrap();
+    fs::read(&path).unwrap()
+}
+
+fn changes() -> impl Strategy<Value = Vec<(Index, u8)>> {
+    prop::collection::vec((any::<Index>(), any::<u8>()), 1..4)
+}
+
+#[test]
+fn any_bytes_are_refused() {
+    let bytes = || (prop::collection::vec(any::<u8>(), 0..200), 0..4_u8);
+    cases(20_000, bytes, |(bytes, how)| {
+        let head = &sealed(&[])[..[0, 19, 23, 23][usize::from(how)]];
+        let bytes = if how == 3 {
+            sealed(&bytes)
+        } else {
+            [head, &bytes].concat()
+        };
+        assert!(!read(&bytes));
+        most(bytes.len())
+    });
+}
+
+#[test]
+fn a_damaged_checkpoint_is_refused() {
+    let whole = whole();
+    assert!(read(&whole));
+    let input = || (changes(), prop::option::weighted(0.2, any::<Index>()));
+    cases(20_000, input, |(changes, cut)| {
+        let mut bytes = whole.clone();
+        changes
+            .iter()
+            .for_each(|(place, by)| bytes[place.index(whole.len())] = *by);
+        if let Some(cut) = cut {
+            bytes.truncate(cut.index(whole.len()));
+        }
+        assert_eq!(read(&bytes), bytes == whole);
+        most(bytes.len())
+    });
+}
+
+#[test]
+fn a_checkpoint_with_values_changed_goes_on_or_is_refused() {
+    let whole = whole();
+    let payload = &whole[HEAD..];
+    assert_eq!(sealed(payload), whole);
+    // Half of the payload is the scenario's text, which `scenario_robustness.rs` is about.
+    let text = payload
+        .windows(2)
+        .rposition(|pair| pair == b"}\n" || pair == b"]}")
+        .unwrap();
+    let state = payload.len() - text;
+    let input = || (changes(), 0..8_u8, any::<[Index; 2]>());
+    cases(60_000, input, |(changes, how, places)| {
+        let mut bytes = payload.to_vec();
+        changes
+            .iter()
+            .for_each(|(place, by)| bytes[text + place.index(state)] = *by);
+        let [from, to] = places.map(|place| text + place.index(state));
+        match how {
+            0 => bytes.truncate(from),
+            1 => drop(bytes.drain(from.min(to)..from.max(to))),
+            2 => bytes[from..(from + 10).min(payload.len())].fill(0xff), // the largest of all lengths
+            _ => {}
+        }
+        read(&sealed(&bytes));
+        most(bytes.len())
+    });
+}
+
+#[test]
+fn what_is_no_checkpoint_is_refused_however_long_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("c");
+    let mut file = File::create(&path).unwrap();
+    file.write_all(b"PK").unwrap();
+    file.set_len(1 << 40).unwrap(); // nothing of it is on the disk
+    let mut said = String::new();
+    let held =
+        allocation_counter::measure(|| said = Checkpoint::read(&path).unwrap_err().to_string());
+    assert!(said.ends_with("is no checkpoint"), "{said}");
+    assert!(held.bytes_max < 1 << 20, "{}", held.bytes_max);
+}

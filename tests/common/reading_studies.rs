@@ -1,0 +1,30 @@
+//! Reads any text as a study: for tests and for fuzzing.
+
+use std::path::Path;
+
+use sandbox::sweep::Study;
+
+/// Ends in a study whose cells are scenarios, or in a short error that names the file and is harmless to a
+/// terminal; returns how many cells there are.
+pub fn read(text: &str) -> u64 {
+    let study = match Study::parse(text, Path::new("study.json")) {
+        Ok(study) => study,
+        Err(error) => {
+            let said = error.to_string();
+            assert!(said.starts_with("study.json: "), "{said}");
+            assert!(
+                said.len() < 3000 && !said.contains(char::is_control),
+                "{said:?}"
+            );
+            return 0;
+        }
+    };
+    assert!(!study.name.is_empty() && study.files().iter().all(|file| !file.contains('/')));
+    assert_eq!(study.cells.len() % study.seeds, 0);
+    for (k, cell) in study.cells.iter().enumerate() {
+        assert_eq!(cell.number, k + 1);
+        assert!(cell.expected_secs.is_finite() && !cell.key().is_empty());
+        assert!(!cell.to_string().contains(char::is_control));
+    }
+    study.cells.len() as u64
+}

@@ -1,0 +1,105 @@
+//! Reads any bytes as trajectories, and measures what is read: for tests and for fuzzing.
+
+use std::path::Path;
+
+use sandbox::boundary::WallMethod;
+use sandbox::math::Vector;
+use sandbox::measure::{Behind, Kernel, Line, MeasureError, Options, Site, measure, speed};
+use sandbox::trajectory::read::{FRAME_RATES, ReadError, ReadOptions, Tracks, read_text};
+
+/// So many rows are measured at most.
+const FEW: usize = 60;
+/// Cells of fields along each side, at most.
+const CELLS: f64 = 10.0;
+
+/// A text by its name; returns how many rows it has.
+pub fn read(name: &str, bytes: &[u8]) -> u64 {
+    let options = ReadOptions::default();
+    judge(name, read_text(Path::new(name), bytes, &options))
+}
+
+/// Trajectories whose numbers are all finite, whatever is measured in them, or a short error that names the
+/// file and is harmless to a terminal.
+pub fn judge(name: &str, read: Result<Tracks, ReadError>) -> u64 {
+    match read {
+        Err(error) => {
+            let said = error.to_string();
+            assert!(said.starts_with(name), "{said}");
+            assert!(
+                said.len() < 1000 && !said.contains(char::is_control),
+                "{said:?}"
+            );
+            0
+        }
+        Ok(tracks) => {
+            check(&tracks);
+            if tracks.len() <= FEW {
+                check_measured(&tracks);
+            }
+            tracks.len() as u64
+        }
+    }
+}
+
+fn is_finite(v: Vector) -> bool {
+    v.x.is_finite() && v.y.is_finite()
+}
+
+fn check(tracks: &Tracks) {
+    assert!(FRAME_RATES.contains(&tracks.fps) && tracks.step > 0 && !tracks.is_empty());
+    assert!(tracks.position.iter().copied().all(is_finite));
+    assert!(
+        tracks
+            .mass
+            .iter()
+            .all(|&mass| mass.is_finite() && mass >= 0.0)
+    );
+    assert!(tracks.frames.is_sorted() && tracks.ids.is_sorted());
+    assert!(tracks.span() >= tracks.frames.len() as u64);
+    assert!(
+        tracks
+            .frames
+            .iter()
+            .all(|&frame| tracks.time(frame).is_finite())
+    );
+    let rows = (0..tracks.frames.len()).map(|k| tracks.rows(k).len());
+    assert_eq!(rows.sum::<usize>(), tracks.len());
+    for note in &tracks.notes {
+        assert!(!note.contains("inf") && !note.contains("NaN"), "{note}");
+    }
+}
+
+fn check_measured(tracks: &Tracks) {
+    let first = [tracks.position[0]; 2];
+    let positions = tracks.position.iter();
+    let [low, high] = positions.fold(first, |[low, high], p| [low.inf(p), high.sup(p)]);
+    let line = Line {
+        start: low,
+        end: high + Vector::new(0.5, 1.0),
+    };
+    let options = Options {
+        kernel: Kernel {
+            support_radius: 1.0,
+            walls: WallMethod::Union,
+        },
+        behind: Behind::Rest(5.0),
+        speed_reach: speed::FRAMES,
+        times: [f64::NEG_INFINITY, f64::INFINITY],
+        cell: ((high - low).amax() / CELLS).max(1.0),
+        regions: Vec::new(),
+        lines: vec![line],
+    };
+    let measured = measure(tracks, &Site::new(Vec::new()), &options, |moments| {
+        for person in moments.iter().flat_map(|moment| &moment.people) {
+            assert!(person.density.is_finite() && person.velocity.is_none_or(is_finite));
+        }
+        Ok::<(), MeasureError>(())
+    })
+    .unwrap();
+    assert_eq!(measured.overview.rows, tracks.len() as u64);
+    for spread in [measured.overview.density, measured.overview.speed] {
+        assert!(spread.mean.is_finite() && spread.deviation().is_finite());
+    }
+    let fields = measured.fields.means(measured.overview.frames);
+    assert!(fields.flatten().all(|mean| mean.density.is_finite()));
+}
