@@ -1,5 +1,7 @@
 //! A scenario from its first frame to its end, with a progress bar, recordings and a report.
 
+use std::path::Path;
+
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::arguments::{
@@ -11,13 +13,14 @@ use super::output::{Output, check, laid_open};
 use super::report::Report;
 use super::trajectory::Trajectories;
 use super::{Failure, memory, say, scenario, setting, talk, use_threads};
+use crate::bench::main_memory;
 use crate::checkpoint::Checkpoint;
 use crate::clock::{Clock, SHORTEST_TIME_STEP};
 use crate::drive::{Then, drive, unless_over};
 use crate::metrics::Metrics;
 use crate::outputs::Outputs;
 use crate::quote::shown;
-use crate::scenario::{Scenario, Setting};
+use crate::scenario::{Scenario, Setting, in_units};
 use crate::scene::Scene;
 use crate::simulation::{EventKind, Simulation};
 use crate::stability::{FITTED, Mode, Scheme};
@@ -45,6 +48,7 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
 /// `sandbox resume`.
 pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
     use_threads(options.program.threads)?;
+    fits_into_memory(&options.file)?;
     let checkpoint = Checkpoint::read(&options.file)?;
     if !checkpoint.is_of_this_engine() {
         talk(&format!(
@@ -85,6 +89,20 @@ fn refuse_the_past(options: &ResumeOptions, clock: &Clock) -> Result<(), Failure
             "--until {until}: the checkpoint {} is of {:.2} s; give a later time",
             options.file.display(),
             clock.time()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a checkpoint that is longer than the memory that there is; what its run needs is known when it was read.
+fn fits_into_memory(file: &Path) -> Result<(), Failure> {
+    let length = file.metadata().map_or(0, |about| about.len());
+    match main_memory() {
+        Some(there) if length > there => Err(Failure::Input(format!(
+            "{}: {} do not fit into this machine's {} of memory; resume it on a larger one",
+            file.display(),
+            in_units(length),
+            in_units(there),
         ))),
         _ => Ok(()),
     }
