@@ -173,7 +173,7 @@ fn files_longer_than_what_is_read_whole_are_refused() {
         &["resume", "long.json"],
     ] {
         let reason = if typed[0] == "resume" {
-            "is no checkpoint"
+            "do not fit into this machine's"
         } else {
             reason
         };

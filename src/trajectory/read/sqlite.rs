@@ -9,12 +9,13 @@ use super::error::ReadError;
 use super::tracks::{Contents, Entry, Tracks};
 use super::{ReadOptions, Unit, frame_rate};
 use crate::math::Vector;
+use crate::quote::shown_message;
 
 /// A row takes more of a file, bytes: its place in a page, its length, its number and a type for each column.
 const LEAST_ROW: u64 = 8;
 
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
-    let failed = |error: rusqlite::Error| ReadError::file(path, error.to_string());
+    let failed = |error: rusqlite::Error| ReadError::file(path, shown_message(&error.to_string()));
     let connection =
         Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY).map_err(failed)?;
     let columns = columns(&connection, "trajectory_data").map_err(failed)?;
