@@ -39,7 +39,7 @@ pub fn read(bytes: &[u8]) -> bool {
         if simulation.step().is_err() {
             return false;
         }
-        metrics.observe(&mut simulation);
+        metrics.observe(&simulation);
     }
     let positions = &simulation.frame().agents.position;
     assert!(positions.iter().all(|p| p.x.is_finite() && p.y.is_finite()));
