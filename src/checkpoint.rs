@@ -21,7 +21,8 @@ use crate::simulation::{Simulation, State, StateError};
 const MAGIC: &[u8] = b"sandbox checkpoint\n";
 /// To be raised with whatever changes what a file holds.
 const VERSION: u32 = 2;
-/// A longer file is refused, bytes: that of the largest run, with ten million agents, has 2 GB.
+/// A longer file is refused, bytes: ten million agents, the most that may be, take 1 GB (99 bytes each, in the
+/// plaza), and the text of their scenario 256 MiB at most.
 const LONGEST: u64 = 1 << 32;
 /// The engine's sources: another engine goes on otherwise.
 const ENGINE: &str = env!("SANDBOX_ENGINE");

@@ -211,6 +211,7 @@ const RELATIONS: [&str; 21] = [
     "all profiles of a blend share it",
     "share one velocity of RVO",
     "is above rest_density_max",
+    "is above max_speed",
     "key `seed` is given twice",
     "may stand there",
     "floating point `1.8446744073709552e+19`", // a whole number to a schema
