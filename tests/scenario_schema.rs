@@ -194,7 +194,7 @@ fn words_are_those_that_the_parser_knows() {
 }
 
 /// What no schema can say: how values relate to each other, and geometry.
-const RELATIONS: [&str; 21] = [
+const RELATIONS: [&str; 22] = [
     "lower left corner comes first",
     "too many",
     "is measured already",
