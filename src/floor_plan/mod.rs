@@ -173,7 +173,17 @@ impl FloorPlan {
         }
         let largest = |areas: &[Area]| areas.iter().map(Area::area).fold(0.0, f64::max);
         let whole = largest(&walkable);
-        let walkable = unite::without(&walkable, &obstacles)?;
+        let mut walkable = unite::without(&walkable, &obstacles)?;
+        // Where less is left, corners are computed on a finer grid.
+        let mut before = width.max(height);
+        loop {
+            let [along, across] = extent(walkable.iter());
+            if walkable.is_empty() || 2.0 * along.max(across) > before {
+                break;
+            }
+            before = along.max(across);
+            walkable = unite::without(&walkable, &[])?;
+        }
         let room = largest(&walkable);
         let [along, across] = extent(walkable.iter());
         let is_short = along.max(across) < SHORT;
