@@ -1,7 +1,7 @@
 //! What a file says → a scenario that can run, or the first thing that is wrong with it.
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde_json::Value;
 
@@ -12,7 +12,7 @@ use super::file::{self, File, Object, ProfileChoice, TimeStep};
 use super::need::Need;
 use super::range::{COARSE_EVERY, MAX_SPEED, PREFERRED_SPEED, Range, TIME, TIME_STEP};
 use super::range::{point, region};
-use super::{Scenario, Stop, View, parameters, plan, preset, profiles};
+use super::{PlanFile, Scenario, Stop, View, parameters, plan, preset, profiles};
 use crate::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::math::Vector;
 use crate::metrics::Measurement;
@@ -40,10 +40,7 @@ pub(super) fn need(document: &Value, path: &Path) -> Result<Need, Problem> {
 
 /// The document with all that it stands for: nothing in it is looked up elsewhere any more. Files that it
 /// names are in the folder of `path`, and returned with their keys.
-fn complete(
-    document: &Value,
-    path: &Path,
-) -> Result<(Value, Vec<(&'static str, PathBuf)>), Problem> {
+fn complete(document: &Value, path: &Path) -> Result<(Value, Vec<PlanFile>), Problem> {
     let mut document = preset::fill(document);
     without_schema(&mut document)?;
     let files = plan::fill(&mut document, path.parent().unwrap_or(Path::new("")))?;

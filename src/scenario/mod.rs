@@ -63,6 +63,9 @@ use crate::input;
 use crate::metrics::Measurement;
 use crate::scene::{Region, Scene};
 
+/// A floor plan's file, after the key that names it.
+pub type PlanFile = (&'static str, PathBuf);
+
 /// A checked scenario: what to simulate, for how long, and what to look at.
 #[derive(Debug, Clone)]
 pub struct Scenario {
@@ -88,8 +91,8 @@ pub struct Scenario {
     pub profile_name: String,
     /// The file as given, with the settings, what its preset stands for and what the files that it names say.
     pub document: Value,
-    /// The floor plans that it was read from, each with the key that names it.
-    pub files: Vec<(&'static str, PathBuf)>,
+    /// The floor plans that it was read from.
+    pub files: Vec<PlanFile>,
 }
 
 /// When a run stops before its end.

@@ -1,11 +1,12 @@
 //! Walkable areas and obstacles: written out in a scenario, or in files that it names.
 
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::de::{Deserialize, Deserializer, SeqAccess, Visitor};
 use serde_json::{Value, json};
 
+use super::PlanFile;
 use super::error::{Problem, Under};
 use super::file::File;
 use super::range::point;
@@ -68,10 +69,7 @@ impl<'de> Visitor<'de> for NestedVisitor {
 
 /// Puts what files say in the place of their names, which are relative to `folder`: the document says
 /// everything itself then. Returns the files, each with its key.
-pub(super) fn fill(
-    document: &mut Value,
-    folder: &Path,
-) -> Result<Vec<(&'static str, PathBuf)>, Problem> {
+pub(super) fn fill(document: &mut Value, folder: &Path) -> Result<Vec<PlanFile>, Problem> {
     let mut files = Vec::new();
     let Value::Object(document) = document else {
         return Ok(files);
