@@ -144,7 +144,8 @@ fn a_viewer_that_takes_nothing_holds_up_neither_the_run_nor_the_file() {
         (said(&output), report["state_sha256"].clone(), crowd(&file))
     };
     let (_, state, alone) = run("alone.rrd", &[]);
-    let viewers: [(&str, fn(TcpStream)); 3] = [
+    type Behavior = fn(TcpStream);
+    let viewers: [(&str, Behavior); 3] = [
         ("silent.rrd", silent),
         ("falls_silent.rrd", falls_silent),
         ("closes.rrd", closes),
