@@ -5,6 +5,7 @@ use std::fs;
 use sandbox::floor_plan::{self, FloorPlan, FloorPlanError, parse_wkt};
 use sandbox::geometry::Polygon;
 use sandbox::math::Vector;
+use sandbox::quote::shown;
 use serde_json::{Value, json};
 
 fn read(name: &str, text: &str) -> Result<FloorPlan, FloorPlanError> {
@@ -295,7 +296,10 @@ fn plans_nested_deeper_than_any_is_are_refused_with_their_place_on_a_thread_with
     assert!(said(wkt(64)).starts_with("no WKT: line 2: "));
     assert_eq!(
         said(json(60)),
-        format!("{}the geometry is empty; remove it", nested_place(59))
+        format!(
+            "{}: the geometry is empty; remove it",
+            shown(&nested_place(59))
+        )
     );
     for depth in [70, 20_000] {
         assert!(said(json(depth)).starts_with("no GeoJSON: recursion limit exceeded at line 1"));
@@ -304,5 +308,5 @@ fn plans_nested_deeper_than_any_is_are_refused_with_their_place_on_a_thread_with
 
 /// The first geometry in the first one, and so on.
 fn nested_place(depth: usize) -> String {
-    format!("{}: ", vec!["geometry 1"; depth].join(", "))
+    vec!["geometry 1"; depth].join(", ")
 }

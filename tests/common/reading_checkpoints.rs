@@ -49,7 +49,7 @@ pub fn read(bytes: &[u8]) -> bool {
 /// The payload of a checkpoint with the head that belongs to it.
 pub fn sealed(payload: &[u8]) -> Vec<u8> {
     let mut bytes = b"sandbox checkpoint\n".to_vec();
-    bytes.extend(1_u32.to_le_bytes());
+    bytes.extend(2_u32.to_le_bytes());
     bytes.extend(Sha256::digest(payload));
     bytes.extend(payload);
     bytes
