@@ -1,54 +1,57 @@
-//! Names the engine: a hash of its sources, so that a kept result is never taken for that of another.
+//! Names the engine by a SHA-256, so that a kept result is never taken for one of another engine: of the sources
+//! on which the result of a run depends, of the versions of all dependencies, and of the compiler.
 
-use std::collections::hash_map::DefaultHasher;
-use std::fs;
-use std::hash::{Hash, Hasher};
-use std::io;
 use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs, io};
 
-/// The last module of `src/lib.rs` on which the result of a run depends.
-const LAST: &str = "drive";
+use sha2::{Digest, Sha256};
+
+/// The wings on which the result of a run depends.
+const WINGS: [&str; 3] = ["src/engine", "src/scenario", "src/runs"];
+
+/// The versions of all dependencies.
+const LOCK: &str = "Cargo.lock";
 
 fn main() -> io::Result<()> {
-    println!("cargo::rerun-if-changed=src");
-    let list = fs::read_to_string("src/lib.rs")?;
-    let modules = list
-        .lines()
-        .filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'));
     let mut files = Vec::new();
-    for module in modules {
-        collect(&Path::new("src").join(module), &mut files)?;
-        files.push(Path::new("src").join(format!("{module}.rs")));
-        if module == LAST {
-            break;
-        }
+    for wing in WINGS {
+        println!("cargo::rerun-if-changed={wing}");
+        collect(Path::new(wing), &mut files)?;
     }
+    println!("cargo::rerun-if-changed={LOCK}");
     files.sort();
-    let mut hasher = DefaultHasher::new();
-    for file in files.iter().filter(|file| file.is_file()) {
-        file.hash(&mut hasher);
-        for line in code(&fs::read_to_string(file)?) {
-            line.hash(&mut hasher);
+    let mut hasher = Sha256::new();
+    for file in &files {
+        hasher.update(file.to_string_lossy().as_bytes());
+        for line in fs::read_to_string(file)?.lines().map(str::trim) {
+            // Comments change nothing.
+            if !line.is_empty() && !line.starts_with("//") {
+                hasher.update(line);
+                hasher.update("\n");
+            }
         }
     }
-    println!("cargo::rustc-env=SANDBOX_ENGINE={:016x}", hasher.finish());
+    // Absent where the package is a dependency of another one.
+    hasher.update(fs::read(LOCK).unwrap_or_default());
+    let compiler = env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    hasher.update(Command::new(compiler).arg("--version").output()?.stdout);
+    let digest = hasher.finalize();
+    let digits: String = digest[..16]
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
+    println!("cargo::rustc-env=SANDBOX_ENGINE={digits}");
     Ok(())
 }
 
-/// What is left of a file without lines of comment and without its tests, which are its last module.
-fn code(text: &str) -> impl Iterator<Item = &str> {
-    let lines = text.lines().map(str::trim);
-    lines
-        .take_while(|line| *line != "#[cfg(test)]")
-        .filter(|line| !line.is_empty() && !line.starts_with("//"))
-}
-
-/// All files under `folder`, if there is one.
+/// Adds all files under `folder`.
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
-    if folder.is_dir() {
-        for entry in fs::read_dir(folder)? {
-            let path = entry?.path();
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
             collect(&path, files)?;
+        } else {
             files.push(path);
         }
     }

@@ -1,12 +1,12 @@
 //! One frame of a dense crowd, by size: the hot loops through the public API.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use sandbox::agents::NewAgent;
-use sandbox::catalog::{self, Parameters};
-use sandbox::math::Vector;
-use sandbox::placement::Grid;
-use sandbox::scene::{Group, Scene};
-use sandbox::simulation::Simulation;
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::math::Vector;
+use sandbox::engine::placement::Grid;
+use sandbox::engine::scene::{Group, Scene};
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::{self, Parameters};
 
 /// So many agents on a jittered grid of 4 P/m², each on its way to its own place, at rest after 1 s.
 fn crowd(count: u32, profile: &str) -> Simulation {

@@ -6,15 +6,15 @@
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use sandbox::bench::Crowd;
-use sandbox::boundary::WallMethod;
-use sandbox::forces::rvo::{Rvo, Scratch};
-use sandbox::forces::social::SocialForce;
-use sandbox::geometry::{Polygon, Walls};
-use sandbox::math::Vector;
-use sandbox::neighbors::{BLOCK, Neighbors};
-use sandbox::pairs::{Packed, PairCoefficients, Precision, Wanted};
-use sandbox::simulation::Simulation;
+use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::forces::rvo::{Rvo, Scratch};
+use sandbox::engine::forces::social::SocialForce;
+use sandbox::engine::geometry::{Polygon, Walls};
+use sandbox::engine::math::Vector;
+use sandbox::engine::neighbors::{BLOCK, Neighbors};
+use sandbox::engine::pairs::{Packed, PairCoefficients, Precision, Wanted};
+use sandbox::engine::simulation::Simulation;
+use sandbox::lab::bench::Crowd;
 
 const AGENTS: u32 = 10_000;
 /// RVO takes its time; so many agents are enough.

@@ -1,12 +1,12 @@
 //! The engine as a library: build a room, run it, read densities.
 
-use sandbox::agents::NewAgent;
-use sandbox::catalog::{self, Parameters};
-use sandbox::geometry::Polygon;
-use sandbox::math::Vector;
-use sandbox::placement::Grid;
-use sandbox::scene::{Group, Scene};
-use sandbox::simulation::Simulation;
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::geometry::Polygon;
+use sandbox::engine::math::Vector;
+use sandbox::engine::placement::Grid;
+use sandbox::engine::scene::{Group, Scene};
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::{self, Parameters};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A pillar 1 m before the goal, and 100 people who all want to get there.

@@ -1,9 +1,8 @@
 //! Run time against error: every scene and knob makes sense, errors are what they are called, and the
 //! command writes what it says.
-#![cfg(feature = "bench")]
 
-use sandbox::accuracy::{Detail, KNOBS, Kind, Knob, Lyapunov, Motion, SCENES, Scene, sample};
-use sandbox::boundary::WallMethod;
+use sandbox::engine::boundary::WallMethod;
+use sandbox::lab::accuracy::{Detail, KNOBS, Kind, Knob, Lyapunov, Motion, SCENES, Scene, sample};
 use sandbox::scenario::{Scenario, Setting};
 use serde_json::{Value, json};
 
@@ -133,7 +132,6 @@ fn best_values_are_among_those_tried() {
     }
 }
 
-#[cfg(feature = "cli")]
 #[test]
 fn the_command_writes_tables_and_pictures_and_keeps_what_is_finished() {
     let folder = tempfile::tempdir().unwrap();
@@ -160,10 +158,7 @@ fn the_command_writes_tables_and_pictures_and_keeps_what_is_finished() {
     for file in ["accuracy.md", "accuracy.csv", "accuracy.json"] {
         assert!(out.join(file).metadata().unwrap().len() > 0, "{file}");
     }
-    assert_eq!(
-        out.join("accuracy-wall.png").exists(),
-        cfg!(feature = "plot")
-    );
+    assert!(out.join("accuracy-wall.png").exists());
     let again = String::from_utf8(run(&arguments).stderr).unwrap();
     assert!(again.contains("0 case(s) to run, 1 kept"), "{again}");
 

@@ -1,15 +1,14 @@
 //! The wall benchmark: its exact integrals, and that each method does what it is said to do.
-#![cfg(feature = "bench")]
 
 use crate::common::quadrature;
 use crate::common::{rectangle, vector};
-use sandbox::accuracy::walls::{
+use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::geometry::Walls;
+use sandbox::engine::kernel;
+use sandbox::lab::accuracy::walls::{
     Case, Integrals, METHODS, Method, Place, Region, SUPPORT_RADIUS, Stored, Volumes, cases,
     measure,
 };
-use sandbox::boundary::WallMethod;
-use sandbox::geometry::Walls;
-use sandbox::kernel;
 
 const PLACES: usize = 40;
 
@@ -249,7 +248,7 @@ fn a_volume_map_puts_the_whole_solid_at_the_nearest_point() {
 fn particles_with_akincis_volumes_make_the_middle_of_a_solid_full_and_its_surface_too_heavy() {
     let solid = Walls::new(vec![rectangle([-2.5, 2.5], [-4.0, 0.0])]);
     let density = |volumes, y: f64| {
-        let particles = sandbox::accuracy::walls::Particles::fill(&solid, 0.1, volumes, 1.0);
+        let particles = sandbox::lab::accuracy::walls::Particles::fill(&solid, 0.1, volumes, 1.0);
         particles.integrals(vector(0.017, y)).kernel
     };
     for volumes in [Volumes::Whole, Volumes::Cut, Volumes::Akinci] {

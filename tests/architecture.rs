@@ -1,4 +1,4 @@
-//! The house: modules use only what stands above them in `lib.rs`, each foreign crate has one home,
+//! The house: wings and their modules use only what stands above them, each foreign crate has one home,
 //! nothing panics on `unwrap`, and no file grows over the eyes' reach.
 
 use std::fs;
@@ -48,29 +48,37 @@ fn code(path: &Path) -> Vec<(usize, String)> {
         .collect()
 }
 
-/// The modules in the order in which `lib.rs` declares them.
-fn order() -> Vec<String> {
-    let declaration = |(_, line): (usize, String)| {
-        let rest = line
-            .trim()
-            .strip_prefix("pub ")
-            .unwrap_or(line.trim())
-            .to_owned();
+/// The modules that a file declares, in its order: `pub mod name;` and `mod name;`.
+fn declared(path: &Path) -> Vec<String> {
+    let lines = code(path).into_iter();
+    let name = |(_, line): (usize, String)| {
+        let line = line.trim();
+        let rest = line.strip_prefix("pub ").unwrap_or(line);
         let name = rest.strip_prefix("mod ")?.strip_suffix(';')?;
         Some(name.to_owned())
     };
-    code(&source().join("lib.rs"))
-        .into_iter()
-        .filter_map(declaration)
-        .collect()
+    lines.filter_map(name).collect()
 }
 
-/// The module in `lib.rs` that a file belongs to.
-fn module_of(path: &Path) -> String {
-    let inside = path.strip_prefix(source()).unwrap();
-    let first = inside.components().next().unwrap().as_os_str();
-    first.to_str().unwrap().trim_end_matches(".rs").to_owned()
+/// The wings of the house from top to bottom, each with its modules in their order.
+fn wings() -> Vec<(String, Vec<String>)> {
+    let wings = declared(&source().join("lib.rs")).into_iter();
+    let modules = |wing: &str| declared(&source().join(wing).join("mod.rs"));
+    wings.map(|wing| (wing.clone(), modules(&wing))).collect()
 }
+
+/// The wing of a file and its module in it, as in `engine` and `frame`.
+fn place_of(path: &Path) -> (String, String) {
+    let inside = path.strip_prefix(source()).unwrap();
+    let mut names = inside
+        .components()
+        .map(|part| part.as_os_str().to_str().unwrap().trim_end_matches(".rs"));
+    let wing = names.next().unwrap().to_owned();
+    (wing, names.next().unwrap_or_default().to_owned())
+}
+
+/// Wings of one module each: their files may use one another.
+const WHOLE: [&str; 2] = ["scenario", "cli"];
 
 /// Every identifier that directly follows `prefix` in a piece of code, the parts of a `{…}` list too.
 fn names_after(text: &str, prefix: &str) -> Vec<String> {
@@ -114,33 +122,52 @@ fn joined(path: &Path) -> String {
 }
 
 #[test]
-fn modules_use_only_what_stands_above_them() {
-    let order = order();
-    assert!(order.len() > 10, "lib.rs was read: {order:?}");
+fn wings_and_modules_use_only_what_stands_above_them() {
+    let wings = wings();
+    assert!(wings.len() >= 3, "lib.rs was read: {wings:?}");
     for path in files(&source()) {
-        let module = module_of(&path);
+        let (wing, module) = place_of(&path);
+        if ["lib", "main"].contains(&wing.as_str()) {
+            continue;
+        }
+        let own_wing = wings.iter().position(|(name, _)| *name == wing);
+        let own_wing = own_wing.unwrap_or_else(|| panic!("{wing} is not in lib.rs"));
+        let text = joined(&path);
+        for name in names_after(&text, "crate::") {
+            let used = wings.iter().position(|(other, _)| *other == name);
+            let used = used.unwrap_or_else(|| panic!("{}: crate::{name}?", path.display()));
+            assert!(
+                used <= own_wing,
+                "{}: `{wing}` uses `{name}`, which stands below it",
+                path.display()
+            );
+        }
+        let order = &wings[own_wing].1;
         let Some(own) = order.iter().position(|name| *name == module) else {
             assert!(
-                ["lib", "main"].contains(&module.as_str()),
-                "{module} is not in lib.rs"
+                path.ends_with("mod.rs"),
+                "{} is in no module",
+                path.display()
             );
             continue;
         };
-        let text = joined(&path);
-        let mut used = names_after(&text, "crate::");
-        // From a module's own file, `super` is the crate itself.
+        if WHOLE.contains(&wing.as_str()) {
+            continue;
+        }
+        let mut used = names_after(&text, &format!("crate::{wing}::"));
+        // From a module's own file, `super` is its wing.
         let own_file = if path.ends_with("mod.rs") {
             path.parent()
         } else {
             Some(path.as_path())
         };
-        let is_root = own_file.and_then(Path::parent) == Some(source().as_path());
-        if is_root {
+        if own_file.and_then(Path::parent) == Some(source().join(&wing).as_path()) {
             used.extend(names_after(&text, "super::"));
         }
         for name in used {
             let place = order.iter().position(|other| *other == name);
-            let place = place.unwrap_or_else(|| panic!("{}: crate::{name}?", path.display()));
+            let place =
+                place.unwrap_or_else(|| panic!("{}: crate::{wing}::{name}?", path.display()));
             assert!(
                 place <= own,
                 "{}: `{module}` uses `{name}`, which stands below it",
@@ -162,7 +189,8 @@ fn strays(krate: &str, homes: &[&str]) -> Vec<String> {
     };
     let mut found = Vec::new();
     for path in files(&source()) {
-        if homes.contains(&module_of(&path).as_str()) {
+        let (wing, module) = place_of(&path);
+        if homes.contains(&wing.as_str()) || homes.contains(&format!("{wing}/{module}").as_str()) {
             continue;
         }
         let lines = code(&path).into_iter().filter(|(_, line)| names(line));
@@ -174,26 +202,26 @@ fn strays(krate: &str, homes: &[&str]) -> Vec<String> {
 #[test]
 fn each_foreign_crate_has_one_home() {
     for (krate, home) in [
-        ("parry2d", "geometry"),
-        ("wkt", "floor_plan"),
-        ("geojson", "floor_plan"),
-        ("rerun", "recording"),
+        ("parry2d", "engine/geometry"),
+        ("wkt", "scenario/floor_plan"),
+        ("geojson", "scenario/floor_plan"),
+        ("rerun", "output/recording"),
         ("clap", "cli"),
         ("clap_complete", "cli"),
         ("clap_mangen", "cli"),
         ("signal_hook", "cli"),
-        ("rusqlite", "trajectory"),
-        ("plotters", "plot"),
-        ("colorgrad", "colors"),
-        ("fearless_simd", "pairs"),
-        ("sysinfo", "bench"),
-        ("rustsim_crowd", "bench"),
+        ("rusqlite", "output/trajectory"),
+        ("plotters", "output/plot"),
+        ("colorgrad", "output/colors"),
+        ("fearless_simd", "engine/pairs"),
+        ("sysinfo", "lab/bench"),
+        ("rustsim_crowd", "lab/bench"),
     ] {
         assert_eq!(strays(krate, &[home]), Vec::<String>::new());
     }
     // What people walk on is cut to shape on the way in and on the way out.
     assert_eq!(
-        strays("geo", &["floor_plan", "trajectory"]),
+        strays("geo", &["scenario/floor_plan", "output/trajectory"]),
         Vec::<String>::new()
     );
 }

@@ -1,6 +1,6 @@
 //! Disks that are full, folders that cannot be or that vanish: exit code 1, one sentence with the path, and
 //! what was found until then is kept.
-#![cfg(all(feature = "cli", target_os = "linux"))]
+#![cfg(target_os = "linux")]
 
 use std::fs::{self, File};
 use std::os::unix::fs::symlink;
@@ -66,7 +66,7 @@ const WRITERS: [(&[&str], &str); 9] = [
 
 /// Those of them that this program has.
 fn writers() -> impl Iterator<Item = (&'static [&'static str], &'static str)> {
-    let has = |extension: &str| cfg!(feature = "recording") || extension != "rrd";
+    let has = |extension: &str| extension != "rrd";
     WRITERS
         .into_iter()
         .filter(move |(_, extension)| has(extension))
@@ -182,7 +182,6 @@ fn a_disk_that_becomes_full_leaves_whole_frames_and_says_how_many() {
     }
 }
 
-#[cfg(feature = "recording")]
 #[test]
 fn a_recording_on_a_disk_that_becomes_full_opens_and_the_run_is_reported() {
     let folder = tempfile::tempdir().unwrap();
@@ -205,7 +204,7 @@ fn a_recording_on_a_disk_that_becomes_full_opens_and_the_run_is_reported() {
     );
     assert!(said.ends_with("; it opens, but ends early"), "{said}");
     assert_eq!(json(&output)["frames"], 200);
-    let recording = sandbox::recording::Recording::read(&path).unwrap();
+    let recording = sandbox::output::recording::Recording::read(&path).unwrap();
     assert!(recording.entities().contains("/world/geometry/walls"));
 }
 
@@ -213,9 +212,6 @@ fn a_recording_on_a_disk_that_becomes_full_opens_and_the_run_is_reported() {
 fn a_folder_that_vanishes_under_a_run_is_a_failure() {
     let folder = tempfile::tempdir().unwrap();
     for extension in ["csv", "sqlite", "rrd"] {
-        if extension == "rrd" && cfg!(not(feature = "recording")) {
-            continue;
-        }
         let place = folder.path().join("place");
         fs::create_dir(&place).unwrap();
         let path = place.join("run").with_extension(extension);

@@ -1,15 +1,14 @@
 //! The benchmarks: what they report, and that paying for more changes nothing but the time.
 //!
 //! No test here looks at how long something took.
-#![cfg(feature = "bench")]
 
 use std::path::{Path, PathBuf};
 
 use crate::common;
 use crate::common::{blend, block, room, scene, vector};
-use sandbox::bench::{BENCHMARKS, Plan, Report, SKIPS, everything};
-use sandbox::catalog::NAMES;
-use sandbox::simulation::{Simulation, Stage};
+use sandbox::engine::simulation::{Simulation, Stage};
+use sandbox::lab::bench::{BENCHMARKS, Plan, Report, SKIPS, everything};
+use sandbox::scenario::catalog::NAMES;
 use serde_json::Value;
 
 fn quick() -> Plan {
@@ -276,7 +275,6 @@ fn jupedsim_gets_everybody_and_is_compared_with_the_same_radius_on_one_thread() 
     assert!((ratio * fastest / 250.0 - 1.0).abs() < 1e-12);
 }
 
-#[cfg(feature = "cli")]
 #[test]
 fn results_are_written_once_and_replaced_only_by_force() {
     let folder = tempfile::tempdir().unwrap();
@@ -297,7 +295,7 @@ fn results_are_written_once_and_replaced_only_by_force() {
     assert_eq!(read(), printed);
     for extension in ["svg", "png"] {
         let picture = file.with_extension(extension);
-        assert_eq!(picture.exists(), cfg!(feature = "plot"), "{extension}");
+        assert!(picture.exists(), "{extension}");
     }
     let second = run(&[]);
     assert_eq!(second.status.code(), Some(2));

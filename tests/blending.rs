@@ -3,13 +3,13 @@
 use crate::common::{
     acceleration, blend, blend_with, evaluated, laid_open, person, scene, state, vector, walker,
 };
-use sandbox::agents::NewAgent;
-use sandbox::catalog::{self, NAMES, Parameters};
-use sandbox::density::SphParameters;
-use sandbox::math::Vector;
-use sandbox::profile::{Blend, BlendError, BlendStep};
-use sandbox::scene::Scene;
-use sandbox::simulation::Simulation;
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::density::SphParameters;
+use sandbox::engine::math::Vector;
+use sandbox::engine::profile::{Blend, BlendError, BlendStep};
+use sandbox::engine::scene::Scene;
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::{self, NAMES, Parameters};
 
 fn sequence(steps: &[(&str, f64)]) -> Result<Blend, BlendError> {
     let steps = steps.iter().map(|&(name, at_density)| BlendStep {

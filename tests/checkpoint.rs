@@ -4,16 +4,16 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::{blend, block, room, scene, vector};
-use sandbox::catalog::NAMES;
-use sandbox::checkpoint::{Checkpoint, CheckpointError};
-use sandbox::metrics::Metrics;
-use sandbox::neighbors::ListPolicy;
-use sandbox::pairs::Precision;
-use sandbox::placement::Grid;
-use sandbox::profile::Override;
+use sandbox::engine::neighbors::ListPolicy;
+use sandbox::engine::pairs::Precision;
+use sandbox::engine::placement::Grid;
+use sandbox::engine::profile::Override;
+use sandbox::engine::scene::{Goal, Integrator, Push, Region, Scene, Source};
+use sandbox::engine::simulation::Simulation;
+use sandbox::runs::checkpoint::{Checkpoint, CheckpointError};
+use sandbox::scenario::catalog::NAMES;
+use sandbox::scenario::metrics::Metrics;
 use sandbox::scenario::{Scenario, Setting};
-use sandbox::scene::{Goal, Integrator, Push, Region, Scene, Source};
-use sandbox::simulation::Simulation;
 
 /// A crowd that leaves a room through a door, with latecomers and a push.
 fn busy_room(profile: &str) -> Scene {
@@ -235,7 +235,6 @@ fn a_state_of_another_scene_is_refused() {
 }
 
 /// Ids, densities, mean densities and pressures of the evaluated frame, as bits, by id.
-#[cfg(feature = "trajectory")]
 fn observed(simulation: &Simulation) -> Vec<(u32, [u64; 3])> {
     let frame = simulation.frame();
     let fields = frame.fields;
@@ -254,7 +253,6 @@ fn observed(simulation: &Simulation) -> Vec<(u32, [u64; 3])> {
     rows
 }
 
-#[cfg(feature = "trajectory")]
 #[test]
 fn a_resumed_run_observes_the_densities_of_one_that_never_stopped() {
     for profile in NAMES {
@@ -278,7 +276,6 @@ fn a_resumed_run_observes_the_densities_of_one_that_never_stopped() {
     }
 }
 
-#[cfg(feature = "cli")]
 #[test]
 fn digests_and_resumed_files_do_not_depend_on_what_is_written() {
     let folder = tempfile::tempdir().unwrap();
@@ -345,7 +342,6 @@ fn digests_and_resumed_files_do_not_depend_on_what_is_written() {
     assert_eq!(resumed[1..], whole[whole.len() - resumed.len() + 1..]);
 }
 
-#[cfg(feature = "cli")]
 #[test]
 fn the_program_goes_on_from_a_checkpoint() {
     let folder = tempfile::tempdir().unwrap();

@@ -12,10 +12,10 @@ use crate::common::bounded::cases;
 use crate::common::reading_checkpoints::{read, sealed};
 use proptest::prelude::*;
 use proptest::sample::Index;
-use sandbox::checkpoint::Checkpoint;
-use sandbox::metrics::Metrics;
+use sandbox::engine::simulation::Simulation;
+use sandbox::runs::checkpoint::Checkpoint;
 use sandbox::scenario::Scenario;
-use sandbox::simulation::Simulation;
+use sandbox::scenario::metrics::Metrics;
 
 /// Few people, latecomers, a push and a wall.
 const SCENARIO: &str = r#"{

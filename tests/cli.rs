@@ -1,5 +1,4 @@
 //! The program as a user runs it: exit codes, what goes where, and the shape of its JSON.
-#![cfg(feature = "cli")]
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -181,7 +180,6 @@ fn bad_input_is_refused_with_its_place_and_exit_code_2() {
     );
 }
 
-#[cfg(feature = "recording")]
 #[test]
 fn a_run_that_is_saved_reads_back_with_everybody_and_a_dozen_laid_open() {
     let folder = tempfile::tempdir().unwrap();
@@ -189,7 +187,7 @@ fn a_run_that_is_saved_reads_back_with_everybody_and_a_dozen_laid_open() {
     let path = file.to_str().unwrap();
     let run = ["evacuation", "--until", "0.2", "--save", path, "--json"];
     assert_eq!(json(&run)["frames"], 10);
-    let recording = sandbox::recording::Recording::read(&file).unwrap();
+    let recording = sandbox::output::recording::Recording::read(&file).unwrap();
     let crowd = recording.pairs("/world/agents", "Points2D:positions");
     let frames: Vec<_> = crowd
         .iter()
@@ -210,7 +208,6 @@ fn a_run_that_is_saved_reads_back_with_everybody_and_a_dozen_laid_open() {
     }
 }
 
-#[cfg(feature = "recording")]
 #[test]
 fn an_existing_file_is_replaced_only_by_force() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,4 @@
 //! `--geometry` and `sandbox schema` as a user runs them.
-#![cfg(feature = "cli")]
 
 use std::process::{Command, Output};
 
@@ -58,7 +57,6 @@ fn a_floor_plan_that_is_none_is_refused_with_its_name_and_exit_code_2() {
 }
 
 /// A trajectory of two people with this geometry.
-#[cfg(feature = "trajectory")]
 fn trajectory(folder: &std::path::Path, wkt: Option<String>) -> String {
     let path = folder.join("run.sqlite");
     let file = rusqlite::Connection::open(&path).unwrap();
@@ -76,7 +74,6 @@ fn trajectory(folder: &std::path::Path, wkt: Option<String>) -> String {
 }
 
 #[test]
-#[cfg(feature = "trajectory")]
 fn the_geometry_of_a_trajectory_is_read_as_carefully_as_a_file() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");

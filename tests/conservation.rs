@@ -2,12 +2,12 @@
 //! they have a potential.
 
 use crate::common::{blend_with, block, rectangle, run, scene, vector};
-use sandbox::agents::{Agents, NewAgent};
-use sandbox::catalog::Parameters;
-use sandbox::clock::Clock;
-use sandbox::math::Vector;
-use sandbox::scene::{Integrator, Scene};
-use sandbox::simulation::Simulation;
+use sandbox::engine::agents::{Agents, NewAgent};
+use sandbox::engine::clock::Clock;
+use sandbox::engine::math::Vector;
+use sandbox::engine::scene::{Integrator, Scene};
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::Parameters;
 
 /// No goal force, and a rest density below that of anybody alone: every pressure is positive.
 fn free(parameters: Parameters) -> Scene {

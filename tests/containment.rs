@@ -5,11 +5,11 @@ use crate::common::{
     blend, blend_with, block, person, polygon, rectangle, run, scene, vector, walker,
 };
 use proptest::prelude::*;
-use sandbox::catalog::Parameters;
-use sandbox::geometry::Polygon;
-use sandbox::math::Vector;
-use sandbox::scene::Integrator;
-use sandbox::simulation::Simulation;
+use sandbox::engine::geometry::Polygon;
+use sandbox::engine::math::Vector;
+use sandbox::engine::scene::Integrator;
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::Parameters;
 
 /// A closed ring of wall round [0, side]², with a slit at the left that is 1 µm wide.
 fn cell(side: f64, thickness: f64) -> Polygon {

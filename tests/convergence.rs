@@ -1,12 +1,12 @@
 //! Orders of convergence: how the error of each integrator falls with the time step.
 
 use crate::common::{blend_with, person, run, scene, vector};
-use sandbox::agents::NewAgent;
-use sandbox::catalog::Parameters;
-use sandbox::clock::Clock;
-use sandbox::math::Vector;
-use sandbox::scene::{Integrator, Scene};
-use sandbox::simulation::Simulation;
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::clock::Clock;
+use sandbox::engine::math::Vector;
+use sandbox::engine::scene::{Integrator, Scene};
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::Parameters;
 
 /// How long a crowd moves, seconds.
 const DURATION: f64 = 0.4;

@@ -2,11 +2,11 @@
 
 use crate::common;
 use crate::common::{bits, blend, block, room, scene, vector};
-use sandbox::catalog::NAMES;
-use sandbox::pairs::Precision;
-use sandbox::profile::Override;
-use sandbox::scene::{Goal, Push, Region, Scene, Source};
-use sandbox::simulation::Simulation;
+use sandbox::engine::pairs::Precision;
+use sandbox::engine::profile::Override;
+use sandbox::engine::scene::{Goal, Push, Region, Scene, Source};
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::NAMES;
 
 /// A crowd in a small room with an exit; a row more every second, and a push. Large enough to be
 /// spread over eight threads.
@@ -20,7 +20,7 @@ fn busy_room(profile: &str) -> Scene {
     scene.agents = block(vector(0.4, 0.4), 28, 22, 0.42, exit);
     scene.sources = vec![Source {
         name: "late".to_owned(),
-        grid: sandbox::placement::Grid {
+        grid: sandbox::engine::placement::Grid {
             min: vector(0.3, 10.0),
             max: vector(11.0, 11.5),
             columns: 12,
@@ -149,7 +149,8 @@ fn a_density_asked_for_between_coarse_frames_misses_nobody() {
             let expected: f64 = all
                 .map(|j| {
                     let r_ij = frame.agents.position[i] - frame.agents.position[j];
-                    frame.agents.mass[j] * sandbox::kernel::density(r_ij.norm_squared(), 1.0)
+                    frame.agents.mass[j]
+                        * sandbox::engine::kernel::density(r_ij.norm_squared(), 1.0)
                 })
                 .sum();
             let found = frame.fields.density[i] - frame.fields.density_from_walls[i];

@@ -3,11 +3,11 @@
 use crate::common;
 use crate::common::{blend, blend_with, block, person, rectangle, run, scene, vector, walker};
 use proptest::prelude::*;
-use sandbox::boundary::WallMethod;
-use sandbox::catalog::{NAMES, Parameters};
-use sandbox::geometry::{Area, Polygon, Ring, Walls};
-use sandbox::math::Vector;
-use sandbox::simulation::Simulation;
+use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::geometry::{Area, Polygon, Ring, Walls};
+use sandbox::engine::math::Vector;
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::{NAMES, Parameters};
 
 fn ring(points: &[[f64; 2]]) -> Ring {
     Ring::new(points.iter().map(|&p| Vector::from(p)).collect()).unwrap()
@@ -48,7 +48,7 @@ fn walled(thickness: f64) -> Vec<Polygon> {
 }
 
 /// People all over the room, on the walk.
-fn crowd() -> Vec<sandbox::agents::NewAgent> {
+fn crowd() -> Vec<sandbox::engine::agents::NewAgent> {
     let room = Walls::new(enclosed());
     block(vector(0.05, 0.08), 13, 11, 0.45, vector(5.5, 4.5))
         .into_iter()

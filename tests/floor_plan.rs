@@ -2,10 +2,10 @@
 
 use std::fs;
 
-use sandbox::floor_plan::{self, FloorPlan, FloorPlanError, parse_wkt};
-use sandbox::geometry::Polygon;
-use sandbox::math::Vector;
-use sandbox::quote::shown;
+use sandbox::engine::geometry::Polygon;
+use sandbox::engine::math::Vector;
+use sandbox::scenario::floor_plan::{self, FloorPlan, FloorPlanError, parse_wkt};
+use sandbox::scenario::quote::shown;
 use serde_json::{Value, json};
 
 fn read(name: &str, text: &str) -> Result<FloorPlan, FloorPlanError> {

@@ -2,9 +2,9 @@
 //! obstacle does.
 
 use proptest::prelude::*;
-use sandbox::floor_plan::{self, FloorPlanError};
-use sandbox::geometry::{Polygon, Ring, Walls};
-use sandbox::math::{Vector, perpendicular};
+use sandbox::engine::geometry::{Polygon, Ring, Walls};
+use sandbox::engine::math::{Vector, perpendicular};
+use sandbox::scenario::floor_plan::{self, FloorPlanError};
 use serde_json::{Value, json};
 
 /// The corners of a rectangle, turned, and whether it is an obstacle.

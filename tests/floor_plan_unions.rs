@@ -7,9 +7,9 @@ use crate::common::plans::{Ring, contains, margin, multipolygon, rings};
 use geo::{LineString, Polygon, Validation};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use sandbox::floor_plan::{self, FloorPlan, FloorPlanError};
-use sandbox::geometry::{Area, Walls};
-use sandbox::math::Vector;
+use sandbox::engine::geometry::{Area, Walls};
+use sandbox::engine::math::Vector;
+use sandbox::scenario::floor_plan::{self, FloorPlan, FloorPlanError};
 use serde_json::json;
 
 /// Three rooms of which one has a corner on the diagonal of another.

@@ -5,14 +5,14 @@ use crate::common::{
     walker,
 };
 use proptest::prelude::*;
-use sandbox::agents::NewAgent;
-use sandbox::boundary::WallMethod;
-use sandbox::catalog::{NAMES, Parameters};
-use sandbox::geometry::Polygon;
-use sandbox::math::Vector;
-use sandbox::profile::Terms;
-use sandbox::scene::Scene;
-use sandbox::simulation::Simulation;
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::geometry::Polygon;
+use sandbox::engine::math::Vector;
+use sandbox::engine::profile::Terms;
+use sandbox::engine::scene::Scene;
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::{NAMES, Parameters};
 
 /// Everything in the plane turned, perhaps mirrored, and moved.
 #[derive(Debug, Clone, Copy)]
@@ -248,7 +248,7 @@ fn coincident_agents_get_no_direction_and_no_nan() {
         let simulation = evaluated(scene);
         for id in 0..3 {
             let found = acceleration(&simulation, id);
-            assert!(sandbox::math::is_finite(found), "{name}");
+            assert!(sandbox::engine::math::is_finite(found), "{name}");
             assert!(found.y.abs() < 40.0, "{name}");
         }
     }

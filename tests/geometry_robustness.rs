@@ -7,9 +7,9 @@ use crate::common::reading;
 use crate::common::wall_checks;
 use proptest::prelude::*;
 use proptest::sample::select;
-use sandbox::boundary::WallMethod;
-use sandbox::geometry::Walls;
-use sandbox::math::Vector;
+use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::geometry::Walls;
+use sandbox::engine::math::Vector;
 use sandbox::scenario::Scenario;
 use serde_json::{Value, json};
 

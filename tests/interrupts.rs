@@ -1,5 +1,5 @@
 //! Ctrl-C: a run ends with its current frame and closes everything; the second time at once.
-#![cfg(all(feature = "cli", unix))]
+#![cfg(unix)]
 
 use std::fs;
 
@@ -8,7 +8,6 @@ use crate::common::program::{ended, text, under_way};
 /// One person for days.
 const LONG: &str = r#"{"duration_secs": 1e6, "agents": [{"position": [0, 0], "goal": [9, 0]}]}"#;
 
-#[cfg(feature = "recording")]
 #[test]
 fn an_interrupted_concert_is_whole_up_to_its_last_frame() {
     use std::collections::BTreeMap;
@@ -42,7 +41,7 @@ fn an_interrupted_concert_is_whole_up_to_its_last_frame() {
         "100 enter at once"
     );
 
-    let recording = sandbox::recording::Recording::read(&rrd).unwrap();
+    let recording = sandbox::output::recording::Recording::read(&rrd).unwrap();
     let crowd = recording.pairs("/world/agents", "Points2D:positions");
     let recorded = crowd.iter();
     let recorded = recorded.map(|(frame, places)| (frame.cast_unsigned() / 5, places.len()));

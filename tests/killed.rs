@@ -1,5 +1,5 @@
 //! `kill -9` at any moment: what was recorded more than two seconds earlier is readable.
-#![cfg(all(feature = "cli", feature = "recording", unix))]
+#![cfg(unix)]
 
 use std::fs;
 use std::path::Path;
@@ -8,8 +8,8 @@ use std::time::Duration;
 use crate::common::program::{text, under_way};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use sandbox::checkpoint::Checkpoint;
-use sandbox::recording::Recording;
+use sandbox::output::recording::Recording;
+use sandbox::runs::checkpoint::Checkpoint;
 
 /// So many runs are killed, so many at a time.
 const KILLED: u64 = 50;

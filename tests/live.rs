@@ -1,5 +1,4 @@
 //! `--spawn` and `--connect`: what is said where nobody looks on, or somebody has gone.
-#![cfg(all(feature = "cli", feature = "recording"))]
 
 use std::io::Read;
 use std::net::{TcpListener, TcpStream};
@@ -8,7 +7,7 @@ use std::process::{Command, Output};
 
 use crate::common;
 use crate::common::program::{PROGRAM, ended, text, under_way};
-use sandbox::recording::Recording;
+use sandbox::output::recording::Recording;
 
 fn sandbox(arguments: &[&str]) -> Output {
     let run = ["evacuation", "--until", "0.2"];

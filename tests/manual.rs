@@ -1,5 +1,4 @@
 //! Completions and man pages name what there is.
-#![cfg(feature = "cli")]
 
 use std::collections::BTreeSet;
 use std::fs;

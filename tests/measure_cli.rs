@@ -1,5 +1,4 @@
 //! `sandbox measure` as a user runs it.
-#![cfg(feature = "cli")]
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -126,7 +125,6 @@ fn a_corridor_is_measured_into_a_folder() {
     let pairs: f64 = classes["count"].iter().sum();
     let people: f64 = diagram["people"].iter().sum();
     assert_eq!(pairs, people + diagram["people"].len() as f64);
-    #[cfg(feature = "plot")]
     for name in ["fields.svg", "fundamental_diagram.png", "flow.svg"] {
         assert!(folder.join(name).metadata().unwrap().len() > 1000);
     }
@@ -141,10 +139,9 @@ fn a_corridor_is_measured_into_a_folder() {
     assert_eq!(again.stdout, output.stdout);
 }
 
-#[cfg(feature = "recording")]
 #[test]
 fn the_recording_has_the_crowd_and_its_walls() {
-    use sandbox::recording::Recording;
+    use sandbox::output::recording::Recording;
 
     let (_folder, [trajectory, plan, out]) = walkers();
     let output = measure(&[

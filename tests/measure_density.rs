@@ -1,19 +1,20 @@
 //! Densities that are measured: the engine's own, those of lattices, and fields that hold everybody.
-#![cfg(feature = "trajectory")]
 
 use std::collections::BTreeMap;
 
 use crate::common::tracks::tracks;
 use crate::common::{blend, block, rectangle, room, scene, vector};
 use rusqlite::Connection;
-use sandbox::boundary::WallMethod;
-use sandbox::floor_plan::parse_wkt;
-use sandbox::kernel;
-use sandbox::measure::{Behind, Kernel, MeasureError, Measured, Moment, Options, Site, measure};
-use sandbox::scene::Region;
-use sandbox::simulation::Simulation;
-use sandbox::trajectory::Trajectory;
-use sandbox::trajectory::read::{ReadOptions, Tracks, read};
+use sandbox::analysis::measure::{
+    Behind, Kernel, MeasureError, Measured, Moment, Options, Site, measure,
+};
+use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::kernel;
+use sandbox::engine::scene::Region;
+use sandbox::engine::simulation::Simulation;
+use sandbox::output::trajectory::Trajectory;
+use sandbox::output::trajectory::read::{ReadOptions, Tracks, read};
+use sandbox::scenario::floor_plan::parse_wkt;
 
 fn options() -> Options {
     Options {

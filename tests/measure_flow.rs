@@ -1,19 +1,18 @@
 //! Velocities, crossings and fundamental diagrams of motions that are known.
-#![cfg(feature = "trajectory")]
 
 use std::collections::BTreeMap;
 
 use crate::common::tracks::tracks;
 use crate::common::vector;
 use proptest::prelude::*;
-use sandbox::boundary::WallMethod;
-use sandbox::math::Vector;
-use sandbox::measure::{
+use sandbox::analysis::measure::{
     Behind, CLASS, Class, Crossings, Kernel, Line, MeasureError, Measured, Options, Site, measure,
     speed,
 };
-use sandbox::scene::Region;
-use sandbox::trajectory::read::Tracks;
+use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::math::Vector;
+use sandbox::engine::scene::Region;
+use sandbox::output::trajectory::read::Tracks;
 
 const ALWAYS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 

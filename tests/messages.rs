@@ -1,5 +1,4 @@
 //! What messages and results repeat of files: short, and nothing that a terminal obeys.
-#![cfg(feature = "cli")]
 
 use std::fs;
 use std::path::Path;

@@ -2,13 +2,13 @@
 //! wall.
 
 use crate::common::{blend, block, rectangle, run, scene, vector};
-use sandbox::agents::NewAgent;
-use sandbox::clock::Clock;
-use sandbox::kernel;
-use sandbox::neighbors::ListPolicy;
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::clock::Clock;
+use sandbox::engine::kernel;
+use sandbox::engine::neighbors::ListPolicy;
+use sandbox::engine::scene::{Integrator, Scene};
+use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::{Need, Scenario};
-use sandbox::scene::{Integrator, Scene};
-use sandbox::simulation::Simulation;
 
 /// Two blocks of people who run through each other.
 fn streams(lists: ListPolicy, integrator: Integrator, time_step: f64) -> Simulation {
@@ -88,7 +88,7 @@ fn the_midpoint_method_sees_everybody_half_a_frame_ahead() {
     let finest = streams(ListPolicy::Complete, Integrator::Midpoint, 0.08);
     let ranges = finest.scene().ranges(finest.needs());
     let half_a_move = 0.5 * finest.scene().max_speed * 0.08;
-    assert!(ranges.margin >= 0.5 * sandbox::neighbors::SKIN + half_a_move);
+    assert!(ranges.margin >= 0.5 * sandbox::engine::neighbors::SKIN + half_a_move);
 }
 
 /// Agents among round pillars, all of which are within reach of everybody.

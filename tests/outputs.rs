@@ -1,5 +1,5 @@
 //! Every output is tried before anything is computed: no file is lost to another, none is left behind.
-#![cfg(all(feature = "cli", unix))]
+#![cfg(unix)]
 
 use std::collections::BTreeMap;
 use std::fs::{self, Permissions};
@@ -7,8 +7,8 @@ use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, symlink};
 use std::os::unix::process::CommandExt;
 use std::process::Command;
 
-use sandbox::checkpoint::Checkpoint;
-use sandbox::outputs::{Manner, Outputs, OutputsError, write_whole};
+use sandbox::runs::checkpoint::Checkpoint;
+use sandbox::runs::outputs::{Manner, Outputs, OutputsError, write_whole};
 
 use crate::common::outputs::{SCENARIO, contents, folder, refused, run, said};
 use crate::common::program::PROGRAM;
@@ -108,7 +108,6 @@ fn an_input_is_never_replaced() {
     );
 }
 
-#[cfg(feature = "recording")]
 #[test]
 fn a_recording_replaces_no_scenario_and_has_its_extension() {
     let folder = folder();
@@ -306,9 +305,6 @@ fn a_run_outlives_a_checkpoint_that_cannot_be_written() {
 
 #[test]
 fn a_recording_from_beyond_the_end_is_refused_or_told() {
-    if cfg!(not(feature = "recording")) {
-        return;
-    }
     let folder = folder();
     let typed = "run s.json --save a.rrd --record-from 30";
     refused(

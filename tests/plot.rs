@@ -1,8 +1,7 @@
 //! Pictures: both formats of one sheet, complete and of the same size.
-#![cfg(feature = "plot")]
 
-use sandbox::colors;
-use sandbox::plot::{
+use sandbox::output::colors;
+use sandbox::output::plot::{
     Axis, BLACK, Cells, ColorBar, Corner, Disc, GRAY, LINES, Mark, Panel, Point, Sheet, Style,
 };
 

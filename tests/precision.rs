@@ -3,13 +3,13 @@
 use crate::common;
 use crate::common::{blend_with, room, scene, vector};
 use proptest::prelude::*;
-use sandbox::agents::NewAgent;
-use sandbox::catalog::Parameters;
-use sandbox::kernel;
-use sandbox::math::{Vector, direction};
-use sandbox::pairs::Precision;
-use sandbox::scene::Scene;
-use sandbox::simulation::Simulation;
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::kernel;
+use sandbox::engine::math::{Vector, direction};
+use sandbox::engine::pairs::Precision;
+use sandbox::engine::scene::Scene;
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::Parameters;
 
 /// The largest error of an acceleration, over the sum of the magnitudes of what it is a sum of.
 const BOUND: f64 = 1e-5;
@@ -26,7 +26,8 @@ fn crowd(corner: Vector, stretch: f64, seed: u64) -> Scene {
         scene.walls = Scene::default().walls;
     }
     scene.seed = seed;
-    let mut runner = sandbox::random::stream(seed, sandbox::random::Purpose::Placement, 0, 0);
+    let mut runner =
+        sandbox::engine::random::stream(seed, sandbox::engine::random::Purpose::Placement, 0, 0);
     let mut next = || rand::Rng::random_range(&mut runner, 0.0..1.0_f64);
     for k in 0..300 {
         let place = corner + vector(8.0 * next(), 8.0 * next()) * stretch;

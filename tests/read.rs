@@ -1,10 +1,9 @@
 //! Trajectories of other programs, as they are and as they should not be.
-#![cfg(feature = "trajectory")]
 
 use crate::common::tracks::{file, read_as};
 use crate::common::vector;
 use rusqlite::Connection;
-use sandbox::trajectory::read::{ReadOptions, Tracks, Unit, read};
+use sandbox::output::trajectory::read::{ReadOptions, Tracks, Unit, read};
 
 const PLAIN: ReadOptions = ReadOptions {
     unit: None,

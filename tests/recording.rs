@@ -1,17 +1,16 @@
 //! A small run is recorded, read back and compared with the simulation.
-#![cfg(feature = "recording")]
 
 use std::collections::BTreeMap;
 
-use sandbox::agents::NewAgent;
-use sandbox::catalog::{self, Parameters};
-use sandbox::geometry::Polygon;
-use sandbox::math::Vector;
-use sandbox::recording::{
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::geometry::Polygon;
+use sandbox::engine::math::Vector;
+use sandbox::engine::scene::{Group, Region, Scene};
+use sandbox::engine::simulation::Simulation;
+use sandbox::output::recording::{
     DebugAgents, METRES_PER_ACCELERATION, Recorder, Recording, RecordingError, RecordingOptions,
 };
-use sandbox::scene::{Group, Region, Scene};
-use sandbox::simulation::Simulation;
+use sandbox::scenario::catalog::{self, Parameters};
 
 const CROWD: &str = "/world/agents";
 

@@ -1,15 +1,15 @@
 //! Thirty small states with every term of the model but RVO, computed by an independent
 //! double-precision implementation; ours must agree to 1e-9.
 
-use sandbox::agents::NewAgent;
-use sandbox::boundary::WallMethod;
-use sandbox::breakdown::Breakdown;
-use sandbox::catalog::{self, Parameters};
-use sandbox::geometry::Polygon;
-use sandbox::math::Vector;
-use sandbox::pairs::Precision;
-use sandbox::scene::{Group, Scene};
-use sandbox::simulation::Simulation;
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::breakdown::Breakdown;
+use sandbox::engine::geometry::Polygon;
+use sandbox::engine::math::Vector;
+use sandbox::engine::pairs::Precision;
+use sandbox::engine::scene::{Group, Scene};
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::{self, Parameters};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::slice;
 use std::sync::Mutex;
 
-use sandbox::reproduce::{
+use sandbox::lab::reproduce::{
     Case, CaseResult, EvacuationRow, Key, Listener, PRODUCTS, Plan, ReproduceError, Row, Store,
     published, reproduce, run, table1_case,
 };

@@ -7,11 +7,11 @@ use crate::common::{
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use sandbox::agents::NewAgent;
-use sandbox::forces::rvo::{Candidate, MovingDisc, Rvo, Scratch, Search, Situation};
-use sandbox::geometry::{Polygon, Wall, Walls};
-use sandbox::math::Vector;
-use sandbox::simulation::Simulation;
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::forces::rvo::{Candidate, MovingDisc, Rvo, Scratch, Search, Situation};
+use sandbox::engine::geometry::{Polygon, Wall, Walls};
+use sandbox::engine::math::Vector;
+use sandbox::engine::simulation::Simulation;
 
 /// When two discs meet, from the roots of |offset − velocity t|² = reach².
 fn meeting(offset: Vector, velocity: Vector, reach: f64) -> f64 {

@@ -1,16 +1,15 @@
 //! Scenarios whose walls come from floor plans.
-#![cfg(feature = "trajectory")]
 
 use crate::common;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sandbox::checkpoint::Checkpoint;
-use sandbox::floor_plan;
-use sandbox::metrics::Metrics;
+use sandbox::engine::simulation::Simulation;
+use sandbox::output::trajectory::Trajectory;
+use sandbox::runs::checkpoint::Checkpoint;
+use sandbox::scenario::floor_plan;
+use sandbox::scenario::metrics::Metrics;
 use sandbox::scenario::{Scenario, Setting};
-use sandbox::simulation::Simulation;
-use sandbox::trajectory::Trajectory;
 use serde_json::{Value, json};
 
 const ROOM: &str = "POLYGON ((0 0, 10 0, 10 10, 0 10, 0 0), (2 2, 2 3, 3 3, 3 2, 2 2))";
@@ -203,7 +202,7 @@ fn passengers_cross_the_station_and_a_checkpoint_of_it_needs_no_floor_plan() {
     assert_eq!(simulation.digest(), resumed.digest());
     let arrived = simulation.frame().agents.entered() as usize - simulation.frame().agents.len();
     assert!(arrived > 50, "{arrived} have left by the exits");
-    let inside = |p: &sandbox::math::Vector| walls.obstacle_at(*p).is_none();
+    let inside = |p: &sandbox::engine::math::Vector| walls.obstacle_at(*p).is_none();
     assert!(simulation.frame().agents.position.iter().all(inside));
 }
 
@@ -232,7 +231,7 @@ fn the_walkable_area_of_a_trajectory_is_a_floor_plan_again() {
         let (count, reach) = (150, view.max - view.min);
         for k in 0..count * count {
             let part = [k % count, k / count].map(|n| (f64::from(n) + 0.5) / f64::from(count));
-            let p = view.min + reach.component_mul(&sandbox::math::Vector::from(part));
+            let p = view.min + reach.component_mul(&sandbox::engine::math::Vector::from(part));
             let solid = again.scene.walls.obstacle_at(p).is_some();
             assert_eq!(
                 solid,

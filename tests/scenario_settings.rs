@@ -1,9 +1,9 @@
 //! What is documented about settings is what the program does.
 
-use sandbox::boundary::WallMethod;
-use sandbox::catalog::{self, NAMES, Parameters};
+use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::scene::{Integrator, Scene};
+use sandbox::scenario::catalog::{self, NAMES, Parameters};
 use sandbox::scenario::{NESTED, Preset, Scenario, Setting, settings};
-use sandbox::scene::{Integrator, Scene};
 use serde_json::{Value, json};
 
 fn parameter_keys() -> Vec<String> {

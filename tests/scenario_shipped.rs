@@ -1,10 +1,10 @@
 //! The paper's three scenarios, and profiles and behaviours as files can give them.
 
-use sandbox::catalog::{self, Parameters};
-use sandbox::math::Vector;
-use sandbox::metrics::Measurement;
+use sandbox::engine::math::Vector;
+use sandbox::engine::scene::{Goal, Region};
+use sandbox::scenario::catalog::{self, Parameters};
+use sandbox::scenario::metrics::Measurement;
 use sandbox::scenario::{SHIPPED, Scenario, Setting};
-use sandbox::scene::{Goal, Region};
 
 fn shipped(name: &str, settings: &[&str]) -> Scenario {
     let settings: Vec<Setting> = settings.iter().map(|s| s.parse().unwrap()).collect();
@@ -103,7 +103,8 @@ fn the_crossing_is_mirrored_and_open_where_people_walk() {
         panic!("each to a goal below");
     };
     assert_eq!(starts[0] + offset, Vector::new(-11.5, -4.0));
-    let group = |source: &sandbox::scene::Source| &scenario.scene.groups[usize::from(source.group)];
+    let group =
+        |source: &sandbox::engine::scene::Source| &scenario.scene.groups[usize::from(source.group)];
     assert!(group(corridor).counted && !group(stream).counted);
     assert_eq!(group(stream).removal_radius, Some(0.5));
 }

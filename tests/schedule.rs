@@ -1,11 +1,11 @@
 //! Who enters, pushes and leaves, and when.
 
 use crate::common::{acceleration, blend, block, laid_open, run, scene, state, vector, walker};
-use sandbox::math::Vector;
-use sandbox::placement::Grid;
-use sandbox::profile::Override;
-use sandbox::scene::{Goal, Push, Region, Scene, Source};
-use sandbox::simulation::{EventKind, Simulation};
+use sandbox::engine::math::Vector;
+use sandbox::engine::placement::Grid;
+use sandbox::engine::profile::Override;
+use sandbox::engine::scene::{Goal, Push, Region, Scene, Source};
+use sandbox::engine::simulation::{EventKind, Simulation};
 
 #[test]
 fn arrivals_are_timed_after_moving_and_leave_in_the_same_frame() {

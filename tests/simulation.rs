@@ -4,13 +4,13 @@ use crate::common::{
     blend, blend_with, block, laid_open, person, rectangle, room, run, scene, state, vector,
 };
 use proptest::prelude::*;
-use sandbox::agents::NewAgent;
-use sandbox::catalog::{NAMES, Parameters};
-use sandbox::clock::Clock;
-use sandbox::math::Vector;
-use sandbox::metrics::{Measurement, Metrics};
-use sandbox::scene::Integrator;
-use sandbox::simulation::{Fault, Simulation};
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::clock::Clock;
+use sandbox::engine::math::Vector;
+use sandbox::engine::scene::Integrator;
+use sandbox::engine::simulation::{Fault, Simulation};
+use sandbox::scenario::catalog::{NAMES, Parameters};
+use sandbox::scenario::metrics::{Measurement, Metrics};
 
 /// One agent from rest towards a goal far to the right, and how far the two integrators take it.
 fn alone(integrator: Integrator, time_step: f64) -> Simulation {

@@ -2,12 +2,12 @@
 
 use crate::common;
 use crate::common::{blend, blend_with, block, person, rectangle, room, scene, vector};
-use sandbox::boundary::WallMethod;
-use sandbox::catalog::Parameters;
-use sandbox::pairs::Wanted;
-use sandbox::profile::Blend;
-use sandbox::scene::Needs;
-use sandbox::simulation::{Simulation, Stage};
+use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::pairs::Wanted;
+use sandbox::engine::profile::Blend;
+use sandbox::engine::scene::Needs;
+use sandbox::engine::simulation::{Simulation, Stage};
+use sandbox::scenario::catalog::Parameters;
 
 fn crowd(blend: Blend) -> Simulation {
     let mut scene = scene(vec![room(8.0, 1.0)], blend);

@@ -5,14 +5,14 @@ use crate::common::social::{condition, force, potential, weight};
 use crate::common::{blend, blend_with, scene, vector, walker};
 use proptest::prelude::*;
 use rand::Rng;
-use sandbox::agents::NewAgent;
-use sandbox::catalog::Parameters;
-use sandbox::forces::social::SocialForce;
-use sandbox::math::Vector;
-use sandbox::pairs::Precision;
-use sandbox::random::{Purpose, stream};
-use sandbox::scene::{Group, Scene};
-use sandbox::simulation::Simulation;
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::forces::social::SocialForce;
+use sandbox::engine::math::Vector;
+use sandbox::engine::pairs::Precision;
+use sandbox::engine::random::{Purpose, stream};
+use sandbox::engine::scene::{Group, Scene};
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::Parameters;
 
 /// The largest error of a sum of social forces in mixed precision, over the sum of their magnitudes.
 const BOUND: f64 = 1e-5;

@@ -2,11 +2,11 @@
 //! by a small plane wave, and the acceleration of its middle read.
 
 use crate::common::{acceleration, blend_with, evaluated, person, scene, vector};
-use sandbox::agents::NewAgent;
-use sandbox::catalog::Parameters;
-use sandbox::density::SphParameters;
-use sandbox::scene::Region;
-use sandbox::sound::{self, Lattice};
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::density::SphParameters;
+use sandbox::engine::scene::Region;
+use sandbox::engine::sound::{self, Lattice};
+use sandbox::scenario::catalog::Parameters;
 
 /// Who the middle feels, and whom those feel.
 const PATCH: f64 = 2.6;

@@ -5,14 +5,14 @@ use std::path::Path;
 
 use crate::common;
 use crate::common::{blend, blend_with, block, person, rectangle, scene, vector};
-use sandbox::agents::NewAgent;
-use sandbox::breakdown::Breakdown;
-use sandbox::catalog::{NAMES, Parameters};
-use sandbox::scenario::{Scenario, Setting};
-use sandbox::simulation::{Fault, Simulation};
-use sandbox::stress::{
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::breakdown::Breakdown;
+use sandbox::engine::simulation::{Fault, Simulation};
+use sandbox::lab::stress::{
     Cell, Condition, Detail, Found, HARD, Hard, Limit, Rest, Surroundings, Watch,
 };
+use sandbox::scenario::catalog::{NAMES, Parameters};
+use sandbox::scenario::{Scenario, Setting};
 
 /// Runs a file of `scenarios/stress` with some settings; fails unless it survives.
 fn survives(name: &str, settings: &[&str]) -> Found {
@@ -105,9 +105,9 @@ fn a_crowd_a_million_metres_away_is_as_dense_as_one_at_home() {
         let home = vector(999_980.0, -999_980.0) * shift;
         let obstacles = scene.walls.obstacles().iter().map(|polygon| {
             let points = polygon.points().iter().map(|p| p - home).collect();
-            sandbox::geometry::Polygon::new(points).unwrap()
+            sandbox::engine::geometry::Polygon::new(points).unwrap()
         });
-        scene.walls = sandbox::geometry::Walls::new(obstacles.collect());
+        scene.walls = sandbox::engine::geometry::Walls::new(obstacles.collect());
         for agent in &mut scene.agents {
             agent.position -= home;
             agent.goal -= home;
@@ -334,7 +334,6 @@ fn a_scenario_takes_the_automatic_step_and_says_where_it_is_unknown() {
     );
 }
 
-#[cfg(feature = "cli")]
 #[test]
 fn a_step_that_is_too_long_is_warned_of_with_its_number() {
     let stderr = |step: &str, settings: &[&str]| {

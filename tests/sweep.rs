@@ -6,8 +6,8 @@ use std::path::Path;
 use std::sync::Mutex;
 
 use crate::common::sweep::{ROOM, cases, column, folder, put, rows};
-use sandbox::statistics::student_95;
-use sandbox::sweep::{Cell, Gathered, Listener, Shard, Shelf, State, Study, Tally, run};
+use sandbox::analysis::statistics::student_95;
+use sandbox::lab::sweep::{Cell, Gathered, Listener, Shard, Shelf, State, Study, Tally, run};
 
 /// Writes down what a run says.
 #[derive(Default)]

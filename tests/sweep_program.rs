@@ -1,5 +1,4 @@
 //! `sandbox sweep` as a user runs it: exit codes, what goes where, two processes at once.
-#![cfg(feature = "cli")]
 
 use std::path::Path;
 use std::process::{Command, Output, Stdio};

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use proptest::prelude::*;
+use sandbox::lab::sweep::{Cell, Shard, Study};
 use sandbox::scenario::{Scenario, Setting};
-use sandbox::sweep::{Cell, Shard, Study};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use tempfile::TempDir;

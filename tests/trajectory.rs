@@ -1,5 +1,4 @@
 //! Trajectories are written, read back and compared with the simulation, bit by bit.
-#![cfg(feature = "trajectory")]
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -8,13 +7,13 @@ use std::path::{Path, PathBuf};
 use crate::common;
 use crate::common::{bits, blend, block, person, polygon, rectangle, room, scene, vector};
 use rusqlite::Connection;
-use sandbox::clock::Clock;
-use sandbox::geometry::Polygon;
-use sandbox::math::Vector;
+use sandbox::engine::clock::Clock;
+use sandbox::engine::geometry::Polygon;
+use sandbox::engine::math::Vector;
+use sandbox::engine::scene::{Region, Scene};
+use sandbox::engine::simulation::Simulation;
+use sandbox::output::trajectory::Trajectory;
 use sandbox::scenario::{SHIPPED, Scenario};
-use sandbox::scene::{Region, Scene};
-use sandbox::simulation::Simulation;
-use sandbox::trajectory::Trajectory;
 
 const VIEW: Region = Region {
     min: Vector::new(0.0, 0.0),

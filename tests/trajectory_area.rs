@@ -1,13 +1,12 @@
 //! The walkable area beside trajectories is where the engine lets people walk, point by point.
-#![cfg(feature = "trajectory")]
 
 use crate::common::plans::{Ring, contains, margin, rings};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use sandbox::math::Vector;
+use sandbox::engine::math::Vector;
+use sandbox::engine::simulation::Simulation;
+use sandbox::output::trajectory::Trajectory;
 use sandbox::scenario::Scenario;
-use sandbox::simulation::Simulation;
-use sandbox::trajectory::Trajectory;
 use serde_json::json;
 
 /// So many plans are in one scene, in rows of ten.

@@ -3,7 +3,6 @@
 //!
 //! 100,000 texts and 5,000 databases; more with `BAD_INPUT_TIMES=10 cargo test …`. At most this is held at once:
 //! 4 MB and 300 bytes for every byte of the file.
-#![cfg(feature = "trajectory")]
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -18,7 +17,7 @@ use crate::common::tracks::file;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use rusqlite::Connection;
-use sandbox::trajectory::read::{ReadOptions, read as read_file, read_text};
+use sandbox::output::trajectory::read::{ReadOptions, read as read_file, read_text};
 
 fn most(bytes: usize) -> u64 {
     (4 << 20) + 300 * bytes as u64

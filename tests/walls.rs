@@ -5,9 +5,9 @@ use std::f64::consts::{PI, TAU};
 use crate::common::quadrature::{Integrals, cross, shadow, swept};
 use crate::common::{polygon, rectangle, room, vector};
 use proptest::prelude::*;
-use sandbox::boundary::{WallMethod, WallShare};
-use sandbox::geometry::{Polygon, Walls};
-use sandbox::math::Vector;
+use sandbox::engine::boundary::{WallMethod, WallShare};
+use sandbox::engine::geometry::{Polygon, Walls};
+use sandbox::engine::math::Vector;
 
 fn shares(method: WallMethod, walls: &Walls, r_i: Vector, h: f64) -> Vec<WallShare> {
     let all: Vec<u32> = (0..walls.len() as u32).collect();

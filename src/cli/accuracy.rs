@@ -9,8 +9,8 @@ use super::update::{check, update};
 use super::values::threads;
 use super::watch::Watch;
 use super::{Failure, say, use_threads};
-use crate::accuracy::{KNOBS, Knob, Plan, SCENES, Scene, WALLS, accuracy};
-use crate::reproduce::Store;
+use crate::lab::accuracy::{KNOBS, Knob, Plan, SCENES, Scene, WALLS, accuracy};
+use crate::lab::reproduce::Store;
 
 #[derive(Args)]
 pub struct AccuracyOptions {

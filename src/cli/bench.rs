@@ -7,8 +7,8 @@ use clap::builder::PossibleValuesParser;
 
 use super::values::{repeats, threads};
 use super::{Failure, say, talk, use_threads};
-use crate::bench::{BENCHMARKS, BenchError, Plan, Report, files};
-use crate::outputs::{Manner, Outputs};
+use crate::lab::bench::{BENCHMARKS, BenchError, Plan, Report, files};
+use crate::runs::outputs::{Manner, Outputs};
 
 /// What may be typed.
 pub const EXAMPLES: &str = "\
@@ -101,9 +101,6 @@ pub fn run(options: &BenchOptions) -> Result<(), Failure> {
 fn save(report: &Report, folder: &Path) -> Result<(), Failure> {
     for path in report.save(folder)? {
         talk(&format!("note: {} written", path.display()));
-    }
-    if cfg!(not(feature = "plot")) {
-        talk("note: no picture: this program was built without the feature `plot`");
     }
     Ok(())
 }

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use super::arguments::CheckpointOptions;
 use super::{Failure, talk};
-use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::metrics::Metrics;
+use crate::engine::simulation::Simulation;
+use crate::runs::checkpoint::{Checkpoint, CheckpointError};
 use crate::scenario::Scenario;
-use crate::simulation::Simulation;
+use crate::scenario::metrics::Metrics;
 
 /// The checkpoints of a run.
 pub struct Checkpoints {

@@ -13,17 +13,17 @@ use super::output::{Output, check, laid_open};
 use super::report::Report;
 use super::trajectory::Trajectories;
 use super::{Failure, memory, say, scenario, setting, talk, use_threads};
-use crate::bench::main_memory;
-use crate::checkpoint::Checkpoint;
-use crate::clock::{Clock, SHORTEST_TIME_STEP};
-use crate::drive::{Then, drive, unless_over};
-use crate::metrics::Metrics;
-use crate::outputs::Outputs;
-use crate::quote::shown;
+use crate::engine::clock::{Clock, SHORTEST_TIME_STEP};
+use crate::engine::scene::Scene;
+use crate::engine::simulation::{EventKind, Simulation};
+use crate::engine::stability::{FITTED, Mode, Scheme};
+use crate::lab::bench::main_memory;
+use crate::runs::checkpoint::Checkpoint;
+use crate::runs::drive::{Then, drive, unless_over};
+use crate::runs::outputs::Outputs;
+use crate::scenario::metrics::Metrics;
+use crate::scenario::quote::shown;
 use crate::scenario::{Scenario, Setting, in_units};
-use crate::scene::Scene;
-use crate::simulation::{EventKind, Simulation};
-use crate::stability::{FITTED, Mode, Scheme};
 
 /// `sandbox evacuation|crossing|concert|plaza|run`.
 pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {

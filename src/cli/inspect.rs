@@ -6,10 +6,10 @@ use super::arguments::{InspectOptions, Source};
 use super::drive::Progress;
 use super::output;
 use super::{Failure, memory, say, scenario as read, use_threads};
-use crate::breakdown::Breakdown;
-use crate::outputs::{Manner, Outputs};
-use crate::pairs::Precision;
-use crate::simulation::Simulation;
+use crate::engine::breakdown::Breakdown;
+use crate::engine::pairs::Precision;
+use crate::engine::simulation::Simulation;
+use crate::runs::outputs::{Manner, Outputs};
 
 pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     use_threads(options.scene.program.threads)?;

@@ -1,7 +1,7 @@
 //! `sandbox list`: the scenarios and profiles, or what `--set` takes; `sandbox schema`: the same for editors.
 
 use super::{Failure, say};
-use crate::catalog::NAMES;
+use crate::scenario::catalog::NAMES;
 use crate::scenario::{self, NESTED, SHIPPED, settings};
 
 pub fn run(list_settings: bool) -> Result<(), Failure> {

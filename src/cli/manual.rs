@@ -10,7 +10,7 @@ use clap_mangen::{Man, generate_to};
 
 use super::arguments::Arguments;
 use super::{Failure, say};
-use crate::outputs::{Manner, Outputs};
+use crate::runs::outputs::{Manner, Outputs};
 
 /// `sandbox completions`.
 pub fn completions(shell: Shell) -> Result<(), Failure> {

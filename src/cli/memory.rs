@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::Failure;
 use super::arguments::OutputOptions;
-use crate::bench::main_memory;
+use crate::lab::bench::main_memory;
 use crate::scenario::Need;
 
 /// What is written of an agent, bytes of memory in one frame: in a recording, laid open in it, in a

@@ -26,13 +26,13 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::breakdown::Breakdown;
-use crate::floor_plan;
-use crate::outputs::{Outputs, OutputsError};
-use crate::quote::{printable, shown};
-use crate::reproduce::ReproduceError;
+use crate::engine::breakdown::Breakdown;
+use crate::engine::simulation::{Fault, Simulation};
+use crate::lab::reproduce::ReproduceError;
+use crate::runs::outputs::{Outputs, OutputsError};
+use crate::scenario::floor_plan;
+use crate::scenario::quote::{printable, shown};
 use crate::scenario::{Need, Scenario, ScenarioError, Setting, read_text, shipped_text};
-use crate::simulation::{Fault, Simulation};
 use arguments::{Arguments, Command, Source};
 
 /// Why a command did not do what was asked.

@@ -1,12 +1,16 @@
 //! What a run writes beside its results, as far as the command line is concerned.
 
+use crate::engine::scene::Region;
+use crate::output::recording::{
+    self, DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer,
+};
 use std::path::Path;
 
 use super::arguments::{OutputOptions, RecordOptions};
-use super::{Failure, trajectory};
-use crate::outputs::{Manner, Outputs};
+use super::{Failure, talk, trajectory};
+use crate::engine::simulation::Simulation;
+use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::Scenario;
-use crate::simulation::Simulation;
 
 /// Refuses outputs that cannot be, before any file is touched.
 pub fn check(
@@ -47,245 +51,168 @@ pub fn laid_open(record: &RecordOptions) -> Result<Option<Vec<u32>>, Failure> {
     })
 }
 
-#[cfg(feature = "recording")]
-pub use with_recording::{Output, check_enabled, save_moment};
+/// What a run writes beside its results.
+pub struct Output {
+    recorder: Option<Recorder>,
+    every: u64,
+    from: u64,
+    /// Frames in the recording.
+    recorded: u64,
+}
 
-#[cfg(feature = "recording")]
-mod with_recording {
-    use super::super::talk;
-    use super::*;
-    use crate::recording::{
-        self, DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer,
-    };
-    use crate::scene::Region;
-
-    /// What a run writes beside its results.
-    pub struct Output {
-        recorder: Option<Recorder>,
-        every: u64,
-        from: u64,
-        /// Frames in the recording.
-        recorded: u64,
-    }
-
-    impl Output {
-        /// Opens the recording, if one is asked for.
-        pub fn create(
-            record: &RecordOptions,
-            scenario: &Scenario,
-            simulation: &mut Simulation,
-        ) -> Result<Self, Failure> {
-            let debug = debug_agents(record, scenario)?;
-            let recorder = match destination(record)? {
-                None => None,
-                Some(to) => {
-                    simulation.request_density_until(u64::MAX);
-                    let view = recording_options(scenario, debug, record.record_from);
-                    Some(Recorder::create(to, simulation, &view)?)
-                }
-            };
-            Ok(Self {
-                recorder,
-                every: record.record_every,
-                from: simulation.frame().clock.frame_at(record.record_from),
-                recorded: 0,
-            })
-        }
-
-        /// Records an evaluated frame if its turn has come.
-        pub fn log(&mut self, simulation: &Simulation, ms_per_frame: f64) -> Result<(), Failure> {
-            let frame = simulation.frame().clock.frame();
-            if let Some(recorder) = &mut self.recorder
-                && frame >= self.from
-                && frame.is_multiple_of(self.every)
-            {
-                recorder.log(simulation, ms_per_frame)?;
-                self.recorded += 1;
-            }
-            Ok(())
-        }
-
-        /// Closes the recording.
-        pub fn finish(self) -> Result<(), Failure> {
-            if self.recorder.is_some() && self.recorded == 0 {
-                talk(
-                    "note: no frame was recorded: the run ended before the first that --record-from and \
-                     --record-every ask for",
-                );
-            }
-            match self.recorder.map_or(Ok(()), Recorder::finish) {
-                // Whoever closes a window has seen enough.
-                Err(gone @ RecordingError::ViewerGone { .. }) => {
-                    talk(&format!("note: {gone}"));
-                    Ok(())
-                }
-                finished => Ok(finished?),
-            }
-        }
-    }
-
-    /// Where the recording goes, if there is to be one.
-    fn destination(record: &RecordOptions) -> Result<Option<Destination>, Failure> {
-        let address = |text: &String| {
-            let address = text.parse().map(Viewer::At);
-            address.map_err(|error| Failure::Input(format!("--connect {text}: {error}")))
-        };
-        let viewer = match &record.connect {
-            Some(text) => Some(address(text)?),
-            None => record.spawn.then_some(Viewer::Spawned),
-        };
-        let file = record.save.clone();
-        let asked = file.is_some() || viewer.is_some();
-        Ok(asked.then_some(Destination { file, viewer }))
-    }
-
-    /// Refuses to record where the environment switches recordings off.
-    pub fn check_enabled() -> Result<(), Failure> {
-        Ok(recording::check_enabled()?)
-    }
-
-    /// Writes one evaluated frame with some agents laid open.
-    pub fn save_moment(
-        path: &Path,
+impl Output {
+    /// Opens the recording, if one is asked for.
+    pub fn create(
+        record: &RecordOptions,
         scenario: &Scenario,
-        simulation: &Simulation,
-        ids: Vec<u32>,
-    ) -> Result<(), Failure> {
-        let now = simulation.frame().clock.time();
-        let mut options = recording_options(scenario, DebugAgents::Ids(ids), now);
-        options.opens_at = now;
-        options.ends_at = now;
-        let mut recorder = Recorder::create(path, simulation, &options)?;
-        recorder.log(simulation, 0.0)?;
-        Ok(recorder.finish()?)
-    }
-
-    /// What a recording from the time `from` on says and shows.
-    fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> RecordingOptions {
-        let seed = scenario.scene.seed;
-        let opens_at = scenario.view.opens_at_secs;
-        let recorded = from..scenario.duration_secs;
-        RecordingOptions {
-            title: format!("{} {} seed {seed}", scenario.name, scenario.profile_name),
-            description: scenario.description.clone(),
-            document: format!("## Scenario\n```json\n{}\n```\n", scenario.to_text()),
-            view: scenario.view.region,
-            opens_at: if recorded.contains(&opens_at) {
-                opens_at
-            } else {
-                from
-            },
-            ends_at: scenario.duration_secs,
-            debug,
-        }
-    }
-
-    fn debug_agents(record: &RecordOptions, scenario: &Scenario) -> Result<DebugAgents, Failure> {
-        if let Some(text) = &record.debug_region {
-            return region(text).map(DebugAgents::Region).ok_or_else(|| {
-                Failure::Input(format!(
-                    "--debug-region {text}: four numbers x0,y0,x1,y1 are needed, x0 < x1, y0 < y1"
-                ))
-            });
-        }
-        if let Some(ids) = laid_open(record)? {
-            if let Some(id) = ids.iter().find(|&&id| u64::from(id) >= scenario.entering) {
-                let entering = scenario.entering;
-                return Err(Failure::Input(format!(
-                    "--debug-agents {id}: never enters: {entering} agents do until {} s, with ids from 0",
-                    scenario.duration_secs
-                )));
+        simulation: &mut Simulation,
+    ) -> Result<Self, Failure> {
+        let debug = debug_agents(record, scenario)?;
+        let recorder = match destination(record)? {
+            None => None,
+            Some(to) => {
+                simulation.request_density_until(u64::MAX);
+                let view = recording_options(scenario, debug, record.record_from);
+                Some(Recorder::create(to, simulation, &view)?)
             }
-            return Ok(DebugAgents::Ids(ids));
-        }
-        Ok(match record.debug_agents.as_deref() {
-            Some("all") => DebugAgents::All,
-            Some("none") => DebugAgents::None,
-            _ => DebugAgents::Ids(scenario.debug_agents.clone()),
+        };
+        Ok(Self {
+            recorder,
+            every: record.record_every,
+            from: simulation.frame().clock.frame_at(record.record_from),
+            recorded: 0,
         })
     }
 
-    fn region(text: &str) -> Option<Region> {
-        let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
-        match numbers.ok()?.as_slice() {
-            &[x0, y0, x1, y1] if x0 < x1 && y0 < y1 => Some(Region {
-                min: [x0, y0].into(),
-                max: [x1, y1].into(),
-            }),
-            _ => None,
+    /// Records an evaluated frame if its turn has come.
+    pub fn log(&mut self, simulation: &Simulation, ms_per_frame: f64) -> Result<(), Failure> {
+        let frame = simulation.frame().clock.frame();
+        if let Some(recorder) = &mut self.recorder
+            && frame >= self.from
+            && frame.is_multiple_of(self.every)
+        {
+            recorder.log(simulation, ms_per_frame)?;
+            self.recorded += 1;
         }
+        Ok(())
     }
 
-    impl From<RecordingError> for Failure {
-        fn from(error: RecordingError) -> Self {
-            match error {
-                RecordingError::SwitchedOff(_) => Self::Input(error.to_string()),
-                _ => Self::Output(error.to_string()),
+    /// Closes the recording.
+    pub fn finish(self) -> Result<(), Failure> {
+        if self.recorder.is_some() && self.recorded == 0 {
+            talk(
+                "note: no frame was recorded: the run ended before the first that --record-from and \
+                 --record-every ask for",
+            );
+        }
+        match self.recorder.map_or(Ok(()), Recorder::finish) {
+            // Whoever closes a window has seen enough.
+            Err(gone @ RecordingError::ViewerGone { .. }) => {
+                talk(&format!("note: {gone}"));
+                Ok(())
             }
+            finished => Ok(finished?),
         }
     }
 }
 
-#[cfg(not(feature = "recording"))]
-pub use without_recording::{Output, check_enabled, save_moment};
+/// Where the recording goes, if there is to be one.
+fn destination(record: &RecordOptions) -> Result<Option<Destination>, Failure> {
+    let address = |text: &String| {
+        let address = text.parse().map(Viewer::At);
+        address.map_err(|error| Failure::Input(format!("--connect {text}: {error}")))
+    };
+    let viewer = match &record.connect {
+        Some(text) => Some(address(text)?),
+        None => record.spawn.then_some(Viewer::Spawned),
+    };
+    let file = record.save.clone();
+    let asked = file.is_some() || viewer.is_some();
+    Ok(asked.then_some(Destination { file, viewer }))
+}
 
-#[cfg(not(feature = "recording"))]
-mod without_recording {
-    use super::*;
+/// Refuses to record where the environment switches recordings off.
+pub fn check_enabled() -> Result<(), Failure> {
+    Ok(recording::check_enabled()?)
+}
 
-    /// A program built without the feature `recording` writes nothing beside its results.
-    pub struct Output;
+/// Writes one evaluated frame with some agents laid open.
+pub fn save_moment(
+    path: &Path,
+    scenario: &Scenario,
+    simulation: &Simulation,
+    ids: Vec<u32>,
+) -> Result<(), Failure> {
+    let now = simulation.frame().clock.time();
+    let mut options = recording_options(scenario, DebugAgents::Ids(ids), now);
+    options.opens_at = now;
+    options.ends_at = now;
+    let mut recorder = Recorder::create(path, simulation, &options)?;
+    recorder.log(simulation, 0.0)?;
+    Ok(recorder.finish()?)
+}
 
-    impl Output {
-        pub fn create(
-            record: &RecordOptions,
-            _: &Scenario,
-            _: &mut Simulation,
-        ) -> Result<Self, Failure> {
-            let asked = [
-                record
-                    .save
-                    .as_ref()
-                    .map(|path| format!("--save {}", path.display())),
-                record.spawn.then(|| "--spawn".to_owned()),
-                record
-                    .connect
-                    .as_ref()
-                    .map(|url| format!("--connect {url}")),
-            ];
-            match asked.into_iter().flatten().next() {
-                Some(option) => Err(unavailable(&option)),
-                None => Ok(Self),
-            }
-        }
-
-        pub fn log(&mut self, _: &Simulation, _: f64) -> Result<(), Failure> {
-            Ok(())
-        }
-
-        pub fn finish(self) -> Result<(), Failure> {
-            Ok(())
-        }
+/// What a recording from the time `from` on says and shows.
+fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> RecordingOptions {
+    let seed = scenario.scene.seed;
+    let opens_at = scenario.view.opens_at_secs;
+    let recorded = from..scenario.duration_secs;
+    RecordingOptions {
+        title: format!("{} {} seed {seed}", scenario.name, scenario.profile_name),
+        description: scenario.description.clone(),
+        document: format!("## Scenario\n```json\n{}\n```\n", scenario.to_text()),
+        view: scenario.view.region,
+        opens_at: if recorded.contains(&opens_at) {
+            opens_at
+        } else {
+            from
+        },
+        ends_at: scenario.duration_secs,
+        debug,
     }
+}
 
-    pub fn check_enabled() -> Result<(), Failure> {
-        Ok(())
+fn debug_agents(record: &RecordOptions, scenario: &Scenario) -> Result<DebugAgents, Failure> {
+    if let Some(text) = &record.debug_region {
+        return region(text).map(DebugAgents::Region).ok_or_else(|| {
+            Failure::Input(format!(
+                "--debug-region {text}: four numbers x0,y0,x1,y1 are needed, x0 < x1, y0 < y1"
+            ))
+        });
     }
-
-    pub fn save_moment(
-        path: &Path,
-        force: bool,
-        _: &Scenario,
-        _: &Simulation,
-        _: Vec<u32>,
-    ) -> Result<(), Failure> {
-        check_free("--save", path, force)?;
-        Err(unavailable(&format!("--save {}", path.display())))
+    if let Some(ids) = laid_open(record)? {
+        if let Some(id) = ids.iter().find(|&&id| u64::from(id) >= scenario.entering) {
+            let entering = scenario.entering;
+            return Err(Failure::Input(format!(
+                "--debug-agents {id}: never enters: {entering} agents do until {} s, with ids from 0",
+                scenario.duration_secs
+            )));
+        }
+        return Ok(DebugAgents::Ids(ids));
     }
+    Ok(match record.debug_agents.as_deref() {
+        Some("all") => DebugAgents::All,
+        Some("none") => DebugAgents::None,
+        _ => DebugAgents::Ids(scenario.debug_agents.clone()),
+    })
+}
 
-    fn unavailable(option: &str) -> Failure {
-        Failure::Input(format!(
-            "{option}: this program was built without the feature `recording`"
-        ))
+fn region(text: &str) -> Option<Region> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+    match numbers.ok()?.as_slice() {
+        &[x0, y0, x1, y1] if x0 < x1 && y0 < y1 => Some(Region {
+            min: [x0, y0].into(),
+            max: [x1, y1].into(),
+        }),
+        _ => None,
+    }
+}
+
+impl From<RecordingError> for Failure {
+    fn from(error: RecordingError) -> Self {
+        match error {
+            RecordingError::SwitchedOff(_) => Self::Input(error.to_string()),
+            _ => Self::Output(error.to_string()),
+        }
     }
 }

@@ -2,11 +2,11 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::metrics::{Metric, Metrics};
-use crate::quote::shown;
+use crate::engine::simulation::Simulation;
+use crate::runs::summary::{Summary, value};
 use crate::scenario::Scenario;
-use crate::simulation::Simulation;
-use crate::summary::{Summary, value};
+use crate::scenario::metrics::{Metric, Metrics};
+use crate::scenario::quote::shown;
 
 /// The results of one run.
 pub struct Report<'a> {

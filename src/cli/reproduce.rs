@@ -9,7 +9,7 @@ use super::update::{check, update};
 use super::values::threads;
 use super::watch::Watch;
 use super::{Failure, say, use_threads};
-use crate::reproduce::{PRODUCTS, Plan, Product, Store, reproduce};
+use crate::lab::reproduce::{PRODUCTS, Plan, Product, Store, reproduce};
 
 #[derive(Args)]
 pub struct ReproduceOptions {

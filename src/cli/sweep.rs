@@ -7,9 +7,11 @@ use serde_json::{Value, json};
 
 use super::watch::Watch;
 use super::{Failure, say, talk, use_threads};
-use crate::bench::main_memory;
-use crate::outputs::{Manner, Outputs};
-use crate::sweep::{Gathered, Shard, Shelf, State, Study, StudyError, Tally, run as run_shard};
+use crate::lab::bench::main_memory;
+use crate::lab::sweep::{
+    Gathered, Shard, Shelf, State, Study, StudyError, Tally, run as run_shard,
+};
+use crate::runs::outputs::{Manner, Outputs};
 
 /// What a study may look like.
 pub const EXAMPLE: &str = r#"A study, JSON:

@@ -2,10 +2,10 @@
 
 use super::Failure;
 use super::arguments::TrajectoryOptions;
-use crate::outputs::{Manner, Outputs};
+use crate::engine::simulation::Simulation;
+use crate::output::trajectory::{Format, Trajectory, TrajectoryError, frames_between, journal};
+use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::Scenario;
-use crate::simulation::Simulation;
-use crate::trajectory::{Format, Trajectory, TrajectoryError, frames_between, journal};
 
 /// Adds the trajectories to `outputs`.
 pub fn add(

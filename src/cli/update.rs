@@ -5,9 +5,9 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::Failure;
-use crate::input;
-use crate::outputs::{Manner, Outputs, write_whole};
-use crate::reproduce::put_between;
+use crate::lab::reproduce::put_between;
+use crate::runs::outputs::{Manner, Outputs, write_whole};
+use crate::scenario::input;
 
 /// Can the file be updated, and does no result replace it? Better told before hours of computing than after.
 pub fn check(file: &Path, out: &Path) -> Result<(), Failure> {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::trajectory::read::FRAME_RATES;
+use crate::output::trajectory::read::FRAME_RATES;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
 pub fn seconds(text: &str) -> Result<f64, String> {

@@ -6,9 +6,9 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::talk;
-use crate::job;
-use crate::reproduce::{self, CaseResult};
-use crate::sweep::{self, Cell};
+use crate::lab::job;
+use crate::lab::reproduce::{self, CaseResult};
+use crate::lab::sweep::{self, Cell};
 
 /// A progress bar on stderr; where that is no terminal, a line for every finished case.
 pub struct Watch {

@@ -13,12 +13,12 @@ use super::need::Need;
 use super::range::{COARSE_EVERY, MAX_SPEED, PREFERRED_SPEED, Range, TIME, TIME_STEP};
 use super::range::{point, region};
 use super::{PlanFile, Scenario, Stop, View, parameters, plan, preset, profiles};
-use crate::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
-use crate::math::Vector;
-use crate::metrics::Measurement;
-use crate::profile::Override;
-use crate::scene::{Push, Region, Scene};
-use crate::stability;
+use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
+use crate::engine::math::Vector;
+use crate::engine::profile::Override;
+use crate::engine::scene::{Push, Region, Scene};
+use crate::engine::stability;
+use crate::scenario::metrics::Measurement;
 
 /// How long a run lasts that says nothing, seconds.
 const DEFAULT_DURATION: f64 = 60.0;

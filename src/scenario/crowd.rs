@@ -7,10 +7,10 @@ use super::file::{self, Behaviour, File, Object, ProfileChoice};
 use super::parameters::DENSITY;
 use super::profiles;
 use super::range::{self, COORDINATE, Range, point};
-use crate::agents::NewAgent;
-use crate::placement::Grid;
-use crate::profile::Blend;
-use crate::scene::{Goal, Group, Region, Scene, Source};
+use crate::engine::agents::NewAgent;
+use crate::engine::placement::Grid;
+use crate::engine::profile::Blend;
+use crate::engine::scene::{Goal, Group, Region, Scene, Source};
 
 /// Groups and pushes are numbered in 16 bits.
 pub(super) const MOST_NUMBERED: usize = u16::MAX as usize;
@@ -171,7 +171,7 @@ impl<'a> Crowd<'a> {
         }
     }
 
-    fn default_goal(&self) -> Result<crate::math::Vector, Problem> {
+    fn default_goal(&self) -> Result<crate::engine::math::Vector, Problem> {
         let [x, y] = self.file.goal.ok_or_else(|| {
             let reason = "no goal: give `goal` here, or one for all at the top of the file";
             Problem::new("", reason)

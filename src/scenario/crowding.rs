@@ -3,10 +3,10 @@
 use super::error::Problem;
 use super::file::{File, Object};
 use super::need;
-use crate::geometry::Walls;
-use crate::math::Vector;
-use crate::placement::Grid;
-use crate::scene::Scene;
+use crate::engine::geometry::Walls;
+use crate::engine::math::Vector;
+use crate::engine::placement::Grid;
+use crate::engine::scene::Scene;
 
 /// People, or corners of obstacles, on one square metre. Ten are a crush; what is computed grows with the
 /// square of it.

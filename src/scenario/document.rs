@@ -6,7 +6,7 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor}
 use serde_json::{Map, Number, Value};
 
 use super::error::{ScenarioError, in_plain_words};
-use crate::quote::shown;
+use crate::scenario::quote::shown;
 
 /// Reads `text`, which came from `file`.
 pub(crate) fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {

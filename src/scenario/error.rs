@@ -1,6 +1,6 @@
 //! What can be wrong with a scenario, and where.
 
-use crate::quote::shown;
+use crate::scenario::quote::shown;
 
 /// Why a scenario cannot be run; displays as `FILE: key.path[3].key: reason`.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

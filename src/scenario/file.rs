@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 
 use super::plan::Nested;
 use super::preset::Preset;
-use crate::boundary::WallMethod;
-use crate::catalog::{NavigationKind, Parameters};
-use crate::neighbors::ListPolicy;
-use crate::pairs::Precision;
-use crate::scene::Integrator;
+use crate::engine::boundary::WallMethod;
+use crate::engine::neighbors::ListPolicy;
+use crate::engine::pairs::Precision;
+use crate::engine::scene::Integrator;
+use crate::scenario::catalog::{NavigationKind, Parameters};
 
 /// Lower left and upper right corner.
 pub(super) type Corners = [[f64; 2]; 2];

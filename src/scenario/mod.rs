@@ -16,12 +16,22 @@
 //! | `profile` | one of `base` (a name), `navigation` (`goal`, `social` or `rvo`; with it `sph`, true or false) and `blend` (a list of `at_density`, `profile`), and optionally `name`, `parameters` |
 //!
 //! People walk in the `walkable_area`, everywhere without it, but not in the `obstacles`. Either is written
-//! out, or is the name of a file that [`floor_plan`](crate::floor_plan) reads. `$schema` is left alone, for
+//! out, or is the name of a file that [`floor_plan`](crate::scenario::floor_plan) reads. `$schema` is left alone, for
 //! editors.
 //!
 //! An agent is removed `remove_within` metres of its goal, and never without that key; unless
 //! `counted` is false, its arrival counts as evacuated. `parameters` at the top go before those of
 //! the profiles. Ids are given from 0 in the order of entry: agents, grids, then sources as they come.
+
+pub mod quote;
+
+pub mod input;
+
+pub mod floor_plan;
+
+pub mod catalog;
+
+pub mod metrics;
 
 mod check;
 mod crowd;
@@ -59,9 +69,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::input;
-use crate::metrics::Measurement;
-use crate::scene::{Region, Scene};
+use crate::engine::scene::{Region, Scene};
+use crate::scenario::metrics::Measurement;
 
 /// A floor plan's file, after the key that names it.
 pub type PlanFile = (&'static str, PathBuf);

@@ -6,8 +6,8 @@ use super::file::{File, Object, Source, TimeStep};
 use super::plan;
 use super::range::TIME;
 use super::wall_lists;
-use crate::clock::{Clock, PAPER_COARSE_STEP};
-use crate::scene::Scene;
+use crate::engine::clock::{Clock, PAPER_COARSE_STEP};
+use crate::engine::scene::Scene;
 
 /// So many agents may enter in one run.
 pub(super) const MOST_AGENTS: u64 = 10_000_000;

@@ -4,7 +4,7 @@
 use super::error::Problem;
 use super::key::{Key, Kind};
 use super::range::Range;
-use crate::catalog::Parameters;
+use crate::scenario::catalog::Parameters;
 
 /// Lengths over which agents act on each other, metres.
 const REACH: Range = Range::at_least(0.01, 100.0);

@@ -11,9 +11,9 @@ use super::error::{Problem, Under};
 use super::file::File;
 use super::range::point;
 use super::setting::Setting;
-use crate::floor_plan::{self, FloorPlan, FloorPlanError};
-use crate::geometry::{Area, Polygon, Ring};
-use crate::quote::shown;
+use crate::engine::geometry::{Area, Polygon, Ring};
+use crate::scenario::floor_plan::{self, FloorPlan, FloorPlanError};
+use crate::scenario::quote::shown;
 
 /// The keys that may name a file.
 const WALKABLE_AREA: &str = "walkable_area";

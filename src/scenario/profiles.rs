@@ -3,9 +3,9 @@
 use super::error::{Problem, Under, suggestion};
 use super::file::{CustomProfile, Object, ProfileChoice, Step};
 use super::parameters::{self, DENSITY};
-use crate::catalog::{self, NAMES, Parameters};
-use crate::profile::{Blend, BlendStep, Profile};
-use crate::quote::shown;
+use crate::engine::profile::{Blend, BlendStep, Profile};
+use crate::scenario::catalog::{self, NAMES, Parameters};
+use crate::scenario::quote::shown;
 
 /// The blend that is meant; `overriding` are the scenario-wide values, which go before its own.
 pub(super) fn blend(choice: &ProfileChoice, overriding: &Parameters) -> Result<Blend, Problem> {

@@ -5,9 +5,9 @@ use std::fmt;
 use serde_json::{Value, json};
 
 use super::error::Problem;
-use crate::clock::SHORTEST_TIME_STEP;
-use crate::math::Vector;
-use crate::scene::Region;
+use crate::engine::clock::SHORTEST_TIME_STEP;
+use crate::engine::math::Vector;
+use crate::engine::scene::Region;
 
 /// An interval of finite numbers, closed above.
 #[derive(Debug, Clone, Copy, PartialEq)]

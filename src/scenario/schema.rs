@@ -8,7 +8,7 @@ use super::key::{Key, Kind, defined, object, pair};
 use super::parameters::{self, DENSITY};
 use super::range::{COORDINATE, Range, TIME};
 use super::settings;
-use crate::catalog::NAMES;
+use crate::scenario::catalog::NAMES;
 
 /// Cells of a grid.
 const CELLS: Range = Range::at_least(1.0, u32::MAX as f64);

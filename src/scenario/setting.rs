@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 use super::error::{Problem, ScenarioError, suggestion};
 use super::parameters;
 use super::settings::{TEXTS, settings};
-use crate::quote::shown;
+use crate::scenario::quote::shown;
 
 /// One change: `viscosity=5`, `seed=7`, `profile=sf`, `sources.0.rows=50`.
 #[derive(Debug, Clone, PartialEq)]

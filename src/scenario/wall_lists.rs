@@ -1,8 +1,8 @@
 //! An upper bound on the lists of walls near agents, found before any list is made.
 
-use crate::geometry::{Wall, Walls};
-use crate::math::Vector;
-use crate::scene::Scene;
+use crate::engine::geometry::{Wall, Walls};
+use crate::engine::math::Vector;
+use crate::engine::scene::Scene;
 
 /// Cells per side at most.
 const MOST_CELLS: f64 = 1024.0;
@@ -134,8 +134,8 @@ fn span(wall: &Wall, low: f64, high: f64) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Polygon;
-    use crate::random::{Purpose, stream};
+    use crate::engine::geometry::Polygon;
+    use crate::engine::random::{Purpose, stream};
     use rand::Rng;
 
     fn squares(count: usize, side: f64, span: f64) -> Walls {

@@ -4,33 +4,35 @@
 pub mod bounded;
 pub mod documents;
 pub mod json_schema;
-#[cfg(all(feature = "cli", unix))]
+#[cfg(all(feature = "program", unix))]
 pub mod outputs;
 pub mod plan_reading;
 pub mod plans;
-#[cfg(feature = "cli")]
+#[cfg(feature = "program")]
 pub mod program;
 pub mod quadrature;
 pub mod reading;
 pub mod reading_checkpoints;
+#[cfg(feature = "program")]
 pub mod reading_studies;
-#[cfg(feature = "trajectory")]
+#[cfg(feature = "program")]
 pub mod reading_trajectories;
 pub mod social;
+#[cfg(feature = "program")]
 pub mod sweep;
-#[cfg(feature = "trajectory")]
+#[cfg(feature = "program")]
 pub mod tracks;
 pub mod wall_checks;
 
-use sandbox::agents::NewAgent;
-use sandbox::breakdown::Breakdown;
-use sandbox::catalog::{self, Parameters};
-use sandbox::geometry::Polygon;
-use sandbox::math::Vector;
-use sandbox::pairs::Precision;
-use sandbox::profile::Blend;
-use sandbox::scene::{Group, Scene};
-use sandbox::simulation::Simulation;
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::breakdown::Breakdown;
+use sandbox::engine::geometry::Polygon;
+use sandbox::engine::math::Vector;
+use sandbox::engine::pairs::Precision;
+use sandbox::engine::profile::Blend;
+use sandbox::engine::scene::{Group, Scene};
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::{self, Parameters};
 
 pub fn vector(x: f64, y: f64) -> Vector {
     Vector::new(x, y)

@@ -1,7 +1,7 @@
 //! Reads any text as a floor plan: for tests and for fuzzing.
 
-use sandbox::floor_plan::{self, FloorPlan, FloorPlanError};
-use sandbox::geometry::{Area, Walls};
+use sandbox::engine::geometry::{Area, Walls};
+use sandbox::scenario::floor_plan::{self, FloorPlan, FloorPlanError};
 
 /// Ends in walls that can be asked, or in an error at a place that is in the text.
 pub fn read(text: &str) {

@@ -1,6 +1,6 @@
 //! Floor plans as lists of rings, and what lies in them: independent of the code under test.
 
-use sandbox::math::Vector;
+use sandbox::engine::math::Vector;
 
 /// Corners in metres, the first not repeated.
 pub type Ring = Vec<[f64; 2]>;

@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-use sandbox::boundary::WallShare;
-use sandbox::geometry::{Wall, Walls};
-use sandbox::kernel;
-use sandbox::math::Vector;
+use sandbox::engine::boundary::WallShare;
+use sandbox::engine::geometry::{Wall, Walls};
+use sandbox::engine::kernel;
+use sandbox::engine::math::Vector;
 
 use super::vector;
 

@@ -1,9 +1,9 @@
 //! Reads any text as a scenario, and runs what is read for some frames: for tests and for fuzzing.
 
-use sandbox::drive::{Then, drive};
-use sandbox::metrics::Metrics;
+use sandbox::engine::simulation::{Fault, Simulation};
+use sandbox::runs::drive::{Then, drive};
+use sandbox::scenario::metrics::Metrics;
 use sandbox::scenario::{Need, Scenario, Setting};
-use sandbox::simulation::{Fault, Simulation};
 
 /// So many people are let in at most, and so many frames computed.
 const FEW: u64 = 500;
@@ -53,7 +53,7 @@ pub fn read(text: &str, settings: &[Setting]) -> u64 {
     });
     let frame = simulation.frame();
     if driven.is_ok() {
-        let finite = |p: &sandbox::math::Vector| p.x.is_finite() && p.y.is_finite();
+        let finite = |p: &sandbox::engine::math::Vector| p.x.is_finite() && p.y.is_finite();
         assert!(frame.agents.position.iter().all(finite));
     }
     assert!(u64::from(frame.agents.entered()) <= need.entering);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sandbox::checkpoint::Checkpoint;
+use sandbox::runs::checkpoint::Checkpoint;
 use sha2::{Digest, Sha256};
 
 /// So many frames are computed.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sandbox::sweep::Study;
+use sandbox::lab::sweep::Study;
 
 /// Ends in a study whose cells are scenarios, or in a short error that names the file and is harmless to a
 /// terminal; returns how many cells there are.

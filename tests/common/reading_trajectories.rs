@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
-use sandbox::boundary::WallMethod;
-use sandbox::math::Vector;
-use sandbox::measure::{Behind, Kernel, Line, MeasureError, Options, Site, measure, speed};
-use sandbox::trajectory::read::{FRAME_RATES, ReadError, ReadOptions, Tracks, read_text};
+use sandbox::analysis::measure::{
+    Behind, Kernel, Line, MeasureError, Options, Site, measure, speed,
+};
+use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::math::Vector;
+use sandbox::output::trajectory::read::{FRAME_RATES, ReadError, ReadOptions, Tracks, read_text};
 
 /// So many rows are measured at most.
 const FEW: usize = 60;

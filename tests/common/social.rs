@@ -1,7 +1,7 @@
 //! The social force between agents as Eq. 18 has it.
 
-use sandbox::forces::social::SocialForce;
-use sandbox::math::{Vector, direction};
+use sandbox::engine::forces::social::SocialForce;
+use sandbox::engine::math::{Vector, direction};
 
 /// V₀ e^(−b/σ): the potential whose negative gradient over r_ij is the force.
 pub fn potential(social: &SocialForce, r_ij: Vector, v_ij: Vector) -> f64 {

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use sandbox::trajectory::read::{ReadError, ReadOptions, Tracks, read};
+use sandbox::output::trajectory::read::{ReadError, ReadOptions, Tracks, read};
 
 /// A file with this name and text, and the folder that it is in.
 pub fn file(name: &str, text: &str) -> (tempfile::TempDir, PathBuf) {

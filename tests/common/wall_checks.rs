@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use sandbox::boundary::WallMethod;
-use sandbox::geometry::{Polygon, Walls};
-use sandbox::math::Vector;
+use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::geometry::{Polygon, Walls};
+use sandbox::engine::math::Vector;
 
 /// Rounding of coordinates up to 10⁶ m, and of what is computed from them, metres.
 const ROUNDING: f64 = 1e-8;
@@ -18,7 +18,7 @@ pub fn obstacles(lists: Vec<Vec<Vector>>) -> Vec<Polygon> {
         let polygon = Polygon::new(points)?;
         assert_eq!(polygon.points().len(), count);
         assert!(polygon.area() > 0.0);
-        Ok::<Polygon, sandbox::geometry::PolygonError>(polygon)
+        Ok::<Polygon, sandbox::engine::geometry::PolygonError>(polygon)
     });
     made.filter_map(Result::ok).collect()
 }
@@ -102,7 +102,8 @@ fn way_out(walls: &Walls, p: Vector) {
         "{exit} is farther than {nearest} m"
     );
     // Nor is it nearer than the nearest wall.
-    let distance = |wall: &sandbox::geometry::Wall| (wall.nearest_point(p).point - p).norm();
+    let distance =
+        |wall: &sandbox::engine::geometry::Wall| (wall.nearest_point(p).point - p).norm();
     let least = walls.iter().map(distance).fold(f64::INFINITY, f64::min);
     assert!((exit - p).norm() >= least - HAIR);
 }

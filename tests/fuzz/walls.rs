@@ -3,8 +3,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use sandbox::geometry::Walls;
-use sandbox::math::Vector;
+use sandbox::engine::geometry::Walls;
+use sandbox::engine::math::Vector;
 
 #[path = "../common/wall_checks.rs"]
 mod wall_checks;

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use crate::measure::Line;
-use crate::scene::Region;
+use crate::analysis::measure::Line;
+use crate::engine::scene::Region;
 
 use super::super::arguments::ProgramOptions;
 use super::super::values::{frame_rate, positive_seconds};

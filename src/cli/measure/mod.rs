@@ -11,14 +11,14 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::output::check_enabled;
 use super::{Failure, say, talk, use_threads};
-use crate::boundary::WallMethod;
-use crate::floor_plan::{self, FloorPlan};
-use crate::measure::{
+use crate::analysis::measure::{
     Behind, Kernel, MOST_HIDDEN, MeasureError, Measured, Options, OutputError, Report, Results,
     Site, check, measure, speed,
 };
-use crate::outputs::{Manner, Outputs};
-use crate::trajectory::read::{ReadError, ReadOptions, Tracks, Unit, read};
+use crate::engine::boundary::WallMethod;
+use crate::output::trajectory::read::{ReadError, ReadOptions, Tracks, Unit, read};
+use crate::runs::outputs::{Manner, Outputs};
+use crate::scenario::floor_plan::{self, FloorPlan};
 
 /// Instead of a floor plan.
 const NO_WALLS: &str = "none";

@@ -1,0 +1,162 @@
+//! The density of people in one frame (§8): Eqs. 9 and 10 without a simulation.
+
+use rayon::prelude::*;
+
+use super::site::{Hidden, Kernel, Site};
+use crate::engine::agents::{Agents, NewAgent, REFERENCE_RADIUS};
+use crate::engine::density::SphParameters;
+use crate::engine::kernel;
+use crate::engine::math::Vector;
+use crate::engine::neighbors::{BLOCK, Neighbors, Ranges};
+use crate::engine::pairs::Columns;
+
+/// No more of a kernel than this is taken to be hidden: in a crack, what is left says nothing.
+pub const MOST_HIDDEN: f64 = 0.9;
+
+/// How dense the crowd is taken to be where walls are: ρ_i⁰ in Eq. 10.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Behind {
+    /// As dense as where the person stands: ρ_i = Σ_j m_j W / (1 − Σ_k ∫ W over P_k), the sum over those who
+    /// are seen by the part of the kernel that is seen. A uniform crowd has the same density up to its walls,
+    /// and who is behind a thin one does not count.
+    #[default]
+    Same,
+    /// The engine's: the moving average ρ̂_i of the person's own density (Eq. 8) between 0 and so many
+    /// P/m². It depends on the frames before, and everybody in reach counts.
+    Rest(f64),
+}
+
+/// Eq. 9 in parts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parts {
+    /// Σ_j m_j W, j = i too, P/m²; of those who are seen, or of all.
+    pub from_people: f64,
+    /// What walls hide.
+    pub hidden: Hidden,
+}
+
+/// The parts of everybody's density in a frame, in the order given; masses are all 1 where there are none.
+pub fn parts(
+    site: &Site,
+    positions: &[Vector],
+    masses: &[f64],
+    (kernel, behind): (&Kernel, Behind),
+) -> Vec<Parts> {
+    let mut agents = Agents::default();
+    for (k, &position) in positions.iter().enumerate() {
+        let person = NewAgent {
+            radius: Some(REFERENCE_RADIUS),
+            mass: Some(masses.get(k).copied().unwrap_or(1.0)),
+            ..NewAgent::at(position, position, 0)
+        };
+        agents.enter(person, 0);
+    }
+    let ranges = Ranges {
+        support: kernel.support_radius,
+        ..Ranges::default()
+    };
+    let mut neighbors = Neighbors::default();
+    neighbors.sort(&mut agents, ranges);
+    neighbors.list_agents();
+    neighbors.list_walls(&agents, site.walls());
+    let mut from_people = sums(&agents, &neighbors, kernel.support_radius);
+    let mut near: Vec<Vec<u32>> = Vec::with_capacity(agents.len());
+    let hidden: Vec<Hidden> = (0..agents.len())
+        .map(|i| {
+            near.push(neighbors.near_walls(i).to_vec());
+            site.hidden(agents.position[i], &mut near[i], kernel)
+        })
+        .collect();
+    if behind == Behind::Same {
+        for i in (0..agents.len()).filter(|&i| !near[i].is_empty()) {
+            let eye = hidden[i].eye;
+            let seen = neighbors.near().near(i);
+            let seen = seen.filter(|&j| j == i || site.sees(eye, hidden[j].eye, &near[i]));
+            let weight = |j: usize| {
+                let offset = agents.position[i] - agents.position[j];
+                agents.mass[j] * kernel::density(offset.norm_squared(), kernel.support_radius)
+            };
+            from_people[i] = seen.map(weight).sum();
+        }
+    }
+    let of = |i: usize| Parts {
+        from_people: from_people[i],
+        hidden: hidden[i],
+    };
+    // Ids were given in the order of the positions.
+    let mut places: Vec<usize> = vec![0; agents.len()];
+    for (i, &id) in agents.id.iter().enumerate() {
+        places[id as usize] = i;
+    }
+    places.into_iter().map(of).collect()
+}
+
+/// Eq. 9 without walls, by the engine's own sums, in double precision and its order of the agents.
+fn sums(agents: &Agents, neighbors: &Neighbors, h: f64) -> Vec<f64> {
+    let mut columns = Columns::<f64>::default();
+    columns.take_bodies(agents, 1.0, |_| h);
+    let states = (
+        columns.motions(),
+        agents.position.par_chunks(BLOCK),
+        agents.velocity.par_chunks(BLOCK),
+    );
+    states
+        .into_par_iter()
+        .for_each(|(mut motion, positions, velocities)| motion.take(positions, velocities));
+    let mut sums = vec![0.0; agents.len()];
+    let (bodies, _) = columns.pressures();
+    for (b, sums) in sums.chunks_mut(BLOCK).enumerate() {
+        bodies.densities(neighbors.near().block(b), sums);
+    }
+    sums
+}
+
+/// Everybody's moving average, for [`Behind::Rest`].
+pub struct History {
+    behind: Behind,
+    sph: SphParameters,
+    /// ρ̂ of each person and the frame that it is of.
+    kept: Vec<Option<(i64, f64)>>,
+}
+
+impl History {
+    /// Of so many people, none of whom has been seen.
+    pub fn new(behind: Behind, people: usize) -> Self {
+        let mut sph = SphParameters::default();
+        if let Behind::Rest(max) = behind {
+            sph.rest_density_max = max;
+        }
+        let kept = match behind {
+            Behind::Same => Vec::new(),
+            Behind::Rest(_) => vec![None; people],
+        };
+        Self { behind, sph, kept }
+    }
+
+    /// The walls' part of ρ_i of a person in a frame, P/m²; `step` frames take `interval` seconds, and frames
+    /// must come in order.
+    pub fn walls_part(
+        &mut self,
+        (person, frame): (usize, i64),
+        parts: &Parts,
+        (step, interval): (i64, f64),
+    ) -> f64 {
+        let Parts {
+            from_people,
+            hidden,
+        } = *parts;
+        if self.behind == Behind::Same {
+            let hidden = hidden.share.min(MOST_HIDDEN);
+            return from_people * hidden / (1.0 - hidden);
+        }
+        // Who was not there one frame before is new, as in the engine.
+        let before = self.kept[person].filter(|&(last, _)| last == frame - step);
+        let before = before.map_or(from_people, |(_, mean)| mean);
+        let from_walls = hidden.share * self.sph.rest_density(before);
+        let mean = self
+            .sph
+            .averaged(before, from_people + from_walls, interval);
+        self.kept[person] = Some((frame, mean));
+        from_walls
+    }
+}

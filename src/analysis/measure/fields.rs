@@ -1,0 +1,204 @@
+//! Mean fields over time, on a grid: the kernel density of places instead of people.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::Person;
+use super::density::MOST_HIDDEN;
+use super::site::{Kernel, Site};
+use crate::engine::kernel;
+use crate::engine::math::Vector;
+
+/// More cells than this are not summed up.
+pub const MOST_CELLS: usize = 4_000_000;
+
+/// Rows of cells that are summed together.
+const BAND: usize = 8;
+
+/// Square cells over a part of the plane; all fields are taken at their centres.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    /// Lower left corner, metres.
+    pub min: Vector,
+    /// Side of a cell, metres.
+    pub cell: f64,
+    /// Cells in x.
+    pub columns: usize,
+    /// Cells in y.
+    pub rows: usize,
+}
+
+impl Grid {
+    /// Whole cells over a rectangle; `None` for too many.
+    pub fn over(low: Vector, high: Vector, cell: f64) -> Option<Self> {
+        let min = (low / cell).map(f64::floor);
+        let count = (high / cell).map(f64::ceil) - min;
+        let [columns, rows] = [count.x, count.y].map(|n| n.max(1.0));
+        (columns * rows <= MOST_CELLS as f64).then(|| Self {
+            min: min * cell,
+            cell,
+            columns: columns as usize,
+            rows: rows as usize,
+        })
+    }
+
+    /// The number of cells.
+    pub fn len(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// Are there no cells? Never.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The centre of cell `k`, metres; row by row from the lower left.
+    pub fn center(&self, k: usize) -> Vector {
+        let (column, row) = (k % self.columns, k / self.columns);
+        self.min + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell
+    }
+}
+
+/// Sums over people and frames at one place.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    /// Σ m W.
+    mass: f64,
+    /// Σ m W of those whose velocity is known, and Σ m W v, Σ m W |v| of them.
+    moving: f64,
+    momentum: Vector,
+    speed: f64,
+    /// Positions in the cell.
+    people: u64,
+}
+
+/// The mean over time at one place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mean {
+    /// ρ, P/m².
+    pub density: f64,
+    /// J/ρ, m/s; `None` where nobody came near.
+    pub velocity: Option<Vector>,
+    /// Of the speeds, weighted alike, m/s.
+    pub speed: Option<f64>,
+    /// Persons in the cell.
+    pub people: f64,
+}
+
+/// Fields that are being summed up.
+pub struct Fields {
+    grid: Grid,
+    kernel: Kernel,
+    sums: Vec<Sums>,
+    views: Vec<Option<View>>,
+}
+
+/// What is seen from a place outside of obstacles.
+#[derive(Debug, Clone, Default)]
+struct View {
+    /// The part of the kernel that walls hide.
+    hidden: f64,
+    /// The walls within reach.
+    near: Box<[u32]>,
+}
+
+impl Fields {
+    /// Nobody yet.
+    pub fn new(grid: Grid, site: &Site, kernel: Kernel) -> Self {
+        let view = |k| {
+            let p = grid.center(k);
+            if site.is_inside(p) {
+                return None;
+            }
+            let mut near = Vec::new();
+            site.walls().near(p, kernel.support_radius, &mut near);
+            Some(View {
+                hidden: site.share(p, &near, &kernel),
+                near: near.into_boxed_slice(),
+            })
+        };
+        Self {
+            views: (0..grid.len()).into_par_iter().map(view).collect(),
+            sums: vec![Sums::default(); grid.len()],
+            grid,
+            kernel,
+        }
+    }
+
+    /// Adds everybody in some frames. Bands of cells are summed at a time, each in the order of the people:
+    /// the bits do not depend on the threads.
+    pub fn add(&mut self, people: &[&Person], site: &Site) {
+        let (grid, views, h) = (&self.grid, &self.views, self.kernel.support_radius);
+        let bands = self.sums.par_chunks_mut(BAND * grid.columns).enumerate();
+        bands.for_each(|(band, sums)| {
+            let rows = band * BAND..(band * BAND + sums.len() / grid.columns);
+            let edge = |row: usize| grid.min.y + row as f64 * grid.cell;
+            let (low, high) = (edge(rows.start) - h, edge(rows.end) + h);
+            for person in people
+                .iter()
+                .filter(|p| (low..high).contains(&p.position.y))
+            {
+                spread((grid, site, views), rows.clone(), sums, person, h);
+            }
+        });
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// The means over so many frames, cell by cell; `None` inside obstacles.
+    pub fn means(&self, frames: u64) -> impl Iterator<Item = Option<Mean>> + '_ {
+        let places = self.sums.iter().zip(&self.views);
+        places.map(move |(sums, view)| {
+            let seen = 1.0 - view.as_ref()?.hidden.min(MOST_HIDDEN);
+            let is_known = sums.moving > 0.0;
+            Some(Mean {
+                density: sums.mass / seen / frames as f64,
+                velocity: is_known.then(|| sums.momentum / sums.moving),
+                speed: is_known.then(|| sums.speed / sums.moving),
+                people: sums.people as f64 / frames as f64,
+            })
+        })
+    }
+}
+
+/// Adds a person's kernel to those of the cells in `rows` that it reaches and that see the person.
+fn spread(
+    (grid, site, views): (&Grid, &Site, &[Option<View>]),
+    rows: Range<usize>,
+    sums: &mut [Sums],
+    person: &Person,
+    h: f64,
+) {
+    let place = (person.position - grid.min) / grid.cell;
+    // Cells whose centres are within reach, and the person's own.
+    let reach = (h / grid.cell).max(0.5);
+    let first = |x: f64| (x - reach - 0.5).ceil().max(0.0) as usize;
+    let end = |x: f64, most: usize| ((x + reach + 0.5).ceil().max(0.0) as usize).min(most);
+    let own = [place.x, place.y].map(|x| x.floor());
+    for row in first(place.y).max(rows.start)..end(place.y, rows.end) {
+        let dy = (row as f64 + 0.5 - place.y) * grid.cell;
+        for column in first(place.x)..end(place.x, grid.columns) {
+            let dx = (column as f64 + 0.5 - place.x) * grid.cell;
+            let weight = person.mass * kernel::density(dx * dx + dy * dy, h);
+            let k = row * grid.columns + column;
+            let sums = &mut sums[k - rows.start * grid.columns];
+            sums.people += u64::from(own == [column as f64, row as f64]);
+            let seen = views[k].as_ref().is_some_and(|view| {
+                view.near.is_empty() || site.sees(grid.center(k), person.eye, &view.near)
+            });
+            if weight == 0.0 || !seen {
+                continue;
+            }
+            sums.mass += weight;
+            if let Some(velocity) = person.velocity {
+                sums.moving += weight;
+                sums.momentum += velocity * weight;
+                sums.speed += velocity.norm() * weight;
+            }
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! What was measured as a recording for the Rerun viewer.
+
+use std::path::Path;
+
+use super::{Behind, Moment, Options, Site};
+use crate::engine::agents::REFERENCE_RADIUS;
+use crate::engine::math::Vector;
+use crate::engine::scene::Region;
+use crate::output::recording::{
+    DebugAgents, MeasuredPerson, MeasuredRecorder, RecordingError, RecordingOptions,
+};
+use crate::output::trajectory::read::Tracks;
+
+/// Larger ids than this are replaced by the person's number: the viewer's rows are sorted by them.
+const LARGEST_ID: i64 = 1 << 22;
+
+/// A recording that grows by moments.
+pub struct MomentRecorder<'a> {
+    tracks: &'a Tracks,
+    recorder: MeasuredRecorder,
+    own_ids: bool,
+    /// The frame that comes next.
+    next: Option<i64>,
+}
+
+impl<'a> MomentRecorder<'a> {
+    /// Begins a recording at `path`, replacing any file there.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn create(
+        path: &Path,
+        (tracks, site): (&'a Tracks, &Site),
+        title: &str,
+        measured: &Options,
+    ) -> Result<Self, RecordingError> {
+        let first = [tracks.position[0]; 2];
+        let [low, high] = tracks
+            .position
+            .iter()
+            .fold(first, |[low, high], p| [low.inf(p), high.sup(p)]);
+        let margin = Vector::repeat(1.0);
+        let ends = [tracks.frames.first(), tracks.frames.last()];
+        let first_and_last = ends.map(|frame| frame.map_or(0.0, |&frame| tracks.time(frame)));
+        let options = RecordingOptions {
+            title: title.to_owned(),
+            description: "A crowd that was measured, by its SPH density (§8).".to_owned(),
+            document: document(tracks, measured),
+            view: Region {
+                min: low - margin,
+                max: high + margin,
+            },
+            opens_at: measured.times[0].max(first_and_last[0]),
+            ends_at: measured.times[1].min(first_and_last[1]),
+            debug: DebugAgents::None,
+        };
+        Ok(Self {
+            tracks,
+            recorder: MeasuredRecorder::create(path, site.walls(), REFERENCE_RADIUS, &options)?,
+            own_ids: tracks.ids.iter().all(|id| (0..=LARGEST_ID).contains(id)),
+            next: None,
+        })
+    }
+
+    /// Are ids those of the file, and not numbers in their order from 0?
+    pub fn has_own_ids(&self) -> bool {
+        self.own_ids
+    }
+
+    /// Adds some frames, and the first of those without anybody before each.
+    ///
+    /// # Errors
+    /// An earlier one could not be written.
+    pub fn add(&mut self, moments: &[Moment]) -> Result<(), RecordingError> {
+        for moment in moments {
+            if let Some(empty) = self.next.filter(|&next| next < moment.frame) {
+                let time = self.tracks.time(empty);
+                self.recorder.log(empty, time, std::iter::empty())?;
+            }
+            let people = moment.people.iter().map(|person| MeasuredPerson {
+                id: if self.own_ids {
+                    person.id as u32
+                } else {
+                    person.number
+                },
+                position: person.position,
+                velocity: person.velocity,
+                density: person.density,
+            });
+            self.recorder.log(moment.frame, moment.time, people)?;
+            self.next = Some(moment.frame + self.tracks.step);
+        }
+        Ok(())
+    }
+
+    /// Closes the file.
+    ///
+    /// # Errors
+    /// Something could not be written.
+    pub fn finish(self) -> Result<(), RecordingError> {
+        self.recorder.finish()
+    }
+}
+
+/// How it was measured, in Markdown.
+fn document(tracks: &Tracks, options: &Options) -> String {
+    let behind = match options.behind {
+        Behind::Same => "as dense as where the person stands".to_owned(),
+        Behind::Rest(max) => format!("at the rest density, {max} P/m² at most"),
+    };
+    format!(
+        "## Measurement\n\
+         * {} persons, {} rows, {} frames per second\n\
+         * Kernel radius h = {} m, walls by `{:?}`, the crowd behind them {behind}\n\
+         * Velocities from {:.2} s before to {:.2} s after\n",
+        tracks.ids.len(),
+        tracks.len(),
+        tracks.fps,
+        options.kernel.support_radius,
+        options.kernel.walls,
+        options.speed_reach as f64 * tracks.interval(),
+        options.speed_reach as f64 * tracks.interval(),
+    )
+}

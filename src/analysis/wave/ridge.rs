@@ -1,0 +1,340 @@
+//! The crest of a wave in a space-time diagram: when it passes each place, and how high it is there.
+
+use serde::{Deserialize, Serialize};
+
+use super::fit::{Estimate, Line, jackknife};
+use super::space_time::SpaceTime;
+
+/// Speeds that a wave may have, m/s.
+const SPEEDS: [f64; 2] = [2.0, 40.0];
+/// How many of them are tried, at equal ratios.
+const TRIED: usize = 90;
+/// Seconds after the start in which a wave sets out.
+const SETS_OUT: f64 = 1.0;
+/// The crest is looked for so many seconds round the straight line found first.
+const ROUND: f64 = 0.6;
+/// So near to the obstacle, metres, the arriving and the returning wave lie over each other.
+const OVERLAP: f64 = 4.0;
+/// Amplitudes are compared over so many metres before that.
+const COMPARED: f64 = 4.0;
+/// The wave is looked at from so many metres before its source, where it has formed.
+const FORMED: f64 = 2.5;
+
+/// What starts a wave towards rising x, and what throws it back.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// When, seconds.
+    pub start: f64,
+    /// The front of those who push, metres.
+    pub source: f64,
+    /// The front of the obstacle, metres.
+    pub obstacle: f64,
+}
+
+/// The crest at one place.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct RidgePoint {
+    /// Where, metres.
+    pub x: f64,
+    /// When, seconds.
+    pub time: f64,
+    /// |v_x − mean v_x before|, m/s.
+    pub amplitude: f64,
+}
+
+/// A crest and the straight line through it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Ridge {
+    /// By rising x.
+    pub points: Vec<RidgePoint>,
+    /// |dx/dt|, m/s.
+    pub speed: Estimate,
+    /// The crest's time at x = 0 by the line, seconds.
+    pub offset: f64,
+    /// dt/dx of the line, s/m; negative for a returning wave.
+    pub slowness: f64,
+}
+
+impl Ridge {
+    /// When the line passes `x`, seconds.
+    pub fn time_at(&self, x: f64) -> f64 {
+        self.offset + self.slowness * x
+    }
+
+    /// Mean amplitude between two places, m/s.
+    fn amplitude(&self, [from, to]: [f64; 2]) -> Option<Estimate> {
+        let inside = self.points.iter().filter(|p| (from..=to).contains(&p.x));
+        let amplitudes: Vec<f64> = inside.map(|p| p.amplitude).collect();
+        Estimate::of_mean(&amplitudes)
+    }
+}
+
+/// A wave, there and back.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Wave {
+    /// Towards the obstacle.
+    pub arriving: Ridge,
+    /// Back from it; `None` if nothing comes back that stands out.
+    pub returning: Option<Ridge>,
+    /// Mean height of the arriving crest 4 to 8 m before the obstacle, m/s.
+    pub amplitude: Estimate,
+    /// Height of the returning crest over that of the arriving one, both there.
+    pub reflection: Option<Estimate>,
+}
+
+/// Finds the wave of `run` in a diagram; `None` where no crest stands out.
+pub fn measure(diagram: &SpaceTime, run: &Run) -> Option<Wave> {
+    let field = Field::new(diagram, run);
+    let near = run.obstacle - OVERLAP;
+    let places = field.columns([run.source + FORMED, near]);
+    let first = places.first()?.0;
+    let begins = |slowness: f64| (run.start + slowness * (first - run.source), SETS_OUT);
+    let arriving = field.ridge(&places, 1.0, SPEEDS, begins)?;
+
+    let hits = arriving.time_at(run.obstacle);
+    let speeds = [0.5, 1.5].map(|factor| factor * arriving.speed.value);
+    let begins = |slowness: f64| {
+        (
+            hits - slowness * (run.obstacle - first) - ROUND / 2.0,
+            ROUND,
+        )
+    };
+    let returning = field.ridge(&places, -1.0, speeds, begins);
+    let compared = [near - COMPARED, near];
+    let amplitude = arriving.amplitude(compared)?;
+    let reflection = returning
+        .as_ref()
+        .and_then(|ridge| ridge.amplitude(compared))
+        .map(|back| ratio(back, amplitude));
+    Some(Wave {
+        arriving,
+        returning,
+        amplitude,
+        reflection,
+    })
+}
+
+fn ratio(a: Estimate, b: Estimate) -> Estimate {
+    let value = a.value / b.value;
+    Estimate {
+        value,
+        error: value * (a.error / a.value).hypot(b.error / b.value),
+    }
+}
+
+/// The disturbance by bins; `None` where people were not always.
+struct Field {
+    places: Vec<f64>,
+    series: Vec<Option<Vec<f64>>>,
+    first_time: f64,
+    time_step: f64,
+    noise: f64,
+}
+
+impl Field {
+    fn new(diagram: &SpaceTime, run: &Run) -> Self {
+        let bins = 0..diagram.strip.bins();
+        let series: Vec<_> = bins
+            .clone()
+            .map(|bin| diagram.disturbance(bin, run.start))
+            .collect();
+        let before = diagram.times.iter().filter(|&&t| t < run.start).count();
+        let quiet: Vec<f64> = series
+            .iter()
+            .flatten()
+            .flat_map(|s| s[..before].iter().copied())
+            .collect();
+        let squares = quiet.iter().map(|v| v * v).sum::<f64>();
+        Self {
+            places: bins.map(|bin| diagram.strip.middle(bin)).collect(),
+            series,
+            first_time: diagram.times.first().copied().unwrap_or(0.0),
+            time_step: diagram.time_step(),
+            noise: (squares / quiet.len().max(1) as f64).sqrt(),
+        }
+    }
+
+    /// The bins between two places that always had people.
+    fn columns(&self, [from, to]: [f64; 2]) -> Vec<(f64, &[f64])> {
+        let inside = |&(x, _): &(f64, &[f64])| (from..=to).contains(&x);
+        self.places
+            .iter()
+            .zip(&self.series)
+            .filter_map(|(&x, series)| Some((x, series.as_deref()?)))
+            .filter(inside)
+            .collect()
+    }
+
+    /// A series between its times.
+    fn at(&self, series: &[f64], time: f64) -> f64 {
+        let along = (time - self.first_time) / self.time_step;
+        if !(0.0..(series.len() - 1) as f64).contains(&along) {
+            return 0.0;
+        }
+        let (k, part) = (along as usize, along.fract());
+        series[k] * (1.0 - part) + series[k + 1] * part
+    }
+
+    /// The crest with the given sign of v_x: the straight line along which the disturbance adds up
+    /// most, then the highest value near it at every place. `begins` gives for a slowness when it may
+    /// pass the first place, and for how many seconds from then.
+    fn ridge(
+        &self,
+        places: &[(f64, &[f64])],
+        sign: f64,
+        speeds: [f64; 2],
+        begins: impl Fn(f64) -> (f64, f64),
+    ) -> Option<Ridge> {
+        let first = places.first()?.0;
+        let guess = self.brightest(places, sign, speeds, begins)?;
+        let ridge: Vec<RidgePoint> = places
+            .iter()
+            .filter_map(|&(x, series)| self.crest(x, series, sign, guess.at(x - first)))
+            .collect();
+        // Most places must have a crest.
+        if 2 * ridge.len() < places.len() || ridge.len() < 4 {
+            return None;
+        }
+        let times: Vec<(f64, f64)> = ridge.iter().map(|p| (p.x, p.time)).collect();
+        let line = Line::through(&times)?;
+        let speed = jackknife(&times, |points| {
+            Line::through(points).map(|line| 1.0 / line.slope.abs())
+        })?;
+        Some(Ridge {
+            points: ridge,
+            speed,
+            offset: line.offset,
+            slowness: line.slope,
+        })
+    }
+
+    /// The line through the diagram with the greatest sum (a slant stack), over x from the first place.
+    fn brightest(
+        &self,
+        places: &[(f64, &[f64])],
+        sign: f64,
+        [slowest, fastest]: [f64; 2],
+        begins: impl Fn(f64) -> (f64, f64),
+    ) -> Option<Line> {
+        let first = places.first()?.0;
+        let mut best: Option<(f64, Line)> = None;
+        for k in 0..TRIED {
+            let part = k as f64 / (TRIED - 1) as f64;
+            let slowness = sign / (slowest * (fastest / slowest).powf(part));
+            let (from, lasting) = begins(slowness);
+            for step in 0..=(lasting / self.time_step) as usize {
+                let line = Line {
+                    slope: slowness,
+                    offset: from + step as f64 * self.time_step,
+                };
+                let values = places.iter().map(|&(x, s)| self.at(s, line.at(x - first)));
+                let sum = sign * values.sum::<f64>();
+                if best.is_none_or(|(most, _)| sum > most) {
+                    best = Some((sum, line));
+                }
+            }
+        }
+        best.map(|(_, line)| line)
+    }
+
+    /// The highest value near a time, refined by a parabola; `None` if it does not stand out of the
+    /// noise or lies at the end of where was looked.
+    fn crest(&self, x: f64, series: &[f64], sign: f64, time: f64) -> Option<RidgePoint> {
+        let index =
+            |time: f64| ((time - self.first_time) / self.time_step).round().max(1.0) as usize;
+        let (from, to) = (
+            index(time - ROUND),
+            index(time + ROUND).min(series.len() - 2),
+        );
+        let top = (from..=to).max_by(|&a, &b| (sign * series[a]).total_cmp(&(sign * series[b])))?;
+        if top == from || top == to || sign * series[top] < 3.0 * self.noise {
+            return None;
+        }
+        let [a, b, c] = [series[top - 1], series[top], series[top + 1]].map(|v| sign * v);
+        let bend = a - 2.0 * b + c;
+        let shift = if bend < 0.0 {
+            0.5 * (a - c) / bend
+        } else {
+            0.0
+        };
+        Some(RidgePoint {
+            x,
+            time: self.first_time + (top as f64 + shift) * self.time_step,
+            amplitude: b - 0.25 * (a - c) * shift,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::wave::Strip;
+
+    const RUN: Run = Run {
+        start: 150.0,
+        source: 55.5,
+        obstacle: 80.0,
+    };
+
+    /// A pulse there at `speed` and back at `back`, `reflection` of it, over a crowd that creeps.
+    fn synthetic(speed: f64, back: f64, reflection: f64, noise: f64) -> SpaceTime {
+        let strip = Strip {
+            x: [45.0, 80.0],
+            half_width: 8.0,
+            bin: 0.5,
+        };
+        let mut diagram = SpaceTime::new(strip);
+        let pulse = |t: f64| (-0.5 * (t / 0.15).powi(2)).exp();
+        let hits = 150.3 + (80.0 - 55.5) / speed;
+        let mut state = 1u64;
+        for row in 0..300 {
+            let t = 149.0 + 0.04 * f64::from(row);
+            diagram.times.push(t);
+            for bin in 0..strip.bins() {
+                let x = strip.middle(bin);
+                state = state.wrapping_mul(6364136223846793005).wrapping_add(1);
+                let random = (state >> 40) as f64 / (1u64 << 24) as f64 - 0.5;
+                let there = pulse(t - 150.3 - (x - 55.5) / speed);
+                let again = pulse(t - hits - (80.0 - x) / back);
+                let v = 0.2 + 0.5 * (there - reflection * again) + noise * random;
+                diagram.velocity.push(Some(v));
+                diagram.speed.push(Some(v.abs()));
+            }
+        }
+        diagram
+    }
+
+    #[test]
+    fn a_known_wave_is_found_again() {
+        for (speed, back) in [(6.0, 6.0), (10.5, 10.0), (21.0, 18.0)] {
+            let wave = measure(&synthetic(speed, back, 0.6, 0.0), &RUN).unwrap();
+            let returning = wave.returning.unwrap();
+            assert!((wave.arriving.speed.value / speed - 1.0).abs() < 0.01);
+            assert!((returning.speed.value / back - 1.0).abs() < 0.02);
+            assert!((wave.amplitude.value / 0.5 - 1.0).abs() < 0.03);
+            assert!((wave.reflection.unwrap().value - 0.6).abs() < 0.03);
+        }
+    }
+
+    #[test]
+    fn the_error_covers_what_noise_does() {
+        let wave = measure(&synthetic(10.5, 10.0, 0.6, 0.1), &RUN).unwrap();
+        let speed = wave.arriving.speed;
+        assert!(speed.error > 0.0 && speed.error < 0.3, "{speed:?}");
+        assert!((speed.value - 10.5).abs() < 4.0 * speed.error, "{speed:?}");
+    }
+
+    #[test]
+    fn nothing_is_found_where_nothing_runs() {
+        let mut still = synthetic(10.0, 10.0, 0.6, 0.1);
+        still.velocity.fill(Some(0.2));
+        assert_eq!(measure(&still, &RUN), None);
+        assert_eq!(measure(&SpaceTime::new(still.strip), &RUN), None);
+    }
+
+    #[test]
+    fn a_wave_that_is_swallowed_has_no_reflection() {
+        let wave = measure(&synthetic(10.0, 10.0, 0.0, 0.02), &RUN).unwrap();
+        assert_eq!(wave.reflection, None);
+    }
+}

@@ -1,0 +1,101 @@
+//! The space-time diagram: a strip of the crowd along the x axis, averaged over its width.
+
+use serde::{Deserialize, Serialize};
+
+use crate::engine::frame::Frame;
+
+/// A strip along the x axis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Strip {
+    /// From here to there, metres.
+    pub x: [f64; 2],
+    /// |y| up to this, metres.
+    pub half_width: f64,
+    /// Length of one bin, metres.
+    pub bin: f64,
+}
+
+impl Strip {
+    /// The number of bins.
+    pub fn bins(&self) -> usize {
+        ((self.x[1] - self.x[0]) / self.bin).round() as usize
+    }
+
+    /// The middle of a bin, metres.
+    pub fn middle(&self, bin: usize) -> f64 {
+        self.x[0] + (bin as f64 + 0.5) * self.bin
+    }
+}
+
+/// Mean values over x and t; `None` in a bin without people.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SpaceTime {
+    /// Where.
+    pub strip: Strip,
+    /// When, seconds, evenly spaced.
+    pub times: Vec<f64>,
+    /// Mean |v|, m/s: the bins of the first time, of the second, and so on.
+    pub speed: Vec<Option<f64>>,
+    /// Mean v_x, m/s, in the same order.
+    pub velocity: Vec<Option<f64>>,
+}
+
+impl SpaceTime {
+    /// An empty diagram.
+    pub fn new(strip: Strip) -> Self {
+        Self {
+            strip,
+            times: Vec::new(),
+            speed: Vec::new(),
+            velocity: Vec::new(),
+        }
+    }
+
+    /// Adds the current time.
+    pub fn observe(&mut self, frame: &Frame) {
+        let bins = self.strip.bins();
+        let mut sums = vec![(0u32, 0.0, 0.0); bins];
+        for (r, v) in frame.agents.position.iter().zip(&frame.agents.velocity) {
+            let along = (r.x - self.strip.x[0]) / self.strip.bin;
+            if r.y.abs() <= self.strip.half_width && along >= 0.0 && along < bins as f64 {
+                let (count, speed, velocity) = &mut sums[along as usize];
+                *count += 1;
+                *speed += v.norm();
+                *velocity += v.x;
+            }
+        }
+        // To a tenth of a millimetre a second: more digits would only make stored diagrams longer.
+        let mean = |count: u32, sum: f64| {
+            (count > 0).then(|| (1e4 * sum / f64::from(count)).round() / 1e4)
+        };
+        self.times.push(frame.clock.time());
+        let means = sums.iter().map(|&(count, speed, _)| mean(count, speed));
+        self.speed.extend(means);
+        let means = sums.iter().map(|&(count, _, v)| mean(count, v));
+        self.velocity.extend(means);
+    }
+
+    /// v_x of one bin over time, less its mean before `start` seconds; `None` if the bin was ever
+    /// empty or nothing was seen before.
+    pub(super) fn disturbance(&self, bin: usize, start: f64) -> Option<Vec<f64>> {
+        let bins = self.strip.bins();
+        let series: Option<Vec<f64>> = (0..self.times.len())
+            .map(|row| self.velocity[row * bins + bin])
+            .collect();
+        let series = series?;
+        let before = self.times.iter().filter(|&&time| time < start).count();
+        if before == 0 {
+            return None;
+        }
+        let mean = series[..before].iter().sum::<f64>() / before as f64;
+        Some(series.into_iter().map(|v| v - mean).collect())
+    }
+
+    /// Seconds between times.
+    pub(super) fn time_step(&self) -> f64 {
+        match self.times[..] {
+            [first, .., last] => (last - first) / (self.times.len() - 1) as f64,
+            _ => 0.0,
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! The state of the crowd: one array per quantity, in the order of the neighbour grid's cells.
+
+use rand::Rng;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::engine::math::{Vector, pairs_of};
+use crate::engine::random::{self, Purpose};
+
+/// D_i ∈ U[0.215, 0.265] m (§5.6).
+pub const RADIUS_RANGE: [f64; 2] = [0.215, 0.265];
+/// The radius of an agent of mass 1, metres (§5.6).
+pub const REFERENCE_RADIUS: f64 = 0.24;
+
+/// An agent about to enter; what is `None` is drawn or derived.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NewAgent {
+    /// Position, metres.
+    pub position: Vector,
+    /// Velocity, m/s.
+    pub velocity: Vector,
+    /// Goal, metres.
+    pub goal: Vector,
+    /// Radius D_i in metres; drawn from [`RADIUS_RANGE`] if `None`.
+    pub radius: Option<f64>,
+    /// Mass, 1 = an average person; (D_i / 0.24)² if `None`.
+    pub mass: Option<f64>,
+    /// ρ̂ of the frame before, P/m²; the agent-only density of its first frame if `None`.
+    pub mean_density: Option<f64>,
+    /// Its [`Group`](crate::engine::scene::Group).
+    pub group: u16,
+}
+
+impl NewAgent {
+    /// Somebody standing at `position`, on the way to `goal`.
+    pub fn at(position: Vector, goal: Vector, group: u16) -> Self {
+        Self {
+            position,
+            velocity: Vector::zeros(),
+            goal,
+            radius: None,
+            mass: None,
+            mean_density: None,
+            group,
+        }
+    }
+}
+
+/// Everybody's state. All arrays but the last two have the same length; index i is an agent until the next
+/// frame in which the neighbour lists are rebuilt, `id` is one for ever.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Agents {
+    /// Unique number, in the order of entry from 0.
+    pub id: Vec<u32>,
+    /// r_i, metres.
+    #[serde(with = "pairs_of::many")]
+    pub position: Vec<Vector>,
+    /// v_i, m/s.
+    #[serde(with = "pairs_of::many")]
+    pub velocity: Vec<Vector>,
+    /// g_i, metres.
+    #[serde(with = "pairs_of::many")]
+    pub goal: Vec<Vector>,
+    /// D_i, metres.
+    pub radius: Vec<f64>,
+    /// m_i, 1 = an average person.
+    pub mass: Vec<f64>,
+    /// ρ̂_i of the frame before, P/m², unclamped (§4.2).
+    pub mean_density: Vec<f64>,
+    /// Has ρ̂_i not been set yet? Then the next frame starts it.
+    pub newcomer: Vec<bool>,
+    /// Index of the agent's group in the scene.
+    pub group: Vec<u16>,
+    /// The push that the agent takes part in now, as its index in the scene.
+    pub push: Vec<Option<u16>>,
+    /// The RVO acceleration held since the last coarse frame, m/s²; `None` where none is due. Empty
+    /// where nobody avoids by RVO.
+    #[serde(with = "pairs_of::some")]
+    pub avoidance: Vec<Option<Vector>>,
+    /// The acceleration of the frame before, m/s²; `None` for who was not there. Empty but for velocity
+    /// Verlet.
+    #[serde(with = "pairs_of::some")]
+    pub acceleration_before: Vec<Option<Vector>>,
+    next_id: u32,
+}
+
+impl Agents {
+    /// How many there are now.
+    pub fn len(&self) -> usize {
+        self.id.len()
+    }
+
+    /// Is nobody there?
+    pub fn is_empty(&self) -> bool {
+        self.id.is_empty()
+    }
+
+    /// How many ever entered.
+    pub fn entered(&self) -> u32 {
+        self.next_id
+    }
+
+    /// Have all quantities as many values as there are agents?
+    pub fn is_whole(&self) -> bool {
+        let count = self.len();
+        let sometimes = [self.avoidance.len(), self.acceleration_before.len()];
+        let always = [
+            self.position.len(),
+            self.velocity.len(),
+            self.goal.len(),
+            self.radius.len(),
+            self.mass.len(),
+            self.mean_density.len(),
+            self.newcomer.len(),
+            self.group.len(),
+            self.push.len(),
+        ];
+        always.iter().all(|&len| len == count) && sometimes.iter().all(|&len| len <= count)
+    }
+
+    /// The current index of agent `id`, if it is still there.
+    pub fn index_of(&self, id: u32) -> Option<usize> {
+        self.id.iter().position(|&other| other == id)
+    }
+
+    /// Lets somebody in and returns the new id.
+    pub fn enter(&mut self, new: NewAgent, seed: u64) -> u32 {
+        let id = self.next_id;
+        self.next_id += 1;
+        let radius = new.radius.unwrap_or_else(|| {
+            let [low, high] = RADIUS_RANGE;
+            random::stream(seed, Purpose::Body, id, 0).random_range(low..=high)
+        });
+        self.id.push(id);
+        self.position.push(new.position);
+        self.velocity.push(new.velocity);
+        self.goal.push(new.goal);
+        self.radius.push(radius);
+        self.mass
+            .push(new.mass.unwrap_or((radius / REFERENCE_RADIUS).powi(2)));
+        self.mean_density.push(new.mean_density.unwrap_or(0.0));
+        self.newcomer.push(new.mean_density.is_none());
+        self.group.push(new.group);
+        self.push.push(None);
+        id
+    }
+
+    /// From now on every agent has a place for an RVO acceleration.
+    pub fn make_room_for_avoidance(&mut self) {
+        self.avoidance.resize(self.len(), None);
+    }
+
+    /// Puts agent `order[k]` at place k; agents that `order` does not name are gone.
+    pub fn arrange(&mut self, order: &[u32]) {
+        if !self.avoidance.is_empty() {
+            self.make_room_for_avoidance(); // for who entered since
+            arrange(&mut self.avoidance, order);
+        }
+        if !self.acceleration_before.is_empty() {
+            self.acceleration_before.resize(self.len(), None);
+            arrange(&mut self.acceleration_before, order);
+        }
+        arrange(&mut self.id, order);
+        arrange(&mut self.position, order);
+        arrange(&mut self.velocity, order);
+        arrange(&mut self.goal, order);
+        arrange(&mut self.radius, order);
+        arrange(&mut self.mass, order);
+        arrange(&mut self.mean_density, order);
+        arrange(&mut self.newcomer, order);
+        arrange(&mut self.group, order);
+        arrange(&mut self.push, order);
+    }
+}
+
+/// Values that are worth another thread.
+const SOME: usize = 4096;
+
+fn arrange<T: Copy + Send + Sync>(values: &mut Vec<T>, order: &[u32]) {
+    let arranged = order.par_iter().with_min_len(SOME);
+    *values = arranged.map(|&i| values[i as usize]).collect();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bodies_depend_on_seed_and_id_and_stay_in_the_papers_range() {
+        let crowd = |seed| {
+            let mut agents = Agents::default();
+            for x in 0..1000 {
+                let somebody = NewAgent::at(Vector::new(f64::from(x), 0.0), Vector::zeros(), 0);
+                agents.enter(somebody, seed);
+            }
+            agents
+        };
+        let agents = crowd(1);
+        assert_eq!(agents.radius, crowd(1).radius);
+        assert_ne!(agents.radius, crowd(2).radius);
+        for (radius, mass) in agents.radius.iter().zip(&agents.mass) {
+            assert!((0.215..=0.265).contains(radius));
+            assert!((mass - (radius / 0.24).powi(2)).abs() < 1e-15);
+        }
+        let mean = agents.radius.iter().sum::<f64>() / 1000.0;
+        assert!((mean - 0.24).abs() < 0.002);
+    }
+
+    #[test]
+    fn arranging_moves_every_quantity_and_drops_who_is_not_named() {
+        let mut agents = Agents::default();
+        for x in 0..4 {
+            let somebody = NewAgent::at(Vector::new(f64::from(x), 0.0), Vector::zeros(), x as u16);
+            agents.enter(somebody, 0);
+        }
+        let radius = agents.radius.clone();
+        agents.arrange(&[3, 1]);
+        assert_eq!(agents.id, [3, 1]);
+        assert_eq!(agents.group, [3, 1]);
+        assert_eq!(agents.radius, [radius[3], radius[1]]);
+        assert_eq!(agents.entered(), 4);
+        assert_eq!(agents.index_of(1), Some(1));
+        assert_eq!(agents.index_of(0), None);
+    }
+}

@@ -1,0 +1,147 @@
+//! Walls in SPH (§4.3): what the hidden regions P_k add to density and pressure.
+
+use std::f64::consts::PI;
+
+use crate::engine::geometry::{HiddenRegion, Walls, visible_parts};
+use crate::engine::kernel;
+use crate::engine::math::{Vector, direction};
+
+/// How the integrals of the kernels over the hidden regions are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WallMethod {
+    /// The paper's: the area of P_k times the kernel at one representative point (Eq. 10, 12).
+    #[default]
+    Representative,
+    /// Exact integrals over each P_k; shadows of several walls add.
+    Exact,
+    /// Exact integrals over what each wall alone hides, so that nothing counts twice.
+    Union,
+}
+
+/// One wall's share for one agent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WallShare {
+    /// The wall.
+    pub wall: u32,
+    /// a(P_k) in m².
+    pub hidden_area: f64,
+    /// r_k^o, metres; `None` where the integrals are exact.
+    pub representative_point: Option<Vector>,
+    /// ∫ W over P_k, dimensionless: times ρ_i⁰ it is the wall's density (Eq. 10).
+    pub kernel: f64,
+    /// ∫ ∇W over P_k in 1/m: times −p_i it is the wall's force (Eq. 12).
+    pub gradient: Vector,
+}
+
+impl WallShare {
+    /// Two parts of the same wall together.
+    fn with(self, other: &Self) -> Self {
+        Self {
+            hidden_area: self.hidden_area + other.hidden_area,
+            kernel: self.kernel + other.kernel,
+            gradient: self.gradient + other.gradient,
+            ..self
+        }
+    }
+}
+
+impl WallMethod {
+    /// The shares of those of `candidates` that hide something from an agent at `r_i`, in rising
+    /// order of the walls.
+    pub fn shares(
+        self,
+        walls: &Walls,
+        candidates: &[u32],
+        r_i: Vector,
+        h: f64,
+        mut take: impl FnMut(WallShare),
+    ) {
+        let hidden = candidates
+            .iter()
+            .filter_map(|&k| Some((k, HiddenRegion::behind(walls.wall(k), r_i, h)?)));
+        match self {
+            Self::Representative => {
+                hidden.for_each(|(k, region)| take(representative(k, &region, r_i)));
+            }
+            Self::Exact => hidden.for_each(|(k, region)| take(exact(k, &region))),
+            Self::Union => {
+                let (ks, regions): (Vec<u32>, Vec<HiddenRegion>) = hidden.unzip();
+                let mut shares: Vec<Option<WallShare>> = vec![None; ks.len()];
+                for (index, part) in visible_parts(&regions) {
+                    let share = exact(ks[index], &part);
+                    let sum = shares[index].map_or(share, |seen| seen.with(&share));
+                    shares[index] = Some(sum);
+                }
+                shares.into_iter().flatten().for_each(take);
+            }
+        }
+    }
+}
+
+/// Eq. 10 and 12: P_k condensed into the point half way between r_k* and the rim of the kernel.
+fn representative(k: u32, region: &HiddenRegion, r_i: Vector) -> WallShare {
+    let h = region.support_radius;
+    let to_nearest = region.to_nearest();
+    let distance = to_nearest.norm();
+    let ray = if distance > 0.0 {
+        direction(to_nearest)
+    } else {
+        region.towards
+    };
+    let offset = ray * (0.5 * (distance + h));
+    let hidden_area = region.area();
+    WallShare {
+        wall: k,
+        hidden_area,
+        representative_point: Some(r_i + offset),
+        kernel: hidden_area * kernel::density(offset.norm_squared(), h),
+        gradient: kernel::pressure_gradient(-offset, h) * hidden_area,
+    }
+}
+
+fn exact(k: u32, region: &HiddenRegion) -> WallShare {
+    let [from, to] = [region.from, region.to].map(|s| Antiderivatives::at(region, s));
+    let h = region.support_radius;
+    WallShare {
+        wall: k,
+        hidden_area: region.area(),
+        representative_point: None,
+        kernel: (to.kernel - from.kernel) / (2.0 * PI),
+        gradient: (region.towards * (to.towards - from.towards)
+            + region.along * (to.along - from.along))
+            * (5.0 / (2.0 * PI * h)),
+    }
+}
+
+/// The integrals over the angle in closed form, at one end of the wall.
+///
+/// Radially ∫ W r dr and ∫ |∇W| r dr from the wall to the rim are polynomials in R = |wall point|;
+/// with R = q / cos t they integrate to these, q = d/h, s along the wall over h, A = asinh(s/q).
+struct Antiderivatives {
+    kernel: f64,
+    towards: f64,
+    along: f64,
+}
+
+impl Antiderivatives {
+    fn at(region: &HiddenRegion, along: f64) -> Self {
+        let q = region.distance / region.support_radius;
+        let s = along / region.support_radius;
+        let (q2, s2) = (q * q, s * s);
+        let r2 = q2 + s2;
+        let r = r2.sqrt();
+        let t = s.atan2(q);
+        // q² A and q⁴ A vanish with q.
+        let q2a = if q2 > 0.0 { q2 * (s / q).asinh() } else { 0.0 };
+        // cos t and sin t; at the wall's own end (q = s = 0) any direction will do, with weight 0.
+        let (cosine, sine) = if r > 0.0 { (q / r, s / r) } else { (1.0, 0.0) };
+        Self {
+            kernel: t - 4.0 * q * s + 6.0 * q * s * (q2 + s2 / 3.0)
+                - 4.0 * q * s * (q2 * q2 + 2.0 * q2 * s2 / 3.0 + s2 * s2 / 5.0)
+                + q * s * (q2 * q2 * q2 + q2 * q2 * s2 + 0.6 * q2 * s2 * s2 + s2 * s2 * s2 / 7.0),
+            towards: sine - 6.0 * q2a + 8.0 * q2 * s - 1.5 * q2 * s * r - 1.5 * q2 * q2a,
+            along: -cosine - 6.0 * q * r + 4.0 * q * r2 - q * r2 * r,
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! The goal force (§5.3.1, Eq. 17) and the preferred velocity.
+
+use std::ops::Range;
+
+use crate::engine::frame::Frame;
+use crate::engine::math::{Vector, direction};
+
+/// Parameters of Eq. 17.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GoalForce {
+    /// K^goal.
+    pub goal_scale: f64,
+    /// τ, seconds.
+    pub relaxation_time: f64,
+}
+
+impl Default for GoalForce {
+    fn default() -> Self {
+        Self {
+            goal_scale: 1.0,
+            relaxation_time: 0.5,
+        }
+    }
+}
+
+impl GoalForce {
+    /// Eq. 17 over the mass for each of `agents`.
+    #[inline]
+    pub fn accelerations(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+        mut take: impl FnMut(usize, Vector),
+    ) {
+        let rate = self.goal_scale / self.relaxation_time;
+        let preferred = &frame.fields.preferred_velocity[agents.clone()];
+        let velocity = &frame.agents.velocity[agents.clone()];
+        let mass = &frame.agents.mass[agents.clone()];
+        for (((i, wish), v), m) in agents.zip(preferred).zip(velocity).zip(mass) {
+            take(i, (wish - v) * (rate / m));
+        }
+    }
+}
+
+/// v^pref: `preferred_speed` (m/s) straight towards the goal, zero at the goal.
+pub fn preferred_velocity(position: Vector, goal: Vector, preferred_speed: f64) -> Vector {
+    direction(goal - position) * preferred_speed
+}

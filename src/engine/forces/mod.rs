@@ -1,0 +1,11 @@
+//! Steps 3, 3B and 4: one file per force, one pure function per equation.
+//!
+//! Every function reads the frozen [`Frame`](crate::engine::frame::Frame) and returns its own share of the
+//! acceleration of one agent in m/s², already divided by mass or density.
+
+pub mod contact;
+pub mod goal;
+pub mod pressure;
+pub mod rvo;
+pub mod social;
+pub mod viscosity;

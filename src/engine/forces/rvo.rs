@@ -1,0 +1,283 @@
+//! Reciprocal velocity obstacles (§5.3.2, Eqs. 20 and 21).
+
+mod search;
+
+pub use search::Search;
+
+use rand::Rng;
+
+use crate::engine::frame::Frame;
+use crate::engine::geometry::Wall;
+use crate::engine::math::{Vector, unit_vector};
+pub use crate::engine::pairs::MovingDisc;
+use crate::engine::random::{self, Purpose};
+
+/// Parameters of Eq. 20 and of its sampling.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rvo {
+    /// w, m: the weight of the time to collision.
+    pub collision_weight: f64,
+    /// How many candidate velocities are drawn per coarse frame.
+    pub candidates: u32,
+    /// Nobody farther away counts, metres.
+    pub avoidance_radius: f64,
+}
+
+impl Default for Rvo {
+    fn default() -> Self {
+        Self {
+            collision_weight: 1.0,
+            candidates: 250,
+            avoidance_radius: 5.0,
+        }
+    }
+}
+
+/// Everything that the choice of a velocity depends on.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Situation {
+    /// r_i, metres.
+    pub position: Vector,
+    /// v_i, m/s.
+    pub velocity: Vector,
+    /// v_i^pref, m/s.
+    pub preferred_velocity: Vector,
+    /// D_i, metres.
+    pub radius: f64,
+    /// s_max, m/s.
+    pub max_speed: f64,
+    /// Agents in range, not touching.
+    pub discs: Vec<MovingDisc>,
+    /// Walls in range, on their free side, not touching.
+    pub walls: Vec<Wall>,
+}
+
+impl Rvo {
+    /// Eq. 21: the acceleration to hold until the next coarse frame.
+    pub fn acceleration(
+        &self,
+        frame: &Frame,
+        i: usize,
+        max_speed: f64,
+        scratch: &mut Scratch,
+    ) -> Vector {
+        let Scratch {
+            situation,
+            candidates,
+            search,
+        } = scratch;
+        situation.see(frame, i, self.avoidance_radius, max_speed);
+        let rng = random::stream(
+            frame.seed,
+            Purpose::Candidates,
+            frame.agents.id[i],
+            frame.clock.coarse_frame(),
+        );
+        draw(self.candidates, situation, rng, candidates);
+        let best = search.best(situation, candidates, self.collision_weight);
+        (best - situation.velocity) / frame.clock.coarse_step()
+    }
+}
+
+/// Memory for choices one after the other.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    situation: Situation,
+    candidates: Vec<Candidate>,
+    search: Search,
+}
+
+/// A candidate velocity, as seen from the current one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// How far away, m/s.
+    pub length: f64,
+    /// In which direction, 2³²ths of a turn.
+    pub turn: u32,
+}
+
+impl Candidate {
+    /// The velocity itself, m/s, when the current one is `from`.
+    pub fn velocity(self, from: Vector) -> Vector {
+        from + unit_vector(self.turn) * self.length
+    }
+}
+
+/// Replaces `candidates` by `count` velocities, in all directions and as far as 2 s_max from the current
+/// one alike, without those that no direction could make slow enough.
+fn draw(count: u32, situation: &Situation, mut rng: impl Rng, candidates: &mut Vec<Candidate>) {
+    let farthest = situation.velocity.norm() + situation.max_speed;
+    let per_step = 2.0 * situation.max_speed / f64::from(u32::MAX);
+    let (length, turn) = (0.0, 0);
+    candidates.resize(count as usize, Candidate { length, turn });
+    let mut kept = 0;
+    for _ in 0..count {
+        let bits: u64 = rng.random();
+        let length = per_step * f64::from((bits >> 32) as u32);
+        let turn = bits as u32;
+        candidates[kept] = Candidate { length, turn };
+        kept += usize::from(length <= farthest); // nobody could foresee a branch
+    }
+    candidates.truncate(kept);
+}
+
+impl Situation {
+    /// Becomes what agent `i` of a frozen frame sees within `radius` metres.
+    pub fn see(&mut self, frame: &Frame, i: usize, radius: f64, max_speed: f64) {
+        let agents = frame.agents;
+        self.position = agents.position[i];
+        self.velocity = agents.velocity[i];
+        self.preferred_velocity = frame.fields.preferred_velocity[i];
+        self.radius = agents.radius[i];
+        self.max_speed = max_speed;
+        self.discs.clear();
+        for run in frame.neighbors.around(self.position, radius) {
+            for j in run {
+                let offset = agents.position[j] - self.position;
+                let reach = self.radius + agents.radius[j];
+                let squared = offset.norm_squared();
+                // Whoever touches is ignored; the agent itself does.
+                if squared < radius * radius && squared > reach * reach {
+                    self.discs.push(MovingDisc {
+                        offset,
+                        velocity: agents.velocity[j],
+                        reach,
+                    });
+                }
+            }
+        }
+        self.walls.clear();
+        for &k in frame.neighbors.far_walls(i) {
+            let wall = frame.walls.wall(k);
+            let distance = (wall.nearest_point(self.position).point - self.position).norm();
+            if wall.faces(self.position) && distance < radius && distance > self.radius {
+                self.walls.push(*wall);
+            }
+        }
+    }
+
+    /// When the disc, moving at `velocity`, first touches a wall: its offset edge or an end point.
+    fn time_to_wall(&self, wall: &Wall, velocity: Vector) -> f64 {
+        let ends = [wall.start, wall.end]
+            .map(|end| time_to_contact(end - self.position, velocity, self.radius));
+        let gap = wall.signed_distance(self.position) - self.radius;
+        let approach = -velocity.dot(&wall.normal);
+        let mut edge = f64::INFINITY;
+        if gap >= 0.0 && approach > 0.0 {
+            let time = gap / approach;
+            let along = (self.position + velocity * time - wall.start).dot(&wall.tangent);
+            if (0.0..=wall.length()).contains(&along) {
+                edge = time;
+            }
+        }
+        edge.min(ends[0]).min(ends[1])
+    }
+}
+
+/// When a point moving at `velocity` (m/s) first comes within `reach` of the point at `offset`
+/// (metres), seconds; infinite if never, or if it is there already.
+pub fn time_to_contact(offset: Vector, velocity: Vector, reach: f64) -> f64 {
+    let gap = offset.norm_squared() - reach * reach;
+    let approach = offset.dot(&velocity);
+    if gap <= 0.0 || approach <= 0.0 {
+        return f64::INFINITY;
+    }
+    let discriminant = approach * approach - velocity.norm_squared() * gap;
+    if discriminant < 0.0 {
+        return f64::INFINITY;
+    }
+    // The smaller root of |velocity|² t² − 2 approach t + gap = 0, without cancellation.
+    gap / (approach + discriminant.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::math::perpendicular;
+
+    /// Numbers in [−1, 1) without pattern.
+    fn numbers(seed: u32) -> impl FnMut() -> f64 {
+        let mut rng = random::stream(9, Purpose::Candidates, seed, 0);
+        move || rng.random_range(-1.0..1.0)
+    }
+
+    /// The first time in small steps at which `distance` has come down to `reach`.
+    fn stepped(reach: f64, distance: impl Fn(f64) -> f64) -> f64 {
+        (0..20_000)
+            .map(|step| f64::from(step) * 1e-3)
+            .find(|&time| distance(time) <= reach)
+            .unwrap_or(f64::INFINITY)
+    }
+
+    /// Do both agree that it touches, and when? In steps a graze may go unseen.
+    fn assert_agree(exact: f64, stepped: f64, reach: f64, distance: impl Fn(f64) -> f64) {
+        let grazing = exact.is_finite() && distance(exact + 1e-3) > reach - 1e-5;
+        let late = exact > 19.99 && stepped.is_infinite();
+        assert!(
+            (exact - stepped).abs() <= 1.001e-3 || exact == stepped || grazing || late,
+            "{exact} {stepped}"
+        );
+    }
+
+    #[test]
+    fn the_time_to_contact_is_found_in_small_steps_too() {
+        for seed in 0..500 {
+            let mut next = numbers(seed);
+            let offset = Vector::new(next(), next()) * 5.0;
+            let velocity = Vector::new(next(), next()) * 3.0;
+            let reach = 0.5 * (1.1 + next()) / 2.0;
+            let distance = |time: f64| (offset - velocity * time).norm();
+            if distance(0.0) > reach {
+                let exact = time_to_contact(offset, velocity, reach);
+                assert_agree(exact, stepped(reach, distance), reach, distance);
+            }
+        }
+    }
+
+    #[test]
+    fn the_time_to_a_wall_is_found_in_small_steps_too() {
+        let mut sides = [0; 3];
+        for seed in 0..3000 {
+            let mut next = numbers(seed);
+            let start = Vector::new(next(), next()) * 3.0;
+            let wall = Wall::new(start, start + Vector::new(next(), next()) * 4.0, 0, 0);
+            let velocity = Vector::new(next(), next()) * 3.0;
+            let position = Vector::new(next(), next()) * 5.0;
+            let situation = Situation {
+                position,
+                velocity: Vector::zeros(),
+                preferred_velocity: Vector::zeros(),
+                radius: 0.24,
+                max_speed: 1.8,
+                discs: Vec::new(),
+                walls: vec![wall],
+            };
+            let distance = |time: f64| {
+                let p = position + velocity * time;
+                let fraction = (p - wall.start).dot(&wall.tangent) / wall.length();
+                (p - wall.start - (wall.end - wall.start) * fraction.clamp(0.0, 1.0)).norm()
+            };
+            if wall.faces(position) && distance(0.0) > 0.24 {
+                let exact = situation.time_to_wall(&wall, velocity);
+                assert_agree(exact, stepped(0.24, distance), 0.24, distance);
+                if exact.is_finite() {
+                    let along = (position + velocity * exact - wall.start).dot(&wall.tangent);
+                    let part = usize::from(along >= 0.0) + usize::from(along > wall.length());
+                    sides[part] += 1;
+                }
+            }
+        }
+        assert!(sides.iter().all(|&count| count > 5), "{sides:?}");
+    }
+
+    #[test]
+    fn what_touches_already_or_moves_away_is_never_met() {
+        let ahead = Vector::new(1.0, 0.0);
+        assert_eq!(time_to_contact(ahead, ahead, 1.0), f64::INFINITY);
+        assert_eq!(time_to_contact(ahead, -ahead, 0.5), f64::INFINITY);
+        assert_eq!(time_to_contact(ahead, Vector::zeros(), 0.5), f64::INFINITY);
+        assert_eq!(time_to_contact(ahead, ahead, 0.5), 0.5);
+        let passing = perpendicular(ahead) * 0.500_1 + ahead;
+        assert_eq!(time_to_contact(passing, ahead, 0.5), f64::INFINITY);
+    }
+}

@@ -1,0 +1,197 @@
+//! The cheapest candidate by branch and bound, with the answer of an exhaustive search.
+
+use super::{Candidate, Situation, time_to_contact};
+use crate::engine::math::Vector;
+use crate::engine::pairs::Rings;
+
+/// Candidates whose least deviations differ by less than this are in no order, m/s.
+const WIDTH: f64 = 0.1;
+
+/// Far more than rounding makes of deviations and times: it must never leave anybody out.
+const ROUNDING: f64 = 1e-9;
+
+/// Memory for searches one after the other.
+#[derive(Debug, Default)]
+pub struct Search {
+    /// Candidates with their numbers, by what they deviate from the preferred velocity at least.
+    candidates: Buckets<(u32, Candidate)>,
+    /// Those of them that are looked at, with their numbers, m/s.
+    velocities: Vec<(u32, Vector)>,
+    rings: Rings,
+    /// Numbers of discs.
+    perhaps: Vec<u32>,
+}
+
+impl Search {
+    /// The cheapest of `candidates` (Eq. 20), the first of equals; zero if all are too fast.
+    ///
+    /// Candidates come in order of what they cost at least, until that is more than the best so far:
+    /// | |v′ − v| − |v^pref − v| |, for which nobody needs to know their directions. What is left of the
+    /// best cost is a time before which no contact may come: most candidates are out by a look at the
+    /// nearest discs, eight at a time. The others' first contacts are looked for from the inside out, until
+    /// no disc farther away could be met before the earliest found.
+    pub fn best(
+        &mut self,
+        situation: &Situation,
+        candidates: &[Candidate],
+        collision_weight: f64,
+    ) -> Vector {
+        let max_squared = situation.max_speed * situation.max_speed;
+        let preferred = (situation.preferred_velocity - situation.velocity).norm();
+        let numbered = (0..).zip(candidates.iter().copied());
+        let Self {
+            candidates: sorted,
+            rings,
+            perhaps,
+            velocities,
+        } = self;
+        sorted.sort(
+            WIDTH,
+            numbered.map(|(k, candidate)| ((candidate.length - preferred).abs(), (k, candidate))),
+        );
+        rings.sort(&situation.discs);
+
+        let (mut best, mut first) = (Vector::zeros(), u32::MAX);
+        let mut best_cost = f64::INFINITY;
+        for (least, candidates) in sorted.iter() {
+            if least - ROUNDING > best_cost {
+                break;
+            }
+            // All of them first: one direction need not wait for the verdict on another.
+            velocities.clear();
+            velocities.extend(
+                candidates
+                    .iter()
+                    .map(|(k, candidate)| (*k, candidate.velocity(situation.velocity))),
+            );
+            for &(k, candidate) in velocities.iter() {
+                if candidate.norm_squared() > max_squared {
+                    continue;
+                }
+                let deviation = (candidate - situation.preferred_velocity).norm();
+                if deviation > best_cost {
+                    continue;
+                }
+                // Agent i moves at 2v′ − v_i.
+                let velocity = candidate * 2.0 - situation.velocity;
+                // Costs this near to the best may be equal to it when rounded.
+                let left = best_cost - deviation + f64::EPSILON * best_cost;
+                let latest = collision_weight / left;
+                if rings.certainly_met(velocity, latest * (1.0 - ROUNDING)) {
+                    continue;
+                }
+                let cost = |time: f64| deviation + collision_weight / time;
+                let too_early = |time: f64| cost(time) > best_cost;
+                let Some(time) = first_contact(situation, rings, perhaps, velocity, too_early)
+                else {
+                    continue;
+                };
+                if cost(time) < best_cost || k < first {
+                    (best, first, best_cost) = (candidate, k, cost(time));
+                }
+            }
+        }
+        best
+    }
+}
+
+/// The earliest contact on the way at `velocity`, seconds, infinite if there is none; or `None` as soon as
+/// one is found that is too early. `rings` has the discs of the situation.
+fn first_contact(
+    situation: &Situation,
+    rings: &Rings,
+    perhaps: &mut Vec<u32>,
+    velocity: Vector,
+    too_early: impl Fn(f64) -> bool,
+) -> Option<f64> {
+    let walls = situation.walls.iter();
+    let walls = walls.map(|wall| situation.time_to_wall(wall, velocity));
+    let mut first = walls.fold(f64::INFINITY, f64::min);
+    if too_early(first) {
+        return None;
+    }
+    let mut ring = 0;
+    while ring < rings.within(velocity, first) {
+        rings.perhaps_met(ring, velocity, first, perhaps);
+        for &k in perhaps.iter() {
+            let disc = &situation.discs[k as usize];
+            let time = time_to_contact(disc.offset, velocity - disc.velocity, disc.reach);
+            if time < first {
+                first = time;
+                if too_early(first) {
+                    return None;
+                }
+            }
+        }
+        ring += 1;
+    }
+    Some(first)
+}
+
+/// Things sorted by a key, roughly: bucket by bucket, in no order within one.
+#[derive(Debug)]
+struct Buckets<T> {
+    width: f64,
+    arrivals: Vec<(u32, T)>,
+    items: Vec<T>,
+    /// Where each bucket ends in `items`.
+    ends: Vec<u32>,
+}
+
+impl<T> Default for Buckets<T> {
+    fn default() -> Self {
+        Self {
+            width: 1.0,
+            arrivals: Vec::new(),
+            items: Vec::new(),
+            ends: Vec::new(),
+        }
+    }
+}
+
+/// The last one holds everything beyond.
+const BUCKETS: usize = 64;
+
+impl<T: Copy> Buckets<T> {
+    /// Sorts things with their keys into buckets of a `width`.
+    fn sort(&mut self, width: f64, things: impl Iterator<Item = (f64, T)>) {
+        self.width = width;
+        let per_width = 1.0 / width;
+        let mut counts = [0_u32; BUCKETS];
+        self.arrivals.clear();
+        for (key, thing) in things {
+            let bucket = ((key * per_width) as usize).min(BUCKETS - 1);
+            counts[bucket] += 1;
+            self.arrivals.push((bucket as u32, thing));
+        }
+        let mut start = 0;
+        for count in &mut counts {
+            start += std::mem::replace(count, start);
+        }
+        let mut places = counts;
+        self.items.clear();
+        self.items
+            .extend(self.arrivals.iter().map(|&(_, thing)| thing));
+        for &(bucket, thing) in &self.arrivals {
+            let place = &mut places[bucket as usize];
+            self.items[*place as usize] = thing;
+            *place += 1;
+        }
+        self.ends.clear();
+        self.ends.extend(places);
+    }
+
+    /// Every bucket that is not empty, with what its keys are at least.
+    fn iter(&self) -> impl Iterator<Item = (f64, &[T])> {
+        let mut start = 0;
+        self.ends
+            .iter()
+            .enumerate()
+            .filter_map(move |(bucket, &end)| {
+                let things = &self.items[start as usize..end as usize];
+                start = end;
+                (!things.is_empty())
+                    .then_some((bucket as f64 * self.width * (1.0 - ROUNDING), things))
+            })
+    }
+}

@@ -1,0 +1,105 @@
+//! The region of an agent's kernel behind one wall (P_k, §4.3), in closed form.
+
+use super::Wall;
+use crate::engine::math::{Vector, perpendicular};
+
+/// Angles that have been through a full turn and back agree to this, radians; within it a part ends
+/// where the whole region ends, whose ends are known exactly (tan is steep close to a wall).
+const ANGLE_ROUNDING: f64 = 1e-12;
+
+/// Who stands on a wall is taken to be so far before it, metres: at 0 all directions lead to one point of it,
+/// so that nothing tells its parts apart, and at −0 they are turned round.
+const LEAST_DISTANCE: f64 = 1e-9;
+
+/// The points of the disc of radius h round an agent that one wall, or a part of it, hides.
+///
+/// In the agent's frame the wall is the line at `distance` along `towards`; the region lies behind
+/// its stretch `from..to`, measured along `along` from the foot of the perpendicular.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HiddenRegion {
+    /// Unit normal from the agent towards the wall.
+    pub towards: Vector,
+    /// Unit vector along the wall, `towards` turned counter-clockwise.
+    pub along: Vector,
+    /// Distance d from the agent to the wall's line, 0 < d < h.
+    pub distance: f64,
+    /// Where the stretch begins, metres along `along`.
+    pub from: f64,
+    /// Where the stretch ends, metres, `from` < `to`.
+    pub to: f64,
+    /// Support radius h of the kernel, metres.
+    pub support_radius: f64,
+}
+
+impl HiddenRegion {
+    /// What `wall` hides from an agent at `r_i`: `None` behind the wall or out of reach.
+    pub fn behind(wall: &Wall, r_i: Vector, support_radius: f64) -> Option<Self> {
+        let distance = wall.signed_distance(r_i);
+        if !(0.0..support_radius).contains(&distance) {
+            return None;
+        }
+        let distance = distance.max(LEAST_DISTANCE);
+        let towards = -wall.normal;
+        let along = perpendicular(towards);
+        let half_chord = (support_radius * support_radius - distance * distance).sqrt();
+        let from = (wall.end - r_i).dot(&along).max(-half_chord);
+        let to = (wall.start - r_i).dot(&along).min(half_chord);
+        let region = Self {
+            towards,
+            along,
+            distance,
+            from,
+            to,
+            support_radius,
+        };
+        (from < to && region.angle() > 0.0).then_some(region)
+    }
+
+    /// The angles [t1, t2] of the stretch, from `towards`, counter-clockwise, radians.
+    pub fn angles(&self) -> [f64; 2] {
+        [self.from, self.to].map(|s| s.atan2(self.distance))
+    }
+
+    /// r_k* − r_i, metres. Not the difference of two points, whose rounding would decide where it
+    /// points when the agent stands on the wall.
+    pub fn to_nearest(&self) -> Vector {
+        self.towards * self.distance + self.along * 0.0_f64.clamp(self.from, self.to)
+    }
+
+    fn angle(&self) -> f64 {
+        let [t1, t2] = self.angles();
+        t2 - t1
+    }
+
+    /// The part of this region between two angles, which must lie within [`angles`](Self::angles).
+    pub fn between(&self, t1: f64, t2: f64) -> Self {
+        let [own_t1, own_t2] = self.angles();
+        let mut part = *self;
+        if t1 > own_t1 + ANGLE_ROUNDING {
+            part.from = (self.distance * t1.tan()).max(self.from);
+        }
+        if t2 < own_t2 - ANGLE_ROUNDING {
+            part.to = (self.distance * t2.tan()).min(self.to);
+        }
+        part
+    }
+
+    /// a(P_k) = ½ [h²(t2 − t1) − d²(tan t2 − tan t1)] in m²: sector less triangle.
+    pub fn area(&self) -> f64 {
+        let h = self.support_radius;
+        0.5 * (h * h * self.angle() - self.distance * (self.to - self.from))
+    }
+
+    /// The region's outline round an agent at `r_i`: along the wall, then back along the arc.
+    pub fn outline(&self, r_i: Vector, arc_steps: usize) -> Vec<Vector> {
+        let [t1, t2] = self.angles();
+        let wall = [self.from, self.to].map(|s| self.towards * self.distance + self.along * s);
+        let arc = (0..=arc_steps).map(|step| {
+            let t = t2 + (t1 - t2) * step as f64 / arc_steps as f64;
+            (self.towards * t.cos() + self.along * t.sin()) * self.support_radius
+        });
+        let mut outline: Vec<Vector> = wall.into_iter().chain(arc).map(|p| r_i + p).collect();
+        outline.push(outline[0]);
+        outline
+    }
+}

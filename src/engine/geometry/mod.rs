@@ -1,0 +1,36 @@
+//! Obstacles and what can be asked about them. The only place that names parry2d.
+//!
+//! An obstacle is a [`Polygon`]: a body, solid inside but for its holes, or everything round the [`Area`]s
+//! that people walk in. Each boundary edge is a [`Wall`] with a free side. [`Walls`] holds them all in parry's bounding volume hierarchy; a [`HiddenRegion`] is the
+//! part of an agent's kernel behind one wall (P_k in §4.3), in closed form.
+
+mod assemble;
+mod corners;
+mod hidden_region;
+mod polygon;
+mod ring;
+mod ring_index;
+mod shadows;
+mod wall;
+mod walls;
+
+pub use assemble::assemble;
+pub use hidden_region::HiddenRegion;
+pub use polygon::{Area, Polygon, PolygonError};
+pub use ring::Ring;
+pub use ring_index::AreaIndex;
+pub use shadows::visible_parts;
+pub use wall::{NearestPoint, Wall, WallPart};
+pub use walls::Walls;
+
+use crate::engine::math::Vector;
+
+/// The project's vector as parry's.
+fn to_parry(v: Vector) -> parry2d::math::Vector {
+    parry2d::math::Vector::new(v.x, v.y)
+}
+
+/// Parry's vector as the project's.
+fn from_parry(v: parry2d::math::Vector) -> Vector {
+    Vector::new(v.x, v.y)
+}

@@ -1,0 +1,334 @@
+//! Solid bodies with straight sides: what people cannot walk through.
+
+use parry2d::bounding_volume::Aabb;
+use parry2d::partitioning::{Bvh, BvhBuildStrategy};
+
+use super::ring::{Ring, TOUCHING, encloses, signed_area};
+use super::ring_index::{AreaIndex, RingIndex};
+use super::to_parry;
+use crate::engine::math::Vector;
+
+/// Edges of different rings may cross by [`TOUCHING`], or by so much of the whole extent.
+const TOUCHING_PART: f64 = 1e-8;
+
+/// Why points or rings are not an obstacle.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PolygonError {
+    /// That many points.
+    #[error("a polygon needs at least 3 points, this one has {0}")]
+    TooFewPoints(usize),
+    /// The index of the point.
+    #[error("point {0} is not finite")]
+    NotFinite(usize),
+    /// The indices of both points.
+    #[error("points {0} and {1} are the same; remove one")]
+    RepeatedPoint(usize, usize),
+    /// All points on one line.
+    #[error("the polygon encloses no area; its points lie on one line")]
+    NoArea,
+    /// The indices of the points where the two edges begin.
+    #[error(
+        "the polygon crosses or touches itself: the edge from point {0} meets the edge from point {1}; \
+         move a point, or make two obstacles of it"
+    )]
+    SelfIntersection(usize, usize),
+    /// The first points of the two edges, metres.
+    #[error(
+        "two rings cross: the edge from ({}, {}) and the edge from ({}, {})", .0.x, .0.y, .1.x, .1.y
+    )]
+    Crossing(Vector, Vector),
+    /// The hole's first point, metres.
+    #[error(
+        "the hole that begins at ({}, {}) does not lie in its outline, or lies in another hole", .0.x, .0.y
+    )]
+    StrayHole(Vector),
+    /// The first point of one of them, metres.
+    #[error("the area that begins at ({}, {}) overlaps another; unite them", .0.x, .0.y)]
+    Overlap(Vector),
+    /// Nobody could be anywhere.
+    #[error("there is no area to walk in")]
+    NoFloor,
+}
+
+/// A part of the plane: inside of its outline and outside of its holes, which lie in the outline and may
+/// touch it and each other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Area {
+    /// The outline.
+    pub exterior: Ring,
+    /// What is cut out of it.
+    pub holes: Vec<Ring>,
+}
+
+impl Area {
+    /// The outline, then the holes.
+    pub fn rings(&self) -> impl Iterator<Item = &Ring> {
+        std::iter::once(&self.exterior).chain(&self.holes)
+    }
+
+    /// In m².
+    pub fn area(&self) -> f64 {
+        self.exterior.area() - self.holes.iter().map(Ring::area).sum::<f64>()
+    }
+
+    /// Does `p` lie in it? Undecided within rounding of the boundary.
+    pub fn contains(&self, p: Vector) -> bool {
+        self.exterior.contains(p) && !self.holes.iter().any(|hole| hole.contains(p))
+    }
+}
+
+/// An obstacle: a body with straight sides, or everything round the floor that people walk on.
+///
+/// Its boundary is one or more closed rings of edges, each with the solid on its left.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Polygon {
+    points: Vec<Vector>,
+    /// Where each ring ends in `points`.
+    ends: Vec<usize>,
+    unbounded: bool,
+}
+
+impl Polygon {
+    /// A body without holes. Checks `points` (metres, either orientation, the last not repeating the first).
+    ///
+    /// # Errors
+    /// As [`Ring::new`].
+    pub fn new(points: Vec<Vector>) -> Result<Self, PolygonError> {
+        Ok(Self::of_rings([Ring::new(points)?.into_points()], false))
+    }
+
+    /// A body with holes, in which people may be.
+    ///
+    /// # Errors
+    /// A hole that is not in the outline, or rings that cross.
+    pub fn filling(area: Area) -> Result<Self, PolygonError> {
+        check(std::slice::from_ref(&area))?;
+        let holes = area.holes.into_iter().map(Ring::into_clockwise);
+        let rings = std::iter::once(area.exterior.into_points()).chain(holes);
+        Ok(Self::of_rings(rings, false))
+    }
+
+    /// Everything outside of `areas`, without end: the walls round a floor. The areas may touch, and one
+    /// may lie in another's hole.
+    ///
+    /// # Errors
+    /// No areas, areas that overlap, a hole that is not in its outline, or rings that cross.
+    pub fn enclosing(areas: Vec<Area>) -> Result<Self, PolygonError> {
+        if areas.is_empty() {
+            return Err(PolygonError::NoFloor);
+        }
+        check(&areas)?;
+        let rings = areas.into_iter().flat_map(|area| {
+            let holes = area.holes.into_iter().map(Ring::into_points);
+            std::iter::once(area.exterior.into_clockwise()).chain(holes)
+        });
+        Ok(Self::of_rings(rings, true))
+    }
+
+    fn of_rings(rings: impl IntoIterator<Item = Vec<Vector>>, unbounded: bool) -> Self {
+        let (mut points, mut ends) = (Vec::new(), Vec::new());
+        for ring in rings {
+            points.extend(ring);
+            ends.push(points.len());
+        }
+        Self {
+            points,
+            ends,
+            unbounded,
+        }
+    }
+
+    /// All corners, ring by ring.
+    pub fn points(&self) -> &[Vector] {
+        &self.points
+    }
+
+    /// The corners of each ring in turn, in the order in which the solid is on the left of every edge.
+    pub fn rings(&self) -> impl Iterator<Item = &[Vector]> {
+        let starts = std::iter::once(0).chain(self.ends.iter().copied());
+        starts
+            .zip(&self.ends)
+            .map(|(start, &end)| &self.points[start..end])
+    }
+
+    /// Is it solid without end, everywhere but in its rings?
+    pub fn is_unbounded(&self) -> bool {
+        self.unbounded
+    }
+
+    /// The area of the solid in m²; infinite if it is without end.
+    pub fn area(&self) -> f64 {
+        if self.unbounded {
+            return f64::INFINITY;
+        }
+        self.rings().map(signed_area).sum()
+    }
+
+    /// The edges as (start, end), ring by ring, with the solid on the left.
+    pub fn edges(&self) -> impl Iterator<Item = (Vector, Vector)> + '_ {
+        self.rings().flat_map(|ring| {
+            let ends = ring.iter().cycle().skip(1);
+            ring.iter().copied().zip(ends.copied())
+        })
+    }
+
+    /// Is `p` in the solid? Undecided within rounding of the boundary.
+    pub fn contains(&self, p: Vector) -> bool {
+        let inside = self.rings().filter(|ring| encloses(ring, p)).count();
+        (inside % 2 == 1) != self.unbounded
+    }
+}
+
+/// Do the rings bound what they should?
+fn check(areas: &[Area]) -> Result<(), PolygonError> {
+    let all: Vec<&Ring> = areas.iter().flat_map(Area::rings).collect();
+    if all.len() == 1 {
+        return Ok(());
+    }
+    if let Some((a, b)) = first_crossing(&all) {
+        return Err(PolygonError::Crossing(a, b));
+    }
+    // Rings that do not cross are inside each other or not, wholly.
+    for area in areas {
+        let holes = RingIndex::new(area.holes.iter().collect());
+        let outline = RingIndex::new(vec![&area.exterior]);
+        for (h, hole) in area.holes.iter().enumerate() {
+            let place = hole.inner_point();
+            let in_another = holes.around(place).into_iter().any(|other| other != h);
+            if in_another || outline.around(place).is_empty() {
+                return Err(PolygonError::StrayHole(hole.points()[0]));
+            }
+        }
+    }
+    let index = AreaIndex::new(areas);
+    for (k, area) in areas.iter().enumerate() {
+        let around = index.around(area.exterior.inner_point());
+        if around.into_iter().any(|other| other != k) {
+            return Err(PolygonError::Overlap(area.exterior.points()[0]));
+        }
+    }
+    Ok(())
+}
+
+/// The first points of two edges of different rings that cross.
+fn first_crossing(rings: &[&Ring]) -> Option<(Vector, Vector)> {
+    let mut edges = Vec::new();
+    for (r, ring) in rings.iter().enumerate() {
+        let points = ring.points();
+        let ends = points.iter().cycle().skip(1);
+        edges.extend(points.iter().zip(ends).map(|(&a, &b)| (r, a, b)));
+    }
+    let bounds: Vec<Aabb> = edges
+        .iter()
+        .map(|&(_, a, b)| Aabb::from_points([to_parry(a), to_parry(b)]))
+        .collect();
+    let index = Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds);
+    let touching = TOUCHING.max(TOUCHING_PART * index.root_aabb().extents().max_element());
+    let parts = |line, edge| depth(line, edge) > touching;
+    edges.iter().enumerate().find_map(|(i, &(r, a, b))| {
+        let later = index.intersect_aabb(&bounds[i]).map(|j| j as usize);
+        let mut crossed = later
+            .filter(|&j| j > i && edges[j].0 != r)
+            .map(|j| (edges[j].1, edges[j].2))
+            .filter(|&other| parts((a, b), other) && parts(other, (a, b)));
+        crossed.next().map(|(c, _)| (a, c))
+    })
+}
+
+/// How far the ends of an edge lie on either side of the line through `a` and `b`, metres; negative if both
+/// lie on one.
+fn depth((a, b): (Vector, Vector), (c, d): (Vector, Vector)) -> f64 {
+    let along = (b - a) / (b - a).norm();
+    let [c, d] = [c, d].map(|end| along.perp(&(end - a)));
+    c.max(d).min(-c.min(d))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(low: f64, high: f64) -> Ring {
+        ring(&[[low, low], [high, low], [high, high], [low, high]])
+    }
+
+    fn ring(points: &[[f64; 2]]) -> Ring {
+        Ring::new(points.iter().map(|&p| Vector::from(p)).collect()).unwrap()
+    }
+
+    fn area(exterior: Ring, holes: Vec<Ring>) -> Area {
+        Area { exterior, holes }
+    }
+
+    fn at(x: f64) -> Vector {
+        Vector::new(x, x)
+    }
+
+    #[test]
+    fn a_body_is_solid_inside_but_for_its_holes() {
+        let wall = Polygon::filling(area(square(-1.0, 4.0), vec![square(0.0, 3.0)])).unwrap();
+        for (x, solid) in [(-2.0, false), (-0.5, true), (1.0, false), (3.5, true)] {
+            assert_eq!(wall.contains(at(x)), solid, "{x}");
+        }
+        assert!(!wall.is_unbounded());
+    }
+
+    #[test]
+    fn an_enclosure_is_solid_outside_of_all_areas_one_of_which_may_lie_in_anothers_hole() {
+        let ring = area(square(0.0, 9.0), vec![square(1.0, 8.0)]);
+        let areas = vec![
+            ring,
+            area(square(3.0, 5.0), vec![]),
+            area(square(10.0, 11.0), vec![]),
+        ];
+        let walls = Polygon::enclosing(areas).unwrap();
+        assert!(walls.is_unbounded());
+        for free in [0.5, 8.5, 4.0, 10.5] {
+            assert!(!walls.contains(at(free)), "{free}");
+        }
+        for solid in [-1.0, 2.0, 6.0, 9.5, 12.0, 1e6] {
+            assert!(walls.contains(at(solid)), "{solid}");
+        }
+    }
+
+    #[test]
+    fn every_edge_has_the_solid_on_its_left() {
+        let floor = area(square(0.0, 9.0), vec![square(1.0, 2.0), square(3.0, 8.0)]);
+        let walls = Polygon::enclosing(vec![floor.clone(), area(square(4.0, 5.0), vec![])]);
+        for body in [walls.unwrap(), Polygon::filling(floor).unwrap()] {
+            assert_eq!(body.edges().count(), body.points().len());
+            for (a, b) in body.edges() {
+                let left = crate::engine::math::perpendicular(b - a) / (b - a).norm() * 1e-3;
+                assert!(body.contains((a + b) * 0.5 + left));
+                assert!(!body.contains((a + b) * 0.5 - left));
+            }
+        }
+    }
+
+    #[test]
+    fn rings_may_touch_but_neither_cross_nor_stray_nor_overlap() {
+        let floor = |holes| Polygon::enclosing(vec![area(square(0.0, 9.0), holes)]);
+        let touching = ring(&[[0.0, 4.0], [3.0, 3.0], [3.0, 5.0]]);
+        let beside = ring(&[[3.0, 3.0], [4.0, 3.0], [4.0, 2.0]]);
+        assert!(floor(vec![touching, beside]).is_ok());
+        let crossing = ring(&[[-1.0, 4.0], [3.0, 3.0], [3.0, 5.0]]);
+        assert!(matches!(
+            floor(vec![crossing]),
+            Err(PolygonError::Crossing(..))
+        ));
+        for stray in [
+            vec![square(10.0, 11.0)],
+            vec![square(1.0, 5.0), square(2.0, 3.0)],
+        ] {
+            assert!(matches!(floor(stray), Err(PolygonError::StrayHole(_))));
+        }
+        let twice = vec![
+            area(square(0.0, 9.0), vec![]),
+            area(square(2.0, 3.0), vec![]),
+        ];
+        assert!(matches!(
+            Polygon::enclosing(twice),
+            Err(PolygonError::Overlap(_))
+        ));
+        assert_eq!(Polygon::enclosing(vec![]), Err(PolygonError::NoFloor));
+    }
+}

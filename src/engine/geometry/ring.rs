@@ -1,0 +1,214 @@
+//! Closed outlines: validated once, counter-clockwise from then on.
+
+use parry2d::bounding_volume::Aabb;
+use parry2d::partitioning::{Bvh, BvhBuildStrategy};
+use parry2d::utils::{point_in_poly2d, segments_intersection2d};
+
+use super::{PolygonError, to_parry};
+use crate::engine::math::{Vector, is_finite, perpendicular};
+
+/// Edges of different rings may cross by so much, metres: floor plans have corners that touch an edge but
+/// for their rounding.
+pub(super) const TOUCHING: f64 = 1e-6;
+
+/// A closed outline that neither crosses nor touches itself, counter-clockwise. Its first point is the first
+/// one given.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ring {
+    points: Vec<Vector>,
+}
+
+impl Ring {
+    /// Checks `points` (metres, either orientation, the last not repeating the first) and orients them.
+    ///
+    /// # Errors
+    /// Fewer than three points, a non-finite or repeated point, no area but rounding, or edges that meet anywhere
+    /// but at the corner they share. Indices count from 0 in the order given.
+    pub fn new(mut points: Vec<Vector>) -> Result<Self, PolygonError> {
+        let count = points.len();
+        if count < 3 {
+            return Err(PolygonError::TooFewPoints(count));
+        }
+        if let Some(i) = points.iter().position(|&p| !is_finite(p)) {
+            return Err(PolygonError::NotFinite(i));
+        }
+        // Nor may an edge be so short that the square of its length is nothing: it has no direction.
+        let edge = |i: usize| points[(i + 1) % count] - points[i];
+        if let Some(i) = (0..count).find(|&i| edge(i).norm_squared() < f64::MIN_POSITIVE) {
+            return Err(PolygonError::RepeatedPoint(i, (i + 1) % count));
+        }
+        if let Some((i, j)) = first_crossing(&points) {
+            return Err(PolygonError::SelfIntersection(i, j));
+        }
+        let area = signed_area(&points);
+        let reach = points.iter().map(|p| (p - points[0]).norm_squared());
+        // What is less than rounding may have either sign.
+        if area.abs() <= f64::EPSILON * reach.fold(0.0, f64::max) {
+            return Err(PolygonError::NoArea);
+        }
+        if area < 0.0 {
+            points[1..].reverse();
+        }
+        Ok(Self { points })
+    }
+
+    /// The corners, counter-clockwise.
+    pub fn points(&self) -> &[Vector] {
+        &self.points
+    }
+
+    /// The enclosed area in m², always positive.
+    pub fn area(&self) -> f64 {
+        signed_area(&self.points)
+    }
+
+    /// Does `p` lie inside? Undecided within rounding of the boundary.
+    pub fn contains(&self, p: Vector) -> bool {
+        encloses(&self.points, p)
+    }
+
+    /// A point inside, [`TOUCHING`] from the middle of the longest edge: rings that touch this one do so
+    /// elsewhere, or along an edge.
+    pub(super) fn inner_point(&self) -> Vector {
+        let edge = |k: usize| (self.points[k], self.points[(k + 1) % self.points.len()]);
+        let length = |&(a, b): &(Vector, Vector)| (b - a).norm_squared();
+        let edges = (0..self.points.len()).map(edge);
+        let longest = edges.max_by(|a, b| length(a).total_cmp(&length(b)));
+        longest.map_or(self.points[0], |(a, b)| {
+            let inwards = perpendicular(b - a) / (b - a).norm();
+            (a + b) * 0.5 + inwards * TOUCHING
+        })
+    }
+
+    /// The corners with what is enclosed on the right.
+    pub(super) fn into_clockwise(mut self) -> Vec<Vector> {
+        self.points[1..].reverse();
+        self.points
+    }
+
+    /// The corners with what is enclosed on the left.
+    pub(super) fn into_points(self) -> Vec<Vector> {
+        self.points
+    }
+}
+
+/// Does `p` lie inside the outline `points`, whichever way round it goes?
+pub(super) fn encloses(points: &[Vector], p: Vector) -> bool {
+    let points: Vec<_> = points.iter().map(|&p| to_parry(p)).collect();
+    let p = to_parry(p);
+    // Beside an edge that rises by less than rounding parry takes points before its start for inside.
+    Aabb::from_points(points.iter().copied()).contains_local_point(p) && point_in_poly2d(p, &points)
+}
+
+/// The shoelace formula, relative to the first point so that far-away polygons keep their digits.
+pub(super) fn signed_area(points: &[Vector]) -> f64 {
+    let origin = points[0];
+    let twice: f64 = points[1..]
+        .windows(2)
+        .map(|pair| (pair[0] - origin).perp(&(pair[1] - origin)))
+        .sum();
+    twice / 2.0
+}
+
+/// The first two edges, by their start points, that share more than a common corner.
+fn first_crossing(points: &[Vector]) -> Option<(usize, usize)> {
+    let count = points.len();
+    let corner = |i: usize| to_parry(points[i % count]);
+    let bounds: Vec<Aabb> = (0..count)
+        .map(|i| Aabb::from_points([corner(i), corner(i + 1)]))
+        .collect();
+    let index = Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds);
+    (0..count).find_map(|i| {
+        let turn = points[(i + 1) % count] - points[i];
+        let next = points[(i + 2) % count] - points[(i + 1) % count];
+        if turn.perp(&next) == 0.0 && turn.dot(&next) < 0.0 {
+            return Some((i, (i + 1) % count));
+        }
+        index
+            .intersect_aabb(&bounds[i])
+            .map(|j| j as usize)
+            .filter(|&j| j > i + 1 && (j + 1) % count != i)
+            .filter(|&j| {
+                segments_intersection2d(corner(i), corner(i + 1), corner(j), corner(j + 1), 0.0)
+                    .is_some()
+            })
+            .min()
+            .map(|j| (i, j))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ring(points: &[[f64; 2]]) -> Result<Ring, PolygonError> {
+        Ring::new(points.iter().map(|&[x, y]| Vector::new(x, y)).collect())
+    }
+
+    #[test]
+    fn a_clockwise_ring_is_turned_and_keeps_its_first_point() {
+        let square = ring(&[[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]]).unwrap();
+        assert_eq!(square.area(), 1.0);
+        assert_eq!(square.points()[0], Vector::new(0.0, 0.0));
+        assert_eq!(square.points()[1], Vector::new(1.0, 0.0));
+    }
+
+    #[test]
+    fn a_bow_tie_names_the_edges_that_cross() {
+        let bow_tie = ring(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]);
+        assert_eq!(bow_tie, Err(PolygonError::SelfIntersection(0, 2)));
+    }
+
+    #[test]
+    fn a_spike_and_a_corner_on_another_edge_are_refused() {
+        let spike = ring(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 1.0]]);
+        assert!(matches!(spike, Err(PolygonError::SelfIntersection(..))));
+        let touching = ring(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0], [0.0, 2.0]]);
+        assert!(matches!(touching, Err(PolygonError::SelfIntersection(..))));
+    }
+
+    #[test]
+    fn degenerate_lists_are_refused_with_their_reason() {
+        assert_eq!(
+            ring(&[[0.0, 0.0], [1.0, 0.0]]),
+            Err(PolygonError::TooFewPoints(2))
+        );
+        assert_eq!(
+            ring(&[[0.0, 0.0], [1.0, 0.0], [1.0, f64::NAN]]),
+            Err(PolygonError::NotFinite(2))
+        );
+        assert_eq!(
+            ring(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0]]),
+            Err(PolygonError::RepeatedPoint(3, 0))
+        );
+        assert_eq!(
+            ring(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [1e-200, 0.0]]),
+            Err(PolygonError::RepeatedPoint(3, 0))
+        );
+        assert!(ring(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).is_err());
+    }
+
+    #[test]
+    fn the_outline_of_the_wall_round_the_evacuation_room_contains_its_walls_only() {
+        let wall = ring(&[
+            [-1.0, -1.0],
+            [21.0, -1.0],
+            [21.0, 9.6],
+            [20.0, 9.6],
+            [20.0, 0.0],
+            [0.0, 0.0],
+            [0.0, 20.0],
+            [20.0, 20.0],
+            [20.0, 10.4],
+            [21.0, 10.4],
+            [21.0, 21.0],
+            [-1.0, 21.0],
+        ])
+        .unwrap();
+        assert!(wall.contains(Vector::new(-0.5, 10.0)));
+        assert!(wall.contains(Vector::new(20.5, 3.0)));
+        assert!(!wall.contains(Vector::new(10.0, 10.0)));
+        assert!(!wall.contains(Vector::new(20.5, 10.0)));
+        assert!((wall.area() - (22.0 * 22.0 - 400.0 - 0.8)).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,94 @@
+//! Which of many rings or areas contain a point.
+
+use std::cell::OnceCell;
+
+use parry2d::bounding_volume::Aabb;
+use parry2d::partitioning::{Bvh, BvhBuildStrategy};
+
+use super::{Area, Ring, to_parry};
+use crate::engine::math::Vector;
+
+/// Rings with more corners than this get an index of their edges.
+const FEW: usize = 32;
+
+/// Bounding volume hierarchies over rings and over the edges of those with many corners.
+pub struct RingIndex<'a> {
+    rings: Vec<&'a Ring>,
+    bounds: Bvh,
+    /// By ring, built when they are first needed.
+    edges: Vec<OnceCell<Bvh>>,
+}
+
+impl<'a> RingIndex<'a> {
+    /// Numbers the rings in their order, from 0.
+    pub fn new(rings: Vec<&'a Ring>) -> Self {
+        let around = |ring: &&Ring| Aabb::from_points(ring.points().iter().map(|&p| to_parry(p)));
+        let bounds: Vec<Aabb> = rings.iter().map(around).collect();
+        Self {
+            bounds: Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds),
+            edges: rings.iter().map(|_| OnceCell::new()).collect(),
+            rings,
+        }
+    }
+
+    /// The numbers of the rings that contain `p`, in no order. Undecided within rounding of an edge.
+    pub fn around(&self, p: Vector) -> Vec<usize> {
+        let here = Aabb::from_points([to_parry(p)]);
+        let near = self.bounds.intersect_aabb(&here).map(|k| k as usize);
+        near.filter(|&k| self.encloses(k, p)).collect()
+    }
+
+    fn encloses(&self, k: usize, p: Vector) -> bool {
+        let points = self.rings[k].points();
+        let edge = |i: usize| (points[i], points[(i + 1) % points.len()]);
+        if points.len() <= FEW {
+            return (0..points.len()).filter(|&i| crosses(edge(i), p)).count() % 2 == 1;
+        }
+        let index = self.edges[k].get_or_init(|| {
+            let bounds = (0..points.len()).map(|i| {
+                let (a, b) = edge(i);
+                Aabb::from_points([to_parry(a), to_parry(b)])
+            });
+            Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds.collect::<Vec<_>>())
+        });
+        let far = Vector::new(index.root_aabb().maxs.x.max(p.x), p.y);
+        let ray = Aabb::from_points([to_parry(p), to_parry(far)]);
+        let met = index.intersect_aabb(&ray).map(|i| edge(i as usize));
+        met.filter(|&edge| crosses(edge, p)).count() % 2 == 1
+    }
+}
+
+/// Which of several areas contain a point.
+pub struct AreaIndex<'a> {
+    rings: RingIndex<'a>,
+    /// The area of each ring.
+    owner: Vec<usize>,
+}
+
+impl<'a> AreaIndex<'a> {
+    /// Numbers the areas in their order, from 0.
+    pub fn new(areas: &'a [Area]) -> Self {
+        let count = |(k, area): (usize, &Area)| std::iter::repeat_n(k, 1 + area.holes.len());
+        Self {
+            rings: RingIndex::new(areas.iter().flat_map(Area::rings).collect()),
+            owner: areas.iter().enumerate().flat_map(count).collect(),
+        }
+    }
+
+    /// The numbers of the areas that contain `p`, rising. Undecided within rounding of an edge.
+    pub fn around(&self, p: Vector) -> Vec<usize> {
+        let rings = self.rings.around(p);
+        let mut areas: Vec<usize> = rings.into_iter().map(|ring| self.owner[ring]).collect();
+        areas.sort_unstable();
+        // What lies in an outline and in a hole of it is in two rings.
+        let once = areas
+            .chunk_by(|a, b| a == b)
+            .filter(|rings| rings.len() == 1);
+        once.map(|rings| rings[0]).collect()
+    }
+}
+
+/// Does the edge cross the ray from `p` towards positive x?
+fn crosses((a, b): (Vector, Vector), p: Vector) -> bool {
+    (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * ((p.y - a.y) / (b.y - a.y))
+}

@@ -1,0 +1,87 @@
+//! Several walls seen from one point: which of them hides what (the union of shadows).
+
+use std::f64::consts::TAU;
+
+use super::HiddenRegion;
+
+/// Cuts `regions`, all seen by one agent, to what is hidden by the nearest wall alone: over the
+/// angles, the lower envelope. Returns (index into `regions`, part) by angle; a wall may appear in
+/// several parts. Walls at equal distance: the first counts.
+pub fn visible_parts(regions: &[HiddenRegion]) -> Vec<(usize, HiddenRegion)> {
+    if let [region] = regions {
+        return vec![(0, *region)];
+    }
+    let mut angles: Vec<f64> = regions.iter().flat_map(edges_of).collect();
+    for (i, first) in regions.iter().enumerate() {
+        angles.extend(
+            regions[i + 1..]
+                .iter()
+                .filter_map(|second| crossing(first, second)),
+        );
+    }
+    angles.sort_by(f64::total_cmp);
+    angles.dedup();
+    let mut parts = Vec::new();
+    for (i, &begin) in angles.iter().enumerate() {
+        let end = angles
+            .get(i + 1)
+            .copied()
+            .unwrap_or_else(|| angles[0] + TAU);
+        let middle = 0.5 * (begin + end);
+        let nearest = regions
+            .iter()
+            .enumerate()
+            .filter_map(|(k, region)| Some((k, ray_distance(region, middle)?)))
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((k, _)) = nearest {
+            let t = local(&regions[k], middle);
+            let half = 0.5 * (end - begin);
+            let part = regions[k].between(t - half, t + half);
+            if part.from < part.to {
+                parts.push((k, part));
+            }
+        }
+    }
+    parts
+}
+
+/// The direction of the region's perpendicular, radians in the plane.
+fn bearing(region: &HiddenRegion) -> f64 {
+    region.towards.y.atan2(region.towards.x)
+}
+
+/// Both ends of the region's span, as angles in the plane in [0, 2π).
+fn edges_of(region: &HiddenRegion) -> [f64; 2] {
+    region
+        .angles()
+        .map(|t| (bearing(region) + t).rem_euclid(TAU))
+}
+
+/// An angle in the plane as an angle from the region's perpendicular, in [−π, π).
+fn local(region: &HiddenRegion, angle: f64) -> f64 {
+    (angle - bearing(region) + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0
+}
+
+/// How far the wall is along a ray at `angle`; `None` where the ray misses it.
+fn ray_distance(region: &HiddenRegion, angle: f64) -> Option<f64> {
+    let t = local(region, angle);
+    let [t1, t2] = region.angles();
+    (t1 <= t && t <= t2).then(|| region.distance / t.cos())
+}
+
+/// The angle at which two walls cross each other, where overlapping obstacles make them.
+fn crossing(first: &HiddenRegion, second: &HiddenRegion) -> Option<f64> {
+    let turn = first.towards.perp(&second.towards);
+    if turn == 0.0 {
+        return None;
+    }
+    // p with p·n₁ = d₁ and p·n₂ = d₂
+    let p = (crate::engine::math::perpendicular(first.towards) * second.distance
+        - crate::engine::math::perpendicular(second.towards) * first.distance)
+        / turn;
+    let inside = |region: &HiddenRegion| {
+        let s = p.dot(&region.along);
+        region.from < s && s < region.to
+    };
+    (inside(first) && inside(second)).then(|| p.y.atan2(p.x).rem_euclid(TAU))
+}

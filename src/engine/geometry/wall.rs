@@ -1,0 +1,168 @@
+//! One boundary edge of an obstacle (O_k in the paper).
+
+use parry2d::query::PointQueryWithLocation;
+use parry2d::shape::{Segment, SegmentPointLocation};
+
+use super::{from_parry, to_parry};
+use crate::engine::math::{Vector, perpendicular};
+
+/// How far beyond its ends a wall still stops a move, metres: above the rounding of coordinates up to
+/// 10⁶ m, so that nobody slips between two walls at their corner.
+const END_ROUNDING: f64 = 1e-9;
+
+/// A directed edge with the obstacle's inside on its left; the free side is on its right.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wall {
+    /// First end, metres.
+    pub start: Vector,
+    /// Second end, metres.
+    pub end: Vector,
+    /// Unit vector from `start` to `end`.
+    pub tangent: Vector,
+    /// Unit normal, out of the obstacle, towards the free side.
+    pub normal: Vector,
+    /// The obstacle that this edge bounds, in the order of the scene.
+    pub obstacle: u32,
+    /// The wall of the same ring that ends where this one starts.
+    pub previous: u32,
+}
+
+/// Where on a wall its nearest point lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WallPart {
+    /// Its first end.
+    Start,
+    /// Between the ends.
+    Interior,
+    /// Its second end.
+    End,
+}
+
+/// The point of a wall that is nearest to some other point (r_k* in the paper).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NearestPoint {
+    /// The point, metres.
+    pub point: Vector,
+    /// Where on the wall it lies.
+    pub part: WallPart,
+}
+
+impl Wall {
+    /// The edge from `start` to `end`, with the solid on its left; the ends must differ.
+    pub fn new(start: Vector, end: Vector, obstacle: u32, previous: u32) -> Self {
+        let tangent = (end - start).normalize();
+        Self {
+            start,
+            end,
+            tangent,
+            normal: -perpendicular(tangent),
+            obstacle,
+            previous,
+        }
+    }
+
+    /// Length in metres.
+    pub fn length(&self) -> f64 {
+        (self.end - self.start).norm()
+    }
+
+    /// Is there wall so many metres `along` it, but for rounding?
+    fn reaches(&self, along: f64) -> bool {
+        (-END_ROUNDING..=self.length() + END_ROUNDING).contains(&along)
+    }
+
+    /// Distance of `p` from the wall's line in metres, negative behind it.
+    pub fn signed_distance(&self, p: Vector) -> f64 {
+        (p - self.start).dot(&self.normal)
+    }
+
+    /// Does `p` stand on the free side (or on the wall's line)?
+    pub fn faces(&self, p: Vector) -> bool {
+        self.signed_distance(p) >= 0.0
+    }
+
+    /// The point of this wall nearest to `p`.
+    pub fn nearest_point(&self, p: Vector) -> NearestPoint {
+        let segment = Segment::new(to_parry(self.start), to_parry(self.end));
+        let (projection, location) =
+            segment.project_local_point_and_get_location(to_parry(p), false);
+        NearestPoint {
+            point: from_parry(projection.point),
+            part: match location {
+                SegmentPointLocation::OnVertex(0) => WallPart::Start,
+                SegmentPointLocation::OnVertex(_) => WallPart::End,
+                SegmentPointLocation::OnEdge(_) => WallPart::Interior,
+            },
+        }
+    }
+
+    /// The point `clearance` metres before both this wall and another at the place where they cross or meet;
+    /// `None` where they do not, and before the tip of a spike, which is farther from both.
+    pub fn corner_with(&self, other: &Self, clearance: f64) -> Option<Vector> {
+        let sine = self.tangent.perp(&other.tangent);
+        let along = (other.start - self.start).perp(&other.tangent) / sine;
+        let point = self.start + self.tangent * along;
+        let there = (point - other.start).dot(&other.tangent);
+        let crosses = self.reaches(along) && other.reaches(there);
+        let cosine = self.normal.dot(&other.normal);
+        let out = (self.normal + other.normal) * (clearance / (1.0 + cosine));
+        let corner = point + out;
+        let is_before = |wall: &Self| {
+            let gap = (wall.nearest_point(corner).point - corner).norm();
+            gap <= 2.0 * clearance // of rounding, too
+        };
+        (crosses && is_before(self) && is_before(other)).then_some(corner)
+    }
+
+    /// The fraction of the way from `from` (on the free side) to `to` at which this wall is crossed
+    /// inwards, its ends included; `None` for a move that stays free.
+    pub fn crossing(&self, from: Vector, to: Vector) -> Option<f64> {
+        let before = self.signed_distance(from);
+        let after = self.signed_distance(to);
+        if before < 0.0 || after >= 0.0 {
+            return None;
+        }
+        let fraction = before / (before - after);
+        let along = (from + (to - from) * fraction - self.start).dot(&self.tangent);
+        self.reaches(along).then_some(fraction)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wall() -> Wall {
+        Wall::new(Vector::new(4.0, 0.0), Vector::new(0.0, 0.0), 0, 0)
+    }
+
+    #[test]
+    fn the_free_side_lies_right_of_the_edge() {
+        assert_eq!(wall().signed_distance(Vector::new(1.0, 2.0)), 2.0);
+        assert!(wall().faces(Vector::new(9.0, 0.5)));
+        assert!(!wall().faces(Vector::new(1.0, -0.5)));
+    }
+
+    #[test]
+    fn the_nearest_point_knows_its_part_of_the_wall() {
+        let part = |x: f64| wall().nearest_point(Vector::new(x, 1.0)).part;
+        assert_eq!(part(5.0), WallPart::Start);
+        assert_eq!(part(1.0), WallPart::Interior);
+        assert_eq!(part(-1.0), WallPart::End);
+        assert_eq!(
+            wall().nearest_point(Vector::new(1.0, 1.0)).point,
+            Vector::new(1.0, 0.0)
+        );
+    }
+
+    #[test]
+    fn only_inward_moves_across_the_edge_cross_it() {
+        let (above, below) = (Vector::new(1.0, 1.0), Vector::new(1.0, -3.0));
+        assert_eq!(wall().crossing(above, below), Some(0.25));
+        assert_eq!(wall().crossing(below, above), None);
+        assert_eq!(
+            wall().crossing(Vector::new(5.0, 1.0), Vector::new(5.0, -1.0)),
+            None
+        );
+    }
+}

@@ -1,0 +1,202 @@
+//! The scalar is `f64` and the vector nalgebra's; lengths in metres, y up.
+
+/// A position, velocity or force in the plane.
+pub type Vector = nalgebra::Vector2<f64>;
+
+/// `v` turned by 90° counter-clockwise.
+pub fn perpendicular(v: Vector) -> Vector {
+    Vector::new(-v.y, v.x)
+}
+
+/// `v / |v|`, and zero for the zero vector: coincident points give no direction.
+pub fn direction(v: Vector) -> Vector {
+    let length = v.norm();
+    if length > 0.0 {
+        v / length
+    } else {
+        Vector::zeros()
+    }
+}
+
+/// 1/(2k)! and 1/(2k + 1)!; what follows is below 2⁻⁵³ of the first up to an eighth of a turn.
+const SERIES: [[f64; 2]; 9] = {
+    let mut series = [[1.0; 2]; 9];
+    let mut k = 1;
+    while k < series.len() {
+        let n = 2.0 * k as f64;
+        let even = series[k - 1][1] / n;
+        series[k] = [even, even / (n + 1.0)];
+        k += 1;
+    }
+    series
+};
+
+/// The unit vector at an angle of so many 2³²ths of a full turn.
+///
+/// Sine and cosine by their Taylor series up to an eighth of a turn, the rest by symmetry: the same bits
+/// everywhere, as those of no library are.
+pub fn unit_vector(turn: u32) -> Vector {
+    // The nearest quarter, and how far from there, radians.
+    let quarter = turn.wrapping_add(1 << 29) >> 30;
+    let rest = turn.wrapping_sub(quarter << 30) as i32;
+    let x =
+        f64::from(rest) * (std::f64::consts::TAU / f64::from(1_u32 << 16) / f64::from(1_u32 << 16));
+    let minus_squared = -x * x;
+    let (mut sine, mut cosine) = (0.0, 0.0);
+    for [even, odd] in SERIES.into_iter().rev() {
+        cosine = cosine * minus_squared + even;
+        sine = sine * minus_squared + odd;
+    }
+    let sine = sine * x;
+    let [along, across] = QUARTERS[quarter as usize];
+    Vector::new(
+        along * cosine - across * sine,
+        across * cosine + along * sine,
+    )
+}
+
+/// Cosines and sines of the quarters of a turn.
+const QUARTERS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+
+/// `v`, shortened to length `limit` if it is longer.
+pub fn clamp_length(v: Vector, limit: f64) -> Vector {
+    let squared = v.norm_squared();
+    if squared > limit * limit {
+        v * (limit / squared.sqrt())
+    } else {
+        v
+    }
+}
+
+/// Are both coordinates finite?
+pub fn is_finite(v: Vector) -> bool {
+    v.x.is_finite() && v.y.is_finite()
+}
+
+/// Are all coordinates finite?
+pub fn are_finite(vectors: &[Vector]) -> bool {
+    // Zero times anything else is no number, and stays it: one comparison for all.
+    let zero: Vector = vectors.iter().map(|v| v * 0.0).sum();
+    zero == Vector::zeros()
+}
+
+/// Are all numbers finite?
+pub fn numbers_are_finite(numbers: &[f64]) -> bool {
+    numbers.iter().map(|number| number * 0.0).sum::<f64>() == 0.0
+}
+
+/// Vectors in files, as pairs of coordinates: for serde's `with`, of one vector, of many, and of many that
+/// may be missing. (nalgebra's own feature for it would have half of the dependencies compiled anew.)
+pub mod pairs_of {
+    /// One vector.
+    pub mod one {
+        use crate::engine::math::Vector;
+        use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+        /// Writes it.
+        ///
+        /// # Errors
+        /// The writer's.
+        pub fn serialize<S: Serializer>(v: &Vector, serializer: S) -> Result<S::Ok, S::Error> {
+            <[f64; 2]>::from(*v).serialize(serializer)
+        }
+
+        /// Reads it.
+        ///
+        /// # Errors
+        /// It is no pair of numbers.
+        pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vector, D::Error> {
+            <[f64; 2]>::deserialize(deserializer).map(Vector::from)
+        }
+    }
+
+    /// Many vectors.
+    pub mod many {
+        use crate::engine::math::Vector;
+        use serde::{Deserialize, Deserializer, Serializer};
+
+        /// Writes them.
+        ///
+        /// # Errors
+        /// The writer's.
+        pub fn serialize<S: Serializer>(
+            vectors: &[Vector],
+            serializer: S,
+        ) -> Result<S::Ok, S::Error> {
+            serializer.collect_seq(vectors.iter().map(|&v| <[f64; 2]>::from(v)))
+        }
+
+        /// Reads them.
+        ///
+        /// # Errors
+        /// They are no pairs of numbers.
+        pub fn deserialize<'de, D: Deserializer<'de>>(
+            deserializer: D,
+        ) -> Result<Vec<Vector>, D::Error> {
+            let pairs = Vec::<[f64; 2]>::deserialize(deserializer)?;
+            Ok(pairs.into_iter().map(Vector::from).collect())
+        }
+    }
+
+    /// Many vectors, some of which are missing.
+    pub mod some {
+        use crate::engine::math::Vector;
+        use serde::{Deserialize, Deserializer, Serializer};
+
+        /// Writes them.
+        ///
+        /// # Errors
+        /// The writer's.
+        pub fn serialize<S: Serializer>(
+            vectors: &[Option<Vector>],
+            serializer: S,
+        ) -> Result<S::Ok, S::Error> {
+            serializer.collect_seq(vectors.iter().map(|v| v.map(<[f64; 2]>::from)))
+        }
+
+        /// Reads them.
+        ///
+        /// # Errors
+        /// They are no pairs of numbers.
+        pub fn deserialize<'de, D: Deserializer<'de>>(
+            deserializer: D,
+        ) -> Result<Vec<Option<Vector>>, D::Error> {
+            let pairs = Vec::<Option<[f64; 2]>>::deserialize(deserializer)?;
+            Ok(pairs
+                .into_iter()
+                .map(|pair| pair.map(Vector::from))
+                .collect())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_vectors_are_the_cosines_and_sines_of_their_turns() {
+        for k in 0..100_000_u32 {
+            let turn = k.wrapping_mul(2_654_435_761);
+            let v = unit_vector(turn);
+            let angle = f64::from(turn) / 2_f64.powi(32) * std::f64::consts::TAU;
+            assert!((v - Vector::new(angle.cos(), angle.sin())).norm() < 2e-15);
+            assert!((v.norm() - 1.0).abs() < 1e-15);
+        }
+        let quarters = [0, 1, 2, 3].map(|quarter| unit_vector(quarter << 30));
+        assert_eq!(quarters, QUARTERS.map(Vector::from));
+    }
+
+    #[test]
+    fn one_number_that_is_none_is_seen_among_many() {
+        let mut numbers = vec![1e300; 99];
+        assert!(numbers_are_finite(&numbers) && numbers_are_finite(&[]));
+        let mut vectors = vec![Vector::new(-1e300, 0.0); 99];
+        assert!(are_finite(&vectors) && are_finite(&[]));
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            numbers[57] = bad;
+            vectors[57].y = bad;
+            assert!(!numbers_are_finite(&numbers) && !are_finite(&vectors));
+        }
+    }
+}

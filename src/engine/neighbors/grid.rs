@@ -1,0 +1,191 @@
+//! A uniform grid over the crowd; agents sorted by cell, row by row, so that a run of cells in a row
+//! is a run of agents in memory.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::engine::math::Vector;
+
+/// Agents whose cells are worth another thread.
+const SOME: usize = 4096;
+
+/// At most this many cells per agent (and this many for an empty crowd): a crowd strewn over a wide
+/// area gets larger cells instead of a larger grid.
+const CELLS_PER_AGENT: usize = 4;
+const FEWEST_CELLS: usize = 1024;
+
+/// Cells in a row are so much narrower than the row is high: runs then end near the circle they are
+/// to cover.
+const NARROWNESS: f64 = 8.0;
+
+/// A place in a grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// The row, neither the first nor the last.
+    pub row: usize,
+    /// Metres from the left end of the row.
+    pub x: f64,
+    /// Metres above the floor of the row.
+    pub y: f64,
+}
+
+/// Cells of a bounding box, with an empty row below and above, and the range of agents in each.
+#[derive(Debug, Clone)]
+pub struct Grid {
+    origin: Vector,
+    height: f64,
+    width: f64,
+    columns: usize,
+    rows: usize,
+    /// First agent of every cell, row by row, and the number of agents at the end.
+    start: Vec<u32>,
+}
+
+impl Default for Grid {
+    fn default() -> Self {
+        Self {
+            origin: Vector::zeros(),
+            height: 1.0,
+            width: 1.0,
+            columns: 1,
+            rows: 3,
+            start: vec![0; 4],
+        }
+    }
+}
+
+impl Grid {
+    /// Lays a grid with rows of at least `height` metres over `positions` and returns the order that
+    /// sorts them by cell; agents of one cell keep their order.
+    pub fn rebuild(&mut self, positions: &[Vector], height: f64) -> Vec<u32> {
+        let [low, high] = bounds(positions);
+        self.size_cells(high - low, positions.len(), height);
+        self.origin = low - Vector::new(0.0, self.height);
+
+        let cell_of: Vec<u32> = positions
+            .par_iter()
+            .with_min_len(SOME)
+            .map(|&p| self.cell_of(p) as u32)
+            .collect();
+        self.start.clear();
+        self.start.resize(self.cells() + 1, 0);
+        for &cell in &cell_of {
+            self.start[cell as usize + 1] += 1;
+        }
+        for cell in 0..self.cells() {
+            self.start[cell + 1] += self.start[cell];
+        }
+        let mut next = self.start.clone();
+        let mut order = vec![0; positions.len()];
+        for (i, &cell) in cell_of.iter().enumerate() {
+            let place = &mut next[cell as usize];
+            order[*place as usize] = i as u32;
+            *place += 1;
+        }
+        order
+    }
+
+    /// Chooses the smallest cells that are not too many for so many agents.
+    fn size_cells(&mut self, extent: Vector, agents: usize, height: f64) {
+        let most = (agents * CELLS_PER_AGENT).max(FEWEST_CELLS) as f64;
+        self.height = height.max(f64::MIN_POSITIVE); // so that doubling makes it grow
+        self.width = (self.height / NARROWNESS).max(f64::MIN_POSITIVE);
+        // One cell for a crowd whose extent is no number: the fault is found later, and named.
+        let columns = |width: f64| ((extent.x / width).floor() + 1.0).max(1.0);
+        let rows = |height: f64| ((extent.y / height).floor() + 3.0).max(3.0);
+        while columns(self.width) * rows(self.height) > most {
+            if self.width < self.height {
+                self.width *= 2.0;
+            } else {
+                self.width *= 2.0;
+                self.height *= 2.0;
+            }
+        }
+        self.columns = columns(self.width) as usize;
+        self.rows = rows(self.height) as usize;
+    }
+
+    /// The number of cells.
+    pub fn cells(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// The height of the rows, metres.
+    pub fn height(&self) -> f64 {
+        self.height
+    }
+
+    fn cell_of(&self, p: Vector) -> usize {
+        let offset = p - self.origin;
+        let column = ((offset.x / self.width) as usize).min(self.columns - 1);
+        let row = ((offset.y / self.height) as usize).min(self.rows - 2);
+        row * self.columns + column
+    }
+
+    /// Where `p` is, one of those that the grid was laid over.
+    pub fn place(&self, p: Vector) -> Place {
+        let offset = p - self.origin;
+        let row = ((offset.y / self.height) as usize).clamp(1, self.rows - 2);
+        Place {
+            row,
+            x: offset.x,
+            y: offset.y - row as f64 * self.height,
+        }
+    }
+
+    /// The agents in the cells of a row between two places, metres from its left end.
+    pub fn run(&self, row: usize, from: f64, to: f64) -> Range<u32> {
+        let column = |x: f64| ((x / self.width) as usize).min(self.columns - 1);
+        let first = row * self.columns;
+        self.start[first + column(from)]..self.start[first + column(to) + 1]
+    }
+
+    /// The agents in cells within `radius` of a box, from its lower left to its upper right corner, row by
+    /// row; some are out of reach.
+    pub fn rows(
+        &self,
+        [low, high]: [Vector; 2],
+        radius: f64,
+    ) -> impl Iterator<Item = Range<u32>> + '_ {
+        let (low, high) = (low - self.origin, high - self.origin);
+        let row = move |y: f64| ((y / self.height) as usize).min(self.rows - 1);
+        (row(low.y - radius)..=row(high.y + radius)).map(move |row| {
+            let floor = row as f64 * self.height;
+            let gap = (floor - high.y).max(low.y - floor - self.height).max(0.0);
+            let half = (radius * radius - gap * gap).max(0.0).sqrt();
+            self.run(row, low.x - half, high.x + half)
+        })
+    }
+}
+
+/// The corners of the bounding box; the origin twice for nobody.
+pub fn bounds(positions: &[Vector]) -> [Vector; 2] {
+    let Some(&first) = positions.first() else {
+        return [Vector::zeros(); 2];
+    };
+    positions
+        .iter()
+        .fold([first; 2], |[low, high], p| [low.inf(p), high.sup(p)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strange_sizes_and_extents_make_small_grids() {
+        for height in [0.0, 5e-324, 1e-300] {
+            for positions in [
+                vec![Vector::zeros()],
+                vec![Vector::zeros(), Vector::new(9.0, 1e9)],
+                vec![Vector::zeros(), Vector::new(f64::INFINITY, 1e9)],
+                vec![Vector::new(f64::NAN, 0.0); 3],
+            ] {
+                let mut grid = Grid::default();
+                assert_eq!(grid.rebuild(&positions, height).len(), positions.len());
+                assert!(grid.cells() <= FEWEST_CELLS);
+            }
+        }
+    }
+}

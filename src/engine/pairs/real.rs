@@ -1,0 +1,157 @@
+//! The numbers that sums over pairs are taken in.
+
+use fearless_simd::{Simd, f32x8, f64x8, i32x8, prelude::*};
+
+/// Agents whose sums are taken together: a cluster, on every processor.
+pub const LANES: usize = crate::engine::neighbors::CLUSTER;
+
+/// A number for sums over pairs, and how it holds coordinates.
+pub trait Real: SimdFloatElement + Copy + Default + Send + Sync + 'static {
+    /// A coordinate; only differences of near ones mean anything.
+    type Coordinate: Copy + Default + Send + Sync + 'static;
+    /// [`LANES`] numbers.
+    type Lanes<S: Simd>: SimdFloat<S, Element = Self>;
+    /// [`LANES`] coordinates.
+    type Places<S: Simd>: Copy;
+
+    /// A squared distance in units² that divides without overflow, far below all real ones.
+    const TINY: f64;
+
+    /// The nearest number.
+    fn of(value: f64) -> Self;
+
+    /// The number as it is.
+    fn double(self) -> f64;
+
+    /// `metres` in units, of which there are `per_metre` in a metre.
+    fn coordinate(metres: f64, per_metre: f64) -> Self::Coordinate;
+
+    /// The first [`LANES`] of `places`.
+    fn places<S: Simd>(simd: S, places: &[Self::Coordinate]) -> Self::Places<S>;
+
+    /// Each of `from`, minus `to`.
+    fn differences<S: Simd>(simd: S, from: Self::Places<S>, to: Self::Coordinate)
+    -> Self::Lanes<S>;
+
+    /// 2ˣ of numbers that are not positive; where it is below 2⁻¹²⁶ it may be that.
+    fn exp2<S: Simd>(simd: S, x: Self::Lanes<S>) -> Self::Lanes<S>;
+}
+
+impl Real for f64 {
+    type Coordinate = f64;
+    type Lanes<S: Simd> = f64x8<S>;
+    type Places<S: Simd> = f64x8<S>;
+
+    const TINY: f64 = 1e-200;
+
+    fn of(value: f64) -> Self {
+        value
+    }
+
+    fn double(self) -> f64 {
+        self
+    }
+
+    fn coordinate(metres: f64, per_metre: f64) -> f64 {
+        metres * per_metre
+    }
+
+    #[inline(always)]
+    fn places<S: Simd>(simd: S, places: &[f64]) -> f64x8<S> {
+        f64x8::from_slice(simd, &places[..LANES])
+    }
+
+    #[inline(always)]
+    fn differences<S: Simd>(simd: S, from: f64x8<S>, to: f64) -> f64x8<S> {
+        from - f64x8::splat(simd, to)
+    }
+
+    #[inline(always)]
+    fn exp2<S: Simd>(simd: S, x: f64x8<S>) -> f64x8<S> {
+        f64x8::from_fn(simd, |lane| x[lane].exp2())
+    }
+}
+
+/// Coordinates are whole numbers modulo 2³²: differences are exact wherever in the plane they are
+/// taken, as long as they are shorter than 2³¹ units, and longer ones wrap.
+impl Real for f32 {
+    type Coordinate = i32;
+    type Lanes<S: Simd> = f32x8<S>;
+    type Places<S: Simd> = i32x8<S>;
+
+    const TINY: f64 = 1e-6;
+
+    fn of(value: f64) -> Self {
+        value as f32
+    }
+
+    fn double(self) -> f64 {
+        f64::from(self)
+    }
+
+    fn coordinate(metres: f64, per_metre: f64) -> i32 {
+        (metres * per_metre) as i64 as i32
+    }
+
+    #[inline(always)]
+    fn places<S: Simd>(simd: S, places: &[i32]) -> i32x8<S> {
+        i32x8::from_slice(simd, &places[..LANES])
+    }
+
+    #[inline(always)]
+    fn differences<S: Simd>(simd: S, from: i32x8<S>, to: i32) -> f32x8<S> {
+        (from - i32x8::splat(simd, to)).to_float()
+    }
+
+    /// 2ⁿ 2ʳ with |r| ≤ 1/2, and the Taylor series of 2ʳ = e^(r ln 2).
+    #[inline(always)]
+    fn exp2<S: Simd>(simd: S, x: f32x8<S>) -> f32x8<S> {
+        let mut c = [f32x8::splat(simd, 0.0); SERIES.len()];
+        for (lanes, coefficient) in c.iter_mut().zip(SERIES) {
+            *lanes = f32x8::splat(simd, coefficient);
+        }
+        let x = x.max(f32x8::splat(simd, -126.0));
+        let n = x.round_ties_even();
+        let r = x - n;
+        let r2 = r * r;
+        let low = c[3].mul_add(r, c[2]).mul_add(r2, c[1].mul_add(r, c[0]));
+        let high = c[6].mul_add(r2, c[5].mul_add(r, c[4]));
+        let exponent = (n.to_int::<i32x8<S>>() + 127) << 23;
+        high.mul_add(r2 * r2, low) * exponent.bitcast::<f32x8<S>>()
+    }
+}
+
+/// (ln 2)ᵏ/k!; the next term of 2ʳ is below 1.2 · 10⁻⁷.
+#[expect(clippy::excessive_precision, reason = "rounded by the compiler")]
+const SERIES: [f32; 7] = [
+    1.0,
+    std::f32::consts::LN_2,
+    0.240_226_506_959_101,
+    0.055_504_108_664_821_6,
+    0.009_618_129_107_628_48,
+    0.001_333_355_814_642_84,
+    0.000_154_035_303_933_816,
+];
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+
+    use super::*;
+
+    #[test]
+    fn powers_of_two_are_right_to_the_last_bits() {
+        for k in 0..100_000 {
+            let x = -1e-3 * f64::from(k) as f32;
+            let power = dispatch!(Level::new(), simd => {
+                <f32 as Real>::exp2(simd, f32x8::splat(simd, x))[3]
+            });
+            let exact = f64::from(x).exp2();
+            assert!((f64::from(power) / exact - 1.0).abs() < 3e-7, "{x}");
+        }
+        let far = dispatch!(Level::new(), simd => {
+            <f32 as Real>::exp2(simd, f32x8::splat(simd, -1e9))[0]
+        });
+        assert!((0.0..=f32::MIN_POSITIVE).contains(&far));
+    }
+}

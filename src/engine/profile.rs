@@ -1,0 +1,254 @@
+//! Profiles (§5.5) and their blending by density (§4.4).
+
+mod blend;
+
+pub use blend::{Blend, BlendError, BlendStep};
+
+use std::ops::Range;
+
+use crate::engine::forces::contact::{self, Contact};
+use crate::engine::forces::goal::GoalForce;
+use crate::engine::forces::pressure;
+use crate::engine::forces::rvo::Rvo;
+use crate::engine::forces::social::SocialForce;
+use crate::engine::forces::viscosity::Viscosity;
+use crate::engine::frame::Frame;
+use crate::engine::math::Vector;
+use crate::engine::neighbors::BLOCK;
+use crate::engine::pairs::PairCoefficients;
+
+/// Steps 3, 3B and 4 for one agent: how it navigates, and which interactions it feels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    /// What it is called in reports.
+    pub name: String,
+    /// Step 3.
+    pub navigation: Navigation,
+    /// Step 3B, pressure; switched off in a profile without SPH, and where k = 0.
+    pub pressure: bool,
+    /// Step 3B, viscosity; `None` in a profile without SPH, and where μ = 0.
+    pub viscosity: Option<Viscosity>,
+    /// Step 4.
+    pub contact: Contact,
+}
+
+/// Step 3: how an agent finds its way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Navigation {
+    /// Straight to the goal.
+    Goal(GoalForce),
+    /// Goal force and social forces (§5.3.1).
+    Social(GoalForce, SocialForce),
+    /// Velocity obstacles (§5.3.2); the preferred velocity is in the cost.
+    Rvo(Rvo),
+}
+
+impl Navigation {
+    /// Its social force, if it is one that has one.
+    pub fn social(&self) -> Option<SocialForce> {
+        match *self {
+            Self::Social(_, social) => Some(social),
+            _ => None,
+        }
+    }
+
+    /// How far this way of avoiding others looks, metres.
+    pub fn avoidance_radius(&self) -> Option<f64> {
+        match self {
+            Self::Goal(_) => None,
+            Self::Social(_, social) => Some(social.avoidance_radius),
+            Self::Rvo(rvo) => Some(rvo.avoidance_radius),
+        }
+    }
+}
+
+/// What a push changes for the agents that take part (§6.3).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Override {
+    /// K^goal instead of the profile's.
+    pub goal_scale: Option<f64>,
+    /// Feel no contact force.
+    pub ignore_contact: bool,
+    /// Feel no SPH force.
+    pub ignore_sph: bool,
+}
+
+/// One profile's accelerations of one agent, term by term, m/s²; `None`: the profile has no such term.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Terms {
+    /// Eq. 17.
+    pub goal: Option<Vector>,
+    /// Eq. 18.
+    pub social_agents: Option<Vector>,
+    /// Eq. 19.
+    pub social_walls: Option<Vector>,
+    /// Eq. 21.
+    pub rvo: Option<Vector>,
+    /// Eq. 11.
+    pub pressure_agents: Option<Vector>,
+    /// Eq. 12.
+    pub pressure_walls: Option<Vector>,
+    /// Eq. 7.
+    pub viscosity: Option<Vector>,
+    /// Eq. 22.
+    pub contact_agents: Option<Vector>,
+    /// Eq. 23.
+    pub contact_walls: Option<Vector>,
+}
+
+impl Terms {
+    /// Every term with its name, in the order of the simulation loop.
+    pub fn named(&self) -> [(&'static str, Option<Vector>); 9] {
+        [
+            ("goal", self.goal),
+            ("social_agents", self.social_agents),
+            ("social_walls", self.social_walls),
+            ("rvo", self.rvo),
+            ("pressure_agents", self.pressure_agents),
+            ("pressure_walls", self.pressure_walls),
+            ("viscosity", self.viscosity),
+            ("contact_agents", self.contact_agents),
+            ("contact_walls", self.contact_walls),
+        ]
+    }
+
+    /// The profile's acceleration, m/s².
+    pub fn sum(&self) -> Vector {
+        self.named().into_iter().filter_map(|(_, term)| term).sum()
+    }
+}
+
+impl Profile {
+    /// Every term of this profile for agent `i` of a frozen frame.
+    pub fn terms(&self, frame: &Frame, i: usize, changed: Option<&Override>) -> Terms {
+        let mut terms = Terms::default();
+        self.each_term(frame, i..i + 1, changed, |place, _, term| {
+            *place(&mut terms) = Some(term);
+        });
+        let mut all = PairCoefficients::default();
+        self.add_pair_coefficients(frame, i..i + 1, changed, 1.0, &mut all);
+        let alone = |coefficients| frame.from_near_agents(i, &coefficients);
+        let PairCoefficients {
+            pressure,
+            viscosity,
+            contact,
+        } = all;
+        let none = PairCoefficients::default;
+        if feels_sph(changed) {
+            if self.pressure {
+                terms.pressure_agents = Some(alone(PairCoefficients { pressure, ..none() }));
+                terms.pressure_walls.get_or_insert(Vector::zeros());
+            }
+            terms.viscosity = self.viscosity.map(|_| {
+                alone(PairCoefficients {
+                    viscosity,
+                    ..none()
+                })
+            });
+        }
+        if let Some(social) = self.navigation.social() {
+            terms.social_agents = Some(social.from_agents(frame, i));
+        }
+        if feels_contact(changed) {
+            if self.contact.agent_stiffness.is_some() {
+                terms.contact_agents = Some(alone(PairCoefficients { contact, ..none() }));
+            }
+            if self.contact.wall_stiffness.is_some() {
+                terms.contact_walls.get_or_insert(Vector::zeros());
+            }
+        }
+        terms
+    }
+
+    /// Adds how much `agents` of one block of a frozen frame feel of the agents near them, times
+    /// `weight`.
+    fn add_pair_coefficients(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+        changed: Option<&Override>,
+        weight: f64,
+        coefficients: &mut PairCoefficients,
+    ) {
+        let first = agents.start % BLOCK;
+        let places = first..first + agents.len();
+        if feels_sph(changed) && self.pressure {
+            let coefficients = &mut coefficients.pressure[places.clone()];
+            pressure::add_coefficients(frame, agents.clone(), weight, coefficients);
+        }
+        if let Some(viscosity) = self.viscosity
+            && feels_sph(changed)
+        {
+            let coefficients = &mut coefficients.viscosity[places.clone()];
+            viscosity.add_coefficients(frame, agents.clone(), weight, coefficients);
+        }
+        if let Some(stiffness) = self.contact.agent_stiffness
+            && feels_contact(changed)
+        {
+            let coefficients = &mut coefficients.contact[places];
+            contact::add_coefficients(frame, agents, weight * stiffness, coefficients);
+        }
+    }
+
+    /// All terms of `agents` but what other agents do: where each belongs, whose it is, and how
+    /// large, m/s²; no walls' terms of those without walls near.
+    #[inline]
+    fn each_term(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+        changed: Option<&Override>,
+        mut take: impl FnMut(fn(&mut Terms) -> &mut Option<Vector>, usize, Vector),
+    ) {
+        match self.navigation {
+            Navigation::Goal(goal) => {
+                let goal = changed_goal(goal, changed);
+                goal.accelerations(frame, agents.clone(), |i, a| take(|t| &mut t.goal, i, a));
+            }
+            Navigation::Social(goal, social) => {
+                let goal = changed_goal(goal, changed);
+                goal.accelerations(frame, agents.clone(), |i, a| take(|t| &mut t.goal, i, a));
+                for i in agents.clone() {
+                    take(|t| &mut t.social_walls, i, social.from_walls(frame, i));
+                }
+            }
+            Navigation::Rvo(_) => {
+                for i in agents.clone() {
+                    if let Some(held) = frame.agents.avoidance[i] {
+                        take(|t| &mut t.rvo, i, held);
+                    }
+                }
+            }
+        }
+        if self.pressure && feels_sph(changed) {
+            for (i, _) in frame.neighbors.agents_near_walls(agents.clone()) {
+                take(|t| &mut t.pressure_walls, i, pressure::from_walls(frame, i));
+            }
+        }
+        if let Some(stiffness) = self.contact.wall_stiffness
+            && feels_contact(changed)
+        {
+            for (i, near) in frame.neighbors.agents_near_walls(agents) {
+                let push = contact::from_walls(frame, i, near, stiffness);
+                take(|t| &mut t.contact_walls, i, push);
+            }
+        }
+    }
+}
+
+/// The goal force with the K^goal that a push gives.
+fn changed_goal(goal: GoalForce, changed: Option<&Override>) -> GoalForce {
+    let goal_scale = changed.and_then(|change| change.goal_scale);
+    GoalForce {
+        goal_scale: goal_scale.unwrap_or(goal.goal_scale),
+        ..goal
+    }
+}
+
+fn feels_sph(changed: Option<&Override>) -> bool {
+    !changed.is_some_and(|change| change.ignore_sph)
+}
+
+fn feels_contact(changed: Option<&Override>) -> bool {
+    !changed.is_some_and(|change| change.ignore_contact)
+}

@@ -1,0 +1,222 @@
+//! Blending of profiles by density (§4.4).
+
+use std::ops::Range;
+
+use super::{Navigation, Override, Profile};
+use crate::engine::density::SphParameters;
+use crate::engine::forces::rvo::Rvo;
+use crate::engine::forces::social::SocialForce;
+use crate::engine::frame::Frame;
+use crate::engine::math::Vector;
+use crate::engine::neighbors::BLOCK;
+use crate::engine::pairs::PairCoefficients;
+
+/// So many profiles in a blend: every group of agents has its own copy.
+const MOST_STEPS: usize = 16;
+
+/// A sequence {(Π^j, ρ^j)} of profiles in rising order of density, and the SPH parameters they share.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Blend {
+    /// What the whole is called.
+    pub name: String,
+    /// Density and pressure of an agent with this blend.
+    pub sph: SphParameters,
+    steps: Vec<BlendStep>,
+}
+
+/// One profile of a blend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlendStep {
+    /// ρ^j, P/m²: where this profile acts alone.
+    pub at_density: f64,
+    /// Π^j.
+    pub profile: Profile,
+}
+
+/// Why a sequence of profiles is not a blend.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BlendError {
+    /// There is no profile.
+    #[error("a blend needs at least one profile")]
+    Empty,
+    /// Too many profiles.
+    #[error("{0} profiles in one blend; at most {MOST_STEPS} may be")]
+    TooMany(usize),
+    /// Two densities in the wrong order.
+    #[error("densities must rise: {1} P/m² follows {0} P/m²")]
+    NotRising(f64, f64),
+    /// Two profiles avoid by RVO, each in its own way.
+    #[error("profiles of one blend share one velocity of RVO: give them the same RVO parameters")]
+    DifferentRvo,
+}
+
+impl Blend {
+    /// Puts profiles together.
+    ///
+    /// # Errors
+    /// No profile or too many, densities that do not rise, or profiles with different RVO parameters.
+    pub fn new(
+        name: String,
+        sph: SphParameters,
+        steps: Vec<BlendStep>,
+    ) -> Result<Self, BlendError> {
+        if steps.is_empty() {
+            return Err(BlendError::Empty);
+        }
+        if steps.len() > MOST_STEPS {
+            return Err(BlendError::TooMany(steps.len()));
+        }
+        for pair in steps.windows(2) {
+            let (low, high) = (pair[0].at_density, pair[1].at_density);
+            if low.partial_cmp(&high) != Some(std::cmp::Ordering::Less) {
+                return Err(BlendError::NotRising(low, high));
+            }
+        }
+        let mut rvos = steps.iter().filter_map(|step| rvo_of(&step.profile));
+        if let Some(first) = rvos.next()
+            && rvos.any(|other| other != first)
+        {
+            return Err(BlendError::DifferentRvo);
+        }
+        Ok(Self { name, sph, steps })
+    }
+
+    /// One profile at all densities.
+    pub fn single(profile: Profile, sph: SphParameters) -> Self {
+        Self {
+            name: profile.name.clone(),
+            sph,
+            steps: vec![BlendStep {
+                at_density: 0.0,
+                profile,
+            }],
+        }
+    }
+
+    /// The profiles in rising order of density.
+    pub fn steps(&self) -> &[BlendStep] {
+        &self.steps
+    }
+
+    /// Does the behaviour depend on the density?
+    pub fn depends_on_density(&self) -> bool {
+        self.steps.len() > 1
+    }
+
+    /// The RVO parameters of this blend, if any of its profiles avoids by RVO.
+    pub fn rvo(&self) -> Option<Rvo> {
+        self.steps.iter().find_map(|step| rvo_of(&step.profile))
+    }
+
+    /// The profiles that act on agent `i` of a frozen frame, with their weights, which sum to 1.
+    #[inline]
+    pub fn acting(&self, frame: &Frame, i: usize) -> impl Iterator<Item = (&Profile, f64)> {
+        let density = if self.depends_on_density() {
+            frame.fields.density[i]
+        } else {
+            0.0
+        };
+        self.weights(density)
+    }
+
+    /// The profiles with a weight above zero at a density in P/m² (§4.4).
+    #[inline]
+    pub fn weights(&self, density: f64) -> impl Iterator<Item = (&Profile, f64)> {
+        let last = self.steps.len() - 1;
+        let above = |step: &BlendStep| density <= step.at_density;
+        let high = self.steps.iter().position(above).unwrap_or(last);
+        let low = high.saturating_sub(1);
+        let (from, to) = (self.steps[low].at_density, self.steps[high].at_density);
+        // Alone at its own density, and at the ends beyond it.
+        let kappa = if low < high {
+            ((density - from) / (to - from)).min(1.0)
+        } else {
+            1.0
+        };
+        let lower = (kappa < 1.0).then(|| (&self.steps[low].profile, 1.0 - kappa));
+        lower
+            .into_iter()
+            .chain([(&self.steps[high].profile, kappa)])
+    }
+
+    /// Does RVO act on agent `i` of a frozen frame?
+    pub fn rvo_acts(&self, frame: &Frame, i: usize) -> bool {
+        self.acting(frame, i)
+            .any(|(profile, _)| rvo_of(profile).is_some())
+    }
+
+    /// Adds how much `agents` of one block of a frozen frame, all with this blend, feel of the agents
+    /// near them.
+    pub fn add_pair_coefficients(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+        changed: Option<&Override>,
+        coefficients: &mut PairCoefficients,
+    ) {
+        self.each_share(frame, agents, |profile, agents, weight| {
+            profile.add_pair_coefficients(frame, agents, changed, weight, coefficients);
+        });
+    }
+
+    /// Adds how much `agents` of one block of a frozen frame, all with this blend, feel of a social force:
+    /// their weights of it over their masses.
+    pub fn add_social_coefficients(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+        social: &SocialForce,
+        coefficients: &mut [f64; BLOCK],
+    ) {
+        self.each_share(frame, agents, |profile, agents, weight| {
+            if profile.navigation.social().as_ref() == Some(social) {
+                for i in agents {
+                    coefficients[i % BLOCK] += weight / frame.agents.mass[i];
+                }
+            }
+        });
+    }
+
+    /// Adds the accelerations of `agents` of a frozen frame, all with this blend, by all but other
+    /// agents, m/s².
+    pub fn add_accelerations(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+        changed: Option<&Override>,
+        accelerations: &mut [Vector],
+    ) {
+        let first = agents.start;
+        self.each_share(frame, agents, |profile, agents, weight| {
+            profile.each_term(frame, agents, changed, |_, i, term| {
+                accelerations[i - first] += term * weight;
+            });
+        });
+    }
+
+    /// Who of `agents` behaves like which profile, and how much.
+    #[inline]
+    fn each_share(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+        mut take: impl FnMut(&Profile, Range<usize>, f64),
+    ) {
+        if let [step] = &self.steps[..] {
+            take(&step.profile, agents, 1.0);
+            return;
+        }
+        for i in agents {
+            for (profile, weight) in self.acting(frame, i) {
+                take(profile, i..i + 1, weight);
+            }
+        }
+    }
+}
+
+fn rvo_of(profile: &Profile) -> Option<Rvo> {
+    match profile.navigation {
+        Navigation::Rvo(rvo) => Some(rvo),
+        _ => None,
+    }
+}

@@ -1,0 +1,41 @@
+//! The state in one number, to tell whether two runs are the same to the last bit.
+
+use sha2::{Digest, Sha256};
+
+use super::Simulation;
+use crate::engine::math::Vector;
+
+impl Simulation {
+    /// SHA-256, as 64 hexadecimal digits, of the frame number, of the id, position, velocity and mean density of
+    /// all agents in the order of their ids, and of all arrivals. It is independent of the order in memory, of the
+    /// number of threads, and of what is observed: the mean density ρ̂ is part of the state only where a
+    /// force reads it ([`Needs::density`](crate::engine::scene::Needs::density)), and is left out elsewhere.
+    pub fn digest(&self) -> String {
+        let has_mean_density = self.scene.needs().density;
+        let mut hasher = Sha256::new();
+        hasher.update(self.clock.frame().to_le_bytes());
+        let agents = &self.agents;
+        let mut order: Vec<usize> = (0..agents.len()).collect();
+        order.sort_unstable_by_key(|&i| agents.id[i]);
+        for i in order {
+            hasher.update(agents.id[i].to_le_bytes());
+            add(&mut hasher, agents.position[i]);
+            add(&mut hasher, agents.velocity[i]);
+            if has_mean_density {
+                hasher.update(agents.mean_density[i].to_bits().to_le_bytes());
+            }
+        }
+        for arrival in &self.outcome.arrivals {
+            hasher.update(arrival.id.to_le_bytes());
+            hasher.update(arrival.time.to_bits().to_le_bytes());
+            add(&mut hasher, arrival.position);
+        }
+        let digits = hasher.finalize();
+        digits.iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+fn add(hasher: &mut Sha256, v: Vector) {
+    hasher.update(v.x.to_bits().to_le_bytes());
+    hasher.update(v.y.to_bits().to_le_bytes());
+}

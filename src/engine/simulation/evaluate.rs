@@ -1,0 +1,305 @@
+//! Steps 1–4: from the state to the accelerations, moving nobody.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+
+use super::{Simulation, Stage, blend_of, change_of};
+use crate::engine::density::SphStates;
+use crate::engine::forces::goal;
+use crate::engine::forces::rvo::Scratch;
+use crate::engine::forces::social::SocialForce;
+use crate::engine::frame::{Frame, velocity_range};
+use crate::engine::math::{Vector, are_finite, numbers_are_finite};
+use crate::engine::neighbors::{BLOCK, CLUSTER, ListPolicy, TASK};
+use crate::engine::pairs::{Columns, PairCoefficients, Real, each};
+use crate::engine::profile::{Blend, Override};
+
+impl Simulation {
+    /// Step 1.
+    pub(super) fn update_neighbors(&mut self) {
+        let stale = match self.scene.neighbor_lists {
+            ListPolicy::Complete => self.neighbors.are_stale(),
+            ListPolicy::Coarse => self.clock.is_coarse(),
+        };
+        if self.crowd_changed || stale {
+            self.sort_agents();
+            self.list_walls();
+        }
+        if !(self.needs.pairs.any() || self.needs.social || self.density_is_due()) {
+            return;
+        }
+        let (agents, neighbors, packed) = (&self.agents, &mut self.neighbors, &mut self.packed);
+        if neighbors.near().is_empty() || packed.is_empty() {
+            self.stages.time(Stage::Neighbors, || {
+                neighbors.list_agents();
+                packed.take_bodies(agents, neighbors.extent(), |i| {
+                    blend_of(&self.scene, agents, i).sph.support_radius
+                });
+            });
+        }
+    }
+
+    pub(super) fn sort_agents(&mut self) {
+        let ranges = self.scene.ranges(&self.needs);
+        let (agents, neighbors) = (&mut self.agents, &mut self.neighbors);
+        self.stages
+            .time(Stage::Sort, || neighbors.sort(agents, ranges));
+        self.packed.clear();
+        self.fields.forget_walls();
+        self.crowd_changed = false;
+    }
+
+    pub(super) fn list_walls(&mut self) {
+        let (agents, neighbors) = (&self.agents, &mut self.neighbors);
+        self.stages.time(Stage::Neighbors, || {
+            neighbors.list_walls(agents, &self.scene.walls);
+        });
+    }
+
+    /// Step 2, and packing what the sums over pairs read.
+    pub(super) fn update_preferred_velocity(&mut self) {
+        let mut packed = std::mem::take(&mut self.packed);
+        each!(&mut packed, columns => self.prepare(columns));
+        self.packed = packed;
+    }
+
+    fn prepare<R: Real>(&mut self, columns: &mut Columns<R>) {
+        let (agents, speed) = (&self.agents, self.scene.preferred_speed);
+        let preferred = &mut self.fields.preferred_velocity;
+        preferred.resize(agents.len(), Vector::zeros());
+        self.stages.time(Stage::PreferredVelocity, || {
+            let blocks = (
+                preferred.par_chunks_mut(BLOCK),
+                agents.position.par_chunks(BLOCK),
+                agents.goal.par_chunks(BLOCK),
+            );
+            blocks
+                .into_par_iter()
+                .with_min_len(TASK)
+                .for_each(|(preferred, positions, goals)| {
+                    for ((v, &r), &g) in preferred.iter_mut().zip(positions).zip(goals) {
+                        *v = goal::preferred_velocity(r, g, speed);
+                    }
+                });
+            let states = (
+                columns.motions(), // none where nothing is summed
+                agents.position.par_chunks(BLOCK),
+                agents.velocity.par_chunks(BLOCK),
+            );
+            states
+                .into_par_iter()
+                .with_min_len(TASK)
+                .for_each(|(mut motion, positions, velocities)| motion.take(positions, velocities));
+        });
+    }
+
+    /// Step 1B, `dt` seconds after the moving average was last kept.
+    pub(super) fn update_density_and_pressure(&mut self, dt: f64) {
+        let due = self.density_is_due();
+        if !due && !self.fields.density.is_empty() {
+            self.agents.newcomer.fill(true); // when asked for again, ρ̂ starts anew
+        }
+        self.fields.resize(self.agents.len(), due);
+        if !due {
+            return;
+        }
+        let mut packed = std::mem::take(&mut self.packed);
+        each!(&mut packed, columns => self.compress(columns, dt));
+        self.packed = packed;
+    }
+
+    fn compress<R: Real>(&mut self, columns: &mut Columns<R>, dt: f64) {
+        let mut fields = std::mem::take(&mut self.fields);
+        let mut stages = std::mem::take(&mut self.stages);
+        let frame = self.frame();
+        let walls = self.scene.wall_method;
+        stages.time(Stage::DensityAndPressure, || {
+            let (bodies, pressures) = columns.pressures();
+            let blocks = (
+                pressures,
+                fields.density.par_chunks_mut(BLOCK),
+                fields.density_from_walls.par_chunks_mut(BLOCK),
+                fields.mean_density.par_chunks_mut(BLOCK),
+                fields.rest_density.par_chunks_mut(BLOCK),
+                fields.pressure.par_chunks_mut(BLOCK),
+                fields.wall_gradient.par_chunks_mut(BLOCK),
+            );
+            blocks
+                .into_par_iter()
+                .with_min_len(TASK)
+                .enumerate()
+                .for_each(|(b, block)| {
+                    let (
+                        (volumes, pressures),
+                        density,
+                        density_from_walls,
+                        mean_density,
+                        rest_density,
+                        pressure,
+                        wall_gradient,
+                    ) = block;
+                    bodies.densities(frame.neighbors.near().block(b), density);
+                    let mut states = SphStates {
+                        density,
+                        density_from_walls,
+                        mean_density,
+                        rest_density,
+                        pressure,
+                        wall_gradient,
+                    };
+                    let from = b * BLOCK;
+                    let to = from + states.density.len();
+                    let same = self.same_group(from..to).map(|blend| blend.sph);
+                    states.update(&frame, dt, from, walls, same, |i| &self.blend(i).sph);
+                    let mass = &frame.agents.mass[from..to];
+                    for k in 0..mass.len() {
+                        volumes[k] = R::of(mass[k] / states.density[k]);
+                        pressures[k] = R::of(states.pressure[k]);
+                    }
+                });
+        });
+        self.fields = fields;
+        self.stages = stages;
+    }
+
+    /// Step 3, the coarse part: RVO where it acts and no earlier choice is held.
+    pub(super) fn update_rvo(&mut self) {
+        if !self.needs.rvo {
+            return;
+        }
+        self.agents.make_room_for_avoidance();
+        let mut avoidance = std::mem::take(&mut self.agents.avoidance);
+        let mut stages = std::mem::take(&mut self.stages);
+        let frame = self.frame();
+        let coarse = self.clock.is_coarse();
+        stages.time(Stage::Rvo, || {
+            avoidance.par_iter_mut().enumerate().for_each_init(
+                Scratch::default,
+                |scratch, (i, held)| {
+                    let blend = blend_of(&self.scene, &self.agents, i);
+                    match blend.rvo().filter(|_| blend.rvo_acts(&frame, i)) {
+                        None => *held = None,
+                        Some(rvo) if coarse || held.is_none() => {
+                            let max_speed = self.scene.max_speed;
+                            *held = Some(rvo.acceleration(&frame, i, max_speed, scratch));
+                        }
+                        Some(_) => {}
+                    }
+                },
+            );
+        });
+        self.agents.avoidance = avoidance;
+        self.stages = stages;
+    }
+
+    /// Steps 3, 3B and 4.
+    pub(super) fn update_acceleration(&mut self) {
+        let mut fields = std::mem::take(&mut self.fields);
+        let mut stages = std::mem::take(&mut self.stages);
+        let mut acceleration = std::mem::take(&mut fields.acceleration);
+        let task = if self.needs.avoidance.is_some() {
+            1 // looking 5 m around is work enough
+        } else {
+            TASK
+        };
+        let finite = AtomicBool::new(true);
+        stages.time(Stage::Acceleration, || {
+            self.update_velocity_ranges(&mut fields.velocity_ranges);
+            let frame = Frame {
+                fields: &fields,
+                ..self.frame()
+            };
+            acceleration
+                .par_chunks_mut(BLOCK)
+                .with_min_len(task)
+                .enumerate()
+                .for_each(|(b, acceleration)| {
+                    self.accelerate(&frame, b, acceleration);
+                    if !self.block_is_finite(&frame, b, acceleration) {
+                        finite.store(false, Ordering::Relaxed);
+                    }
+                });
+        });
+        self.finite = finite.into_inner();
+        fields.acceleration = acceleration;
+        self.fields = fields;
+        self.stages = stages;
+    }
+
+    /// How different velocities are nearby, where some social force has a tolerance.
+    fn update_velocity_ranges(&self, ranges: &mut Vec<[Vector; 2]>) {
+        ranges.clear();
+        let tolerant = |social: &SocialForce| social.avoidance_tolerance > 0.0;
+        if self.social_forces.iter().any(tolerant) {
+            let some = self.agents.velocity.par_chunks(CLUSTER);
+            let some = some.with_min_len(TASK * BLOCK);
+            ranges.par_extend(some.map(|v| velocity_range(v.iter().map(|&v| [v, v]))));
+        }
+    }
+
+    /// The accelerations of the agents of block `b`.
+    fn accelerate(&self, frame: &Frame, b: usize, acceleration: &mut [Vector]) {
+        let from = b * BLOCK;
+        let to = from + acceleration.len();
+        let mut felt = PairCoefficients::default();
+        self.each_span(from..to, |span, blend, changed| {
+            blend.add_pair_coefficients(frame, span, changed, &mut felt);
+        });
+        let clusters = frame.neighbors.near().block(b);
+        frame
+            .packed
+            .accelerations(clusters, &felt, frame.wanted, acceleration);
+        for social in &self.social_forces {
+            let mut felt = [0.0; BLOCK];
+            self.each_span(from..to, |span, blend, _| {
+                blend.add_social_coefficients(frame, span, social, &mut felt);
+            });
+            social.add_from_agents(frame, b, &felt, acceleration);
+        }
+        self.each_span(from..to, |span, blend, changed| {
+            let acceleration = &mut acceleration[span.start - from..span.end - from];
+            blend.add_accelerations(frame, span, changed, acceleration);
+        });
+    }
+
+    fn block_is_finite(&self, frame: &Frame, b: usize, acceleration: &[Vector]) -> bool {
+        let agents = b * BLOCK..b * BLOCK + acceleration.len();
+        let density = frame.fields.density.get(agents.clone()).unwrap_or(&[]);
+        let vectors = [
+            acceleration,
+            &self.agents.position[agents.clone()],
+            &self.agents.velocity[agents],
+        ];
+        vectors.into_iter().all(are_finite) && numbers_are_finite(density)
+    }
+
+    /// The blend of `agents` if all have the same.
+    fn same_group(&self, agents: Range<usize>) -> Option<&Blend> {
+        let groups = &self.agents.group[agents];
+        let first = *groups.first()?;
+        let same = groups.iter().all(|&group| group == first);
+        same.then(|| &self.scene.groups[usize::from(first)].blend)
+    }
+
+    /// Cuts a block of agents where their behaviour changes.
+    #[inline]
+    fn each_span(
+        &self,
+        agents: Range<usize>,
+        mut take: impl FnMut(Range<usize>, &Blend, Option<&Override>),
+    ) {
+        let behaviour = |i: usize| (self.agents.group[i], self.agents.push[i]);
+        let mut start = agents.start;
+        while start < agents.end {
+            let same = |&i: &usize| behaviour(i) == behaviour(start);
+            let end = (start + 1..agents.end)
+                .find(|i| !same(i))
+                .unwrap_or(agents.end);
+            let changed = change_of(&self.scene, &self.agents, start);
+            take(start..end, self.blend(start), changed);
+            start = end;
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Everything that a simulation remembers from one frame to the next, to be written down and gone on from.
+
+use serde::{Deserialize, Serialize};
+
+use super::schedule::Schedule;
+use super::{Outcome, Simulation};
+use crate::engine::agents::Agents;
+use crate::engine::math::{Vector, pairs_of};
+use crate::engine::scene::Scene;
+
+/// The state: what the future of a run depends on, beside its scene. Fields such as densities, pressures and
+/// forces are computed from it. Where no force reads the density, the mean density ρ̂ belongs to the observers
+/// ([`Simulation::request_density_until`]): it is in the state while it is requested, so that a resumed run
+/// observes the same densities.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct State {
+    frame: u64,
+    agents: Agents,
+    /// Where everybody was when neighbours were last listed, metres.
+    #[serde(with = "pairs_of::many")]
+    sorted_at: Vec<Vector>,
+    /// Has somebody come or gone since?
+    crowd_changed: bool,
+    schedule: Schedule,
+    outcome: Outcome,
+    /// Was there a density in this frame?
+    has_density: bool,
+}
+
+/// A state and a scene that do not belong together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the state does not belong to this scenario")]
+pub struct StateError;
+
+impl Simulation {
+    /// What is to be remembered of an evaluated frame.
+    pub fn state(&self) -> State {
+        State {
+            frame: self.clock.frame(),
+            agents: self.agents.clone(),
+            sorted_at: self.neighbors.sorted_at().to_vec(),
+            crowd_changed: self.crowd_changed,
+            schedule: self.schedule.clone(),
+            outcome: self.outcome.clone(),
+            has_density: !self.fields.density.is_empty(),
+        }
+    }
+
+    /// Goes on from `state`, which `scene` was in: as if it had never stopped, to the last bit.
+    ///
+    /// # Errors
+    /// The scene cannot have been in this state.
+    pub fn resumed(scene: Scene, state: State) -> Result<Self, StateError> {
+        let empty = Scene {
+            agents: Vec::new(),
+            ..scene
+        };
+        let mut simulation = Self::new(empty).map_err(|_| StateError)?;
+        simulation.check_state(&state)?;
+        let State {
+            frame,
+            agents,
+            sorted_at,
+            crowd_changed,
+            schedule,
+            outcome,
+            has_density,
+        } = state;
+        simulation.clock.go_to(frame);
+        simulation.agents = agents;
+        simulation.schedule = schedule;
+        simulation.outcome = outcome;
+        simulation.crowd_changed = crowd_changed;
+        if !crowd_changed {
+            simulation.list_again(sorted_at)?;
+        }
+        if has_density {
+            simulation.fields.resize(simulation.agents.len(), true);
+        }
+        Ok(simulation)
+    }
+
+    fn check_state(&self, state: &State) -> Result<(), StateError> {
+        let agents = &state.agents;
+        let groups = self.scene.groups.len();
+        let pushes = self.scene.pushes.len();
+        let known = agents
+            .group
+            .iter()
+            .all(|&group| usize::from(group) < groups)
+            && agents
+                .push
+                .iter()
+                .flatten()
+                .all(|&push| usize::from(push) < pushes)
+            && state.schedule.fits(&self.scene);
+        let listed = state.crowd_changed || state.sorted_at.len() == agents.len();
+        (agents.is_whole() && known && listed)
+            .then_some(())
+            .ok_or(StateError)
+    }
+
+    /// Lists neighbours as they were listed when everybody was at `sorted_at`.
+    fn list_again(&mut self, sorted_at: Vec<Vector>) -> Result<(), StateError> {
+        let positions = std::mem::replace(&mut self.agents.position, sorted_at);
+        let ids = self.agents.id.clone();
+        self.sort_agents();
+        self.list_walls();
+        if self.agents.id != ids {
+            return Err(StateError); // they were not in the order of their cells
+        }
+        let ways = positions.iter().zip(self.neighbors.sorted_at());
+        let squares = ways.map(|(now, then)| (now - then).norm_squared());
+        let farthest = squares.fold(0.0, f64::max);
+        self.neighbors.travelled(farthest.sqrt());
+        self.agents.position = positions;
+        Ok(())
+    }
+}

@@ -1,0 +1,219 @@
+//! Linear theory: how fast a small disturbance runs through a uniform dense crowd.
+//!
+//! Let everybody stand at density ρ₀ above ρ⁰max, so that ρ⁰ = ρ⁰max is constant, and be displaced by
+//! a little u(x, t). Eq. 11 over ρ_i is −1/ρ_i Σ_j m_j/ρ_j · ½(p_i + p_j) ∇W(r_ij). To first order:
+//!
+//! - δp_i multiplies Σ_j m_j/ρ_j ∇W, which is zero round every agent of a uniform interior: half of
+//!   the pressure is never felt.
+//! - δp_j gives −(1/2ρ₀) ∇δp for waves much longer than h, because the potential of Eq. 14 integrates
+//!   to 1; and δp = k δρ = −k ρ₀ ∇·u by Eqs. 5 and 9.
+//! - The base pressure p₀ enters twice, through δ(m_j/ρ_j) and through δ∇W, with opposite signs: for
+//!   long waves it cancels.
+//!
+//! So ü = (k/2) ∇(∇·u): c² = k/2, half of what ∂p/∂ρ suggests, whatever the density. Discs that touch
+//! are springs besides (Eq. 22): c² = k/2 + K^ag M with the contact modulus M = ½ Σ_j r_ij² cos⁴θ_ij/m_i
+//! over the discs in contact, less a little for their overlap; M = (9/8) d² on a hexagonal lattice whose
+//! discs just touch at distance d, (3/16) z d² for z contacts a person in all directions.
+//!
+//! [`Lattice`] has the same without the long-wave limit: every sum is taken over a hexagonal lattice.
+
+use crate::engine::density::SphParameters;
+use crate::engine::frame::Frame;
+use crate::engine::kernel;
+use crate::engine::math::Vector;
+use crate::engine::scene::Region;
+
+/// c in m/s for waves much longer than h, without touching discs.
+pub fn speed_of_fluid(gas_constant: f64) -> f64 {
+    (gas_constant / 2.0).sqrt()
+}
+
+/// c in m/s with discs that touch: `modulus` is M in m².
+pub fn speed_with_contacts(gas_constant: f64, agent_stiffness: f64, modulus: f64) -> f64 {
+    (gas_constant / 2.0 + agent_stiffness * modulus).sqrt()
+}
+
+/// M in m² of a hexagonal lattice whose discs, of mass 1, just touch at `distance` metres.
+pub fn touching_modulus(distance: f64) -> f64 {
+    9.0 / 8.0 * distance * distance
+}
+
+/// Contacts of a crowd as it stands.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Contacts {
+    /// M in m² along the x axis, the mean over everybody.
+    pub modulus: f64,
+    /// How many others a person touches.
+    pub per_agent: f64,
+    /// The mean SPH density, P/m²; `None` in a frame without densities.
+    pub density: Option<f64>,
+}
+
+/// The contacts of all agents in a region; `None` if the region is empty. The frame's neighbor lists must
+/// reach as far as contacts do.
+pub fn contacts(frame: &Frame, region: &Region) -> Option<Contacts> {
+    let agents = frame.agents;
+    let inside: Vec<usize> = (0..agents.len())
+        .filter(|&i| region.contains(agents.position[i]))
+        .collect();
+    let count = inside.len() as f64;
+    let (mut modulus, mut touching) = (0.0, 0usize);
+    let widest = agents.radius.iter().copied().fold(0.0, f64::max);
+    for &i in &inside {
+        for (j, r_ij) in frame.near(i, agents.radius[i] + widest) {
+            let reach = agents.radius[i] + agents.radius[j];
+            if r_ij.norm() < reach {
+                modulus += 0.5 * stiffness(r_ij, reach) * r_ij.x * r_ij.x / agents.mass[i];
+                touching += 1;
+            }
+        }
+    }
+    let densities = &frame.fields.density;
+    (count > 0.0).then(|| Contacts {
+        modulus: modulus / count,
+        per_agent: touching as f64 / count,
+        density: (!densities.is_empty())
+            .then(|| inside.iter().map(|&i| densities[i]).sum::<f64>() / count),
+    })
+}
+
+/// −∂f_x/∂x of Eq. 22 over K^ag for touching discs: cos²θ − (overlap/r) sin²θ.
+fn stiffness(r: Vector, reach: f64) -> f64 {
+    let distance = r.norm();
+    let along = (r.x / distance).powi(2);
+    along - (reach / distance - 1.0) * (1.0 - along)
+}
+
+/// A uniform crowd of mass 1 on a hexagonal lattice, rows along the x axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lattice {
+    /// Distance of nearest neighbours, metres.
+    pub spacing: f64,
+    /// D_i + D_j, metres.
+    pub reach: f64,
+    /// k, ρ⁰max, h.
+    pub sph: SphParameters,
+    /// K^ag.
+    pub agent_stiffness: f64,
+}
+
+impl Lattice {
+    /// Everybody within h of one agent, as r_ij.
+    pub fn neighbors(&self) -> Vec<Vector> {
+        let h = self.sph.support_radius;
+        let most = (2.0 * h / self.spacing).ceil() as i32;
+        let mut found = Vec::new();
+        for row in -most..=most {
+            for column in -most..=most {
+                let x = self.spacing * (f64::from(column) + 0.5 * f64::from(row.rem_euclid(2)));
+                let y = self.spacing * 0.75_f64.sqrt() * f64::from(row);
+                let r = Vector::new(x, y);
+                if (row, column) != (0, 0) && r.norm() < h {
+                    found.push(r);
+                }
+            }
+        }
+        found
+    }
+
+    /// The SPH density of everybody (Eq. 9), P/m².
+    pub fn density(&self) -> f64 {
+        let h = self.sph.support_radius;
+        let others = self.neighbors().into_iter();
+        let others = others.map(|r| kernel::density(r.norm_squared(), h));
+        kernel::density(0.0, h) + others.sum::<f64>()
+    }
+
+    /// ω² in 1/s² of a longitudinal wave along the x axis with wavenumber q in 1/m, where the density
+    /// is above ρ⁰max.
+    pub fn frequency_squared(&self, q: f64) -> f64 {
+        let (h, k) = (self.sph.support_radius, self.sph.gas_constant);
+        let density = self.density();
+        let pressure = self.sph.pressure(density, self.sph.rest_density_max);
+        let volume = 1.0 / density;
+        let (mut compression, mut gradient, mut curvature, mut contact) = (0.0, 0.0, 0.0, 0.0);
+        for r in self.neighbors() {
+            let (sine, rest) = ((q * r.x).sin(), 1.0 - (q * r.x).cos());
+            compression += density_gradient(r, h).x * sine;
+            gradient += kernel::pressure_gradient(r, h).x * sine;
+            curvature += pressure_curvature(r, h) * rest;
+            if r.norm() < self.reach {
+                contact += stiffness(r, self.reach) * rest;
+            }
+        }
+        let both = volume * compression * gradient / density;
+        let of_density = both * (k / 2.0 - pressure / density);
+        let of_kernel = pressure * volume * curvature / density;
+        of_density + of_kernel + self.agent_stiffness * contact
+    }
+
+    /// ω/q in m/s.
+    pub fn speed(&self, q: f64) -> f64 {
+        self.frequency_squared(q).max(0.0).sqrt() / q
+    }
+}
+
+/// ∇W of Eq. 13, 1/m³.
+fn density_gradient(r: Vector, h: f64) -> Vector {
+    let rest = (h * h - r.norm_squared()).max(0.0);
+    r * (-24.0 / (std::f64::consts::PI * h.powi(8)) * rest * rest)
+}
+
+/// ∂/∂x of the x component of Eq. 14, 1/m⁴.
+fn pressure_curvature(r: Vector, h: f64) -> f64 {
+    let distance = r.norm();
+    let along = (r.x / distance).powi(2);
+    let slope = kernel::pressure_gradient(r, h).dot(&r) / distance;
+    let bend = 60.0 / (std::f64::consts::PI * h.powi(5)) * (h - distance).max(0.0);
+    bend * along + slope / distance * (1.0 - along)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lattice(spacing: f64, reach: f64) -> Lattice {
+        Lattice {
+            spacing,
+            reach,
+            sph: SphParameters::default(),
+            agent_stiffness: 50.0,
+        }
+    }
+
+    #[test]
+    fn long_waves_in_a_fine_lattice_run_at_the_root_of_half_k() {
+        // Many neighbours: the sums are integrals, and the base pressure cancels.
+        let fine = lattice(0.1, 0.0);
+        assert!((fine.speed(0.01) / speed_of_fluid(200.0) - 1.0).abs() < 0.003);
+    }
+
+    #[test]
+    fn at_five_per_square_metre_the_lattice_is_close_to_the_continuum() {
+        let spacing = (2.0 / (5.2 * 3.0_f64.sqrt())).sqrt();
+        let speed = lattice(spacing, 0.0).speed(0.1);
+        assert!(
+            (speed / speed_of_fluid(200.0) - 1.0).abs() < 0.07,
+            "{speed}"
+        );
+    }
+
+    #[test]
+    fn touching_discs_add_their_springs() {
+        let (apart, touching) = (lattice(0.48, 0.0), lattice(0.48, 0.48 + 1e-9));
+        let q = 0.01;
+        let added = (touching.frequency_squared(q) - apart.frequency_squared(q)) / (q * q);
+        assert!((added - 50.0 * touching_modulus(0.48)).abs() < 1e-3);
+    }
+
+    #[test]
+    fn derivatives_of_the_kernels_agree_with_differences() {
+        let (r, step) = (Vector::new(0.3, 0.2), Vector::new(1e-6, 0.0));
+        let gradient = |r| kernel::pressure_gradient(r, 1.0).x;
+        let difference = (gradient(r + step) - gradient(r - step)) / 2e-6;
+        assert!((pressure_curvature(r, 1.0) - difference).abs() < 1e-6);
+        let density = |r: Vector| kernel::density(r.norm_squared(), 1.0);
+        let difference = (density(r + step) - density(r - step)) / 2e-6;
+        assert!((density_gradient(r, 1.0).x - difference).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,329 @@
+//! How long a frame may be: a formula for the largest stable time step, with constants from maps of where
+//! crowds at rest begin to shake (`sandbox stress`, `docs/stability.md`).
+//!
+//! Near rest every mode of a crowd is an oscillator, ẍ = −ω² x − γ ẋ. Moved on by semi-implicit Euler it
+//! decays as long as ω² Δt² + 2γ Δt < 4, so up to
+//!
+//! Δt = 4 / (γ + √(γ² + 4ω²)),
+//!
+//! which is 2/ω without friction and 2/γ without springs; there a factor of its frames passes −1.
+//! Velocity Verlet counts friction twice, because it takes it at the predicted velocity ẋ + ẍ Δt: with factor
+//! −1 a frame begins and ends in a turning point, v = 0, so that x = −ẍ Δt²/4 and the predicted velocity is
+//! −ẍ Δt, and ẍ = −ω² x − γ ẋ becomes ω² Δt² + 4γ Δt = 4, at 2/ω or 1/γ. ([`Scheme`])
+//!
+//! Two modes of a crowd are fast, and the faster decides:
+//!
+//! - people pressed together: ω² = (C₁ c/h)² + C₂ K/m, c = √(k/2) the speed of sound
+//!   ([`crate::engine::sound`]), K/m the stiffest contact of the lightest person: the Courant condition of
+//!   SPH, and that of springs;
+//! - people who drag each other along: γ = C₃ μ. A person's drag is μ ∇²W/ρ² for every neighbour; it is
+//!   largest in a loose crowd, where the density is hardly more than the own ~ 1/h², and h drops out. In a
+//!   uniform one it goes with 1/ρ; to the friction of those pressed together it adds a quarter, C₃ μ/4.
+//!
+//! A corner, both of whose edges push, counts with 2 K^obs/m by itself, and a wall with K^obs/m where that
+//! is more than the contacts. To all friction the goal force adds K^goal/(τ m). No step is longer than the paper's Δt_coarse.
+
+use crate::engine::agents::{RADIUS_RANGE, REFERENCE_RADIUS};
+use crate::engine::clock::PAPER_COARSE_STEP;
+use crate::engine::profile::{Navigation, Profile};
+use crate::engine::scene::{Integrator, Scene};
+use crate::engine::sound;
+
+/// C₁ to C₃, and what is left as a margin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Constants {
+    /// C₁: the pressure's fastest mode in c/h.
+    pub pressure: f64,
+    /// C₂: the fastest mode of contacts, squared, in K/m.
+    pub contact: f64,
+    /// C₃: drag over μ, 1/s.
+    pub drag: f64,
+    /// The part of the formula's step that semi-implicit Euler takes.
+    pub margin: f64,
+    /// The part of it that velocity Verlet takes, whose limits are nearer to the formula.
+    pub verlet_margin: f64,
+}
+
+impl Constants {
+    fn margin(&self, scheme: Scheme) -> f64 {
+        match scheme {
+            Scheme::SemiImplicit => self.margin,
+            Scheme::VelocityVerlet => self.verlet_margin,
+        }
+    }
+}
+
+/// What least squares give for the maps' places (`stress/fit.rs`), rounded; velocity Verlet's margin is chosen by its
+/// limits.
+pub const FITTED: Constants = Constants {
+    pressure: 2.25,
+    contact: 4.0,
+    drag: 2.3,
+    margin: 0.85,
+    verlet_margin: 0.88,
+};
+
+/// An integrator whose largest stable step is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scheme {
+    /// Semi-implicit Euler.
+    SemiImplicit,
+    /// Velocity Verlet.
+    VelocityVerlet,
+}
+
+impl Scheme {
+    /// `None` if the integrator's largest step is not known.
+    pub fn of(integrator: Integrator) -> Option<Self> {
+        match integrator {
+            Integrator::SemiImplicit => Some(Self::SemiImplicit),
+            Integrator::VelocityVerlet => Some(Self::VelocityVerlet),
+            Integrator::ForwardEuler | Integrator::Midpoint => None,
+        }
+    }
+
+    /// What a scene calls it.
+    pub fn integrator(self) -> Integrator {
+        match self {
+            Self::SemiImplicit => Integrator::SemiImplicit,
+            Self::VelocityVerlet => Integrator::VelocityVerlet,
+        }
+    }
+
+    /// Up to where ẍ = −ω² x − γ ẋ decays, seconds.
+    fn largest_step(self, omega_squared: f64, gamma: f64) -> f64 {
+        let gamma = match self {
+            Self::SemiImplicit => gamma,
+            Self::VelocityVerlet => 2.0 * gamma,
+        };
+        4.0 / (gamma + (gamma * gamma + 4.0 * omega_squared).sqrt())
+    }
+}
+
+/// Drag in a pressed crowd, in parts of that in a loose one, which is four times less dense.
+const PRESSED_DRAG: f64 = 0.25;
+/// Both edges of a corner push the same way whoever stands before it.
+const EDGES_AT_A_CORNER: f64 = 2.0;
+
+/// The fastest mode of a crowd.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mode {
+    /// c/h of the pressure, 1/s.
+    pub pressure: f64,
+    /// K/m of contact between people, 1/s².
+    pub contact: f64,
+    /// K/m of a wall, and of the social forces, 1/s².
+    pub other_springs: f64,
+    /// K/m of a corner, 1/s².
+    pub corner: f64,
+    /// μ.
+    pub viscosity: f64,
+    /// K^goal/(τ m), or what RVO corrects, 1/s.
+    pub correction: f64,
+}
+
+impl Mode {
+    /// The fastest that the profiles of a scene and its lightest person allow.
+    pub fn of(scene: &Scene) -> Self {
+        let mass = lightest(scene);
+        let mut mode = Self {
+            pressure: 0.0,
+            contact: 0.0,
+            other_springs: 0.0,
+            corner: 0.0,
+            viscosity: 0.0,
+            correction: 0.0,
+        };
+        for group in &scene.groups {
+            let sph = &group.blend.sph;
+            let speed = sound::speed_of_fluid(sph.gas_constant);
+            for step in group.blend.steps() {
+                let profile = &step.profile;
+                if profile.pressure {
+                    mode.pressure = mode.pressure.max(speed / sph.support_radius);
+                }
+                mode.take(profile, mass);
+            }
+        }
+        // Whoever pushes has the goal force of a whole push.
+        let pushes = scene.pushes.iter();
+        let strongest = pushes
+            .filter_map(|push| push.change.goal_scale)
+            .fold(0.0, f64::max);
+        mode.correction = mode
+            .correction
+            .max(strongest / shortest_relaxation(scene) / mass);
+        mode
+    }
+
+    fn take(&mut self, profile: &Profile, mass: f64) {
+        let contact = profile.contact;
+        let viscosity = profile.viscosity.map_or(0.0, |v| v.coefficient);
+        let wall = contact.wall_stiffness.unwrap_or(0.0);
+        let (social, correction) = match profile.navigation {
+            Navigation::Goal(goal) => (0.0, goal.goal_scale / goal.relaxation_time / mass),
+            Navigation::Social(goal, social) => (
+                social.agent_strength / social.agent_range.powi(2)
+                    + social.wall_strength / social.wall_range.powi(2),
+                goal.goal_scale / goal.relaxation_time / mass,
+            ),
+            Navigation::Rvo(_) => (0.0, 1.0 / PAPER_COARSE_STEP),
+        };
+        self.contact = self
+            .contact
+            .max(contact.agent_stiffness.unwrap_or(0.0) / mass);
+        self.other_springs = self.other_springs.max((wall + social) / mass);
+        self.corner = self.corner.max(EDGES_AT_A_CORNER * wall / mass);
+        self.viscosity = self.viscosity.max(viscosity);
+        self.correction = self.correction.max(correction);
+    }
+
+    /// The formula's step, seconds, margin not included.
+    pub fn largest_step(&self, scheme: Scheme, constants: &Constants) -> f64 {
+        let springs = (constants.contact * self.contact).max(self.other_springs);
+        let pressed = (constants.pressure * self.pressure).powi(2) + springs;
+        let drag = constants.drag * self.viscosity;
+        let steps = [
+            scheme.largest_step(pressed, PRESSED_DRAG * drag + self.correction),
+            scheme.largest_step(self.corner, self.correction),
+            scheme.largest_step(0.0, drag + self.correction),
+            PAPER_COARSE_STEP,
+        ];
+        steps.into_iter().fold(f64::INFINITY, f64::min)
+    }
+
+    /// What `auto` takes, seconds: three digits of the formula's step and its margin.
+    pub fn time_step(&self, scheme: Scheme) -> f64 {
+        three_digits(FITTED.margin(scheme) * self.largest_step(scheme, &FITTED))
+    }
+}
+
+/// The step that `auto` stands for, seconds; `None` if the scene's integrator has none.
+pub fn time_step(scene: &Scene) -> Option<f64> {
+    let scheme = Scheme::of(scene.integrator)?;
+    Some(Mode::of(scene).time_step(scheme))
+}
+
+/// Rounded down.
+fn three_digits(value: f64) -> f64 {
+    let digit = 10_f64.powf(value.log10().floor() - 2.0);
+    // Through text: the nearest number to so many digits, whatever the division says.
+    let rounded = (value / digit + 1e-9).floor() * digit;
+    format!("{rounded:.2e}").parse().unwrap_or(rounded)
+}
+
+/// The least mass that anybody in the scene has or may be given.
+fn lightest(scene: &Scene) -> f64 {
+    let of_radius = |radius: f64| (radius / REFERENCE_RADIUS).powi(2);
+    let drawn = of_radius(RADIUS_RANGE[0]);
+    let given = scene.agents.iter().map(|agent| {
+        let radius = agent.radius.map(of_radius);
+        agent.mass.or(radius).unwrap_or(drawn)
+    });
+    let entering = (!scene.sources.is_empty()).then_some(drawn);
+    given.chain(entering).reduce(f64::min).unwrap_or(drawn)
+}
+
+/// The least τ of any goal force, seconds; the paper's if there is none.
+fn shortest_relaxation(scene: &Scene) -> f64 {
+    let profiles = scene.groups.iter().flat_map(|group| group.blend.steps());
+    let times = profiles.filter_map(|step| match step.profile.navigation {
+        Navigation::Goal(goal) | Navigation::Social(goal, _) => Some(goal.relaxation_time),
+        Navigation::Rvo(_) => None,
+    });
+    let paper = crate::engine::forces::goal::GoalForce::default().relaxation_time;
+    times.reduce(f64::min).unwrap_or(paper)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix3, Vector3};
+
+    use super::*;
+
+    /// What one frame makes of x, the velocity that forces see and the acceleration of the frame before.
+    fn frame(scheme: Scheme, omega_squared: f64, gamma: f64, dt: f64) -> Matrix3<f64> {
+        let moved = |x: f64, seen: f64, before: f64| {
+            let a = -omega_squared * x - gamma * seen;
+            let (way, velocity) = match scheme {
+                Scheme::SemiImplicit => (seen + a * dt, seen + a * dt),
+                Scheme::VelocityVerlet => {
+                    let v = seen + 0.5 * dt * (a - before);
+                    (v + 0.5 * dt * a, v + dt * a)
+                }
+            };
+            Vector3::new(x + way * dt, velocity, a)
+        };
+        let columns = [
+            moved(1.0, 0.0, 0.0),
+            moved(0.0, 1.0, 0.0),
+            moved(0.0, 0.0, 1.0),
+        ];
+        Matrix3::from_columns(&columns)
+    }
+
+    /// The spectral radius of one frame, as the growth of 2⁴⁰ frames.
+    fn growth(mut frames: Matrix3<f64>) -> f64 {
+        let (mut logarithm, mut count) = (0.0, 1.0);
+        for _ in 0..40 {
+            let norm = frames.norm();
+            logarithm += norm.ln() / count;
+            frames = (frames / norm).pow(2);
+            count *= 2.0;
+        }
+        logarithm.exp()
+    }
+
+    #[test]
+    fn the_step_is_where_an_oscillator_begins_to_grow() {
+        for scheme in [Scheme::SemiImplicit, Scheme::VelocityVerlet] {
+            for (omega_squared, gamma) in [
+                (1.0, 0.0),
+                (1.0, 1.0),
+                (700.0, 2.0),
+                (700.0, 30.0),
+                (3.0, 90.0),
+                (0.0, 5.0),
+            ] {
+                let step = scheme.largest_step(omega_squared, gamma);
+                let growth = |part: f64| growth(frame(scheme, omega_squared, gamma, part * step));
+                for part in 1..1000 {
+                    let part = f64::from(part) / 1000.0;
+                    assert!(
+                        growth(part) < 1.0 + 1e-9,
+                        "{scheme:?} {omega_squared} {gamma}"
+                    );
+                }
+                assert!(
+                    growth(1.001) > 1.0 + 1e-6,
+                    "{scheme:?} {omega_squared} {gamma}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn only_integrators_with_a_formula_have_an_automatic_step() {
+        let step = |integrator| {
+            time_step(&Scene {
+                integrator,
+                ..Scene::default()
+            })
+        };
+        for integrator in Integrator::ALL {
+            let scheme = Scheme::of(integrator);
+            assert_eq!(scheme.is_some(), step(integrator).is_some());
+            assert!(scheme.is_none_or(|scheme| scheme.integrator() == integrator));
+        }
+        assert_eq!(step(Integrator::ForwardEuler), None);
+        assert_eq!(step(Integrator::Midpoint), None);
+    }
+
+    #[test]
+    fn steps_are_rounded_down_to_what_is_written() {
+        assert_eq!(three_digits(0.017_999), 0.0179);
+        assert_eq!(three_digits(0.1), 0.1);
+        assert_eq!(three_digits(0.003_21), 0.003_21);
+        assert_eq!(three_digits(9.999e-5), 9.99e-5);
+    }
+}

@@ -1,0 +1,50 @@
+//! What a setting costs: milliseconds per simulated second on one thread, all settings in turns.
+
+use serde_json::Value;
+
+use super::scenes::simulation;
+use crate::engine::simulation::Simulation;
+use crate::lab::bench::{BenchError, Contender, Spread, alternate, pool};
+use crate::lab::reproduce::ReproduceError;
+
+/// So much is simulated at a time, seconds.
+const SECONDS: f64 = 0.96;
+
+/// A crowd that does the same again and again.
+struct Again<'a> {
+    start: Simulation,
+    pool: &'a rayon::ThreadPool,
+}
+
+impl Contender for Again<'_> {
+    fn ms_per_step(&mut self, steps: u64) -> Result<f64, BenchError> {
+        let Self { start, pool } = self;
+        let mut simulation = start.clone();
+        let time = simulation.frame().clock.time_step();
+        let frames = ((SECONDS * steps as f64) / time).round() as u64;
+        let ms = pool.install(|| crate::lab::bench::ms_per_frame(&mut simulation, frames))?;
+        Ok(ms / time)
+    }
+}
+
+/// Milliseconds per simulated second of a document under every one of some settings.
+///
+/// # Errors
+/// A setting makes no sense, or a run cannot go on.
+pub fn measure(
+    document: &Value,
+    settings: &[Vec<String>],
+    repeats: usize,
+) -> Result<Vec<Spread>, ReproduceError> {
+    let failed = |error: BenchError| ReproduceError::Data(error.to_string());
+    let pool = pool(1).map_err(failed)?;
+    let mut contenders: Vec<Box<dyn Contender>> = Vec::with_capacity(settings.len());
+    for settings in settings {
+        contenders.push(Box::new(Again {
+            start: simulation(document, settings)?,
+            pool: &pool,
+        }));
+    }
+    let times = alternate(&mut contenders, repeats, 1).map_err(failed)?;
+    Ok(times.iter().map(|times| Spread::of(times)).collect())
+}

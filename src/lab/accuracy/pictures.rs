@@ -1,0 +1,140 @@
+//! Work-precision diagrams: error against cost, one curve per knob.
+
+use super::found::{Found, Point as Setting};
+use super::knob::{Knob, are_default};
+use super::report::{Report, WALLS};
+use super::scenes::Kind;
+use crate::lab::reproduce::{ReproduceError, Store};
+use crate::output::plot::{Axis, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+
+/// Of scenes of motion: positions at all moments, velocity and density at the middle one, and the knob alone.
+const MOTION: [usize; 6] = [0, 1, 2, 4, 7, 9];
+
+/// Draws `accuracy-SCENE.svg` and `.png`.
+pub fn save(report: &Report, store: &Store) -> Result<(), ReproduceError> {
+    for found in &report.scenes {
+        let stem = format!("accuracy-{}", found.scene.name);
+        sheet(found).save(&store.path(&stem))?;
+    }
+    if let Some(walls) = &report.walls {
+        let stem = format!("accuracy-{WALLS}");
+        walls.sheet().save(&store.path(&stem))?;
+    }
+    Ok(())
+}
+
+fn sheet(found: &Found) -> Sheet {
+    let costs = range(found.points.iter().map(|point| point.cost.median));
+    let quantities = match found.scene.kind {
+        Kind::Motion => MOTION.to_vec(),
+        Kind::Evacuation | Kind::Wave => (0..found.quantities.len()).collect(),
+    };
+    let columns = quantities.len().div_ceil(2).max(1);
+    Sheet {
+        title: format!("{}: {}", found.scene.name, found.scene.about),
+        columns,
+        panel_size: [225.0, 195.0],
+        shared_axes: false,
+        row_titles: Vec::new(),
+        bar: None,
+        panels: quantities
+            .into_iter()
+            .enumerate()
+            .map(|(place, k)| panel(found, k, costs, place + 1 == columns))
+            .collect(),
+    }
+}
+
+/// A little more than all positive values.
+fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let positive = values.filter(|&v| v > 0.0 && v.is_finite());
+    let [low, high] = positive.fold([f64::INFINITY, 0.0], |[low, high], v| {
+        [v.min(low), v.max(high)]
+    });
+    if low > high {
+        return [0.1, 1.0];
+    }
+    [0.6 * low, 1.6 * high]
+}
+
+fn panel(found: &Found, quantity: usize, costs: [f64; 2], legend: bool) -> Panel {
+    let shown = |point: &&Setting| point.errors[quantity].is_some_and(|error| error.bound() > 0.0);
+    let errors = found
+        .points
+        .iter()
+        .filter_map(|point| point.errors[quantity]);
+    let errors = range(errors.map(|error| error.bound()));
+    let mut curves: Vec<(Knob, &str)> = Vec::new();
+    for point in &found.points {
+        if !curves.contains(&(point.knob, &point.curve)) {
+            curves.push((point.knob, &point.curve));
+        }
+    }
+    let mut marks = Vec::new();
+    for (number, (knob, curve)) in curves.into_iter().enumerate() {
+        let style = style(number, curve);
+        let own = found.points.iter();
+        let own = own
+            .filter(|point| point.knob == knob && point.curve == curve)
+            .filter(shown);
+        let points: Vec<Point> = own.filter_map(|point| at(point, quantity)).collect();
+        if points.is_empty() {
+            continue;
+        }
+        let line = points.iter().map(|point| [point.x, point.y]).collect();
+        let unnamed = Style {
+            label: String::new(),
+            ..style.clone()
+        };
+        marks.push(Mark::Line(line, unnamed));
+        marks.push(Mark::Points(
+            points,
+            Style {
+                width: 2.6,
+                ..style
+            },
+        ));
+    }
+    let default = found
+        .points
+        .iter()
+        .find(|point| are_default(&point.settings));
+    let default = default.filter(shown).and_then(|point| at(point, quantity));
+    marks.extend(default.map(|point| {
+        Mark::Points(
+            vec![Point {
+                error: 0.0,
+                ..point
+            }],
+            Style::broken(crate::output::plot::BLACK, 6.0, "default"),
+        )
+    }));
+    let shown = &found.quantities[quantity];
+    Panel {
+        title: shown.name.clone(),
+        x: Axis::log("cost [ms per simulated second]", costs),
+        y: Axis::log(&format!("error [{}]", shown.unit), errors),
+        marks,
+        bar: None,
+        legend: legend.then_some(Corner::Beside),
+    }
+}
+
+/// Where a point stands: at what can be told from the reference, if its error cannot.
+fn at(point: &Setting, quantity: usize) -> Option<Point> {
+    let error = point.errors[quantity]?;
+    Some(Point {
+        x: point.cost.median,
+        y: error.bound(),
+        error: 0.0,
+    })
+}
+
+fn style(number: usize, label: &str) -> Style {
+    let color = LINES[number % LINES.len()];
+    if number < LINES.len() {
+        Style::full(color, 1.2, label)
+    } else {
+        Style::broken(color, 1.2, label)
+    }
+}

@@ -1,0 +1,162 @@
+//! Places by walls and the paths on which somebody passes them.
+
+use crate::engine::agents::REFERENCE_RADIUS;
+use crate::engine::geometry::{Polygon, Walls};
+use crate::engine::math::{Vector, perpendicular};
+
+/// An average body's radius: so near one stands to a wall.
+const BODY: f64 = REFERENCE_RADIUS;
+/// Thickness of the wall round the doorway, metres.
+const PARTITION: f64 = 0.2;
+/// Half the width of the doorway (§6.1), metres.
+const HALF_DOOR: f64 = 0.4;
+/// Everything is turned by this angle (radians) and moved by this way (metres), so that no wall lies
+/// along a grid or a row of particles.
+const TURN: f64 = 0.3;
+const MOVE: [f64; 2] = [0.377, 0.531];
+/// The fractional parts of its multiples fill [0, 1) evenly.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// Where somebody stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// What curves are drawn over, metres; see [`Case::axis`].
+    pub along: f64,
+    /// r_i, metres.
+    pub position: Vector,
+}
+
+/// Obstacles, larger than anybody on the path can reach, and a path.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// What it is.
+    pub name: &'static str,
+    /// What [`Place::along`] is.
+    pub axis: &'static str,
+    /// The obstacles.
+    pub walls: Walls,
+    /// Where somebody stands, one after the other.
+    pub places: Vec<Place>,
+    /// Along an endless straight wall: no force may act this way.
+    pub tangent: Option<Vector>,
+}
+
+/// The cases, each with so many places.
+pub fn cases(count: usize) -> Vec<Case> {
+    let straight = |name, thickness: f64| Case {
+        name,
+        axis: "distance [m]",
+        walls: walls(&[&rectangle([-2.2, 3.2], [-thickness, 0.0])]),
+        places: distances(count),
+        tangent: Some(turned([1.0, 0.0])),
+    };
+    let passed = |name, obstacles: &[&[[f64; 2]]], corners: &[[f64; 2]]| Case {
+        name,
+        axis: "way along the path [m]",
+        walls: walls(obstacles),
+        places: path(corners, count),
+        tangent: None,
+    };
+    let round_corner = [[-1.0, BODY], [BODY, BODY], [BODY, -1.0]];
+    let into_corner = [[1.2, BODY], [BODY, BODY], [BODY, 1.2]];
+    let (other_side, beside) = (-0.1 - BODY, BODY - HALF_DOOR);
+    let round_end = [
+        [-1.0, BODY],
+        [BODY, BODY],
+        [BODY, other_side],
+        [-1.0, other_side],
+    ];
+    let solid = rectangle([-2.4, 0.0], [-2.4, 0.0]);
+    let inner_corner = [
+        [-2.2, -2.2],
+        [2.4, -2.2],
+        [2.4, 0.0],
+        [0.0, 0.0],
+        [0.0, 2.4],
+        [-2.2, 2.4],
+    ];
+    let post = |y| rectangle([0.0, PARTITION], y);
+    let (left, right) = (post([HALF_DOOR, 2.8]), post([-2.8, -HALF_DOOR]));
+    let doorway: [&[[f64; 2]]; 2] = [&left, &right];
+    let barrier = rectangle([-0.6, 0.6], [0.0, 0.05]);
+    let behind_it = rectangle([-2.8, 2.8], [-2.4, -0.3]);
+    let from_the_side = [[-BODY, -1.4], [-BODY, beside], [1.2, beside]];
+    vec![
+        straight("straight wall", 2.2),
+        passed("convex corner", &[&solid], &round_corner),
+        passed("concave corner", &[&inner_corner], &into_corner),
+        straight("wall of 10 cm", 0.1),
+        straight("wall of 1 cm", 0.01),
+        passed(
+            "end of a wall of 10 cm",
+            &[&rectangle([-2.2, 0.0], [-0.1, 0.0])],
+            &round_end,
+        ),
+        passed("doorway, middle", &doorway, &[[-1.0, 0.0], [1.2, 0.0]]),
+        passed("doorway, from the side", &doorway, &from_the_side),
+        passed(
+            "barrier before a wall",
+            &[&barrier, &behind_it],
+            &[[-1.4, 0.05 + BODY], [1.4, 0.05 + BODY]],
+        ),
+    ]
+}
+
+fn rectangle(x: [f64; 2], y: [f64; 2]) -> [[f64; 2]; 4] {
+    [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]]
+}
+
+fn turned([x, y]: [f64; 2]) -> Vector {
+    let along = Vector::new(TURN.cos(), TURN.sin());
+    along * x + perpendicular(along) * y
+}
+
+fn placed(point: [f64; 2]) -> Vector {
+    turned(point) + Vector::from(MOVE)
+}
+
+fn walls(obstacles: &[&[[f64; 2]]]) -> Walls {
+    let corners = obstacles
+        .iter()
+        .map(|corners| corners.iter().map(|&p| placed(p)).collect());
+    Walls::new(
+        corners
+            .filter_map(|corners| Polygon::new(corners).ok())
+            .collect(),
+    )
+}
+
+/// From 2 cm to 1 m before a wall, never twice at the same place along it.
+fn distances(count: usize) -> Vec<Place> {
+    let place = |k: usize| {
+        let distance = 0.02 + 0.98 * k as f64 / count as f64;
+        let position = placed([(k as f64 * GOLDEN).fract(), distance]);
+        Place {
+            along: distance,
+            position,
+        }
+    };
+    (0..count).map(place).collect()
+}
+
+/// Evenly along straight lines between `corners`.
+fn path(corners: &[[f64; 2]], count: usize) -> Vec<Place> {
+    let corners: Vec<Vector> = corners.iter().map(|&corner| placed(corner)).collect();
+    let length: f64 = corners
+        .windows(2)
+        .map(|ends| (ends[1] - ends[0]).norm())
+        .sum();
+    let place = |k: usize| {
+        let along = length * (k as f64 + 0.5) / count as f64;
+        let mut left = along;
+        let mut position = corners[0];
+        for ends in corners.windows(2) {
+            let way = ends[1] - ends[0];
+            let part = (left / way.norm()).clamp(0.0, 1.0);
+            position += way * part;
+            left -= way.norm() * part;
+        }
+        Place { along, position }
+    };
+    (0..count).map(place).collect()
+}

@@ -1,0 +1,233 @@
+//! Every path with every method: errors and costs.
+
+use serde::Serialize;
+
+use super::timing::{self, Effort};
+use super::{Case, Integrals, METHODS, Method, Prepared, Region, SUPPORT_RADIUS, cases};
+use crate::engine::math::Vector;
+use crate::lab::bench::Spread;
+
+/// To this the exact integrals are taken, and to this their error is found.
+const TOLERANCE: f64 = 1e-13;
+const COARSER_TOLERANCE: f64 = 1e-9;
+
+/// An error in parts of the largest exact value of the case.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Error {
+    /// Root mean square over the places.
+    pub rms: f64,
+    /// At the worst place.
+    pub max: f64,
+}
+
+impl Error {
+    /// Of these differences beside a value so large.
+    pub fn of(differences: impl Iterator<Item = f64>, largest: f64) -> Self {
+        let (mut count, mut squares, mut max) = (0, 0.0, 0.0_f64);
+        for difference in differences {
+            count += 1;
+            squares += difference * difference;
+            max = max.max(difference.abs());
+        }
+        let rms = (squares / f64::from(count.max(1))).sqrt();
+        Self {
+            rms: rms / largest,
+            max: max / largest,
+        }
+    }
+}
+
+/// One method on one path.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MethodReport {
+    /// The method.
+    pub name: String,
+    /// What it was measured against.
+    pub region: Region,
+    /// Of ∫ W.
+    pub density: Error,
+    /// Of ∫ ∇W, as a vector.
+    pub force: Error,
+    /// Of the force along an endless straight wall, which is 0: how rough the wall feels.
+    pub roughness: Option<Error>,
+    /// Nanoseconds per evaluation, search included.
+    pub ns: Spread,
+    /// Milliseconds before the first frame, the median of several.
+    pub preparation_ms: f64,
+    /// Memory beside the polygons.
+    pub bytes: usize,
+    /// ∫ W and |∫ ∇W| (1/m), place by place.
+    pub curve: Vec<[f64; 2]>,
+}
+
+/// One path.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CaseReport {
+    /// The case.
+    pub name: &'static str,
+    /// What `along` is.
+    pub axis: &'static str,
+    /// Metres, place by place.
+    pub along: Vec<f64>,
+    /// ∫ W and |∫ ∇W| (1/m) over what is hidden.
+    pub hidden: Vec<[f64; 2]>,
+    /// The same over the solid.
+    pub solid: Vec<[f64; 2]>,
+    /// How far the density of the solid is from that of the hidden, in parts of the latter's largest.
+    pub solid_density: Error,
+    /// The same of the force.
+    pub solid_force: Error,
+    /// By how much all these change if they are taken ten thousand times less carefully.
+    pub quadrature: f64,
+    /// Nanoseconds to find the walls in reach, which the polygons' times include.
+    pub search_ns: Spread,
+    /// The methods in the order of [`METHODS`].
+    pub methods: Vec<MethodReport>,
+}
+
+/// Everything.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WallReport {
+    /// Few places and few turns: the times say nothing.
+    pub quick: bool,
+    /// Path by path.
+    pub cases: Vec<CaseReport>,
+}
+
+/// Measures every method on every path.
+pub fn measure(quick: bool) -> WallReport {
+    let (places, effort) = if quick {
+        (
+            10,
+            Effort {
+                turns: 3,
+                passes: 2,
+            },
+        )
+    } else {
+        (
+            50,
+            Effort {
+                turns: 7,
+                passes: 40,
+            },
+        )
+    };
+    let cases = cases(places);
+    WallReport {
+        quick,
+        cases: cases.iter().map(|case| of_case(case, effort)).collect(),
+    }
+}
+
+/// Both exact answers at every place.
+struct Truth {
+    hidden: Vec<Integrals>,
+    solid: Vec<Integrals>,
+}
+
+impl Truth {
+    fn to(tolerance: f64, case: &Case) -> Self {
+        let over = |region| {
+            let places = case.places.iter().map(|place| place.position);
+            places
+                .map(|r_i| Integrals::over(region, &case.walls, r_i, SUPPORT_RADIUS, tolerance))
+                .collect()
+        };
+        Self {
+            hidden: over(Region::Hidden),
+            solid: over(Region::Solid),
+        }
+    }
+
+    fn of(&self, region: Region) -> &[Integrals] {
+        match region {
+            Region::Hidden => &self.hidden,
+            Region::Solid => &self.solid,
+        }
+    }
+
+    fn difference(&self, other: &Self) -> f64 {
+        let own = self.hidden.iter().chain(&self.solid);
+        let others = other.hidden.iter().chain(&other.solid);
+        own.zip(others)
+            .map(|(a, b)| a.distance(b))
+            .fold(0.0, f64::max)
+    }
+}
+
+fn of_case(case: &Case, effort: Effort) -> CaseReport {
+    let truth = Truth::to(TOLERANCE, case);
+    let [solid_density, solid_force] = errors(&truth.solid, &truth.hidden);
+    let prepared = METHODS.map(|method| timing::prepared(method, case, effort));
+    let (mut prepared, preparation_ms): (Vec<Prepared>, Vec<f64>) = prepared.into_iter().unzip();
+    let times = timing::evaluations(&mut prepared, case, effort);
+    let methods = METHODS
+        .iter()
+        .zip(&mut prepared)
+        .zip(preparation_ms)
+        .zip(times);
+    CaseReport {
+        name: case.name,
+        axis: case.axis,
+        along: case.places.iter().map(|place| place.along).collect(),
+        hidden: curve(&truth.hidden),
+        solid: curve(&truth.solid),
+        solid_density,
+        solid_force,
+        quadrature: truth.difference(&Truth::to(COARSER_TOLERANCE, case)),
+        search_ns: Spread::of(&timing::searches(case, effort)),
+        methods: methods
+            .map(|(((method, prepared), preparation_ms), ns)| MethodReport {
+                preparation_ms,
+                ns: Spread::of(&ns),
+                ..of_method(method, prepared, case, &truth)
+            })
+            .collect(),
+    }
+}
+
+/// All but the times.
+fn of_method(method: &Method, prepared: &mut Prepared, case: &Case, truth: &Truth) -> MethodReport {
+    let exact = truth.of(method.region());
+    let places = case.places.iter().map(|place| place.position);
+    let found: Vec<Integrals> = places.map(|r_i| prepared.integrals(r_i)).collect();
+    let [density, force] = errors(&found, exact);
+    let along = |tangent: Vector| {
+        let forces = found.iter().map(|f| f.gradient.dot(&tangent));
+        Error::of(forces, largest(exact)[1])
+    };
+    MethodReport {
+        name: method.name(),
+        region: method.region(),
+        density,
+        force,
+        roughness: case.tangent.map(along),
+        ns: Spread::of(&[]),
+        preparation_ms: 0.0,
+        bytes: prepared.bytes(),
+        curve: curve(&found),
+    }
+}
+
+/// Of density and force.
+fn errors(found: &[Integrals], exact: &[Integrals]) -> [Error; 2] {
+    let [density, force] = largest(exact);
+    let differences = || found.iter().zip(exact).map(|(f, e)| *f - *e);
+    [
+        Error::of(differences().map(|d| d.kernel), density),
+        Error::of(differences().map(|d| d.gradient.norm()), force),
+    ]
+}
+
+fn largest(exact: &[Integrals]) -> [f64; 2] {
+    let values = curve(exact);
+    [0, 1].map(|n| values.iter().map(|value| value[n]).fold(0.0, f64::max))
+}
+
+fn curve(integrals: &[Integrals]) -> Vec<[f64; 2]> {
+    integrals
+        .iter()
+        .map(|i| [i.kernel, i.gradient.norm()])
+        .collect()
+}

@@ -1,0 +1,134 @@
+//! Density and force over each path, and error against time.
+
+use super::{CaseReport, Error, METHODS, Method, MethodReport, Stored, Volumes, WallReport};
+use crate::engine::boundary::WallMethod;
+use crate::output::colors::Rgb;
+use crate::output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+
+/// What the truth is drawn with, below everything.
+const PALE: Rgb = [200, 200, 200];
+/// An eighth colour for lines.
+const BROWN: Rgb = [130, 70, 20];
+/// Errors are drawn from here on; what is less is rounding. Percent.
+const LEAST_ERROR: f64 = 1e-3;
+/// Axes of error against time: nanoseconds, percent.
+const TIMES: [f64; 2] = [20.0, 10_000.0];
+const ERRORS: [f64; 2] = [0.5 * LEAST_ERROR, 1000.0];
+/// Panels in a row.
+const COLUMNS: usize = 3;
+
+impl WallReport {
+    /// Density and force over each path in rows of three paths, and work against precision.
+    pub fn sheet(&self) -> Sheet {
+        let mut panels = Vec::new();
+        for (row, cases) in self.cases.chunks(COLUMNS).enumerate() {
+            let quantity = |n, label: &'static str| {
+                let panel = move |(k, case): (usize, &CaseReport)| {
+                    let is_first = row == 0 && k == 0 && n == 0;
+                    curves(case, n, label, is_first.then_some(Corner::UpperRight))
+                };
+                cases.iter().enumerate().map(panel)
+            };
+            panels.extend(quantity(0, "∫ W"));
+            panels.extend(quantity(1, "|∫ ∇W| [1/m]"));
+        }
+        panels.push(self.work_precision("density", |method| Some(method.density)));
+        panels.push(self.work_precision("force", |method| Some(method.force)));
+        panels.push(self.work_precision("force along a straight wall", |method| method.roughness));
+        Sheet {
+            title: "Walls in SPH: each method beside the exact integrals (broken, hollow: particles 0.25 m apart)"
+                .to_owned(),
+            columns: COLUMNS,
+            panel_size: [270.0, 180.0],
+            shared_axes: false,
+            row_titles: Vec::new(),
+            bar: None,
+            panels,
+        }
+    }
+
+    /// A dot for every path.
+    fn work_precision(&self, title: &str, error: fn(&MethodReport) -> Option<Error>) -> Panel {
+        let dots = |k: usize| {
+            let methods = self.cases.iter().map(|case| &case.methods[k]);
+            let dots = methods.filter_map(|method| {
+                let y = (100.0 * error(method)?.rms).max(LEAST_ERROR);
+                Some(Point {
+                    x: method.ns.median,
+                    y,
+                    error: 0.0,
+                })
+            });
+            Mark::Points(
+                dots.collect(),
+                Style {
+                    width: 2.6,
+                    ..style(k)
+                },
+            )
+        };
+        let numbers = |values: &[f64]| values.iter().map(|&v| (v, v.to_string())).collect();
+        let mut y = Axis::log("error [%]", ERRORS);
+        y.ticks = numbers(&[0.001, 0.01, 0.1, 1.0, 10.0, 100.0]);
+        y.ticks[0].1 = "≤ 0.001".to_owned();
+        Panel {
+            title: format!("work and precision: {title}, one dot a path"),
+            x: Axis {
+                ticks: numbers(&[30.0, 100.0, 300.0, 1000.0, 3000.0]),
+                ..Axis::log("time per agent [ns]", TIMES)
+            },
+            y,
+            marks: (0..METHODS.len()).map(dots).collect(),
+            bar: None,
+            legend: None,
+        }
+    }
+}
+
+/// Quantity `n` over a path.
+fn curves(case: &CaseReport, n: usize, label: &str, legend: Option<Corner>) -> Panel {
+    let line = |values: &[[f64; 2]], style| {
+        let points = case.along.iter().zip(values);
+        Mark::Line(points.map(|(&x, value)| [x, value[n]]).collect(), style)
+    };
+    let truth = case.hidden.iter().chain(&case.solid);
+    let largest = truth.map(|value| value[n]).fold(0.0, f64::max);
+    let mut marks = vec![
+        line(&case.hidden, Style::full(PALE, 5.0, "hidden (truth)")),
+        line(&case.solid, Style::broken(BLACK, 1.6, "solid (truth)")),
+    ];
+    let methods = case.methods.iter().enumerate();
+    marks.extend(methods.map(|(k, method)| line(&method.curve, style(k))));
+    let ends = [case.along[0], case.along[case.along.len() - 1]];
+    Panel {
+        title: case.name.to_owned(),
+        x: Axis::linear(case.axis, ends),
+        y: Axis::linear(label, [0.0, 2.0 * largest]),
+        marks,
+        bar: None,
+        legend,
+    }
+}
+
+/// One colour a kind; the coarser particles broken, and explained by the title.
+fn style(k: usize) -> Style {
+    let method = METHODS[k];
+    let color = match method {
+        Method::Polygons(WallMethod::Representative) => LINES[1],
+        Method::Polygons(WallMethod::Exact) => LINES[0],
+        Method::Polygons(WallMethod::Union) => LINES[2],
+        Method::Particles { volumes, .. } => match volumes {
+            Volumes::Whole => BROWN,
+            Volumes::Cut => LINES[3],
+            Volumes::Akinci => LINES[4],
+        },
+        Method::Map { stored, .. } => match stored {
+            Stored::Integrals => LINES[5],
+            Stored::Volume => LINES[6],
+        },
+    };
+    match method {
+        Method::Particles { spacing, .. } if spacing > 0.1 => Style::broken(color, 1.0, ""),
+        _ => Style::full(color, 1.0, &method.name()),
+    }
+}

@@ -1,0 +1,136 @@
+//! JuPedSim's social forces, in a Python of its own.
+
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+
+use tempfile::NamedTempFile;
+
+use super::{Description, Entry, Start};
+use crate::lab::bench::error::BenchError;
+use crate::lab::bench::timing::Contender;
+
+const SCRIPT: &str = include_str!("jupedsim.py");
+const ENGINE: &str = "JuPedSim";
+/// Where its social force is cut off, metres: `_cutOffRadius` in its SocialForceModel.hpp.
+const RADIUS: f64 = 2.5;
+
+/// JuPedSim, if this Python has it; else how to have it.
+pub fn entries(start: &Start, python: &Path) -> Result<Vec<Entry>, String> {
+    let how = |said: &str| {
+        format!(
+            "`{} -c 'import jupedsim'` does not work: {said}; `python3 -m venv jps && jps/bin/pip install jupedsim`, \
+             then --python jps/bin/python",
+            python.display()
+        )
+    };
+    let asked = Command::new(python)
+        .args(["-c", "import jupedsim"])
+        .output();
+    let asked = asked.map_err(|error| how(&error.to_string()))?;
+    if !asked.status.success() {
+        let said = String::from_utf8_lossy(&asked.stderr);
+        return Err(how(said.lines().last().unwrap_or("no reason given")));
+    }
+    let (walking, version, time_step) = Walking::begin(start, python).map_err(|e| e.to_string())?;
+    Ok(vec![Entry {
+        description: Description {
+            engine: format!("{ENGINE} {version}"),
+            model: "social force, circular, with body force and friction",
+            radius: RADIUS,
+            precision: "f64",
+            time_step,
+            threads: 1,
+        },
+        contender: Box::new(walking),
+    }])
+}
+
+/// A Python that takes steps when told so.
+struct Walking {
+    child: Child,
+    orders: ChildStdin,
+    answers: BufReader<ChildStdout>,
+    _people: NamedTempFile,
+}
+
+fn stopped(reason: impl ToString) -> BenchError {
+    BenchError::Stopped {
+        engine: ENGINE,
+        reason: reason.to_string(),
+    }
+}
+
+impl Walking {
+    /// Starts it with everybody in place, and returns its version and its time step in seconds.
+    fn begin(start: &Start, python: &Path) -> Result<(Self, String, f64), BenchError> {
+        let people = people(start).map_err(stopped)?;
+        let mut child = Command::new(python)
+            .args(["-c", SCRIPT])
+            .arg(people.path())
+            .arg(start.scene.preferred_speed.to_string())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .map_err(stopped)?;
+        let pipes = child.stdin.take().zip(child.stdout.take());
+        let (orders, answers) = pipes.ok_or_else(|| stopped("no pipes"))?;
+        let mut walking = Self {
+            child,
+            orders,
+            answers: BufReader::new(answers),
+            _people: people,
+        };
+        let ready = walking.answer()?;
+        let mut words = ready.split_whitespace().skip(1);
+        let version = words.next().unwrap_or_default().to_owned();
+        let time_step = words.next().and_then(|word| word.parse().ok());
+        let time_step = time_step.ok_or_else(|| stopped(format!("it said {ready:?}")))?;
+        Ok((walking, version, time_step))
+    }
+
+    fn answer(&mut self) -> Result<String, BenchError> {
+        let mut line = String::new();
+        match self.answers.read_line(&mut line) {
+            Ok(0) => Err(stopped("see its message above")),
+            Ok(_) => Ok(line.trim().to_owned()),
+            Err(error) => Err(stopped(error)),
+        }
+    }
+}
+
+impl Contender for Walking {
+    fn ms_per_step(&mut self, steps: u64) -> Result<f64, BenchError> {
+        writeln!(self.orders, "{steps}").map_err(stopped)?;
+        let answer = self.answer()?;
+        let seconds: f64 = answer
+            .parse()
+            .map_err(|_| stopped(format!("it said {answer:?}")))?;
+        Ok(1e3 * seconds / steps as f64)
+    }
+}
+
+impl Drop for Walking {
+    fn drop(&mut self) {
+        // It only waits for orders; if it has gone already there is nothing to end.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// A file with one person a line: place, radius and goal, metres.
+fn people(start: &Start) -> std::io::Result<NamedTempFile> {
+    let mut file = NamedTempFile::new()?;
+    let agents = start.agents;
+    let mut text = String::new();
+    for i in 0..agents.len() {
+        let (r, goal) = (agents.position[i], agents.goal[i]);
+        text += &format!(
+            "{} {} {} {} {}\n",
+            r.x, r.y, agents.radius[i], goal.x, goal.y
+        );
+    }
+    file.write_all(text.as_bytes())?;
+    file.flush()?;
+    Ok(file)
+}

@@ -1,0 +1,119 @@
+//! rustsim-crowd's social forces. The only place that names rustsim_crowd.
+
+#[cfg(feature = "compare")]
+pub use present::entries;
+
+#[cfg(feature = "compare")]
+mod present {
+    use std::time::Instant;
+
+    use rayon::ThreadPool;
+    use rustsim_crowd::social_force::{self, Params};
+    use rustsim_crowd::{Pedestrian, Scratch, WallSegment, recommended_cell_size};
+
+    use crate::lab::bench::compare::{Description, Entry, Start, WIDE};
+    use crate::lab::bench::error::BenchError;
+    use crate::lab::bench::timing::{Contender, pool};
+
+    /// As this engine's.
+    const TIME_STEP: f64 = 0.02;
+
+    type Step = fn(&mut [Pedestrian], &[WallSegment], &Params, f64, &mut Scratch);
+
+    /// Its ways to take a step.
+    const STEPS: [(&str, Step, bool); 3] = [
+        ("rustsim-crowd 0.0.1", social_force::step_scratch, false),
+        (
+            "rustsim-crowd 0.0.1, SIMD",
+            social_force::step_scratch_simd,
+            false,
+        ),
+        (
+            "rustsim-crowd 0.0.1, rayon",
+            social_force::step_scratch_par,
+            true,
+        ),
+    ];
+
+    /// With its own radius, and with the paper's.
+    pub fn entries(start: &Start) -> Result<Vec<Entry>, String> {
+        let own = Params::default();
+        // 8 B + 1 m.
+        let wide = Params {
+            b_ped: (WIDE - 1.0) / 8.0,
+            ..own
+        };
+        let mut entries = Vec::new();
+        for params in [own, wide] {
+            for (name, step, parallel) in STEPS {
+                let threads = if parallel { start.threads } else { 1 };
+                let pool = pool(threads).map_err(|error| error.to_string())?;
+                entries.push(Entry {
+                    description: Description {
+                        engine: name.to_owned(),
+                        model: "social force, circular, no contact",
+                        radius: social_force::neighbor_cutoff(&params),
+                        precision: "f64",
+                        time_step: TIME_STEP,
+                        threads,
+                    },
+                    contender: Box::new(Walking::new(start, params, step, pool)),
+                });
+            }
+        }
+        Ok(entries)
+    }
+
+    struct Walking {
+        people: Vec<Pedestrian>,
+        params: Params,
+        scratch: Scratch,
+        step: Step,
+        pool: ThreadPool,
+    }
+
+    impl Walking {
+        fn new(start: &Start, params: Params, step: Step, pool: ThreadPool) -> Self {
+            let agents = start.agents;
+            let person = |i: usize| {
+                let (r, v, goal) = (agents.position[i], agents.velocity[i], agents.goal[i]);
+                let speed = start.scene.preferred_speed;
+                Pedestrian::new(r.into(), v.into(), agents.radius[i], speed, goal.into())
+            };
+            let cell = recommended_cell_size(social_force::neighbor_cutoff(&params));
+            Self {
+                people: (0..agents.len()).map(person).collect(),
+                params: Params {
+                    max_speed: start.scene.max_speed,
+                    ..params
+                },
+                scratch: Scratch::with_capacity(agents.len(), cell),
+                step,
+                pool,
+            }
+        }
+    }
+
+    impl Contender for Walking {
+        fn ms_per_step(&mut self, steps: u64) -> Result<f64, BenchError> {
+            let Self {
+                people,
+                params,
+                scratch,
+                step,
+                pool,
+            } = self;
+            let start = Instant::now();
+            pool.install(|| (0..steps).for_each(|_| step(people, &[], params, TIME_STEP, scratch)));
+            Ok(1e3 * start.elapsed().as_secs_f64() / steps as f64)
+        }
+    }
+}
+
+/// Says how to have it.
+#[cfg(not(feature = "compare"))]
+pub fn entries(_: &super::Start) -> Result<Vec<super::Entry>, String> {
+    Err(
+        "this program was built without it; `cargo build --release --features compare` brings it in".to_owned(),
+    )
+}

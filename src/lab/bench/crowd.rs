@@ -1,0 +1,161 @@
+//! Crowds of any size and density, without walls.
+
+use super::error::BenchError;
+use crate::engine::agents::NewAgent;
+use crate::engine::math::Vector;
+use crate::engine::placement::Grid;
+use crate::engine::scene::{Group, Scene};
+use crate::engine::simulation::Simulation;
+use crate::scenario::catalog::{self, Parameters};
+
+/// How far ahead the goals of streams are, metres: nobody arrives.
+const AHEAD: f64 = 100.0;
+/// Each coordinate is moved by up to ± this part of the distance between neighbours.
+const JITTER: f64 = 0.05;
+
+/// Where people want to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Aim {
+    /// Where they are.
+    Stay,
+    /// Every second 100 m to the right, the others 100 m to the left: there is always somebody to avoid.
+    Streams,
+}
+
+/// A square block of people on a hexagonal grid with jitter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Crowd {
+    /// How many.
+    pub agents: u32,
+    /// P/m².
+    pub density: f64,
+    /// One of the paper's profiles, by name.
+    pub profile: &'static str,
+    /// What is changed in it.
+    pub parameters: Parameters,
+    /// Where they want to be.
+    pub aim: Aim,
+}
+
+impl Crowd {
+    /// As dense as before the concert's stage, with its parameters: 5 P/m², μ = 5, K^goal = 0.1.
+    ///
+    /// Everybody's goal is the own place, which holds crowds of all sizes at the same density.
+    pub fn concert(agents: u32) -> Self {
+        Self {
+            agents,
+            density: 5.0,
+            profile: "sph",
+            parameters: Parameters {
+                viscosity: Some(5.0),
+                goal_scale: Some(0.1),
+                ..Parameters::default()
+            },
+            aim: Aim::Stay,
+        }
+    }
+
+    /// People at 4 P/m² who avoid each other, half of them on their way to the right and half to the left.
+    pub fn streams(agents: u32, profile: &'static str) -> Self {
+        Self {
+            agents,
+            density: 4.0,
+            profile,
+            parameters: Parameters::default(),
+            aim: Aim::Streams,
+        }
+    }
+
+    /// The scene before the first frame.
+    ///
+    /// # Errors
+    /// There is no such profile.
+    pub fn scene(&self) -> Result<Scene, BenchError> {
+        let unknown = || BenchError::Profile(self.profile.to_owned());
+        let blend = catalog::named(self.profile, &self.parameters).ok_or_else(unknown)?;
+        let mut scene = Scene::default();
+        let group = scene.add_group(Group {
+            name: "crowd".to_owned(),
+            blend: blend.map_err(|_| unknown())?,
+            removal_radius: None,
+            counted: false,
+        });
+        let places = self.places(scene.seed).into_iter().enumerate();
+        scene.agents = places
+            .map(|(k, place)| NewAgent::at(place, place + self.way(k), group))
+            .collect();
+        Ok(scene)
+    }
+
+    /// From where agent `k` stands to where it wants to be, metres.
+    fn way(&self, k: usize) -> Vector {
+        match self.aim {
+            Aim::Stay => Vector::zeros(),
+            Aim::Streams if k.is_multiple_of(2) => Vector::new(AHEAD, 0.0),
+            Aim::Streams => Vector::new(-AHEAD, 0.0),
+        }
+    }
+
+    /// Row by row; every second row is moved by half the distance between neighbours.
+    fn places(&self, seed: u64) -> Vec<Vector> {
+        let spacing = (2.0 / (self.density * 3.0_f64.sqrt())).sqrt();
+        let height = 0.75_f64.sqrt() * spacing;
+        let columns = (f64::from(self.agents) * 0.75_f64.sqrt()).sqrt().round();
+        let columns = (columns as u32).max(1);
+        let rows = self.agents.div_ceil(columns);
+        let row = |k: u32| {
+            let shift = 0.5 * spacing * f64::from(k % 2);
+            let grid = Grid {
+                min: Vector::new(shift, f64::from(k) * height),
+                max: Vector::new(
+                    shift + f64::from(columns) * spacing,
+                    f64::from(k + 1) * height,
+                ),
+                columns,
+                rows: 1,
+                jitter: JITTER * spacing,
+            };
+            grid.positions(seed, k * columns).collect::<Vec<_>>()
+        };
+        let places = (0..rows).flat_map(row);
+        places.take(self.agents as usize).collect()
+    }
+
+    /// The crowd after so many frames.
+    ///
+    /// # Errors
+    /// As [`scene`](Self::scene), or the crowd cannot go on.
+    pub fn settled(&self, frames: u64) -> Result<Simulation, BenchError> {
+        let mut simulation = Simulation::new(self.scene()?)?;
+        for _ in 0..frames {
+            simulation.step()?;
+        }
+        Ok(simulation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_crowd_is_as_large_and_as_dense_as_was_asked_for() {
+        for agents in [1, 2, 1000, 3000] {
+            let scene = Crowd::concert(agents).scene().unwrap();
+            assert_eq!(scene.agents.len(), agents as usize);
+        }
+        let mut simulation = Crowd::concert(3000).settled(0).unwrap();
+        simulation.evaluate().unwrap();
+        let mut densities = simulation.frame().fields.density.clone();
+        densities.sort_by(f64::total_cmp);
+        let median = densities[1500];
+        assert!((median - 5.0).abs() < 0.25, "{median} P/m²");
+    }
+
+    #[test]
+    fn streams_go_both_ways() {
+        let scene = Crowd::streams(100, "sf").scene().unwrap();
+        let to_the_right = scene.agents.iter().filter(|a| a.goal.x > a.position.x);
+        assert_eq!(to_the_right.count(), 50);
+    }
+}

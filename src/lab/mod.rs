@@ -1,0 +1,15 @@
+//! The lab: many runs with one question. The paper's tables and figures ([`reproduce`]), studies over settings
+//! and seeds ([`sweep`]), run time ([`bench`]), hard cases and the largest stable time step ([`stress`]), and
+//! run time against error ([`accuracy`]).
+
+pub mod reproduce;
+
+pub mod job;
+
+pub mod sweep;
+
+pub mod bench;
+
+pub mod stress;
+
+pub mod accuracy;

@@ -1,0 +1,98 @@
+//! Fig. 11: frame time per task against the number of agents.
+
+use super::frame_time::{self, FrameTime, SIZES};
+use super::save;
+use crate::engine::simulation::Stage;
+use crate::lab::reproduce::error::ReproduceError;
+use crate::lab::reproduce::product::Product;
+use crate::output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+
+/// The figure.
+pub const PRODUCT: Product = Product {
+    name: "fig11",
+    about: "frame time per task against the number of agents; measured alone, on all threads",
+    in_all: true,
+    cases: |_| Ok(SIZES.into_iter().map(frame_time::case).collect()),
+    write: |_, results, store| {
+        let of = |agents| FrameTime::of(results.of(&frame_time::case(agents))?);
+        let times: Result<Vec<_>, ReproduceError> = SIZES.into_iter().map(of).collect();
+        let times = times?;
+        store.write("fig11.csv", frame_time::csv(&times).as_bytes())?;
+        let threads = times.first().map_or(0, |time| time.threads);
+        let machine = format!("{threads} threads of this machine");
+        save(&sheet(&times, &machine), store, "fig11")
+    },
+};
+
+/// The paper's totals, six threads of a laptop Core i7-7920HQ (§6.4): agents, ms per frame.
+const PAPER: [[f64; 2]; 2] = [[10_000.0, 4.94], [30_000.0, 18.57]];
+
+/// What the paper calls a stage.
+fn task(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Sort => "1 sorting (paper: kd-tree)",
+        Stage::Neighbors => "2 neighbours",
+        Stage::PreferredVelocity => "3 preferred velocity",
+        Stage::DensityAndPressure => "4 density and pressure",
+        Stage::Acceleration => "5 acceleration",
+        Stage::Integration => "6 integration",
+        Stage::Rvo => "velocity obstacles",
+        Stage::Removal => "removal",
+    }
+}
+
+/// The sheet from measurements by rising number of agents; `machine` says on what.
+fn sheet(times: &[FrameTime], machine: &str) -> Sheet {
+    let order = [
+        Stage::Sort,
+        Stage::Neighbors,
+        Stage::PreferredVelocity,
+        Stage::DensityAndPressure,
+        Stage::Acceleration,
+        Stage::Integration,
+        Stage::Rvo,
+        Stage::Removal,
+    ];
+    let mut marks = Vec::new();
+    let agents = |time: &FrameTime| time.agents as f64;
+    for (stage, color) in order.into_iter().zip(LINES.into_iter().cycle()) {
+        let point = |time: &FrameTime| Some([agents(time), time.of_stage(stage)?]);
+        let points: Vec<[f64; 2]> = times.iter().filter_map(point).collect();
+        if !points.is_empty() {
+            let dots = points.iter().map(|&[x, y]| Point { x, y, error: 0.0 });
+            let dots = dots.collect();
+            marks.push(Mark::Line(points, Style::full(color, 1.2, task(stage))));
+            marks.push(Mark::Points(dots, Style::full(color, 1.8, "")));
+        }
+    }
+    let total: Vec<[f64; 2]> = times.iter().map(|t| [agents(t), t.total()]).collect();
+    marks.push(Mark::Line(total, Style::full(BLACK, 1.8, "total")));
+    let paper = PAPER.map(|[x, y]| Point { x, y, error: 0.0 });
+    let label = "total in the paper, 6 threads";
+    marks.push(Mark::Points(
+        paper.to_vec(),
+        Style::broken(BLACK, 3.5, label),
+    ));
+    let real_time = vec![[2_000.0, 20.0], [120_000.0, 20.0]];
+    marks.push(Mark::Line(
+        real_time,
+        Style::broken(LINES[6], 0.8, "real time (20 ms)"),
+    ));
+    let panel = Panel {
+        title: machine.to_owned(),
+        x: Axis::log("agents", [2_000.0, 120_000.0]),
+        y: Axis::log("time per frame [ms]", [0.005, 200.0]),
+        marks,
+        bar: None,
+        legend: Some(Corner::Beside),
+    };
+    Sheet {
+        title: "Fig. 11: frame time per task, concert".to_owned(),
+        columns: 1,
+        panel_size: [420.0, 300.0],
+        shared_axes: false,
+        row_titles: Vec::new(),
+        bar: None,
+        panels: vec![panel],
+    }
+}

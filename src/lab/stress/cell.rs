@@ -1,0 +1,152 @@
+//! The largest time step at which a crowd comes to rest, found by bisection.
+
+use serde::{Deserialize, Serialize};
+
+use super::condition::Condition;
+use super::map::Detail;
+use super::rest::{Remains, Rest, Surroundings};
+use crate::engine::clock::PAPER_COARSE_STEP;
+use crate::engine::simulation::Fault;
+use crate::engine::stability::{FITTED, Mode};
+use crate::lab::job::Job;
+use crate::lab::reproduce::ReproduceError;
+
+/// No step is longer, seconds: Δt_fine never is longer than Δt_coarse.
+const LONGEST: f64 = PAPER_COARSE_STEP;
+/// A step so much shorter than the formula's shows what the model does by itself.
+const FINE: f64 = 0.2;
+/// The search goes up or down from the formula's step by this factor, until it has gone too far.
+const WIDTH: f64 = 1.25;
+/// It gives up at this part of it.
+const SHORTEST: f64 = 1e-3;
+
+/// What is found under one condition.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Limit {
+    /// The largest stable step, seconds.
+    pub largest: f64,
+    /// What `auto` takes, seconds.
+    pub auto: f64,
+    /// Is that stable?
+    pub auto_is_stable: bool,
+    /// The speed that the model keeps by itself, at fine steps, in the more restless room, m/s.
+    pub fine_speed: f64,
+    /// The same at `auto`.
+    pub auto_speed: f64,
+}
+
+impl Limit {
+    fn find(crowd: &Rest, bisections: u32, surroundings: Surroundings) -> Result<Self, Fault> {
+        let (mode, scheme) = (crowd.mode(), surroundings.condition.scheme);
+        let (formula, auto) = (mode.largest_step(scheme, &FITTED), mode.time_step(scheme));
+        let at_auto = crowd.rooms(auto, surroundings)?;
+        Ok(Self {
+            largest: largest(crowd, formula, bisections, surroundings)?,
+            auto,
+            auto_is_stable: at_auto.iter().all(Remains::are_stable),
+            fine_speed: fastest(&crowd.rooms(FINE * formula, surroundings)?),
+            auto_speed: fastest(&at_auto),
+        })
+    }
+
+    /// `auto` in parts of the largest stable step.
+    pub fn ratio(&self) -> f64 {
+        self.auto / self.largest
+    }
+}
+
+/// The largest stable step, seconds, by bisection between the last on one side of it and the first on the other.
+fn largest(
+    crowd: &Rest,
+    guess: f64,
+    bisections: u32,
+    surroundings: Surroundings,
+) -> Result<f64, Fault> {
+    let rises = crowd.is_stable(guess, surroundings)?;
+    let factor = if rises { WIDTH } else { 1.0 / WIDTH };
+    let (mut from, mut to) = (guess, (guess * factor).min(LONGEST));
+    while crowd.is_stable(to, surroundings)? == rises {
+        if to >= LONGEST || to < SHORTEST * guess {
+            return Ok(to);
+        }
+        (from, to) = (to, (to * factor).min(LONGEST));
+    }
+    let (mut low, mut high) = if rises { (from, to) } else { (to, from) };
+    for _ in 0..bisections {
+        let middle = (low * high).sqrt();
+        if crowd.is_stable(middle, surroundings)? {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Ok(low)
+}
+
+fn fastest(rooms: &[Remains]) -> f64 {
+    let speeds = rooms.iter().filter_map(|room| room.speed);
+    speeds.fold(0.0, f64::max)
+}
+
+/// One place on the maps.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Cell {
+    /// The crowd.
+    pub crowd: Rest,
+    /// What was found, in the order of [`Condition::ALL`].
+    pub limits: [Limit; Condition::ALL.len()],
+}
+
+impl Cell {
+    /// Finds the largest stable step of a crowd of people after `first_seed`.
+    ///
+    /// # Errors
+    /// Somebody has no place at the start.
+    pub fn find(crowd: Rest, detail: Detail, first_seed: u64) -> Result<Self, Fault> {
+        let limit = |condition| {
+            let surroundings = Surroundings {
+                condition,
+                first_seed,
+            };
+            Limit::find(&crowd, detail.bisections(), surroundings)
+        };
+        let [paper, exact_walls, verlet] = Condition::ALL.map(limit);
+        Ok(Self {
+            crowd,
+            limits: [paper?, exact_walls?, verlet?],
+        })
+    }
+
+    /// The job of finding it.
+    pub fn job(crowd: Rest, detail: Detail, first_seed: u64) -> Job {
+        let steps = detail.bisections();
+        let name = format!(
+            "map k={} ρ⁰max={} K^ag={} μ={}, {steps} bisections, people after {first_seed}",
+            crowd.gas_constant, crowd.rest_density_max, crowd.agent_stiffness, crowd.viscosity
+        );
+        // Seconds of simulated time: 8 s, in two rooms, with three crowds, the fine steps foremost.
+        let simulated = 48.0 * (1.0 / FINE + f64::from(steps) + 3.0);
+        let mode = crowd.mode();
+        let frames = Condition::ALL.map(|condition| {
+            let formula = mode.largest_step(condition.scheme, &FITTED);
+            simulated / formula
+        });
+        let expected = 5e-5 * frames.iter().sum::<f64>();
+        Job::new(name, expected, move || {
+            Self::find(crowd, detail, first_seed).map_err(|fault| ReproduceError::Fault {
+                case: format!("{crowd:?}"),
+                fault,
+            })
+        })
+    }
+
+    /// Is `auto` stable under every condition?
+    pub fn auto_is_stable(&self) -> bool {
+        self.limits.iter().all(|limit| limit.auto_is_stable)
+    }
+
+    /// The fastest mode.
+    pub fn mode(&self) -> Mode {
+        self.crowd.mode()
+    }
+}

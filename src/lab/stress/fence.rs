@@ -1,0 +1,197 @@
+//! Walls as a bystander sees them: does a path lead through one? Nothing here is the engine's own, whose
+//! moves it checks: neither the index of walls, nor the crossing of one, nor what is inside.
+
+use crate::engine::geometry::Walls;
+use crate::engine::math::{Vector, perpendicular};
+
+/// Walls count from so far inside, metres: the engine stops people 10⁻⁶ m before a wall, and coordinates
+/// of 10⁶ m are rounded to 10⁻¹⁰ m.
+const TOLERANCE: f64 = 1e-8;
+/// Cells along the longer side of the index.
+const CELLS: usize = 64;
+
+/// One edge, its solid side on the left.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    start: Vector,
+    along: Vector,
+    length: f64,
+    inward: Vector,
+}
+
+/// Every edge of a scene, by the square cells that its bounding box touches.
+#[derive(Debug, Clone)]
+pub struct Fence {
+    edges: Vec<Edge>,
+    /// How many edges each obstacle has, in their order, and whether it is solid outside.
+    counts: Vec<(usize, bool)>,
+    low: Vector,
+    cell: f64,
+    cells: Vec<Vec<u32>>,
+}
+
+impl Fence {
+    /// The edges of `walls`.
+    pub fn new(walls: &Walls) -> Self {
+        let obstacles = walls.obstacles();
+        let edges: Vec<Edge> = obstacles
+            .iter()
+            .flat_map(|polygon| polygon.edges())
+            .map(|(start, end)| {
+                let length = (end - start).norm();
+                let along = (end - start) / length;
+                let inward = perpendicular(along);
+                Edge {
+                    start,
+                    along,
+                    length,
+                    inward,
+                }
+            })
+            .collect();
+        let ends = || edges.iter().flat_map(|edge| [edge.start, edge.end()]);
+        let low = ends().reduce(|a, b| a.inf(&b)).unwrap_or_default();
+        let high = ends().reduce(|a, b| a.sup(&b)).unwrap_or_default();
+        let mut fence = Self {
+            counts: obstacles
+                .iter()
+                .map(|o| (o.points().len(), o.is_unbounded()))
+                .collect(),
+            cell: ((high - low).max() / CELLS as f64).max(TOLERANCE),
+            cells: vec![Vec::new(); (CELLS + 1) * (CELLS + 1)],
+            low,
+            edges,
+        };
+        for (k, edge) in fence.edges.clone().into_iter().enumerate() {
+            for cell in fence.touched(edge.start, edge.end()) {
+                fence.cells[cell].push(k as u32);
+            }
+        }
+        fence
+    }
+
+    /// The cells that the bounding box of two points touches.
+    fn touched(&self, a: Vector, b: Vector) -> impl Iterator<Item = usize> + use<> {
+        let margin = Vector::new(TOLERANCE, TOLERANCE);
+        let place = |p: Vector| (p - self.low) / self.cell;
+        let (first, last) = (place(a.inf(&b) - margin), place(a.sup(&b) + margin));
+        let most = CELLS as f64;
+        let range = |from: f64, to: f64| {
+            let outside = to < 0.0 || from > most + 1.0;
+            let end = if outside {
+                0
+            } else {
+                to.min(most) as usize + 1
+            };
+            from.clamp(0.0, most) as usize..end
+        };
+        let (columns, rows) = (range(first.x, last.x), range(first.y, last.y));
+        rows.flat_map(move |row| {
+            columns
+                .clone()
+                .map(move |column| row * (CELLS + 1) + column)
+        })
+    }
+
+    /// Does the straight way from `a` to `b` lead into an obstacle?
+    pub fn is_crossed(&self, a: Vector, b: Vector) -> bool {
+        self.touched(a, b)
+            .flat_map(|cell| &self.cells[cell])
+            .any(|&k| self.edges[k as usize].is_crossed(a, b))
+    }
+
+    /// Does `p` lie inside an obstacle? By the edges that a ray to the right meets.
+    pub fn encloses(&self, p: Vector) -> bool {
+        let mut edges = self.edges.iter();
+        self.counts.iter().any(|&(count, unbounded)| {
+            let (mut odd, mut near) = (unbounded, false);
+            for edge in edges.by_ref().take(count) {
+                let (from, to) = (edge.start, edge.end());
+                near |= edge.distance(p) <= TOLERANCE;
+                if (from.y > p.y) != (to.y > p.y) {
+                    let x = from.x + (p.y - from.y) / (to.y - from.y) * (to.x - from.x);
+                    odd ^= p.x < x;
+                }
+            }
+            odd && !near
+        })
+    }
+}
+
+impl Edge {
+    fn end(&self) -> Vector {
+        self.start + self.along * self.length
+    }
+
+    /// Does the way from `a` to `b` come from the free side and end, or pass, behind this edge?
+    fn is_crossed(&self, a: Vector, b: Vector) -> bool {
+        let depth = |p: Vector| (p - self.start).dot(&self.inward) - TOLERANCE;
+        let (before, after) = (depth(a), depth(b));
+        if before > 0.0 || after <= 0.0 {
+            return false;
+        }
+        let there = a + (b - a) * (before / (before - after));
+        let place = (there - self.start).dot(&self.along);
+        (-TOLERANCE..=self.length + TOLERANCE).contains(&place)
+    }
+
+    /// Distance of `p`, metres.
+    fn distance(&self, p: Vector) -> f64 {
+        let place = (p - self.start).dot(&self.along).clamp(0.0, self.length);
+        (p - self.start - self.along * place).norm()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::geometry::Polygon;
+
+    fn fence(corners: &[[f64; 2]]) -> Fence {
+        let points = corners.iter().map(|&p| Vector::from(p)).collect();
+        Fence::new(&Walls::new(vec![Polygon::new(points).unwrap()]))
+    }
+
+    #[test]
+    fn a_path_through_a_thin_wall_is_seen_and_one_round_it_is_not() {
+        let wall = fence(&[[0.0, -5.0], [0.01, -5.0], [0.01, 5.0], [0.0, 5.0]]);
+        let at = Vector::new;
+        assert!(wall.is_crossed(at(-1.0, 0.0), at(1.0, 0.1)));
+        assert!(wall.is_crossed(at(1.0, 0.0), at(-1.0, 0.1)));
+        assert!(wall.is_crossed(at(-1e-6, 0.0), at(0.005, 0.0)));
+        assert!(!wall.is_crossed(at(-1.0, 5.1), at(1.0, 5.1)));
+        assert!(!wall.is_crossed(at(-1e-6, 0.0), at(-1e-6, 3.0)));
+        assert!(!wall.is_crossed(at(-90.0, 0.0), at(-80.0, 0.0)));
+    }
+
+    #[test]
+    fn a_path_into_the_corner_between_two_edges_is_seen() {
+        let corner = fence(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]);
+        for k in 1..100 {
+            let from = Vector::new(-0.01 * f64::from(k), -0.3);
+            assert!(corner.is_crossed(from, -from), "{from:?}");
+        }
+    }
+
+    #[test]
+    fn inside_is_what_the_polygon_says_wherever_it_is_not_the_rim() {
+        let horseshoe = [
+            [0.0, 0.0],
+            [9.0, 0.0],
+            [9.0, 9.0],
+            [6.0, 9.0],
+            [6.0, 3.0],
+            [3.0, 3.0],
+            [3.0, 9.0],
+            [0.0, 9.0],
+        ];
+        let polygon = Polygon::new(horseshoe.map(Vector::from).to_vec()).unwrap();
+        let fence = fence(&horseshoe);
+        for k in 0..400 {
+            let p =
+                Vector::new(f64::from(k % 20), f64::from(k / 20)) * 0.53 - Vector::new(0.3, 0.7);
+            assert_eq!(fence.encloses(p), polygon.contains(p), "{p:?}");
+        }
+        assert!(!fence.encloses(Vector::new(0.0, 4.0)));
+    }
+}

@@ -1,0 +1,27 @@
+//! Where the model breaks: hard cases that nobody may get through a wall in, under a bystander's eyes; maps
+//! of the longest frame at which a crowd comes to rest; and how much it still moves then.
+
+mod cell;
+mod condition;
+mod fence;
+mod fit;
+mod hard;
+mod jitter;
+mod map;
+mod pictures;
+mod report;
+mod rest;
+mod suite;
+mod watch;
+
+pub use cell::{Cell, Limit};
+pub use condition::Condition;
+pub use fence::Fence;
+pub use fit::fit;
+pub use hard::{HARD, Hard, Survival};
+pub use jitter::{Jitter, VARIANTS, Variant};
+pub use map::Detail;
+pub use report::Report;
+pub use rest::{Remains, Rest, Surroundings};
+pub use suite::stress;
+pub use watch::{Found, Watch};

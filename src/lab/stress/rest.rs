@@ -1,0 +1,283 @@
+//! A crowd that should come to rest, and whether it does.
+
+use serde::{Deserialize, Serialize};
+
+use super::condition::Condition;
+use super::watch::Watch;
+use crate::engine::agents::{Agents, NewAgent};
+use crate::engine::clock::Clock;
+use crate::engine::geometry::Polygon;
+use crate::engine::math::Vector;
+use crate::engine::placement::Grid;
+use crate::engine::profile::Blend;
+use crate::engine::scene::{Group, Scene};
+use crate::engine::simulation::{Fault, Simulation};
+use crate::engine::stability::Mode;
+use crate::scenario::catalog::{NavigationKind, Parameters};
+
+/// People along each side of the room.
+const COLUMNS: u32 = 10;
+/// People in a full room for each whom ρ⁰max asks for: everybody is pressed.
+const FILLING: f64 = 1.1;
+/// People in a loose room, P/m²: the fewer neighbours, the more each of them matters to viscosity.
+const LOOSE: f64 = 2.0;
+/// How far from their places people start, in distances between places.
+const JITTER: f64 = 0.1;
+/// How fast everybody is thrown about at the start, m/s.
+const KICK: f64 = 0.7;
+/// How long a crowd is given to come to rest, seconds: the goal force alone slows by e⁻¹ in τ = 0.5 s.
+const DURATION: f64 = 8.0;
+/// The last part of it, in which the crowd is judged, seconds.
+const JUDGED: f64 = 3.0;
+/// So many crowds of different people are looked at.
+const SEEDS: u64 = 3;
+/// Crowds that are so slow have come to rest, m/s.
+const RESTING: f64 = 0.1;
+/// Nobody's centre may be nearer to another's than this part of their radii's sum.
+const CLOSEST: f64 = 0.1;
+
+/// Square rooms of people who want to stay where they are, thrown about a little at the start.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Rest {
+    /// k.
+    pub gas_constant: f64,
+    /// ρ⁰max, P/m²; the full room holds a tenth more.
+    pub rest_density_max: f64,
+    /// K^ag.
+    pub agent_stiffness: f64,
+    /// μ.
+    pub viscosity: f64,
+}
+
+/// Under what a crowd is looked at, and whose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Surroundings {
+    /// Walls and integrator.
+    pub condition: Condition,
+    /// The seeds are those that follow.
+    pub first_seed: u64,
+}
+
+impl Default for Rest {
+    /// The paper's `sph` (§5.5).
+    fn default() -> Self {
+        Self {
+            gas_constant: 200.0,
+            rest_density_max: 5.0,
+            agent_stiffness: 50.0,
+            viscosity: 0.0,
+        }
+    }
+}
+
+/// What became of some crowds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Remains {
+    /// Root mean square speed in the last seconds, m/s; `None` if a run broke off.
+    pub speed: Option<f64>,
+    /// How far velocities last from one frame to the next in those seconds, Σ v(t)·v(t − Δt) / Σ v²: 1 where
+    /// everybody goes on, −1 where everybody turns round in every frame.
+    pub persistence: f64,
+    /// The least distance of two centres, in parts of their radii's sum.
+    pub closest: f64,
+    /// How many got through a wall.
+    pub escaped: u64,
+}
+
+impl Remains {
+    /// Did the crowds come to rest, or is their motion at least none that the step makes, and all in one piece?
+    /// A step that is too long has people turn round in every frame; what the model does by itself takes several.
+    pub fn are_stable(&self) -> bool {
+        let moves_on = self.persistence > 0.0;
+        let rests = self.speed.is_some_and(|speed| speed <= RESTING || moves_on);
+        rests && self.closest >= CLOSEST && self.escaped == 0
+    }
+}
+
+/// What moves in the last seconds, summed over people and frames.
+#[derive(Debug, Clone, Copy, Default)]
+struct Motion {
+    people: f64,
+    /// |v|², m²/s².
+    squares: f64,
+    /// v · v of the frame before, m²/s².
+    lasting: f64,
+}
+
+impl Motion {
+    /// Adds a frame; `before` are the velocities of the one before by id, and are replaced.
+    fn add(&mut self, agents: &Agents, before: &mut [Vector]) {
+        for (&id, velocity) in agents.id.iter().zip(&agents.velocity) {
+            let last = std::mem::replace(&mut before[id as usize], *velocity);
+            self.people += 1.0;
+            self.squares += velocity.norm_squared();
+            self.lasting += velocity.dot(&last);
+        }
+    }
+}
+
+impl Rest {
+    /// A full room and a loose one, P/m²: a crowd passes through all densities between them.
+    pub fn densities(&self) -> [f64; 2] {
+        [FILLING * self.rest_density_max, LOOSE]
+    }
+
+    fn parameters(&self) -> Parameters {
+        Parameters {
+            gas_constant: Some(self.gas_constant),
+            rest_density_max: Some(self.rest_density_max),
+            agent_stiffness: Some(self.agent_stiffness),
+            viscosity: Some(self.viscosity),
+            ..Parameters::default()
+        }
+    }
+
+    /// A room and its people, `density` P/m², at a time step in seconds.
+    pub fn scene(&self, density: f64, time_step: f64) -> Scene {
+        let parameters = self.parameters();
+        let spacing = (1.0 / density).sqrt();
+        let side = f64::from(COLUMNS) * spacing;
+        let mut scene = Scene::with_obstacles(walls(side));
+        scene.clock = Clock::new(time_step, Clock::nearest_coarse_every(time_step));
+        scene.preferred_speed = 0.0;
+        let profile = parameters.profile("sph", NavigationKind::Goal, true);
+        let group = scene.add_group(Group {
+            name: "crowd".to_owned(),
+            blend: Blend::single(profile, parameters.sph()),
+            removal_radius: None,
+            counted: false,
+        });
+        let grid = Grid {
+            min: Vector::zeros(),
+            max: Vector::new(side, side),
+            columns: COLUMNS,
+            rows: COLUMNS,
+            jitter: JITTER * spacing,
+        };
+        let places = grid.positions(scene.seed, 0).zip(0_u32..);
+        let thrown = places.map(|(place, id)| {
+            // The golden angle: no two neighbours are thrown the same way.
+            let angle = 2.399_963 * f64::from(id);
+            NewAgent {
+                velocity: Vector::new(angle.cos(), angle.sin()) * KICK,
+                ..NewAgent::at(place, place, group)
+            }
+        });
+        scene.agents = thrown.collect();
+        scene
+    }
+
+    /// Runs rooms of one density at a time step in seconds, with people after people.
+    ///
+    /// # Errors
+    /// Somebody has no place at the start.
+    pub fn run(
+        &self,
+        density: f64,
+        time_step: f64,
+        surroundings: Surroundings,
+    ) -> Result<Remains, Fault> {
+        let (mut motion, mut broken) = (Motion::default(), false);
+        let (mut closest, mut escaped) = (f64::INFINITY, 0);
+        for seed in 1..=SEEDS {
+            let mut scene = self.scene(density, time_step);
+            scene.seed = surroundings.first_seed + seed;
+            scene.wall_method = surroundings.condition.walls;
+            scene.integrator = surroundings.condition.scheme.integrator();
+            let mut simulation = Simulation::new(scene)?;
+            let mut watch = Watch::new(&simulation);
+            broken |= !settle(&mut simulation, &mut watch, &mut motion)?;
+            let found = watch.found(&simulation);
+            closest = found.closest.min(closest);
+            escaped += found.passed;
+        }
+        Ok(Remains {
+            speed: (!broken).then_some((motion.squares / motion.people).sqrt()),
+            persistence: motion.lasting / motion.squares,
+            closest,
+            escaped,
+        })
+    }
+
+    /// The full and the loose room at a time step in seconds.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn rooms(&self, time_step: f64, surroundings: Surroundings) -> Result<[Remains; 2], Fault> {
+        let [full, loose] = self.densities();
+        Ok([
+            self.run(full, time_step, surroundings)?,
+            self.run(loose, time_step, surroundings)?,
+        ])
+    }
+
+    /// Is a time step in seconds stable in both rooms?
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn is_stable(&self, time_step: f64, surroundings: Surroundings) -> Result<bool, Fault> {
+        for density in self.densities() {
+            if !self.run(density, time_step, surroundings)?.are_stable() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// The fastest mode of both rooms.
+    pub fn mode(&self) -> Mode {
+        Mode::of(&self.scene(LOOSE, 1.0))
+    }
+}
+
+/// Runs one crowd to its end; `false` if it broke off.
+fn settle(
+    simulation: &mut Simulation,
+    watch: &mut Watch,
+    motion: &mut Motion,
+) -> Result<bool, Fault> {
+    let clock = *simulation.frame().clock;
+    let (judged, last) = (
+        clock.frame_at(DURATION - JUDGED),
+        clock.frame_at(DURATION).max(1),
+    );
+    let mut before = vec![Vector::zeros(); simulation.frame().agents.len()];
+    for frame in 1..=last {
+        simulation.evaluate()?;
+        watch.look(simulation);
+        if simulation.integrate().is_err() {
+            return Ok(false);
+        }
+        if frame == judged {
+            Motion::default().add(simulation.frame().agents, &mut before);
+        } else if frame > judged {
+            motion.add(simulation.frame().agents, &mut before);
+        }
+    }
+    Ok(true)
+}
+
+/// Two angles of wall, 1 m thick, round [0, side]²: nowhere more than two edges push the same way.
+pub fn walls(side: f64) -> Vec<Polygon> {
+    let outer = side + 1.0;
+    let lower = [
+        [-1.0, -1.0],
+        [outer, -1.0],
+        [outer, 0.0],
+        [0.0, 0.0],
+        [0.0, outer],
+        [-1.0, outer],
+    ];
+    let upper = [
+        [outer, 0.0],
+        [outer, outer],
+        [0.0, outer],
+        [0.0, side],
+        [side, side],
+        [side, 0.0],
+    ];
+    [lower, upper]
+        .into_iter()
+        .filter_map(|corners| Polygon::new(corners.map(Vector::from).to_vec()).ok())
+        .collect()
+}

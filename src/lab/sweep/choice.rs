@@ -1,0 +1,159 @@
+//! A setting at its place in a study's file.
+
+use std::collections::{BTreeSet, HashSet};
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::cell::{Source, short};
+use super::entries::Entries;
+use super::problem;
+use super::study::MOST_CELLS;
+use crate::scenario::quote::shown;
+use crate::scenario::{Problem, SHIPPED, Setting, suggestion};
+
+/// The key of the scenario, which may be varied like a setting.
+pub(super) const SCENARIO: &str = "scenario";
+
+/// A setting at its place in the file.
+#[derive(Debug, Clone)]
+pub(super) struct Choice {
+    /// As written.
+    pub(super) key: String,
+    /// As written.
+    pub(super) value: Value,
+    /// As in `grid.viscosity[2]`.
+    pub(super) place: String,
+    /// What it means.
+    pub(super) meaning: Meaning,
+}
+
+/// What a key may stand for.
+#[derive(Debug, Clone)]
+pub(super) enum Meaning {
+    /// Another scenario.
+    Scenario(Source),
+    /// A change to the scenario.
+    Setting(Setting),
+}
+
+impl Choice {
+    /// Does it set the same?
+    pub(super) fn is_as(&self, other: &Self) -> bool {
+        match (&self.meaning, &other.meaning) {
+            (Meaning::Setting(own), Meaning::Setting(other)) => own.path() == other.path(),
+            (Meaning::Scenario(_), Meaning::Scenario(_)) => true,
+            _ => false,
+        }
+    }
+}
+
+/// What an object says, in whatever order: two that say the same are equal.
+pub(super) fn said(choices: &[Choice]) -> BTreeSet<(Option<&[String]>, String)> {
+    let said = choices.iter().map(|choice| {
+        let path = match &choice.meaning {
+            Meaning::Setting(setting) => Some(setting.path()),
+            Meaning::Scenario(_) => None,
+        };
+        (path, choice.value.to_string())
+    });
+    said.collect()
+}
+
+/// The settings of an object at `place`; with a folder, a scenario may be among them.
+pub(super) fn choices(
+    entries: &Entries,
+    place: &str,
+    folder: Option<&Path>,
+) -> Result<Vec<Choice>, Problem> {
+    let mut choices: Vec<Choice> = Vec::new();
+    for (key, value) in &entries.0 {
+        let choice = choice(key, value, [place, &format!("{place}.{key}")], folder)?;
+        if let Some(other) = choices.iter().find(|other| other.is_as(&choice)) {
+            return Err(problem(
+                choice.place,
+                format!("is the same as {}", shown(&other.key)),
+            ));
+        }
+        choices.push(choice);
+    }
+    Ok(choices)
+}
+
+/// A key of the grid with its values.
+pub(super) fn axis(key: &str, values: &Value, folder: &Path) -> Result<Vec<Choice>, Problem> {
+    let place = format!("grid.{key}");
+    let values = match values.as_array() {
+        None => return Err(problem(place, "must be a list of values")),
+        Some(values) if values.is_empty() => return Err(problem(place, "must not be empty")),
+        Some(values) => values,
+    };
+    if values.len() > MOST_CELLS {
+        let reason = format!(
+            "has {} values; at most {MOST_CELLS} cells are allowed",
+            values.len()
+        );
+        return Err(problem(place, reason));
+    }
+    let mut seen = HashSet::new();
+    if let Some(k) = values
+        .iter()
+        .position(|value| !seen.insert(value.to_string()))
+    {
+        let reason = format!("{} is given twice", short(&values[k]));
+        return Err(problem(format!("{place}[{k}]"), reason));
+    }
+    let value = |(k, value)| choice(key, value, ["grid", &format!("{place}[{k}]")], Some(folder));
+    values.iter().enumerate().map(value).collect()
+}
+
+/// One key with its value, inside of an object and at its own place.
+fn choice(
+    key: &str,
+    value: &Value,
+    [inside, place]: [&str; 2],
+    folder: Option<&Path>,
+) -> Result<Choice, Problem> {
+    let meaning = match (folder, value) {
+        (Some(folder), Value::String(name)) if key == SCENARIO => {
+            Meaning::Scenario(source(name, place, folder)?)
+        }
+        (Some(_), _) if key == SCENARIO => {
+            return Err(problem(place, "must be the name of a scenario, or a file"));
+        }
+        (None, _) if key == SCENARIO => {
+            return Err(problem(place, "belongs at the top of the study"));
+        }
+        _ => {
+            let text = format!("{}={}", shown(place), short(value));
+            let setting = Setting::new(key, value.clone(), text);
+            Meaning::Setting(setting.map_err(|error| problem(inside, error.to_string()))?)
+        }
+    };
+    Ok(Choice {
+        key: key.to_owned(),
+        value: value.clone(),
+        place: place.to_owned(),
+        meaning,
+    })
+}
+
+/// A scenario by its name, or a file.
+pub(super) fn source(name: &str, place: &str, folder: &Path) -> Result<Source, Problem> {
+    if let Some(shipped) = Source::shipped(name) {
+        return Ok(shipped);
+    }
+    let path: PathBuf = folder.join(name);
+    if path.is_file() {
+        return Ok(Source::File(path));
+    }
+    let known = SHIPPED.map(|shipped| shipped.name);
+    let reason = format!(
+        "no scenario is called `{}` (there are {}), and there is no file {}{}",
+        shown(name),
+        known.join(", "),
+        shown(&path.display().to_string()),
+        suggestion(name, known),
+    );
+    Err(problem(place, reason))
+}

@@ -1,0 +1,225 @@
+//! What is there of a study: its cells, finished, failed or missing, and means over seeds.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use serde_json::{Map, Value, json};
+
+use super::cell::Cell;
+use super::kept::{CellResult, Shelf};
+use super::{Study, tables};
+use crate::analysis::statistics::student_95;
+use crate::analysis::wave::Estimate;
+use crate::lab::reproduce::ReproduceError;
+
+/// What is there of a cell.
+#[derive(Debug, Clone, PartialEq)]
+pub enum State {
+    /// Its result.
+    Finished(Box<CellResult>),
+    /// Why there is none.
+    Failed(String),
+    /// It was not run yet.
+    Missing,
+}
+
+impl State {
+    /// In a word.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Finished(_) => "finished",
+            Self::Failed(_) => "failed",
+            Self::Missing => "missing",
+        }
+    }
+
+    /// The result, if there is one.
+    pub fn result(&self) -> Option<&CellResult> {
+        match self {
+            Self::Finished(result) => Some(result),
+            Self::Failed(_) | Self::Missing => None,
+        }
+    }
+}
+
+/// A study with the state of every cell.
+#[derive(Debug, Clone)]
+pub struct Gathered<'a> {
+    /// The study.
+    pub study: &'a Study,
+    /// By cell.
+    pub states: Vec<State>,
+}
+
+/// A number over the seeds of one combination of settings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Mean {
+    /// The mean.
+    pub mean: f64,
+    /// Half the width of its 95 % confidence interval (Student's t); none of a single value.
+    pub interval: Option<f64>,
+    /// Of how many values.
+    pub count: usize,
+}
+
+impl Mean {
+    fn of(values: &[f64]) -> Option<Self> {
+        let estimate = Estimate::of_mean(values)?;
+        Some(Self {
+            mean: estimate.value,
+            interval: student_95(values.len()).map(|t| t * estimate.error),
+            count: values.len(),
+        })
+    }
+}
+
+/// One combination of settings, over its seeds.
+pub(super) struct Combination<'a> {
+    /// Its cells.
+    pub cells: &'a [Cell],
+    /// How many of them are finished.
+    pub runs: usize,
+    /// In the order of [`Gathered::numbers`]; `None` where no run gave a value.
+    pub means: Vec<Option<Mean>>,
+}
+
+impl<'a> Gathered<'a> {
+    /// What `shelf` has of a study.
+    pub fn of(study: &'a Study, shelf: &Shelf) -> Self {
+        let state = |cell: &Cell| match (shelf.result(cell), shelf.failure(cell)) {
+            (Ok(Some(result)), _) => State::Finished(Box::new(result)),
+            (_, Some(failure)) => State::Failed(failure.message),
+            (_, None) => State::Missing,
+        };
+        Self {
+            study,
+            states: study.cells.iter().map(state).collect(),
+        }
+    }
+
+    /// How many cells are finished, failed and missing.
+    pub fn counts(&self) -> [usize; 3] {
+        let count = |name| {
+            self.states
+                .iter()
+                .filter(|state| state.name() == name)
+                .count()
+        };
+        ["finished", "failed", "missing"].map(count)
+    }
+
+    /// Writes `NAME.csv`, `NAME-summary.csv` and `NAME-results.json` into the shelf's folder.
+    ///
+    /// # Errors
+    /// They cannot be written.
+    pub fn write(&self, shelf: &Shelf) -> Result<Vec<PathBuf>, ReproduceError> {
+        let [csv, summary, json] = self.study.files();
+        Ok(vec![
+            shelf.write(&csv, &tables::cells(self).csv()?)?,
+            shelf.write(&summary, &tables::summary(self).csv()?)?,
+            shelf.write(&json, format!("{:#}\n", self.json()).as_bytes())?,
+        ])
+    }
+
+    /// The means over seeds as a table for a terminal.
+    pub fn text(&self) -> String {
+        tables::text(self).text()
+    }
+
+    /// Everything as one object.
+    pub fn json(&self) -> Value {
+        let names = self.numbers();
+        let cells = self.study.cells.iter().zip(&self.states);
+        let cells = cells.map(|(cell, state)| {
+            let mut entry = json!({
+                "cell": cell.number,
+                "settings": settings(cell),
+                "seed": cell.seed,
+                "status": state.name(),
+            });
+            match state {
+                State::Finished(result) => entry["result"] = json!(result),
+                State::Failed(message) => entry["error"] = json!(message),
+                State::Missing => {}
+            }
+            entry
+        });
+        let combinations = self.combinations();
+        let means = combinations.iter().map(|combination| {
+            let named = names.iter().zip(&combination.means);
+            let metrics: Map<String, Value> = named
+                .map(|(name, mean)| (name.clone(), mean.map_or(Value::Null, Mean::json)))
+                .collect();
+            json!({
+                "settings": combination.cells.first().map(settings),
+                "runs": combination.runs,
+                "means": metrics,
+            })
+        });
+        json!({
+            "study": self.study.name,
+            "file": self.study.document,
+            "engine": env!("SANDBOX_ENGINE"),
+            "cells": cells.collect::<Vec<_>>(),
+            "summary": means.collect::<Vec<_>>(),
+        })
+    }
+
+    /// The names of all measurements, by the alphabet.
+    pub(super) fn metrics(&self) -> Vec<String> {
+        let results = self.states.iter().filter_map(State::result);
+        let names: BTreeSet<&String> = results.flat_map(|r| r.summary.metrics.keys()).collect();
+        names.into_iter().cloned().collect()
+    }
+
+    /// What is averaged over seeds.
+    pub(super) fn numbers(&self) -> Vec<String> {
+        let mut names = self.metrics();
+        for name in ["evacuated", "time_secs"] {
+            if names.iter().all(|known| known != name) {
+                names.push(name.to_owned());
+            }
+        }
+        names
+    }
+
+    /// The combinations of settings in the order of their cells.
+    pub(super) fn combinations(&self) -> Vec<Combination<'a>> {
+        let names = self.numbers();
+        let size = self.study.seeds;
+        let groups = self.study.cells.chunks(size).zip(self.states.chunks(size));
+        let combination = |(cells, states): (&'a [Cell], &[State])| {
+            let results: Vec<&CellResult> = states.iter().filter_map(State::result).collect();
+            let mean = |name: &String| {
+                let values = results.iter().filter_map(|result| number(result, name));
+                Mean::of(&values.collect::<Vec<f64>>())
+            };
+            Combination {
+                cells,
+                runs: results.len(),
+                means: names.iter().map(mean).collect(),
+            }
+        };
+        groups.map(combination).collect()
+    }
+}
+
+impl Mean {
+    fn json(self) -> Value {
+        json!({ "mean": self.mean, "ci95": self.interval, "n": self.count })
+    }
+}
+
+/// What is varied, as an object.
+fn settings(cell: &Cell) -> Value {
+    Value::Object(cell.values.iter().cloned().collect())
+}
+
+fn number(result: &CellResult, name: &str) -> Option<f64> {
+    match (result.summary.metrics.get(name), name) {
+        (Some(value), _) => value.as_f64(),
+        (None, "evacuated") => Some(result.evacuated as f64),
+        (None, "time_secs") => Some(result.summary.time_secs),
+        (None, _) => None,
+    }
+}

@@ -1,0 +1,361 @@
+//! What a study's file says → its cells, checked.
+
+use std::collections::{BTreeSet, HashMap};
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::cell::{Cell, Source};
+use super::choice::{Choice, Meaning, SCENARIO, axis, choices, said, source};
+use super::entries::Entries;
+use super::memory::Memory;
+use super::seeds::Seeds;
+use super::{CellError, StudyError, problem};
+use crate::lab::job::side_by_side;
+use crate::scenario::input;
+use crate::scenario::quote::shown;
+use crate::scenario::{Problem, ScenarioError, Setting, in_plain_words, read_document};
+
+/// A study with more cells is taken for a mistake.
+pub(super) const MOST_CELLS: usize = 100_000;
+
+/// A longer name, with what results add to it, would be too long for a file's, bytes.
+const LONGEST_NAME: usize = 200;
+
+/// The whole file.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct File {
+    name: Option<String>,
+    #[serde(rename = "description")]
+    _description: Option<String>,
+    scenario: Option<String>,
+    settings: Entries,
+    list: Option<Vec<Entries>>,
+    grid: Entries,
+    seeds: Option<Seeds>,
+}
+
+/// A scenario over settings and seeds.
+#[derive(Debug, Clone)]
+pub struct Study {
+    /// What it is called, fit for a file.
+    pub name: String,
+    /// The file.
+    pub document: Value,
+    /// The names of what is varied, without the seeds: keys of the list, then of the grid, as written.
+    pub axes: Vec<String>,
+    /// Seeds per combination.
+    pub seeds: usize,
+    /// In the order of their numbers; seeds change first, then the grid's last key, the list last.
+    pub cells: Vec<Cell>,
+    /// Bytes of memory that cells share; `None` without a limit.
+    pub memory: Option<u64>,
+}
+
+impl Study {
+    /// Is the seed itself among what is varied?
+    pub(super) fn varies_seed(&self) -> bool {
+        self.axes.iter().any(|axis| axis == "seed")
+    }
+
+    /// The files that its scenarios are read from, each once.
+    pub fn inputs(&self) -> BTreeSet<&Path> {
+        self.cells.iter().flat_map(Cell::files).collect()
+    }
+
+    /// Reads a study, and checks the scenario of every cell.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its place in the file or the cell.
+    pub fn read(path: &Path) -> Result<Self, StudyError> {
+        Self::read_within(path, None)
+    }
+
+    /// The same on a machine with so many bytes of memory: cells are checked and computed only as many at once
+    /// as fit into it.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read), or a cell alone needs more memory.
+    pub fn read_within(path: &Path, memory: Option<u64>) -> Result<Self, StudyError> {
+        let text = input::text(path).map_err(|error| ScenarioError::Unreadable {
+            file: path.display().to_string(),
+            reason: error.to_string(),
+        })?;
+        Self::parse_within(&text, path, memory)
+    }
+
+    /// Reads a study from JSON; `path` is what messages call it, and files that it names are in that one's
+    /// folder.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn parse(text: &str, path: &Path) -> Result<Self, StudyError> {
+        Self::parse_within(text, path, None)
+    }
+
+    fn parse_within(text: &str, path: &Path, memory: Option<u64>) -> Result<Self, StudyError> {
+        let file = path.display().to_string();
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let invalid = |problem| ScenarioError::Invalid {
+            file: file.clone(),
+            problem,
+        };
+        let document = read_document(text, &file)?;
+        let written = parse(text).map_err(invalid)?;
+        let plan = Plan::new(&written, folder).map_err(invalid)?;
+        let name = written.name.unwrap_or_else(|| stem.into_owned());
+        check_name(&name).map_err(invalid)?;
+        let shared = Memory::new(memory);
+        let cells = Mutex::new(Vec::with_capacity(plan.count));
+        // Not on rayon's threads, which could take up another cell while they work on one that holds memory.
+        side_by_side(plan.count, |index| {
+            let cell = plan.cell(index, &shared);
+            let mut cells = cells.lock().unwrap_or_else(PoisonError::into_inner);
+            cells.push((index, cell));
+            Ok(())
+        })?;
+        let mut cells = cells.into_inner().unwrap_or_else(PoisonError::into_inner);
+        cells.sort_by_key(|&(index, _)| index);
+        let failed = |(index, cell): (usize, Result<Cell, CellError>)| {
+            cell.map_err(|error| StudyError::Cell {
+                file: file.clone(),
+                cell: index + 1,
+                error,
+            })
+        };
+        Ok(Self {
+            name,
+            document,
+            memory,
+            seeds: plan.seeds.len(),
+            cells: cells.into_iter().map(failed).collect::<Result<_, _>>()?,
+            axes: plan.names,
+        })
+    }
+}
+
+/// Is a name fit for the results' files on every system?
+fn check_name(name: &str) -> Result<(), Problem> {
+    let reason = if name.is_empty() {
+        "it is empty"
+    } else if name.starts_with('.') {
+        "it begins with a dot"
+    } else if name.contains(|c: char| "/\\<>:\"|?*".contains(c) || c.is_control()) {
+        "it has one of / \\ < > : \" | ? * or a control character"
+    } else if name.len() > LONGEST_NAME {
+        "it is too long"
+    } else {
+        return Ok(());
+    };
+    let reason = format!(
+        "must be fit for a file's name, not \"{}\": {reason}; give a `name` without these, of at most \
+         {LONGEST_NAME} bytes",
+        shown(name)
+    );
+    Err(problem("name", reason))
+}
+
+/// Names and types.
+fn parse(text: &str) -> Result<File, Problem> {
+    if !text.trim_start().starts_with('{') {
+        return Err(problem("", "must be an object, {…}, with a `scenario`"));
+    }
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
+        let path = error.path().to_string();
+        let said = error.inner();
+        let place = format!(" at line {} column {}", said.line(), said.column());
+        let said = said.to_string();
+        let reason = in_plain_words(said.strip_suffix(&place).unwrap_or(&said));
+        problem(if path == "." { String::new() } else { path }, reason)
+    })
+}
+
+/// Everything that cells are put together from.
+struct Plan {
+    names: Vec<String>,
+    /// That of cells whose settings name none.
+    scenario: Source,
+    fixed: Vec<Choice>,
+    /// The combinations of the list; one of nothing without a list.
+    rows: Vec<Vec<Choice>>,
+    /// The values of each axis of the grid.
+    grid: Vec<Vec<Choice>>,
+    /// The seeds as settings; one of nothing if the study gives none.
+    seeds: Vec<Option<Setting>>,
+    count: usize,
+}
+
+impl Plan {
+    fn new(file: &File, folder: &Path) -> Result<Self, Problem> {
+        let fixed = choices(&file.settings, "settings", None)?;
+        let rows: Vec<Vec<Choice>> = match &file.list {
+            None => vec![Vec::new()],
+            Some(list) if list.is_empty() => return Err(problem("list", "must not be empty")),
+            Some(list) if list.len() > MOST_CELLS => {
+                let reason = format!("has {} cells; at most {MOST_CELLS} are allowed", list.len());
+                return Err(problem("list", reason));
+            }
+            Some(list) => {
+                let row = |(k, row)| choices(row, &format!("list[{k}]"), Some(folder));
+                list.iter().enumerate().map(row).collect::<Result<_, _>>()?
+            }
+        };
+        let grid = file
+            .grid
+            .0
+            .iter()
+            .map(|(key, values)| axis(key, values, folder));
+        let grid = grid.collect::<Result<Vec<_>, _>>()?;
+        let mut plan = Self {
+            names: Vec::new(),
+            scenario: match &file.scenario {
+                Some(name) => source(name, SCENARIO, folder)?,
+                None => varied_scenario(&rows, &grid)?,
+            },
+            fixed,
+            rows,
+            grid,
+            seeds: seeds(file.seeds.as_ref())?,
+            count: 0,
+        };
+        plan.refuse_repetitions()?;
+        let varied = plan.rows.iter().flatten().chain(plan.grid.iter().flatten());
+        for choice in varied {
+            if !plan.names.contains(&choice.key) {
+                plan.names.push(choice.key.clone());
+            }
+        }
+        plan.count = plan.cells()?;
+        Ok(plan)
+    }
+
+    /// How many cells there are.
+    fn cells(&self) -> Result<usize, Problem> {
+        let sizes = self.grid.iter().map(Vec::len);
+        let sizes = sizes.chain([self.rows.len(), self.seeds.len()]);
+        let count = sizes.map(|size| size as f64).product::<f64>();
+        if count > MOST_CELLS as f64 {
+            let reason = format!("makes {count} cells; at most {MOST_CELLS} are allowed");
+            return Err(problem("", reason));
+        }
+        Ok(count as usize)
+    }
+
+    /// A setting that another one always goes before means nothing, and nothing is run twice.
+    fn refuse_repetitions(&self) -> Result<(), Problem> {
+        let mut seen = HashMap::new();
+        for (k, row) in self.rows.iter().enumerate() {
+            if let Some(other) = seen.insert(said(row), k) {
+                let reason = format!("is the same as list[{other}]");
+                return Err(problem(format!("list[{k}]"), reason));
+            }
+        }
+        let seed = self.seeds[0].as_ref();
+        let refuse = |choice: &Choice, other: String| {
+            let reason = format!("is also given by {}; give it in one of them", shown(&other));
+            Err(problem(&choice.place, reason))
+        };
+        let axes: Vec<&Choice> = self.grid.iter().filter_map(|axis| axis.first()).collect();
+        for (k, choice) in axes.iter().enumerate() {
+            let axis = format!("grid.{}", choice.key);
+            let rows = self.rows.iter().flatten();
+            let others = self.fixed.iter().chain(rows);
+            if let Some(other) = others.into_iter().find(|other| other.is_as(choice)) {
+                return refuse(other, axis);
+            }
+            if let Some(other) = axes[..k].iter().find(|other| other.is_as(choice)) {
+                return Err(problem(
+                    axis,
+                    format!("is the same as grid.{}", shown(&other.key)),
+                ));
+            }
+        }
+        let all = self
+            .fixed
+            .iter()
+            .chain(self.rows.iter().flatten())
+            .chain(axes);
+        for choice in all {
+            let own = matches!(&choice.meaning, Meaning::Setting(own)
+                if seed.is_some_and(|seed| seed.path() == own.path()));
+            if own {
+                return refuse(choice, "seeds".to_owned());
+            }
+        }
+        Ok(())
+    }
+
+    /// A cell by its place, from 0.
+    fn cell(&self, index: usize, memory: &Memory) -> Result<Cell, CellError> {
+        let mut rest = index;
+        let mut digit = |size: usize| {
+            let digit = rest % size;
+            rest /= size;
+            digit
+        };
+        let seed = self.seeds[digit(self.seeds.len())].clone();
+        let grid: Vec<&Choice> = self
+            .grid
+            .iter()
+            .rev()
+            .map(|axis| &axis[digit(axis.len())])
+            .collect();
+        let row = &self.rows[digit(self.rows.len())];
+        let varied: Vec<&Choice> = row.iter().chain(grid.into_iter().rev()).collect();
+        let mut scenario = self.scenario.clone();
+        let mut settings = Vec::new();
+        for choice in self.fixed.iter().chain(varied.iter().copied()) {
+            match &choice.meaning {
+                Meaning::Scenario(source) => scenario = source.clone(),
+                Meaning::Setting(setting) => settings.push(setting.clone()),
+            }
+        }
+        settings.extend(seed);
+        let values = varied
+            .iter()
+            .map(|choice| (choice.key.clone(), choice.value.clone()));
+        Cell::new(index + 1, values.collect(), scenario, settings, memory)
+    }
+}
+
+/// One of the scenarios of a study that gives none at the top, if it gives every cell one.
+fn varied_scenario(rows: &[Vec<Choice>], grid: &[Vec<Choice>]) -> Result<Source, Problem> {
+    let of = |choices: &[Choice]| {
+        choices.iter().find_map(|choice| match &choice.meaning {
+            Meaning::Scenario(source) => Some(source.clone()),
+            Meaning::Setting(_) => None,
+        })
+    };
+    let in_every_row: Option<Vec<Source>> = rows.iter().map(|row| of(row)).collect();
+    let found = in_every_row.and_then(|sources| sources.into_iter().next());
+    found
+        .or_else(|| grid.iter().find_map(|axis| of(axis)))
+        .ok_or_else(|| {
+            let reason = "is missing: the name of a scenario (see `sandbox list`), or a file";
+            problem(SCENARIO, reason)
+        })
+}
+
+fn seeds(given: Option<&Seeds>) -> Result<Vec<Option<Setting>>, Problem> {
+    let Some(given) = given else {
+        return Ok(vec![None]);
+    };
+    let setting = |(k, seed): (usize, u64)| {
+        let text = format!("seeds[{k}]={seed}");
+        let setting = Setting::new("seed", Value::from(seed), text);
+        setting
+            .map(Some)
+            .map_err(|error| problem("seeds", error.to_string()))
+    };
+    given
+        .all(MOST_CELLS)?
+        .into_iter()
+        .enumerate()
+        .map(setting)
+        .collect()
+}

@@ -1,0 +1,245 @@
+//! The layout that a recording opens with: the crowd twice, some agents laid open, plots, text.
+
+use rerun::blueprint::components::{
+    BackgroundKind, LoopMode, PanelState, PlayState, VisualBounds2D as Bounds,
+};
+use rerun::blueprint::{
+    Blueprint, BlueprintActivation, BlueprintPanel, ContainerLike, Horizontal, SelectionPanel,
+    Spatial2DView, Tabs, TextDocumentView, TextLogView, TimePanel, TimeSeriesView, Vertical,
+    VisualizableArchetype as _, Visualizer, VisualizerComponentMapping,
+};
+use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind, TimeInt};
+use rerun::external::re_sdk_types::blueprint::archetypes::{
+    Background, EntityBehavior, VisualBounds2D,
+};
+use rerun::{AsComponents, Color, EntityPath, Points2D, RecordingStream, RecordingStreamBuilder};
+
+use super::error::Cause;
+use super::{APPLICATION, DebugAgents, RecordingOptions, SIM_TIME, crowd, geometry, text};
+use crate::engine::scene::Region;
+
+/// Length of the loop that plays first, seconds.
+const LOOP: f64 = 10.0;
+const BACKGROUND: [u8; 3] = [22, 23, 29];
+/// Light enough for agents at rest, which are black.
+const SPEED_BACKGROUND: [u8; 3] = [72, 75, 88];
+/// The crowd where it is only the background.
+const DIM: [u8; 3] = [64, 68, 84];
+
+/// A property of a view that rerun's blueprint has no setter for: its entity and its value.
+type Property = (EntityPath, Box<dyn AsComponents>);
+
+/// What the layout depends on besides the options.
+#[derive(Debug, Clone, Copy)]
+pub enum Opening {
+    /// Nothing is there yet: everything stands still at the start.
+    Empty,
+    /// Somebody looks on while it comes.
+    Live,
+    /// All is there: the seconds to look at first play, and the debug view shows this, or as much as the
+    /// crowd views. The viewer would not go to a time that it has not read yet.
+    Whole(Option<Region>),
+}
+
+/// What there is to show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Content {
+    /// A simulation.
+    Run,
+    /// A crowd that was measured: nobody knows its energy, and it took no computing time.
+    Measurement,
+}
+
+/// Sends the default blueprint.
+pub fn send(
+    stream: &RecordingStream,
+    options: &RecordingOptions,
+    opening: Opening,
+    content: Content,
+) -> Result<(), Cause> {
+    let (blueprint, properties) = layout(options, opening, content);
+    let (memory, storage) = RecordingStreamBuilder::new(APPLICATION)
+        .send_properties(false)
+        .memory()?;
+    let activation = BlueprintActivation {
+        make_active: true,
+        make_default: true,
+    };
+    blueprint.send(&memory, activation)?;
+    let own = |message: &LogMsg| {
+        message.store_id().kind() == StoreKind::Blueprint
+            && !matches!(message, LogMsg::BlueprintActivationCommand(_))
+    };
+    let mut messages: Vec<LogMsg> = storage.take().into_iter().filter(own).collect();
+    let Some(id) = messages.first().map(|message| message.store_id().clone()) else {
+        return Ok(());
+    };
+    let (extra, extra_storage) = RecordingStreamBuilder::from_store_id(&id)
+        .send_properties(false)
+        .memory()?;
+    extra.set_time_sequence("blueprint", 0);
+    for (entity, value) in &properties {
+        extra.log(entity.clone(), value.as_ref())?;
+    }
+    let is_data = |message: &LogMsg| matches!(message, LogMsg::ArrowMsg(..));
+    messages.extend(extra_storage.take().into_iter().filter(is_data));
+    let activation = BlueprintActivationCommand {
+        blueprint_id: id,
+        make_active: true,
+        make_default: true,
+    };
+    stream.send_blueprint(messages, activation);
+    Ok(())
+}
+
+fn layout(
+    options: &RecordingOptions,
+    opening: Opening,
+    content: Content,
+) -> (Blueprint, Vec<Property>) {
+    let geometry = "+ /world/geometry/**";
+    let agents = format!("+ /{}", crowd::ENTITY);
+    let crowd = |name: &str| {
+        Spatial2DView::new(name)
+            .with_origin("/")
+            .with_contents([geometry, agents.as_str()])
+    };
+    let by_density = crowd("Density 0–8 P/m²").into();
+    let by_speed = crowd("Speed 0–1.8 m/s")
+        .with_overrides(crowd::ENTITY, [speed_colors()])
+        .into();
+    let mut properties = Vec::new();
+    add_properties(&mut properties, &by_density, &options.view, BACKGROUND);
+    add_properties(&mut properties, &by_speed, &options.view, SPEED_BACKGROUND);
+    let mut below = Vec::new();
+    if options.debug != DebugAgents::None {
+        let forces = Spatial2DView::new("Forces")
+            .with_origin("/")
+            .with_contents([geometry, agents.as_str(), "+ /world/debug/**"])
+            .with_overrides(crowd::ENTITY, [dim_colors()])
+            .into();
+        let shown = match opening {
+            Opening::Whole(Some(focus)) => focus,
+            Opening::Whole(None) | Opening::Empty | Opening::Live => options.view,
+        };
+        add_properties(&mut properties, &forces, &shown, BACKGROUND);
+        below.push(forces);
+    }
+    below.extend([plots(content), texts(content)]);
+    let root = Vertical::new([
+        Horizontal::new([by_density, by_speed]).into(),
+        Horizontal::new(below).into(),
+    ])
+    .with_row_shares([3.0, 2.0]);
+    let blueprint = Blueprint::new(root)
+        .with_auto_views(false)
+        .with_auto_layout(false)
+        .with_blueprint_panel(BlueprintPanel::from_state(PanelState::Collapsed))
+        .with_selection_panel(SelectionPanel::from_state(PanelState::Collapsed))
+        .with_time_panel(time_panel(options, opening));
+    (blueprint, properties)
+}
+
+/// A blueprint of rerun 0.36 has no current time, but a loop that plays begins where it is told to:
+/// the seconds to look at first.
+fn time_panel(options: &RecordingOptions, opening: Opening) -> TimePanel {
+    let panel = TimePanel::new()
+        .with_state(PanelState::Collapsed)
+        .with_timeline(SIM_TIME);
+    let start = options.opens_at;
+    let end = (start + LOOP).min(options.ends_at);
+    if matches!(opening, Opening::Live) {
+        return panel.with_play_state(PlayState::Following);
+    }
+    if matches!(opening, Opening::Empty) || end <= start {
+        return panel.with_play_state(PlayState::Paused);
+    }
+    let [start, end] = [start, end].map(TimeInt::from_secs);
+    panel
+        .with_time_selection(start..=end)
+        .with_loop_mode(LoopMode::Selection)
+        .with_play_state(PlayState::Playing)
+}
+
+/// The crowd's points with the second colouring.
+fn speed_colors() -> Visualizer {
+    let colors = Points2D::descriptor_colors().component;
+    let mapping = VisualizerComponentMapping::new_source_component(colors, crowd::SPEED_COLORS);
+    Points2D::update_fields()
+        .visualizer()
+        .with_mappings(vec![mapping.into()])
+}
+
+/// The crowd's points in one dark colour, so that arrows stand out.
+fn dim_colors() -> Visualizer {
+    let [r, g, b] = DIM;
+    Points2D::update_fields()
+        .with_colors([Color::from_rgb(r, g, b)])
+        .visualizer()
+}
+
+fn plots(content: Content) -> ContainerLike {
+    let plot = |name: &str, origin: &str| TimeSeriesView::new(name).with_origin(origin).into();
+    let motion = Vertical::new([
+        plot("Density", "/stats/density"),
+        plot("Mean speed", "/stats/speed"),
+    ])
+    .with_name("Density and speed")
+    .into();
+    if content == Content::Measurement {
+        return Tabs::new([motion, plot("Agents", "/stats/crowd")]).into();
+    }
+    let pages: [ContainerLike; 3] = [
+        motion,
+        Vertical::new([
+            plot("Agents", "/stats/crowd"),
+            plot("Kinetic energy", "/stats/energy"),
+        ])
+        .with_name("Agents and energy")
+        .into(),
+        plot("Computing time", "/stats/time"),
+    ];
+    Tabs::new(pages).into()
+}
+
+fn texts(content: Content) -> ContainerLike {
+    let document = |name: &str| -> ContainerLike {
+        let origin = format!("/{}", text::DOCUMENT);
+        TextDocumentView::new(name).with_origin(origin).into()
+    };
+    if content == Content::Measurement {
+        return document("Measurement");
+    }
+    Tabs::new([
+        document("Scenario"),
+        TextLogView::new("Events").with_origin("/log").into(),
+    ])
+    .into()
+}
+
+/// Zoom, background, and no clicks for the picture of the obstacles, which would swallow them all.
+fn add_properties(
+    properties: &mut Vec<Property>,
+    view: &ContainerLike,
+    shown: &Region,
+    [r, g, b]: [u8; 3],
+) {
+    let ContainerLike::View(view) = view else {
+        return;
+    };
+    let at = |name: String| view.blueprint_path().join(&EntityPath::from(name));
+    // The picture is turned: y up in metres is y down on the screen.
+    let bounds = VisualBounds2D::new(Bounds(rerun::datatypes::Range2D {
+        x_range: [shown.min.x, shown.max.x].into(),
+        y_range: [-shown.max.y, -shown.min.y].into(),
+    }));
+    properties.push((at("VisualBounds2D".to_owned()), Box::new(bounds)));
+    let background =
+        Background::new(BackgroundKind::SolidColor).with_color(Color::from_rgb(r, g, b));
+    properties.push((at("Background".to_owned()), Box::new(background)));
+    let obstacles = geometry::OBSTACLES;
+    properties.push((
+        at(format!("ViewContents/overrides/{obstacles}/visualizers")),
+        Box::new(EntityBehavior::new().with_interactive(false)),
+    ));
+}

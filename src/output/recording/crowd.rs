@@ -1,0 +1,120 @@
+//! The whole crowd as one entity.
+//!
+//! Rows are in the order of the ids, so that radii and ids change only when somebody enters or
+//! leaves and are logged only then.
+
+use std::sync::Arc;
+
+use rerun::external::arrow::array::{ArrayRef, Float16Array, Float32Array, UInt32Array};
+use rerun::external::arrow::datatypes::{ArrowPrimitiveType, Float16Type};
+use rerun::{AsComponents, Color, DynamicArchetype, Points2D, Radius, RecordingStream};
+
+use super::error::Cause;
+use super::snapshot::Snapshot;
+use crate::output::colors::{self, ColorMap};
+
+type F16 = <Float16Type as ArrowPrimitiveType>::Native;
+
+/// Where the crowd is.
+pub const ENTITY: &str = "world/agents";
+/// Group of the values that are ours; the viewer shows `agent:density`, and so on.
+const ARCHETYPE: &str = "agent";
+/// The component with the second colouring.
+pub const SPEED_COLORS: &str = "agent:speed_colors";
+
+/// Logs the crowd.
+#[derive(Default)]
+pub struct Crowd {
+    logged_ids: Vec<u32>,
+    rows: Rows,
+}
+
+fn color(map: &ColorMap, value: f32) -> Color {
+    let [r, g, b] = map.color(value);
+    Color::from_rgb(r, g, b)
+}
+
+pub fn log_style(stream: &RecordingStream) -> Result<(), Cause> {
+    let style = Points2D::update_fields().with_draw_order(1.0);
+    Ok(stream.log_static(ENTITY, &style)?)
+}
+
+impl Crowd {
+    pub fn log(&mut self, stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
+        self.rows.sort(&snapshot.ids);
+        self.log_bodies(stream, snapshot)?;
+        let rows = &self.rows.order;
+        let positions = rows.iter().map(|&i| snapshot.positions[i]);
+        let mut points = Points2D::update_fields().with_positions(positions);
+        let speed = |&i: &usize| {
+            let [x, y] = snapshot.velocities[i];
+            color(&colors::SPEED, x.hypot(y))
+        };
+        let mut values = DynamicArchetype::new(ARCHETYPE)
+            .with_component::<rerun::components::Color>("speed_colors", rows.iter().map(speed));
+        if snapshot.densities.is_empty() {
+            points = points.with_colors([Color::from_rgb(128, 128, 128)]);
+        } else {
+            let density = |&i: &usize| color(&colors::DENSITY, snapshot.densities[i]);
+            points = points.with_colors(rows.iter().map(density));
+            values = values.with_component_from_data("density", halves(rows, &snapshot.densities));
+        }
+        if !snapshot.pressures.is_empty() {
+            let pressure = rows.iter().map(|&i| snapshot.pressures[i]);
+            let pressure = Arc::new(Float32Array::from_iter_values(pressure)) as ArrayRef;
+            values = values
+                .with_component_from_data("rest_density", halves(rows, &snapshot.rest_densities))
+                .with_component_from_data("pressure", pressure);
+        }
+        stream.log(ENTITY, &[&points as &dyn AsComponents, &values])?;
+        Ok(())
+    }
+
+    /// What an agent keeps as long as it is there.
+    fn log_bodies(&mut self, stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
+        let rows = &self.rows.order;
+        let ids = rows.iter().map(|&i| snapshot.ids[i]);
+        if ids.clone().eq(self.logged_ids.iter().copied()) {
+            return Ok(());
+        }
+        self.logged_ids.clear();
+        self.logged_ids.extend(ids);
+        let radii = rows.iter().map(|&i| snapshot.radii[i]);
+        let points = Points2D::update_fields().with_radii(radii.map(Radius::new_scene_units));
+        let ids = Arc::new(UInt32Array::from(self.logged_ids.clone())) as ArrayRef;
+        let values = DynamicArchetype::new(ARCHETYPE).with_component_from_data("id", ids);
+        stream.log(ENTITY, &[&points as &dyn AsComponents, &values])?;
+        Ok(())
+    }
+}
+
+/// Half precision: three digits of a density in half the bytes.
+fn halves(rows: &[usize], values: &[f32]) -> ArrayRef {
+    let halves = rows.iter().map(|&i| F16::from_f32(values[i]));
+    Arc::new(Float16Array::from_iter_values(halves))
+}
+
+/// Sorts agents by id in linear time; keeps its memory.
+#[derive(Default)]
+struct Rows {
+    index_of: Vec<u32>,
+    /// Indices of the agents in the order of their ids.
+    order: Vec<usize>,
+}
+
+impl Rows {
+    fn sort(&mut self, ids: &[u32]) {
+        const NOBODY: u32 = u32::MAX;
+        self.order.clear();
+        let (Some(&first), Some(&last)) = (ids.iter().min(), ids.iter().max()) else {
+            return;
+        };
+        self.index_of.clear();
+        self.index_of.resize((last - first) as usize + 1, NOBODY);
+        for (i, id) in ids.iter().enumerate() {
+            self.index_of[(id - first) as usize] = i as u32;
+        }
+        let present = self.index_of.iter().filter(|&&i| i != NOBODY);
+        self.order.extend(present.map(|&i| i as usize));
+    }
+}

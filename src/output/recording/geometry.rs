@@ -1,0 +1,267 @@
+//! What stands still: walls, obstacles and goals, logged once.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rerun::components::ImageFormat;
+use rerun::{
+    AnnotationContext, AsComponents, ChannelDatatype, Color, ColorModel, LineStrips2D, Points2D,
+    Radius, RecordingStream, Rgba32, SegmentationImage, Transform3D,
+};
+
+use super::error::Cause;
+use crate::engine::agents::Agents;
+use crate::engine::geometry::Polygon;
+use crate::engine::math::Vector;
+use crate::engine::scene::{Goal, Scene};
+
+/// The filled obstacles: a picture under everything else.
+pub const OBSTACLES: &str = "world/geometry/obstacles";
+/// Longest side of that picture in pixels.
+const RASTER_SIDE: f64 = 1024.0;
+/// Its pixels are not smaller than this, metres.
+const RASTER_CELL: f64 = 0.05;
+/// What is solid without end is shown so far round the floor, metres.
+const SOLID_MARGIN: f64 = 1.0;
+/// No more goals than this are shown, and no more than `NAMED_GOALS` with names.
+const GOALS: usize = 200;
+const NAMED_GOALS: usize = 8;
+
+const WALL: Color = Color(Rgba32::from_rgb(214, 214, 222));
+const GOAL: Color = Color(Rgba32::from_rgb(95, 211, 120));
+
+/// What stands still: walls, and where the scene's agents go.
+pub fn log(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result<(), Cause> {
+    log_still(stream, scene.walls.obstacles())?;
+    log_goals(stream, scene, agents)
+}
+
+/// Which way is up, and walls.
+pub fn log_still(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), Cause> {
+    // Y up: 2D views have it down.
+    stream.log_static("world", &Transform3D::from_scale([1.0, -1.0, 1.0]))?;
+    if !obstacles.is_empty() {
+        log_walls(stream, obstacles)?;
+        log_obstacles(stream, obstacles)?;
+    }
+    Ok(())
+}
+
+fn log_walls(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), Cause> {
+    let rings = obstacles.iter().flat_map(Polygon::rings);
+    let outlines = rings.map(|ring| {
+        let closed = ring.iter().chain(ring.first());
+        closed.map(|&p| xy(p)).collect::<Vec<_>>()
+    });
+    let walls = LineStrips2D::new(outlines)
+        .with_radii([Radius::new_ui_points(0.75)])
+        .with_colors([WALL])
+        .with_draw_order(5.0);
+    Ok(stream.log_static("world/geometry/walls", &walls)?)
+}
+
+fn log_obstacles(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), Cause> {
+    let raster = Raster::of(obstacles);
+    let classes = AnnotationContext::new([
+        (0, "free", Rgba32::TRANSPARENT),
+        (1, "obstacle", Rgba32::from_rgb(84, 86, 98)),
+    ]);
+    let format = ImageFormat::from_color_model(
+        [raster.columns as u32, raster.rows as u32],
+        ColorModel::L,
+        ChannelDatatype::U8,
+    );
+    let image = SegmentationImage::new(raster.pixels, format)
+        .with_opacity(1.0)
+        .with_draw_order(-5.0);
+    let place = Transform3D::from_translation_scale(
+        [raster.min.x as f32, raster.min.y as f32, 0.0],
+        [raster.cell as f32; 3],
+    );
+    let parts: [&dyn AsComponents; 3] = [&place, &classes, &image];
+    Ok(stream.log_static(OBSTACLES, &parts)?)
+}
+
+/// The obstacles as a picture, 1 inside; rows from the lowest y up.
+struct Raster {
+    min: Vector,
+    cell: f64,
+    columns: usize,
+    rows: usize,
+    pixels: Vec<u8>,
+}
+
+impl Raster {
+    fn of(obstacles: &[Polygon]) -> Self {
+        let points = || obstacles.iter().flat_map(Polygon::points);
+        let infinity = Vector::repeat(f64::INFINITY);
+        let min = points().fold(infinity, |min, p| min.inf(p));
+        let max = points().fold(-infinity, |max, p| max.sup(p));
+        let unbounded = obstacles.iter().any(Polygon::is_unbounded);
+        let margin = Vector::repeat(if unbounded { SOLID_MARGIN } else { 0.0 });
+        let (min, max) = (min - margin, max + margin);
+        let cell = ((max - min).max() / RASTER_SIDE).max(RASTER_CELL);
+        let cells = |length: f64| (length / cell).ceil().max(1.0) as usize;
+        let (columns, rows) = (cells(max.x - min.x), cells(max.y - min.y));
+        let mut raster = Self {
+            min,
+            cell,
+            columns,
+            rows,
+            pixels: vec![0; columns * rows],
+        };
+        for obstacle in obstacles {
+            raster.fill(obstacle);
+        }
+        raster
+    }
+
+    /// Fills between every other crossing of a row's middle with the outline.
+    fn fill(&mut self, obstacle: &Polygon) {
+        for row in 0..self.rows {
+            let y = self.min.y + (row as f64 + 0.5) * self.cell;
+            let mut crossings: Vec<f64> = obstacle
+                .edges()
+                .filter(|(a, b)| (a.y > y) != (b.y > y))
+                .map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y))
+                .collect();
+            if obstacle.is_unbounded() {
+                crossings.extend([f64::NEG_INFINITY, f64::INFINITY]);
+            }
+            crossings.sort_by(f64::total_cmp);
+            for inside in crossings.chunks_exact(2) {
+                // Pixels whose centres lie inside; `as` saturates at 0.
+                let column = |x: f64| ((x - self.min.x) / self.cell + 0.5) as usize;
+                let (from, to) = (column(inside[0]), column(inside[1]).min(self.columns));
+                self.pixels[row * self.columns..][from.min(to)..to].fill(1);
+            }
+        }
+    }
+}
+
+fn log_goals(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result<(), Cause> {
+    let goals = goals(scene, agents);
+    if goals.is_empty() {
+        return Ok(());
+    }
+    let mut points = Points2D::new(goals.iter().map(|(p, _)| xy(*p)))
+        .with_radii([Radius::new_ui_points(5.0)])
+        .with_colors([GOAL])
+        .with_draw_order(6.0);
+    if goals.len() <= NAMED_GOALS {
+        points = points.with_labels(labels(scene, &goals));
+    }
+    Ok(stream.log_static("world/geometry/goals", &points)?)
+}
+
+/// One name for all goals of the same groups, at the first of them.
+fn labels(scene: &Scene, goals: &[(Vector, BTreeSet<u16>)]) -> Vec<String> {
+    let mut named = BTreeSet::new();
+    let label = |(_, groups): &(Vector, BTreeSet<u16>)| match named.insert(groups.clone()) {
+        true => label(scene, groups),
+        false => String::new(),
+    };
+    goals.iter().map(label).collect()
+}
+
+/// What a goal is called.
+fn label(scene: &Scene, of: &BTreeSet<u16>) -> String {
+    if of.len() == scene.groups.len() {
+        return "goal".to_owned();
+    }
+    let groups = of
+        .iter()
+        .filter_map(|&group| scene.groups.get(usize::from(group)));
+    let names: BTreeSet<&str> = groups.map(|group| group.name.as_str()).collect();
+    format!("goal of {}", Vec::from_iter(names).join(", "))
+}
+
+/// The different goals of those who are there and whose they are; of a source with a goal for each those of its first entry.
+fn goals(scene: &Scene, agents: &Agents) -> Vec<(Vector, BTreeSet<u16>)> {
+    let own = agents.goal.iter().zip(&agents.group);
+    let own = own.map(|(&goal, &group)| (goal, group));
+    let entering = scene.sources.iter().flat_map(|source| {
+        let goals: Vec<Vector> = match source.goal {
+            Goal::Point(goal) => vec![goal],
+            Goal::Offset(offset) => {
+                let starts = source.grid.positions(scene.seed, 0).take(GOALS);
+                starts.map(|start| start + offset).collect()
+            }
+        };
+        goals.into_iter().map(|goal| (goal, source.group))
+    });
+    let millimetres = |x: f64| (x * 1000.0).round() as i64;
+    let mut different = BTreeMap::new();
+    for (goal, group) in own.chain(entering) {
+        let place = (millimetres(goal.x), millimetres(goal.y));
+        let (_, groups) = different.entry(place).or_insert((goal, BTreeSet::new()));
+        groups.insert(group);
+    }
+    different.into_values().take(GOALS).collect()
+}
+
+pub fn xy(v: Vector) -> [f32; 2] {
+    [v.x as f32, v.y as f32]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::geometry::{Area, Ring};
+
+    #[test]
+    fn the_picture_of_an_obstacle_covers_its_area() {
+        let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [2.0, 1.0], [0.0, 3.0]];
+        let polygon = Polygon::new(corners.map(|[x, y]| Vector::new(x, y)).to_vec()).unwrap();
+        let raster = Raster::of(std::slice::from_ref(&polygon));
+        let filled = raster.pixels.iter().filter(|&&pixel| pixel == 1).count() as f64;
+        assert!((filled * raster.cell.powi(2) - 8.0).abs() < 0.1);
+        assert_eq!(raster.pixels[0], 1, "the lower left corner is solid");
+        let above_the_notch = (raster.rows - 1) * raster.columns + raster.columns / 2;
+        assert_eq!(raster.pixels[above_the_notch], 0);
+    }
+
+    #[test]
+    fn the_picture_of_holes_that_touch_the_outline_and_each_other_is_what_the_engine_takes_for_solid()
+     {
+        let ring = |corners: &[[f64; 2]]| {
+            Ring::new(corners.iter().map(|&p| Vector::from(p)).collect()).unwrap()
+        };
+        let floor = Area {
+            exterior: ring(&[[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]),
+            holes: vec![
+                ring(&[[10.0, 10.0], [5.0, 8.0], [5.0, 5.0], [8.0, 5.0]]),
+                ring(&[[5.0, 5.0], [2.0, 4.0], [4.0, 2.0]]),
+                ring(&[[0.0, 6.0], [1.0, 7.0], [0.0, 8.0]]),
+            ],
+        };
+        let walls = Polygon::enclosing(vec![floor]).unwrap();
+        let raster = Raster::of(std::slice::from_ref(&walls));
+        for (k, &pixel) in raster.pixels.iter().enumerate() {
+            let place = Vector::new((k % raster.columns) as f64, (k / raster.columns) as f64);
+            let p = raster.min + (place + Vector::repeat(0.5)) * raster.cell;
+            let nearest = walls.edges().map(|(a, b)| {
+                let along = (b - a).dot(&(p - a)) / (b - a).norm_squared();
+                (a + (b - a) * along.clamp(0.0, 1.0) - p).norm()
+            });
+            if nearest.fold(f64::INFINITY, f64::min) > 1e-6 {
+                assert_eq!(pixel == 1, walls.contains(p), "{p}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_picture_of_an_enclosure_leaves_the_floor_free_and_has_a_margin() {
+        let square = |low: f64, high: f64| {
+            let corners = [[low, low], [high, low], [high, high], [low, high]];
+            Ring::new(corners.map(Vector::from).to_vec()).unwrap()
+        };
+        let floor = Area {
+            exterior: square(0.0, 10.0),
+            holes: vec![square(4.0, 6.0)],
+        };
+        let raster = Raster::of(&[Polygon::enclosing(vec![floor]).unwrap()]);
+        let filled = raster.pixels.iter().filter(|&&pixel| pixel == 1).count() as f64;
+        assert!((filled * raster.cell.powi(2) - (144.0 - 96.0)).abs() < 0.5);
+        assert_eq!((raster.pixels[0], raster.pixels.last()), (1, Some(&1)));
+    }
+}

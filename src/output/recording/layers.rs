@@ -1,0 +1,283 @@
+//! The entities under `world/debug`: kernels, hidden regions, wall points and every force.
+
+use rerun::{
+    Arrows2D, AsComponents, Color, Ellipses2D, LineStrips2D, Points2D, Radius, RecordingStream,
+};
+
+use super::debug::{DebugAgents, Open};
+use super::error::Cause;
+use super::geometry::xy;
+use crate::engine::boundary::WallMethod;
+use crate::engine::math::Vector;
+use crate::engine::profile::Navigation;
+use crate::engine::scene::Scene;
+
+/// With more agents laid open at once their ids would hide everything; a click still tells them.
+const MOST_LABELS: usize = 40;
+
+/// Length of an arrow in metres for an acceleration of 1 m/s²: half a metre for the goal force of an
+/// average person at rest.
+pub const METRES_PER_ACCELERATION: f64 = 0.2;
+
+/// One entity under `world/debug`.
+struct Layer {
+    entity: String,
+    kind: Kind,
+    shown: bool,
+}
+
+/// What a layer shows.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Labels,
+    Kernels,
+    HiddenRegions,
+    Links,
+    NearestPoints,
+    RepresentativePoints,
+    /// A term of the breakdown by its place there.
+    Force(usize),
+    Total,
+}
+
+/// The forces in the order of [`Terms::named`](crate::engine::profile::Terms::named).
+const FORCES: [(&str, &str, [u8; 3]); 9] = [
+    ("goal", "green", [95, 211, 120]),
+    ("social_agents", "light blue", [86, 180, 233]),
+    ("social_walls", "blue", [70, 120, 255]),
+    ("rvo", "cyan", [60, 220, 220]),
+    ("pressure_agents", "orange", [255, 150, 30]),
+    ("pressure_walls", "red", [255, 70, 60]),
+    ("viscosity", "purple", [170, 110, 255]),
+    ("contact_agents", "yellow", [250, 230, 80]),
+    ("contact_walls", "pink", [255, 120, 190]),
+];
+
+/// The forces' arrows and their colours in words.
+pub fn force_colors() -> impl Iterator<Item = (&'static str, &'static str)> {
+    FORCES.iter().map(|&(name, color, _)| (name, color))
+}
+
+/// Logs the debug agents.
+pub struct Layers {
+    layers: Vec<Layer>,
+}
+
+impl Layers {
+    /// The layers that `scene` can ever fill.
+    pub fn new(scene: &Scene, who: &DebugAgents) -> Self {
+        let kinds = if *who == DebugAgents::None {
+            Vec::new()
+        } else {
+            kinds(scene)
+        };
+        let layers = kinds.into_iter().map(|kind| Layer {
+            entity: format!("world/debug/{}", kind.name()),
+            kind,
+            shown: false,
+        });
+        Self {
+            layers: layers.collect(),
+        }
+    }
+
+    /// No layers at all.
+    pub fn none() -> Self {
+        Self { layers: Vec::new() }
+    }
+
+    pub fn log_style(&self, stream: &RecordingStream) -> Result<(), Cause> {
+        for layer in &self.layers {
+            stream.log_static(layer.entity.as_str(), layer.kind.style().as_ref())?;
+        }
+        Ok(())
+    }
+
+    /// Logs one frame; what has just become empty is logged as empty, so that it goes out of sight.
+    pub fn log(&mut self, stream: &RecordingStream, open: &[Open]) -> Result<(), Cause> {
+        for layer in &mut self.layers {
+            let (data, count) = layer.kind.data(open, METRES_PER_ACCELERATION);
+            if count > 0 || layer.shown {
+                stream.log(layer.entity.as_str(), data.as_ref())?;
+            }
+            layer.shown = count > 0;
+        }
+        Ok(())
+    }
+}
+
+/// The layers that are not empty for ever in `scene`.
+fn kinds(scene: &Scene) -> Vec<Kind> {
+    let mut kinds = vec![Kind::Labels, Kind::Kernels];
+    let walls = !scene.walls.is_empty();
+    if walls {
+        kinds.extend([Kind::HiddenRegions, Kind::Links, Kind::NearestPoints]);
+        if scene.wall_method == WallMethod::Representative {
+            kinds.push(Kind::RepresentativePoints);
+        }
+    }
+    let acts = acting_forces(scene);
+    kinds.extend((0..FORCES.len()).filter(|&f| acts[f]).map(Kind::Force));
+    kinds.push(Kind::Total);
+    kinds
+}
+
+/// Which of [`FORCES`] some profile of `scene` has.
+fn acting_forces(scene: &Scene) -> [bool; 9] {
+    let steps = scene.groups.iter().flat_map(|group| group.blend.steps());
+    let walls = !scene.walls.is_empty();
+    steps.fold([false; 9], |acts, step| {
+        let profile = &step.profile;
+        let social = matches!(profile.navigation, Navigation::Social(..));
+        let rvo = matches!(profile.navigation, Navigation::Rvo(_));
+        let has = [
+            !rvo,
+            social,
+            social && walls,
+            rvo,
+            profile.pressure,
+            profile.pressure && walls,
+            profile.viscosity.is_some(),
+            profile.contact.agent_stiffness.is_some(),
+            profile.contact.wall_stiffness.is_some() && walls,
+        ];
+        std::array::from_fn(|f| acts[f] || has[f])
+    })
+}
+
+impl Kind {
+    fn name(self) -> String {
+        match self {
+            Self::Labels => "agents".to_owned(),
+            Self::Kernels => "kernels".to_owned(),
+            Self::HiddenRegions => "walls/hidden_regions".to_owned(),
+            Self::Links => "walls/links".to_owned(),
+            Self::NearestPoints => "walls/nearest_points".to_owned(),
+            Self::RepresentativePoints => "walls/representative_points".to_owned(),
+            Self::Force(term) => format!("forces/{}", FORCES[term].0),
+            Self::Total => "forces/total".to_owned(),
+        }
+    }
+
+    /// What never changes: colours, widths, order.
+    fn style(self) -> Box<dyn AsComponents> {
+        let points = |[r, g, b]: [u8; 3], size: f32| {
+            Points2D::update_fields()
+                .with_radii([Radius::new_ui_points(size)])
+                .with_colors([Color::from_rgb(r, g, b)])
+                .with_draw_order(12.0)
+        };
+        let lines = |[r, g, b]: [u8; 3], width: f32| {
+            LineStrips2D::update_fields()
+                .with_radii([Radius::new_ui_points(width)])
+                .with_colors([Color::from_rgb(r, g, b)])
+                .with_draw_order(11.0)
+        };
+        let arrows = |[r, g, b]: [u8; 3], width: f32, order: f32| {
+            Arrows2D::update_fields()
+                .with_radii([Radius::new_ui_points(width)])
+                .with_colors([Color::from_rgb(r, g, b)])
+                .with_draw_order(order)
+        };
+        match self {
+            Self::Labels => Box::new(points([255, 255, 255], 1.5).with_show_labels(true)),
+            Self::Kernels => Box::new(
+                Ellipses2D::update_fields()
+                    .with_line_radii([Radius::new_ui_points(0.6)])
+                    .with_colors([Color::from_rgb(150, 160, 220)])
+                    .with_draw_order(10.0),
+            ),
+            Self::HiddenRegions => Box::new(lines([220, 120, 200], 0.8)),
+            Self::Links => Box::new(lines([190, 110, 110], 0.4)),
+            Self::NearestPoints => Box::new(points([255, 90, 80], 3.0)),
+            Self::RepresentativePoints => Box::new(points([255, 190, 80], 3.0)),
+            Self::Force(term) => Box::new(arrows(FORCES[term].2, 1.2, 13.0)),
+            Self::Total => Box::new(arrows([255, 255, 255], 1.6, 14.0)),
+        }
+    }
+
+    /// What changes, for all agents laid open, and how many things that are.
+    fn data(self, open: &[Open], scale: f64) -> (Box<dyn AsComponents>, usize) {
+        match self {
+            Self::Labels => {
+                let labels = open.iter().map(|agent| agent.breakdown.id.to_string());
+                let points = Points2D::update_fields().with_positions(positions(open));
+                let readable = open.len() <= MOST_LABELS;
+                let labels = labels.filter(|_| readable);
+                (Box::new(points.with_labels(labels)), open.len())
+            }
+            Self::Kernels => {
+                let half_sizes = open.iter().map(|agent| [agent.support_radius as f32; 2]);
+                let circles = Ellipses2D::update_fields()
+                    .with_centers(positions(open))
+                    .with_half_sizes(half_sizes);
+                (Box::new(circles), open.len())
+            }
+            Self::HiddenRegions => {
+                let outlines = open.iter().flat_map(|agent| agent.hidden.iter().cloned());
+                strips(outlines.collect())
+            }
+            Self::Links => strips(links(open)),
+            Self::NearestPoints => dots(nearest_points(open)),
+            Self::RepresentativePoints => {
+                let walls = open.iter().flat_map(|agent| &agent.breakdown.walls);
+                let found = walls.filter_map(|term| term.representative_point);
+                dots(found.map(|p| xy(p.into())).collect())
+            }
+            Self::Force(term) => arrows(open, scale, |agent| agent.force(term)),
+            Self::Total => arrows(open, scale, |agent| agent.breakdown.acceleration.into()),
+        }
+    }
+}
+
+fn positions(open: &[Open]) -> impl Iterator<Item = [f32; 2]> + '_ {
+    open.iter().map(|agent| xy(agent.position))
+}
+
+fn nearest_points(open: &[Open]) -> Vec<[f32; 2]> {
+    let walls = open.iter().flat_map(|agent| &agent.breakdown.walls);
+    walls.map(|term| xy(term.nearest_point.into())).collect()
+}
+
+/// From every agent to its nearest point on each wall.
+fn links(open: &[Open]) -> Vec<Vec<[f32; 2]>> {
+    let of = |agent: &Open| {
+        let walls = agent.breakdown.walls.iter();
+        let link = |end: [f64; 2]| vec![xy(agent.position), xy(end.into())];
+        walls
+            .map(|term| link(term.nearest_point))
+            .collect::<Vec<_>>()
+    };
+    open.iter().flat_map(of).collect()
+}
+
+fn strips(strips: Vec<Vec<[f32; 2]>>) -> (Box<dyn AsComponents>, usize) {
+    let count = strips.len();
+    let lines = LineStrips2D::update_fields().with_strips(strips);
+    (Box::new(lines), count)
+}
+
+fn dots(points: Vec<[f32; 2]>) -> (Box<dyn AsComponents>, usize) {
+    let count = points.len();
+    let points = Points2D::update_fields().with_positions(points);
+    (Box::new(points), count)
+}
+
+/// Arrows for the accelerations that are not zero.
+fn arrows(
+    open: &[Open],
+    scale: f64,
+    acceleration: impl Fn(&Open) -> Vector,
+) -> (Box<dyn AsComponents>, usize) {
+    let (origins, vectors): (Vec<_>, Vec<_>) = open
+        .iter()
+        .map(|agent| (xy(agent.position), acceleration(agent)))
+        .filter(|(_, acceleration)| *acceleration != Vector::zeros())
+        .map(|(origin, acceleration)| (origin, xy(acceleration * scale)))
+        .unzip();
+    let count = origins.len();
+    let arrows = Arrows2D::update_fields()
+        .with_origins(origins)
+        .with_vectors(vectors);
+    (Box::new(arrows), count)
+}

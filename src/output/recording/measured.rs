@@ -1,0 +1,115 @@
+//! A recording of frames that nobody simulated: a crowd that was measured.
+
+use super::blueprint::{Content, Opening};
+use super::error::{Cause, RecordingError};
+use super::layers::Layers;
+use super::output::{Destination, Output};
+use super::writer::Writer;
+use super::{DebugAgents, RecordingOptions, blueprint, crowd, end, geometry, stats, text};
+use crate::engine::geometry::Walls;
+use crate::engine::math::Vector;
+
+/// One person in a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredPerson {
+    /// Whoever is there twice has the same.
+    pub id: u32,
+    /// Metres.
+    pub position: Vector,
+    /// m/s; `None` where it is not known.
+    pub velocity: Option<Vector>,
+    /// P/m².
+    pub density: f64,
+}
+
+/// Writes a recording of measured frames: the crowd by density and by speed, walls, time series.
+pub struct MeasuredRecorder {
+    output: Output,
+    writer: Writer,
+    options: RecordingOptions,
+    radius: f64,
+}
+
+impl MeasuredRecorder {
+    /// Begins a recording; everybody is a disc of `radius` metres. Nobody is laid open, whatever the options
+    /// say.
+    ///
+    /// # Errors
+    /// The file cannot be written, or there is no viewer.
+    pub fn create(
+        to: impl Into<Destination>,
+        walls: &Walls,
+        radius: f64,
+        options: &RecordingOptions,
+    ) -> Result<Self, RecordingError> {
+        let options = RecordingOptions {
+            debug: DebugAgents::None,
+            ..options.clone()
+        };
+        let output = Output::open(&to.into(), &options.title, options.title.clone())?;
+        let begun = begin(&output, walls, &options);
+        Ok(Self {
+            writer: output.checked(begun)?,
+            output,
+            options,
+            radius,
+        })
+    }
+
+    /// Adds a frame, which may be empty.
+    ///
+    /// # Errors
+    /// An earlier frame could not be written.
+    pub fn log(
+        &mut self,
+        frame: i64,
+        time: f64,
+        people: impl Iterator<Item = MeasuredPerson>,
+    ) -> Result<(), RecordingError> {
+        let mut snapshot = self.writer.empty();
+        snapshot.clear(frame, time);
+        for person in people {
+            let velocity = person.velocity.unwrap_or(Vector::repeat(f64::NAN));
+            snapshot.ids.push(person.id);
+            snapshot.positions.push(geometry::xy(person.position));
+            snapshot.velocities.push(geometry::xy(velocity));
+            snapshot.radii.push(self.radius as f32);
+            snapshot.densities.push(person.density as f32);
+        }
+        self.output.checked(self.writer.write(snapshot))
+    }
+
+    /// Sends what is still in memory, closes the file and checks that it is whole.
+    ///
+    /// # Errors
+    /// Something could not be written: the disk is full, for example.
+    pub fn finish(mut self) -> Result<(), RecordingError> {
+        let opening = Opening::Whole(None);
+        let ended = end(
+            &mut self.writer,
+            &self.output,
+            &self.options,
+            opening,
+            Content::Measurement,
+        );
+        self.output.checked(ended)?;
+        self.output.close()
+    }
+}
+
+/// Logs what stands still.
+fn begin(output: &Output, walls: &Walls, options: &RecordingOptions) -> Result<Writer, Cause> {
+    let stream = &output.stream;
+    let opening = if output.is_live() {
+        Opening::Live
+    } else {
+        Opening::Empty
+    };
+    blueprint::send(stream, options, opening, Content::Measurement)?;
+    text::log_measurement(stream, options)?;
+    geometry::log_still(stream, walls.obstacles())?;
+    crowd::log_style(stream)?;
+    stats::log_style(stream)?;
+    stream.flush_blocking()?;
+    Writer::start(stream.clone(), Layers::none())
+}

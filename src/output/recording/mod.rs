@@ -1,0 +1,233 @@
+//! A run for the Rerun viewer, as a file or while it goes on. The only place that names rerun.
+//!
+//! One entity holds the whole crowd, `world/agents`; what stands still is logged once. Positions are
+//! metres with y up: a static transform on `world` turns the picture, since the viewer's 2D views
+//! have y down. Two timelines, `frame` and `sim_time`.
+//!
+//! | entity | what |
+//! |---|---|
+//! | `world/geometry/{walls,obstacles,goals}` | static |
+//! | `world/agents` | the crowd: positions, radii, both colourings, `agent:…` values |
+//! | `world/debug/…` | some agents laid open: kernels, hidden regions, wall points, forces |
+//! | `stats/…` | time series |
+//! | `info/scenario` | the scenario and a legend, as text |
+//! | `log` | entries and pushes |
+
+mod blueprint;
+mod crowd;
+mod debug;
+mod error;
+mod file;
+mod geometry;
+mod layers;
+mod measured;
+mod output;
+mod read;
+mod relay;
+mod snapshot;
+mod stats;
+mod text;
+mod viewer;
+mod writer;
+
+pub use debug::DebugAgents;
+pub use error::RecordingError;
+pub use layers::METRES_PER_ACCELERATION;
+pub use measured::{MeasuredPerson, MeasuredRecorder};
+pub use output::{Destination, check_enabled};
+pub use read::Recording;
+pub use viewer::{Address, AddressError, Viewer};
+
+use rerun::RecordingStream;
+
+use crate::engine::scene::Region;
+use crate::engine::simulation::{Event, Simulation};
+use blueprint::{Content, Opening};
+use debug::Debug;
+use error::Cause;
+use output::{APPLICATION, Output};
+use writer::Writer;
+
+const FRAME: &str = "frame";
+const SIM_TIME: &str = "sim_time";
+
+/// What a recording says and shows besides the simulation itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordingOptions {
+    /// What it is called in the viewer, for example the scenario's name.
+    pub title: String,
+    /// What it shows, in a line; may be empty.
+    pub description: String,
+    /// The scenario as text, in Markdown.
+    pub document: String,
+    /// The part of the plane that the crowd views show.
+    pub view: Region,
+    /// The time to look at first, seconds.
+    pub opens_at: f64,
+    /// The end of the run, as far as it is known; what is played first does not go beyond it.
+    pub ends_at: f64,
+    /// Who is laid open.
+    pub debug: DebugAgents,
+}
+
+/// Writes a recording, frame by frame.
+///
+/// [`log`](Self::log) only copies; one thread makes rows of the copies, another compresses and
+/// writes them.
+pub struct Recorder {
+    output: Output,
+    writer: Writer,
+    debug: Debug,
+    options: RecordingOptions,
+    /// Has the time to look at first come?
+    opened: bool,
+    /// What the debug view shows.
+    focus: Option<Region>,
+    progress: Progress,
+}
+
+impl Recorder {
+    /// Begins a recording of `simulation`.
+    ///
+    /// # Errors
+    /// The file cannot be written, or there is no viewer.
+    pub fn create(
+        to: impl Into<Destination>,
+        simulation: &Simulation,
+        options: &RecordingOptions,
+    ) -> Result<Self, RecordingError> {
+        let id = format!("{}-seed{}", options.title, simulation.scene().seed);
+        let output = Output::open(&to.into(), &options.title, id)?;
+        let begun = begin(&output, simulation, options);
+        Ok(Self {
+            writer: output.checked(begun)?,
+            output,
+            debug: Debug::new(options.debug.clone()),
+            options: options.clone(),
+            opened: false,
+            focus: None,
+            progress: Progress::default(),
+        })
+    }
+
+    /// Adds the current frame, which must be evaluated.
+    ///
+    /// Densities, and with them colours and debug agents, are in it if the frame has them (see
+    /// [`Simulation::request_density_until`]).
+    ///
+    /// # Errors
+    /// An earlier frame could not be written.
+    pub fn log(
+        &mut self,
+        simulation: &Simulation,
+        ms_per_frame: f64,
+    ) -> Result<(), RecordingError> {
+        let mut snapshot = self.writer.empty();
+        snapshot.take(simulation, &self.debug);
+        snapshot.ms_per_frame = Some(ms_per_frame);
+        snapshot.evacuated = Some(self.progress.count_arrivals(simulation));
+        snapshot.events = self.progress.new_events(simulation);
+        snapshot.opens_here = !self.opened && snapshot.time >= self.options.opens_at;
+        // A run may end before that time; then the debug view shows somebody who was there first.
+        if snapshot.opens_here || self.focus.is_none() {
+            self.focus = self.debug.focus(simulation).or(self.focus);
+        }
+        self.opened |= snapshot.opens_here;
+        self.options.ends_at = snapshot.time;
+        self.output.checked(self.writer.write(snapshot))
+    }
+
+    /// Sends what is still in memory, closes the file and checks that it is whole.
+    ///
+    /// # Errors
+    /// Something could not be written: the disk is full, for example. Else, the viewer is gone or has taken
+    /// no data for 2 s.
+    pub fn finish(mut self) -> Result<(), RecordingError> {
+        let opening = Opening::Whole(self.focus);
+        let ended = end(
+            &mut self.writer,
+            &self.output,
+            &self.options,
+            opening,
+            Content::Run,
+        );
+        self.output.checked(ended)?;
+        self.output.close()
+    }
+}
+
+/// Logs what stands still.
+fn begin(
+    output: &Output,
+    simulation: &Simulation,
+    options: &RecordingOptions,
+) -> Result<Writer, Cause> {
+    let (stream, scene) = (&output.stream, simulation.scene());
+    let layers = layers::Layers::new(scene, &options.debug);
+    let opening = if output.is_live() {
+        Opening::Live
+    } else {
+        Opening::Empty
+    };
+    blueprint::send(stream, options, opening, Content::Run)?;
+    text::log_document(stream, scene, options)?;
+    geometry::log(stream, scene, simulation.frame().agents)?;
+    crowd::log_style(stream)?;
+    layers.log_style(stream)?;
+    stats::log_style(stream)?;
+    stream.flush_blocking()?;
+    Writer::start(stream.clone(), layers)
+}
+
+/// Sends what is still in memory, and how it is to be looked at.
+fn end(
+    writer: &mut Writer,
+    output: &Output,
+    options: &RecordingOptions,
+    opening: Opening,
+    content: Content,
+) -> Result<(), Cause> {
+    writer.finish()?;
+    // The viewer would not go to a time that it has not read yet.
+    output.stream.flush_blocking()?;
+    blueprint::send(&output.stream, options, opening, content)
+}
+
+/// How much of what the simulation reports is in the recording.
+#[derive(Default)]
+struct Progress {
+    started: bool,
+    events: usize,
+    arrivals: usize,
+    evacuated: usize,
+}
+
+impl Progress {
+    fn count_arrivals(&mut self, simulation: &Simulation) -> usize {
+        let arrivals = &simulation.outcome().arrivals;
+        let new = arrivals[self.arrivals..].iter();
+        self.evacuated += new.filter(|arrival| arrival.counted).count();
+        self.arrivals = arrivals.len();
+        self.evacuated
+    }
+
+    /// What happened since the last recorded frame, with times. What happened before a late start
+    /// is left out: it would only stretch the time line.
+    fn new_events(&mut self, simulation: &Simulation) -> Vec<(f64, Event)> {
+        let clock = simulation.frame().clock;
+        let events = simulation.events();
+        let new = events[self.events..]
+            .iter()
+            .filter(|event| self.started || event.frame == clock.frame())
+            .map(|event| (clock.time_at(event.frame), event.clone()))
+            .collect();
+        self.events = events.len();
+        self.started = true;
+        new
+    }
+}
+
+fn set_time(stream: &RecordingStream, frame: i64, time: f64) {
+    stream.set_time_sequence(FRAME, frame);
+    stream.set_duration_secs(SIM_TIME, time);
+}

@@ -1,0 +1,152 @@
+//! Where people can walk: a rectangle without the obstacles, or the scenario's own walkable area, as WKT.
+//!
+//! The rectangle holds the view, everything in the scene and some free space round it, and grows with the
+//! crowd. Of what obstacles cut off, only those parts count where somebody enters: nobody gets through a
+//! wall. PedPy takes one part only; where people walk in several the text is a `MULTIPOLYGON`, of which
+//! its user must choose.
+
+use std::collections::BTreeSet;
+
+use super::Row;
+use super::error::Cause;
+use crate::engine::geometry::{Area, AreaIndex};
+use crate::engine::math::Vector;
+use crate::engine::scene::{Goal, Region};
+use crate::engine::simulation::Simulation;
+use crate::scenario::floor_plan::{Rings, free};
+
+/// Free space round everything, metres.
+const MARGIN: f64 = 5.0;
+
+/// What the walkable area is cut out of, and by what.
+pub struct WalkableArea {
+    /// The lowest and highest x and y of the rectangle.
+    bounds: [Vector; 2],
+    /// What is solid without end, each from the side of the floor.
+    floors: Vec<Rings>,
+    /// What is solid inside.
+    obstacles: Rings,
+    entries: Vec<Vector>,
+}
+
+impl WalkableArea {
+    /// Of the scene as it is now.
+    pub fn new(simulation: &Simulation, view: Region) -> Self {
+        let scene = simulation.scene();
+        let agents = simulation.frame().agents;
+        let mut entries = agents.position.clone();
+        let mut goals = agents.goal.clone();
+        for source in &scene.sources {
+            let entry = |p| entrance(simulation, p);
+            let positions: Vec<Vector> = source.grid.positions(scene.seed, 0).collect();
+            goals.extend(positions.iter().map(|&p| match source.goal {
+                Goal::Point(goal) => goal,
+                Goal::Offset(offset) => p + offset,
+            }));
+            entries.extend(positions.into_iter().map(entry));
+        }
+        let obstacles = scene.walls.obstacles();
+        let corners = obstacles.iter().flat_map(|obstacle| obstacle.points());
+        let everything = entries.iter().chain(&goals).chain(corners);
+        let [min, max] = everything.fold([view.min, view.max], |[low, high], p| {
+            [low.inf(p), high.sup(p)]
+        });
+        let margin = Vector::new(MARGIN, MARGIN);
+        let (mut floors, mut bodies) = (Vec::new(), Rings::new());
+        for obstacle in obstacles {
+            let rings = obstacle.rings().map(<[Vector]>::to_vec);
+            if obstacle.is_unbounded() {
+                let reversed = |mut ring: Vec<Vector>| {
+                    ring.reverse();
+                    ring
+                };
+                floors.push(rings.map(reversed).collect());
+            } else {
+                bodies.extend(rings);
+            }
+        }
+        Self {
+            bounds: [min - margin, max + margin],
+            floors,
+            obstacles: bodies,
+            entries,
+        }
+    }
+
+    /// Makes room for everybody; was there none?
+    pub fn reach(&mut self, rows: &[Row<'_>]) -> bool {
+        let mut grown = false;
+        for row in rows {
+            let place = Vector::new(row.pos_x, row.pos_y);
+            let [low, high] = self.bounds;
+            if (place - low).min() <= 0.0 || (high - place).min() <= 0.0 {
+                let margin = Vector::new(MARGIN, MARGIN);
+                self.bounds = [low.inf(&(place - margin)), high.sup(&(place + margin))];
+                grown = true;
+            }
+        }
+        grown
+    }
+
+    /// The area as WKT, and its lowest and highest x and y.
+    ///
+    /// # Errors
+    /// As [`free`].
+    pub fn cut_out(&self) -> Result<(String, [f64; 4]), Cause> {
+        let [low, high] = self.bounds;
+        let rectangle = [
+            low,
+            Vector::new(high.x, low.y),
+            high,
+            Vector::new(low.x, high.y),
+        ];
+        let everything = [vec![rectangle.to_vec()]];
+        // The rectangle holds all floors.
+        let floors: &[Rings] = match self.floors.as_slice() {
+            [] => &everything,
+            floors => floors,
+        };
+        let mut areas = free(floors, &self.obstacles)?;
+        let index = AreaIndex::new(&areas);
+        let walked: BTreeSet<usize> = self.entries.iter().flat_map(|&p| index.around(p)).collect();
+        if !walked.is_empty() {
+            let numbered = areas.into_iter().enumerate();
+            areas = numbered
+                .filter(|(k, _)| walked.contains(k))
+                .map(|(_, area)| area)
+                .collect();
+        }
+        let corners = areas.iter().flat_map(|area| area.exterior.points());
+        let around = corners.copied().map(|p| [p, p]);
+        let around = around.reduce(|[low, high], [p, _]| [low.inf(&p), high.sup(&p)]);
+        let [min, max] = around.unwrap_or(self.bounds);
+        Ok((wkt(&areas), [min.x, min.y, max.x, max.y]))
+    }
+}
+
+/// Where somebody who enters at `p` is put.
+fn entrance(simulation: &Simulation, p: Vector) -> Vector {
+    let walls = &simulation.scene().walls;
+    let inside = walls.obstacle_at(p).is_some();
+    let exit = inside.then(|| walls.free_point_near(p)).flatten();
+    exit.unwrap_or(p)
+}
+
+/// Well-known text: one polygon as such, several as a multipolygon; holes clockwise.
+fn wkt(areas: &[Area]) -> String {
+    let ring = |points: &mut dyn Iterator<Item = &Vector>| {
+        let points: Vec<String> = points.map(|p| format!("{} {}", p.x, p.y)).collect();
+        format!("({}, {})", points.join(", "), points[0])
+    };
+    let polygon = |area: &Area| {
+        let holes = area.holes.iter();
+        let holes = holes.map(|hole| ring(&mut hole.points().iter().rev()));
+        let rings = std::iter::once(ring(&mut area.exterior.points().iter())).chain(holes);
+        format!("({})", rings.collect::<Vec<_>>().join(", "))
+    };
+    let polygons: Vec<String> = areas.iter().map(polygon).collect();
+    match polygons.as_slice() {
+        [polygon] => format!("POLYGON {polygon}"),
+        polygons => format!("MULTIPOLYGON ({})", polygons.join(", ")),
+    }
+}

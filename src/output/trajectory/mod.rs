@@ -1,0 +1,206 @@
+//! A run as trajectories that other programs read, and theirs [read] back. The only place that names
+//! rusqlite and geo.
+//!
+//! | file | read by | holds |
+//! |---|---|---|
+//! | `.sqlite`, `.db` | JuPedSim, PedPy | positions and orientations, the walkable area as WKT, and density, pressure, speed |
+//! | `.txt` | PedPy, the Pedestrian Dynamics Data Archive's tools | positions, in text |
+//! | `.csv` | everything | every quantity of every agent: the fields of [`Row`] |
+//!
+//! Frames are numbered 0, 1, 2, … at the file's own rate. Numbers are those of the evaluated frame, all
+//! digits of them. A run that is cut short leaves whole frames: text has each as soon as it is logged,
+//! SQLite all but the last second's (a `-journal` beside it belongs to it, and goes when it is opened).
+
+mod area;
+mod error;
+mod lines;
+pub mod read;
+mod row;
+mod sqlite;
+
+pub use error::TrajectoryError;
+pub use row::Row;
+pub use sqlite::journal;
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+use crate::engine::clock::Clock;
+use crate::engine::scene::Region;
+use crate::engine::simulation::Simulation;
+use area::WalkableArea;
+use error::Cause;
+use lines::Lines;
+use sqlite::Sqlite;
+
+/// What a file holds, as its extension says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// JuPedSim's SQLite, version 2: PedPy reads no other.
+    Sqlite,
+    /// The text of the Pedestrian Dynamics Data Archive.
+    Text,
+    /// Every quantity, comma-separated.
+    Csv,
+}
+
+impl Format {
+    /// The format of a file with this name.
+    ///
+    /// # Errors
+    /// No format has its extension.
+    pub fn of(path: &Path) -> Result<Self, TrajectoryError> {
+        let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+        match extension.to_str() {
+            Some("sqlite" | "db") => Ok(Self::Sqlite),
+            Some("txt") => Ok(Self::Text),
+            Some("csv") => Ok(Self::Csv),
+            _ => Err(TrajectoryError::UnknownFormat(path.to_owned())),
+        }
+    }
+}
+
+/// The number of frames from one to the next at `fps` frames per second.
+///
+/// # Errors
+/// `fps` does not divide the clock's own rate; six decimals are enough where it is no round number.
+pub fn frames_between(clock: &Clock, fps: f64) -> Result<u64, TrajectoryError> {
+    let rate = |every: f64| 1.0 / (every * clock.time_step());
+    let below = (rate(1.0) / fps).floor().max(1.0);
+    let off = |every: f64| (rate(every) - fps).abs();
+    let [every, other] = [below, below + 1.0];
+    let nearest = if off(every) <= off(other) {
+        every
+    } else {
+        other
+    };
+    if off(nearest) > 1e-6 * fps {
+        return Err(TrajectoryError::FrameRate {
+            fps,
+            of: rate(1.0),
+            nearest: rate(nearest),
+        });
+    }
+    Ok(nearest as u64)
+}
+
+/// Writes trajectories, frame by frame.
+pub struct Trajectory {
+    path: PathBuf,
+    every: u64,
+    sink: Box<dyn Sink>,
+}
+
+/// A file in some format.
+trait Sink: Send {
+    /// Adds a frame.
+    fn write(&mut self, frame: u64, rows: &[Row<'_>]) -> Result<(), Cause>;
+
+    /// Puts into the file what is not there yet.
+    fn finish(&mut self) -> Result<(), Cause>;
+
+    /// How many frames are in the file, whatever happens.
+    fn kept(&self) -> u64;
+}
+
+impl Trajectory {
+    /// Begins the trajectories of `simulation` at `path`, replacing any file there, with `fps` frames per
+    /// second; `view` is within the walkable area. From now on every frame has densities.
+    ///
+    /// # Errors
+    /// No such format or rate, or the file cannot be written.
+    pub fn create(
+        path: &Path,
+        simulation: &mut Simulation,
+        view: Region,
+        fps: f64,
+    ) -> Result<Self, TrajectoryError> {
+        let format = Format::of(path)?;
+        let clock = *simulation.frame().clock;
+        let every = frames_between(&clock, fps)?;
+        let fps = 1.0 / clock.time_at(every);
+        let open = || -> Result<Box<dyn Sink>, Cause> {
+            let file = File::create(path)?;
+            Ok(match format {
+                Format::Sqlite => {
+                    let area = WalkableArea::new(simulation, view);
+                    Box::new(Sqlite::create(path, area, fps)?)
+                }
+                Format::Text => Box::new(Lines::text(file, fps)?),
+                Format::Csv => Box::new(Lines::csv(file)),
+            })
+        };
+        let sink = open().map_err(|cause| TrajectoryError::unwritten(path, 0, cause))?;
+        simulation.request_density_until(u64::MAX);
+        Ok(Self {
+            path: path.to_owned(),
+            every,
+            sink,
+        })
+    }
+
+    /// Adds the current frame, which must be evaluated, if its turn has come.
+    ///
+    /// # Errors
+    /// The file cannot be written: the disk is full, for example. What is in it stays.
+    pub fn log(&mut self, simulation: &Simulation) -> Result<(), TrajectoryError> {
+        let frame = simulation.frame().clock.frame();
+        if !frame.is_multiple_of(self.every) {
+            return Ok(());
+        }
+        let frame = frame / self.every;
+        let written = self.sink.write(frame, &row::rows(simulation, frame));
+        self.checked(written)
+    }
+
+    /// Puts everything into the file.
+    ///
+    /// # Errors
+    /// As [`log`](Self::log).
+    pub fn finish(mut self) -> Result<(), TrajectoryError> {
+        let finished = self.sink.finish();
+        // A file that somebody has removed takes everything in silence.
+        let there = finished.and_then(|()| Ok(fs::metadata(&self.path).map(|_| ())?));
+        self.checked(there)
+    }
+
+    fn checked(&self, result: Result<(), Cause>) -> Result<(), TrajectoryError> {
+        let is_there = self.path.exists();
+        let kept = if is_there { self.sink.kept() } else { 0 };
+        result.map_err(|cause| TrajectoryError::unwritten(&self.path, kept, cause))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rate_that_is_no_whole_part_names_the_nearest_that_is() {
+        let refused = |time_step, fps| match frames_between(&Clock::new(time_step, 1), fps) {
+            Err(TrajectoryError::FrameRate { nearest, .. }) => nearest,
+            other => panic!("{other:?}"),
+        };
+        for (fps, every) in [(50.0, 1), (25.0, 2), (12.5, 4), (10.0, 5), (0.1, 500)] {
+            assert_eq!(frames_between(&Clock::default(), fps), Ok(every));
+        }
+        assert_eq!(refused(0.02, 11.0), 10.0);
+        assert_eq!(refused(0.02, 24.0), 25.0);
+        assert_eq!(refused(0.02, 1000.0), 50.0);
+        let third = refused(0.03, 10.0);
+        assert!((third - 100.0 / 9.0).abs() < 1e-12);
+        assert_eq!(frames_between(&Clock::new(0.03, 1), 11.111111), Ok(3));
+    }
+
+    #[test]
+    fn the_format_is_in_the_extension() {
+        let format = |name: &str| Format::of(Path::new(name));
+        assert_eq!(format("a/run.sqlite"), Ok(Format::Sqlite));
+        assert_eq!(format("run.DB"), Ok(Format::Sqlite));
+        assert_eq!(format("run.1.txt"), Ok(Format::Text));
+        assert_eq!(format("run.csv"), Ok(Format::Csv));
+        for name in ["run.h5", "run", "run.csv.gz", "csv"] {
+            assert!(format(name).is_err(), "{name}");
+        }
+    }
+}

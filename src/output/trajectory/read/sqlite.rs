@@ -1,0 +1,124 @@
+//! SQLite as JuPedSim writes it, version 1 and 2, and as the sandbox does.
+
+use std::path::Path;
+
+use rusqlite::types::ValueRef;
+use rusqlite::{Connection, OpenFlags, Row};
+
+use super::error::ReadError;
+use super::tracks::{Contents, Entry, Tracks};
+use super::{ReadOptions, Unit, frame_rate};
+use crate::engine::math::Vector;
+use crate::scenario::quote::shown_message;
+
+/// A row takes more of a file, bytes: its place in a page, its length, its number and a type for each column.
+const LEAST_ROW: u64 = 8;
+
+pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
+    let failed = |error: rusqlite::Error| ReadError::file(path, shown_message(&error.to_string()));
+    let connection =
+        Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY).map_err(failed)?;
+    let columns = columns(&connection, "trajectory_data").map_err(failed)?;
+    let needed = ["frame", "id", "pos_x", "pos_y"];
+    if let Some(missing) = needed
+        .iter()
+        .find(|name| !columns.iter().any(|own| own == *name))
+    {
+        let problem = if columns.is_empty() {
+            "it has no table trajectory_data: this is no trajectory of JuPedSim".to_owned()
+        } else {
+            format!("its table trajectory_data has no column {missing}")
+        };
+        return Err(ReadError::file(path, problem));
+    }
+    let has_mass = columns.iter().any(|name| name == "mass");
+    let mut contents = Contents {
+        unit: Some(Unit::Metre),
+        has_mass,
+        fps: frames_per_second(&connection, options).map_err(|what| ReadError::file(path, what))?,
+        walkable: walkable(&connection).map_err(failed)?,
+        place: "row",
+        ..Contents::default()
+    };
+    let mass = if has_mass { "mass" } else { "1.0" };
+    let query = format!("SELECT frame, id, pos_x, pos_y, {mass} FROM trajectory_data");
+    let mut query = connection.prepare(&query).map_err(failed)?;
+    let mut rows = query.query([]).map_err(failed)?;
+    let mut line = 0;
+    let most = path
+        .metadata()
+        .map_or(u64::MAX, |about| about.len() / LEAST_ROW);
+    while let Some(row) = rows.next().map_err(failed)? {
+        line += 1;
+        if line > most {
+            let problem =
+                "trajectory_data has more rows than fit into the file: it is damaged, or a view";
+            return Err(ReadError::file(path, problem));
+        }
+        let entry = entry(row, line);
+        let entry = entry.map_err(|what| {
+            ReadError::file(path, format!("row {line} of trajectory_data: {what}"))
+        })?;
+        contents.entries.push(entry);
+    }
+    Tracks::new(path, contents, options)
+}
+
+fn entry(row: &Row, line: u64) -> Result<Entry, String> {
+    let whole = |column: usize, what: &str| {
+        row.get::<_, i64>(column)
+            .map_err(|_| format!("{what} is not a whole number"))
+    };
+    let finite = |column: usize, what: &str| match row.get_ref(column) {
+        Ok(ValueRef::Real(number)) if number.is_finite() => Ok(number),
+        Ok(ValueRef::Integer(number)) => Ok(number as f64),
+        _ => Err(format!("{what} is not a finite number")),
+    };
+    Ok(Entry {
+        frame: whole(0, "frame")?,
+        id: whole(1, "id")?,
+        position: Vector::new(finite(2, "pos_x")?, finite(3, "pos_y")?),
+        mass: finite(4, "mass")?,
+        line,
+    })
+}
+
+/// The names of a table's columns; none if there is no such table.
+fn columns(connection: &Connection, table: &str) -> rusqlite::Result<Vec<String>> {
+    let mut query = connection.prepare("SELECT name FROM pragma_table_info(?)")?;
+    let names = query.query_map([table], |row| row.get(0))?;
+    names.collect()
+}
+
+/// The frame rate among the metadata, if it is there.
+fn frames_per_second(
+    connection: &Connection,
+    options: &ReadOptions,
+) -> Result<Option<f64>, String> {
+    let query = "SELECT CAST(value AS TEXT) FROM metadata WHERE key = 'fps'";
+    let text = connection.query_row(query, [], |row| row.get::<_, String>(0));
+    let Ok(text) = text else {
+        return Ok(None);
+    };
+    let rate = options.own_rate(frame_rate(text.trim()));
+    rate.map_err(|problem| format!("metadata: {problem}"))
+}
+
+/// The walkable areas as text, in no order: one, but where doors are opened and closed. What is no text is no
+/// floor plan either: the reader of floor plans refuses it, if it is asked.
+fn walkable(connection: &Connection) -> rusqlite::Result<Vec<String>> {
+    let Ok(mut query) = connection.prepare("SELECT DISTINCT wkt FROM geometry") else {
+        return Ok(Vec::new());
+    };
+    let text = |row: &Row| {
+        Ok(match row.get_ref(0)? {
+            ValueRef::Text(text) | ValueRef::Blob(text) => {
+                String::from_utf8_lossy(text).into_owned()
+            }
+            ValueRef::Null => String::new(),
+            ValueRef::Integer(number) => number.to_string(),
+            ValueRef::Real(number) => number.to_string(),
+        })
+    };
+    query.query_map([], text)?.collect()
+}

@@ -1,0 +1,162 @@
+//! Text: blanks or tabs under a header of comments, or commas under a line of names.
+
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+
+use super::error::ReadError;
+use super::line::{self, Columns, words};
+use super::tracks::{Contents, Tracks};
+use super::{FRAME_RATES, ReadOptions, Unit, frame_rate};
+use crate::scenario::input::Lines;
+
+/// The text of PeTrack and the Pedestrian Dynamics Data Archive.
+pub fn read_text(path: &Path, file: impl Read, options: &ReadOptions) -> Result<Tracks, ReadError> {
+    let mut contents = Contents {
+        place: "line",
+        ..Contents::default()
+    };
+    let mut reader = BufReader::with_capacity(1 << 20, Lines::new(file));
+    let mut columns = Columns::default();
+    let (mut bytes, mut number) = (Vec::new(), 0);
+    let failed = |line, problem: String| ReadError::line(path, line, problem);
+    loop {
+        bytes.clear();
+        let read = reader.read_until(b'\n', &mut bytes);
+        if read.map_err(|error| failed(number + 1, error.to_string()))? == 0 {
+            break;
+        }
+        reader.get_mut().next_line();
+        number += 1;
+        // Who wrote a comment in another encoding has good numbers all the same.
+        let text = String::from_utf8_lossy(&bytes);
+        let line = text.trim_start_matches('\u{feff}').trim();
+        if let Some(comment) = line.strip_prefix(['#', '%']) {
+            heed(comment, &mut columns, &mut contents, options)
+                .map_err(|problem| failed(number, problem))?;
+            continue;
+        }
+        let cells: Vec<&str> = line.split_whitespace().collect();
+        if cells.is_empty() {
+            continue;
+        }
+        let is_header = contents.entries.is_empty() && cells[0].parse::<f64>().is_err();
+        if is_header && named(line, &mut columns, &mut contents).map_err(|p| failed(number, p))? {
+            continue;
+        }
+        let entry = columns.entry(&cells, number).map_err(|problem| {
+            let hint = if line.contains([',', ';']) {
+                "; columns are separated by blanks or tabs here, by commas in a .csv"
+            } else {
+                ""
+            };
+            failed(number, format!("{problem}{hint}"))
+        })?;
+        contents.entries.push(entry);
+    }
+    contents.has_mass = columns.mass.is_some();
+    Tracks::new(path, contents, options)
+}
+
+/// What a comment says of the numbers below it.
+fn heed(
+    comment: &str,
+    columns: &mut Columns,
+    contents: &mut Contents,
+    options: &ReadOptions,
+) -> Result<(), String> {
+    if named(comment, columns, contents)? {
+        return Ok(());
+    }
+    if contents.fps.is_none()
+        && let Some(text) = line::frame_rate(comment)
+    {
+        contents.fps = options.own_rate(frame_rate(&text))?;
+    }
+    let words = words(&comment.to_lowercase());
+    let unit = words
+        .windows(2)
+        .find_map(|pair| match (pair[0].as_str(), pair[1].as_str()) {
+            ("in", "cm" | "centimeters" | "centimetres") => Some(Unit::Centimetre),
+            ("in", "m" | "meters" | "metres") => Some(Unit::Metre),
+            _ => None,
+        });
+    contents.unit = contents.unit.or(unit);
+    Ok(())
+}
+
+/// Takes the columns from a line with their names; was it one?
+fn named(line: &str, columns: &mut Columns, contents: &mut Contents) -> Result<bool, String> {
+    let words = words(line);
+    let names: Vec<&str> = words.iter().map(String::as_str).collect();
+    let Some(found) = Columns::named(&names) else {
+        return Ok(false);
+    };
+    let (found, unit) = found?;
+    *columns = found;
+    contents.unit = unit.or(contents.unit);
+    Ok(true)
+}
+
+/// Comma-separated values under a line with the names of the columns, as the sandbox writes them.
+pub fn read_csv(path: &Path, file: impl Read, options: &ReadOptions) -> Result<Tracks, ReadError> {
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .flexible(true)
+        .buffer_capacity(1 << 20)
+        .from_reader(Lines::new(file));
+    let unreadable = |error: csv::Error, begun: u64| {
+        let line = error.position().map_or(begun, csv::Position::line);
+        ReadError::line(path, line, error.to_string())
+    };
+    let header = reader
+        .headers()
+        .map_err(|error| unreadable(error, 1))?
+        .clone();
+    reader.get_mut().next_line();
+    let names: Vec<&str> = header.iter().collect();
+    let head = |problem: String| ReadError::line(path, 1, problem);
+    let missing = || head("the first line must name the columns id, frame, x and y".to_owned());
+    let found = Columns::named(&names).ok_or_else(missing)?;
+    let (columns, unit) = found.map_err(head)?;
+    let mut contents = Contents {
+        // Our own columns are in metres.
+        unit: unit.or(names.contains(&"pos_x").then_some(Unit::Metre)),
+        has_mass: columns.mass.is_some(),
+        place: "line",
+        ..Contents::default()
+    };
+    let mut record = csv::StringRecord::new();
+    loop {
+        let begun = reader.position().line();
+        let read = reader.read_record(&mut record);
+        if !read.map_err(|error| unreadable(error, begun))? {
+            break;
+        }
+        reader.get_mut().next_line();
+        let line = record.position().map_or(0, csv::Position::line);
+        let cells: Vec<&str> = record.iter().collect();
+        let failed = |problem| ReadError::line(path, line, problem);
+        let entry = columns.entry(&cells, line).map_err(failed)?;
+        if contents.fps.is_none() && entry.frame > 0 {
+            let rate = rate(&cells, &columns, entry.frame).map(|rate| options.own_rate(rate));
+            contents.fps = rate.transpose().map_err(failed)?.flatten();
+        }
+        contents.entries.push(entry);
+    }
+    Tracks::new(path, contents, options)
+}
+
+/// Frames per second, if there are times: nine digits of it, for times are rounded.
+fn rate(cells: &[&str], columns: &Columns, frame: i64) -> Option<Result<f64, String>> {
+    let time: f64 = cells.get(columns.time?)?.parse().ok()?;
+    let fps = frame as f64 / time;
+    if !FRAME_RATES.contains(&fps) {
+        let reason = format!(
+            "frame {frame} at {time:e} s makes {fps:e} frames per second: frame f is at f / fps; give --fps"
+        );
+        return Some(Err(reason));
+    }
+    let unit = 10_f64.powi(8 - fps.log10().floor() as i32);
+    Some(Ok((fps * unit).round() / unit))
+}

@@ -1,0 +1,362 @@
+//! Everybody's way, frame by frame.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::Path;
+
+use rayon::prelude::*;
+
+use super::error::ReadError;
+use super::{ReadOptions, Unit};
+use crate::engine::math::Vector;
+
+/// Half of all steps are faster than this, m/s: nobody's are, so the unit must be another one.
+const TOO_FAST: f64 = 10.0;
+
+/// Frame numbers within ± this are exact in double precision, and so are the times between them.
+const LAST_FRAME: i64 = 1 << 53;
+/// x and y are within ± this, metres: any place in a projection of the Earth, and squares keep their digits.
+const FARTHEST: f64 = 1e9;
+/// Masses are at most this.
+const HEAVIEST: f64 = 1e6;
+
+/// One person in one frame, as read.
+#[derive(Debug, Clone, Copy)]
+pub struct Entry {
+    pub frame: i64,
+    pub id: i64,
+    /// In the file's unit.
+    pub position: Vector,
+    pub mass: f64,
+    /// Where in the file, from 1.
+    pub line: u64,
+}
+
+impl Entry {
+    /// Is everything within what can be computed with, at this place in metres?
+    fn check(&self, at: Vector) -> Result<(), String> {
+        if !(-LAST_FRAME..=LAST_FRAME).contains(&self.frame) {
+            return Err(format!(
+                "the frame {} is out of range: at most 2^53 = {LAST_FRAME} before or after 0",
+                self.frame
+            ));
+        }
+        if at.amax() > FARTHEST {
+            return Err(format!(
+                "({:e}, {:e}) m is out of range: x and y must be at least -{FARTHEST:e} and at most {FARTHEST:e} m",
+                at.x, at.y
+            ));
+        }
+        match self.mass {
+            mass if mass < 0.0 => Err(format!("the mass {mass:e} is below 0")),
+            mass if mass > HEAVIEST => Err(format!("the mass {mass:e} is above {HEAVIEST:e}")),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What a file said.
+#[derive(Debug, Default)]
+pub struct Contents {
+    pub entries: Vec<Entry>,
+    pub has_mass: bool,
+    pub fps: Option<f64>,
+    pub unit: Option<Unit>,
+    pub walkable: Vec<String>,
+    pub notes: Vec<String>,
+    /// What an entry's place in the file is called.
+    pub place: &'static str,
+}
+
+/// Everybody's way: rows of one person in one frame, by frame and then by id.
+#[derive(Debug, Clone)]
+pub struct Tracks {
+    /// Frame numbers per second.
+    pub fps: f64,
+    /// From one recorded frame to the next the number rises by this: mostly 1.
+    pub step: i64,
+    /// Everybody's id, rising; a person's place here is its number.
+    pub ids: Vec<i64>,
+    /// The frames in which somebody is there, rising.
+    pub frames: Vec<i64>,
+    /// Each row's person, by number.
+    pub person: Vec<u32>,
+    /// Each row's place, metres.
+    pub position: Vec<Vector>,
+    /// Each row's mass, 1 = an average person; empty where the file has none, and all are 1.
+    pub mass: Vec<f64>,
+    /// The walkable area as well-known text, if the file has it; several where it changes with time.
+    pub walkable: Vec<String>,
+    /// What a careful reader of the results should know of the file.
+    pub notes: Vec<String>,
+    /// Where each frame's rows begin, and the number of rows at the end.
+    starts: Vec<usize>,
+    /// Rows by person, then by frame.
+    by_person: Vec<u32>,
+    /// Where each person's rows begin in there, and the number of rows at the end.
+    person_starts: Vec<usize>,
+}
+
+impl Tracks {
+    /// Checks and orders what was read.
+    pub(super) fn new(
+        path: &Path,
+        mut contents: Contents,
+        options: &ReadOptions,
+    ) -> Result<Self, ReadError> {
+        let mut notes = std::mem::take(&mut contents.notes);
+        if contents.entries.is_empty() {
+            return Err(ReadError::file(path, "there is nobody in it"));
+        }
+        if u32::try_from(contents.entries.len()).is_err() {
+            return Err(ReadError::file(
+                path,
+                "more than 4,294,967,295 rows; split it",
+            ));
+        }
+        let fps = frame_rate(path, &contents, options, &mut notes)?;
+        let unit = unit(&contents, options, &mut notes);
+        let metres = unit.unwrap_or(Unit::Metre).metres();
+        let in_metres = |v: Vector| if metres == 1.0 { v } else { v * metres };
+        let place = contents.place;
+        let refused = |line: u64, problem: String| match place {
+            "line" => ReadError::line(path, line, problem),
+            _ => ReadError::file(path, format!("{place} {line}: {problem}")),
+        };
+        let mut entries = std::mem::take(&mut contents.entries);
+        for entry in &entries {
+            let checked = entry.check(in_metres(entry.position));
+            checked.map_err(|problem| refused(entry.line, problem))?;
+        }
+        entries.par_sort_unstable_by_key(|entry| (entry.frame, entry.id, entry.line));
+        let same = |pair: &&[Entry]| (pair[0].frame, pair[0].id) == (pair[1].frame, pair[1].id);
+        if let Some(pair) = entries.windows(2).find(same) {
+            let problem = format!(
+                "person {} is in frame {} already, by {place} {}; each may be there once: remove one",
+                pair[1].id, pair[1].frame, pair[0].line
+            );
+            return Err(refused(pair[1].line, problem));
+        }
+        let mut ids: Vec<i64> = entries.iter().map(|entry| entry.id).collect();
+        ids.par_sort_unstable();
+        ids.dedup();
+        let number = |id: i64| ids.partition_point(|&other| other < id) as u32;
+        let person: Vec<u32> = entries.par_iter().map(|entry| number(entry.id)).collect();
+        let masses = contents
+            .has_mass
+            .then(|| entries.iter().map(|entry| entry.mass).collect());
+        let mut tracks = Self {
+            fps,
+            step: 1,
+            frames: Vec::new(),
+            person,
+            position: entries
+                .iter()
+                .map(|entry| in_metres(entry.position))
+                .collect(),
+            mass: masses.unwrap_or_default(),
+            walkable: contents.walkable,
+            notes: Vec::new(),
+            starts: Vec::new(),
+            by_person: Vec::new(),
+            person_starts: Vec::new(),
+            ids,
+        };
+        for (row, entry) in entries.iter().enumerate() {
+            if tracks.frames.last() != Some(&entry.frame) {
+                tracks.frames.push(entry.frame);
+                tracks.starts.push(row);
+            }
+        }
+        tracks.starts.push(entries.len());
+        drop(entries);
+        tracks.list_by_person();
+        tracks.step = tracks.most_common_step();
+        if tracks.step != 1 {
+            notes.push(format!("frames are numbered in steps of {}", tracks.step));
+        }
+        if let Some(gaps) = tracks.gaps() {
+            notes.push(gaps);
+        }
+        let empty = tracks.span() - tracks.frames.len() as u64;
+        if empty > 0 {
+            notes.push(format!(
+                "{empty} frame(s) have nobody in them; they count as empty"
+            ));
+        }
+        if contents.unit.is_none() && options.unit.is_none() && tracks.median_speed() > TOO_FAST {
+            notes.push(format!(
+                "half of all steps are faster than {TOO_FAST} m/s; are these centimetres? then give --unit cm"
+            ));
+        }
+        tracks.notes = notes;
+        Ok(tracks)
+    }
+
+    /// The number of rows.
+    pub fn len(&self) -> usize {
+        self.person.len()
+    }
+
+    /// Is nobody there? Never of a file that could be read.
+    pub fn is_empty(&self) -> bool {
+        self.person.is_empty()
+    }
+
+    /// The rows of the `k`-th of [`frames`](Self::frames), by id.
+    pub fn rows(&self, k: usize) -> Range<usize> {
+        self.starts[k]..self.starts[k + 1]
+    }
+
+    /// The rows of person `p`, by frame.
+    pub fn rows_of(&self, p: usize) -> &[u32] {
+        &self.by_person[self.person_starts[p]..self.person_starts[p + 1]]
+    }
+
+    /// The frame of a row.
+    pub fn frame_of(&self, row: usize) -> i64 {
+        self.frames[self.starts.partition_point(|&start| start <= row) - 1]
+    }
+
+    /// When a frame is, seconds.
+    pub fn time(&self, frame: i64) -> f64 {
+        frame as f64 / self.fps
+    }
+
+    /// Seconds from one recorded frame to the next.
+    pub fn interval(&self) -> f64 {
+        self.step as f64 / self.fps
+    }
+
+    /// The mass of a row's person.
+    pub fn mass_of(&self, row: usize) -> f64 {
+        self.mass.get(row).copied().unwrap_or(1.0)
+    }
+
+    /// How many frames there are from the first to the last, those without anybody too.
+    pub fn span(&self) -> u64 {
+        match (self.frames.first(), self.frames.last()) {
+            (Some(first), Some(last)) => ((last - first) / self.step) as u64 + 1,
+            _ => 0,
+        }
+    }
+
+    fn list_by_person(&mut self) {
+        let mut starts = vec![0; self.ids.len() + 1];
+        for &p in &self.person {
+            starts[p as usize + 1] += 1;
+        }
+        for p in 0..self.ids.len() {
+            starts[p + 1] += starts[p];
+        }
+        let mut next = starts.clone();
+        self.by_person = vec![0; self.person.len()];
+        for (row, &p) in self.person.iter().enumerate() {
+            let place = &mut next[p as usize];
+            self.by_person[*place] = row as u32;
+            *place += 1;
+        }
+        self.person_starts = starts;
+    }
+
+    /// The frames between which somebody is seen twice in a row: how far apart, how often.
+    fn steps(&self) -> BTreeMap<i64, u64> {
+        let frame_of: Vec<i64> = (0..self.frames.len())
+            .flat_map(|k| self.rows(k).map(move |_| k))
+            .map(|k| self.frames[k])
+            .collect();
+        let mut steps = BTreeMap::new();
+        for p in 0..self.ids.len() {
+            for pair in self.rows_of(p).windows(2) {
+                let step = frame_of[pair[1] as usize] - frame_of[pair[0] as usize];
+                *steps.entry(step).or_insert(0) += 1;
+            }
+        }
+        steps
+    }
+
+    /// The most common one divides all: else numbers are those of a camera that misses frames.
+    fn most_common_step(&self) -> i64 {
+        let steps = self.steps();
+        let common = steps.iter().max_by_key(|&(step, count)| (count, -step));
+        let common = common.map_or(1, |(&step, _)| step);
+        let first = self.frames[0];
+        let fits = self
+            .frames
+            .iter()
+            .all(|frame| (frame - first) % common == 0);
+        if fits { common } else { 1 }
+    }
+
+    /// What is to be said of people who are missing in between.
+    fn gaps(&self) -> Option<String> {
+        let steps = self.steps();
+        let gaps = steps.iter().filter(|(step, _)| **step != self.step);
+        let (count, longest) = gaps.fold((0, 0), |(count, longest), (&step, &times)| {
+            (count + times, step.max(longest))
+        });
+        (count > 0).then(|| {
+            format!(
+                "{count} gap(s) in which a person is missing, the longest {:.2} s; no motion is measured across",
+                self.time(longest)
+            )
+        })
+    }
+
+    /// Of the steps from a frame to the next, m/s; 0 without any.
+    fn median_speed(&self) -> f64 {
+        let mut speeds: Vec<f64> = Vec::new();
+        for p in 0..self.ids.len() {
+            let steps = self.rows_of(p).windows(2);
+            speeds.extend(steps.map(|pair| {
+                let [from, to] = [pair[0], pair[1]].map(|row| self.position[row as usize]);
+                (to - from).norm() / self.interval()
+            }));
+        }
+        if speeds.is_empty() {
+            return 0.0;
+        }
+        let middle = speeds.len() / 2;
+        *speeds.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
+}
+
+fn frame_rate(
+    path: &Path,
+    contents: &Contents,
+    options: &ReadOptions,
+    notes: &mut Vec<String>,
+) -> Result<f64, ReadError> {
+    match (options.fps, contents.fps) {
+        (Some(given), Some(own)) if given != own => {
+            notes.push(format!("--fps {given} is taken, not the file's own {own}"));
+            Ok(given)
+        }
+        (Some(fps), _) | (None, Some(fps)) => Ok(fps),
+        (None, None) => Err(ReadError::file(
+            path,
+            "it has no frame rate (a line like `# framerate: 25`); give --fps",
+        )),
+    }
+}
+
+fn unit(contents: &Contents, options: &ReadOptions, notes: &mut Vec<String>) -> Option<Unit> {
+    match (options.unit, contents.unit) {
+        (Some(given), Some(own)) if given != own => {
+            let name = |unit| if unit == Unit::Metre { "m" } else { "cm" };
+            let (given_name, own_name) = (name(given), name(own));
+            notes.push(format!(
+                "--unit {given_name} is taken, not the file's own {own_name}"
+            ));
+            Some(given)
+        }
+        (Some(unit), _) | (None, Some(unit)) => Some(unit),
+        (None, None) => {
+            notes.push(
+                "no unit is given in the file (x/m or x/cm) or by --unit: metres are taken"
+                    .to_owned(),
+            );
+            None
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! One agent in one frame.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::engine::frame::Frame;
+use crate::engine::math::{Vector, direction};
+use crate::engine::simulation::Simulation;
+
+/// Who is slower turns to the goal, m/s: below it the direction of a velocity is that of jitter.
+const STANDING: f64 = 0.01;
+
+/// Every quantity of one agent in one frame; the fields are the columns of a CSV file. SI units.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Row<'a> {
+    /// The frame's number at the file's own rate, from 0.
+    pub frame: u64,
+    /// Seconds.
+    pub time: f64,
+    /// Unique, in the order of entry from 0.
+    pub id: u32,
+    /// The name of the agent's group.
+    pub group: &'a str,
+    /// The push that the agent takes part in.
+    pub push: Option<&'a str>,
+    /// r_i, metres.
+    pub pos_x: f64,
+    /// Likewise.
+    pub pos_y: f64,
+    /// v_i, m/s.
+    pub vel_x: f64,
+    /// Likewise.
+    pub vel_y: f64,
+    /// |v_i|, m/s.
+    pub speed: f64,
+    /// The direction of the velocity, and of the goal for who stands: a unit vector.
+    pub ori_x: f64,
+    /// Likewise.
+    pub ori_y: f64,
+    /// g_i, metres.
+    pub goal_x: f64,
+    /// Likewise.
+    pub goal_y: f64,
+    /// D_i, metres.
+    pub radius: f64,
+    /// m_i, 1 = an average person.
+    pub mass: f64,
+    /// ρ_i, P/m².
+    pub density: f64,
+    /// The walls' part of ρ_i, P/m².
+    pub density_from_walls: f64,
+    /// ρ̂_i, P/m².
+    pub mean_density: f64,
+    /// ρ_i⁰, P/m².
+    pub rest_density: f64,
+    /// p_i.
+    pub pressure: f64,
+    /// Σ_k ∫ ∇W over P_k, 1/m.
+    pub wall_gradient_x: f64,
+    /// Likewise.
+    pub wall_gradient_y: f64,
+    /// v_i^pref, m/s.
+    pub preferred_vel_x: f64,
+    /// Likewise.
+    pub preferred_vel_y: f64,
+    /// a_i, m/s².
+    pub acc_x: f64,
+    /// Likewise.
+    pub acc_y: f64,
+}
+
+/// Everybody in an evaluated frame, called `number`, by id.
+pub fn rows(simulation: &Simulation, number: u64) -> Vec<Row<'_>> {
+    let ids = &simulation.frame().agents.id;
+    let mut order: Vec<usize> = (0..ids.len()).collect();
+    order.sort_unstable_by_key(|&i| ids[i]);
+    let row = |i| row(simulation, number, i);
+    order.into_par_iter().with_min_len(1024).map(row).collect()
+}
+
+fn row(simulation: &Simulation, number: u64, i: usize) -> Row<'_> {
+    let (frame, scene) = (simulation.frame(), simulation.scene());
+    let Frame { agents, fields, .. } = frame;
+    let (position, velocity, goal) = (agents.position[i], agents.velocity[i], agents.goal[i]);
+    let orientation = orientation(position, velocity, goal);
+    let wall_gradient = fields.wall_gradient[i];
+    let preferred_velocity = fields.preferred_velocity[i];
+    let acceleration = fields.acceleration[i];
+    Row {
+        frame: number,
+        time: frame.clock.time(),
+        id: agents.id[i],
+        group: &scene.groups[usize::from(agents.group[i])].name,
+        push: agents.push[i].map(|push| scene.pushes[usize::from(push)].name.as_str()),
+        pos_x: position.x,
+        pos_y: position.y,
+        vel_x: velocity.x,
+        vel_y: velocity.y,
+        speed: velocity.norm(),
+        ori_x: orientation.x,
+        ori_y: orientation.y,
+        goal_x: goal.x,
+        goal_y: goal.y,
+        radius: agents.radius[i],
+        mass: agents.mass[i],
+        density: fields.density[i],
+        density_from_walls: fields.density_from_walls[i],
+        mean_density: fields.mean_density[i],
+        rest_density: fields.rest_density[i],
+        pressure: fields.pressure[i],
+        wall_gradient_x: wall_gradient.x,
+        wall_gradient_y: wall_gradient.y,
+        preferred_vel_x: preferred_velocity.x,
+        preferred_vel_y: preferred_velocity.y,
+        acc_x: acceleration.x,
+        acc_y: acceleration.y,
+    }
+}
+
+/// Where somebody faces; along x who stands at the goal.
+fn orientation(position: Vector, velocity: Vector, goal: Vector) -> Vector {
+    let facing = if velocity.norm() < STANDING {
+        direction(goal - position)
+    } else {
+        direction(velocity)
+    };
+    if facing == Vector::zeros() {
+        Vector::x()
+    } else {
+        facing
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_walks_faces_the_way_and_who_stands_the_goal() {
+        let (here, goal) = (Vector::new(1.0, 1.0), Vector::new(1.0, 4.0));
+        let walking = orientation(here, Vector::new(-0.5, 0.0), goal);
+        assert_eq!(walking, Vector::new(-1.0, 0.0));
+        let standing = orientation(here, Vector::new(-0.005, 0.0), goal);
+        assert_eq!(standing, Vector::new(0.0, 1.0));
+        assert_eq!(orientation(goal, Vector::zeros(), goal), Vector::x());
+    }
+}

@@ -1,0 +1,179 @@
+//! JuPedSim's SQLite format, version 2.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use std::{fs, io};
+
+use rusqlite::{Connection, params};
+
+use super::area::WalkableArea;
+use super::error::Cause;
+use super::{Row, Sink};
+use crate::runs::outputs::followed;
+
+/// How much of a run that is cut short may be lost, at most a frame more.
+const COMMIT_EVERY: Duration = Duration::from_secs(1);
+
+/// The tables of JuPedSim's own writer; the last four columns are ours.
+const TABLES: &str = "
+    CREATE TABLE trajectory_data (
+        frame INTEGER NOT NULL,
+        id INTEGER NOT NULL,
+        pos_x REAL NOT NULL,
+        pos_y REAL NOT NULL,
+        ori_x REAL NOT NULL,
+        ori_y REAL NOT NULL,
+        density REAL NOT NULL,
+        pressure REAL NOT NULL,
+        speed REAL NOT NULL,
+        mass REAL NOT NULL);
+    CREATE INDEX frame_id_idx ON trajectory_data(frame, id);
+    CREATE TABLE metadata (key TEXT NOT NULL UNIQUE PRIMARY KEY, value TEXT NOT NULL);
+    CREATE TABLE geometry (hash INTEGER NOT NULL, wkt TEXT NOT NULL);
+    CREATE UNIQUE INDEX geometry_hash ON geometry(hash);
+    CREATE TABLE frame_data (frame INTEGER NOT NULL, geometry_hash INTEGER NOT NULL);";
+
+/// There is one geometry, for all frames.
+const GEOMETRY: i64 = 1;
+
+/// A database that is being written.
+pub struct Sqlite {
+    connection: Connection,
+    area: WalkableArea,
+    committed_at: Instant,
+    committed: u64,
+    /// Frames since then.
+    pending: u64,
+}
+
+impl Sqlite {
+    /// Makes the tables in an empty file.
+    pub fn create(path: &Path, area: WalkableArea, fps: f64) -> Result<Self, Cause> {
+        forget_journal(path)?;
+        // A name that begins with `file:` would be a URI.
+        let connection = Connection::open(fs::canonicalize(path)?)?;
+        connection.execute_batch("BEGIN")?;
+        connection.execute_batch(TABLES)?;
+        let sqlite = Self {
+            connection,
+            area,
+            committed_at: Instant::now(),
+            committed: 0,
+            pending: 0,
+        };
+        sqlite.set("version", "2")?;
+        sqlite.set("fps", &format!("{fps:?}"))?;
+        sqlite.write_area()?;
+        sqlite.connection.execute_batch("COMMIT")?;
+        Ok(sqlite)
+    }
+
+    fn set(&self, key: &str, value: &str) -> rusqlite::Result<usize> {
+        let insert = "INSERT OR REPLACE INTO metadata VALUES (?, ?)";
+        self.connection.execute(insert, params![key, value])
+    }
+
+    fn write_area(&self) -> Result<(), Cause> {
+        let (wkt, bounds) = self.area.cut_out()?;
+        let insert = "INSERT OR REPLACE INTO geometry VALUES (?, ?)";
+        self.connection.execute(insert, params![GEOMETRY, wkt])?;
+        for (key, value) in ["xmin", "ymin", "xmax", "ymax"].iter().zip(bounds) {
+            self.set(key, &value.to_string())?;
+        }
+        Ok(())
+    }
+
+    fn insert(&self, frame: u64, rows: &[Row<'_>]) -> rusqlite::Result<()> {
+        let insert = "INSERT INTO trajectory_data VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
+        let mut insert = self.connection.prepare(insert)?;
+        let frame = frame.cast_signed();
+        for row in rows {
+            let Row {
+                id, pos_x, pos_y, ..
+            } = row;
+            let Row { ori_x, ori_y, .. } = row;
+            let Row {
+                density,
+                pressure,
+                speed,
+                mass,
+                ..
+            } = row;
+            insert.execute(params![
+                frame, id, pos_x, pos_y, ori_x, ori_y, density, pressure, speed, mass
+            ])?;
+        }
+        let insert = "INSERT INTO frame_data VALUES (?, ?)";
+        self.connection.execute(insert, params![frame, GEOMETRY])?;
+        Ok(())
+    }
+
+    fn add(&mut self, frame: u64, rows: &[Row<'_>]) -> Result<(), Cause> {
+        if self.connection.is_autocommit() {
+            self.connection.execute_batch("BEGIN")?;
+        }
+        self.insert(frame, rows)?;
+        if self.area.reach(rows) {
+            self.write_area()?;
+        }
+        self.pending += 1;
+        if self.committed_at.elapsed() < COMMIT_EVERY {
+            return Ok(());
+        }
+        Ok(self.commit()?)
+    }
+
+    fn commit(&mut self) -> rusqlite::Result<()> {
+        if !self.connection.is_autocommit() {
+            self.connection.execute_batch("COMMIT")?;
+        }
+        self.committed += std::mem::take(&mut self.pending);
+        self.committed_at = Instant::now();
+        Ok(())
+    }
+
+    /// Half a frame helps nobody.
+    fn or_forget(&mut self, result: Result<(), Cause>) -> Result<(), Cause> {
+        if result.is_err() {
+            self.pending = 0;
+            // SQLite may have done so itself; on a full disk it leaves the last part to the next read.
+            self.connection.execute_batch("ROLLBACK").ok();
+            self.connection.execute_batch("SELECT 1 FROM geometry").ok();
+        }
+        result
+    }
+}
+
+impl Sink for Sqlite {
+    fn write(&mut self, frame: u64, rows: &[Row<'_>]) -> Result<(), Cause> {
+        let added = self.add(frame, rows);
+        self.or_forget(added)
+    }
+
+    fn finish(&mut self) -> Result<(), Cause> {
+        let committed = self.commit();
+        self.or_forget(committed.map_err(Cause::from))
+    }
+
+    fn kept(&self) -> u64 {
+        self.committed
+    }
+}
+
+/// The journal of a run that was cut short is not that of the file which replaces it.
+fn forget_journal(path: &Path) -> io::Result<()> {
+    match fs::remove_file(journal(path)?) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}
+
+/// SQLite's journal of a database: beside the file that symbolic links lead to.
+///
+/// # Errors
+/// Links cannot be followed.
+pub fn journal(database: &Path) -> io::Result<PathBuf> {
+    let mut journal = followed(database)?.into_os_string();
+    journal.push("-journal");
+    Ok(journal.into())
+}

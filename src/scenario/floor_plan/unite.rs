@@ -1,0 +1,87 @@
+//! Areas that touch or overlap as one, less what stands on them.
+
+use geo::bool_ops::FillRule;
+use geo::orient::Direction;
+use geo::{BooleanOps, Coord, LineString, MultiPolygon, Orient, Polygon};
+
+use super::error::FloorPlanError;
+use super::shape::SAME;
+use crate::engine::geometry::{Area, Ring, assemble};
+use crate::engine::math::Vector;
+
+/// How far, in parts of the whole extent, corners may be from where they were given: geo computes on a grid
+/// of some 2⁻³⁰.
+const ROUNDING: f64 = 1.0 / (1 << 28) as f64;
+
+/// Closed outlines: what lies on the left of more of them than on the right is inside.
+pub type Rings = Vec<Vec<Vector>>;
+
+/// The union of `areas` without the union of `obstacles`, as areas that touch at points at most.
+pub fn without(areas: &[Area], obstacles: &[Area]) -> Result<Vec<Area>, FloorPlanError> {
+    free(&[rings(areas)], &rings(obstacles))
+}
+
+/// What is inside of all `floors` and of none of the `bodies`, as areas that touch at points at most. Corners
+/// are those given, to the last bit, wherever there are any.
+///
+/// # Errors
+/// None is known: rings that cross each other after all.
+pub fn free(floors: &[Rings], bodies: &Rings) -> Result<Vec<Area>, FloorPlanError> {
+    let Some((first, others)) = floors.split_first() else {
+        return Ok(Vec::new());
+    };
+    let mut free = to_geo(first).difference_with_fill_rule(&to_geo(bodies), FillRule::Positive);
+    for floor in others {
+        let so_far = to_geo(&oriented(&free));
+        free = so_far.intersection_with_fill_rule(&to_geo(floor), FillRule::Positive);
+    }
+    let given = || floors.iter().chain([bodies]).flatten().flatten().copied();
+    let [low, high] = given().fold(
+        [
+            Vector::repeat(f64::INFINITY),
+            Vector::repeat(f64::NEG_INFINITY),
+        ],
+        |[low, high], p| [low.inf(&p), high.sup(&p)],
+    );
+    let tolerance = SAME.max((high - low).max() * ROUNDING);
+    assemble(&oriented(&free), given(), tolerance).map_err(|(error, ring)| {
+        let distance = |p: &Vector| (p - ring[0]).norm();
+        let nearest = given().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let place = nearest.map_or(String::new(), |p| format!("near ({}, {})", p.x, p.y));
+        let reason = error.to_string();
+        FloorPlanError::Ring { place, reason }
+    })
+}
+
+/// Outlines counter-clockwise, holes clockwise.
+fn rings(areas: &[Area]) -> Rings {
+    let reversed = |hole: &Ring| hole.points().iter().rev().copied().collect();
+    let rings = areas.iter().flat_map(|area| {
+        let holes = area.holes.iter().map(reversed);
+        std::iter::once(area.exterior.points().to_vec()).chain(holes)
+    });
+    rings.collect()
+}
+
+fn to_geo(rings: &Rings) -> MultiPolygon {
+    let line =
+        |ring: &Vec<Vector>| LineString::from_iter(ring.iter().map(|p| Coord { x: p.x, y: p.y }));
+    let polygons = rings
+        .iter()
+        .map(|ring| Polygon::new(line(ring), Vec::new()));
+    polygons.collect()
+}
+
+/// What geo has computed, of which holes that touch their outline run as the outline does.
+fn oriented(area: &MultiPolygon) -> Rings {
+    let ring = |line: &LineString| {
+        let open = &line.0[..line.0.len().saturating_sub(1)];
+        open.iter().map(|c| Vector::new(c.x, c.y)).collect()
+    };
+    let oriented = area.orient(Direction::Default);
+    let rings = oriented.iter().flat_map(|polygon| {
+        let holes = polygon.interiors().iter();
+        std::iter::once(polygon.exterior()).chain(holes).map(ring)
+    });
+    rings.collect()
+}
