@@ -294,6 +294,7 @@ fn plans_nested_deeper_than_any_is_are_refused_with_their_place_on_a_thread_with
         );
     }
     assert!(said(wkt(64)).starts_with("no WKT: line 2: "));
+    assert!(said("()".repeat(300_000)).starts_with("no WKT: line 1: "));
     assert_eq!(
         said(json(60)),
         format!(

@@ -155,15 +155,10 @@ fn four_times_as_many_pieces_do_not_take_sixteen_times_as_long() {
             FloorPlan::obstacle(&rings).unwrap();
         })
     };
-    let empty = |n: usize| {
-        let text = "()".repeat(50 * n);
-        seconds(|| assert!(floor_plan::parse(&text).is_err()))
-    };
-    let kinds: [(&str, &dyn Fn(usize) -> f64); 4] = [
+    let kinds: [(&str, &dyn Fn(usize) -> f64); 3] = [
         ("lines", &lines),
         ("features", &features),
         ("holes", &holes),
-        ("empty", &empty),
     ];
     for (kind, time) in kinds {
         let [few, many] = [2_000, 8_000].map(time);

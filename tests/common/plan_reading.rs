@@ -1,6 +1,6 @@
 //! Reads any text as a floor plan: for tests and for fuzzing.
 
-use sandbox::engine::geometry::{Area, Walls};
+use sandbox::engine::geometry::{Area, Polygon, Walls};
 use sandbox::scenario::floor_plan::{self, FloorPlan, FloorPlanError};
 
 /// Ends in walls that can be asked, or in an error at a place that is in the text.
@@ -21,13 +21,10 @@ pub fn read(text: &str) {
         // to less than a micrometer, its areas are obstacles as well.
         let again = FloorPlan::walkable(&written).unwrap();
         let size = |plan: &FloorPlan| plan.walkable.iter().map(Area::area).sum::<f64>();
-        let edge = |area: &Area| -> f64 {
-            let points = area.rings().flat_map(|ring| ring.points());
-            points.map(|p| p.amax()).fold(1.0, f64::max)
-        };
-        let reach = plan.walkable.iter().map(edge).fold(1.0, f64::max);
-        let corners = written.iter().flatten().map(Vec::len).sum::<usize>();
-        let rounding = 1e-5 * reach * corners as f64;
+        let points = written.iter().flatten().flatten().flatten();
+        let reach = points.fold(1.0_f64, |reach, x| reach.max(x.abs()));
+        let length: f64 = plan.clone().solids().unwrap().iter().map(perimeter).sum();
+        let rounding = (1e-6 + 1e-8 * reach) * length;
         assert!((size(&again) - size(&plan)).abs() < rounding, "{again:?}");
         if reach < 100.0 {
             for rings in &written {
@@ -40,6 +37,11 @@ pub fn read(text: &str) {
         assert!(wall.start.amax() <= 1e6 && wall.length() > 0.0);
         walls.obstacle_at((wall.start + wall.end) * 0.5);
     }
+}
+
+/// The length of all edges, metres.
+fn perimeter(solid: &Polygon) -> f64 {
+    solid.edges().map(|(a, b)| (b - a).norm()).sum()
 }
 
 /// Every point that a message names is one of the text.

@@ -13,9 +13,6 @@ use super::ring_index::RingIndex;
 use super::{Area, PolygonError, Ring, to_parry};
 use crate::engine::math::Vector;
 
-/// What is narrower than this on the average is nothing but rounding, metres.
-const NARROW: f64 = 1e-6;
-
 /// A piece of an edge, by the numbers of its ends.
 #[derive(Clone, Copy)]
 struct Piece {
@@ -46,7 +43,8 @@ pub fn assemble(
         let ends = points.iter().cycle().skip(1);
         let around: f64 = points.iter().zip(ends).map(|(a, b)| (b - a).norm()).sum();
         let area = signed_area(&points);
-        if area.abs() <= NARROW * around {
+        // What is narrower than this on the average is nothing but rounding.
+        if area.abs() <= tolerance * around {
             continue;
         }
         let ring = Ring::new(points.clone()).map_err(|error| (error, points))?;
@@ -241,11 +239,13 @@ fn nested(outlines: Vec<Ring>, holes: Vec<Ring>) -> Vec<Area> {
     let sizes: Vec<f64> = outlines.iter().map(Ring::area).collect();
     let parents: Vec<Option<usize>> = {
         let index = RingIndex::new(outlines.iter().collect());
-        let smallest = |around: Vec<usize>| {
-            let by_size = |a: &usize, b: &usize| sizes[*a].total_cmp(&sizes[*b]);
-            around.into_iter().min_by(by_size)
+        let parent = |hole: &Ring| {
+            let around = index.around(hole.inner_point()).into_iter();
+            let size = hole.area();
+            // Smaller ones lie in the hole.
+            let larger = around.filter(|&k| sizes[k] > size);
+            larger.min_by(|&a, &b| sizes[a].total_cmp(&sizes[b]))
         };
-        let parent = |hole: &Ring| smallest(index.around(hole.inner_point()));
         holes.iter().map(parent).collect()
     };
     let area = |exterior| Area {

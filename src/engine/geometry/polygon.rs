@@ -3,12 +3,14 @@
 use parry2d::bounding_volume::Aabb;
 use parry2d::partitioning::{Bvh, BvhBuildStrategy};
 
-use super::ring::{Ring, TOUCHING, encloses, signed_area};
+use super::ring::{Ring, encloses, signed_area};
 use super::ring_index::{AreaIndex, RingIndex};
 use super::to_parry;
 use crate::engine::math::Vector;
 
-/// Edges of different rings may cross by [`TOUCHING`], or by so much of the whole extent.
+/// Edges of different rings may cross by so much, metres, or by so much of the whole extent: floor plans have
+/// corners that touch an edge but for their rounding.
+const TOUCHING: f64 = 1e-6;
 const TOUCHING_PART: f64 = 1e-8;
 
 /// Why points or rings are not an obstacle.
@@ -201,9 +203,11 @@ fn check(areas: &[Area]) -> Result<(), PolygonError> {
         }
     }
     let index = AreaIndex::new(areas);
+    let sizes: Vec<f64> = areas.iter().map(|area| area.exterior.area()).collect();
     for (k, area) in areas.iter().enumerate() {
+        // What lies in its outline lies in holes of it, as the other areas find.
         let around = index.around(area.exterior.inner_point());
-        if around.into_iter().any(|other| other != k) {
+        if around.into_iter().any(|j| j != k && sizes[j] >= sizes[k]) {
             return Err(PolygonError::Overlap(area.exterior.points()[0]));
         }
     }

@@ -7,9 +7,8 @@ use parry2d::utils::{point_in_poly2d, segments_intersection2d};
 use super::{PolygonError, to_parry};
 use crate::engine::math::{Vector, is_finite, perpendicular};
 
-/// Edges of different rings may cross by so much, metres: floor plans have corners that touch an edge but
-/// for their rounding.
-pub(super) const TOUCHING: f64 = 1e-6;
+/// A part of a length, near to its middle; on the middle lie corners of other rings.
+const UNEVEN: f64 = 0.414;
 
 /// A closed outline that neither crosses nor touches itself, counter-clockwise. Its first point is the first
 /// one given.
@@ -67,17 +66,25 @@ impl Ring {
         encloses(&self.points, p)
     }
 
-    /// A point inside, [`TOUCHING`] from the middle of the longest edge: rings that touch this one do so
-    /// elsewhere, or along an edge.
+    /// A point inside, between the longest edge and the edge across: rings that touch this one, or cross it by
+    /// rounding, do not reach it.
     pub(super) fn inner_point(&self) -> Vector {
         let edge = |k: usize| (self.points[k], self.points[(k + 1) % self.points.len()]);
-        let length = |&(a, b): &(Vector, Vector)| (b - a).norm_squared();
-        let edges = (0..self.points.len()).map(edge);
-        let longest = edges.max_by(|a, b| length(a).total_cmp(&length(b)));
-        longest.map_or(self.points[0], |(a, b)| {
-            let inwards = perpendicular(b - a) / (b - a).norm();
-            (a + b) * 0.5 + inwards * TOUCHING
-        })
+        let length = |k: &usize| (edge(*k).1 - edge(*k).0).norm_squared();
+        let edges = 0..self.points.len();
+        let longest = edges.clone().max_by(|i, j| length(i).total_cmp(&length(j)));
+        let longest = longest.unwrap_or(0);
+        let (a, b) = edge(longest);
+        let (start, along) = (a + (b - a) * UNEVEN, (b - a) / (b - a).norm());
+        let place = |p: Vector| [along.dot(&(p - start)), along.perp(&(p - start))];
+        let across = edges.filter(|&k| k != longest).filter_map(|k| {
+            let [[u, v], [u_end, v_end]] = [edge(k).0, edge(k).1].map(place);
+            let meets = (u > 0.0) != (u_end > 0.0);
+            meets.then(|| v - u * (v_end - v) / (u_end - u))
+        });
+        let depth = across.filter(|&v| v > 0.0).fold(f64::INFINITY, f64::min);
+        let depth = if depth.is_finite() { depth } else { 0.0 };
+        start + perpendicular(along) * (UNEVEN * depth)
     }
 
     /// The corners with what is enclosed on the right.

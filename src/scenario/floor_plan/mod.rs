@@ -21,7 +21,7 @@ pub use unite::{Rings, free};
 
 use std::path::Path;
 
-use crate::engine::geometry::{Area, Polygon, PolygonError};
+use crate::engine::geometry::{Area, Polygon, PolygonError, Ring};
 use crate::engine::math::Vector;
 use crate::scenario::input;
 use shape::Shape;
@@ -202,7 +202,7 @@ impl FloorPlan {
 
 /// Along x and along y, metres; negative without areas.
 fn extent<'a>(areas: impl Iterator<Item = &'a Area>) -> [f64; 2] {
-    let points = areas.flat_map(|area| area.exterior.points());
+    let points = areas.flat_map(Area::rings).flat_map(Ring::points);
     let none = [f64::INFINITY, f64::NEG_INFINITY].map(Vector::repeat);
     let [low, high] = points.fold(none, |[low, high], p| [low.inf(p), high.sup(p)]);
     [high.x - low.x, high.y - low.y]
