@@ -18,7 +18,7 @@ const APART: f64 = 20.0;
 /// A room whose holes are cells and halves of cells of a grid: they touch each other and the outline, at
 /// corners and along edges. Every other plan is turned.
 fn plan(random: &mut ChaCha8Rng, k: usize) -> Vec<Ring> {
-    let turn = if k % 2 == 0 {
+    let turn = if k.is_multiple_of(2) {
         0.0
     } else {
         random.random_range(0.0..1.5)
