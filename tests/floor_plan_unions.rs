@@ -1,8 +1,6 @@
 //! Floor plans of pieces that touch at corners, along edges and in several places, on coarse grids; and of
 //! very many pieces.
 
-use std::time::Instant;
-
 use crate::common::plans::{Ring, contains, margin, multipolygon, rings};
 use geo::{LineString, Polygon, Validation};
 use rand::{Rng, SeedableRng};
@@ -117,22 +115,17 @@ fn square(k: usize, columns: usize) -> Ring {
     vec![[x, y], [x + 1.0, y], [x + 1.0, y + 1.0], [x, y + 1.0]]
 }
 
-/// The shortest of some times, seconds.
-fn seconds(read: impl Fn()) -> f64 {
-    let once = |_| {
-        let start = Instant::now();
-        read();
-        start.elapsed().as_secs_f64()
-    };
-    (0..3).map(once).fold(f64::INFINITY, f64::min)
+/// Allocations of a reading: the same on every machine.
+fn allocations(read: impl FnOnce()) -> u64 {
+    allocation_counter::measure(read).count_total
 }
 
 #[test]
-fn four_times_as_many_pieces_do_not_take_sixteen_times_as_long() {
+fn four_times_as_many_pieces_take_about_four_times_the_work() {
     let lines = |n: usize| {
         let squares = (0..n).map(|k| multipolygon(&[vec![square(k, 50)]]));
         let text = squares.collect::<Vec<_>>().join("\n");
-        seconds(|| assert_eq!(floor_plan::parse(&text).unwrap().solids().unwrap().len(), 1))
+        allocations(|| assert_eq!(floor_plan::parse(&text).unwrap().solids().unwrap().len(), 1))
     };
     let features = |n: usize| {
         let feature = |k| {
@@ -141,27 +134,28 @@ fn four_times_as_many_pieces_do_not_take_sixteen_times_as_long() {
         };
         let features: Vec<_> = (0..n).map(feature).collect();
         let text = json!({"type": "FeatureCollection", "features": features}).to_string();
-        seconds(|| assert_eq!(floor_plan::parse(&text).unwrap().walkable.len(), n))
+        allocations(|| assert_eq!(floor_plan::parse(&text).unwrap().walkable.len(), n))
     };
     let holes = |n: usize| {
         let side = 2.0 * n as f64;
         let outline = vec![[-1.0, -1.0], [side, -1.0], [side, side], [-1.0, side]];
         let mut rings = vec![outline];
         rings.extend((0..n).map(|k| square(k, 50)));
-        seconds(|| {
+        allocations(|| {
             let plan = FloorPlan::walkable(std::slice::from_ref(&rings)).unwrap();
             assert_eq!(plan.walkable[0].holes.len(), n);
             plan.solids().unwrap();
             FloorPlan::obstacle(&rings).unwrap();
         })
     };
-    let kinds: [(&str, &dyn Fn(usize) -> f64); 3] = [
+    let kinds: [(&str, &dyn Fn(usize) -> u64); 3] = [
         ("lines", &lines),
         ("features", &features),
         ("holes", &holes),
     ];
-    for (kind, time) in kinds {
-        let [few, many] = [2_000, 8_000].map(time);
-        assert!(many < 10.0 * few, "{kind}: {few} s, {many} s");
+    // With 20,000 pieces, work that grows as their square would take a minute.
+    for (kind, work) in kinds {
+        let [few, many] = [5_000, 20_000].map(work);
+        assert!(many < 6 * few, "{kind}: {few}, {many} allocations");
     }
 }

@@ -226,3 +226,15 @@ fn a_flow_until_a_time_has_a_value_at_any_time_step() {
         assert!((flow - 0.5).abs() < 0.01, "{time_step} s: {flow}");
     }
 }
+
+#[test]
+fn a_frame_that_has_not_been_evaluated_has_no_fields() {
+    let mut simulation = alone(Integrator::SemiImplicit, 0.02);
+    assert!(simulation.frame().fields.acceleration.is_empty());
+    let accelerations = simulation.evaluate().unwrap().fields.acceleration.len();
+    assert_eq!(accelerations, 1);
+    simulation.integrate().unwrap();
+    let frame = simulation.frame();
+    assert!(frame.fields.acceleration.is_empty() && frame.fields.density.is_empty());
+    assert_eq!(frame.agents.len(), 1);
+}

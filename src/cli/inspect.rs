@@ -80,7 +80,8 @@ fn go_to(at: f64, simulation: &mut Simulation, progress: &Progress) -> Result<()
         }
     }
     simulation.set_precision(Precision::Double);
-    Ok(simulation.evaluate()?)
+    simulation.evaluate()?;
+    Ok(())
 }
 
 /// Ids and indices of the agents that are asked for.

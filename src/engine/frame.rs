@@ -34,6 +34,19 @@ pub struct Fields {
 }
 
 impl Fields {
+    /// No field of any agent.
+    pub const NONE: Self = Self {
+        density: Vec::new(),
+        density_from_walls: Vec::new(),
+        mean_density: Vec::new(),
+        rest_density: Vec::new(),
+        pressure: Vec::new(),
+        wall_gradient: Vec::new(),
+        preferred_velocity: Vec::new(),
+        velocity_ranges: Vec::new(),
+        acceleration: Vec::new(),
+    };
+
     /// Nobody has been near a wall yet: what walls give to an agent is zero until a frame says otherwise.
     pub fn forget_walls(&mut self) {
         self.density_from_walls.clear();

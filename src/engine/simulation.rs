@@ -145,24 +145,23 @@ impl Simulation {
         self.integrate()
     }
 
-    /// Steps 1–4 of §4.1. Moves nobody; does nothing if the frame is evaluated already.
+    /// Steps 1–4 of §4.1: computes the current frame and returns it, frozen and complete. Moves no agent; an
+    /// evaluated frame is returned as it is.
     ///
     /// # Errors
-    /// Somebody enters inside an obstacle that has no way out.
-    pub fn evaluate(&mut self) -> Result<(), Fault> {
-        if self.evaluated {
-            return Ok(());
+    /// An agent enters inside an obstacle that has no way out.
+    pub fn evaluate(&mut self) -> Result<Frame<'_>, Fault> {
+        if !self.evaluated {
+            self.follow_schedule()?; // entries and pushes, coarse
+            self.update_neighbors(); // 1
+            self.pack();
+            self.update_density_and_pressure(self.clock.time_step()); // 1B
+            self.update_preferred_velocity(); // 2
+            self.update_rvo(); // 3, coarse
+            self.update_acceleration(); // 3, 3B, 4
+            self.evaluated = true;
         }
-        if self.clock.is_coarse() {
-            self.follow_schedule()?;
-        }
-        self.update_neighbors(); // 1
-        self.update_preferred_velocity(); // 2
-        self.update_density_and_pressure(self.clock.time_step()); // 1B
-        self.update_rvo(); // 3, coarse
-        self.update_acceleration(); // 3, 3B, 4
-        self.evaluated = true;
-        Ok(())
+        Ok(self.frame())
     }
 
     fn density_is_due(&self) -> bool {
@@ -176,11 +175,11 @@ impl Simulation {
         self.density_until = self.density_until.max(frame);
     }
 
-    /// Evaluates the frame once more, with the density in it, for whoever lays open what is wrong there.
+    /// Evaluates the frame once more, with the density in it, for a breakdown of what is wrong there.
     ///
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
-    pub fn evaluate_with_density(&mut self) -> Result<(), Fault> {
+    pub fn evaluate_with_density(&mut self) -> Result<Frame<'_>, Fault> {
         self.request_density_until(self.clock.frame() + 1);
         self.evaluated = false;
         self.evaluate()
@@ -198,8 +197,22 @@ impl Simulation {
         self.crowd_changed = true; // lists as far as is now asked for
     }
 
-    /// The current frame; frozen and complete after [`evaluate`](Self::evaluate).
+    /// The current frame. Its fields are those of [`evaluate`](Self::evaluate); after
+    /// [`integrate`](Self::integrate), which moves the agents, they are empty until the next evaluation.
     pub fn frame(&self) -> Frame<'_> {
+        let frame = self.frozen();
+        if self.evaluated {
+            frame
+        } else {
+            Frame {
+                fields: &NO_FIELDS,
+                ..frame
+            }
+        }
+    }
+
+    /// The frame while it is being evaluated, with the fields computed so far.
+    fn frozen(&self) -> Frame<'_> {
         Frame {
             clock: &self.clock,
             walls: &self.scene.walls,
@@ -257,6 +270,9 @@ impl Simulation {
         self.stages = StageTimes::default();
     }
 }
+
+/// The fields of a frame that has not been evaluated.
+static NO_FIELDS: Fields = Fields::NONE;
 
 fn blend_of<'a>(scene: &'a Scene, agents: &Agents, i: usize) -> &'a Blend {
     &scene.groups[usize::from(agents.group[i])].blend

@@ -58,14 +58,29 @@ impl Simulation {
         });
     }
 
-    /// Step 2, and packing what the sums over pairs read.
-    pub(super) fn update_preferred_velocity(&mut self) {
-        let mut packed = std::mem::take(&mut self.packed);
-        each!(&mut packed, columns => self.prepare(columns));
-        self.packed = packed;
+    /// Packs the positions and velocities that the sums over pairs read.
+    pub(super) fn pack(&mut self) {
+        if self.packed.is_empty() {
+            return; // nothing is summed
+        }
+        let (agents, packed) = (&self.agents, &mut self.packed);
+        self.stages.time(Stage::Packing, || {
+            each!(packed, columns => {
+                let states = (
+                    columns.motions(),
+                    agents.position.par_chunks(BLOCK),
+                    agents.velocity.par_chunks(BLOCK),
+                );
+                states
+                    .into_par_iter()
+                    .with_min_len(TASK)
+                    .for_each(|(mut motion, positions, velocities)| motion.take(positions, velocities));
+            });
+        });
     }
 
-    fn prepare<R: Real>(&mut self, columns: &mut Columns<R>) {
+    /// Step 2.
+    pub(super) fn update_preferred_velocity(&mut self) {
         let (agents, speed) = (&self.agents, self.scene.preferred_speed);
         let preferred = &mut self.fields.preferred_velocity;
         preferred.resize(agents.len(), Vector::zeros());
@@ -83,15 +98,6 @@ impl Simulation {
                         *v = goal::preferred_velocity(r, g, speed);
                     }
                 });
-            let states = (
-                columns.motions(), // none where nothing is summed
-                agents.position.par_chunks(BLOCK),
-                agents.velocity.par_chunks(BLOCK),
-            );
-            states
-                .into_par_iter()
-                .with_min_len(TASK)
-                .for_each(|(mut motion, positions, velocities)| motion.take(positions, velocities));
         });
     }
 
@@ -113,7 +119,7 @@ impl Simulation {
     fn compress<R: Real>(&mut self, columns: &mut Columns<R>, dt: f64) {
         let mut fields = std::mem::take(&mut self.fields);
         let mut stages = std::mem::take(&mut self.stages);
-        let frame = self.frame();
+        let frame = self.frozen();
         let walls = self.scene.wall_method;
         stages.time(Stage::DensityAndPressure, || {
             let (bodies, pressures) = columns.pressures();
@@ -172,7 +178,7 @@ impl Simulation {
         self.agents.make_room_for_avoidance();
         let mut avoidance = std::mem::take(&mut self.agents.avoidance);
         let mut stages = std::mem::take(&mut self.stages);
-        let frame = self.frame();
+        let frame = self.frozen();
         let coarse = self.clock.is_coarse();
         stages.time(Stage::Rvo, || {
             avoidance.par_iter_mut().enumerate().for_each_init(
@@ -209,7 +215,7 @@ impl Simulation {
             self.update_velocity_ranges(&mut fields.velocity_ranges);
             let frame = Frame {
                 fields: &fields,
-                ..self.frame()
+                ..self.frozen()
             };
             acceleration
                 .par_chunks_mut(BLOCK)

@@ -75,8 +75,9 @@ impl Simulation {
             way: v,
             velocity: v + a * (0.5 * dt),
         });
-        self.update_preferred_velocity();
+        self.pack();
         self.update_density_and_pressure(0.5 * dt);
+        self.update_preferred_velocity();
         self.update_acceleration();
         self.check()
             .inspect_err(|_| self.agents.clone_from(&begin))?;

@@ -7,7 +7,7 @@ use crate::engine::clock::Clock;
 use crate::engine::math::Vector;
 use crate::engine::scene::{Goal, Scene, Source};
 
-use super::{Fault, Simulation};
+use super::{Fault, Simulation, Stage};
 
 /// Something that happened to the crowd.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -82,8 +82,19 @@ impl Source {
 }
 
 impl Simulation {
-    /// Lets agents in and begins and ends pushes that are due.
+    /// Lets agents in and begins and ends pushes that are due, on coarse frames.
     pub(super) fn follow_schedule(&mut self) -> Result<(), Fault> {
+        let nothing = self.scene.sources.is_empty() && self.scene.pushes.is_empty();
+        if nothing || !self.clock.is_coarse() {
+            return Ok(());
+        }
+        let mut stages = std::mem::take(&mut self.stages);
+        let followed = stages.time(Stage::Schedule, || self.enter_and_push());
+        self.stages = stages;
+        followed
+    }
+
+    fn enter_and_push(&mut self) -> Result<(), Fault> {
         self.schedule.entries.resize(self.scene.sources.len(), 0);
         self.schedule.begun.resize(self.scene.pushes.len(), false);
         for s in 0..self.scene.sources.len() {

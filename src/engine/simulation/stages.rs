@@ -5,13 +5,17 @@ use std::time::{Duration, Instant};
 /// A stage of the loop. A stage that a scene does not need never runs and has no entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
+    /// Entries and pushes, coarse.
+    Schedule,
     /// Sorting agents into cells (the paper's kd-tree), coarse.
     Sort,
     /// Listing near agents and walls, coarse.
     Neighbors,
+    /// Packing the positions and velocities that the sums over pairs read.
+    Packing,
     /// Step 1B.
     DensityAndPressure,
-    /// Step 2, and packing what the sums over pairs read.
+    /// Step 2.
     PreferredVelocity,
     /// Velocity obstacles, coarse.
     Rvo,
@@ -25,9 +29,11 @@ pub enum Stage {
 
 impl Stage {
     /// All stages in the order of the loop.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
+        Self::Schedule,
         Self::Sort,
         Self::Neighbors,
+        Self::Packing,
         Self::DensityAndPressure,
         Self::PreferredVelocity,
         Self::Rvo,
@@ -39,8 +45,10 @@ impl Stage {
     /// Its name in reports.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Schedule => "schedule",
             Self::Sort => "sort",
             Self::Neighbors => "neighbors",
+            Self::Packing => "packing",
             Self::DensityAndPressure => "density_and_pressure",
             Self::PreferredVelocity => "preferred_velocity",
             Self::Rvo => "rvo",

@@ -36,6 +36,8 @@ fn task(stage: Stage) -> &'static str {
         Stage::DensityAndPressure => "4 density and pressure",
         Stage::Acceleration => "5 acceleration",
         Stage::Integration => "6 integration",
+        Stage::Packing => "packing",
+        Stage::Schedule => "entries and pushes",
         Stage::Rvo => "velocity obstacles",
         Stage::Removal => "removal",
     }
@@ -50,6 +52,8 @@ fn sheet(times: &[FrameTime], machine: &str) -> Sheet {
         Stage::DensityAndPressure,
         Stage::Acceleration,
         Stage::Integration,
+        Stage::Packing,
+        Stage::Schedule,
         Stage::Rvo,
         Stage::Removal,
     ];
