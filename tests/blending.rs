@@ -185,9 +185,9 @@ fn terms_that_a_profile_lacks_are_absent() {
     let simulation = evaluated(huddle(blend_with("sph", &parameters), 1.0));
     let terms = laid_open(&simulation, 0).profiles[0].accelerations;
     let present: Vec<&str> = terms
-        .named()
+        .listed()
         .iter()
-        .filter_map(|(name, term)| term.map(|_| *name))
+        .filter_map(|(term, value)| value.map(|_| term.name()))
         .collect();
     assert_eq!(present, ["goal", "contact_agents", "contact_walls"]);
 }

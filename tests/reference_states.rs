@@ -136,9 +136,10 @@ fn check_agent(ours: &Breakdown, theirs: &Expected, at: &str) {
     }
     if let Some(expected) = &theirs.accelerations {
         assert_eq!(ours.profiles.len(), 1, "{at}: one profile");
-        for (name, term) in ours.profiles[0].accelerations.named() {
+        for (term, value) in ours.profiles[0].accelerations.listed() {
+            let name = term.name();
             let expected = expected.get(name).copied().unwrap_or_default();
-            let ours = term.unwrap_or_default();
+            let ours = value.unwrap_or_default();
             assert_close_vector(ours.into(), expected, &format!("{at}: {name}"));
         }
     }

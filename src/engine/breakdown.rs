@@ -181,6 +181,8 @@ fn wall_terms(simulation: &Simulation, i: usize) -> Vec<WallTerm> {
 }
 
 fn serialize_terms<S: serde::Serializer>(terms: &Terms, serializer: S) -> Result<S::Ok, S::Error> {
-    let present = terms.named().into_iter();
-    serializer.collect_map(present.filter_map(|(name, term)| Some((name, <[f64; 2]>::from(term?)))))
+    let present = terms.listed().into_iter();
+    serializer.collect_map(
+        present.filter_map(|(term, value)| Some((term.name(), <[f64; 2]>::from(value?)))),
+    )
 }

@@ -96,29 +96,120 @@ pub struct Terms {
     pub contact_walls: Option<Vector>,
 }
 
+/// A term of an agent's acceleration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Term {
+    /// Eq. 17.
+    Goal,
+    /// Eq. 18.
+    SocialAgents,
+    /// Eq. 19.
+    SocialWalls,
+    /// Eq. 21.
+    Rvo,
+    /// Eq. 11.
+    PressureAgents,
+    /// Eq. 12.
+    PressureWalls,
+    /// Eq. 7.
+    Viscosity,
+    /// Eq. 22.
+    ContactAgents,
+    /// Eq. 23.
+    ContactWalls,
+}
+
+impl Term {
+    /// Every term, in the order of the simulation loop.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Terms::default().listed().into_iter().map(|(term, _)| term)
+    }
+
+    /// The name of the term in breakdowns and recordings.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Goal => "goal",
+            Self::SocialAgents => "social_agents",
+            Self::SocialWalls => "social_walls",
+            Self::Rvo => "rvo",
+            Self::PressureAgents => "pressure_agents",
+            Self::PressureWalls => "pressure_walls",
+            Self::Viscosity => "viscosity",
+            Self::ContactAgents => "contact_agents",
+            Self::ContactWalls => "contact_walls",
+        }
+    }
+
+    /// Does the term come from walls?
+    pub fn is_of_walls(self) -> bool {
+        matches!(
+            self,
+            Self::SocialWalls | Self::PressureWalls | Self::ContactWalls
+        )
+    }
+}
+
 impl Terms {
-    /// Every term with its name, in the order of the simulation loop.
-    pub fn named(&self) -> [(&'static str, Option<Vector>); 9] {
+    /// Every term with its value, in the order of the simulation loop. Destructuring makes a forgotten field a
+    /// compile error, and so does every `match` on [`Term`].
+    pub fn listed(&self) -> [(Term, Option<Vector>); 9] {
+        let Self {
+            goal,
+            social_agents,
+            social_walls,
+            rvo,
+            pressure_agents,
+            pressure_walls,
+            viscosity,
+            contact_agents,
+            contact_walls,
+        } = *self;
         [
-            ("goal", self.goal),
-            ("social_agents", self.social_agents),
-            ("social_walls", self.social_walls),
-            ("rvo", self.rvo),
-            ("pressure_agents", self.pressure_agents),
-            ("pressure_walls", self.pressure_walls),
-            ("viscosity", self.viscosity),
-            ("contact_agents", self.contact_agents),
-            ("contact_walls", self.contact_walls),
+            (Term::Goal, goal),
+            (Term::SocialAgents, social_agents),
+            (Term::SocialWalls, social_walls),
+            (Term::Rvo, rvo),
+            (Term::PressureAgents, pressure_agents),
+            (Term::PressureWalls, pressure_walls),
+            (Term::Viscosity, viscosity),
+            (Term::ContactAgents, contact_agents),
+            (Term::ContactWalls, contact_walls),
         ]
+    }
+
+    /// The value of one term, m/s².
+    pub fn get(&self, term: Term) -> Option<Vector> {
+        let listed = self.listed().into_iter();
+        listed
+            .filter(|&(other, _)| other == term)
+            .find_map(|(_, value)| value)
     }
 
     /// The profile's acceleration, m/s².
     pub fn sum(&self) -> Vector {
-        self.named().into_iter().filter_map(|(_, term)| term).sum()
+        self.listed()
+            .into_iter()
+            .filter_map(|(_, value)| value)
+            .sum()
     }
 }
 
 impl Profile {
+    /// Does this profile have `term`, where there are agents and walls?
+    pub fn has(&self, term: Term) -> bool {
+        let social = matches!(self.navigation, Navigation::Social(..));
+        let rvo = matches!(self.navigation, Navigation::Rvo(_));
+        match term {
+            Term::Goal => !rvo,
+            Term::SocialAgents | Term::SocialWalls => social,
+            Term::Rvo => rvo,
+            Term::PressureAgents | Term::PressureWalls => self.pressure,
+            Term::Viscosity => self.viscosity.is_some(),
+            Term::ContactAgents => self.contact.agent_stiffness.is_some(),
+            Term::ContactWalls => self.contact.wall_stiffness.is_some(),
+        }
+    }
+
     /// Every term of this profile for agent `i` of a frozen frame.
     pub fn terms(&self, frame: &Frame, i: usize, changed: Option<&Override>) -> Terms {
         let mut terms = Terms::default();

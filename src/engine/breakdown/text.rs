@@ -52,9 +52,9 @@ impl Breakdown {
         for share in &self.profiles {
             let (name, weight) = (&share.name, share.weight);
             writeln!(f, "  {name} × {weight:.4}: accelerations, m/s²")?;
-            for (name, term) in share.accelerations.named() {
-                if let Some(term) = term {
-                    writeln!(f, "    {name:<18} {}", vector(term.into()))?;
+            for (term, value) in share.accelerations.listed() {
+                if let Some(value) = value {
+                    writeln!(f, "    {:<18} {}", term.name(), vector(value.into()))?;
                 }
             }
         }

@@ -4,6 +4,7 @@ use super::geometry::xy;
 use crate::engine::breakdown::Breakdown;
 use crate::engine::geometry::HiddenRegion;
 use crate::engine::math::Vector;
+use crate::engine::profile::Term;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 
@@ -125,12 +126,9 @@ impl Open {
     }
 
     /// The weighted sum of one term over the profiles that act.
-    pub fn force(&self, term: usize) -> Vector {
+    pub fn force(&self, term: Term) -> Vector {
         let shares = self.breakdown.profiles.iter();
-        let terms = shares.filter_map(|share| {
-            let (_, acceleration) = share.accelerations.named()[term];
-            Some(acceleration? * share.weight)
-        });
+        let terms = shares.filter_map(|share| Some(share.accelerations.get(term)? * share.weight));
         terms.sum()
     }
 }

@@ -9,7 +9,7 @@ use super::error::Cause;
 use super::geometry::xy;
 use crate::engine::boundary::WallMethod;
 use crate::engine::math::Vector;
-use crate::engine::profile::Navigation;
+use crate::engine::profile::Term;
 use crate::engine::scene::Scene;
 
 /// With more agents laid open at once their ids would hide everything; a click still tells them.
@@ -35,27 +35,29 @@ enum Kind {
     Links,
     NearestPoints,
     RepresentativePoints,
-    /// A term of the breakdown by its place there.
-    Force(usize),
+    /// A term of the breakdown.
+    Force(Term),
     Total,
 }
 
-/// The forces in the order of [`Terms::named`](crate::engine::profile::Terms::named).
-const FORCES: [(&str, &str, [u8; 3]); 9] = [
-    ("goal", "green", [95, 211, 120]),
-    ("social_agents", "light blue", [86, 180, 233]),
-    ("social_walls", "blue", [70, 120, 255]),
-    ("rvo", "cyan", [60, 220, 220]),
-    ("pressure_agents", "orange", [255, 150, 30]),
-    ("pressure_walls", "red", [255, 70, 60]),
-    ("viscosity", "purple", [170, 110, 255]),
-    ("contact_agents", "yellow", [250, 230, 80]),
-    ("contact_walls", "pink", [255, 120, 190]),
-];
+/// The color of a force's arrows, in words and as RGB.
+fn color(term: Term) -> (&'static str, [u8; 3]) {
+    match term {
+        Term::Goal => ("green", [95, 211, 120]),
+        Term::SocialAgents => ("light blue", [86, 180, 233]),
+        Term::SocialWalls => ("blue", [70, 120, 255]),
+        Term::Rvo => ("cyan", [60, 220, 220]),
+        Term::PressureAgents => ("orange", [255, 150, 30]),
+        Term::PressureWalls => ("red", [255, 70, 60]),
+        Term::Viscosity => ("purple", [170, 110, 255]),
+        Term::ContactAgents => ("yellow", [250, 230, 80]),
+        Term::ContactWalls => ("pink", [255, 120, 190]),
+    }
+}
 
-/// The forces' arrows and their colours in words.
+/// The names of the forces and the colors of their arrows in words.
 pub fn force_colors() -> impl Iterator<Item = (&'static str, &'static str)> {
-    FORCES.iter().map(|&(name, color, _)| (name, color))
+    Term::all().map(|term| (term.name(), color(term).0))
 }
 
 /// Logs the debug agents.
@@ -116,33 +118,19 @@ fn kinds(scene: &Scene) -> Vec<Kind> {
             kinds.push(Kind::RepresentativePoints);
         }
     }
-    let acts = acting_forces(scene);
-    kinds.extend((0..FORCES.len()).filter(|&f| acts[f]).map(Kind::Force));
+    kinds.extend(
+        Term::all()
+            .filter(|&term| acts(term, scene))
+            .map(Kind::Force),
+    );
     kinds.push(Kind::Total);
     kinds
 }
 
-/// Which of [`FORCES`] some profile of `scene` has.
-fn acting_forces(scene: &Scene) -> [bool; 9] {
-    let steps = scene.groups.iter().flat_map(|group| group.blend.steps());
-    let walls = !scene.walls.is_empty();
-    steps.fold([false; 9], |acts, step| {
-        let profile = &step.profile;
-        let social = matches!(profile.navigation, Navigation::Social(..));
-        let rvo = matches!(profile.navigation, Navigation::Rvo(_));
-        let has = [
-            !rvo,
-            social,
-            social && walls,
-            rvo,
-            profile.pressure,
-            profile.pressure && walls,
-            profile.viscosity.is_some(),
-            profile.contact.agent_stiffness.is_some(),
-            profile.contact.wall_stiffness.is_some() && walls,
-        ];
-        std::array::from_fn(|f| acts[f] || has[f])
-    })
+/// Does some profile of `scene` have this force?
+fn acts(term: Term, scene: &Scene) -> bool {
+    let mut steps = scene.groups.iter().flat_map(|group| group.blend.steps());
+    (!term.is_of_walls() || !scene.walls.is_empty()) && steps.any(|step| step.profile.has(term))
 }
 
 impl Kind {
@@ -154,7 +142,7 @@ impl Kind {
             Self::Links => "walls/links".to_owned(),
             Self::NearestPoints => "walls/nearest_points".to_owned(),
             Self::RepresentativePoints => "walls/representative_points".to_owned(),
-            Self::Force(term) => format!("forces/{}", FORCES[term].0),
+            Self::Force(term) => format!("forces/{}", term.name()),
             Self::Total => "forces/total".to_owned(),
         }
     }
@@ -191,7 +179,7 @@ impl Kind {
             Self::Links => Box::new(lines([190, 110, 110], 0.4)),
             Self::NearestPoints => Box::new(points([255, 90, 80], 3.0)),
             Self::RepresentativePoints => Box::new(points([255, 190, 80], 3.0)),
-            Self::Force(term) => Box::new(arrows(FORCES[term].2, 1.2, 13.0)),
+            Self::Force(term) => Box::new(arrows(color(term).1, 1.2, 13.0)),
             Self::Total => Box::new(arrows([255, 255, 255], 1.6, 14.0)),
         }
     }
