@@ -9,7 +9,7 @@ use sandbox::engine::math::Vector;
 use sandbox::engine::profile::{Blend, BlendError, BlendStep};
 use sandbox::engine::scene::Scene;
 use sandbox::engine::simulation::Simulation;
-use sandbox::scenario::catalog::{self, NAMES, Parameters};
+use sandbox::scenario::catalog::{self, ALIASES, NAMES, Parameters};
 
 fn sequence(steps: &[(&str, f64)]) -> Result<Blend, BlendError> {
     let steps = steps.iter().map(|&(name, at_density)| BlendStep {
@@ -214,4 +214,11 @@ fn one_profile_alone_is_the_same_as_a_blend_of_one() {
     let mut alone = scene(Vec::new(), one);
     alone.agents = vec![person(Vector::zeros(), vector(1.0, 0.0))];
     assert!(!alone.needs().rvo && alone.needs().density);
+}
+
+#[test]
+fn blends_have_names_that_need_no_quotes() {
+    for (alias, name) in ALIASES {
+        assert_eq!(blend(alias), blend(name));
+    }
 }

@@ -384,6 +384,9 @@ fn the_program_goes_on_from_a_checkpoint() {
     ] {
         assert_eq!(rest[key], whole[key], "{key}");
     }
+    // Without `--until` it goes to the scenario's own end, past the end of the first run.
+    let to_the_end = result(&["resume", path, "--json"]);
+    assert!(to_the_end["time_secs"].as_f64().unwrap() > 20.0);
     let taken = run(&first);
     assert_eq!(taken.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&taken.stderr).contains("exists already; give --force"));

@@ -36,13 +36,19 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     warn_of_the_step(&scenario.scene);
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     let metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
-    go_on(
-        &scenario,
+    // A resumed run goes to the scenario's own end, if it can get there.
+    let is_cut = until.is_some() && options.output.checkpoint.checkpoint.is_some();
+    let resumable = is_cut.then(|| {
+        let mut inputs = Outputs::new(true);
+        super::scenario(source, &options.scene, None, writing, &mut inputs).ok()
+    });
+    let run = Run {
+        scenario,
+        resumable: resumable.flatten(),
         simulation,
         metrics,
-        &options.scene.program,
-        &options.output,
-    )
+    };
+    run.go_on(&options.scene.program, &options.output)
 }
 
 /// `sandbox resume`.
@@ -68,18 +74,19 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
     memory::check(&file, &need, writing)?;
     let scenario = checkpoint.scenario(until.as_slice())?;
     memory::check(&file, &need.with_lists(&scenario.scene), writing)?;
+    let resumable = until.is_some().then(|| checkpoint.scenario(&[]).ok());
     let (simulation, metrics) = checkpoint.resume(&scenario)?;
     refuse_the_past(options, simulation.frame().clock)?;
     let mut outputs = Outputs::new(options.program.force);
     outputs.goes_on_with("the checkpoint", &options.file, "--checkpoint");
     check(outputs, &options.output, &scenario)?;
-    go_on(
-        &scenario,
+    let run = Run {
+        scenario,
+        resumable: resumable.flatten(),
         simulation,
         metrics,
-        &options.program,
-        &options.output,
-    )
+    };
+    run.go_on(&options.program, &options.output)
 }
 
 /// Refuses an end before the checkpoint's time, which the run has passed.
@@ -108,58 +115,71 @@ fn fits_into_memory(file: &Path) -> Result<(), Failure> {
     }
 }
 
-/// From where a simulation is to its end.
-fn go_on(
-    scenario: &Scenario,
-    mut simulation: Simulation,
-    mut metrics: Metrics,
-    program: &ProgramOptions,
-    options: &OutputOptions,
-) -> Result<(), Failure> {
-    let duration = scenario.duration_secs;
-    let last_frame = simulation.frame().clock.frame_at(duration);
-    let interrupt = Interrupt::listen().map_err(|error| Failure::Output(error.to_string()))?;
-    let mut checkpoints = Checkpoints::create(&options.checkpoint, &mut simulation);
-    let mut output = Output::create(&options.record, scenario, &mut simulation)?;
-    let mut trajectories = Trajectories::create(&options.trajectory, scenario, &mut simulation)?;
-    let mut interrupted = None;
-    let progress = Progress::new(duration);
+/// A run, from where its simulation is to its end.
+struct Run {
+    scenario: Scenario,
+    /// What checkpoints hold, where `--until` cuts the scenario short.
+    resumable: Option<Scenario>,
+    simulation: Simulation,
+    metrics: Metrics,
+}
 
-    // From a thread of the pool, parallel work starts without a detour.
-    let driven = rayon::scope(|_| {
-        drive(&mut simulation, duration, |simulation, ms| {
-            metrics.observe(simulation);
-            progress.show(simulation);
-            output.log(simulation, ms)?;
-            trajectories.log(simulation)?;
-            let then = unless_over(simulation, scenario);
-            if then == Then::GoOn {
-                interrupted = interrupt.exit_code();
-            }
-            let is_last = then == Then::Stop || simulation.frame().clock.frame() >= last_frame;
-            let moment = match interrupted {
-                Some(_) => Moment::Interrupted,
-                None if is_last => Moment::Last,
-                None => Moment::Underway,
-            };
-            checkpoints.write(scenario, simulation, &metrics, moment);
-            Ok::<Then, Failure>(interrupted.map_or(then, |_| Then::Stop))
+impl Run {
+    fn go_on(self, program: &ProgramOptions, options: &OutputOptions) -> Result<(), Failure> {
+        let Self {
+            scenario,
+            resumable,
+            mut simulation,
+            mut metrics,
+        } = self;
+        let scenario = &scenario;
+        let duration = scenario.duration_secs;
+        let last_frame = simulation.frame().clock.frame_at(duration);
+        let interrupt = Interrupt::listen().map_err(|error| Failure::Output(error.to_string()))?;
+        let resumable = resumable.as_ref().unwrap_or(scenario);
+        let mut checkpoints = Checkpoints::create(&options.checkpoint, &mut simulation);
+        let mut output = Output::create(&options.record, scenario, &mut simulation)?;
+        let mut trajectories =
+            Trajectories::create(&options.trajectory, scenario, &mut simulation)?;
+        let mut interrupted = None;
+        let progress = Progress::new(duration);
+
+        // From a thread of the pool, parallel work starts without a detour.
+        let driven = rayon::scope(|_| {
+            drive(&mut simulation, duration, |simulation, ms| {
+                metrics.observe(simulation);
+                progress.show(simulation);
+                output.log(simulation, ms)?;
+                trajectories.log(simulation)?;
+                let then = unless_over(simulation, scenario);
+                if then == Then::GoOn {
+                    interrupted = interrupt.exit_code();
+                }
+                let is_last = then == Then::Stop || simulation.frame().clock.frame() >= last_frame;
+                let moment = match interrupted {
+                    Some(_) => Moment::Interrupted,
+                    None if is_last => Moment::Last,
+                    None => Moment::Underway,
+                };
+                checkpoints.write(resumable, simulation, &metrics, moment);
+                Ok::<Then, Failure>(interrupted.map_or(then, |_| Then::Stop))
+            })
+        });
+        progress.finish();
+        // What was recorded is kept, whatever ended the run.
+        let (recorded, traced) = (output.finish(), trajectories.finish());
+        let saved = recorded.and(traced).and(checkpoints.finish());
+        driven.map_err(|failure| failure.laid_open(&mut simulation))?;
+        report_oddities(&simulation);
+        report_absent(&options.record, &simulation);
+        let report = Report::new(scenario, &simulation, &metrics, interrupted.is_some());
+        say(report.render(program.json))?;
+        saved?;
+        interrupted.map_or(Ok(()), |exit_code| {
+            let time = simulation.frame().clock.time();
+            Err(Failure::Interrupted { time, exit_code })
         })
-    });
-    progress.finish();
-    // What was recorded is kept, whatever ended the run.
-    let (recorded, traced) = (output.finish(), trajectories.finish());
-    let saved = recorded.and(traced).and(checkpoints.finish());
-    driven.map_err(|failure| failure.laid_open(&mut simulation))?;
-    report_oddities(&simulation);
-    report_absent(&options.record, &simulation);
-    let report = Report::new(scenario, &simulation, &metrics, interrupted.is_some());
-    say(report.render(program.json))?;
-    saved?;
-    interrupted.map_or(Ok(()), |exit_code| {
-        let time = simulation.frame().clock.time();
-        Err(Failure::Interrupted { time, exit_code })
-    })
+    }
 }
 
 /// Says by how much a step is longer than a crowd at rest bears, if that is known of the integrator.

@@ -15,6 +15,9 @@ pub const NAMES: [&str; 7] = [
     "sf", "rvo", "sf+sph", "rvo+sph", "sph", "sf->sph", "rvo->sph",
 ];
 
+/// Other spellings of blends: a shell takes an unquoted `>` for a redirection.
+pub const ALIASES: [(&str, &str); 2] = [("sf-sph", "sf->sph"), ("rvo-sph", "rvo->sph")];
+
 /// ρ^j of the paper's two blends, P/m² (§5.5).
 const BLEND_DENSITIES: [f64; 2] = [2.0, 4.0];
 
@@ -168,6 +171,8 @@ impl Parameters {
 
 /// One profile or blend of §5.5 with some parameters changed; `None` for an unknown name.
 pub fn named(name: &str, parameters: &Parameters) -> Option<Result<Blend, BlendError>> {
+    let alias = ALIASES.into_iter().find(|&(alias, _)| alias == name);
+    let name = alias.map_or(name, |(_, name)| name);
     let (first, second) = match name.split_once("->") {
         Some((first, second)) if NAMES.contains(&name) => (first, Some(second)),
         _ => (name, None),

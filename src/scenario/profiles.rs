@@ -29,7 +29,11 @@ fn named(name: &str, parameters: &Parameters) -> Result<Blend, Problem> {
 
 fn unknown(name: &str) -> Problem {
     let names = NAMES.join(", ");
-    let near = suggestion(name, NAMES);
+    let near = if name.ends_with('-') {
+        "; a shell takes an unquoted `>` for a redirection: quote the name, or write sf-sph or rvo-sph".to_owned()
+    } else {
+        suggestion(name, NAMES)
+    };
     Problem::new(
         "",
         format!(
@@ -76,7 +80,7 @@ fn custom_profile(custom: &CustomProfile, parameters: &Parameters) -> Result<Pro
 
 fn plain(name: &str, parameters: &Parameters) -> Result<Profile, Problem> {
     catalog::plain(name, parameters).ok_or_else(|| {
-        if NAMES.contains(&name) {
+        if catalog::named(name, parameters).is_some() {
             let reason = format!("a blend is made of plain profiles; `{name}` is a blend itself");
             Problem::new("", reason)
         } else {

@@ -8,7 +8,7 @@ use super::key::{Key, Kind, defined, object, pair};
 use super::parameters::{self, DENSITY};
 use super::range::{COORDINATE, Range, TIME};
 use super::settings;
-use crate::scenario::catalog::NAMES;
+use crate::scenario::catalog::{ALIASES, NAMES};
 
 /// Cells of a grid.
 const CELLS: Range = Range::at_least(1.0, u32::MAX as f64);
@@ -187,6 +187,12 @@ const FLOW_UNTIL: [Key; 1] = [Key::new("until_secs", Kind::Number(UNTIL), "until
     .unit("s")
     .required()];
 
+/// What a profile may be called.
+fn names() -> Vec<&'static str> {
+    let aliases = ALIASES.into_iter().map(|(alias, _)| alias);
+    NAMES.into_iter().chain(aliases).collect()
+}
+
 const FULL_PROFILE: [Key; 6] = [
     Key::new("name", Kind::Name, "what it is called"),
     Key::new(
@@ -265,7 +271,7 @@ pub fn schema() -> Value {
                 {"type": "array", "items": {"anyOf": [defined("ring"), defined("polygon")]}},
             ],
         },
-        "profile": {"anyOf": [{"enum": NAMES}, defined("full_profile")]},
+        "profile": {"anyOf": [{"enum": names()}, defined("full_profile")]},
         "full_profile": full_profile(),
         "blend_step": object(&STEP, "one profile of a blend"),
         "parameters": object(&parameters::PARAMETERS, "parameters of profiles (§5.5)"),
