@@ -1,5 +1,5 @@
-//! Colours for numbers: perceptually uniform maps that colour-blind people can read too, for the two
-//! colourings of Fig. 3 and whatever else is shown.
+//! Maps from numbers to colors: perceptually uniform and safe for color-blind readers. They include the density
+//! and speed colors of Fig. 3.
 
 use std::sync::LazyLock;
 
@@ -8,15 +8,15 @@ use colorgrad::{Gradient, preset};
 /// Red, green, blue.
 pub type Rgb = [u8; 3];
 
-/// Density that has the last colour, P/m².
+/// Density mapped to the last color, P/m².
 pub const DENSITY_RANGE: f32 = 8.0;
-/// Speed that has the last colour, m/s.
+/// Speed mapped to the last color, m/s.
 pub const SPEED_RANGE: f32 = 1.8;
 
-/// Few enough that equal colours repeat in a file, more than an eye tells apart.
+/// Few enough that equal colors repeat in a file, more than the eye can tell apart.
 const STEPS: usize = 64;
 
-/// Colours for values in a range.
+/// A color map for a range of values.
 #[derive(Debug, Clone)]
 pub struct ColorMap {
     colors: [Rgb; STEPS],
@@ -45,15 +45,15 @@ impl ColorMap {
         Self::new(&preset::inferno(), range)
     }
 
-    /// The colour of `value`; beyond the range that of its end.
+    /// The color of `value`, clamped to the range.
     pub fn color(&self, value: f32) -> Rgb {
         let [first, last] = self.range;
         let part = (value - first) / (last - first);
-        // `as` saturates, and takes NaN to the first colour.
+        // `as` saturates and maps NaN to the first color.
         self.colors[((part * (STEPS - 1) as f32 + 0.5) as usize).min(STEPS - 1)]
     }
 
-    /// The values of the first and the last colour.
+    /// The values of the first and the last color.
     pub fn range(&self) -> [f32; 2] {
         self.range
     }

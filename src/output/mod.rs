@@ -1,6 +1,5 @@
-//! Output: what leaves the program. Tables as text, recordings for Rerun (the only place that names `rerun`),
-//! trajectories as SQLite, text and CSV, written and read, and pictures as SVG and PNG (the only place that
-//! names `plotters`).
+//! Output: text tables, Rerun recordings (the only module that names `rerun`), trajectories (SQLite, text and
+//! CSV, written and read), and pictures as SVG and PNG (the only module that names `plotters`).
 
 pub mod table;
 

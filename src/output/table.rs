@@ -1,9 +1,9 @@
-//! Tables as text, for a terminal, for Markdown and as CSV.
+//! Tables as plain text for a terminal, as Markdown, and as CSV.
 
-/// A table whose cells are written already.
+/// A table whose cells are already formatted.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Table {
-    /// So many columns at the left are words, the others numbers.
+    /// Number of text columns at the left; the others hold numbers.
     pub words: usize,
     /// The names of the columns.
     pub head: Vec<String>,
@@ -26,7 +26,7 @@ impl Table {
         self.rows.push(row.to_vec());
     }
 
-    /// In columns as wide as they must be: words from the left, numbers to the right.
+    /// As plain text in aligned columns: text left-aligned, numbers right-aligned.
     pub fn text(&self) -> String {
         let length =
             |line: &Vec<String>, k: usize| line.get(k).map_or(0, |cell| cell.chars().count());

@@ -1,12 +1,12 @@
-//! Axes: what a value's place is, and which values get a tick.
+//! Axes: the position of a value, and the values that get a tick.
 
-/// How values are spread.
+/// The scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Scale {
-    /// Evenly.
+    /// Linear.
     #[default]
     Linear,
-    /// By their logarithms; for positive values.
+    /// Logarithmic; values must be positive.
     Log,
 }
 
@@ -15,16 +15,16 @@ pub enum Scale {
 pub struct Axis {
     /// Quantity and unit.
     pub label: String,
-    /// The values at its ends.
+    /// The values at the two ends.
     pub range: [f64; 2],
-    /// How the values between are spread.
+    /// Linear or logarithmic.
     pub scale: Scale,
-    /// Where to put ticks and what to write there; empty: chosen by the range.
+    /// Values that get a tick, and their labels. If empty, ticks are chosen from the range.
     pub ticks: Vec<(f64, String)>,
 }
 
 impl Axis {
-    /// Evenly spread values.
+    /// A linear axis.
     pub fn linear(label: &str, range: [f64; 2]) -> Self {
         Self {
             label: label.to_owned(),
@@ -34,7 +34,7 @@ impl Axis {
         }
     }
 
-    /// Values spread by their logarithms.
+    /// A logarithmic axis.
     pub fn log(label: &str, range: [f64; 2]) -> Self {
         Self {
             scale: Scale::Log,
@@ -42,7 +42,7 @@ impl Axis {
         }
     }
 
-    /// Names at 0.5, 1.5, … on an axis from 0 to their number.
+    /// An axis for categories: names at 0.5, 1.5, … in a range from 0 to the number of names.
     pub fn names(label: &str, names: impl IntoIterator<Item = String>) -> Self {
         let ticks: Vec<_> = names
             .into_iter()
@@ -55,7 +55,7 @@ impl Axis {
         }
     }
 
-    /// The place of a value: 0 at the first end, 1 at the second.
+    /// The position of a value: 0 at the first end, 1 at the second.
     pub(super) fn place(&self, value: f64) -> f64 {
         let [first, last] = self.range;
         match self.scale {
@@ -64,7 +64,7 @@ impl Axis {
         }
     }
 
-    /// Values with a tick and what is written there; `most` fit.
+    /// The values that get a tick, and their labels; about `most` fit.
     pub(super) fn ticks(&self, most: usize) -> Vec<(f64, String)> {
         if !self.ticks.is_empty() {
             return self.ticks.clone();
@@ -76,7 +76,7 @@ impl Axis {
     }
 }
 
-/// Multiples of 1, 2 or 5 times a power of ten.
+/// Ticks at multiples of 1, 2 or 5 times a power of ten.
 fn linear_ticks([first, last]: [f64; 2], most: usize) -> Vec<(f64, String)> {
     let rough = (last - first) / most.max(1) as f64;
     let decade = 10_f64.powf(rough.log10().floor());
@@ -93,10 +93,10 @@ fn linear_ticks([first, last]: [f64; 2], most: usize) -> Vec<(f64, String)> {
         .collect()
 }
 
-/// So many powers of ten have room for more than one tick each.
+/// Ranges of at most this many decades get more than one tick per decade.
 const MOST_DECADES: f64 = 4.0;
 
-/// 1, 2 and 5 times every power of ten; only the powers where there are many.
+/// Ticks at 1, 2 and 5 times every power of ten, or only at powers of ten if there are many.
 fn log_ticks([first, last]: [f64; 2]) -> Vec<(f64, String)> {
     let many = (last / first).log10() > MOST_DECADES;
     let factors = if many { &[1.0][..] } else { &[1.0, 2.0, 5.0] };
@@ -116,7 +116,7 @@ fn log_ticks([first, last]: [f64; 2]) -> Vec<(f64, String)> {
     ticks
 }
 
-/// A number with so many digits after the point and commas between thousands.
+/// A number with `digits` decimals and commas between thousands.
 fn grouped(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     let (whole, rest) = text.split_at(text.find('.').unwrap_or(text.len()));

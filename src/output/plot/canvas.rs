@@ -1,4 +1,4 @@
-//! Lines, areas, words and pixels in points, on any of plotters' backends.
+//! Lines, areas, text and pixels, with positions in points, on any plotters backend.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -7,20 +7,20 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::output::PlotError;
 use crate::output::colors::Rgb;
 
-/// A place on the sheet: points to the right and down.
+/// A position on the sheet in points: right and down.
 pub type Place = [f64; 2];
 
-/// Which part of a text is at its place.
+/// Which part of a text is at its position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
     Left,
     Center,
     Right,
-    /// Centred and turned to read upwards.
+    /// Centered and rotated to read upward.
     Upwards,
 }
 
-/// A text's look.
+/// The font of a text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Font {
     /// Points.
@@ -29,14 +29,14 @@ pub struct Font {
     pub color: Rgb,
 }
 
-/// Pixels by rows from the top.
+/// Pixels in rows from the top.
 pub struct Pixels {
     pub width: u32,
     pub height: u32,
     pub rgb: Vec<u8>,
 }
 
-/// A sheet on a backend that has `scale` units a point.
+/// A sheet on a backend with `scale` units per point.
 pub struct Canvas<'a, DB: DrawingBackend> {
     area: &'a DrawingArea<DB, Shift>,
     pub scale: f64,
@@ -87,7 +87,7 @@ impl<'a, DB: DrawingBackend> Canvas<'a, DB> {
         Ok(self.area.draw(&disc)?)
     }
 
-    /// A line of text, centred in height.
+    /// A line of text, centered vertically.
     pub fn text(&self, at: Place, text: &str, anchor: Anchor, font: Font) -> Result<(), PlotError> {
         if text.is_empty() {
             return Ok(());
@@ -110,7 +110,7 @@ impl<'a, DB: DrawingBackend> Canvas<'a, DB> {
         Ok(self.area.draw(&Text::new(text, self.at(at), style))?)
     }
 
-    /// A picture made of pixels of the backend, its upper left corner at a place.
+    /// An image in backend pixels, with its upper left corner at `at`.
     pub fn pixels(&self, at: Place, pixels: &Pixels) -> Result<(), PlotError> {
         let size = (pixels.width, pixels.height);
         let picture = BitMapElement::with_ref(self.at(at), size, &pixels.rgb);

@@ -1,8 +1,8 @@
-//! What sticks out of a panel is cut off; places are in the unit square.
+//! Clips shapes to a panel. Coordinates are in the unit square.
 
 type Place = [f64; 2];
 
-/// The part of a convex or simple polygon in the unit square (Sutherland and Hodgman 1974).
+/// The part of a simple polygon inside the unit square (Sutherland and Hodgman 1974).
 pub fn polygon(corners: &[Place]) -> Vec<Place> {
     let mut kept = corners.to_vec();
     for axis in 0..2 {
@@ -25,7 +25,7 @@ pub fn polygon(corners: &[Place]) -> Vec<Place> {
     kept
 }
 
-/// The part of a segment in the unit square (Liang and Barsky 1984).
+/// The part of a segment inside the unit square (Liang and Barsky 1984).
 pub fn segment(from: Place, to: Place) -> Option<[Place; 2]> {
     let (mut first, mut last) = (0.0_f64, 1.0_f64);
     for axis in 0..2 {

@@ -1,4 +1,4 @@
-//! What is where on a sheet.
+//! The layout of a sheet.
 
 use plotters::prelude::DrawingBackend;
 
@@ -28,26 +28,26 @@ const TICK: Font = Font {
     color: BLACK,
 };
 
-/// Points round everything.
+/// Margin around the sheet, points.
 const MARGIN: f64 = 8.0;
-/// Points left of axes with numbers.
+/// Space left of axes with numbers, points.
 const LEFT: f64 = 44.0;
-/// Points below axes with numbers.
+/// Space below axes with numbers, points.
 const BELOW: f64 = 28.0;
-/// Points between panels that have no numbers between them.
+/// Space between panels without numbers between them, points.
 const GAP: f64 = 7.0;
-/// Points above a panel for its title.
+/// Space above a panel for its title, points.
 const ABOVE: f64 = 18.0;
-/// Points for a colour bar with its numbers and its label.
+/// Space for a color bar with its numbers and label, points.
 const BAR: f64 = 58.0;
-/// Points for a legend beside a panel.
+/// Space for a legend beside a panel, points.
 const LEGEND: f64 = 165.0;
-/// The colour bar itself, points.
+/// Width of the color bar itself, points.
 const BAR_WIDTH: f64 = 9.0;
-/// A tick's length, points.
+/// Length of a tick, points.
 const TICK_LENGTH: f64 = 2.5;
 
-/// Points between the left edges of neighbouring panels, and between their upper edges.
+/// Horizontal and vertical distance between the axes of adjacent panels, points.
 fn pitch(sheet: &Sheet) -> [f64; 2] {
     let [width, height] = sheet.panel_size;
     let titled = sheet.panels.iter().any(|panel| !panel.title.is_empty());
@@ -55,14 +55,14 @@ fn pitch(sheet: &Sheet) -> [f64; 2] {
     if sheet.shared_axes {
         return [width + GAP, height + above];
     }
-    // What stands beside the last column is in nobody's way.
+    // Labels beside the last column need no space between panels.
     let inner = sheet.panels.iter().enumerate();
     let inner = inner.filter(|(k, _)| k % sheet.columns != sheet.columns - 1);
     let right = inner.map(|(_, panel)| beside(panel)).fold(GAP, f64::max);
     [LEFT + width + right, above + height + BELOW]
 }
 
-/// Points right of a panel for what explains it.
+/// Space right of a panel for its legend or color bar, points.
 fn beside(panel: &Panel) -> f64 {
     if panel.legend == Some(Corner::Beside) {
         LEGEND
@@ -73,7 +73,7 @@ fn beside(panel: &Panel) -> f64 {
     }
 }
 
-/// Left and upper edge of the first panel's axes.
+/// Upper left corner of the first panel's axes.
 fn origin(sheet: &Sheet) -> Place {
     let titled = sheet.panels.iter().any(|panel| !panel.title.is_empty());
     let title = if sheet.title.is_empty() { 0.0 } else { 20.0 };
@@ -104,7 +104,7 @@ pub fn size(sheet: &Sheet) -> [f64; 2] {
     [right + beside + MARGIN, below + BELOW + MARGIN]
 }
 
-/// Draws everything.
+/// Draws a sheet.
 pub fn draw<DB: DrawingBackend>(sheet: &Sheet, canvas: &Canvas<DB>) -> Result<(), PlotError> {
     let ([x, y], [dx, dy]) = (origin(sheet), pitch(sheet));
     let [width, height] = sheet.panel_size;
@@ -213,7 +213,7 @@ fn draw_y_axis<DB: DrawingBackend>(
     Ok(())
 }
 
-/// A colour bar downwards from its upper left corner.
+/// Draws a color bar down from its upper left corner.
 fn draw_bar<DB: DrawingBackend>(
     bar: &ColorBar,
     [x, y]: Place,
@@ -250,7 +250,7 @@ fn draw_bar<DB: DrawingBackend>(
     canvas.text(middle, &bar.label, Anchor::Upwards, LABEL)
 }
 
-/// The marks of a panel that have labels, each with a sample.
+/// Draws a legend: each labeled mark of the panel with a sample.
 fn draw_legend<DB: DrawingBackend>(
     frame: &Frame,
     corner: Corner,
@@ -297,7 +297,7 @@ fn draw_legend<DB: DrawingBackend>(
     Ok(())
 }
 
-/// White behind a legend; plotters measures no text before it draws, so its width is a guess.
+/// Draws a white box behind a legend. Its width is an estimate, because the text is not measured before drawing.
 fn draw_legend_box<DB: DrawingBackend>(
     frame: &Frame,
     entries: &[&Mark],

@@ -1,4 +1,4 @@
-//! One panel's marks on its axes.
+//! Draws the marks of a panel.
 
 use plotters::prelude::DrawingBackend;
 
@@ -7,8 +7,8 @@ use super::output::PlotError;
 use super::{Cells, Disc, Mark, Panel, Point, Style, clip, raster};
 use crate::output::colors::Rgb;
 
-/// More discs or cells than this are drawn as pixels: an SVG with every one as a shape would be too
-/// long for any viewer.
+/// More discs or cells than this are drawn as pixels: as separate shapes, they would make an SVG too large for
+/// most viewers.
 const MOST_SHAPES: usize = 2000;
 /// Length of a dash and of the gap after it, points.
 const DASH: f64 = 3.0;
@@ -24,12 +24,12 @@ pub struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// The place of values as parts of the axes.
+    /// Axis values to positions in the unit square.
     fn unit(&self, [x, y]: [f64; 2]) -> Place {
         [self.panel.x.place(x), self.panel.y.place(y)]
     }
 
-    /// The place on the sheet of parts of the axes.
+    /// Positions in the unit square to the sheet.
     fn on_sheet(&self, [x, y]: Place) -> Place {
         let [width, height] = self.size;
         [
@@ -38,7 +38,7 @@ impl Frame<'_> {
         ]
     }
 
-    /// The place on the sheet of values.
+    /// Axis values to the sheet.
     pub fn place(&self, values: [f64; 2]) -> Place {
         self.on_sheet(self.unit(values))
     }
@@ -54,7 +54,7 @@ impl Frame<'_> {
         self.size[0] / (last - first)
     }
 
-    /// The axes' size in units of a backend.
+    /// Size of the axes in backend units.
     fn units(&self, scale: f64) -> [u32; 2] {
         self.size.map(|points| (points * scale).round() as u32)
     }
@@ -144,7 +144,7 @@ fn draw_line<DB: DrawingBackend>(
     stroke(&path, style, canvas)
 }
 
-/// A path on the sheet, full or broken.
+/// Draws a path on the sheet, solid or dashed.
 pub fn stroke<DB: DrawingBackend>(
     path: &[Place],
     style: &Style,
@@ -154,7 +154,7 @@ pub fn stroke<DB: DrawingBackend>(
         return Ok(());
     }
     if !style.broken {
-        // The backend draws a spike where a thick line turns back.
+        // The backend draws a spike where a thick line turns back, so we split the path there.
         let pieces = path.len() - 1;
         let sharp = (1..pieces).filter(|&k| turns_back([path[k - 1], path[k], path[k + 1]]));
         let ends: Vec<usize> = std::iter::once(0).chain(sharp).chain([pieces]).collect();
@@ -167,12 +167,12 @@ pub fn stroke<DB: DrawingBackend>(
         .try_for_each(|dash| canvas.line(dash, style.width, style.color))
 }
 
-/// Is there a sharp corner at the middle one?
+/// Whether the path turns by more than 90° at its middle point.
 fn turns_back([a, b, c]: [Place; 3]) -> bool {
     (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0.0
 }
 
-/// A path in pieces of [`DASH`] points with gaps of the same length.
+/// Splits a path into dashes of [`DASH`] points with gaps of the same length.
 fn dashes(path: &[Place]) -> Vec<[Place; 2]> {
     let mut found = Vec::new();
     let mut walked = 0.0;
@@ -222,7 +222,7 @@ fn bar_style(style: &Style) -> Style {
     Style::full(style.color, 0.8, "")
 }
 
-/// A dot on the sheet, full or hollow.
+/// Draws a dot on the sheet, filled or hollow.
 pub fn marker<DB: DrawingBackend>(
     at: Place,
     style: &Style,

@@ -1,9 +1,8 @@
-//! Pictures: sheets of panels on shared or own axes, as SVG and PNG from the same drawing code. The
-//! only place that names plotters.
+//! Pictures: sheets of panels with shared or separate axes, as SVG and PNG from the same drawing code. This is the
+//! only module that names plotters.
 //!
-//! A [`Sheet`] is data: panels in rows, each with two axes and marks in the axes' units. What is drawn
-//! where is decided here, what a picture shows by whoever makes the sheet. Sizes are in points; an SVG
-//! has one unit a point, a PNG two pixels.
+//! A [`Sheet`] is plain data: panels in rows, each with two axes and marks in axis units. The caller decides what a
+//! sheet shows; this module decides the layout. Sizes are in points: one SVG unit or two PNG pixels per point.
 
 mod axis;
 mod canvas;
@@ -22,9 +21,9 @@ use crate::output::colors::{ColorMap, Rgb};
 
 /// Black, for text and axes.
 pub const BLACK: Rgb = [0, 0, 0];
-/// For obstacles and lines of little weight.
+/// Gray, for obstacles and secondary lines.
 pub const GRAY: Rgb = [140, 140, 140];
-/// Colours for lines that colour-blind readers can tell apart (Okabe and Ito 2008).
+/// Line colors that color-blind readers can tell apart (Okabe and Ito 2008).
 pub const LINES: [Rgb; 7] = [
     [0, 114, 178],
     [213, 94, 0],
@@ -38,40 +37,40 @@ pub const LINES: [Rgb; 7] = [
 /// A picture: panels in rows.
 #[derive(Debug, Clone)]
 pub struct Sheet {
-    /// Above everything; may be empty.
+    /// Title above the panels; may be empty.
     pub title: String,
     /// Panels per row.
     pub columns: usize,
     /// Width and height of each panel's axes, points.
     pub panel_size: [f64; 2],
-    /// Do all panels have the same axes? Then only the outer ones are labelled.
+    /// All panels have the same axes, so only the outer axes are labeled.
     pub shared_axes: bool,
-    /// Left of the rows; may be empty.
+    /// Titles left of the rows; may be empty.
     pub row_titles: Vec<String>,
-    /// What the colours of all panels mean.
+    /// Color bar shared by all panels.
     pub bar: Option<ColorBar>,
-    /// Row by row.
+    /// The panels, row by row.
     pub panels: Vec<Panel>,
 }
 
-/// One pair of axes and what is on them, later marks over earlier ones.
+/// A pair of axes and the marks on them. Later marks cover earlier ones.
 #[derive(Debug, Clone)]
 pub struct Panel {
-    /// Above it; may be empty.
+    /// Title above the panel; may be empty.
     pub title: String,
-    /// To the right.
+    /// Horizontal axis.
     pub x: Axis,
-    /// Upwards.
+    /// Vertical axis, upward.
     pub y: Axis,
-    /// What is shown.
+    /// The marks.
     pub marks: Vec<Mark>,
-    /// What this panel's colours mean.
+    /// Color bar of this panel.
     pub bar: Option<ColorBar>,
-    /// Where marks with labels are explained.
+    /// Position of the legend of labeled marks.
     pub legend: Option<Corner>,
 }
 
-/// A place in or at a panel.
+/// A position in or beside a panel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Corner {
     /// Upper left.
@@ -82,56 +81,56 @@ pub enum Corner {
     LowerLeft,
     /// Lower right.
     LowerRight,
-    /// Not inside, but beside the panel on the right.
+    /// Outside, to the right of the panel.
     Beside,
 }
 
-/// What colours mean.
+/// The meaning of colors.
 #[derive(Debug, Clone)]
 pub struct ColorBar {
     /// Quantity and unit.
     pub label: String,
-    /// The colours.
+    /// The color map.
     pub map: ColorMap,
 }
 
 /// A disc, in axis units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disc {
-    /// Its centre.
+    /// Its center.
     pub center: [f64; 2],
     /// Its radius.
     pub radius: f64,
-    /// Its colour.
+    /// Its color.
     pub color: Rgb,
 }
 
 /// A value with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
-    /// Where on the x axis.
+    /// Position on the x axis.
     pub x: f64,
-    /// Where on the y axis.
+    /// Position on the y axis.
     pub y: f64,
     /// Half the length of its error bar; 0 for none.
     pub error: f64,
 }
 
-/// How a line or a set of points looks, and what it is called in the legend.
+/// The look of a line or a set of points, and its label in the legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Style {
-    /// The colour.
+    /// The color.
     pub color: Rgb,
-    /// Line width or radius of the points, points.
+    /// Line width or point radius, points.
     pub width: f64,
-    /// Broken lines; hollow points.
+    /// Dashed line or hollow points.
     pub broken: bool,
-    /// Its name in the legend; empty for none.
+    /// Label in the legend; empty for none.
     pub label: String,
 }
 
 impl Style {
-    /// A full line or full points.
+    /// A solid line or filled points.
     pub fn full(color: Rgb, width: f64, label: &str) -> Self {
         Self {
             color,
@@ -141,7 +140,7 @@ impl Style {
         }
     }
 
-    /// A broken line or hollow points.
+    /// A dashed line or hollow points.
     pub fn broken(color: Rgb, width: f64, label: &str) -> Self {
         Self {
             broken: true,
@@ -150,16 +149,16 @@ impl Style {
     }
 }
 
-/// A rectangular field of values, in rows from the lower end of the y axis.
+/// A rectangular grid of values, in rows from the lower end of the y axis.
 #[derive(Debug, Clone)]
 pub struct Cells {
     /// Lower left and upper right corner, axis units.
     pub extent: [[f64; 2]; 2],
     /// Cells per row.
     pub columns: usize,
-    /// Row by row; `None` is left empty.
+    /// Values row by row; `None` is left blank.
     pub values: Vec<Option<f64>>,
-    /// Colours for the values.
+    /// Colors for the values.
     pub map: ColorMap,
 }
 
@@ -170,10 +169,10 @@ impl Cells {
     }
 }
 
-/// Something in a panel, in axis units.
+/// A mark in a panel, in axis units.
 #[derive(Debug, Clone)]
 pub enum Mark {
-    /// People.
+    /// Agents.
     Discs(Vec<Disc>),
     /// A filled polygon, for example an obstacle.
     Area(Vec<[f64; 2]>, Rgb),
@@ -183,7 +182,7 @@ pub enum Mark {
     Points(Vec<Point>, Style),
     /// A heat map.
     Cells(Cells),
-    /// Words, centred at a place.
+    /// Text, centered at a position.
     Text([f64; 2], String, Rgb),
 }
 
@@ -191,7 +190,7 @@ impl Sheet {
     /// Writes `stem`.svg and `stem`.png.
     ///
     /// # Errors
-    /// A file cannot be written.
+    /// The sheet cannot be drawn or a file cannot be written.
     pub fn save(&self, stem: &Path) -> Result<(), PlotError> {
         output::save_svg(self, &stem.with_extension("svg"))?;
         output::save_png(self, &stem.with_extension("png"))

@@ -1,4 +1,4 @@
-//! A sheet as a file. Both backends count in whole units, so both are given several a point.
+//! Writes a sheet to a file. Both backends use integer coordinates, so each gets several units per point.
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -12,14 +12,14 @@ use plotters::prelude::*;
 use super::canvas::Canvas;
 use super::{Sheet, layout};
 
-/// Units a point in an SVG, which scales them back.
+/// Units per point in an SVG, which scales them back.
 const SVG_SCALE: u32 = 3;
-/// Pixels a point in a PNG.
+/// Pixels per point in a PNG.
 const PNG_SCALE: u32 = 2;
-/// A PNG is drawn so much larger and then reduced, for smooth edges.
+/// A PNG is drawn larger by this factor and then scaled down, for smooth edges.
 const OVERSAMPLING: u32 = 2;
 
-/// A picture that could not be made.
+/// A picture cannot be drawn or written.
 #[derive(Debug, thiserror::Error)]
 pub enum PlotError {
     /// It cannot be drawn.
@@ -30,7 +30,7 @@ pub enum PlotError {
     Writing {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         reason: String,
     },
 }
@@ -41,7 +41,7 @@ impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for PlotE
     }
 }
 
-/// Gives plotters a font, so that pictures are the same on every machine.
+/// Registers fonts with plotters, so that pictures are the same on every machine.
 fn register_fonts() {
     static ONCE: OnceLock<()> = OnceLock::new();
     ONCE.get_or_init(|| {
@@ -49,13 +49,13 @@ fn register_fonts() {
             (FontStyle::Normal, dejavu::sans::regular()),
             (FontStyle::Bold, dejavu::sans::bold()),
         ] {
-            // Without its font a text's drawing fails, and says so.
+            // Drawing text reports an error if its font is missing.
             let _ = plotters::style::register_font("sans-serif", style, bytes);
         }
     });
 }
 
-/// Draws a sheet on a backend with `scale` units a point.
+/// Draws a sheet on a backend with `scale` units per point.
 fn draw<DB: DrawingBackend>(sheet: &Sheet, backend: DB, scale: u32) -> Result<(), PlotError> {
     register_fonts();
     let root = backend.into_drawing_area();
@@ -96,8 +96,7 @@ pub fn save_svg(sheet: &Sheet, path: &Path) -> Result<(), PlotError> {
     std::fs::write(path, text).map_err(|error| unwritable(path)(error.to_string()))
 }
 
-/// Five bits of a channel, white still white: no eye sees the difference, and the file is a third
-/// shorter.
+/// Reduces a channel to five bits, keeping white white. The difference is invisible and the file a third smaller.
 fn coarse(value: u8) -> u8 {
     value & 0xF8 | value >> 5
 }

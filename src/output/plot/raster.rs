@@ -1,4 +1,4 @@
-//! Pixels for what would be too many shapes: a crowd of thousands, a fine heat map.
+//! Draws pixels in place of too many shapes: a crowd of thousands, a fine heat map.
 
 use super::canvas::Pixels;
 use super::{Cells, Disc};
@@ -12,8 +12,8 @@ fn blank(width: u32, height: u32) -> Pixels {
     }
 }
 
-/// Discs whose centres and radii are in pixels, right and down. Their rims are hard: pixels are small
-/// beside what is shown of them, and few colours make a short file.
+/// Draws discs with centers and radii in pixels, right and down. Edges are not antialiased: pixels are small, and
+/// few colors keep the file small.
 pub fn discs(size: [u32; 2], discs: impl Iterator<Item = Disc>) -> Pixels {
     let mut pixels = blank(size[0], size[1]);
     for disc in discs {
@@ -35,7 +35,7 @@ pub fn discs(size: [u32; 2], discs: impl Iterator<Item = Disc>) -> Pixels {
     pixels
 }
 
-/// A field whose cells fill the pixels.
+/// Draws a grid of cells over the whole image.
 pub fn cells(size: [u32; 2], cells: &Cells) -> Pixels {
     let mut pixels = blank(size[0], size[1]);
     let (columns, rows) = (cells.columns, cells.rows());
