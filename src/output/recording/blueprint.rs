@@ -1,4 +1,4 @@
-//! The layout that a recording opens with: the crowd twice, some agents laid open, plots, text.
+//! The layout that a recording opens with: two views of the crowd, a view of the debug agents, plots, text.
 
 use rerun::blueprint::components::{
     BackgroundKind, LoopMode, PanelState, PlayState, VisualBounds2D as Bounds,
@@ -21,32 +21,32 @@ use crate::engine::scene::Region;
 /// Length of the loop that plays first, seconds.
 const LOOP: f64 = 10.0;
 const BACKGROUND: [u8; 3] = [22, 23, 29];
-/// Light enough for agents at rest, which are black.
+/// Light enough to show agents at rest, which are black.
 const SPEED_BACKGROUND: [u8; 3] = [72, 75, 88];
-/// The crowd where it is only the background.
+/// Color of the crowd where it is only the background.
 const DIM: [u8; 3] = [64, 68, 84];
 
-/// A property of a view that rerun's blueprint has no setter for: its entity and its value.
+/// A view property without a setter in rerun's blueprint: its entity and its value.
 type Property = (EntityPath, Box<dyn AsComponents>);
 
-/// What the layout depends on besides the options.
+/// The state of a recording, on which its layout depends.
 #[derive(Debug, Clone, Copy)]
 pub enum Opening {
-    /// Nothing is there yet: everything stands still at the start.
+    /// No data yet: the viewer is paused at the start.
     Empty,
-    /// Somebody looks on while it comes.
+    /// The viewer follows the incoming data.
     Live,
-    /// All is there: the seconds to look at first play, and the debug view shows this, or as much as the
-    /// crowd views. The viewer would not go to a time that it has not read yet.
+    /// The recording is complete: a loop from `opens_at` plays. The debug view shows this region, or, if `None`, the
+    /// region of the crowd views. The layout is sent last, because the viewer cannot go to a time that it has not read.
     Whole(Option<Region>),
 }
 
-/// What there is to show.
+/// The kind of data shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Content {
     /// A simulation.
     Run,
-    /// A crowd that was measured: nobody knows its energy, and it took no computing time.
+    /// A measured crowd, without energy or computing time.
     Measurement,
 }
 
@@ -140,8 +140,8 @@ fn layout(
     (blueprint, properties)
 }
 
-/// A blueprint of rerun 0.36 has no current time, but a loop that plays begins where it is told to:
-/// the seconds to look at first.
+/// A blueprint of rerun 0.36 cannot set the current time, but a playing loop starts at its own start, so the loop
+/// begins at `opens_at`.
 fn time_panel(options: &RecordingOptions, opening: Opening) -> TimePanel {
     let panel = TimePanel::new()
         .with_state(PanelState::Collapsed)
@@ -161,7 +161,7 @@ fn time_panel(options: &RecordingOptions, opening: Opening) -> TimePanel {
         .with_play_state(PlayState::Playing)
 }
 
-/// The crowd's points with the second colouring.
+/// The crowd's points with the speed colors.
 fn speed_colors() -> Visualizer {
     let colors = Points2D::descriptor_colors().component;
     let mapping = VisualizerComponentMapping::new_source_component(colors, crowd::SPEED_COLORS);
@@ -170,7 +170,7 @@ fn speed_colors() -> Visualizer {
         .with_mappings(vec![mapping.into()])
 }
 
-/// The crowd's points in one dark colour, so that arrows stand out.
+/// The crowd's points in a single dark color, so that arrows stand out.
 fn dim_colors() -> Visualizer {
     let [r, g, b] = DIM;
     Points2D::update_fields()
@@ -217,7 +217,7 @@ fn texts(content: Content) -> ContainerLike {
     .into()
 }
 
-/// Zoom, background, and no clicks for the picture of the obstacles, which would swallow them all.
+/// Sets zoom and background, and makes the obstacle image ignore clicks, which it would otherwise swallow.
 fn add_properties(
     properties: &mut Vec<Property>,
     view: &ContainerLike,
@@ -228,7 +228,7 @@ fn add_properties(
         return;
     };
     let at = |name: String| view.blueprint_path().join(&EntityPath::from(name));
-    // The picture is turned: y up in metres is y down on the screen.
+    // The picture is flipped: y up in meters is y down on the screen.
     let bounds = VisualBounds2D::new(Bounds(rerun::datatypes::Range2D {
         x_range: [shown.min.x, shown.max.x].into(),
         y_range: [-shown.max.y, -shown.min.y].into(),

@@ -1,7 +1,7 @@
 //! The whole crowd as one entity.
 //!
-//! Rows are in the order of the ids, so that radii and ids change only when somebody enters or
-//! leaves and are logged only then.
+//! Rows are in the order of the ids, so that radii and ids change only when agents enter or leave, and are logged
+//! only then.
 
 use std::sync::Arc;
 
@@ -15,11 +15,11 @@ use crate::output::colors::{self, ColorMap};
 
 type F16 = <Float16Type as ArrowPrimitiveType>::Native;
 
-/// Where the crowd is.
+/// The entity of the crowd.
 pub const ENTITY: &str = "world/agents";
-/// Group of the values that are ours; the viewer shows `agent:density`, and so on.
+/// Archetype of our own values; the viewer shows them as `agent:density`, and so on.
 const ARCHETYPE: &str = "agent";
-/// The component with the second colouring.
+/// The component with the speed colors.
 pub const SPEED_COLORS: &str = "agent:speed_colors";
 
 /// Logs the crowd.
@@ -70,7 +70,7 @@ impl Crowd {
         Ok(())
     }
 
-    /// What an agent keeps as long as it is there.
+    /// Logs the values that stay constant while an agent is present.
     fn log_bodies(&mut self, stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
         let rows = &self.rows.order;
         let ids = rows.iter().map(|&i| snapshot.ids[i]);
@@ -88,13 +88,13 @@ impl Crowd {
     }
 }
 
-/// Half precision: three digits of a density in half the bytes.
+/// Half precision: three significant digits of a density in half the bytes.
 fn halves(rows: &[usize], values: &[f32]) -> ArrayRef {
     let halves = rows.iter().map(|&i| F16::from_f32(values[i]));
     Arc::new(Float16Array::from_iter_values(halves))
 }
 
-/// Sorts agents by id in linear time; keeps its memory.
+/// Sorts agents by id in linear time and reuses its memory.
 #[derive(Default)]
 struct Rows {
     index_of: Vec<u32>,

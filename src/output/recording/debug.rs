@@ -1,4 +1,4 @@
-//! Some agents laid open, frame by frame, by the engine's own breakdown.
+//! Debug agents: some agents with the full breakdown of their forces, frame by frame.
 
 use super::geometry::xy;
 use crate::engine::breakdown::Breakdown;
@@ -8,27 +8,27 @@ use crate::engine::profile::Term;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 
-/// Parts of an arc in the outline of a hidden region.
+/// Number of segments of an arc in the outline of a hidden region.
 const ARC_STEPS: usize = 24;
-/// What the debug view shows round an agent, metres.
+/// Half the side of the debug view around an agent, meters.
 const FOCUS: f64 = 3.0;
-/// What it shows round a rectangle, as a share of its sides.
+/// Margin of the debug view around a rectangle, relative to its sides.
 const MARGIN: f64 = 0.05;
 
-/// Who is laid open.
+/// Selects the debug agents.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DebugAgents {
-    /// These, while they are there.
+    /// The agents with these ids, while they are present.
     Ids(Vec<u32>),
-    /// Whoever is in a rectangle, in each frame anew.
+    /// The agents inside a rectangle, selected anew in each frame.
     Region(Region),
-    /// Everybody: some 1.5 kB per agent and frame.
+    /// All agents: about 1.5 kB per agent and frame.
     All,
-    /// Nobody.
+    /// No agents.
     None,
 }
 
-/// Finds the debug agents and lays them open.
+/// Finds the debug agents and computes their breakdowns.
 pub struct Debug {
     who: DebugAgents,
 }
@@ -38,7 +38,7 @@ impl Debug {
         Self { who }
     }
 
-    /// The indices of the agents meant, in the order of their ids.
+    /// The indices of the selected agents, in the order of their ids.
     fn among(&self, simulation: &Simulation) -> Vec<usize> {
         let agents = simulation.frame().agents;
         let everybody = 0..agents.len();
@@ -64,14 +64,14 @@ impl Debug {
         chosen
     }
 
-    /// Lays them open in the current frame; nobody, if it has no densities.
+    /// The breakdowns of the debug agents in the current frame; empty if the frame has no densities.
     pub fn open(&self, simulation: &Simulation) -> Vec<Open> {
         let chosen = self.among(simulation).into_iter();
         chosen.filter_map(|i| Open::of(simulation, i)).collect()
     }
 
-    /// The part of the plane to look at: the rectangle asked for, or the surroundings of the first id
-    /// given that is there now.
+    /// The region to show: the selected rectangle with a margin, or the surroundings of the first selected id that is
+    /// present.
     pub fn focus(&self, simulation: &Simulation) -> Option<Region> {
         let agents = simulation.frame().agents;
         match &self.who {
@@ -89,7 +89,7 @@ impl Debug {
     }
 }
 
-/// `region` with `margin` more on every side.
+/// `region` grown by `margin` on every side.
 fn grown(region: Region, margin: Vector) -> Region {
     Region {
         min: region.min - margin,
@@ -97,7 +97,7 @@ fn grown(region: Region, margin: Vector) -> Region {
     }
 }
 
-/// An agent laid open.
+/// An agent with its breakdown.
 pub struct Open {
     pub breakdown: Breakdown,
     pub position: Vector,
@@ -125,7 +125,7 @@ impl Open {
         })
     }
 
-    /// The weighted sum of one term over the profiles that act.
+    /// The weighted sum of one term over the active profiles.
     pub fn force(&self, term: Term) -> Vector {
         let shares = self.breakdown.profiles.iter();
         let terms = shares.filter_map(|share| Some(share.accelerations.get(term)? * share.weight));

@@ -1,26 +1,26 @@
-//! Why a recording failed.
+//! Errors of recordings.
 
 use std::path::{Path, PathBuf};
 
 use rerun::RecordingStreamError;
 use rerun::sink::SinkFlushError;
 
-/// What rerun or the system has to say.
+/// An error of rerun or the system.
 #[derive(Debug, thiserror::Error)]
 pub enum Cause {
-    /// The file cannot be made, or a thread not started.
+    /// The file cannot be created, or a thread cannot be started.
     #[error(transparent)]
     System(#[from] std::io::Error),
-    /// The stream refused something.
+    /// The stream rejected data.
     #[error(transparent)]
     Stream(#[from] RecordingStreamError),
-    /// Something did not reach the file.
+    /// Data did not reach the file.
     #[error(transparent)]
     Flush(#[from] SinkFlushError),
-    /// The same, found when it was closed.
+    /// A write error found when the file was closed.
     #[error("{0}")]
     File(String),
-    /// The thread that writes has ended before its time.
+    /// The writer thread ended early.
     #[error("the thread that writes has failed")]
     WriterGone,
 }
@@ -31,53 +31,53 @@ pub enum RecordingError {
     /// Rerun is switched off by its environment variable.
     #[error("RERUN={0} in the environment switches recordings off: unset it, or set it to on")]
     SwitchedOff(String),
-    /// It cannot be written.
+    /// The file cannot be written.
     #[error("cannot write {}: {cause}; {}", path.display(), kept(path))]
     Unwritten {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         cause: String,
     },
-    /// Where it goes to a viewer alone: it cannot be made.
+    /// A recording for a viewer only cannot be created or sent.
     #[error("cannot show the run: {0}")]
     Unshown(String),
-    /// Nobody is at the other end.
+    /// No viewer answers.
     #[error(
         "no viewer answers at {address} ({reason}); start one with `rerun`, or let --spawn do it"
     )]
     NoViewer {
-        /// Where.
+        /// The viewer's address.
         address: String,
-        /// What the system says.
+        /// The system's message.
         reason: String,
     },
     /// No viewer can be started.
     #[error("cannot start a viewer: {reason}")]
     NotSpawned {
-        /// Why.
+        /// The reason.
         reason: String,
     },
-    /// The viewer was closed, froze, or the connection broke; a file beside it is whole.
+    /// The viewer was closed or froze, or the connection broke. The recording's file, if any, is complete.
     #[error("the viewer at {address} went away before the run had ended: {reason}")]
     ViewerGone {
-        /// Where.
+        /// The viewer's address.
         address: String,
-        /// What rerun says.
+        /// The reason.
         reason: String,
     },
-    /// The file is not whole.
+    /// The file is incomplete.
     #[error("the recording {} is not complete: {reason}", path.display())]
     Incomplete {
-        /// Which file.
+        /// The file.
         path: PathBuf,
         /// What is wrong with it.
         reason: String,
     },
-    /// The file is no recording.
+    /// The file cannot be read as a recording.
     #[error("cannot read the recording {}: {reason}", path.display())]
     Unreadable {
-        /// Which file.
+        /// The file.
         path: PathBuf,
         /// What is wrong with it.
         reason: String,
@@ -85,7 +85,7 @@ pub enum RecordingError {
 }
 
 impl RecordingError {
-    /// The file takes no more; without one, the viewer.
+    /// A failure to write to `file`, or to the viewer if there is no file.
     pub(super) fn unwritten(file: Option<&Path>, cause: &Cause) -> Self {
         let cause = cause.to_string();
         match file {

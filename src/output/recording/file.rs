@@ -1,4 +1,4 @@
-//! A file as rerun's messages go there.
+//! Writes rerun's messages to a file.
 
 use std::fs::File;
 use std::io;
@@ -12,15 +12,15 @@ use rerun::external::re_log_encoding::rrd::{CrateVersion, EncodeError, Encoder, 
 use rerun::log::LogMsg;
 use rerun::sink::{LogSink, SinkFlushError};
 
-/// Messages under way to the file at most; with more, whoever sends waits.
+/// Maximum number of queued messages; senders wait when the queue is full.
 const QUEUE: usize = 1024;
 
-/// The first thing that went wrong, seen from both sides of a sink.
+/// The first error of a sink, shared by both of its sides.
 #[derive(Clone, Default)]
 pub struct Failure(Arc<Mutex<Option<String>>>);
 
 impl Failure {
-    /// What went wrong first, if anything did.
+    /// The first error, if any.
     pub fn reason(&self) -> Option<String> {
         self.0
             .lock()
@@ -28,17 +28,17 @@ impl Failure {
             .clone()
     }
 
-    /// Notes what went wrong, unless something has before.
+    /// Records an error, unless there is one already.
     pub fn is(&self, reason: &dyn ToString) {
         let mut first = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         first.get_or_insert_with(|| reason.to_string());
     }
 }
 
-/// A file that rerun's messages are written to by a thread of its own.
+/// A sink that writes rerun's messages to a file on its own thread.
 ///
-/// Rerun's own does not say why it failed, and when a disk becomes full its `flush` may wait without end
-/// for a thread that has gone.
+/// Rerun's own file sink does not say why it failed, and when the disk is full its `flush` may wait forever for a
+/// thread that has ended.
 pub struct FileSink {
     /// `None` once the thread has been asked to end.
     commands: Option<SyncSender<Command>>,
@@ -48,12 +48,12 @@ pub struct FileSink {
 
 enum Command {
     Write(LogMsg),
-    /// To be answered when everything before it is in the file.
+    /// Answered when all earlier messages are in the file.
     Flush(SyncSender<()>),
 }
 
 impl FileSink {
-    /// Begins the file at `path`, replacing any there.
+    /// Creates the file at `path`, replacing an existing one.
     pub fn create(path: &Path) -> io::Result<Self> {
         let (version, options) = (CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED);
         let encoder = Encoder::new_eager(version, options, File::create(path)?);
@@ -71,13 +71,13 @@ impl FileSink {
         })
     }
 
-    /// What went wrong, to be looked at while the sink is used and when it is gone.
+    /// The first error, readable while the sink is in use and after it is dropped.
     pub fn failure(&self) -> Failure {
         self.failure.clone()
     }
 
     fn send(&self, command: Command) {
-        // The thread ends only after this sink, or by a panic, which the missing footer shows.
+        // The thread ends only after this sink, or by a panic, which the missing footer reveals.
         if let Some(commands) = &self.commands {
             commands.send(command).ok();
         }
@@ -110,7 +110,7 @@ impl LogSink for FileSink {
 }
 
 impl Drop for FileSink {
-    /// Waits for the file's end.
+    /// Waits until the file is complete.
     fn drop(&mut self) {
         self.commands = None;
         if let Some(thread) = self.thread.take() {
@@ -119,8 +119,8 @@ impl Drop for FileSink {
     }
 }
 
-/// Writes until nobody sends any more, then the index at the file's end; after a failure nothing more, so
-/// that what is there opens.
+/// Writes messages until the sender is gone, then the index at the end of the file. After an error it writes nothing
+/// more, so that the file can still be opened.
 fn write_all(queue: &Receiver<Command>, encoder: Encoder<File>, failure: &Failure) {
     let mut open = Some(encoder);
     for command in queue {
@@ -128,7 +128,7 @@ fn write_all(queue: &Receiver<Command>, encoder: Encoder<File>, failure: &Failur
             (Command::Write(message), Some(encoder)) => {
                 if let Err(error) = encoder.append(&message) {
                     failure.is(&cause(&error));
-                    // Dropped as it is, it would write an index.
+                    // Dropping the encoder would write an index.
                     open.take().map(Encoder::into_inner);
                 }
             }
@@ -143,7 +143,7 @@ fn write_all(queue: &Receiver<Command>, encoder: Encoder<File>, failure: &Failur
     }
 }
 
-/// What the system said, where it was the system.
+/// The operating system's error, if there is one.
 fn cause(error: &EncodeError) -> io::Error {
     match error {
         EncodeError::Write(error) => match error.raw_os_error() {

@@ -1,4 +1,4 @@
-//! What stands still: walls, obstacles and goals, logged once.
+//! Static geometry: walls, obstacles and goals, logged once.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,30 +14,30 @@ use crate::engine::geometry::Polygon;
 use crate::engine::math::Vector;
 use crate::engine::scene::{Goal, Scene};
 
-/// The filled obstacles: a picture under everything else.
+/// The filled obstacles: an image below everything else.
 pub const OBSTACLES: &str = "world/geometry/obstacles";
-/// Longest side of that picture in pixels.
+/// Longest side of that image, pixels.
 const RASTER_SIDE: f64 = 1024.0;
-/// Its pixels are not smaller than this, metres.
+/// Minimum pixel size of that image, meters.
 const RASTER_CELL: f64 = 0.05;
-/// What is solid without end is shown so far round the floor, metres.
+/// Margin around the floor in which an unbounded obstacle is shown, meters.
 const SOLID_MARGIN: f64 = 1.0;
-/// No more goals than this are shown, and no more than `NAMED_GOALS` with names.
+/// Maximum number of goals shown; up to `NAMED_GOALS` goals also get labels.
 const GOALS: usize = 200;
 const NAMED_GOALS: usize = 8;
 
 const WALL: Color = Color(Rgba32::from_rgb(214, 214, 222));
 const GOAL: Color = Color(Rgba32::from_rgb(95, 211, 120));
 
-/// What stands still: walls, and where the scene's agents go.
+/// Logs walls, obstacles and the goals of the scene's agents.
 pub fn log(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result<(), Cause> {
     log_still(stream, scene.walls.obstacles())?;
     log_goals(stream, scene, agents)
 }
 
-/// Which way is up, and walls.
+/// Logs the direction of y, walls and obstacles.
 pub fn log_still(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), Cause> {
-    // Y up: 2D views have it down.
+    // Y is up; the viewer's 2D views have y down.
     stream.log_static("world", &Transform3D::from_scale([1.0, -1.0, 1.0]))?;
     if !obstacles.is_empty() {
         log_walls(stream, obstacles)?;
@@ -81,7 +81,7 @@ fn log_obstacles(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), 
     Ok(stream.log_static(OBSTACLES, &parts)?)
 }
 
-/// The obstacles as a picture, 1 inside; rows from the lowest y up.
+/// The obstacles as an image, 1 inside; rows go up from the lowest y.
 struct Raster {
     min: Vector,
     cell: f64,
@@ -115,7 +115,7 @@ impl Raster {
         raster
     }
 
-    /// Fills between every other crossing of a row's middle with the outline.
+    /// Fills each row between every other pair of crossings of its center line with the outline.
     fn fill(&mut self, obstacle: &Polygon) {
         for row in 0..self.rows {
             let y = self.min.y + (row as f64 + 0.5) * self.cell;
@@ -129,7 +129,7 @@ impl Raster {
             }
             crossings.sort_by(f64::total_cmp);
             for inside in crossings.chunks_exact(2) {
-                // Pixels whose centres lie inside; `as` saturates at 0.
+                // Pixels whose centers lie inside; `as` saturates at 0.
                 let column = |x: f64| ((x - self.min.x) / self.cell + 0.5) as usize;
                 let (from, to) = (column(inside[0]), column(inside[1]).min(self.columns));
                 self.pixels[row * self.columns..][from.min(to)..to].fill(1);
@@ -153,7 +153,7 @@ fn log_goals(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result
     Ok(stream.log_static("world/geometry/goals", &points)?)
 }
 
-/// One name for all goals of the same groups, at the first of them.
+/// One label for all goals of the same groups, at the first of these goals.
 fn labels(scene: &Scene, goals: &[(Vector, BTreeSet<u16>)]) -> Vec<String> {
     let mut named = BTreeSet::new();
     let label = |(_, groups): &(Vector, BTreeSet<u16>)| match named.insert(groups.clone()) {
@@ -163,7 +163,7 @@ fn labels(scene: &Scene, goals: &[(Vector, BTreeSet<u16>)]) -> Vec<String> {
     goals.iter().map(label).collect()
 }
 
-/// What a goal is called.
+/// The label of a goal.
 fn label(scene: &Scene, of: &BTreeSet<u16>) -> String {
     if of.len() == scene.groups.len() {
         return "goal".to_owned();
@@ -175,7 +175,8 @@ fn label(scene: &Scene, of: &BTreeSet<u16>) -> String {
     format!("goal of {}", Vec::from_iter(names).join(", "))
 }
 
-/// The different goals of those who are there and whose they are; of a source with a goal for each those of its first entry.
+/// The distinct goals of agents and sources, each with its groups. A source with a goal per agent contributes the
+/// goals of its first entry.
 fn goals(scene: &Scene, agents: &Agents) -> Vec<(Vector, BTreeSet<u16>)> {
     let own = agents.goal.iter().zip(&agents.group);
     let own = own.map(|(&goal, &group)| (goal, group));

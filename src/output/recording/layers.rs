@@ -12,11 +12,10 @@ use crate::engine::math::Vector;
 use crate::engine::profile::Term;
 use crate::engine::scene::Scene;
 
-/// With more agents laid open at once their ids would hide everything; a click still tells them.
+/// With more debug agents than this, labels would hide everything; a click still shows an agent's id.
 const MOST_LABELS: usize = 40;
 
-/// Length of an arrow in metres for an acceleration of 1 m/s²: half a metre for the goal force of an
-/// average person at rest.
+/// Length of an arrow in meters per m/s² of acceleration: 0.5 m for the goal force of an average person at rest.
 pub const METRES_PER_ACCELERATION: f64 = 0.2;
 
 /// One entity under `world/debug`.
@@ -66,7 +65,7 @@ pub struct Layers {
 }
 
 impl Layers {
-    /// The layers that `scene` can ever fill.
+    /// The layers that can have content in `scene`.
     pub fn new(scene: &Scene, who: &DebugAgents) -> Self {
         let kinds = if *who == DebugAgents::None {
             Vec::new()
@@ -95,7 +94,7 @@ impl Layers {
         Ok(())
     }
 
-    /// Logs one frame; what has just become empty is logged as empty, so that it goes out of sight.
+    /// Logs one frame. A layer that has just become empty is logged as empty, so that it disappears from view.
     pub fn log(&mut self, stream: &RecordingStream, open: &[Open]) -> Result<(), Cause> {
         for layer in &mut self.layers {
             let (data, count) = layer.kind.data(open, METRES_PER_ACCELERATION);
@@ -108,7 +107,7 @@ impl Layers {
     }
 }
 
-/// The layers that are not empty for ever in `scene`.
+/// The layers that can have content in `scene`.
 fn kinds(scene: &Scene) -> Vec<Kind> {
     let mut kinds = vec![Kind::Labels, Kind::Kernels];
     let walls = !scene.walls.is_empty();
@@ -147,7 +146,7 @@ impl Kind {
         }
     }
 
-    /// What never changes: colours, widths, order.
+    /// The static style: colors, widths, drawing order.
     fn style(self) -> Box<dyn AsComponents> {
         let points = |[r, g, b]: [u8; 3], size: f32| {
             Points2D::update_fields()
@@ -184,7 +183,7 @@ impl Kind {
         }
     }
 
-    /// What changes, for all agents laid open, and how many things that are.
+    /// The data of one frame for all debug agents, and its number of elements.
     fn data(self, open: &[Open], scale: f64) -> (Box<dyn AsComponents>, usize) {
         match self {
             Self::Labels => {
@@ -227,7 +226,7 @@ fn nearest_points(open: &[Open]) -> Vec<[f32; 2]> {
     walls.map(|term| xy(term.nearest_point.into())).collect()
 }
 
-/// From every agent to its nearest point on each wall.
+/// Lines from each agent to its nearest point on each wall.
 fn links(open: &[Open]) -> Vec<Vec<[f32; 2]>> {
     let of = |agent: &Open| {
         let walls = agent.breakdown.walls.iter();
@@ -251,7 +250,7 @@ fn dots(points: Vec<[f32; 2]>) -> (Box<dyn AsComponents>, usize) {
     (Box::new(points), count)
 }
 
-/// Arrows for the accelerations that are not zero.
+/// Arrows for the nonzero accelerations.
 fn arrows(
     open: &[Open],
     scale: f64,

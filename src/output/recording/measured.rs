@@ -1,4 +1,4 @@
-//! A recording of frames that nobody simulated: a crowd that was measured.
+//! A recording of measured frames.
 
 use super::blueprint::{Content, Opening};
 use super::error::{Cause, RecordingError};
@@ -12,11 +12,11 @@ use crate::engine::math::Vector;
 /// One person in a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredPerson {
-    /// Whoever is there twice has the same.
+    /// The same in every frame in which the person appears.
     pub id: u32,
-    /// Metres.
+    /// Meters.
     pub position: Vector,
-    /// m/s; `None` where it is not known.
+    /// m/s; `None` if unknown.
     pub velocity: Option<Vector>,
     /// P/m².
     pub density: f64,
@@ -31,11 +31,11 @@ pub struct MeasuredRecorder {
 }
 
 impl MeasuredRecorder {
-    /// Begins a recording; everybody is a disc of `radius` metres. Nobody is laid open, whatever the options
+    /// Begins a recording. Every person is a disc of `radius` meters. There are no debug agents, whatever the options
     /// say.
     ///
     /// # Errors
-    /// The file cannot be written, or there is no viewer.
+    /// The file cannot be written, or no viewer answers.
     pub fn create(
         to: impl Into<Destination>,
         walls: &Walls,
@@ -79,10 +79,10 @@ impl MeasuredRecorder {
         self.output.checked(self.writer.write(snapshot))
     }
 
-    /// Sends what is still in memory, closes the file and checks that it is whole.
+    /// Sends the buffered data, closes the file and checks that it is complete.
     ///
     /// # Errors
-    /// Something could not be written: the disk is full, for example.
+    /// Data could not be written, for example because the disk is full; or the viewer is gone or took no data for 2 s.
     pub fn finish(mut self) -> Result<(), RecordingError> {
         let opening = Opening::Whole(None);
         let ended = end(
@@ -97,7 +97,7 @@ impl MeasuredRecorder {
     }
 }
 
-/// Logs what stands still.
+/// Logs the layout and the static data.
 fn begin(output: &Output, walls: &Walls, options: &RecordingOptions) -> Result<Writer, Cause> {
     let stream = &output.stream;
     let opening = if output.is_live() {

@@ -1,17 +1,17 @@
-//! A run for the Rerun viewer, as a file or while it goes on. The only place that names rerun.
+//! Records a run for the Rerun viewer, to a file or live. This is the only module that names rerun.
 //!
-//! One entity holds the whole crowd, `world/agents`; what stands still is logged once. Positions are
-//! metres with y up: a static transform on `world` turns the picture, since the viewer's 2D views
-//! have y down. Two timelines, `frame` and `sim_time`.
+//! One entity, `world/agents`, holds the whole crowd; static data is logged once. Positions are in meters with y up:
+//! a static transform on `world` flips the picture, because the viewer's 2D views have y down. There are two
+//! timelines, `frame` and `sim_time`.
 //!
 //! | entity | what |
 //! |---|---|
 //! | `world/geometry/{walls,obstacles,goals}` | static |
-//! | `world/agents` | the crowd: positions, radii, both colourings, `agent:…` values |
-//! | `world/debug/…` | some agents laid open: kernels, hidden regions, wall points, forces |
+//! | `world/agents` | the crowd: positions, radii, density and speed colors, `agent:…` values |
+//! | `world/debug/…` | the debug agents: kernels, hidden regions, wall points, forces |
 //! | `stats/…` | time series |
 //! | `info/scenario` | the scenario and a legend, as text |
-//! | `log` | entries and pushes |
+//! | `log` | events: entries and pushes |
 
 mod blueprint;
 mod crowd;
@@ -51,37 +51,36 @@ use writer::Writer;
 const FRAME: &str = "frame";
 const SIM_TIME: &str = "sim_time";
 
-/// What a recording says and shows besides the simulation itself.
+/// What a recording says and shows in addition to the simulation itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordingOptions {
-    /// What it is called in the viewer, for example the scenario's name.
+    /// Its title in the viewer, for example the scenario's name.
     pub title: String,
-    /// What it shows, in a line; may be empty.
+    /// A one-line description; may be empty.
     pub description: String,
     /// The scenario as text, in Markdown.
     pub document: String,
     /// The part of the plane that the crowd views show.
     pub view: Region,
-    /// The time to look at first, seconds.
+    /// The time that the viewer shows first, seconds.
     pub opens_at: f64,
-    /// The end of the run, as far as it is known; what is played first does not go beyond it.
+    /// The end of the run as far as it is known; the loop that plays first does not go beyond it.
     pub ends_at: f64,
-    /// Who is laid open.
+    /// The debug agents.
     pub debug: DebugAgents,
 }
 
 /// Writes a recording, frame by frame.
 ///
-/// [`log`](Self::log) only copies; one thread makes rows of the copies, another compresses and
-/// writes them.
+/// [`log`](Self::log) only copies; one thread turns the copies into rows, another compresses and writes them.
 pub struct Recorder {
     output: Output,
     writer: Writer,
     debug: Debug,
     options: RecordingOptions,
-    /// Has the time to look at first come?
+    /// Whether the time to show first has been reached.
     opened: bool,
-    /// What the debug view shows.
+    /// Region of the debug view.
     focus: Option<Region>,
     progress: Progress,
 }
@@ -90,7 +89,7 @@ impl Recorder {
     /// Begins a recording of `simulation`.
     ///
     /// # Errors
-    /// The file cannot be written, or there is no viewer.
+    /// The file cannot be written, or no viewer answers.
     pub fn create(
         to: impl Into<Destination>,
         simulation: &Simulation,
@@ -112,7 +111,7 @@ impl Recorder {
 
     /// Adds the current frame, which must be evaluated.
     ///
-    /// Densities, and with them colours and debug agents, are in it if the frame has them (see
+    /// Densities, and with them colors and debug agents, are included if the frame has them (see
     /// [`Simulation::request_density_until`]).
     ///
     /// # Errors
@@ -128,7 +127,7 @@ impl Recorder {
         snapshot.evacuated = Some(self.progress.count_arrivals(simulation));
         snapshot.events = self.progress.new_events(simulation);
         snapshot.opens_here = !self.opened && snapshot.time >= self.options.opens_at;
-        // A run may end before that time; then the debug view shows somebody who was there first.
+        // A run may end before that time; the debug view then shows an agent that was present earlier.
         if snapshot.opens_here || self.focus.is_none() {
             self.focus = self.debug.focus(simulation).or(self.focus);
         }
@@ -137,11 +136,10 @@ impl Recorder {
         self.output.checked(self.writer.write(snapshot))
     }
 
-    /// Sends what is still in memory, closes the file and checks that it is whole.
+    /// Sends the buffered data, closes the file and checks that it is complete.
     ///
     /// # Errors
-    /// Something could not be written: the disk is full, for example. Else, the viewer is gone or has taken
-    /// no data for 2 s.
+    /// Data could not be written, for example because the disk is full; or the viewer is gone or took no data for 2 s.
     pub fn finish(mut self) -> Result<(), RecordingError> {
         let opening = Opening::Whole(self.focus);
         let ended = end(
@@ -156,7 +154,7 @@ impl Recorder {
     }
 }
 
-/// Logs what stands still.
+/// Logs the layout and the static data.
 fn begin(
     output: &Output,
     simulation: &Simulation,
@@ -179,7 +177,7 @@ fn begin(
     Writer::start(stream.clone(), layers)
 }
 
-/// Sends what is still in memory, and how it is to be looked at.
+/// Sends the buffered data, then the final layout.
 fn end(
     writer: &mut Writer,
     output: &Output,
@@ -188,12 +186,12 @@ fn end(
     content: Content,
 ) -> Result<(), Cause> {
     writer.finish()?;
-    // The viewer would not go to a time that it has not read yet.
+    // The viewer cannot go to a time that it has not read yet.
     output.stream.flush_blocking()?;
     blueprint::send(&output.stream, options, opening, content)
 }
 
-/// How much of what the simulation reports is in the recording.
+/// How much of the simulation's reports has been recorded.
 #[derive(Default)]
 struct Progress {
     started: bool,
@@ -211,8 +209,8 @@ impl Progress {
         self.evacuated
     }
 
-    /// What happened since the last recorded frame, with times. What happened before a late start
-    /// is left out: it would only stretch the time line.
+    /// The events since the last recorded frame, with times. Events before a late start are left out: they would only
+    /// stretch the time line.
     fn new_events(&mut self, simulation: &Simulation) -> Vec<(f64, Event)> {
         let clock = simulation.frame().clock;
         let events = simulation.events();

@@ -1,4 +1,4 @@
-//! Where a recording goes, and what rerun does on the way.
+//! The destination of a recording, and the rerun stream that goes there.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -12,19 +12,19 @@ use super::file::{Failure, FileSink};
 use super::read;
 use super::viewer::{Address, Viewer};
 
-/// The viewer keeps its own settings per application.
+/// Application id; the viewer keeps its settings per application.
 pub const APPLICATION: &str = "sandbox";
-/// What a run that is killed loses at most, besides the last chunk under way.
+/// The most that a killed run loses, besides the chunk being written.
 const FILE_TICK: Duration = Duration::from_secs(1);
-/// What a viewer lags behind.
+/// Lag of a live viewer.
 const VIEWER_TICK: Duration = Duration::from_millis(100);
 
 /// Where a recording goes: to a file, to a viewer, or to both.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Destination {
-    /// A file, which replaces any there.
+    /// A file; an existing one is replaced.
     pub file: Option<PathBuf>,
-    /// A viewer that shows the run while it goes on.
+    /// A viewer that shows the run live.
     pub viewer: Option<Viewer>,
 }
 
@@ -37,20 +37,20 @@ impl From<&Path> for Destination {
     }
 }
 
-/// A stream to a destination.
+/// A rerun stream to a destination.
 pub struct Output {
     file: Option<PathBuf>,
-    /// What went wrong with the file.
+    /// The first error of the file.
     file_failure: Failure,
-    /// Where the viewer is, and what became of it.
+    /// The viewer's address and the first error of its connection.
     viewer: Option<(Address, Failure)>,
-    /// Where messages enter.
+    /// The stream that takes the messages.
     pub stream: RecordingStream,
 }
 
 impl Output {
-    /// Opens a recording called `name`; two of the same name and `id` are one to a viewer that reads both
-    /// files.
+    /// Opens a recording called `name`. A viewer merges files with the same `id` into one recording; a live
+    /// recording gets an id of its own.
     pub fn open(to: &Destination, name: &str, id: String) -> Result<Self, RecordingError> {
         check_enabled()?;
         let sink = to.viewer.as_ref().map(Viewer::connect).transpose()?;
@@ -70,7 +70,7 @@ impl Output {
                 sinks.push(Box::new(sink));
             }
             let builder = RecordingStreamBuilder::new(APPLICATION).batcher_config(batches(is_live));
-            // In a viewer a second run of the same name would become part of the first.
+            // In a live viewer, a second run with the same id would become part of the first.
             let builder = if is_live {
                 builder
             } else {
@@ -92,23 +92,23 @@ impl Output {
         })
     }
 
-    /// Does somebody look on?
+    /// Whether a viewer shows the run live.
     pub fn is_live(&self) -> bool {
         self.viewer.is_some()
     }
 
-    /// What went wrong, with where.
+    /// Adds the destination to an error.
     pub fn checked<T>(&self, result: Result<T, Cause>) -> Result<T, RecordingError> {
         result.map_err(|cause| RecordingError::unwritten(self.file.as_deref(), &cause))
     }
 
-    /// Closes the file, once everything has been sent, and checks that it is whole.
+    /// Closes the file once everything has been sent, and checks that it is complete.
     ///
     /// # Errors
-    /// It is not. Else, the viewer is gone or has taken no data for 2 s.
+    /// The file is incomplete, or the viewer is gone or took no data for 2 s.
     pub fn close(self) -> Result<(), RecordingError> {
         self.checked(self.stream.flush_blocking().map_err(Cause::from))?;
-        drop(self.stream); // And with it the sinks; that of the file adds the index and waits for it.
+        drop(self.stream); // Also drops the sinks; the file sink writes the index and waits for its thread.
         let file = self.file.as_deref();
         if let Some(reason) = self.file_failure.reason() {
             return Err(RecordingError::unwritten(file, &Cause::File(reason)));
@@ -123,11 +123,11 @@ impl Output {
     }
 }
 
-/// Checks that the environment variable `RERUN` does not switch recordings off. A stream could be enabled in
-/// spite of it, but not the one that rerun makes for a layout.
+/// Checks that the environment variable `RERUN` does not switch recordings off. We could enable our stream in spite
+/// of it, but not the stream that rerun creates for a layout.
 ///
 /// # Errors
-/// It does.
+/// Recordings are switched off.
 pub fn check_enabled() -> Result<(), RecordingError> {
     if rerun::decide_logging_enabled(true) {
         return Ok(());
@@ -136,7 +136,7 @@ pub fn check_enabled() -> Result<(), RecordingError> {
     Err(RecordingError::SwitchedOff(value))
 }
 
-/// The crowd's rows fill a chunk by their size, all others by the passing of so much time.
+/// The crowd's rows fill a chunk by size; all other rows are flushed after a fixed time.
 fn batches(is_live: bool) -> ChunkBatcherConfig {
     ChunkBatcherConfig {
         flush_tick: if is_live { VIEWER_TICK } else { FILE_TICK },

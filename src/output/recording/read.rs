@@ -1,4 +1,4 @@
-//! Reading a recording back: enough to check one.
+//! Reads recordings back, as far as needed to check them.
 
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -25,7 +25,7 @@ impl Recording {
     /// Reads the file at `path`.
     ///
     /// # Errors
-    /// It is no recording.
+    /// The file cannot be read, or is not a recording.
     pub fn read(path: &Path) -> Result<Self, RecordingError> {
         let unreadable = |reason: String| RecordingError::Unreadable {
             path: path.to_owned(),
@@ -47,7 +47,7 @@ impl Recording {
         timelines.map(|name| name.to_string()).collect()
     }
 
-    /// Its entities.
+    /// The names of its entities.
     pub fn entities(&self) -> BTreeSet<String> {
         let chunks = self.store.iter_physical_chunks();
         chunks
@@ -55,7 +55,7 @@ impl Recording {
             .collect()
     }
 
-    /// The pairs that a component of an entity holds, by frame: positions, vectors.
+    /// The pairs in a component of an entity, by frame: positions or vectors.
     pub fn pairs(&self, entity: &str, component: &str) -> Vec<(i64, Vec<[f64; 2]>)> {
         let pair = |values: &[f64]| -> Vec<[f64; 2]> {
             values.chunks_exact(2).map(|xy| [xy[0], xy[1]]).collect()
@@ -68,7 +68,7 @@ impl Recording {
         .collect()
     }
 
-    /// The numbers that a component of an entity holds, by frame.
+    /// The numbers in a component of an entity, by frame.
     pub fn numbers(&self, entity: &str, component: &str) -> Vec<(i64, Vec<f64>)> {
         let rows = self.rows(entity, component).into_iter();
         rows.filter_map(|(frame, row)| Some((frame, numbers(&row)?)))
@@ -104,7 +104,7 @@ fn numbers(array: &ArrayRef) -> Option<Vec<f64>> {
     Some(numbers.values().to_vec())
 }
 
-/// Does the file end as a recording ends that was closed? Reads only its last bytes.
+/// Checks that the file ends like a recording that was closed. Reads only its last bytes.
 pub fn check_footer(path: &Path) -> Result<(), RecordingError> {
     let incomplete = |reason: String| RecordingError::Incomplete {
         path: path.to_owned(),

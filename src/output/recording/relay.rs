@@ -1,14 +1,14 @@
-//! A bounded queue to a thread that may never take anything again.
+//! A bounded queue to a thread that may stop taking items.
 
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Items in the queue at most; with more, the sender waits.
+/// Maximum number of queued items; the sender waits when the queue is full.
 const CAPACITY: usize = 100;
 
-/// The queue. Whoever waits for the receiver gives it up when it takes nothing for `patience`: later items are
-/// dropped, and nobody waits again.
+/// The queue. If the receiver takes nothing for `patience` while a sender waits, the receiver is given up: later
+/// items are dropped without waiting.
 pub struct Relay<T> {
     patience: Duration,
     state: Mutex<State<T>>,
@@ -21,7 +21,7 @@ struct State<T> {
     taken: u64,
     /// The sender has sent everything.
     closed: bool,
-    /// The receiver has ended, or was given up.
+    /// The receiver has ended or was given up.
     ended: bool,
 }
 
@@ -46,7 +46,7 @@ impl<T> Relay<T> {
     /// Queues an item, or drops it if the receiver has ended.
     ///
     /// # Errors
-    /// The receiver is given up now.
+    /// The receiver has just been given up.
     pub fn send(&self, item: T) -> Result<(), GivenUp> {
         let mut state = self.lock();
         if !state.ended && state.items.len() >= CAPACITY {
@@ -59,7 +59,7 @@ impl<T> Relay<T> {
         Ok(())
     }
 
-    /// The next item, once there is one; `None` at the end.
+    /// Waits for the next item; `None` at the end.
     pub fn take(&self) -> Option<T> {
         let waiting =
             |state: &mut State<T>| state.items.is_empty() && !state.closed && !state.ended;
@@ -71,16 +71,16 @@ impl<T> Relay<T> {
         Some(item)
     }
 
-    /// Says that the receiver has ended.
+    /// Marks the receiver as ended.
     pub fn end(&self) {
         self.lock().finish();
         self.changed.notify_all();
     }
 
-    /// Sends nothing more, and waits until the receiver has ended.
+    /// Closes the queue and waits until the receiver has ended.
     ///
     /// # Errors
-    /// The receiver is given up now.
+    /// The receiver has just been given up.
     pub fn close(&self) -> Result<(), GivenUp> {
         let mut state = self.lock();
         state.closed = true;
@@ -92,7 +92,7 @@ impl<T> Relay<T> {
         Ok(())
     }
 
-    /// Waits while `blocked`, unless the receiver ends; gives it up after `patience`.
+    /// Waits while `blocked`, unless the receiver ends. Gives the receiver up after `patience`.
     fn wait_while<'a>(
         &'a self,
         state: MutexGuard<'a, State<T>>,

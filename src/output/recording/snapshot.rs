@@ -1,40 +1,40 @@
-//! What one recorded frame needs, copied out of the simulation so that another thread can write it.
+//! A copy of one frame, so that another thread can write it.
 
 use super::debug::{Debug, Open};
 use crate::engine::math::Vector;
 use crate::engine::simulation::{Event, Simulation};
 
-/// A copy of one frame in single precision, agents in the simulation's order.
+/// A copy of one frame in single precision, with agents in the simulation's order.
 #[derive(Default)]
 pub struct Snapshot {
     pub frame: i64,
     pub time: f64,
-    /// `None` of what was measured.
+    /// `None` for measured data.
     pub ms_per_frame: Option<f64>,
     pub ids: Vec<u32>,
     pub positions: Vec<[f32; 2]>,
-    /// NaN where not known.
+    /// NaN if unknown.
     pub velocities: Vec<[f32; 2]>,
     pub radii: Vec<f32>,
-    /// Empty where nobody says how heavy people are.
+    /// Empty if the masses are unknown.
     pub masses: Vec<f32>,
-    /// This and the next two are empty in a frame without densities.
+    /// Empty in a frame without densities, like the next two.
     pub densities: Vec<f32>,
-    /// This and the next are empty of what was measured, too.
+    /// Also empty for measured data, like the next.
     pub rest_densities: Vec<f32>,
     pub pressures: Vec<f32>,
-    /// Counted arrivals so far; `None` of what was measured.
+    /// Counted arrivals so far; `None` for measured data.
     pub evacuated: Option<usize>,
-    /// Since the last snapshot, each with its time.
+    /// Events since the last snapshot, each with its time.
     pub events: Vec<(f64, Event)>,
-    /// The agents laid open.
+    /// The debug agents.
     pub open: Vec<Open>,
-    /// Is this the frame to look at first?
+    /// Whether this is the frame to show first.
     pub opens_here: bool,
 }
 
 impl Snapshot {
-    /// A frame without anybody yet, in the memory that is there.
+    /// Starts a new, empty frame and reuses the memory.
     pub fn clear(&mut self, frame: i64, time: f64) {
         self.frame = frame;
         self.time = time;
@@ -50,7 +50,7 @@ impl Snapshot {
         self.events.clear();
     }
 
-    /// Takes over the crowd of the current frame, in the memory that is there.
+    /// Copies the crowd of the current frame and reuses the memory.
     pub fn take(&mut self, simulation: &Simulation, debug: &Debug) {
         let frame = simulation.frame();
         let (agents, fields) = (frame.agents, frame.fields);

@@ -7,7 +7,7 @@ use super::set_time;
 use super::snapshot::Snapshot;
 use crate::engine::simulation::{Event, EventKind};
 
-/// One time series: its entity, the name that the plot shows, and its colour.
+/// A time series: its entity, its name in the plot, and its color.
 struct Series {
     entity: &'static str,
     name: &'static str,
@@ -96,7 +96,7 @@ pub fn log_events(stream: &RecordingStream, events: &[(f64, Event)]) -> Result<(
     Ok(())
 }
 
-/// Marks the current time in the log of events; a click there leads to it.
+/// Marks the current time in the log of events; a click on the mark goes there.
 pub fn log_bookmark(stream: &RecordingStream) -> Result<(), Cause> {
     let bookmark = TextLog::new("Look here first.").with_level(TextLogLevel::INFO);
     Ok(stream.log("log", &bookmark)?)

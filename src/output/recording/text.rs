@@ -1,4 +1,4 @@
-//! The scenario and the legend as a text document, and the run's properties.
+//! The text document with scenario and legend, and the run's properties.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::output::colors::{DENSITY_RANGE, SPEED_RANGE};
 
 pub const DOCUMENT: &str = "info/scenario";
 
-/// Logs what was measured, and what colours mean.
+/// Logs the text document of a measurement and the properties that the viewer lists.
 pub fn log_measurement(stream: &RecordingStream, options: &RecordingOptions) -> Result<(), Cause> {
     let text = format!(
         "# {}\n\n{}\n\n\
@@ -31,7 +31,7 @@ pub fn log_measurement(stream: &RecordingStream, options: &RecordingOptions) -> 
     Ok(stream.send_property("measurement", &properties)?)
 }
 
-/// What the two colourings mean.
+/// The legend of the density and speed colors.
 fn color_legend() -> String {
     format!(
         "* Density colours (viridis): dark purple 0, green {:.0}, yellow {DENSITY_RANGE} P/m² and more.\n\
@@ -41,7 +41,7 @@ fn color_legend() -> String {
     )
 }
 
-/// Logs the document and the properties that the viewer lists.
+/// Logs the text document of a run and the properties that the viewer lists.
 pub fn log_document(
     stream: &RecordingStream,
     scene: &Scene,

@@ -1,4 +1,4 @@
-//! A running viewer as rerun's messages go there.
+//! Sends rerun's messages to a running viewer.
 
 use std::fmt;
 use std::net::{TcpStream, ToSocketAddrs};
@@ -17,17 +17,17 @@ use super::error::RecordingError;
 use super::file::Failure;
 use super::relay::Relay;
 
-/// An address that does not accept a connection within this time has no viewer.
+/// Timeout for connecting to a viewer.
 const CONNECTING: Duration = Duration::from_secs(3);
-/// A viewer that takes nothing for this time, while the run waits for it, gets no more data.
+/// A viewer that takes no data for this long, while the run waits for it, gets no more data.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Which viewer shows a run while it goes on.
+/// The viewer that shows a run live.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Viewer {
-    /// The one that listens on rerun's own port of this machine, started if there is none.
+    /// The viewer on rerun's default port of this machine; started if none is running.
     Spawned,
-    /// One that is there already.
+    /// A running viewer.
     At(Address),
 }
 
@@ -35,7 +35,7 @@ pub enum Viewer {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Address(ProxyUri);
 
-/// A text is no address of a viewer.
+/// A text is not the address of a viewer.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("no address of a viewer: rerun+http://HOST:PORT/proxy or HOST:PORT is needed")]
 pub struct AddressError;
@@ -62,7 +62,7 @@ impl fmt::Display for Address {
 }
 
 impl Viewer {
-    /// The way to this viewer, once it answers.
+    /// Connects to the viewer, once it answers.
     pub(super) fn connect(&self) -> Result<ViewerSink, RecordingError> {
         let address = match self {
             Self::Spawned => spawn()?,
@@ -89,7 +89,7 @@ impl Viewer {
     }
 }
 
-/// Starts a viewer, unless one runs already.
+/// Starts a viewer, unless one is already running.
 fn spawn() -> Result<Address, RecordingError> {
     let viewer = rerun::spawn(&spawn_options()).map_err(|error| RecordingError::NotSpawned {
         reason: match error {
@@ -107,24 +107,24 @@ fn spawn() -> Result<Address, RecordingError> {
         })
 }
 
-/// A new viewer listens on this machine's own address only; rerun's default is all addresses.
+/// A new viewer listens only on this machine's loopback address; rerun's default is all addresses.
 fn spawn_options() -> SpawnOptions {
     SpawnOptions {
         wait_for_bind: true,
         extra_args: ["--bind", "127.0.0.1"].map(str::to_owned).to_vec(),
-        // It shares our stderr.
+        // The viewer shares our stderr.
         extra_env: vec![("RUST_LOG".to_owned(), "error".to_owned())],
         ..SpawnOptions::default()
     }
 }
 
-/// A viewer at the other end of a connection, fed by a thread of its own: rerun's sink waits without end for a
-/// viewer that has accepted the connection and reads nothing. A viewer that is gone does not end the run.
+/// A connected viewer, fed by its own thread: rerun's sink waits forever for a viewer that accepts the connection
+/// but reads nothing. The run goes on when the viewer is gone.
 pub struct ViewerSink {
     relay: Arc<Relay<LogMsg>>,
     address: Address,
     failure: Failure,
-    /// The layout of a file's end is not for a viewer whose user may have changed it.
+    /// Whether the viewer has a layout. The final layout, meant for the file, would undo changes by the viewer's user.
     has_layout: AtomicBool,
 }
 
@@ -134,7 +134,7 @@ impl ViewerSink {
         let (queue, uri) = (Arc::clone(&relay), address.0.clone());
         let failure = Failure::default();
         let seen = failure.clone();
-        // Never joined: it may wait for the viewer until the process ends.
+        // Never joined, because it may wait for the viewer until the process ends.
         std::thread::Builder::new()
             .name("viewer".to_owned())
             .spawn(move || feed(&queue, GrpcSink::new(uri), &seen))?;
@@ -146,12 +146,12 @@ impl ViewerSink {
         })
     }
 
-    /// How it went away, to be looked at while the sink is used and when it is gone.
+    /// Why the viewer went away; readable while the sink is in use and after it is dropped.
     pub fn failure(&self) -> Failure {
         self.failure.clone()
     }
 
-    /// Where the viewer is.
+    /// The viewer's address.
     pub fn address(&self) -> &Address {
         &self.address
     }
@@ -162,11 +162,11 @@ impl ViewerSink {
     }
 }
 
-/// Passes everything on; then waits for the viewer to confirm the end of the data.
+/// Forwards all messages, then waits until the viewer confirms the end of the data.
 fn feed(queue: &Relay<LogMsg>, stream: GrpcSink, failure: &Failure) {
     while let Some(message) = queue.take() {
         stream.send(message);
-        // Without this, messages would wait in rerun's own queue, which does not show whether it moves.
+        // Without this flush, messages would wait in rerun's own queue, whose progress we cannot see.
         if let Err(error) = stream.flush_blocking(Duration::MAX) {
             failure.is(&error);
             break;
@@ -190,14 +190,14 @@ impl LogSink for ViewerSink {
         }
     }
 
-    /// Does not wait: messages keep their order, and the sink's end waits for them.
+    /// Does not wait: messages keep their order, and dropping the sink waits for them.
     fn flush_blocking(&self, _: Duration) -> Result<(), SinkFlushError> {
         Ok(())
     }
 }
 
 impl Drop for ViewerSink {
-    /// Waits for the viewer, as long as it takes data.
+    /// Waits for the viewer as long as it takes data.
     fn drop(&mut self) {
         if self.relay.close().is_err() {
             self.give_up();

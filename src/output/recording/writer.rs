@@ -9,19 +9,19 @@ use super::error::Cause;
 use super::snapshot::Snapshot;
 use super::{crowd, layers, set_time, stats};
 
-/// Snapshots under way at most; with more the simulation waits.
+/// Maximum number of queued snapshots; the simulation waits when the queue is full.
 const QUEUE: usize = 4;
 
-/// The simulation's end of the queue.
+/// The simulation's side of the queue.
 pub struct Writer {
     /// `None` once the thread has been asked to end.
     snapshots: Option<SyncSender<Snapshot>>,
-    /// Written snapshots, for their memory.
+    /// Written snapshots, returned so that their memory can be reused.
     used: Receiver<Snapshot>,
     thread: Option<JoinHandle<Result<(), Cause>>>,
 }
 
-/// The thread's end.
+/// The thread's side of the queue.
 struct Rows {
     stream: RecordingStream,
     crowd: crowd::Crowd,
@@ -48,12 +48,12 @@ impl Writer {
         })
     }
 
-    /// A snapshot to fill.
+    /// A snapshot to fill, reused if possible.
     pub fn empty(&self) -> Snapshot {
         self.used.try_recv().unwrap_or_default()
     }
 
-    /// Queues a snapshot; what went wrong with earlier ones shows here or in [`finish`](Self::finish).
+    /// Queues a snapshot. Errors of earlier snapshots are reported here or by [`finish`](Self::finish).
     pub fn write(&mut self, snapshot: Snapshot) -> Result<(), Cause> {
         let queue = self.snapshots.as_ref();
         if queue.is_some_and(|queue| queue.send(snapshot).is_ok()) {
@@ -79,7 +79,7 @@ impl Rows {
     ) -> Result<(), Cause> {
         while let Ok(snapshot) = queue.recv() {
             self.write(&snapshot)?;
-            // Nobody waits for the memory of the last ones.
+            // The receiver may be gone; then the memory is not reused.
             give_back.send(snapshot).ok();
         }
         Ok(())
