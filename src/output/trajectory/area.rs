@@ -1,9 +1,8 @@
-//! Where people can walk: a rectangle without the obstacles, or the scenario's own walkable area, as WKT.
+//! The walkable area as WKT: a rectangle without the obstacles, or the scenario's own walkable area.
 //!
-//! The rectangle holds the view, everything in the scene and some free space round it, and grows with the
-//! crowd. Of what obstacles cut off, only those parts count where somebody enters: nobody gets through a
-//! wall. PedPy takes one part only; where people walk in several the text is a `MULTIPOLYGON`, of which
-//! its user must choose.
+//! The rectangle covers the view, everything in the scene and a margin, and grows with the crowd. If obstacles divide
+//! the area, only the parts in which agents enter are kept, because agents cannot pass through walls. If there are
+//! several such parts, the text is a `MULTIPOLYGON`; PedPy takes a single polygon, so its user must choose one.
 
 use std::collections::BTreeSet;
 
@@ -15,22 +14,22 @@ use crate::engine::scene::{Goal, Region};
 use crate::engine::simulation::Simulation;
 use crate::scenario::floor_plan::{Rings, free};
 
-/// Free space round everything, metres.
+/// Margin around everything, meters.
 const MARGIN: f64 = 5.0;
 
-/// What the walkable area is cut out of, and by what.
+/// The rectangle, floors and obstacles that define the walkable area.
 pub struct WalkableArea {
-    /// The lowest and highest x and y of the rectangle.
+    /// The corners of the rectangle with the lowest and the highest x and y.
     bounds: [Vector; 2],
-    /// What is solid without end, each from the side of the floor.
+    /// The rings of each unbounded obstacle, reversed, so that they enclose the floor.
     floors: Vec<Rings>,
-    /// What is solid inside.
+    /// The rings of the bounded obstacles.
     obstacles: Rings,
     entries: Vec<Vector>,
 }
 
 impl WalkableArea {
-    /// Of the scene as it is now.
+    /// The area of the scene in its current state.
     pub fn new(simulation: &Simulation, view: Region) -> Self {
         let scene = simulation.scene();
         let agents = simulation.frame().agents;
@@ -73,7 +72,7 @@ impl WalkableArea {
         }
     }
 
-    /// Makes room for everybody; was there none?
+    /// Extends the rectangle to include all agents. Returns whether it grew.
     pub fn reach(&mut self, rows: &[Row<'_>]) -> bool {
         let mut grown = false;
         for row in rows {
@@ -101,7 +100,7 @@ impl WalkableArea {
             Vector::new(low.x, high.y),
         ];
         let everything = [vec![rectangle.to_vec()]];
-        // The rectangle holds all floors.
+        // The rectangle contains all floors.
         let floors: &[Rings] = match self.floors.as_slice() {
             [] => &everything,
             floors => floors,
@@ -124,7 +123,7 @@ impl WalkableArea {
     }
 }
 
-/// Where somebody who enters at `p` is put.
+/// The position at which an agent that enters at `p` is placed.
 fn entrance(simulation: &Simulation, p: Vector) -> Vector {
     let walls = &simulation.scene().walls;
     let inside = walls.obstacle_at(p).is_some();
@@ -132,7 +131,7 @@ fn entrance(simulation: &Simulation, p: Vector) -> Vector {
     exit.unwrap_or(p)
 }
 
-/// Well-known text: one polygon as such, several as a multipolygon; holes clockwise.
+/// Well-known text: a `POLYGON` for one area, otherwise a `MULTIPOLYGON`; holes are clockwise.
 fn wkt(areas: &[Area]) -> String {
     let ring = |points: &mut dyn Iterator<Item = &Vector>| {
         let points: Vec<String> = points.map(|p| format!("{} {}", p.x, p.y)).collect();

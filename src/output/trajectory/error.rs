@@ -1,11 +1,11 @@
-//! Why there is no trajectory.
+//! Errors of writing trajectories.
 
 use std::path::{Path, PathBuf};
 
-/// What a file system or a format's own library has to say.
+/// An error of the file system or of a format's library.
 pub type Cause = Box<dyn std::error::Error + Send + Sync>;
 
-/// Trajectories could not be written.
+/// Trajectories cannot be written.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TrajectoryError {
     /// No format has this extension.
@@ -14,33 +14,33 @@ pub enum TrajectoryError {
         .0.display()
     )]
     UnknownFormat(PathBuf),
-    /// Not every so many frames.
+    /// The frame rate does not divide the simulation's frame rate.
     #[error(
         "{fps} frames per second do not divide the simulation's {}; the nearest that do are {}",
         decimals(*of), decimals(*nearest)
     )]
     FrameRate {
-        /// What was asked for.
+        /// The requested rate.
         fps: f64,
-        /// What it must divide.
+        /// The simulation's rate.
         of: f64,
-        /// What does.
+        /// The nearest valid rate.
         nearest: f64,
     },
     /// The file cannot be written.
     #[error("cannot write {}: {cause}; {}", path.display(), kept(*frames))]
     Unwritten {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// How many frames are in it.
+        /// Number of frames in the file.
         frames: u64,
-        /// What the system says.
+        /// The system's message.
         cause: String,
     },
 }
 
 impl TrajectoryError {
-    /// `path` has so many frames and takes no more.
+    /// `path` has `frames` frames, and no more can be written.
     pub(super) fn unwritten(path: &Path, frames: u64, cause: Cause) -> Self {
         Self::Unwritten {
             path: path.to_owned(),
@@ -50,7 +50,7 @@ impl TrajectoryError {
     }
 }
 
-/// As few as needed, six at most.
+/// Rounds to six decimals.
 fn decimals(number: f64) -> f64 {
     (number * 1e6).round() / 1e6
 }

@@ -1,4 +1,4 @@
-//! Text, a line per agent and frame.
+//! Text files with one line per agent and frame.
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -8,21 +8,21 @@ use rayon::prelude::*;
 use super::error::Cause;
 use super::{Row, Sink};
 
-/// Lines that are worth another thread.
+/// Lines per parallel task.
 const SOME: usize = 1024;
 
 /// A file that grows by whole frames.
 pub struct Lines {
     file: File,
-    /// Bytes in the file.
+    /// Length of the file, bytes.
     length: u64,
     frames: u64,
     format: fn(rows: &[Row<'_>], is_first: bool) -> io::Result<Vec<u8>>,
 }
 
 impl Lines {
-    /// The text of the Pedestrian Dynamics Data Archive. Readers take the first number after
-    /// `framerate`, and the unit from `x/m`.
+    /// The text format of the Pedestrian Dynamics Data Archive. Readers take the first number after `framerate`, and
+    /// the unit from `x/m`.
     pub fn text(mut file: File, fps: f64) -> io::Result<Self> {
         let two_decimals = format!("{fps:.2}");
         let is_exact = two_decimals.parse() == Ok(fps);
@@ -41,7 +41,7 @@ impl Lines {
         })
     }
 
-    /// Every field of a [`Row`], under a line with their names.
+    /// Every field of a [`Row`], below a header with their names.
     pub fn csv(file: File) -> Self {
         Self {
             file,
@@ -59,7 +59,7 @@ impl Sink for Lines {
         let parts = parts.map(|(k, rows)| format(rows, is_first && k == 0));
         let lines = parts.collect::<io::Result<Vec<_>>>()?.concat();
         if let Err(error) = self.file.write_all(&lines) {
-            // Half a frame helps nobody; a file that cannot even be cut has at most this half too much.
+            // Remove the partial frame. If truncating fails too, the file ends with it.
             self.file.set_len(self.length).ok();
             return Err(error.into());
         }

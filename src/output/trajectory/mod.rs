@@ -1,5 +1,5 @@
-//! A run as trajectories that other programs read, and theirs [read] back. The only place that names
-//! rusqlite and geo.
+//! Writes a run as trajectories for other programs, and [reads](read) trajectories. This is the only module that
+//! names rusqlite.
 //!
 //! | file | read by | holds |
 //! |---|---|---|
@@ -7,9 +7,9 @@
 //! | `.txt` | PedPy, the Pedestrian Dynamics Data Archive's tools | positions, in text |
 //! | `.csv` | everything | every quantity of every agent: the fields of [`Row`] |
 //!
-//! Frames are numbered 0, 1, 2, … at the file's own rate. Numbers are those of the evaluated frame, all
-//! digits of them. A run that is cut short leaves whole frames: text has each as soon as it is logged,
-//! SQLite all but the last second's (a `-journal` beside it belongs to it, and goes when it is opened).
+//! Frames are numbered 0, 1, 2, … at the file's own rate. Numbers are those of the evaluated frame, with all digits.
+//! An interrupted run leaves whole frames: a text file has each frame as soon as it is logged, a SQLite file all but
+//! those of the last second (a `-journal` file beside it belongs to it, and disappears when the file is opened).
 
 mod area;
 mod error;
@@ -33,14 +33,14 @@ use error::Cause;
 use lines::Lines;
 use sqlite::Sqlite;
 
-/// What a file holds, as its extension says.
+/// The format of a file, given by its extension.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// JuPedSim's SQLite, version 2: PedPy reads no other.
+    /// JuPedSim's SQLite format, version 2, the only version that PedPy reads.
     Sqlite,
-    /// The text of the Pedestrian Dynamics Data Archive.
+    /// The text format of the Pedestrian Dynamics Data Archive.
     Text,
-    /// Every quantity, comma-separated.
+    /// Every quantity, as comma-separated values.
     Csv,
 }
 
@@ -60,10 +60,10 @@ impl Format {
     }
 }
 
-/// The number of frames from one to the next at `fps` frames per second.
+/// The number of simulation frames per recorded frame at `fps` recorded frames per second.
 ///
 /// # Errors
-/// `fps` does not divide the clock's own rate; six decimals are enough where it is no round number.
+/// `fps` does not divide the clock's rate, to a relative accuracy of 1e-6.
 pub fn frames_between(clock: &Clock, fps: f64) -> Result<u64, TrajectoryError> {
     let rate = |every: f64| 1.0 / (every * clock.time_step());
     let below = (rate(1.0) / fps).floor().max(1.0);
@@ -91,24 +91,24 @@ pub struct Trajectory {
     sink: Box<dyn Sink>,
 }
 
-/// A file in some format.
+/// A file in one of the formats.
 trait Sink: Send {
     /// Adds a frame.
     fn write(&mut self, frame: u64, rows: &[Row<'_>]) -> Result<(), Cause>;
 
-    /// Puts into the file what is not there yet.
+    /// Writes buffered data to the file.
     fn finish(&mut self) -> Result<(), Cause>;
 
-    /// How many frames are in the file, whatever happens.
+    /// Number of frames in the file, even after an error.
     fn kept(&self) -> u64;
 }
 
 impl Trajectory {
-    /// Begins the trajectories of `simulation` at `path`, replacing any file there, with `fps` frames per
-    /// second; `view` is within the walkable area. From now on every frame has densities.
+    /// Begins the trajectories of `simulation` at `path`, replacing an existing file, with `fps` frames per second. The
+    /// walkable area includes `view`. From now on every frame has densities.
     ///
     /// # Errors
-    /// No such format or rate, or the file cannot be written.
+    /// The format is unknown, `fps` does not divide the simulation's rate, or the file cannot be written.
     pub fn create(
         path: &Path,
         simulation: &mut Simulation,
@@ -139,10 +139,10 @@ impl Trajectory {
         })
     }
 
-    /// Adds the current frame, which must be evaluated, if its turn has come.
+    /// Adds the current frame, which must be evaluated, if it is due at the file's rate.
     ///
     /// # Errors
-    /// The file cannot be written: the disk is full, for example. What is in it stays.
+    /// The file cannot be written, for example because the disk is full. Frames already written are kept.
     pub fn log(&mut self, simulation: &Simulation) -> Result<(), TrajectoryError> {
         let frame = simulation.frame().clock.frame();
         if !frame.is_multiple_of(self.every) {
@@ -153,13 +153,13 @@ impl Trajectory {
         self.checked(written)
     }
 
-    /// Puts everything into the file.
+    /// Writes all buffered data to the file.
     ///
     /// # Errors
-    /// As [`log`](Self::log).
+    /// Same as [`log`](Self::log).
     pub fn finish(mut self) -> Result<(), TrajectoryError> {
         let finished = self.sink.finish();
-        // A file that somebody has removed takes everything in silence.
+        // Writing to a removed file reports no error.
         let there = finished.and_then(|()| Ok(fs::metadata(&self.path).map(|_| ())?));
         self.checked(there)
     }

@@ -7,41 +7,41 @@ use crate::engine::frame::Frame;
 use crate::engine::math::{Vector, direction};
 use crate::engine::simulation::Simulation;
 
-/// Who is slower turns to the goal, m/s: below it the direction of a velocity is that of jitter.
+/// Below this speed, m/s, an agent faces its goal: the direction of such a velocity is noise.
 const STANDING: f64 = 0.01;
 
-/// Every quantity of one agent in one frame; the fields are the columns of a CSV file. SI units.
+/// All quantities of one agent in one frame. The fields are the columns of a CSV file. SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Row<'a> {
     /// The frame's number at the file's own rate, from 0.
     pub frame: u64,
     /// Seconds.
     pub time: f64,
-    /// Unique, in the order of entry from 0.
+    /// Unique, from 0 in the order of entry.
     pub id: u32,
     /// The name of the agent's group.
     pub group: &'a str,
     /// The push that the agent takes part in.
     pub push: Option<&'a str>,
-    /// r_i, metres.
+    /// r_i, meters.
     pub pos_x: f64,
-    /// Likewise.
+    /// Its y component.
     pub pos_y: f64,
     /// v_i, m/s.
     pub vel_x: f64,
-    /// Likewise.
+    /// Its y component.
     pub vel_y: f64,
     /// |v_i|, m/s.
     pub speed: f64,
-    /// The direction of the velocity, and of the goal for who stands: a unit vector.
+    /// Direction of the velocity, or of the goal if the agent stands still: a unit vector.
     pub ori_x: f64,
-    /// Likewise.
+    /// Its y component.
     pub ori_y: f64,
-    /// g_i, metres.
+    /// g_i, meters.
     pub goal_x: f64,
-    /// Likewise.
+    /// Its y component.
     pub goal_y: f64,
-    /// D_i, metres.
+    /// D_i, meters.
     pub radius: f64,
     /// m_i, 1 = an average person.
     pub mass: f64,
@@ -57,19 +57,19 @@ pub struct Row<'a> {
     pub pressure: f64,
     /// Σ_k ∫ ∇W over P_k, 1/m.
     pub wall_gradient_x: f64,
-    /// Likewise.
+    /// Its y component.
     pub wall_gradient_y: f64,
     /// v_i^pref, m/s.
     pub preferred_vel_x: f64,
-    /// Likewise.
+    /// Its y component.
     pub preferred_vel_y: f64,
     /// a_i, m/s².
     pub acc_x: f64,
-    /// Likewise.
+    /// Its y component.
     pub acc_y: f64,
 }
 
-/// Everybody in an evaluated frame, called `number`, by id.
+/// All agents in an evaluated frame with the number `number`, by id.
 pub fn rows(simulation: &Simulation, number: u64) -> Vec<Row<'_>> {
     let ids = &simulation.frame().agents.id;
     let mut order: Vec<usize> = (0..ids.len()).collect();
@@ -117,7 +117,7 @@ fn row(simulation: &Simulation, number: u64, i: usize) -> Row<'_> {
     }
 }
 
-/// Where somebody faces; along x who stands at the goal.
+/// The direction in which an agent faces; the x direction if it stands at its goal.
 fn orientation(position: Vector, velocity: Vector, goal: Vector) -> Vector {
     let facing = if velocity.norm() < STANDING {
         direction(goal - position)

@@ -1,4 +1,4 @@
-//! JuPedSim's SQLite format, version 2.
+//! Writes JuPedSim's SQLite format, version 2.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -11,7 +11,7 @@ use super::error::Cause;
 use super::{Row, Sink};
 use crate::runs::outputs::followed;
 
-/// How much of a run that is cut short may be lost, at most a frame more.
+/// An interrupted run loses at most this much, plus one frame.
 const COMMIT_EVERY: Duration = Duration::from_secs(1);
 
 /// The tables of JuPedSim's own writer; the last four columns are ours.
@@ -33,7 +33,7 @@ const TABLES: &str = "
     CREATE UNIQUE INDEX geometry_hash ON geometry(hash);
     CREATE TABLE frame_data (frame INTEGER NOT NULL, geometry_hash INTEGER NOT NULL);";
 
-/// There is one geometry, for all frames.
+/// Hash of the only geometry, used by all frames.
 const GEOMETRY: i64 = 1;
 
 /// A database that is being written.
@@ -42,15 +42,15 @@ pub struct Sqlite {
     area: WalkableArea,
     committed_at: Instant,
     committed: u64,
-    /// Frames since then.
+    /// Frames since the last commit.
     pending: u64,
 }
 
 impl Sqlite {
-    /// Makes the tables in an empty file.
+    /// Creates the tables in an empty file.
     pub fn create(path: &Path, area: WalkableArea, fps: f64) -> Result<Self, Cause> {
         forget_journal(path)?;
-        // A name that begins with `file:` would be a URI.
+        // A relative name that begins with `file:` would be taken for a URI.
         let connection = Connection::open(fs::canonicalize(path)?)?;
         connection.execute_batch("BEGIN")?;
         connection.execute_batch(TABLES)?;
@@ -132,11 +132,11 @@ impl Sqlite {
         Ok(())
     }
 
-    /// Half a frame helps nobody.
+    /// Discards the uncommitted frames after an error.
     fn or_forget(&mut self, result: Result<(), Cause>) -> Result<(), Cause> {
         if result.is_err() {
             self.pending = 0;
-            // SQLite may have done so itself; on a full disk it leaves the last part to the next read.
+            // SQLite may have rolled back already. On a full disk, the rollback is completed by the next read.
             self.connection.execute_batch("ROLLBACK").ok();
             self.connection.execute_batch("SELECT 1 FROM geometry").ok();
         }
@@ -160,7 +160,7 @@ impl Sink for Sqlite {
     }
 }
 
-/// The journal of a run that was cut short is not that of the file which replaces it.
+/// Removes the journal of an interrupted run, which does not belong to the new file.
 fn forget_journal(path: &Path) -> io::Result<()> {
     match fs::remove_file(journal(path)?) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
@@ -168,10 +168,10 @@ fn forget_journal(path: &Path) -> io::Result<()> {
     }
 }
 
-/// SQLite's journal of a database: beside the file that symbolic links lead to.
+/// SQLite's journal of a database, beside the file to which symbolic links lead.
 ///
 /// # Errors
-/// Links cannot be followed.
+/// A symbolic link cannot be followed.
 pub fn journal(database: &Path) -> io::Result<PathBuf> {
     let mut journal = followed(database)?.into_os_string();
     journal.push("-journal");

@@ -1,32 +1,32 @@
-//! Why a trajectory cannot be read.
+//! Errors of reading trajectories.
 
 use std::path::{Path, PathBuf};
 
-/// Trajectories could not be read.
+/// Trajectories cannot be read.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ReadError {
-    /// The file cannot be opened, or what is in it is of no known form.
+    /// The file cannot be opened, or its content is not a trajectory.
     #[error("{}: {problem}", path.display())]
     File {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// What is wrong with it, and what helps.
+        /// What is wrong, and how to fix it.
         problem: String,
     },
-    /// One line of a text makes no sense.
+    /// A line of a text file is invalid.
     #[error("{}:{line}: {problem}", path.display())]
     Line {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// Which line, from 1.
+        /// The line number, from 1.
         line: u64,
-        /// What is wrong with it, and what helps.
+        /// What is wrong, and how to fix it.
         problem: String,
     },
 }
 
 impl ReadError {
-    /// Something about the whole file.
+    /// An error about the whole file.
     pub(super) fn file(path: &Path, problem: impl Into<String>) -> Self {
         Self::File {
             path: path.to_owned(),
@@ -34,7 +34,7 @@ impl ReadError {
         }
     }
 
-    /// Something about one line of it.
+    /// An error about a line of the file.
     pub(super) fn line(path: &Path, line: u64, problem: impl Into<String>) -> Self {
         Self::Line {
             path: path.to_owned(),

@@ -1,17 +1,17 @@
-//! Which column of a text is what.
+//! The columns of a line of text.
 
 use super::Unit;
 use super::tracks::Entry;
 use crate::engine::math::Vector;
 use crate::scenario::quote::shown;
 
-/// Names that mean the same; the first is ours.
+/// Known names of the columns, in lower case; the first is ours.
 const IDS: [&str; 5] = ["id", "persid", "personid", "ped_id", "pid"];
 const FRAMES: [&str; 4] = ["frame", "fr", "frame_id", "framenr"];
 const XS: [&str; 2] = ["x", "pos_x"];
 const YS: [&str; 2] = ["y", "pos_y"];
 
-/// The places of what is read, from 0.
+/// The indices of the columns that are read, from 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Columns {
     id: usize,
@@ -23,7 +23,7 @@ pub struct Columns {
 }
 
 impl Default for Columns {
-    /// id, frame, x, y, as everybody writes them.
+    /// id, frame, x, y: the usual order.
     fn default() -> Self {
         Self {
             id: 0,
@@ -37,8 +37,8 @@ impl Default for Columns {
 }
 
 impl Columns {
-    /// The columns of a header with these names, and their unit if they name it; `None` if it does not name
-    /// person, frame and place.
+    /// The columns of a header with these names, and the unit if the header names it. `None` if the header lacks an
+    /// id, a frame, x or y.
     pub fn named(names: &[&str]) -> Option<Result<(Self, Option<Unit>), String>> {
         let names: Vec<(String, String)> = names.iter().map(|name| base_and_unit(name)).collect();
         let find = |known: &[&str]| {
@@ -69,7 +69,7 @@ impl Columns {
         Some(Ok((columns, unit)))
     }
 
-    /// One person in one frame.
+    /// Parses one person in one frame.
     pub fn entry(&self, cells: &[&str], line: u64) -> Result<Entry, String> {
         let cell = |place: usize, what: &str| {
             let missing = || {
@@ -102,7 +102,7 @@ impl Columns {
     }
 }
 
-/// A name and what is said of its unit: `x/cm`, `x[cm]`, `x(cm)`.
+/// Splits a column name into its base and its unit: `x/cm`, `x[cm]`, `x(cm)`.
 fn base_and_unit(name: &str) -> (String, String) {
     let name = name.trim().to_lowercase();
     let (base, unit) = name.split_once(['/', '[', '(']).unwrap_or((&name, ""));
@@ -110,7 +110,7 @@ fn base_and_unit(name: &str) -> (String, String) {
     (base.trim().to_owned(), unit.to_owned())
 }
 
-/// 17, and also 17.0: some programs write all numbers alike.
+/// A whole number: 17, but also 17.0, because some programs write all numbers as floats.
 fn whole(text: &str) -> Option<i64> {
     const EXACT: f64 = (1_i64 << 53) as f64;
     let exact = text.parse::<f64>().ok();
@@ -118,7 +118,7 @@ fn whole(text: &str) -> Option<i64> {
     text.parse().ok().or(exact.map(|number| number as i64))
 }
 
-/// The words of a header, a unit in brackets with the word before it.
+/// The words of a header. A unit in brackets belongs to the word before it.
 pub fn words(text: &str) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -130,7 +130,7 @@ pub fn words(text: &str) -> Vec<String> {
     words
 }
 
-/// The first number after the word framerate, as it stands there.
+/// The text of the first number after the word framerate.
 pub fn frame_rate(comment: &str) -> Option<String> {
     let lower = comment.to_lowercase();
     let after = ["framerate", "frame rate"];
@@ -139,7 +139,7 @@ pub fn frame_rate(comment: &str) -> Option<String> {
     words.find_map(number)
 }
 
-/// The number that a word is or begins with.
+/// The text of the number with which a word begins.
 fn number(word: &str) -> Option<String> {
     if word.parse::<f64>().is_ok() {
         return Some(word.to_owned()); // also `nan` and `inf`

@@ -1,12 +1,12 @@
-//! Trajectories of other programs, of cameras and of our own: read, checked and put in order.
+//! Reads, checks and sorts trajectories from other programs, from video tracking and from the sandbox.
 //!
 //! | file | from | what is read |
 //! |---|---|---|
-//! | SQLite | JuPedSim 1 and 2, the sandbox | `trajectory_data`, `fps`, the walkable area, `mass` if there |
-//! | `.csv` | the sandbox, anybody | by their names: `id`, `frame`, `x` and `y` or `pos_x` and `pos_y`; `time`, `mass` |
-//! | other text | PeTrack, Pedestrian Dynamics Data Archive | `id frame x y`, or as the header names them |
+//! | SQLite | JuPedSim 1 and 2, the sandbox | `trajectory_data`, `fps`, the walkable area, `mass` if present |
+//! | `.csv` | the sandbox, others | by name: `id`, `frame`, `x` and `y` or `pos_x` and `pos_y`; `time`, `mass` |
+//! | other text | PeTrack, Pedestrian Dynamics Data Archive | `id frame x y`, or by the names in a header |
 //!
-//! Metres and seconds from then on. Frame f is at the time f / fps.
+//! Results are in meters and seconds. Frame f is at the time f / fps.
 
 mod error;
 mod line;
@@ -24,20 +24,20 @@ use std::path::Path;
 
 use crate::scenario::quote::shown;
 
-/// Frames per second that a trajectory may have.
+/// Valid frame rates, frames per second.
 pub const FRAME_RATES: RangeInclusive<f64> = 1e-6..=1e6;
 
-/// What coordinates in a file count.
+/// The unit of the coordinates in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
-    /// Metres.
+    /// Meters.
     Metre,
-    /// Centimetres.
+    /// Centimeters.
     Centimetre,
 }
 
 impl Unit {
-    /// Its length in metres.
+    /// Its length in meters.
     pub fn metres(self) -> f64 {
         match self {
             Self::Metre => 1.0,
@@ -45,7 +45,7 @@ impl Unit {
         }
     }
 
-    /// The unit of this name.
+    /// The unit called `name`.
     pub fn named(name: &str) -> Option<Self> {
         match name {
             "m" => Some(Self::Metre),
@@ -55,7 +55,7 @@ impl Unit {
     }
 }
 
-/// What a file may not say itself; it wins over what the file says.
+/// Information that a file may lack; it takes precedence over the file's.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ReadOptions {
     /// The unit of the coordinates.
@@ -65,7 +65,7 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
-    /// A file's own frame rate; a bad one does not matter where another one is given.
+    /// Filters the file's own frame rate: an invalid rate is ignored if `fps` is given.
     fn own_rate(&self, rate: Result<f64, String>) -> Result<Option<f64>, String> {
         match rate {
             Err(_) if self.fps.is_some() => Ok(None),
@@ -77,7 +77,7 @@ impl ReadOptions {
 /// Reads the trajectories in a file, whatever its format.
 ///
 /// # Errors
-/// The file cannot be read, or something in it makes no sense: the error names the line and the fix.
+/// The file cannot be read, or its content is invalid. The error names the line and a fix.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
     let unopened =
         |error: std::io::Error| ReadError::file(path, format!("cannot be read: {error}"));
@@ -92,10 +92,10 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
     read_text(path, Read::chain(start.as_slice(), file), options)
 }
 
-/// Reads the trajectories in a text; `path` is what messages call it, and its extension tells the format.
+/// Reads the trajectories in a text. Messages name `path`, and its extension gives the format.
 ///
 /// # Errors
-/// As [`read`].
+/// Same as [`read`].
 pub fn read_text(path: &Path, text: impl Read, options: &ReadOptions) -> Result<Tracks, ReadError> {
     let is_csv = path
         .extension()
@@ -107,7 +107,7 @@ pub fn read_text(path: &Path, text: impl Read, options: &ReadOptions) -> Result<
     }
 }
 
-/// A frame rate that a file gives, as it stands there, if one can be.
+/// Parses the frame rate of a file and checks its range.
 fn frame_rate(text: &str) -> Result<f64, String> {
     let fps = text.parse().ok().filter(|fps| FRAME_RATES.contains(fps));
     fps.ok_or_else(|| {

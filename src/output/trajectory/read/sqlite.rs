@@ -1,4 +1,4 @@
-//! SQLite as JuPedSim writes it, version 1 and 2, and as the sandbox does.
+//! Reads the SQLite files of JuPedSim, versions 1 and 2, and of the sandbox.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use super::{ReadOptions, Unit, frame_rate};
 use crate::engine::math::Vector;
 use crate::scenario::quote::shown_message;
 
-/// A row takes more of a file, bytes: its place in a page, its length, its number and a type for each column.
+/// A row takes at least this many bytes of a file: its cell pointer, its length, its rowid and a type per column.
 const LEAST_ROW: u64 = 8;
 
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
@@ -83,14 +83,14 @@ fn entry(row: &Row, line: u64) -> Result<Entry, String> {
     })
 }
 
-/// The names of a table's columns; none if there is no such table.
+/// The names of a table's columns; empty if there is no such table.
 fn columns(connection: &Connection, table: &str) -> rusqlite::Result<Vec<String>> {
     let mut query = connection.prepare("SELECT name FROM pragma_table_info(?)")?;
     let names = query.query_map([table], |row| row.get(0))?;
     names.collect()
 }
 
-/// The frame rate among the metadata, if it is there.
+/// The frame rate in the metadata, if there is one.
 fn frames_per_second(
     connection: &Connection,
     options: &ReadOptions,
@@ -104,8 +104,8 @@ fn frames_per_second(
     rate.map_err(|problem| format!("metadata: {problem}"))
 }
 
-/// The walkable areas as text, in no order: one, but where doors are opened and closed. What is no text is no
-/// floor plan either: the reader of floor plans refuses it, if it is asked.
+/// The distinct walkable areas as text, in no particular order. There are several if doors open or close. Values that
+/// are not text are converted to text, so that the floor-plan reader rejects them if they are used.
 fn walkable(connection: &Connection) -> rusqlite::Result<Vec<String>> {
     let Ok(mut query) = connection.prepare("SELECT DISTINCT wkt FROM geometry") else {
         return Ok(Vec::new());

@@ -1,4 +1,4 @@
-//! Text: blanks or tabs under a header of comments, or commas under a line of names.
+//! Reads text: columns separated by blanks or tabs below comments, or CSV below a header.
 
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -9,7 +9,7 @@ use super::tracks::{Contents, Tracks};
 use super::{FRAME_RATES, ReadOptions, Unit, frame_rate};
 use crate::scenario::input::Lines;
 
-/// The text of PeTrack and the Pedestrian Dynamics Data Archive.
+/// Reads the text format of PeTrack and the Pedestrian Dynamics Data Archive.
 pub fn read_text(path: &Path, file: impl Read, options: &ReadOptions) -> Result<Tracks, ReadError> {
     let mut contents = Contents {
         place: "line",
@@ -27,7 +27,7 @@ pub fn read_text(path: &Path, file: impl Read, options: &ReadOptions) -> Result<
         }
         reader.get_mut().next_line();
         number += 1;
-        // Who wrote a comment in another encoding has good numbers all the same.
+        // Comments may be in another encoding; the numbers are still valid.
         let text = String::from_utf8_lossy(&bytes);
         let line = text.trim_start_matches('\u{feff}').trim();
         if let Some(comment) = line.strip_prefix(['#', '%']) {
@@ -57,7 +57,7 @@ pub fn read_text(path: &Path, file: impl Read, options: &ReadOptions) -> Result<
     Tracks::new(path, contents, options)
 }
 
-/// What a comment says of the numbers below it.
+/// Takes column names, frame rate and unit from a comment.
 fn heed(
     comment: &str,
     columns: &mut Columns,
@@ -84,7 +84,7 @@ fn heed(
     Ok(())
 }
 
-/// Takes the columns from a line with their names; was it one?
+/// Takes the columns from a line of column names. Returns whether it was one.
 fn named(line: &str, columns: &mut Columns, contents: &mut Contents) -> Result<bool, String> {
     let words = words(line);
     let names: Vec<&str> = words.iter().map(String::as_str).collect();
@@ -97,7 +97,7 @@ fn named(line: &str, columns: &mut Columns, contents: &mut Contents) -> Result<b
     Ok(true)
 }
 
-/// Comma-separated values under a line with the names of the columns, as the sandbox writes them.
+/// Reads comma-separated values below a line of column names, as the sandbox writes them.
 pub fn read_csv(path: &Path, file: impl Read, options: &ReadOptions) -> Result<Tracks, ReadError> {
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
@@ -120,7 +120,7 @@ pub fn read_csv(path: &Path, file: impl Read, options: &ReadOptions) -> Result<T
     let found = Columns::named(&names).ok_or_else(missing)?;
     let (columns, unit) = found.map_err(head)?;
     let mut contents = Contents {
-        // Our own columns are in metres.
+        // The sandbox's own columns are in meters.
         unit: unit.or(names.contains(&"pos_x").then_some(Unit::Metre)),
         has_mass: columns.mass.is_some(),
         place: "line",
@@ -147,7 +147,7 @@ pub fn read_csv(path: &Path, file: impl Read, options: &ReadOptions) -> Result<T
     Tracks::new(path, contents, options)
 }
 
-/// Frames per second, if there are times: nine digits of it, for times are rounded.
+/// The frame rate, if there are times. Rounded to nine significant digits, because times are rounded.
 fn rate(cells: &[&str], columns: &Columns, frame: i64) -> Option<Result<f64, String>> {
     let time: f64 = cells.get(columns.time?)?.parse().ok()?;
     let fps = frame as f64 / time;

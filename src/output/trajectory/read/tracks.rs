@@ -1,4 +1,4 @@
-//! Everybody's way, frame by frame.
+//! The trajectories of all persons, frame by frame.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,14 +10,14 @@ use super::error::ReadError;
 use super::{ReadOptions, Unit};
 use crate::engine::math::Vector;
 
-/// Half of all steps are faster than this, m/s: nobody's are, so the unit must be another one.
+/// If the median speed is above this, m/s, the unit is probably wrong.
 const TOO_FAST: f64 = 10.0;
 
-/// Frame numbers within ± this are exact in double precision, and so are the times between them.
+/// Frame numbers up to this magnitude are exact in double precision.
 const LAST_FRAME: i64 = 1 << 53;
-/// x and y are within ± this, metres: any place in a projection of the Earth, and squares keep their digits.
+/// Largest magnitude of x and y, meters. It covers projected Earth coordinates, and squares keep enough digits.
 const FARTHEST: f64 = 1e9;
-/// Masses are at most this.
+/// Largest mass.
 const HEAVIEST: f64 = 1e6;
 
 /// One person in one frame, as read.
@@ -28,12 +28,12 @@ pub struct Entry {
     /// In the file's unit.
     pub position: Vector,
     pub mass: f64,
-    /// Where in the file, from 1.
+    /// Line or row in the file, from 1.
     pub line: u64,
 }
 
 impl Entry {
-    /// Is everything within what can be computed with, at this place in metres?
+    /// Checks that all values are in range; `at` is the position in meters.
     fn check(&self, at: Vector) -> Result<(), String> {
         if !(-LAST_FRAME..=LAST_FRAME).contains(&self.frame) {
             return Err(format!(
@@ -55,7 +55,7 @@ impl Entry {
     }
 }
 
-/// What a file said.
+/// The content of a file.
 #[derive(Debug, Default)]
 pub struct Contents {
     pub entries: Vec<Entry>,
@@ -64,41 +64,41 @@ pub struct Contents {
     pub unit: Option<Unit>,
     pub walkable: Vec<String>,
     pub notes: Vec<String>,
-    /// What an entry's place in the file is called.
+    /// The word for an entry's position in the file: line or row.
     pub place: &'static str,
 }
 
-/// Everybody's way: rows of one person in one frame, by frame and then by id.
+/// Trajectories: one row per person and frame, sorted by frame, then by id.
 #[derive(Debug, Clone)]
 pub struct Tracks {
     /// Frame numbers per second.
     pub fps: f64,
-    /// From one recorded frame to the next the number rises by this: mostly 1.
+    /// Difference between the numbers of consecutive recorded frames, usually 1.
     pub step: i64,
-    /// Everybody's id, rising; a person's place here is its number.
+    /// The ids of all persons, ascending. A person's index here is its number.
     pub ids: Vec<i64>,
-    /// The frames in which somebody is there, rising.
+    /// The frames with at least one person, ascending.
     pub frames: Vec<i64>,
-    /// Each row's person, by number.
+    /// The person of each row, by number.
     pub person: Vec<u32>,
-    /// Each row's place, metres.
+    /// The position of each row, meters.
     pub position: Vec<Vector>,
-    /// Each row's mass, 1 = an average person; empty where the file has none, and all are 1.
+    /// The mass of each row, 1 = an average person; empty if the file has no masses, which means 1.
     pub mass: Vec<f64>,
-    /// The walkable area as well-known text, if the file has it; several where it changes with time.
+    /// The walkable area as well-known text, if the file has it; several if it changes with time.
     pub walkable: Vec<String>,
-    /// What a careful reader of the results should know of the file.
+    /// Warnings about the file for readers of the results.
     pub notes: Vec<String>,
-    /// Where each frame's rows begin, and the number of rows at the end.
+    /// The first row of each frame, then the number of rows.
     starts: Vec<usize>,
-    /// Rows by person, then by frame.
+    /// Rows sorted by person, then by frame.
     by_person: Vec<u32>,
-    /// Where each person's rows begin in there, and the number of rows at the end.
+    /// The first index of each person in `by_person`, then the number of rows.
     person_starts: Vec<usize>,
 }
 
 impl Tracks {
-    /// Checks and orders what was read.
+    /// Checks and sorts the content of a file.
     pub(super) fn new(
         path: &Path,
         mut contents: Contents,
@@ -198,7 +198,7 @@ impl Tracks {
         self.person.len()
     }
 
-    /// Is nobody there? Never of a file that could be read.
+    /// Whether there are no rows; never true for a file that could be read.
     pub fn is_empty(&self) -> bool {
         self.person.is_empty()
     }
@@ -218,22 +218,22 @@ impl Tracks {
         self.frames[self.starts.partition_point(|&start| start <= row) - 1]
     }
 
-    /// When a frame is, seconds.
+    /// The time of a frame, seconds.
     pub fn time(&self, frame: i64) -> f64 {
         frame as f64 / self.fps
     }
 
-    /// Seconds from one recorded frame to the next.
+    /// Time between consecutive frames, seconds.
     pub fn interval(&self) -> f64 {
         self.step as f64 / self.fps
     }
 
-    /// The mass of a row's person.
+    /// The mass of the person of a row.
     pub fn mass_of(&self, row: usize) -> f64 {
         self.mass.get(row).copied().unwrap_or(1.0)
     }
 
-    /// How many frames there are from the first to the last, those without anybody too.
+    /// The number of frames from the first to the last, including empty frames.
     pub fn span(&self) -> u64 {
         match (self.frames.first(), self.frames.last()) {
             (Some(first), Some(last)) => ((last - first) / self.step) as u64 + 1,
@@ -259,7 +259,7 @@ impl Tracks {
         self.person_starts = starts;
     }
 
-    /// The frames between which somebody is seen twice in a row: how far apart, how often.
+    /// Counts the differences between consecutive frames of the same person.
     fn steps(&self) -> BTreeMap<i64, u64> {
         let frame_of: Vec<i64> = (0..self.frames.len())
             .flat_map(|k| self.rows(k).map(move |_| k))
@@ -275,7 +275,7 @@ impl Tracks {
         steps
     }
 
-    /// The most common one divides all: else numbers are those of a camera that misses frames.
+    /// The most common step, if it divides all differences between frames. Otherwise 1: a camera missed frames.
     fn most_common_step(&self) -> i64 {
         let steps = self.steps();
         let common = steps.iter().max_by_key(|&(step, count)| (count, -step));
@@ -288,7 +288,7 @@ impl Tracks {
         if fits { common } else { 1 }
     }
 
-    /// What is to be said of people who are missing in between.
+    /// A note about gaps in which persons are missing.
     fn gaps(&self) -> Option<String> {
         let steps = self.steps();
         let gaps = steps.iter().filter(|(step, _)| **step != self.step);
@@ -303,7 +303,7 @@ impl Tracks {
         })
     }
 
-    /// Of the steps from a frame to the next, m/s; 0 without any.
+    /// The median speed over all steps from a frame to the next, m/s; 0 without steps.
     fn median_speed(&self) -> f64 {
         let mut speeds: Vec<f64> = Vec::new();
         for p in 0..self.ids.len() {
