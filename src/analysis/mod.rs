@@ -1,5 +1,5 @@
-//! Analysis: what is computed from finished frames and trajectories: statistics over runs, space-time diagrams
-//! and wave speeds, and the densities, fields, fundamental diagrams and flows of any trajectory (§8).
+//! Analysis of finished frames and trajectories: statistics over runs, space-time diagrams and wave speeds, and
+//! densities, fields, fundamental diagrams and flows of any trajectory (§8).
 
 pub mod statistics;
 

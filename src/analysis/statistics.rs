@@ -1,8 +1,8 @@
-//! How well a mean over seeds is known: Student's t.
+//! Confidence of a mean over seeds: Student's t.
 
-/// Half the width of the 95 % confidence interval of a mean of so many values, in standard errors of that
-/// mean: the 97.5 % quantile of Student's t with `values` − 1 degrees of freedom, to 1e-5; `None` for fewer
-/// than two values, which tell nothing about their spread.
+/// Half-width of the 95 % confidence interval of a mean of `values` values, in standard errors of the mean: the 97.5 %
+/// quantile of Student's t with `values` − 1 degrees of freedom, accurate to 1e-5. `None` for fewer than two values,
+/// which have no sample standard deviation.
 pub fn student_95(values: usize) -> Option<f64> {
     const TABLE: [f64; 10] = [
         12.706_205, 4.302_653, 3.182_446, 2.776_445, 2.570_582, 2.446_912, 2.364_624, 2.306_004,
@@ -15,7 +15,7 @@ pub fn student_95(values: usize) -> Option<f64> {
     })
 }
 
-/// The same quantile as a series in 1/ν, ν degrees of freedom (Abramowitz & Stegun 26.7.5).
+/// The same quantile as a series in 1/ν for ν degrees of freedom (Abramowitz & Stegun 26.7.5).
 fn expansion(degrees: f64) -> f64 {
     /// 97.5 % quantile of the normal distribution.
     const Z: f64 = 1.959_963_984_540_054;
@@ -37,8 +37,8 @@ fn expansion(degrees: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// How much of Student's distribution with ν degrees lies in [−t, t], by Simpson's rule in
-    /// t = √ν tan φ, where the density is cos^(ν − 1) φ but for a factor.
+    /// The probability of [−t, t] under Student's distribution with ν degrees of freedom, by Simpson's rule in
+    /// t = √ν tan φ, where the density is proportional to cos^(ν − 1) φ.
     fn coverage(degrees: i32, t: f64) -> f64 {
         const STEPS: u32 = 2000;
         let integral = |end: f64| {

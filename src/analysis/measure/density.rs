@@ -1,4 +1,4 @@
-//! The density of people in one frame (§8): Eqs. 9 and 10 without a simulation.
+//! The density of people in a frame (§8): Eqs. 9 and 10 without a simulation.
 
 use rayon::prelude::*;
 
@@ -10,32 +10,32 @@ use crate::engine::math::Vector;
 use crate::engine::neighbors::{BLOCK, Neighbors, Ranges};
 use crate::engine::pairs::Columns;
 
-/// No more of a kernel than this is taken to be hidden: in a crack, what is left says nothing.
+/// At most this share of a kernel counts as hidden: in a narrow gap, the visible rest is too small to be meaningful.
 pub const MOST_HIDDEN: f64 = 0.9;
 
-/// How dense the crowd is taken to be where walls are: ρ_i⁰ in Eq. 10.
+/// The density assumed behind walls: ρ_i⁰ in Eq. 10.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Behind {
-    /// As dense as where the person stands: ρ_i = Σ_j m_j W / (1 − Σ_k ∫ W over P_k), the sum over those who
-    /// are seen by the part of the kernel that is seen. A uniform crowd has the same density up to its walls,
-    /// and who is behind a thin one does not count.
+    /// The density at the person's position: ρ_i = Σ_j m_j W / (1 − Σ_k ∫ W over P_k), summed over the people that
+    /// walls do not hide. A uniform crowd then has the same density up to its walls, and people behind a thin wall do
+    /// not count.
     #[default]
     Same,
-    /// The engine's: the moving average ρ̂_i of the person's own density (Eq. 8) between 0 and so many
-    /// P/m². It depends on the frames before, and everybody in reach counts.
+    /// As in the engine: the moving average ρ̂_i of the person's own density (Eq. 8), clamped between 0 and this
+    /// value, P/m². It depends on earlier frames, and all people within reach count.
     Rest(f64),
 }
 
-/// Eq. 9 in parts.
+/// The terms of Eq. 9.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parts {
-    /// Σ_j m_j W, j = i too, P/m²; of those who are seen, or of all.
+    /// Σ_j m_j W including j = i, P/m², over the visible people or over all.
     pub from_people: f64,
-    /// What walls hide.
+    /// The part that walls hide.
     pub hidden: Hidden,
 }
 
-/// The parts of everybody's density in a frame, in the order given; masses are all 1 where there are none.
+/// The terms for everyone in a frame, in the given order. Without `masses`, all masses are 1.
 pub fn parts(
     site: &Site,
     positions: &[Vector],
@@ -83,7 +83,7 @@ pub fn parts(
         from_people: from_people[i],
         hidden: hidden[i],
     };
-    // Ids were given in the order of the positions.
+    // The ids are in the order of the positions.
     let mut places: Vec<usize> = vec![0; agents.len()];
     for (i, &id) in agents.id.iter().enumerate() {
         places[id as usize] = i;
@@ -91,7 +91,7 @@ pub fn parts(
     places.into_iter().map(of).collect()
 }
 
-/// Eq. 9 without walls, by the engine's own sums, in double precision and its order of the agents.
+/// Eq. 9 without walls, by the engine's own sums, in double precision and in the engine's order of agents.
 fn sums(agents: &Agents, neighbors: &Neighbors, h: f64) -> Vec<f64> {
     let mut columns = Columns::<f64>::default();
     columns.take_bodies(agents, 1.0, |_| h);
@@ -111,16 +111,16 @@ fn sums(agents: &Agents, neighbors: &Neighbors, h: f64) -> Vec<f64> {
     sums
 }
 
-/// Everybody's moving average, for [`Behind::Rest`].
+/// The moving averages for [`Behind::Rest`].
 pub struct History {
     behind: Behind,
     sph: SphParameters,
-    /// ρ̂ of each person and the frame that it is of.
+    /// ρ̂ of each person, and its frame.
     kept: Vec<Option<(i64, f64)>>,
 }
 
 impl History {
-    /// Of so many people, none of whom has been seen.
+    /// No averages yet, for `people` people.
     pub fn new(behind: Behind, people: usize) -> Self {
         let mut sph = SphParameters::default();
         if let Behind::Rest(max) = behind {
@@ -133,8 +133,8 @@ impl History {
         Self { behind, sph, kept }
     }
 
-    /// The walls' part of ρ_i of a person in a frame, P/m²; `step` frames take `interval` seconds, and frames
-    /// must come in order.
+    /// The walls' part of ρ_i of a person in a frame, P/m². `step` frame numbers take `interval` seconds. Frames must
+    /// come in order.
     pub fn walls_part(
         &mut self,
         (person, frame): (usize, i64),
@@ -149,7 +149,7 @@ impl History {
             let hidden = hidden.share.min(MOST_HIDDEN);
             return from_people * hidden / (1.0 - hidden);
         }
-        // Who was not there one frame before is new, as in the engine.
+        // A person who was absent one frame earlier is new, as in the engine.
         let before = self.kept[person].filter(|&(last, _)| last == frame - step);
         let before = before.map_or(from_people, |(_, mean)| mean);
         let from_walls = hidden.share * self.sph.rest_density(before);

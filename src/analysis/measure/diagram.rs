@@ -1,4 +1,4 @@
-//! Fundamental diagrams: density, speed and flow in a region, person by person and frame by frame.
+//! Fundamental diagrams: density, speed and flow in a region, per person and per frame.
 
 use std::collections::BTreeMap;
 
@@ -7,32 +7,32 @@ use serde::Serialize;
 use super::Moment;
 use crate::engine::scene::Region;
 
-/// Width of a class of densities, P/m².
+/// Width of a density class, P/m².
 pub const CLASS: f64 = 0.5;
 
-/// The means over everybody in a region in one frame.
+/// Means over all people in a region in a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FrameMean {
-    /// The region, in the order given from 1.
+    /// Number of the region, from 1 in the given order.
     pub region: usize,
     /// The frame.
     pub frame: i64,
-    /// When it is, seconds.
+    /// Time of the frame, seconds.
     pub time: f64,
-    /// How many are there.
+    /// Number of people.
     pub people: usize,
-    /// The mean of their densities, P/m².
+    /// Mean of their densities, P/m².
     pub density: f64,
-    /// The mean of the speeds that are known, m/s.
+    /// Mean of the known speeds, m/s.
     pub speed: Option<f64>,
     /// Density times speed, P/(m s).
     pub flow: Option<f64>,
 }
 
-/// Mean and standard deviation of some numbers, one after the other (Welford 1962).
+/// Running mean and standard deviation (Welford 1962).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Spread {
-    /// How many.
+    /// Number of values.
     pub count: u64,
     /// Their mean.
     pub mean: f64,
@@ -47,13 +47,13 @@ impl Spread {
         self.squares += off * (value - self.mean);
     }
 
-    /// Of the numbers themselves, not of a sample.
+    /// Population standard deviation.
     pub fn deviation(&self) -> f64 {
         (self.squares / self.count.max(1) as f64).sqrt()
     }
 }
 
-/// Density, speed and flow of whoever or whatever has a density in one class.
+/// Density, speed and flow of the people or frames in a density class.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Class {
     /// P/m².
@@ -72,21 +72,21 @@ impl Class {
     }
 }
 
-/// Everything about one region.
+/// The results for one region.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diagram {
-    /// Where; `None`: everywhere.
+    /// The region; `None` for everywhere.
     pub region: Option<Region>,
-    /// Frame by frame; those without anybody there are not among them.
+    /// Frame by frame; frames without people in the region are absent.
     pub frames: Vec<FrameMean>,
-    /// Classes of [`CLASS`] by their number, from 0 up, of persons in single frames; empty ones are missing.
+    /// Classes of people in single frames, by number: class k begins at k times [`CLASS`]. Empty classes are absent.
     pub of_persons: BTreeMap<usize, Class>,
-    /// The same, of means over frames.
+    /// Classes of means over frames, by number.
     pub of_frames: BTreeMap<usize, Class>,
 }
 
 impl Diagram {
-    /// Nothing yet.
+    /// An empty diagram.
     pub fn new(region: Option<Region>) -> Self {
         Self {
             region,
@@ -96,7 +96,7 @@ impl Diagram {
         }
     }
 
-    /// Adds a frame to region `number`.
+    /// Adds a frame; `number` is that of the region.
     pub fn add(&mut self, number: usize, moment: &Moment) {
         let is_there = |p| self.region.is_none_or(|region| region.contains(p));
         let there = moment.people.iter();
@@ -128,7 +128,7 @@ impl Diagram {
     }
 }
 
-/// The class that a density is in.
+/// The class of a density.
 fn class(classes: &mut BTreeMap<usize, Class>, density: f64) -> &mut Class {
     classes.entry((density / CLASS) as usize).or_default()
 }

@@ -1,4 +1,4 @@
-//! Mean fields over time, on a grid: the kernel density of places instead of people.
+//! Mean fields over time on a grid: the kernel density at cell centers instead of at people.
 
 use std::ops::Range;
 
@@ -10,27 +10,27 @@ use super::site::{Kernel, Site};
 use crate::engine::kernel;
 use crate::engine::math::Vector;
 
-/// More cells than this are not summed up.
+/// Maximum number of cells.
 pub const MOST_CELLS: usize = 4_000_000;
 
-/// Rows of cells that are summed together.
+/// Rows of cells per parallel task.
 const BAND: usize = 8;
 
-/// Square cells over a part of the plane; all fields are taken at their centres.
+/// Square cells over a part of the plane. Fields are evaluated at their centers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
-    /// Lower left corner, metres.
+    /// Lower left corner, meters.
     pub min: Vector,
-    /// Side of a cell, metres.
+    /// Side of a cell, meters.
     pub cell: f64,
-    /// Cells in x.
+    /// Number of cells in x.
     pub columns: usize,
-    /// Cells in y.
+    /// Number of cells in y.
     pub rows: usize,
 }
 
 impl Grid {
-    /// Whole cells over a rectangle; `None` for too many.
+    /// Whole cells that cover a rectangle; `None` if there are too many.
     pub fn over(low: Vector, high: Vector, cell: f64) -> Option<Self> {
         let min = (low / cell).map(f64::floor);
         let count = (high / cell).map(f64::ceil) - min;
@@ -48,45 +48,45 @@ impl Grid {
         self.columns * self.rows
     }
 
-    /// Are there no cells? Never.
+    /// Whether there are no cells; never true.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The centre of cell `k`, metres; row by row from the lower left.
+    /// The center of cell `k`, meters; cells are in rows from the lower left.
     pub fn center(&self, k: usize) -> Vector {
         let (column, row) = (k % self.columns, k / self.columns);
         self.min + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell
     }
 }
 
-/// Sums over people and frames at one place.
+/// Sums over people and frames for one cell.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     /// Σ m W.
     mass: f64,
-    /// Σ m W of those whose velocity is known, and Σ m W v, Σ m W |v| of them.
+    /// Σ m W over people with a known velocity, then Σ m W v and Σ m W |v| over the same people.
     moving: f64,
     momentum: Vector,
     speed: f64,
-    /// Positions in the cell.
+    /// Number of positions in the cell.
     people: u64,
 }
 
-/// The mean over time at one place.
+/// Mean over time for one cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mean {
     /// ρ, P/m².
     pub density: f64,
-    /// J/ρ, m/s; `None` where nobody came near.
+    /// J/ρ, m/s; `None` if nobody with a known velocity came near.
     pub velocity: Option<Vector>,
-    /// Of the speeds, weighted alike, m/s.
+    /// Mean speed with the same weights, m/s.
     pub speed: Option<f64>,
-    /// Persons in the cell.
+    /// Mean number of people in the cell.
     pub people: f64,
 }
 
-/// Fields that are being summed up.
+/// Fields while they are summed.
 pub struct Fields {
     grid: Grid,
     kernel: Kernel,
@@ -94,17 +94,17 @@ pub struct Fields {
     views: Vec<Option<View>>,
 }
 
-/// What is seen from a place outside of obstacles.
+/// The visibility from the center of a cell outside obstacles.
 #[derive(Debug, Clone, Default)]
 struct View {
-    /// The part of the kernel that walls hide.
+    /// The share of the kernel that walls hide.
     hidden: f64,
     /// The walls within reach.
     near: Box<[u32]>,
 }
 
 impl Fields {
-    /// Nobody yet.
+    /// Fields without any sums yet.
     pub fn new(grid: Grid, site: &Site, kernel: Kernel) -> Self {
         let view = |k| {
             let p = grid.center(k);
@@ -126,8 +126,8 @@ impl Fields {
         }
     }
 
-    /// Adds everybody in some frames. Bands of cells are summed at a time, each in the order of the people:
-    /// the bits do not depend on the threads.
+    /// Adds people of some frames. Bands of cells are summed in parallel, each in the order of the people, so that the
+    /// result is the same on any number of threads.
     pub fn add(&mut self, people: &[&Person], site: &Site) {
         let (grid, views, h) = (&self.grid, &self.views, self.kernel.support_radius);
         let bands = self.sums.par_chunks_mut(BAND * grid.columns).enumerate();
@@ -149,7 +149,7 @@ impl Fields {
         &self.grid
     }
 
-    /// The means over so many frames, cell by cell; `None` inside obstacles.
+    /// The means over `frames` frames, cell by cell; `None` inside obstacles.
     pub fn means(&self, frames: u64) -> impl Iterator<Item = Option<Mean>> + '_ {
         let places = self.sums.iter().zip(&self.views);
         places.map(move |(sums, view)| {
@@ -165,7 +165,7 @@ impl Fields {
     }
 }
 
-/// Adds a person's kernel to those of the cells in `rows` that it reaches and that see the person.
+/// Adds a person's kernel to the cells in `rows` that it reaches and from which the person is visible.
 fn spread(
     (grid, site, views): (&Grid, &Site, &[Option<View>]),
     rows: Range<usize>,
@@ -174,7 +174,7 @@ fn spread(
     h: f64,
 ) {
     let place = (person.position - grid.min) / grid.cell;
-    // Cells whose centres are within reach, and the person's own.
+    // Cells whose centers are within reach, and the person's own cell.
     let reach = (h / grid.cell).max(0.5);
     let first = |x: f64| (x - reach - 0.5).ceil().max(0.0) as usize;
     let end = |x: f64, most: usize| ((x + reach + 0.5).ceil().max(0.0) as usize).min(most);

@@ -1,31 +1,31 @@
-//! Who crosses a line, when, and how many that makes.
+//! Crossings of a line: people, times and counts.
 
 use serde::Serialize;
 
 use crate::engine::math::Vector;
 use crate::output::trajectory::read::Tracks;
 
-/// A line to be crossed. Forward is from its left to its right, seen from its first end to its second.
+/// A measurement line. Forward is from its left to its right, seen from its first end to its second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Line {
-    /// First end, metres; it belongs to the line.
+    /// First end, meters; belongs to the line.
     pub start: Vector,
-    /// Second end, metres; it does not, so that nobody crosses two lines where they join.
+    /// Second end, meters; does not belong to the line, so that a path crosses only one of two lines that join.
     pub end: Vector,
 }
 
 impl Line {
-    /// Length in metres.
+    /// Length, meters.
     pub fn length(&self) -> f64 {
         (self.end - self.start).norm()
     }
 
-    /// Positive on the left; whoever is on the line itself is on its right.
+    /// Positive on the left of the line. A point on the line counts as right.
     fn left(&self, p: Vector) -> f64 {
         (self.end - self.start).perp(&(p - self.start))
     }
 
-    /// How far along the way from `from` to `to` it crosses the line, 0 to 1, and whether forward.
+    /// Where the path from `from` to `to` crosses the line, as a fraction of the path, and whether forward.
     pub fn crossed(&self, from: Vector, to: Vector) -> Option<(f64, bool)> {
         let [before, after] = [from, to].map(|p| self.left(p));
         if (before > 0.0) == (after > 0.0) {
@@ -38,47 +38,47 @@ impl Line {
     }
 }
 
-/// Somebody crosses a line.
+/// A person crosses a line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Crossing {
-    /// The line, in the order given from 1.
+    /// Number of the line, from 1 in the given order.
     pub line: usize,
-    /// When, seconds: between two frames, as if the person walked evenly.
+    /// Time, seconds, interpolated linearly between two frames.
     pub time: f64,
-    /// The first frame in which the person is beyond.
+    /// The first frame in which the person is beyond the line.
     pub frame: i64,
-    /// Who.
+    /// The person's id.
     pub id: i64,
-    /// Where, metres.
+    /// Position, meters.
     pub x: f64,
-    /// Likewise.
+    /// Its y component.
     pub y: f64,
     /// 1 forward, −1 backward.
     pub direction: i8,
-    /// Does it count? Who sways to and fro over the line passes it once: a crossing counts if it takes the
-    /// person's balance, crossings forward less backward, where it has never been.
+    /// Whether the crossing counts as a passage. A person who sways back and forth across the line passes it once: a
+    /// crossing counts if the person's balance, crossings forward minus backward, reaches a new extreme.
     pub passage: bool,
-    /// How many have passed forward until now.
+    /// Passages forward so far.
     pub forward: u64,
-    /// How many have passed backward.
+    /// Passages backward so far.
     pub backward: u64,
-    /// All crossings forward less all backward until now.
+    /// All crossings forward minus all backward so far.
     pub net: i64,
 }
 
-/// All that cross one line.
+/// All crossings of one line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crossings {
     /// The line.
     pub line: Line,
-    /// By time.
+    /// Sorted by time.
     pub list: Vec<Crossing>,
-    /// How many are on the other side after a gap: not counted, for nobody saw where they went.
+    /// Number of crossings during gaps in a person's data. They do not count, because the path is unknown.
     pub across_gaps: u64,
 }
 
 impl Crossings {
-    /// Of line `number`, at times in seconds between `from` and `until`.
+    /// The crossings of line `number` from time `from` until time `until`, seconds.
     pub fn of(tracks: &Tracks, number: usize, line: Line, [from, until]: [f64; 2]) -> Self {
         let mut list = Vec::new();
         let mut across_gaps = 0;
@@ -134,7 +134,7 @@ impl Crossings {
         }
     }
 
-    /// When somebody passes in this direction, seconds, rising.
+    /// Times of the passages in a direction, seconds, ascending.
     pub fn passages(&self, direction: i8) -> impl Iterator<Item = f64> + '_ {
         let passages = self.list.iter().filter(|crossing| crossing.passage);
         passages
@@ -142,8 +142,8 @@ impl Crossings {
             .map(|crossing| crossing.time)
     }
 
-    /// (n − 1) / (time of the last passage in this direction − time of the first), P/s; `None` for fewer
-    /// than two.
+    /// (n − 1) / (time of the last passage in this direction − time of the first), P/s; `None` for fewer than two
+    /// passages.
     pub fn flow(&self, direction: i8) -> Option<f64> {
         let count = self.passages(direction).count();
         let first = self.passages(direction).next()?;

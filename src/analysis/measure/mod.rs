@@ -1,10 +1,10 @@
-//! The SPH density of §8 and what follows from it, measured in trajectories, real or simulated: density and
-//! velocity of everybody, mean fields, fundamental diagrams, flow over lines.
+//! The SPH density of §8 and quantities derived from it, measured in real or simulated trajectories: density and
+//! velocity of each person, mean fields, fundamental diagrams, flow across lines.
 //!
-//! A person's density is Eq. 9, its own mass included. What walls hide of the kernel counts as a crowd that
-//! is as dense as where the person stands, or as in the engine ([`Behind`]); fields are of the first kind.
-//! Velocities are those of [`speed::velocities`], crossings those of [`Crossings`]. Time is frame over frame
-//! rate.
+//! A person's density is Eq. 9, including the person's own mass. Where walls hide part of the kernel, the crowd behind
+//! them is assumed to be as dense as at the person's position, or as in the engine ([`Behind`]); fields always use the
+//! former. For velocities see [`speed::velocities`], for crossings [`Crossings`]. Time is frame number divided by
+//! frame rate.
 
 mod density;
 mod diagram;
@@ -33,112 +33,112 @@ use crate::engine::scene::Region;
 use crate::output::trajectory::read::Tracks;
 use density::History;
 
-/// Rows that are measured at a time.
+/// Rows measured at a time, unless a single frame has more.
 const BATCH: usize = 1 << 16;
 
-/// What is measured, and how.
+/// What to measure, and how.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// The kernel.
     pub kernel: Kernel,
-    /// How dense the crowd is behind walls.
+    /// The density assumed behind walls.
     pub behind: Behind,
-    /// Recorded frames that a velocity looks back and ahead, at least 1.
+    /// Number of recorded frames that a velocity looks back and ahead, at least 1.
     pub speed_reach: i64,
-    /// From when to when, seconds, both included.
+    /// Start and end of the measurement, seconds, both included.
     pub times: [f64; 2],
-    /// Side of the cells of mean fields, metres.
+    /// Side of the cells of mean fields, meters.
     pub cell: f64,
-    /// Where fundamental diagrams are taken; none: everywhere.
+    /// Regions of the fundamental diagrams; if empty, one diagram covers everything.
     pub regions: Vec<Region>,
-    /// The lines over which flow is measured.
+    /// The lines across which flow is measured.
     pub lines: Vec<Line>,
 }
 
-/// Somebody in a frame.
+/// A person in a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Person {
-    /// The person's place among all ids, from 0.
+    /// The person's index among all ids, from 0.
     pub number: u32,
-    /// As in the file.
+    /// The id in the file.
     pub id: i64,
-    /// Metres.
+    /// Meters.
     pub position: Vector,
-    /// Where the person is seen, metres: at the face of an obstacle that the person leans over.
+    /// The point from which the person sees and is seen, meters: see [`Hidden::eye`].
     pub eye: Vector,
     /// 1 = an average person.
     pub mass: f64,
-    /// m/s; `None` where it is not known.
+    /// m/s; `None` if unknown.
     pub velocity: Option<Vector>,
     /// ρ_i, P/m².
     pub density: f64,
-    /// The walls' part of it, P/m².
+    /// The walls' part of `density`, P/m².
     pub density_from_walls: f64,
 }
 
-/// A frame with somebody in it.
+/// A frame with at least one person.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moment {
-    /// The frame.
+    /// The frame number.
     pub frame: i64,
     /// Seconds.
     pub time: f64,
-    /// Everybody there, by id.
+    /// Everyone in the frame, by id.
     pub people: Vec<Person>,
 }
 
-/// Who was where it was densest.
+/// The highest density measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Densest {
-    /// The person and the density.
+    /// The person with this density.
     pub person: Person,
-    /// The frame.
+    /// The frame number.
     pub frame: i64,
-    /// When, seconds.
+    /// Time, seconds.
     pub time: f64,
 }
 
-/// What there was, in a few numbers.
+/// Summary of a measurement.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overview {
-    /// Frames from the first to the last measured, those without anybody too.
+    /// Number of frames from the first to the last measured, including empty ones.
     pub frames: u64,
-    /// Those without anybody.
+    /// Number of frames without people.
     pub empty_frames: u64,
-    /// Rows: persons in frames.
+    /// Number of rows: one per person and frame.
     pub rows: u64,
-    /// Different persons.
+    /// Number of different people.
     pub people: u64,
-    /// Times of the first and the last frame with somebody in it, seconds.
+    /// Times of the first and the last frame with people, seconds.
     pub times: [f64; 2],
     /// Over all rows, P/m².
     pub density: Spread,
-    /// Over all rows whose velocity is known, m/s.
+    /// Over all rows with a known velocity, m/s.
     pub speed: Spread,
-    /// Where it was densest.
+    /// The highest density.
     pub densest: Option<Densest>,
-    /// Rows of people inside an obstacle, and how far the deepest was, metres.
+    /// Number of rows inside an obstacle, and the greatest depth, meters.
     pub inside: (u64, f64),
-    /// Rows of which more than [`MOST_HIDDEN`] of the kernel was hidden.
+    /// Number of rows with more than [`MOST_HIDDEN`] of the kernel hidden.
     pub crammed: u64,
 }
 
-/// Everything that was measured, but for the rows, which were handed on.
+/// All results except the rows, which [`measure`] passes on.
 pub struct Measured {
-    /// In a few numbers.
+    /// The summary.
     pub overview: Overview,
     /// The sums over all frames.
     pub fields: Fields,
-    /// One for each region.
+    /// One per region.
     pub diagrams: Vec<Diagram>,
-    /// One for each line.
+    /// One per line.
     pub crossings: Vec<Crossings>,
 }
 
-/// Nothing can be measured.
+/// The measurement is impossible.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeasureError {
-    /// No frame is in the time asked for.
+    /// No frame is in the requested time.
     #[error("nobody is there from {0} s to {1} s; there is somebody from {2} s to {3} s")]
     Nobody(f64, f64, f64, f64),
     /// Too many cells.
@@ -146,10 +146,10 @@ pub enum MeasureError {
     Cells(f64),
 }
 
-/// Measures everything, and hands on frame after frame, some at a time, with the number of rows until then.
+/// Measures everything, and passes the frames to `take` in batches.
 ///
 /// # Errors
-/// There is nothing to measure, or what `take` says.
+/// There is nothing to measure, or `take` fails.
 pub fn measure<E: From<MeasureError>>(
     tracks: &Tracks,
     site: &Site,
@@ -215,16 +215,16 @@ pub fn measure<E: From<MeasureError>>(
     })
 }
 
-/// Is there something to measure?
+/// Checks that there is something to measure.
 ///
 /// # Errors
-/// Nobody is there in the time asked for, or there are too many cells.
+/// There are no people in the requested time, or there are too many cells.
 pub fn check(tracks: &Tracks, options: &Options) -> Result<(), MeasureError> {
     let chosen = chosen(tracks, options)?;
     grid(tracks, options, chosen).map(|_| ())
 }
 
-/// The frames in the time asked for.
+/// The frames in the requested time.
 fn chosen(tracks: &Tracks, options: &Options) -> Result<std::ops::Range<usize>, MeasureError> {
     let [from, until] = options.times;
     let begin = tracks
@@ -241,7 +241,7 @@ fn chosen(tracks: &Tracks, options: &Options) -> Result<std::ops::Range<usize>, 
     Ok(begin..end)
 }
 
-/// Cells over everybody's kernels.
+/// A grid that covers the kernels of all people.
 fn grid(
     tracks: &Tracks,
     options: &Options,

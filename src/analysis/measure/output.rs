@@ -1,4 +1,4 @@
-//! Results in a folder, as CSV.
+//! Writes results to a folder, as CSV.
 
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
@@ -9,33 +9,33 @@ use serde::Serialize;
 
 use super::{CLASS, Class, Diagram, Fields, Measured, Moment, Person};
 
-/// Everybody, frame by frame.
+/// All people, frame by frame.
 const AGENTS: &str = "agents.csv";
 const FIELDS: &str = "fields.csv";
 const DIAGRAM: &str = "fundamental_diagram.csv";
 const CLASSES: &str = "fundamental_classes.csv";
 const FLOW: &str = "flow.csv";
 
-/// People that are worth another thread.
+/// People per parallel task.
 const SOME: usize = 4096;
 
-/// Results could not be written.
+/// Results cannot be written.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("cannot write {}: {reason}", path.display())]
 pub struct OutputError {
-    /// Which file or folder.
+    /// The file or folder.
     pub path: PathBuf,
-    /// What the system says.
+    /// The system's message.
     pub reason: String,
 }
 
-/// A folder for results, with everybody's file begun.
+/// A folder for results, with an open file of people.
 pub struct Results {
     folder: PathBuf,
     agents: BufWriter<File>,
 }
 
-/// A line of [`AGENTS`].
+/// A row of [`AGENTS`].
 #[derive(Serialize)]
 struct AgentRow {
     frame: i64,
@@ -82,10 +82,10 @@ impl Results {
     /// The names of all files that may be written.
     pub const FILES: [&str; 5] = [AGENTS, FIELDS, DIAGRAM, CLASSES, FLOW];
 
-    /// Opens `folder`, makes it if there is none, and begins everybody's file in place of an older one.
+    /// Opens `folder`, creating it if necessary, and begins the file of people, replacing an older one.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The folder or the file cannot be written.
     pub fn create(folder: &Path) -> Result<Self, OutputError> {
         fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error))?;
         let path = folder.join(AGENTS);
@@ -99,7 +99,7 @@ impl Results {
         Ok(results)
     }
 
-    /// Adds everybody in some frames.
+    /// Adds the people of some frames.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -130,7 +130,7 @@ impl Results {
         unwritten(&self.folder.join(AGENTS), error)
     }
 
-    /// Writes all that is known in the end, and closes everybody's file.
+    /// Writes the other files, and closes the file of people.
     ///
     /// # Errors
     /// A file cannot be written.
@@ -195,7 +195,7 @@ fn agent_row(moment: &Moment, person: &Person) -> AgentRow {
     }
 }
 
-/// Cells outside of obstacles.
+/// One row per cell outside obstacles.
 fn field_rows(fields: &Fields, frames: u64) -> impl Iterator<Item = FieldRow> + '_ {
     let means = fields.means(frames).enumerate();
     means.filter_map(|(k, mean)| {

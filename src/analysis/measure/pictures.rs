@@ -1,4 +1,4 @@
-//! Mean fields, fundamental diagrams and N(t) as pictures.
+//! Pictures of mean fields, fundamental diagrams and N(t).
 
 use std::path::Path;
 
@@ -9,19 +9,19 @@ use crate::output::plot::{
     Axis, BLACK, Cells, ColorBar, Corner, GRAY, LINES, Mark, Panel, PlotError, Point, Sheet, Style,
 };
 
-/// The longer side of a map, points.
+/// Length of the longer side of a map, points.
 const MAP_SIDE: f64 = 330.0;
-/// The shorter one is at least so long.
+/// Minimum length of a side of a map, points.
 const LEAST_SIDE: f64 = 70.0;
-/// More dots than this hide each other.
+/// Maximum number of dots per diagram; more would hide each other.
 const MOST_DOTS: usize = 1500;
-/// A field where fewer people than this are expected says nothing, P/m².
+/// Below this density, P/m², the mean speed is not meaningful and is left blank.
 const NOBODY: f64 = 1e-3;
 
-/// The stems of the pictures' names.
+/// The file names of the pictures, without extension.
 pub const STEMS: [&str; 3] = ["fields", "fundamental_diagram", "flow"];
 
-/// Draws everything into `folder`, as SVG and PNG.
+/// Draws all pictures into `folder`, as SVG and PNG.
 ///
 /// # Errors
 /// A picture cannot be written.
@@ -35,7 +35,7 @@ pub fn save(folder: &Path, measured: &Measured, site: &Site) -> Result<(), PlotE
     Ok(())
 }
 
-/// Density and speed, with the walls.
+/// Maps of density and speed, with the walls.
 fn maps(measured: &Measured, walls: &Walls) -> Sheet {
     let grid = measured.fields.grid();
     let means: Vec<_> = measured.fields.means(measured.overview.frames).collect();
@@ -90,7 +90,7 @@ fn maps(measured: &Measured, walls: &Walls) -> Sheet {
     }
 }
 
-/// Speed and flow over density: means of frames as dots, classes of persons with their deviations.
+/// Speed and flow over density: means of frames as dots, classes of people with standard deviations.
 fn diagrams(diagrams: &[Diagram]) -> Sheet {
     let classes = || {
         diagrams
@@ -159,12 +159,12 @@ fn diagrams(diagrams: &[Diagram]) -> Sheet {
     }
 }
 
-/// The means of frames, as many as can be told apart.
+/// Means of frames as dots, thinned to at most [`MOST_DOTS`].
 fn dots(diagram: &Diagram, of: fn(&Class) -> &Spread) -> Vec<Point> {
     let every = diagram.frames.len().div_ceil(MOST_DOTS).max(1);
     let frames = diagram.frames.iter().step_by(every);
     let dot = |frame: &super::FrameMean| {
-        // A class of one, to take from it what the classes are drawn by.
+        // A class with a single value, because `of` takes a class.
         let mut one = Class::default();
         one.add(frame.density, frame.speed?);
         Some(Point {
@@ -176,7 +176,7 @@ fn dots(diagram: &Diagram, of: fn(&Class) -> &Spread) -> Vec<Point> {
     frames.filter_map(dot).collect()
 }
 
-/// N(t) for every line, broken for those who pass backward.
+/// N(t) for every line; dashed for passages backward.
 fn counts(crossings: &[Crossings]) -> Sheet {
     let times = || {
         crossings

@@ -1,4 +1,4 @@
-//! What was measured as a recording for the Rerun viewer.
+//! Records a measurement for the Rerun viewer.
 
 use std::path::Path;
 
@@ -11,20 +11,21 @@ use crate::output::recording::{
 };
 use crate::output::trajectory::read::Tracks;
 
-/// Larger ids than this are replaced by the person's number: the viewer's rows are sorted by them.
+/// With ids larger than this, the recording uses the people's numbers instead: sorting by id needs memory up to the
+/// largest id.
 const LARGEST_ID: i64 = 1 << 22;
 
-/// A recording that grows by moments.
+/// A recording of measured frames.
 pub struct MomentRecorder<'a> {
     tracks: &'a Tracks,
     recorder: MeasuredRecorder,
     own_ids: bool,
-    /// The frame that comes next.
+    /// Number of the next frame.
     next: Option<i64>,
 }
 
 impl<'a> MomentRecorder<'a> {
-    /// Begins a recording at `path`, replacing any file there.
+    /// Begins a recording at `path`, replacing an existing file.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -62,15 +63,15 @@ impl<'a> MomentRecorder<'a> {
         })
     }
 
-    /// Are ids those of the file, and not numbers in their order from 0?
+    /// Whether the recording has the ids of the file. Otherwise it numbers people from 0 in the order of their ids.
     pub fn has_own_ids(&self) -> bool {
         self.own_ids
     }
 
-    /// Adds some frames, and the first of those without anybody before each.
+    /// Adds some frames. If frames without people are missing before a frame, adds the first of them.
     ///
     /// # Errors
-    /// An earlier one could not be written.
+    /// An earlier frame could not be written.
     pub fn add(&mut self, moments: &[Moment]) -> Result<(), RecordingError> {
         for moment in moments {
             if let Some(empty) = self.next.filter(|&next| next < moment.frame) {
@@ -96,13 +97,13 @@ impl<'a> MomentRecorder<'a> {
     /// Closes the file.
     ///
     /// # Errors
-    /// Something could not be written.
+    /// The file cannot be written.
     pub fn finish(self) -> Result<(), RecordingError> {
         self.recorder.finish()
     }
 }
 
-/// How it was measured, in Markdown.
+/// A description of the measurement, in Markdown.
 fn document(tracks: &Tracks, options: &Options) -> String {
     let behind = match options.behind {
         Behind::Same => "as dense as where the person stands".to_owned(),

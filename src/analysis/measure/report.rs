@@ -1,4 +1,4 @@
-//! What was measured, in a few lines or as one object.
+//! The summary of a measurement, as text or JSON.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,16 +10,16 @@ use crate::output::trajectory::read::Tracks;
 
 /// The summary of a measurement.
 pub struct Report<'a> {
-    /// What was measured in.
+    /// The measured trajectories.
     pub tracks: &'a Tracks,
-    /// How.
+    /// The options of the measurement.
     pub options: &'a Options,
-    /// What was found.
+    /// The results.
     pub measured: &'a Measured,
 }
 
 impl Report<'_> {
-    /// For a terminal.
+    /// As text for a terminal.
     pub fn text(&self) -> String {
         let overview = &self.measured.overview;
         let [first, last] = overview.times;
@@ -88,7 +88,7 @@ impl Report<'_> {
         text
     }
 
-    /// Seconds that a velocity looks back, and ahead.
+    /// Time that a velocity looks back and ahead, seconds.
     fn reach(&self) -> f64 {
         self.options.speed_reach as f64 * self.tracks.interval()
     }
@@ -128,7 +128,7 @@ impl Report<'_> {
         table
     }
 
-    /// As one object.
+    /// As a JSON object.
     pub fn json(&self) -> Value {
         let overview = &self.measured.overview;
         let kernel = self.options.kernel;
@@ -161,7 +161,7 @@ impl Report<'_> {
     }
 }
 
-/// Class by class, of persons.
+/// One row per density class, with values of people and of frames.
 fn classes(diagram: &Diagram) -> Table {
     let head = [
         "density P/m²",

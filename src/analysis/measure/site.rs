@@ -1,40 +1,40 @@
-//! Where people walk: what walls hide of a kernel, for people and for places.
+//! The measurement site: the parts of a kernel that walls hide, from people and from grid cells.
 
 use crate::engine::boundary::WallMethod;
 use crate::engine::geometry::{Polygon, Walls};
 use crate::engine::math::Vector;
 
-/// Obstacles, with a quick answer to who is inside one.
+/// Obstacles, with a fast test for points inside them.
 #[derive(Debug, Clone)]
 pub struct Site {
     walls: Walls,
-    /// The corners of each obstacle's bounding box, which may be the whole plane.
+    /// The corners of each obstacle's bounding box, infinite for an unbounded obstacle.
     bounds: Vec<[Vector; 2]>,
 }
 
-/// The kernel that measures, and how walls enter.
+/// The kernel, and its treatment of walls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Kernel {
-    /// h, metres.
+    /// h, meters.
     pub support_radius: f64,
-    /// How the integral over what walls hide is taken.
+    /// The method for the integral over hidden regions.
     pub walls: WallMethod,
 }
 
-/// What walls hide from somebody.
+/// What walls hide from a person.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hidden {
     /// Σ_k ∫ W over P_k, the part of the kernel behind walls.
     pub share: f64,
-    /// Where the person looks from and is seen, metres: where he stands or, inside an obstacle, the nearest
-    /// free point, for recorded heads lean over walls. Who is farther inside than h sees no walls.
+    /// The point from which the person sees and is seen, meters: the person's position or, inside an obstacle, the
+    /// nearest free point, because recorded heads lean over walls. A person farther inside than h sees no walls.
     pub eye: Vector,
-    /// How far inside an obstacle the person is, metres.
+    /// Depth inside an obstacle, meters.
     pub inside: Option<f64>,
 }
 
 impl Site {
-    /// Round these obstacles.
+    /// A site with these obstacles.
     pub fn new(obstacles: Vec<Polygon>) -> Self {
         let bounds = obstacles.iter().map(|obstacle| {
             if obstacle.is_unbounded() {
@@ -57,7 +57,7 @@ impl Site {
         &self.walls
     }
 
-    /// Is `p` inside an obstacle?
+    /// Whether `p` is inside an obstacle.
     pub fn is_inside(&self, p: Vector) -> bool {
         let obstacles = self.bounds.iter().zip(self.walls.obstacles());
         let may = |[low, high]: &[Vector; 2]| p == p.sup(low) && p == p.inf(high);
@@ -66,7 +66,7 @@ impl Site {
             .any(|(_, obstacle)| obstacle.contains(p))
     }
 
-    /// What the walls `near` a free place hide of the kernel there.
+    /// The share of the kernel at `p` that the walls in `near` hide. `p` is outside obstacles.
     pub fn share(&self, p: Vector, near: &[u32], kernel: &Kernel) -> f64 {
         let mut share = 0.0;
         let h = kernel.support_radius;
@@ -76,14 +76,14 @@ impl Site {
         share
     }
 
-    /// Does no wall `near` a free place stand between it and another? The same walls hide `q` that hide that
-    /// part of the kernel.
+    /// Whether no wall in `near` is between `p`, outside obstacles, and `q`. Walls that hide `q` also hide that part of
+    /// the kernel.
     pub fn sees(&self, p: Vector, q: Vector, near: &[u32]) -> bool {
         let hides = |&k: &u32| self.walls.wall(k).crossing(p, q).is_some();
         !near.iter().any(hides)
     }
 
-    /// What walls hide from somebody at `p`; `near` are the walls within h, and will be those of the eye.
+    /// What walls hide from a person at `p`. `near` holds the walls within h of `p`, then those within h of the eye.
     pub fn hidden(&self, p: Vector, near: &mut Vec<u32>, kernel: &Kernel) -> Hidden {
         let h = kernel.support_radius;
         if !self.is_inside(p) {

@@ -5,13 +5,12 @@ use rayon::prelude::*;
 use crate::engine::math::Vector;
 use crate::output::trajectory::read::Tracks;
 
-/// How many recorded frames a velocity looks back and ahead, if nobody says otherwise: as PedPy's users do.
+/// Default number of recorded frames that a velocity looks back and ahead, common among PedPy's users.
 pub const FRAMES: i64 = 5;
 
-/// The velocity of every row, m/s: how far the person gets from `reach` recorded frames before to as many
-/// after, by the time between; where one of the two is missing, from there to the row itself or on from
-/// it; `None` where both are. Frames in which the person is missing are missing: no motion is measured
-/// across.
+/// The velocity of every row, m/s: a central difference from `reach` recorded frames before to `reach` after. If one
+/// of the two frames is missing, a one-sided difference; if both are missing, `None`. A frame also counts as missing
+/// if the person is absent in between: no motion is measured across gaps.
 pub fn velocities(tracks: &Tracks, reach: i64) -> Vec<Option<Vector>> {
     let frames = reach.saturating_mul(tracks.step);
     let people = (0..tracks.ids.len()).into_par_iter();
@@ -22,7 +21,7 @@ pub fn velocities(tracks: &Tracks, reach: i64) -> Vec<Option<Vector>> {
                 .iter()
                 .map(|&row| tracks.frame_of(row as usize))
                 .collect();
-            // So many rows away and so many frames: nothing is missing in between.
+            // The row is as many rows away as frames: no frame is missing in between.
             let at = |k: Option<usize>, offset: i64, here: i64| {
                 let k = k.filter(|&k| frame.get(k) == Some(&here.saturating_add(offset)))?;
                 Some((frame[k], tracks.position[rows[k] as usize]))

@@ -1,4 +1,4 @@
-//! Straight lines through points, with an uncertainty that neighbouring points may share.
+//! Straight-line fits, with uncertainties that allow for correlated neighboring points.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Mean and standard error of the mean; `None` of nothing, and the error of a single value is 0.
+    /// Mean and standard error of the mean. `None` without values; the error of a single value is 0.
     pub fn of_mean(values: &[f64]) -> Option<Self> {
         if values.is_empty() {
             return None;
@@ -27,7 +27,7 @@ impl Estimate {
     }
 }
 
-/// Neighbouring points err together, so whole blocks of them are left out for the jackknife.
+/// Number of jackknife blocks. Errors of neighboring points are correlated, so whole blocks are left out.
 const BLOCKS: usize = 6;
 
 /// y = slope · x + offset.
@@ -45,7 +45,7 @@ impl Line {
         self.slope * x + self.offset
     }
 
-    /// By least squares; `None` for fewer than two different x.
+    /// Least-squares fit; `None` for fewer than two different x.
     pub fn through(points: &[(f64, f64)]) -> Option<Self> {
         let count = points.len() as f64;
         let mean_x = points.iter().map(|p| p.0).sum::<f64>() / count;
@@ -63,7 +63,7 @@ impl Line {
     }
 }
 
-/// A function of points with its standard error by a jackknife over blocks of neighbouring points.
+/// A function of points, with its standard error from a jackknife over blocks of neighboring points.
 pub fn jackknife<P: Copy>(points: &[P], value: impl Fn(&[P]) -> Option<f64>) -> Option<Estimate> {
     let all = value(points)?;
     let blocks = BLOCKS.min(points.len());

@@ -1,9 +1,9 @@
-//! Waves in a crowd (§6.3): the mean speed over place and time along the wave's axis, and from it the
-//! wave's speed, its amplitude and what comes back from an obstacle.
+//! Waves in a crowd (§6.3): the mean speed over place and time along the wave's axis, and from it the speed and
+//! amplitude of the wave and its reflection from an obstacle.
 //!
-//! Everything is measured on the velocity along the axis, less its mean before the push, so that a
-//! crowd that creeps forward is no wave. A rigid front turns velocities round: the returning wave is
-//! looked for with the opposite sign.
+//! All measurements use the velocity along the axis minus its mean before the push, so that a slowly advancing crowd
+//! is not taken for a wave. A rigid front reverses velocities, so we search for the returning wave with the opposite
+//! sign.
 
 mod fit;
 mod ridge;

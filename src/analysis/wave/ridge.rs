@@ -1,62 +1,62 @@
-//! The crest of a wave in a space-time diagram: when it passes each place, and how high it is there.
+//! The crest of a wave in a space-time diagram: its time and its height at each place.
 
 use serde::{Deserialize, Serialize};
 
 use super::fit::{Estimate, Line, jackknife};
 use super::space_time::SpaceTime;
 
-/// Speeds that a wave may have, m/s.
+/// Range of wave speeds that are tried, m/s.
 const SPEEDS: [f64; 2] = [2.0, 40.0];
-/// How many of them are tried, at equal ratios.
+/// Number of speeds tried, in geometric progression.
 const TRIED: usize = 90;
-/// Seconds after the start in which a wave sets out.
+/// The wave sets out within this time after the start, seconds.
 const SETS_OUT: f64 = 1.0;
-/// The crest is looked for so many seconds round the straight line found first.
+/// The crest is within this time of the straight line found first, seconds.
 const ROUND: f64 = 0.6;
-/// So near to the obstacle, metres, the arriving and the returning wave lie over each other.
+/// Within this distance of the obstacle, the arriving and the returning wave overlap, meters.
 const OVERLAP: f64 = 4.0;
-/// Amplitudes are compared over so many metres before that.
+/// Length before this overlap over which amplitudes are compared, meters.
 const COMPARED: f64 = 4.0;
-/// The wave is looked at from so many metres before its source, where it has formed.
+/// The wave is measured from this distance ahead of its source, where it has formed, meters.
 const FORMED: f64 = 2.5;
 
-/// What starts a wave towards rising x, and what throws it back.
+/// The source of a wave toward rising x, and the obstacle that reflects it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Run {
-    /// When, seconds.
+    /// Time of the start, seconds.
     pub start: f64,
-    /// The front of those who push, metres.
+    /// x of the front of the pushing agents, meters.
     pub source: f64,
-    /// The front of the obstacle, metres.
+    /// x of the front of the obstacle, meters.
     pub obstacle: f64,
 }
 
 /// The crest at one place.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RidgePoint {
-    /// Where, metres.
+    /// Place, meters.
     pub x: f64,
-    /// When, seconds.
+    /// Time, seconds.
     pub time: f64,
-    /// |v_x − mean v_x before|, m/s.
+    /// |v_x − mean v_x before the push|, m/s.
     pub amplitude: f64,
 }
 
 /// A crest and the straight line through it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Ridge {
-    /// By rising x.
+    /// Sorted by x.
     pub points: Vec<RidgePoint>,
     /// |dx/dt|, m/s.
     pub speed: Estimate,
-    /// The crest's time at x = 0 by the line, seconds.
+    /// Time at which the line passes x = 0, seconds.
     pub offset: f64,
     /// dt/dx of the line, s/m; negative for a returning wave.
     pub slowness: f64,
 }
 
 impl Ridge {
-    /// When the line passes `x`, seconds.
+    /// Time at which the line passes `x`, seconds.
     pub fn time_at(&self, x: f64) -> f64 {
         self.offset + self.slowness * x
     }
@@ -69,20 +69,20 @@ impl Ridge {
     }
 }
 
-/// A wave, there and back.
+/// A wave and its reflection.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Wave {
-    /// Towards the obstacle.
+    /// The wave toward the obstacle.
     pub arriving: Ridge,
-    /// Back from it; `None` if nothing comes back that stands out.
+    /// The wave back from the obstacle; `None` if it does not stand out from the noise.
     pub returning: Option<Ridge>,
-    /// Mean height of the arriving crest 4 to 8 m before the obstacle, m/s.
+    /// Mean height of the arriving crest from 8 m to 4 m before the obstacle, m/s.
     pub amplitude: Estimate,
-    /// Height of the returning crest over that of the arriving one, both there.
+    /// Ratio of the heights of the returning and the arriving crest, both in that range.
     pub reflection: Option<Estimate>,
 }
 
-/// Finds the wave of `run` in a diagram; `None` where no crest stands out.
+/// Finds the wave of `run` in a diagram; `None` if no crest stands out from the noise.
 pub fn measure(diagram: &SpaceTime, run: &Run) -> Option<Wave> {
     let field = Field::new(diagram, run);
     let near = run.obstacle - OVERLAP;
@@ -122,7 +122,7 @@ fn ratio(a: Estimate, b: Estimate) -> Estimate {
     }
 }
 
-/// The disturbance by bins; `None` where people were not always.
+/// The disturbance by bins; `None` for a bin that was ever empty.
 struct Field {
     places: Vec<f64>,
     series: Vec<Option<Vec<f64>>>,
@@ -154,7 +154,7 @@ impl Field {
         }
     }
 
-    /// The bins between two places that always had people.
+    /// The bins between two places that were never empty.
     fn columns(&self, [from, to]: [f64; 2]) -> Vec<(f64, &[f64])> {
         let inside = |&(x, _): &(f64, &[f64])| (from..=to).contains(&x);
         self.places
@@ -165,7 +165,7 @@ impl Field {
             .collect()
     }
 
-    /// A series between its times.
+    /// A series at `time`, interpolated linearly; 0 outside its times.
     fn at(&self, series: &[f64], time: f64) -> f64 {
         let along = (time - self.first_time) / self.time_step;
         if !(0.0..(series.len() - 1) as f64).contains(&along) {
@@ -175,9 +175,9 @@ impl Field {
         series[k] * (1.0 - part) + series[k + 1] * part
     }
 
-    /// The crest with the given sign of v_x: the straight line along which the disturbance adds up
-    /// most, then the highest value near it at every place. `begins` gives for a slowness when it may
-    /// pass the first place, and for how many seconds from then.
+    /// Finds the crest with the given sign of v_x: first the straight line along which the disturbance has the greatest
+    /// sum, then the highest value near this line at every place. For a slowness, `begins` gives the earliest time at
+    /// the first place and the length of the interval to search, seconds.
     fn ridge(
         &self,
         places: &[(f64, &[f64])],
@@ -208,7 +208,7 @@ impl Field {
         })
     }
 
-    /// The line through the diagram with the greatest sum (a slant stack), over x from the first place.
+    /// The line with the greatest sum through the diagram (a slant stack); its x counts from the first place.
     fn brightest(
         &self,
         places: &[(f64, &[f64])],
@@ -237,8 +237,8 @@ impl Field {
         best.map(|(_, line)| line)
     }
 
-    /// The highest value near a time, refined by a parabola; `None` if it does not stand out of the
-    /// noise or lies at the end of where was looked.
+    /// The highest value near a time, refined by a parabola. `None` if it does not stand out from the noise or is at an
+    /// end of the searched interval.
     fn crest(&self, x: f64, series: &[f64], sign: f64, time: f64) -> Option<RidgePoint> {
         let index =
             |time: f64| ((time - self.first_time) / self.time_step).round().max(1.0) as usize;
@@ -276,7 +276,7 @@ mod tests {
         obstacle: 80.0,
     };
 
-    /// A pulse there at `speed` and back at `back`, `reflection` of it, over a crowd that creeps.
+    /// A pulse that runs at `speed` and returns at `back`, reduced by `reflection`, in a slowly advancing crowd.
     fn synthetic(speed: f64, back: f64, reflection: f64, noise: f64) -> SpaceTime {
         let strip = Strip {
             x: [45.0, 80.0],

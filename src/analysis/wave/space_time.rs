@@ -7,11 +7,11 @@ use crate::engine::frame::Frame;
 /// A strip along the x axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Strip {
-    /// From here to there, metres.
+    /// Both ends, meters.
     pub x: [f64; 2],
-    /// |y| up to this, metres.
+    /// Maximum |y|, meters.
     pub half_width: f64,
-    /// Length of one bin, metres.
+    /// Length of a bin, meters.
     pub bin: f64,
 }
 
@@ -21,20 +21,20 @@ impl Strip {
         ((self.x[1] - self.x[0]) / self.bin).round() as usize
     }
 
-    /// The middle of a bin, metres.
+    /// The center of a bin, meters.
     pub fn middle(&self, bin: usize) -> f64 {
         self.x[0] + (bin as f64 + 0.5) * self.bin
     }
 }
 
-/// Mean values over x and t; `None` in a bin without people.
+/// Mean values over x and t; `None` in an empty bin.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpaceTime {
-    /// Where.
+    /// The strip.
     pub strip: Strip,
-    /// When, seconds, evenly spaced.
+    /// Times, seconds, evenly spaced.
     pub times: Vec<f64>,
-    /// Mean |v|, m/s: the bins of the first time, of the second, and so on.
+    /// Mean |v|, m/s: all bins at the first time, then all bins at the second, and so on.
     pub speed: Vec<Option<f64>>,
     /// Mean v_x, m/s, in the same order.
     pub velocity: Vec<Option<f64>>,
@@ -51,7 +51,7 @@ impl SpaceTime {
         }
     }
 
-    /// Adds the current time.
+    /// Adds the current frame.
     pub fn observe(&mut self, frame: &Frame) {
         let bins = self.strip.bins();
         let mut sums = vec![(0u32, 0.0, 0.0); bins];
@@ -64,7 +64,7 @@ impl SpaceTime {
                 *velocity += v.x;
             }
         }
-        // To a tenth of a millimetre a second: more digits would only make stored diagrams longer.
+        // Rounded to 0.1 mm/s: more digits would only make stored diagrams longer.
         let mean = |count: u32, sum: f64| {
             (count > 0).then(|| (1e4 * sum / f64::from(count)).round() / 1e4)
         };
@@ -75,8 +75,8 @@ impl SpaceTime {
         self.velocity.extend(means);
     }
 
-    /// v_x of one bin over time, less its mean before `start` seconds; `None` if the bin was ever
-    /// empty or nothing was seen before.
+    /// v_x of one bin over time, minus its mean before `start` seconds. `None` if the bin was ever empty or no time is
+    /// before `start`.
     pub(super) fn disturbance(&self, bin: usize, start: f64) -> Option<Vec<f64>> {
         let bins = self.strip.bins();
         let series: Option<Vec<f64>> = (0..self.times.len())
@@ -91,7 +91,7 @@ impl SpaceTime {
         Some(series.into_iter().map(|v| v - mean).collect())
     }
 
-    /// Seconds between times.
+    /// Time between columns, seconds.
     pub(super) fn time_step(&self) -> f64 {
         match self.times[..] {
             [first, .., last] => (last - first) / (self.times.len() - 1) as f64,
