@@ -1,4 +1,4 @@
-//! One frame of a dense crowd, by size: the hot loops through the public API.
+//! The time of one frame of a dense crowd, by size, through the public API.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use sandbox::engine::agents::NewAgent;
@@ -8,7 +8,7 @@ use sandbox::engine::scene::{Group, Scene};
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::{self, Parameters};
 
-/// So many agents on a jittered grid of 4 P/m², each on its way to its own place, at rest after 1 s.
+/// `count` agents on a jittered grid of 4 P/m², each with its own start as its goal, after 50 frames.
 fn crowd(count: u32, profile: &str) -> Simulation {
     let side = f64::from(count).sqrt().ceil();
     let grid = Grid {

@@ -1,7 +1,7 @@
-//! The hot loops one by one, on one thread, through the public API: a crowd of 10,000 at the density of
-//! the concert or of streams that avoid each other.
+//! Each hot loop on one thread, through the public API. The crowd has 10,000 agents, at the density of the concert or
+//! of streams that avoid each other.
 //!
-//! Throughput is in agents: `--bench hot_loops density` says how many densities a second.
+//! Throughput is in agents: `--bench hot_loops density` gives densities per second.
 
 use std::hint::black_box;
 
@@ -17,7 +17,7 @@ use sandbox::engine::simulation::Simulation;
 use sandbox::lab::bench::Crowd;
 
 const AGENTS: u32 = 10_000;
-/// RVO takes its time; so many agents are enough.
+/// RVO is slow, so a sample of agents is enough.
 const SOME: usize = 100;
 
 /// The evaluated frame after the first second.
@@ -28,7 +28,7 @@ fn evaluated(crowd: &Crowd, precision: Precision) -> Simulation {
     simulation
 }
 
-/// Eq. 9 for everybody.
+/// Eq. 9 for all agents.
 fn density(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("density");
     group.throughput(Throughput::Elements(u64::from(AGENTS)));
@@ -56,7 +56,7 @@ fn density(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Eqs. 7, 11 and 22 for everybody.
+/// Eqs. 7, 11 and 22 for all agents.
 fn pair_forces(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("pair forces");
     group.throughput(Throughput::Elements(u64::from(AGENTS)));
@@ -93,7 +93,7 @@ fn pair_forces(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Eq. 18 for everybody, 5 m around and half as far.
+/// Eq. 18 for all agents, with avoidance radii of 5 m and 2.5 m.
 fn social_forces(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("social forces");
     group.throughput(Throughput::Elements(u64::from(AGENTS)));
@@ -119,7 +119,7 @@ fn social_forces(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Eqs. 20 and 21: one choice among 250 candidates for each of some.
+/// Eqs. 20 and 21: a choice among 250 candidates, for a sample of agents.
 fn rvo(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("rvo");
     group.throughput(Throughput::Elements(SOME as u64));
@@ -153,7 +153,7 @@ fn neighbors(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Eqs. 10 and 12 for people along a wall and round its corner, by each method.
+/// Eqs. 10 and 12 for people along a wall and around its corner, by each method.
 fn walls(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("walls");
     let corners = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]];
@@ -192,7 +192,7 @@ fn walls(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// On one thread: a loop is measured, not how it is shared out.
+/// Uses one thread, to measure the loops and not their parallel scheduling.
 fn hot_loops(criterion: &mut Criterion) {
     rayon::ThreadPoolBuilder::new()
         .num_threads(1)

@@ -1,4 +1,4 @@
-//! The engine as a library: build a room, run it, read densities.
+//! Uses the engine as a library: builds a scene, runs it, reads densities.
 
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::geometry::Polygon;
@@ -9,7 +9,7 @@ use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::{self, Parameters};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // A pillar 1 m before the goal, and 100 people who all want to get there.
+    // A pillar 1 m before the goal, and 100 people walking to that goal.
     let corners = [[11.0, 4.0], [12.0, 4.0], [12.0, 6.0], [11.0, 6.0]];
     let pillar = Polygon::new(corners.map(Vector::from).to_vec())?;
     let mut scene = Scene::with_obstacles(vec![pillar]);

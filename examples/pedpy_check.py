@@ -1,4 +1,4 @@
-"""What PedPy measures in a trajectory, beside what the sandbox measured itself.
+"""Compares what PedPy measures in a trajectory with the sandbox's own results.
 
     pip install pedpy
     sandbox evacuation --trajectory run.sqlite --trajectory run.txt --trajectory run.csv --json > run.json
@@ -27,7 +27,7 @@ def compare(what, pedpys, ours, within):
 
 print(f"{'':<44} {'PedPy':>8} {'sandbox':>8}")
 
-# %% All files say the same, and everybody is where people can walk.
+# %% All files agree, and everyone is in the walkable area.
 crowd = pedpy.load_trajectory_from_jupedsim_sqlite(trajectory_file=database)
 area = pedpy.load_walkable_area_from_jupedsim_sqlite(trajectory_file=database)
 columns = ["id", "frame", "x", "y"]
@@ -40,14 +40,14 @@ for same in [from_text, from_csv]:
     assert difference.abs().to_numpy().max() < 1e-12
 assert pedpy.is_trajectory_valid(traj_data=crowd, walkable_area=area)
 
-# %% Flow: whoever crosses the outer end of the door reaches the goal half a metre on.
+# %% Flow: people who cross the outer end of the door reach the goal half a meter later.
 door = pedpy.MeasurementLine([(21, 9.6), (21, 10.4)])
 _, crossings = pedpy.compute_n_t(traj_data=crowd, measurement_line=door)
 times = crossings["frame"].sort_values().to_numpy() / crowd.frame_rate
 assert abs(len(times) - metrics["evacuated"]) <= 1
 compare("flow of the first 350, 1/s", 349 / (times[349] - times[0]), metrics["flow_per_s"], 0.01)
 
-# %% Density at 15 s: the sandbox's own is in the file; Voronoi cells are another estimator of the same.
+# %% Density at 15 s: the file has the sandbox's own density; Voronoi cells are another estimate of the same quantity.
 frame = int(15 * crowd.frame_rate)
 of_frame = f"SELECT avg(density) FROM trajectory_data WHERE frame = {frame}"
 

@@ -1,4 +1,4 @@
-"""What `sandbox measure` finds in trajectories, beside what PedPy finds in the same file.
+"""Compares the results of `sandbox measure` with those of PedPy for the same file.
 
     pip install pedpy
     sandbox evacuation --trajectory run.sqlite
@@ -19,7 +19,7 @@ agents = pd.read_csv(folder / "agents.csv")
 crossings = pd.read_csv(folder / "flow.csv")
 assert len(agents) == len(crowd.data)
 
-# %% Speeds: five frames back and five ahead, one-sided where somebody comes or goes.
+# %% Speeds: five frames back and five ahead, one-sided where a person enters or leaves.
 speeds = pedpy.compute_individual_speed(
     traj_data=crowd, frame_step=5, speed_calculation=pedpy.SpeedCalculation.BORDER_SINGLE_SIDED
 )
@@ -30,7 +30,7 @@ off = (both.speed - both.speed_pedpy).abs().max()
 print(f"speeds of {len(both)} rows: off by {off:.2g} m/s at most")
 assert off < 1e-9
 
-# %% Flow: PedPy has everybody's first crossing, the sandbox says which of all crossings count.
+# %% Flow: PedPy has each person's first crossing; the sandbox marks which crossings count.
 door = pedpy.MeasurementLine([(21, 9.6), (21, 10.4)])
 n_t, first = pedpy.compute_n_t(traj_data=crowd, measurement_line=door)
 passages = crossings[crossings.passage & (crossings.direction == 1)]

@@ -1,13 +1,13 @@
-"""A whole evacuation as PedPy sees it: who is where, N(t) at the door, speed over density.
+"""An evacuation in PedPy: positions, N(t) at the door, speed over density.
 
     pip install pedpy
     sandbox evacuation --trajectory evacuation.sqlite
     python examples/tour.py evacuation.sqlite evacuation.png
 
-The cells (# %%) run one by one in Jupyter, VS Code, Spyder or PyCharm.
+The cells (# %%) can be run one by one in Jupyter, VS Code, Spyder or PyCharm.
 """
 
-# %% The trajectories, and where people can walk.
+# %% The trajectories and the walkable area.
 import sys
 from pathlib import Path
 
@@ -20,13 +20,13 @@ crowd = pedpy.load_trajectory_from_jupedsim_sqlite(trajectory_file=Path(file))
 area = pedpy.load_walkable_area_from_jupedsim_sqlite(trajectory_file=Path(file))
 print(f"{crowd.data.id.nunique()} people, {crowd.data.frame.max() / crowd.frame_rate:.0f} s")
 
-# %% Flow: who crosses the outer end of the door, and when.
+# %% Flow: crossings of the outer end of the door.
 door = pedpy.MeasurementLine([(21, 9.6), (21, 10.4)])
 nt, crossings = pedpy.compute_n_t(traj_data=crowd, measurement_line=door)
 times = crossings["frame"].sort_values().to_numpy() / crowd.frame_rate
 print(f"flow through the door: {(len(times) - 1) / (times[-1] - times[0]):.2f} people per second")
 
-# %% Density and speed of everybody, once a second for the first two minutes.
+# %% Density and speed of everyone, once per second for the first two minutes.
 seconds = crowd.data[(crowd.data.frame % 10 == 0) & (crowd.data.frame <= 1200)]
 moments = pedpy.TrajectoryData(seconds[["id", "frame", "x", "y"]], frame_rate=crowd.frame_rate)
 cut_off = pedpy.Cutoff(radius=1.0, quad_segments=8)

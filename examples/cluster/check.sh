@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Runs study.json on this machine as it is, by Snakemake and by Slurm, and compares the results:
+# Runs study.json directly, with Snakemake and with Slurm on this machine, and compares the results:
 #
 #   examples/cluster/check.sh target/release/sandbox
 #
-# Snakemake comes from PyPI, unless SNAKEMAKE names one. Slurm comes from Debian's packages and runs on this
-# machine alone, with daemons, ports and a key of its own; where it cannot be had or started, that is said,
-# and the array script runs with the variables that Slurm would set.
+# Snakemake comes from PyPI, unless SNAKEMAKE names a program. Slurm comes from Debian's packages and runs only on
+# this machine, with its own daemons, ports and key. If Slurm cannot be installed or started, the script says so and
+# runs the array script with the variables that Slurm would set.
 set -euo pipefail
 sandbox=$(realpath "${1:?the program sandbox}")
 examples=$(realpath "$(dirname "$0")")
@@ -21,7 +21,7 @@ clean_up() {
 trap clean_up EXIT
 cd "$folder"
 
-# Everything but how long runs took is the same as in the study that was run as a whole.
+# Checks that everything except run times equals the results of the whole study.
 same_as_whole() {
   python3 - whole/study.csv "$1" "$2" <<'PYTHON'
 import csv, sys
@@ -37,7 +37,7 @@ print(f"{sys.argv[3]}: the same {len(other)} cells, to the last bit")
 PYTHON
 }
 
-# %% As it is.
+# %% Directly.
 cp "$examples/study.json" .
 "$sandbox" sweep study.json --out whole
 
@@ -54,7 +54,7 @@ snakemake() {
 snakemake
 same_as_whole snakemake/study.csv Snakemake
 before=$(ls -l --time-style=full-iso snakemake/cases)
-touch study.json # a changed study: its shards are asked again, and run nothing
+touch study.json # a changed study starts its shards again; they run nothing
 snakemake
 [ "$before" = "$(ls -l --time-style=full-iso snakemake/cases)" ]
 

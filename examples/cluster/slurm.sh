@@ -5,11 +5,11 @@
 #SBATCH --time=01:00:00
 #SBATCH --output=%x-%A-%a.log
 #
-# A study as an array job of shards, and a job that puts it together when they have ended:
+# Runs a study as an array job with one task per shard, then a job that merges the results when all tasks have ended:
 #
-#   SANDBOX=target/release/sandbox ./slurm.sh study.json 8 [options of sbatch …]
+#   SANDBOX=target/release/sandbox ./slurm.sh study.json 8 [sbatch options …]
 #
-# Cells that failed, or that a time limit cut off, are run again by the same command, and no others.
+# The same command runs only the cells again that failed or hit a time limit.
 set -euo pipefail
 study=${1:?a study, JSON}
 shards=${2:?how many shards}
@@ -21,7 +21,7 @@ case ${SWEEP_STEP:-submit} in
     options=("${@:3}")
     array=$(sbatch --parsable --array="1-$shards" --export=ALL,SWEEP_STEP=shard "${options[@]}" \
       "$0" "$study" "$shards")
-    # afterany, not afterok: one failed cell makes its shard fail, and what there is shall be put together.
+    # afterany, not afterok: a failed cell fails its shard, but the finished cells must be merged anyway.
     merge=$(sbatch --parsable --dependency="afterany:${array%%;*}" --export=ALL,SWEEP_STEP=merge \
       --output=%x-%j-merge.log "${options[@]}" "$0" "$study" "$shards")
     echo "array job ${array%%;*}: shards 1 to $shards of $study; then job ${merge%%;*} puts them together"
