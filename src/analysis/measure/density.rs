@@ -35,7 +35,7 @@ pub struct Parts {
     pub hidden: Hidden,
 }
 
-/// The terms for everyone in a frame, in the given order. Without `masses`, all masses are 1.
+/// The terms for all people in a frame, in the given order. Without `masses`, all masses are 1.
 pub fn parts(
     site: &Site,
     positions: &[Vector],

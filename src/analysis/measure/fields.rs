@@ -78,7 +78,7 @@ struct Sums {
 pub struct Mean {
     /// ρ, P/m².
     pub density: f64,
-    /// J/ρ, m/s; `None` if nobody with a known velocity came near.
+    /// J/ρ, m/s; `None` if no person with a known velocity came near.
     pub velocity: Option<Vector>,
     /// Mean speed with the same weights, m/s.
     pub speed: Option<f64>,

@@ -83,7 +83,7 @@ pub struct Moment {
     pub frame: i64,
     /// Seconds.
     pub time: f64,
-    /// Everyone in the frame, by id.
+    /// All people in the frame, by id.
     pub people: Vec<Person>,
 }
 
