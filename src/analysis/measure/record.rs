@@ -68,7 +68,7 @@ impl<'a> MomentRecorder<'a> {
         self.own_ids
     }
 
-    /// Adds some frames. If frames without people are missing before a frame, adds the first of them.
+    /// Adds some frames. A gap before a frame is recorded as a single empty frame.
     ///
     /// # Errors
     /// An earlier frame could not be written.

@@ -11,7 +11,7 @@ const SPEEDS: [f64; 2] = [2.0, 40.0];
 const TRIED: usize = 90;
 /// The wave sets out within this time after the start, seconds.
 const SETS_OUT: f64 = 1.0;
-/// The crest is within this time of the straight line found first, seconds.
+/// The crest is searched within this time of the straight line found first, seconds.
 const ROUND: f64 = 0.6;
 /// Within this distance of the obstacle, the arriving and the returning wave overlap, meters.
 const OVERLAP: f64 = 4.0;
@@ -276,7 +276,7 @@ mod tests {
         obstacle: 80.0,
     };
 
-    /// A pulse that runs at `speed` and returns at `back`, reduced by `reflection`, in a slowly advancing crowd.
+    /// A pulse that runs at `speed` and returns at `back`, scaled by `reflection`, in a slowly advancing crowd.
     fn synthetic(speed: f64, back: f64, reflection: f64, noise: f64) -> SpaceTime {
         let strip = Strip {
             x: [45.0, 80.0],

@@ -115,7 +115,7 @@ impl Raster {
         raster
     }
 
-    /// Fills each row between every other pair of crossings of its center line with the outline.
+    /// Fills each row between successive pairs of crossings of its center line with the outline.
     fn fill(&mut self, obstacle: &Polygon) {
         for row in 0..self.rows {
             let y = self.min.y + (row as f64 + 0.5) * self.cell;
