@@ -1,4 +1,4 @@
-//! What a setting costs: milliseconds per simulated second on one thread, all settings in turns.
+//! The cost of settings: milliseconds per simulated second on one thread. The settings take turns.
 
 use serde_json::Value;
 
@@ -7,10 +7,10 @@ use crate::engine::simulation::Simulation;
 use crate::lab::bench::{BenchError, Contender, Spread, alternate, pool};
 use crate::lab::reproduce::ReproduceError;
 
-/// So much is simulated at a time, seconds.
+/// Simulated time of one measurement, seconds.
 const SECONDS: f64 = 0.96;
 
-/// A crowd that does the same again and again.
+/// A crowd that repeats the same frames from the same start in every turn.
 struct Again<'a> {
     start: Simulation,
     pool: &'a rayon::ThreadPool,
@@ -27,10 +27,10 @@ impl Contender for Again<'_> {
     }
 }
 
-/// Milliseconds per simulated second of a document under every one of some settings.
+/// Milliseconds per simulated second of a document under each of several settings.
 ///
 /// # Errors
-/// A setting makes no sense, or a run cannot go on.
+/// A setting is invalid, or a run fails.
 pub fn measure(
     document: &Value,
     settings: &[Vec<String>],

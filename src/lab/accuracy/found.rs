@@ -1,4 +1,4 @@
-//! What was found in one scene, and what is cheapest there.
+//! The results of one scene, and its cheapest settings.
 
 use serde::Serialize;
 
@@ -9,10 +9,10 @@ use super::statistics::Deviation;
 use crate::lab::bench::Spread;
 use crate::output::table::Table;
 
-/// Something whose error is measured.
+/// A quantity whose error is measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Quantity {
-    /// What it is.
+    /// Its name.
     pub name: String,
     /// Its unit.
     pub unit: &'static str,
@@ -27,19 +27,19 @@ impl Quantity {
     }
 }
 
-/// An error.
+/// A measured error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Measured {
-    /// The quantity itself, where it is a number: its mean and half its 95 % confidence interval.
+    /// If the quantity is a statistic over seeds: its mean and half its 95 % confidence interval.
     pub mean: Option<(f64, f64)>,
-    /// How far from the reference.
+    /// Distance from the reference.
     pub error: f64,
-    /// Half the 95 % confidence interval of that; 0 where nothing is random.
+    /// Half the 95 % confidence interval of the error; 0 if the error is not random.
     pub interval: f64,
 }
 
 impl Measured {
-    /// Nothing random.
+    /// An error that is not random.
     pub(super) fn exact(error: f64) -> Self {
         Self {
             mean: None,
@@ -48,7 +48,7 @@ impl Measured {
         }
     }
 
-    /// At least what can be told from the reference.
+    /// The error or half its confidence interval, whichever is larger: smaller errors cannot be told from 0.
     pub fn bound(&self) -> f64 {
         self.error.max(self.interval)
     }
@@ -64,42 +64,42 @@ impl From<Deviation> for Measured {
     }
 }
 
-/// One setting of one knob in one scene.
+/// The result of one setting of one knob in one scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
     /// The knob.
     pub knob: Knob,
-    /// Its curve.
+    /// The label of its curve.
     pub curve: String,
-    /// As `--set` takes them.
+    /// The settings, as `--set` takes them.
     pub settings: Vec<String>,
     /// Milliseconds per simulated second on one thread.
     pub cost: Spread,
-    /// By quantity; `None` where there is none.
+    /// The errors in the order of [`Found::quantities`]; `None` if a quantity has no value.
     pub errors: Vec<Option<Measured>>,
 }
 
-/// A scene.
+/// The results of one scene.
 #[derive(Clone)]
 pub struct Found {
-    /// Which.
+    /// The scene.
     pub scene: Scene,
-    /// What is measured.
+    /// The measured quantities.
     pub quantities: Vec<Quantity>,
-    /// Curve by curve.
+    /// The points, curve by curve.
     pub points: Vec<Point>,
-    /// What else was found, in words.
+    /// Further findings, in words.
     pub notes: String,
 }
 
-/// Errors for which the cheapest settings are told: of positions, metres.
+/// Position errors for which the cheapest settings are listed, meters.
 const POSITIONS: [f64; 4] = [0.03, 0.01, 0.003, 0.001];
-/// And of statistics, in parts of the number.
+/// The same for statistics, as relative errors.
 const PARTS: [f64; 3] = [0.05, 0.02, 0.01];
 
 impl Found {
-    /// The one error by which settings are compared: of positions after a second, in metres; of statistics
-    /// the largest, in parts of the number.
+    /// The one error by which settings are compared. For motion: of positions after about a second, in meters. For
+    /// statistics: the largest relative error.
     pub fn overall(&self, point: &Point) -> Option<f64> {
         match self.scene.kind {
             Kind::Motion => point.errors[1].map(|error| error.error),
@@ -114,7 +114,7 @@ impl Found {
         }
     }
 
-    /// Costs and errors of all points that have both, with their indices.
+    /// The points that have such an error: their indices, and their (cost, error).
     fn compared(&self) -> (Vec<usize>, Vec<(f64, f64)>) {
         let points = self.points.iter().enumerate();
         points
@@ -129,7 +129,7 @@ impl Found {
         }
     }
 
-    /// The cheapest settings for some errors, and whether the default is beaten, as rows of a table.
+    /// Table rows: the cheapest settings for each target error, and the settings that beat the default.
     pub fn choices(&self) -> Vec<Vec<String>> {
         let (indices, compared) = self.compared();
         let (targets, write) = self.targets();
@@ -183,7 +183,7 @@ impl Found {
         rows
     }
 
-    /// Every point.
+    /// A table of all points.
     pub fn table(&self) -> Table {
         let mut head = vec![
             "knob".to_owned(),
@@ -223,7 +223,7 @@ fn row(scene: &str, wanted: &str, found: [String; 3]) -> Vec<String> {
         .collect()
 }
 
-/// An error by which settings are compared, with its unit.
+/// Formats an error by which settings are compared, with its unit.
 fn precise(kind: Kind, error: f64) -> String {
     match kind {
         Kind::Motion => format!("{:.2} mm", 1e3 * error),

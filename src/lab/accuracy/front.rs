@@ -1,19 +1,20 @@
-//! Which settings nothing else beats.
+//! The settings that no other setting beats (the Pareto front).
 
-/// Costs and errors within this factor are taken for the same: costs vary by as much from turn to turn.
+/// Costs and errors within this factor count as equal: costs vary by about as much between turns.
 const SAME: f64 = 1.1;
 
-/// What stands above a point: the best that costs no more, and the cheapest that is no worse.
+/// The two points that beat a given point: the most accurate one at no higher cost, and the cheapest one at no larger
+/// error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Front {
-    /// The least error at no more than the same cost, and whose it is.
+    /// Index and error of the most accurate point at no higher cost.
     pub best_at_cost: Option<(usize, f64)>,
-    /// The least cost at no more than the same error, and whose it is.
+    /// Index and cost of the cheapest point at no larger error.
     pub cheapest_at_error: Option<(usize, f64)>,
 }
 
 impl Front {
-    /// Of point `k` among points (cost, error).
+    /// For point `k` of `points`, each (cost, error).
     pub fn of(points: &[(f64, f64)], k: usize) -> Self {
         let (cost, error) = points[k];
         let others = || points.iter().enumerate().filter(|&(other, _)| other != k);
@@ -30,7 +31,7 @@ impl Front {
     }
 }
 
-/// The cheapest of points (cost, error) whose error is at most `most`.
+/// Index of the cheapest of `points`, each (cost, error), with an error of at most `most`.
 pub fn cheapest(points: &[(f64, f64)], most: f64) -> Option<usize> {
     let exact = points.iter().enumerate().filter(|(_, p)| p.1 <= most);
     exact
@@ -50,7 +51,7 @@ mod tests {
         let beaten = Front::of(&points, 2);
         assert_eq!(beaten.best_at_cost, Some((3, 0.1)));
         assert_eq!(beaten.cheapest_at_error, Some((1, 2.0)));
-        // At the same cost, to a tenth.
+        // Its cost counts as equal: it is within a tenth.
         assert_eq!(Front::of(&points, 1).best_at_cost, Some((3, 0.1)));
         assert_eq!(cheapest(&points, 0.5), Some(1));
         assert_eq!(cheapest(&points, 0.01), None);

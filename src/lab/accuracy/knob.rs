@@ -1,31 +1,31 @@
-//! What can be chosen about the numerics, and the values that are tried.
+//! The numerical choices ("knobs"), and the values that are tried.
 
 use crate::engine::scene::Needs;
 
 /// A numerical choice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Knob {
-    /// Δt of semi-implicit Euler, the paper's reading.
+    /// Δt of semi-implicit Euler, the integrator that we read from the paper.
     TimeStep,
     /// The other integrators, at every Δt.
     Integrator,
-    /// Neighbour lists with a margin, or the paper's plain reuse.
+    /// Neighbor lists with a margin, or the paper's plain reuse.
     Lists,
-    /// Δt_coarse in frames: how often RVO chooses.
+    /// Δt_coarse in frames: how often RVO chooses a velocity.
     Coarse,
-    /// The numbers that sums over pairs are taken in.
+    /// The floating-point precision of sums over pairs.
     Precision,
     /// How walls enter SPH.
     Walls,
-    /// Which social forces are left out.
+    /// The size below which social forces are left out.
     Tolerance,
-    /// How many velocities RVO tries.
+    /// The number of RVO's candidate velocities.
     Candidates,
     /// The named presets.
     Preset,
 }
 
-/// All of them with their names on the command line.
+/// All knobs with their names on the command line.
 pub const KNOBS: [(&str, Knob); 9] = [
     ("time-step", Knob::TimeStep),
     ("integrator", Knob::Integrator),
@@ -38,18 +38,18 @@ pub const KNOBS: [(&str, Knob); 9] = [
     ("preset", Knob::Preset),
 ];
 
-/// Points that belong together: one knob turned.
+/// Points that are drawn as one curve: values of one knob.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
     /// The knob.
     pub knob: Knob,
-    /// What it is called in legends.
+    /// Its label in legends.
     pub label: String,
     /// The settings of every point, as `--set` takes them.
     pub points: Vec<Vec<String>>,
 }
 
-/// The settings that a scene has which says nothing.
+/// The default settings of a scene.
 const DEFAULTS: [&str; 9] = [
     "time_step_secs=0.02",
     "integrator=semi-implicit",
@@ -62,7 +62,7 @@ const DEFAULTS: [&str; 9] = [
     "preset=paper",
 ];
 
-/// Those of some settings that change anything.
+/// Those of `settings` that differ from the defaults.
 pub fn without_defaults(settings: &[String]) -> Vec<String> {
     let changed = settings
         .iter()
@@ -70,7 +70,7 @@ pub fn without_defaults(settings: &[String]) -> Vec<String> {
     changed.cloned().collect()
 }
 
-/// Do these settings change nothing?
+/// Are all of these settings defaults?
 pub fn are_default(settings: &[String]) -> bool {
     without_defaults(settings).is_empty()
 }
@@ -78,12 +78,12 @@ pub fn are_default(settings: &[String]) -> bool {
 /// Δt, seconds.
 const STEPS: [&str; 6] = ["0.0025", "0.005", "0.01", "0.02", "0.04", "0.08"];
 
-/// How much is tried.
+/// How many values are tried.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Detail {
     /// Everything.
     All,
-    /// All but the finest steps, which statistics cannot tell from the reference.
+    /// All but the finest step, which statistics cannot tell from the reference.
     Coarser,
     /// A few values.
     Few,
@@ -96,7 +96,7 @@ impl Knob {
         found.map_or("", |(name, _)| name)
     }
 
-    /// Does it change anything in a scene with these needs?
+    /// Does the knob have an effect in a scene with these needs?
     pub fn acts(self, needs: &Needs, has_walls: bool) -> bool {
         match self {
             Self::Coarse | Self::Candidates => needs.rvo,
@@ -108,7 +108,7 @@ impl Knob {
         }
     }
 
-    /// What is tried.
+    /// The curves to be measured.
     pub fn curves(self, detail: Detail) -> Vec<Curve> {
         let steps = match detail {
             Detail::All => &STEPS[..],
@@ -148,7 +148,7 @@ impl Knob {
         }
     }
 
-    /// The setting that it turns.
+    /// The key of its setting.
     fn key(self) -> &'static str {
         match self {
             Self::TimeStep => "time_step_secs",
@@ -163,7 +163,7 @@ impl Knob {
         }
     }
 
-    /// Its values, the best first where one is.
+    /// Its values. If [`best`](Self::best) exists, it is the first.
     fn values(self) -> &'static [&'static str] {
         match self {
             Self::TimeStep | Self::Integrator => &[],
@@ -177,8 +177,8 @@ impl Knob {
         }
     }
 
-    /// The settings that its own error is counted from, everything else being equal; `None` where that is
-    /// the reference itself.
+    /// The settings of the reference for the knob's own error, with all other settings at their defaults. `None` if the
+    /// knob has no reference of its own.
     pub fn best(self) -> Option<Vec<String>> {
         match self {
             Self::TimeStep | Self::Integrator | Self::Preset => None,

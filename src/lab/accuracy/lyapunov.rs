@@ -1,4 +1,4 @@
-//! How fast two crowds part that began almost alike.
+//! How fast two crowds with almost equal starts diverge.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -8,21 +8,22 @@ use crate::analysis::wave::Line;
 use crate::engine::simulation::Simulation;
 use crate::lab::reproduce::ReproduceError;
 
-/// How far somebody is moved at the start, metres: far above rounding, far below what forces notice.
+/// The distance by which each agent is moved at the start, meters: far above rounding errors, far too small to change
+/// the forces.
 const SHIFT: f64 = 1e-8;
-/// How long both crowds are followed, seconds.
+/// Simulated time of both crowds, seconds.
 const DURATION: f64 = 1.92;
-/// The fit begins here, seconds: until then the shift turns into the fastest growing one.
+/// Start of the fit, seconds: before it, the shift still aligns with the fastest-growing direction.
 const FIT_FROM: f64 = 0.48;
-/// So many different shifts.
+/// Number of shifts.
 const SHIFTS: u32 = 3;
 
 /// The largest Lyapunov exponent of a crowd's first seconds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Lyapunov {
-    /// Growth of the distance, 1/s, of every shift that was tried.
+    /// Growth rate of the distance for each shift, 1/s.
     pub rates: Vec<f64>,
-    /// How many times farther apart the crowds are at the end than at the start, at most.
+    /// The largest ratio of the final distance between the crowds to the initial one.
     pub growth: f64,
 }
 
@@ -32,16 +33,16 @@ impl Lyapunov {
         self.rates.iter().sum::<f64>() / self.rates.len().max(1) as f64
     }
 
-    /// In which a distance grows e-fold, seconds; `None` where it shrinks.
+    /// Time in which a distance grows e-fold, seconds; `None` if distances shrink.
     pub fn time(&self) -> Option<f64> {
         let rate = self.rate();
         (rate > 0.0).then(|| 1.0 / rate)
     }
 
-    /// Measures a document in double precision, at a step at which integration adds little.
+    /// Measures a document in double precision, at a time step with a small integration error.
     ///
     /// # Errors
-    /// The run cannot go on.
+    /// The run fails.
     pub fn of(document: &Value) -> Result<Self, ReproduceError> {
         let (mut rates, mut growth) = (Vec::new(), 0.0_f64);
         for shift in 0..SHIFTS {
@@ -54,12 +55,12 @@ impl Lyapunov {
     }
 }
 
-/// Numbers in [0, 1) that fill it evenly.
+/// Fractional parts of multiples of the golden ratio: they fill [0, 1) evenly.
 pub fn golden(k: u32) -> f64 {
     (f64::from(k) * 0.618_033_988_749_895).fract()
 }
 
-/// Times and root mean square distances of a crowd from one whose people are moved by [`SHIFT`].
+/// Times, and root mean square distances between a crowd and a copy whose agents are moved by [`SHIFT`].
 fn distances(document: &Value, shift: u32) -> Result<Vec<(f64, f64)>, ReproduceError> {
     let settings = ["precision=double", "time_step_secs=0.005"].map(str::to_owned);
     let one = simulation(document, &settings)?;
@@ -103,7 +104,7 @@ fn distance(one: &Simulation, other: &Simulation) -> f64 {
     (squares.sum::<f64>() / one.len().max(1) as f64).sqrt()
 }
 
-/// Of the logarithms of distances over time, by least squares.
+/// Slope of the logarithm of distances over time, by least squares.
 fn slope(distances: &[(f64, f64)]) -> f64 {
     let points = distances
         .iter()

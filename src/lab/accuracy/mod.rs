@@ -1,10 +1,9 @@
-//! Run time against error: what every numerical choice costs, and how far it leads from the model's own
-//! limit.
+//! Run time against error: the cost of each numerical choice, and how far its result is from the model's own limit.
 //!
-//! Every point is a scenario under some settings, as `--set` takes them. Its cost is milliseconds per
-//! simulated second on one thread; its error is how far people are from where a run at Δt/64 takes them
-//! ([`Motion`]), before chaos takes over ([`Lyapunov`]), or how far Table 1's numbers are from those of
-//! a fine step, over seeds ([`Deviation`]). How exactly walls are integrated stands apart, in [`walls`].
+//! Every point is a scenario under some settings, as `--set` takes them. Its cost is milliseconds per simulated second
+//! on one thread. Its error is one of two: how far agents are from their positions in a run at Δt/64 ([`Motion`]),
+//! before chaos takes over ([`Lyapunov`]); or how far Table 1's numbers, averaged over seeds, are from those of a run
+//! with a fine step ([`Deviation`]). The accuracy of the integrals over walls is measured separately, in [`walls`].
 
 mod cost;
 mod found;

@@ -7,7 +7,8 @@ use super::scenes::Kind;
 use crate::lab::reproduce::{ReproduceError, Store};
 use crate::output::plot::{Axis, Corner, LINES, Mark, Panel, Point, Sheet, Style};
 
-/// Of scenes of motion: positions at all moments, velocity and density at the middle one, and the knob alone.
+/// The quantities drawn for scenes of motion: positions at all samples, velocity and density at the middle one, and the
+/// position error by the knob alone.
 const MOTION: [usize; 6] = [0, 1, 2, 4, 7, 9];
 
 /// Draws `accuracy-SCENE.svg` and `.png`.
@@ -45,7 +46,7 @@ fn sheet(found: &Found) -> Sheet {
     }
 }
 
-/// A little more than all positive values.
+/// A range that is slightly wider than all positive values.
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let positive = values.filter(|&v| v > 0.0 && v.is_finite());
     let [low, high] = positive.fold([f64::INFINITY, 0.0], |[low, high], v| {
@@ -120,7 +121,7 @@ fn panel(found: &Found, quantity: usize, costs: [f64; 2], legend: bool) -> Panel
     }
 }
 
-/// Where a point stands: at what can be told from the reference, if its error cannot.
+/// The position of a point in the panel: at its error or, if that is larger, at the error's confidence interval.
 fn at(point: &Setting, quantity: usize) -> Option<Point> {
     let error = point.errors[quantity]?;
     Some(Point {

@@ -1,4 +1,4 @@
-//! What `sandbox accuracy` says and writes.
+//! What `sandbox accuracy` prints and writes.
 
 use std::fmt::Write;
 
@@ -8,22 +8,22 @@ use super::walls::WallReport;
 use crate::lab::reproduce::{ReproduceError, Store};
 use crate::output::table::Table;
 
-/// What walls are called where scenes are named.
+/// The name of the wall measurements in lists of scenes.
 pub const WALLS: &str = "wall-integrals";
 
-/// Everything that was found.
+/// All results.
 #[derive(Clone)]
 pub struct Report {
-    /// Scene by scene.
+    /// The results, scene by scene.
     pub scenes: Vec<Found>,
-    /// How exactly walls are integrated, if that was asked for.
+    /// The accuracy of the integrals over walls, if it was measured.
     pub walls: Option<WallReport>,
-    /// Were there few values, seeds and turns?
+    /// Was the plan quick, with few values, seeds and turns?
     pub quick: bool,
 }
 
 impl Report {
-    /// What is cheapest for which error.
+    /// A table of the cheapest settings for each error.
     fn choices(&self) -> Table {
         let mut choices = Table::new(
             3,
@@ -33,7 +33,7 @@ impl Report {
         choices
     }
 
-    /// What is cheapest for which error, and everything point by point, as Markdown: (name, text).
+    /// The cheapest settings for each error, then all points, as Markdown: (name, text).
     pub fn parts(&self) -> Vec<(String, String)> {
         let mut parts = vec![("choices".to_owned(), self.choices().markdown())];
         for found in &self.scenes {
@@ -45,7 +45,7 @@ impl Report {
         parts
     }
 
-    /// For a terminal.
+    /// The text for a terminal.
     pub fn text(&self) -> String {
         let mut text = String::new();
         for found in &self.scenes {
@@ -87,7 +87,7 @@ impl Report {
         Ok(())
     }
 
-    /// One line for every error of every point.
+    /// One row for each error of each point.
     fn csv(&self) -> Result<Vec<u8>, ReproduceError> {
         let mut table = Table::new(
             0,
@@ -139,7 +139,7 @@ impl Report {
             .map_err(|error| ReproduceError::Data(error.to_string()))
     }
 
-    /// Everything as one object.
+    /// All results as one object.
     pub fn json(&self) -> serde_json::Value {
         let scenes = self.scenes.iter().map(|found| {
             let points = found.points.iter().map(|point| {

@@ -11,7 +11,7 @@ use crate::scenario::{Scenario, Setting};
 /// How a scene is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// By where everybody is in the first two seconds.
+    /// By the positions of agents in the first two seconds.
     Motion,
     /// By numbers of Table 1, over seeds.
     Evacuation,
@@ -19,23 +19,23 @@ pub enum Kind {
     Wave,
 }
 
-/// A scene to be computed in many ways.
+/// A scene that is computed under many settings.
 #[derive(Clone, Copy)]
 pub struct Scene {
     /// Its name on the command line.
     pub name: &'static str,
-    /// What it is, in a line.
+    /// A description, in one line.
     pub about: &'static str,
-    /// How it is judged.
+    /// How its errors are measured.
     pub kind: Kind,
-    /// Seeds, where it is judged over them.
+    /// The number of seeds, if it is judged over seeds.
     pub seeds: u64,
     /// Is it left out where time is short and nobody has named it?
     pub is_long: bool,
     document: fn() -> Result<Value, ReproduceError>,
 }
 
-/// All of them.
+/// All scenes.
 pub const SCENES: [Scene; 9] = [
     Scene {
         name: "relaxed",
@@ -112,19 +112,19 @@ pub const SCENES: [Scene; 9] = [
 ];
 
 impl Scene {
-    /// The scenario as a file has it.
+    /// The scenario document.
     ///
     /// # Errors
-    /// It cannot be prepared.
+    /// The scene cannot be prepared.
     pub fn document(&self) -> Result<Value, ReproduceError> {
         (self.document)()
     }
 }
 
-/// A document under some settings.
+/// The scenario of a document under some settings.
 ///
 /// # Errors
-/// A setting makes no sense.
+/// A setting is invalid.
 pub fn scenario(document: &Value, settings: &[String]) -> Result<Scenario, ReproduceError> {
     let set: Result<Vec<Setting>, _> = settings.iter().map(|text| text.parse()).collect();
     let set = set.map_err(|error| ReproduceError::Data(error.to_string()))?;
@@ -140,7 +140,7 @@ pub fn scenario(document: &Value, settings: &[String]) -> Result<Scenario, Repro
 /// The first frame of a document under some settings.
 ///
 /// # Errors
-/// A setting makes no sense, or somebody has no place.
+/// A setting is invalid, or an agent cannot be placed.
 pub fn simulation(document: &Value, settings: &[String]) -> Result<Simulation, ReproduceError> {
     let scene = scenario(document, settings)?.scene;
     Simulation::new(scene).map_err(|fault| ReproduceError::Fault {
@@ -149,7 +149,7 @@ pub fn simulation(document: &Value, settings: &[String]) -> Result<Simulation, R
     })
 }
 
-/// The document with everybody as they are now in place of whoever it lets in.
+/// The document with the simulation's current agents in place of its own agents, grids and events.
 pub fn continued(document: &Value, simulation: &Simulation) -> Value {
     let agents = simulation.frame().agents;
     let mut order: Vec<usize> = (0..agents.len()).collect();
@@ -174,7 +174,7 @@ pub fn continued(document: &Value, simulation: &Simulation) -> Value {
     document
 }
 
-/// The document after `seconds`, with velocities changed place by place.
+/// The document after `seconds`. `push` gives each agent an additional velocity by its position.
 fn relaxed_for(
     document: &Value,
     seconds: f64,
@@ -205,7 +205,7 @@ fn relaxed_for(
     Ok(after)
 }
 
-/// A closed room of `width` × `height` metres, in two angles of wall 1 m thick.
+/// A closed room of `width` × `height` meters: two L-shaped walls, 1 m thick.
 fn room(width: f64, height: f64) -> Value {
     let (right, top) = (width + 1.0, height + 1.0);
     json!([
@@ -228,7 +228,7 @@ fn room(width: f64, height: f64) -> Value {
     ])
 }
 
-/// People at 5 P/m² who want to stay where they are.
+/// Agents at 5 P/m² with a preferred speed of 0.
 fn at_rest(name: &str, columns: u32, rows: u32) -> (Value, [f64; 2]) {
     let spacing = 0.2_f64.sqrt();
     let [width, height] = [columns, rows].map(|count| f64::from(count) * spacing);
@@ -244,7 +244,7 @@ fn at_rest(name: &str, columns: u32, rows: u32) -> (Value, [f64; 2]) {
     (document, [width, height])
 }
 
-/// How long crowds are given to come to rest, seconds.
+/// Time in which the crowds come to rest, seconds.
 const REST: f64 = 10.0;
 
 fn relaxed() -> Result<Value, ReproduceError> {
@@ -263,7 +263,7 @@ fn pulse() -> Result<Value, ReproduceError> {
     })
 }
 
-/// Each 5 m from the next, on the way to a goal behind a wall along the x axis.
+/// Agents 5 m apart, each walking to a goal behind a wall along the x axis.
 fn wall() -> Result<Value, ReproduceError> {
     let people = (0..400).map(|k| {
         let (column, row) = (f64::from(k % 100), f64::from(k / 100));
@@ -282,7 +282,7 @@ fn wall() -> Result<Value, ReproduceError> {
     }))
 }
 
-/// Two blocks that walk through each other, at 1 P/m² each.
+/// Two blocks of agents that walk through each other, at 1 P/m² each.
 fn streams(profile: &str) -> Value {
     let block = |x: f64, way: f64| {
         json!({
@@ -309,13 +309,13 @@ fn evacuation(profile: &str) -> Result<Value, ReproduceError> {
     Ok(scenario.document)
 }
 
-/// When the push begins and ends, seconds, and the far end of who takes part, metres.
+/// Begin and end of the push, seconds, and the far end of the agents that take part, meters.
 pub const PUSH: ([f64; 2], f64) = ([15.0, 15.5], 5.0);
-/// The corridor's length and half its width, metres.
+/// The corridor's length and half its width, meters.
 pub const CORRIDOR: [f64; 2] = [40.2, 3.0];
 
-/// A corridor from y = −3 to 3; whoever is at the near end pushes as the paper's concert crowd does
-/// (§6.3), only at once and over the whole width.
+/// A corridor from y = −3 to 3. The agents at its near end push as in the paper's concert crowd (§6.3), but once and
+/// over the whole width.
 fn corridor() -> Value {
     let [length, half] = CORRIDOR;
     let ([begins, ends], source) = PUSH;

@@ -1,4 +1,4 @@
-//! What a study reports: Table 1's numbers, speed by density, the speed of a wave; each over seeds.
+//! The statistics of a run: Table 1's numbers, speed by density, and the speed of a wave, each over seeds.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -12,26 +12,26 @@ use crate::runs::drive::{Then, drive, unless_over};
 use crate::scenario::Scenario;
 use crate::scenario::metrics::Metrics;
 
-/// Speeds are averaged over people of nearly the same density: the lower ends of the bins, P/m²; each is
-/// 1 P/m² wide.
+/// Speeds are averaged over agents of similar density. These are the lower ends of the bins, P/m²; each bin is 1 P/m²
+/// wide.
 const BINS: [f64; 6] = [0.5, 1.5, 2.5, 3.5, 4.5, 5.5];
-/// When speeds and densities are taken, seconds, and how often.
+/// Start and end of the samples of speed and density, and the time between samples, seconds.
 const FUNDAMENTAL: [f64; 2] = [2.0, 60.0];
 const EVERY: f64 = 0.5;
 /// How long a wave is followed, seconds.
 const FOLLOWED: f64 = 5.0;
-/// Times of the space-time diagram are so far apart, seconds.
+/// Time step of the space-time diagram, seconds.
 const DIAGRAM_STEP: f64 = 0.04;
 
-/// What one run gives.
+/// The values of one run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
-    /// Density at 15 s, its deviation and the flow, and speeds by density; or the wave's speed. `None` where the
-    /// run gave none.
+    /// For an evacuation: density at 15 s, its standard deviation, the flow, and the speeds by density. For a wave: its
+    /// speed. `None` if the run gave no value.
     pub values: Vec<Option<f64>>,
 }
 
-/// What is measured in a kind of scene, with units, and then the fundamental diagram's bins.
+/// The names and units of the quantities of a kind of scene, without the fundamental diagram's bins.
 pub fn names(kind: Kind) -> &'static [(&'static str, &'static str)] {
     match kind {
         Kind::Motion => &[],
@@ -66,9 +66,9 @@ pub fn sample(
     })
 }
 
-/// Table 1's three numbers and the speeds by density.
+/// Table 1's three numbers, and the speeds by density.
 fn evacuation(scenario: &Scenario) -> Result<Sample, Fault> {
-    /// Table 1's flow is that of the first so many.
+    /// Table 1's flow is that of the first 350 arrivals.
     const ARRIVALS: usize = 350;
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     let mut metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
@@ -134,7 +134,7 @@ fn wave_speed(scenario: &Scenario) -> Result<Sample, Fault> {
     })
 }
 
-/// A number over seeds, and how far it is from the reference's.
+/// A number over seeds, and its distance from the reference.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Deviation {
     /// The mean.
@@ -148,7 +148,7 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// Can the seeds tell this from the reference?
+    /// Do the seeds distinguish this number from the reference?
     pub fn is_significant(&self) -> bool {
         self.error > self.error_interval
     }
@@ -166,8 +166,8 @@ impl Deviation {
     }
 }
 
-/// Every number of a kind of scene against the reference, and last, where there is one, the fundamental
-/// diagram: the root mean square over its bins of the differences of mean speeds, m/s.
+/// The deviation of each number from the reference. For evacuations, the last one is the fundamental diagram: the root
+/// mean square over its bins of the differences of mean speeds, m/s.
 pub fn deviations(kind: Kind, samples: &[Sample], reference: &[Sample]) -> Vec<Option<Deviation>> {
     let column = |samples: &[Sample], k: usize| -> Vec<f64> {
         let values = samples.iter().filter_map(|sample| *sample.values.get(k)?);

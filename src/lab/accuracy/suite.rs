@@ -1,4 +1,4 @@
-//! Everything: every scene under every knob, its errors kept, its costs measured anew.
+//! The whole measurement: every scene under every knob. Errors are stored; costs are measured anew.
 
 use serde_json::Value;
 
@@ -14,38 +14,38 @@ use crate::engine::simulation::Simulation;
 use crate::lab::job::{Job, Listener, read, run};
 use crate::lab::reproduce::{ReproduceError, Store};
 
-/// What is to be done.
+/// What to measure.
 #[derive(Clone)]
 pub struct Plan {
     /// The scenes.
     pub scenes: Vec<Scene>,
     /// Are the integrals over walls measured, too?
     pub walls: bool,
-    /// The knobs that are turned.
+    /// The knobs whose values are tried.
     pub knobs: Vec<Knob>,
-    /// Few values, one seed or two, and costs from one turn: whether it works.
+    /// A check that everything works: few values, two seeds, and costs from a single turn.
     pub quick: bool,
 }
 
-/// So often is every cost measured.
+/// How often each cost is measured.
 const TURNS: usize = 5;
-/// Costs of Table 1's scenes are those of a dense crowd: at this time, seconds.
+/// Costs of Table 1's scenes are measured in a dense crowd: at this time, seconds.
 const DENSE_AT: f64 = 15.0;
-/// What statistics are compared with.
+/// The settings of the reference for statistics.
 const FINE: [&str; 3] = [
     "time_step_secs=0.0025",
     "integrator=velocity-verlet",
     "precision=double",
 ];
 
-/// A scene and how it is to be computed.
+/// A scene and the curves to be measured in it.
 struct Task {
     scene: Scene,
     document: Value,
     curves: Vec<Curve>,
 }
 
-/// Does what the plan says and `store` does not have, and writes tables and pictures.
+/// Does the jobs of the plan whose results are not in `store`, and writes tables and pictures.
 ///
 /// # Errors
 /// A run or a file fails.
@@ -106,7 +106,7 @@ impl Task {
         curves.flat_map(|curve| curve.points.iter().map(move |point| (curve, point)))
     }
 
-    /// All settings that differ, each once.
+    /// All distinct settings.
     fn settings(&self) -> Vec<Vec<String>> {
         let mut once: Vec<Vec<String>> = Vec::new();
         for (_, settings) in self.points() {
@@ -118,7 +118,7 @@ impl Task {
         once
     }
 
-    /// Which of [`settings`](Self::settings) each point has.
+    /// For each point, the index of its settings in [`settings`](Self::settings).
     fn places(&self) -> Vec<usize> {
         let once = self.settings();
         let place = |settings: &Vec<String>| {
@@ -175,8 +175,7 @@ impl Task {
         Job::new(name, expected, work).depending_on(input)
     }
 
-    /// Roughly how long one sample takes, seconds: for the progress bar, and so that the longest begin
-    /// first.
+    /// Estimated time of one sample, seconds: for the progress bar, and to start the longest jobs first.
     fn expected_secs(&self, settings: &[String]) -> f64 {
         let one = match self.scene.name {
             "evacuation" => 0.7,
@@ -193,7 +192,7 @@ impl Task {
         one * steps * candidates * coarse
     }
 
-    /// Puts together what the jobs gave, and measures what everything costs.
+    /// Combines the results of the jobs, and measures the costs.
     fn finish(
         &self,
         plan: &Plan,
@@ -227,7 +226,7 @@ impl Task {
         })
     }
 
-    /// The document whose cost is measured: a crowd that is dense, where it is not from the start.
+    /// The document whose cost is measured. Unless a scene is judged by motion, its crowd is first made dense.
     fn busy(&self) -> Result<Value, ReproduceError> {
         let until = match self.scene.kind {
             Kind::Motion => return Ok(self.document.clone()),
@@ -286,7 +285,7 @@ impl Task {
         let samples = samples?;
         let settings = self.settings();
         let of = |k: usize| &samples[k * seeds..(k + 1) * seeds];
-        // Where there is little time, the first point is reference enough.
+        // A quick plan has no reference runs: it uses the first point.
         let reference = if plan.quick {
             of(0)
         } else {
@@ -315,5 +314,5 @@ impl Task {
     }
 }
 
-/// What is measured, the errors of every point, and what is to be said.
+/// The quantities, the errors of each point, and the notes.
 type Errored = (Vec<Quantity>, Vec<Vec<Option<Measured>>>, String);

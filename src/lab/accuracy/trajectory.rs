@@ -1,4 +1,4 @@
-//! Where everybody is in the first seconds, and how far that is from the reference.
+//! The positions of agents in the first seconds, and how far they are from the reference.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -12,12 +12,12 @@ use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
 use crate::lab::reproduce::ReproduceError;
 
-/// When is looked, seconds: half a second, one and two, to the nearest time that all steps meet.
+/// The sampled times, seconds: about 0.5, 1 and 2, moved to times that are frames of all time steps.
 pub const SAMPLES: [f64; 3] = [0.48, 0.96, 1.92];
-/// The reference's step in parts of the paper's; where time is short the second.
+/// The reference's time step is the paper's, divided by this; the second value is for quick plans.
 const FINENESS: [f64; 2] = [64.0, 16.0];
 
-/// Everybody at one moment, by id.
+/// All agents at one time, sorted by id.
 #[derive(Debug, Clone, PartialEq)]
 struct Snapshot {
     id: Vec<u32>,
@@ -26,14 +26,14 @@ struct Snapshot {
     density: Vec<f64>,
 }
 
-/// A crowd at [`SAMPLES`].
+/// A crowd at the times of [`SAMPLES`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion([Snapshot; 3]);
 
-/// Root mean squares over everybody, at each of [`SAMPLES`].
+/// Root mean square errors over all agents, at each of [`SAMPLES`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
-    /// Metres.
+    /// Meters.
     pub position: [f64; 3],
     /// m/s.
     pub velocity: [f64; 3],
@@ -45,7 +45,7 @@ impl Motion {
     /// Runs a document under some settings.
     ///
     /// # Errors
-    /// A setting makes no sense, the run cannot go on, or a step meets not all of [`SAMPLES`].
+    /// A setting is invalid, the run fails, or the time step does not divide all of [`SAMPLES`].
     pub fn of(document: &Value, settings: &[String]) -> Result<Self, ReproduceError> {
         let mut simulation = simulation(document, settings)?;
         simulation.request_density_until(u64::MAX);
@@ -69,8 +69,8 @@ impl Motion {
         Ok(Self([at(SAMPLES[0])?, at(SAMPLES[1])?, at(SAMPLES[2])?]))
     }
 
-    /// Where a scene goes as Δt → 0, and how far that is from a run at twice the step: its own error is about
-    /// as large.
+    /// The limit of a scene as Δt → 0, and its difference from a run at twice the step, which is about as large as the
+    /// reference's own error.
     ///
     /// # Errors
     /// As [`of`](Self::of).
@@ -96,7 +96,7 @@ impl Motion {
         Ok((reference, errors))
     }
 
-    /// How far this motion is from `other`, over all who are in both.
+    /// The difference between two motions, over all agents that are in both.
     pub fn errors(&self, other: &Self) -> Errors {
         let pairs = [0, 1, 2].map(|k| self.0[k].distance(&other.0[k]));
         Errors {
@@ -139,14 +139,14 @@ impl Snapshot {
     }
 }
 
-/// The errors of all points of a scene that is judged by motion, curve by curve.
+/// The errors of all points of a scene that is judged by motion, in the order of the points.
 #[derive(Serialize, Deserialize)]
 pub struct Trajectories {
-    /// Against the reference, and against the knob's best value with everything else as it is.
+    /// Errors against the reference, and against the knob's best value with all else at the defaults.
     pub points: Vec<(Errors, Option<Errors>)>,
-    /// Of the reference itself, roughly.
+    /// The approximate error of the reference itself.
     pub reference: Errors,
-    /// How fast errors grow by themselves.
+    /// How fast small differences grow.
     pub lyapunov: Lyapunov,
 }
 
@@ -160,7 +160,7 @@ pub fn trajectories(
     let mut errors = Vec::new();
     for (knob, settings) in points {
         let motion = Motion::of(document, settings)?;
-        // The limit of the paper's model; of a preset, that of its own walls.
+        // The reference is the limit of the paper's model; for a preset, the limit with the preset's own walls.
         let walls = match knob {
             Knob::Preset => simulation(document, settings)?.scene().wall_method,
             _ => WallMethod::default(),
@@ -177,7 +177,7 @@ pub fn trajectories(
     })
 }
 
-/// Motions that others are compared with, each run once.
+/// The motions that others are compared with, each computed once.
 #[derive(Default)]
 struct Known {
     references: Vec<(WallMethod, (Motion, Errors))>,

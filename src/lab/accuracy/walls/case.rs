@@ -1,47 +1,47 @@
-//! Places by walls and the paths on which somebody passes them.
+//! Places near walls, and the paths through them.
 
 use crate::engine::agents::REFERENCE_RADIUS;
 use crate::engine::geometry::{Polygon, Walls};
 use crate::engine::math::{Vector, perpendicular};
 
-/// An average body's radius: so near one stands to a wall.
+/// The radius of an average body: no agent stands closer to a wall.
 const BODY: f64 = REFERENCE_RADIUS;
-/// Thickness of the wall round the doorway, metres.
+/// Thickness of the walls beside the doorway, meters.
 const PARTITION: f64 = 0.2;
-/// Half the width of the doorway (§6.1), metres.
+/// Half the width of the doorway (§6.1), meters.
 const HALF_DOOR: f64 = 0.4;
-/// Everything is turned by this angle (radians) and moved by this way (metres), so that no wall lies
-/// along a grid or a row of particles.
+/// Everything is rotated by this angle (radians) and shifted by this vector (meters), so that no wall lies along a grid
+/// or a row of particles.
 const TURN: f64 = 0.3;
 const MOVE: [f64; 2] = [0.377, 0.531];
 /// The fractional parts of its multiples fill [0, 1) evenly.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Where somebody stands.
+/// A place of an agent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
-    /// What curves are drawn over, metres; see [`Case::axis`].
+    /// The x value of its curves, meters; see [`Case::axis`].
     pub along: f64,
     /// r_i, metres.
     pub position: Vector,
 }
 
-/// Obstacles, larger than anybody on the path can reach, and a path.
+/// Obstacles and a path. The obstacles extend beyond the reach of an agent on the path.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// What it is.
+    /// Its name.
     pub name: &'static str,
-    /// What [`Place::along`] is.
+    /// What [`Place::along`] means.
     pub axis: &'static str,
     /// The obstacles.
     pub walls: Walls,
-    /// Where somebody stands, one after the other.
+    /// The places of the agent, in order.
     pub places: Vec<Place>,
-    /// Along an endless straight wall: no force may act this way.
+    /// The direction of an endless straight wall: no force may act along it.
     pub tangent: Option<Vector>,
 }
 
-/// The cases, each with so many places.
+/// The cases, each with `count` places.
 pub fn cases(count: usize) -> Vec<Case> {
     let straight = |name, thickness: f64| Case {
         name,
@@ -126,7 +126,7 @@ fn walls(obstacles: &[&[[f64; 2]]]) -> Walls {
     )
 }
 
-/// From 2 cm to 1 m before a wall, never twice at the same place along it.
+/// From 2 cm to 1 m in front of a wall, each place at another position along it.
 fn distances(count: usize) -> Vec<Place> {
     let place = |k: usize| {
         let distance = 0.02 + 0.98 * k as f64 / count as f64;
@@ -139,7 +139,7 @@ fn distances(count: usize) -> Vec<Place> {
     (0..count).map(place).collect()
 }
 
-/// Evenly along straight lines between `corners`.
+/// Places at equal distances along straight lines between `corners`.
 fn path(corners: &[[f64; 2]], count: usize) -> Vec<Place> {
     let corners: Vec<Vector> = corners.iter().map(|&corner| placed(corner)).collect();
     let length: f64 = corners

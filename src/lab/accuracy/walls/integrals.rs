@@ -1,5 +1,5 @@
-//! The exact integrals by adaptive quadrature: ray by ray, with the kernels and nothing of the closed
-//! forms in [`crate::engine::boundary`].
+//! The exact integrals by adaptive quadrature, ray by ray. It shares the kernels with [`crate::engine::boundary`], but
+//! none of its closed forms.
 
 use std::f64::consts::PI;
 use std::ops::{Add, Mul, Sub};
@@ -10,7 +10,7 @@ use crate::engine::geometry::Walls;
 use crate::engine::kernel;
 use crate::engine::math::Vector;
 
-/// How often a panel of angles is halved at most.
+/// Maximum number of times a panel of angles is halved.
 const MOST_HALVINGS: u32 = 48;
 /// Abscissae and weights of Gauss–Legendre quadrature with 8 points on [−1, 1], for both signs
 /// (Abramowitz and Stegun 1964, Table 25.4). It is exact for polynomials up to degree 15.
@@ -21,17 +21,17 @@ const GAUSS: [[f64; 2]; 4] = [
     [0.960_289_856_497_536_3, 0.101_228_536_290_376_3],
 ];
 
-/// Which points of the kernel's disc count as wall.
+/// The points of the kernel's disc that count as wall.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Region {
-    /// Those that the agent cannot see, each once: ⋃ P_k of §4.3.
+    /// Points that the agent cannot see, each counted once: ⋃ P_k of §4.3.
     Hidden,
-    /// Those inside an obstacle.
+    /// Points inside an obstacle.
     Solid,
 }
 
-/// What a region holds of an agent's kernel.
+/// Integrals of an agent's kernel over a region.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Integrals {
     /// Its area in m².
@@ -43,7 +43,7 @@ pub struct Integrals {
 }
 
 impl Integrals {
-    /// Of nothing.
+    /// The integrals over nothing.
     pub fn none() -> Self {
         Self {
             area: 0.0,
@@ -52,7 +52,7 @@ impl Integrals {
         }
     }
 
-    /// Of a small piece of `area` m² at `offset` = x − r_i.
+    /// Of a small piece with an area of `area` m² at `offset` = x − r_i.
     pub fn of_piece(offset: Vector, area: f64, h: f64) -> Self {
         Self {
             area,
@@ -61,10 +61,11 @@ impl Integrals {
         }
     }
 
-    /// Over `region` round an agent at `r_i`, to about `tolerance`.
+    /// The integrals over `region` for an agent at `r_i`, to about `tolerance`.
     ///
-    /// Radially the kernels are polynomials, which Gauss integrates exactly; over the angle, panels
-    /// between corners, rim and feet of perpendiculars are halved until halving changes nothing.
+    /// Along a ray the kernels are polynomials, which Gaussian quadrature integrates exactly. Over the angle, the
+    /// panels between corners, intersections with the rim and feet of perpendiculars are halved until the result
+    /// converges.
     /// Obstacles must not overlap.
     pub fn over(region: Region, walls: &Walls, r_i: Vector, h: f64, tolerance: f64) -> Self {
         let edges = Edges::around(walls, r_i, h);
@@ -121,7 +122,7 @@ impl std::iter::Sum for Integrals {
     }
 }
 
-/// The edges within reach of an agent, in its frame.
+/// The edges within reach of an agent, relative to the agent.
 struct Edges {
     ends: Vec<[Vector; 2]>,
     stands_in_solid: bool,
@@ -140,7 +141,7 @@ impl Edges {
         }
     }
 
-    /// Angles between which everything is smooth, radians.
+    /// Intervals of angles in which the integrand is smooth, radians.
     fn panels(&self) -> Vec<[f64; 2]> {
         let mut points = Vec::new();
         for &[a, b] in &self.ends {
@@ -155,7 +156,7 @@ impl Edges {
         angles.windows(2).map(|pair| [pair[0], pair[1]]).collect()
     }
 
-    /// What a ray holds, per radian.
+    /// The integrals along a ray, per radian.
     fn along_ray(&self, region: Region, angle: f64) -> Integrals {
         let ray = Vector::new(angle.cos(), angle.sin());
         let hits = self.ends.iter().filter_map(|&[a, b]| hit(a, b, ray));
@@ -166,7 +167,7 @@ impl Edges {
                 .map(|hit| hit.distance)
                 .reduce(f64::min)
                 .map_or(Integrals::none(), |from| self.outwards(ray, from)),
-            // All beyond an edge through which the ray enters, less all beyond one where it leaves.
+            // Add all beyond an edge through which the ray enters, and subtract all beyond an edge where it leaves.
             Region::Solid => {
                 let first = self.stands_in_solid.then(|| self.outwards(ray, 0.0));
                 let beyond = hits.map(|hit| {
@@ -177,13 +178,13 @@ impl Edges {
         }
     }
 
-    /// A ray from a distance to the rim.
+    /// The part of a ray from a distance to the rim.
     fn outwards(&self, ray: Vector, from: f64) -> Integrals {
         gauss(&|r| Integrals::of_piece(ray * r, r, self.h), from, self.h)
     }
 }
 
-/// Where a ray from the agent meets an edge.
+/// An intersection of a ray from the agent with an edge.
 struct Hit {
     distance: f64,
     enters: bool,
@@ -192,7 +193,7 @@ struct Hit {
 fn hit(a: Vector, b: Vector, ray: Vector) -> Option<Hit> {
     let turn = ray.perp(&(b - a));
     let (distance, fraction) = (a.perp(&(b - a)) / turn, a.perp(&ray) / turn);
-    // The inside is on the left of an edge.
+    // The inside is to the left of an edge.
     let enters = turn < 0.0;
     (distance >= 0.0 && (0.0..=1.0).contains(&fraction)).then_some(Hit { distance, enters })
 }

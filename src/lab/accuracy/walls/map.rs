@@ -1,27 +1,27 @@
-//! Walls as a map: what the solid does to an agent, worked out once at the nodes of a grid.
+//! Walls as a map: the effect of the solid on an agent, precomputed at the nodes of a grid.
 
 use super::{Integrals, Region};
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 
-/// To this the nodes' integrals are worked out; the interpolation between them is orders coarser.
+/// Tolerance of the integrals at the nodes; the error of the interpolation is orders of magnitude larger.
 const TOLERANCE: f64 = 1e-6;
 
-/// What a node knows.
+/// What the nodes store.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stored {
     /// ∫ W and ∫ ∇W over the solid, as the paper describes volume maps (§3.4) and as Koschier and Bender's
     /// density maps do (2017, *Density maps for improved SPH boundary handling*,
     /// doi 10.1145/3099564.3099565).
     Integrals,
-    /// The solid's area a in reach and the nearest point r* of a wall, for a W(r_i − r*) and a ∇W(r_i − r*):
-    /// volume maps (Bender, Kugelstadt, Weiler and Koschier 2019, *Volume maps: an implicit boundary
-    /// representation for SPH*, doi 10.1145/3359566.3360077). Their solid fades out into the free
-    /// space; here it ends at the wall.
+    /// The solid's area a within reach and the nearest point r* of a wall. From them follow a W(r_i − r*) and a ∇W(r_i
+    /// − r*): volume maps (Bender, Kugelstadt, Weiler and Koschier 2019, *Volume maps: an implicit boundary
+    /// representation for SPH*, doi 10.1145/3359566.3360077). Their solid fades out into the free space; here it ends
+    /// at the wall.
     Volume,
 }
 
-/// A square grid over the floor, with bilinear interpolation.
+/// A square grid over the floor with bilinear interpolation.
 #[derive(Debug, Clone)]
 pub struct Map {
     stored: Stored,
@@ -34,7 +34,7 @@ pub struct Map {
 }
 
 impl Map {
-    /// Covers the box round `floor`; `spacing` in metres.
+    /// A map of the bounding box of `floor`; `spacing` in meters.
     pub fn over(walls: &Walls, floor: &[Vector], spacing: f64, stored: Stored, h: f64) -> Self {
         let low = floor
             .iter()
@@ -59,7 +59,7 @@ impl Map {
         }
     }
 
-    /// Between the four nodes round an agent on the floor.
+    /// Interpolates between the four nodes around an agent on the floor.
     pub fn integrals(&self, r_i: Vector) -> Integrals {
         let place = (r_i - self.corner) / self.spacing;
         let cell = place.map(f64::floor);
@@ -80,7 +80,7 @@ impl Map {
         }
     }
 
-    /// Memory of the nodes.
+    /// Memory of the nodes, bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.nodes)
     }

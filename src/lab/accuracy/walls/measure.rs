@@ -1,4 +1,4 @@
-//! Every path with every method: errors and costs.
+//! Errors and costs of every method on every path.
 
 use serde::Serialize;
 
@@ -7,11 +7,11 @@ use super::{Case, Integrals, METHODS, Method, Prepared, Region, SUPPORT_RADIUS, 
 use crate::engine::math::Vector;
 use crate::lab::bench::Spread;
 
-/// To this the exact integrals are taken, and to this their error is found.
+/// Tolerances of the exact integrals, and of those that they are checked against.
 const TOLERANCE: f64 = 1e-13;
 const COARSER_TOLERANCE: f64 = 1e-9;
 
-/// An error in parts of the largest exact value of the case.
+/// An error, relative to the largest exact value of the case.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Error {
     /// Root mean square over the places.
@@ -21,7 +21,7 @@ pub struct Error {
 }
 
 impl Error {
-    /// Of these differences beside a value so large.
+    /// The error of `differences`, relative to `largest`.
     pub fn of(differences: impl Iterator<Item = f64>, largest: f64) -> Self {
         let (mut count, mut squares, mut max) = (0, 0.0, 0.0_f64);
         for difference in differences {
@@ -37,60 +37,60 @@ impl Error {
     }
 }
 
-/// One method on one path.
+/// The results of one method on one path.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MethodReport {
     /// The method.
     pub name: String,
-    /// What it was measured against.
+    /// The region of the exact integrals that it is measured against.
     pub region: Region,
     /// Of ∫ W.
     pub density: Error,
     /// Of ∫ ∇W, as a vector.
     pub force: Error,
-    /// Of the force along an endless straight wall, which is 0: how rough the wall feels.
+    /// Of the force along an endless straight wall, which should be 0: the roughness of the wall.
     pub roughness: Option<Error>,
-    /// Nanoseconds per evaluation, search included.
+    /// Nanoseconds per evaluation, including the search for walls.
     pub ns: Spread,
-    /// Milliseconds before the first frame, the median of several.
+    /// Time before the first frame, milliseconds: the median of several measurements.
     pub preparation_ms: f64,
-    /// Memory beside the polygons.
+    /// Memory in addition to the polygons, bytes.
     pub bytes: usize,
-    /// ∫ W and |∫ ∇W| (1/m), place by place.
+    /// ∫ W and |∫ ∇W| (1/m) at each place.
     pub curve: Vec<[f64; 2]>,
 }
 
-/// One path.
+/// The results on one path.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CaseReport {
-    /// The case.
+    /// The name of the case.
     pub name: &'static str,
-    /// What `along` is.
+    /// The meaning of `along`.
     pub axis: &'static str,
-    /// Metres, place by place.
+    /// Meters, place by place.
     pub along: Vec<f64>,
-    /// ∫ W and |∫ ∇W| (1/m) over what is hidden.
+    /// ∫ W and |∫ ∇W| (1/m) over the hidden region.
     pub hidden: Vec<[f64; 2]>,
     /// The same over the solid.
     pub solid: Vec<[f64; 2]>,
-    /// How far the density of the solid is from that of the hidden, in parts of the latter's largest.
+    /// Difference of the solid's density from that of the hidden region, relative to the largest of the latter.
     pub solid_density: Error,
-    /// The same of the force.
+    /// The same for the force.
     pub solid_force: Error,
-    /// By how much all these change if they are taken ten thousand times less carefully.
+    /// Largest change of all these integrals with a tolerance ten thousand times larger.
     pub quadrature: f64,
-    /// Nanoseconds to find the walls in reach, which the polygons' times include.
+    /// Nanoseconds to find the walls within reach, which the polygons' times include.
     pub search_ns: Spread,
     /// The methods in the order of [`METHODS`].
     pub methods: Vec<MethodReport>,
 }
 
-/// Everything.
+/// All results.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WallReport {
-    /// Few places and few turns: the times say nothing.
+    /// Few places and few turns: the times are meaningless.
     pub quick: bool,
-    /// Path by path.
+    /// The results, path by path.
     pub cases: Vec<CaseReport>,
 }
 
@@ -120,7 +120,7 @@ pub fn measure(quick: bool) -> WallReport {
     }
 }
 
-/// Both exact answers at every place.
+/// The exact integrals over both regions at every place.
 struct Truth {
     hidden: Vec<Integrals>,
     solid: Vec<Integrals>,
@@ -187,7 +187,7 @@ fn of_case(case: &Case, effort: Effort) -> CaseReport {
     }
 }
 
-/// All but the times.
+/// All results but the times.
 fn of_method(method: &Method, prepared: &mut Prepared, case: &Case, truth: &Truth) -> MethodReport {
     let exact = truth.of(method.region());
     let places = case.places.iter().map(|place| place.position);
@@ -210,7 +210,7 @@ fn of_method(method: &Method, prepared: &mut Prepared, case: &Case, truth: &Trut
     }
 }
 
-/// Of density and force.
+/// The errors of density and force.
 fn errors(found: &[Integrals], exact: &[Integrals]) -> [Error; 2] {
     let [density, force] = largest(exact);
     let differences = || found.iter().zip(exact).map(|(f, e)| *f - *e);

@@ -1,27 +1,27 @@
-//! The ways of seeing walls that are compared.
+//! The compared methods of including walls.
 
 use super::{Case, Integrals, Map, Particles, Region, SUPPORT_RADIUS, Stored, Volumes};
 use crate::engine::boundary::WallMethod;
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 
-/// A way of seeing walls.
+/// A method of including walls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method {
-    /// One of the engine's, on the polygons themselves.
+    /// One of the engine's methods, on the polygons themselves.
     Polygons(WallMethod),
     /// Boundary particles.
     Particles {
-        /// Metres between neighbours.
+        /// Distance between neighboring particles, meters.
         spacing: f64,
-        /// What each stands for.
+        /// What each particle stands for.
         volumes: Volumes,
     },
     /// A map on a grid.
     Map {
-        /// Metres between nodes.
+        /// Distance between nodes, meters.
         spacing: f64,
-        /// What each node knows.
+        /// What each node stores.
         stored: Stored,
     },
 }
@@ -30,9 +30,9 @@ const fn particles(spacing: f64, volumes: Volumes) -> Method {
     Method::Particles { spacing, volumes }
 }
 
-/// What is compared.
+/// The compared methods.
 ///
-/// Particles at a quarter of h are what fluids usually have, at a tenth they are finer than people's bodies.
+/// A particle spacing of a quarter of h is usual for fluids; a tenth is finer than agents' bodies.
 pub const METHODS: [Method; 11] = [
     Method::Polygons(WallMethod::Representative),
     Method::Polygons(WallMethod::Exact),
@@ -54,7 +54,7 @@ pub const METHODS: [Method; 11] = [
 ];
 
 impl Method {
-    /// For people.
+    /// A readable name.
     pub fn name(&self) -> String {
         let (kind, spacing) = match self {
             Self::Polygons(WallMethod::Representative) => return "representative point".to_owned(),
@@ -73,11 +73,11 @@ impl Method {
         format!("{kind}, {spacing} m")
     }
 
-    /// What it means to integrate over.
+    /// The region that the method is meant to integrate over.
     pub fn region(&self) -> Region {
         match self {
             Self::Polygons(_) => Region::Hidden,
-            // A body behind the wall, however thin the wall is.
+            // Their volumes represent a solid body behind the wall, even if the wall is thin.
             Self::Particles {
                 volumes: Volumes::Akinci,
                 ..
@@ -86,7 +86,7 @@ impl Method {
         }
     }
 
-    /// All that is done before the first frame.
+    /// Does all the work before the first frame.
     pub fn prepare(self, case: &Case) -> Prepared<'_> {
         let (walls, h) = (&case.walls, SUPPORT_RADIUS);
         match self {
@@ -106,16 +106,16 @@ impl Method {
     }
 }
 
-/// A method at one place, ready to be asked.
+/// A method prepared for one case.
 #[derive(Debug, Clone)]
 pub enum Prepared<'a> {
-    /// Nothing but the polygons.
+    /// The polygons themselves.
     Polygons {
-        /// Which method.
+        /// The method.
         method: WallMethod,
         /// The polygons.
         walls: &'a Walls,
-        /// Room for the walls in reach.
+        /// A buffer for the walls within reach.
         near: Vec<u32>,
     },
     /// Particles in the obstacles.
@@ -125,7 +125,7 @@ pub enum Prepared<'a> {
 }
 
 impl Prepared<'_> {
-    /// The walls as an agent at `r_i` sees them, the search for what is in reach included.
+    /// The integrals over the walls for an agent at `r_i`, including the search for what is within reach.
     pub fn integrals(&mut self, r_i: Vector) -> Integrals {
         match self {
             Self::Polygons {
@@ -148,7 +148,7 @@ impl Prepared<'_> {
         }
     }
 
-    /// Memory beside the polygons, which a crowd needs anyway.
+    /// Memory in addition to the polygons, which a crowd needs anyway, bytes.
     pub fn bytes(&self) -> usize {
         match self {
             Self::Polygons { .. } => 0,

@@ -1,11 +1,11 @@
-//! Walls in SPH: what each way of seeing them makes of density and force, beside the exact integrals.
+//! Walls in SPH: the density and force of each method of including them, compared with the exact integrals.
 //!
-//! For an agent at r_i the walls' density is ρ_i⁰ ∫ W and their force −p_i ∫ ∇W (Eqs. 10 and 12),
-//! over one of two [`Region`]s: what the walls *hide* (the paper's P_k together, counted once) or
-//! the *solid* itself. The engine's methods mean the first. Boundary particles and volume maps, which
-//! the paper argues against (§3.4) and which live here alone, mean the second, but for Akinci's
-//! particles, whose volumes make a body of every wall. Each is measured against what it means; how
-//! far the two are apart is a finding of its own.
+//! For an agent at r_i the walls' density is ρ_i⁰ ∫ W and their force −p_i ∫ ∇W (Eqs. 10 and 12), over one of two
+//! [`Region`]s: what the walls *hide* (the union of the paper's P_k, counted once), or the *solid* itself. The engine's
+//! methods integrate over the hidden region. Boundary particles and volume maps, which the paper argues against (§3.4)
+//! and which exist only here, integrate over the solid. Akinci's particles are an exception: their volumes make a solid
+//! body of every wall. Each method is measured against the region that it integrates over. The difference between the
+//! two regions is reported separately.
 
 mod case;
 mod integrals;

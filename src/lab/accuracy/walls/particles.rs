@@ -1,30 +1,30 @@
-//! Walls of boundary particles, as in fluids: particles that fill the obstacles and do not move.
+//! Walls made of boundary particles, as in fluids: fixed particles that fill the obstacles.
 
 use super::Integrals;
 use crate::engine::geometry::Walls;
 use crate::engine::kernel;
 use crate::engine::math::Vector;
 
-/// Cells with a smaller part in an obstacle, of their area, stay empty.
+/// Cells with a smaller fraction of their area inside an obstacle stay empty.
 const LEAST_PART: f64 = 1e-9;
 
-/// Where the particles are in the cells of the lattice, and how much of the solid each stands for.
+/// The positions of the particles in the cells of the lattice, and the area of solid that each stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Volumes {
-    /// A particle in the middle of every cell whose middle is solid, for the whole cell: *regularly sampled
+    /// A particle at the center of every cell whose center is solid. It stands for the whole cell: *regularly sampled
     /// positions inside obstacles* (§3.4). Walls become stairs, and thin ones have holes.
     Whole,
-    /// A particle in the middle of the solid part of every cell, for that part: a quadrature of the
-    /// solid. The kindest choice.
+    /// A particle at the centroid of the solid part of every cell. It stands for that part: a quadrature of the solid,
+    /// and the most accurate choice.
     Cut,
-    /// The same particles, for V_b = 1 / Σ W(x_b − x_c) over all boundary particles c, b too (Akinci,
-    /// Ihmsen, Akinci, Solenthaler and Teschner 2012, *Versatile rigid-fluid coupling for incompressible
-    /// SPH*, doi 10.1145/2185520.2185558). Deep in a solid it is the cell's area, at a straight wall up to
-    /// twice that; a thin wall weighs even more than a thick one.
+    /// The same positions, with V_b = 1 / Σ W(x_b − x_c) over all boundary particles c, including b (Akinci, Ihmsen,
+    /// Akinci, Solenthaler and Teschner 2012, *Versatile rigid-fluid coupling for incompressible SPH*, doi
+    /// 10.1145/2185520.2185558). Deep in a solid it is the cell's area, at a straight wall up to twice that. A thin
+    /// wall weighs even more than a thick one.
     Akinci,
 }
 
-/// A square lattice over all obstacles with a particle in each solid cell.
+/// A square lattice over all obstacles, with a particle in each solid cell.
 ///
 /// The mass of a particle is ρ_i⁰ V_b and its pressure p_i (*pressure mirroring*), as for the other methods.
 #[derive(Debug, Clone)]
@@ -33,7 +33,7 @@ pub struct Particles {
     corner: Vector,
     columns: usize,
     rows: usize,
-    /// Where the particles of each cell begin, row by row, and where the last ones end.
+    /// Index of the first particle of each cell, row by row, and the number of particles.
     starts: Vec<u32>,
     position: Vec<Vector>,
     volume: Vec<f64>,
@@ -51,7 +51,7 @@ impl Particles {
         };
         let low = corners().fold(Vector::repeat(f64::INFINITY), |low, p| low.inf(p));
         let high = corners().fold(Vector::repeat(f64::NEG_INFINITY), |high, p| high.sup(p));
-        // The lattice is the floor plan's, not an obstacle's.
+        // All obstacles share one lattice.
         let corner = (low / spacing).map(f64::floor) * spacing;
         let cells = ((high - corner) / spacing).map(f64::ceil);
         let mut particles = Self {
@@ -110,14 +110,14 @@ impl Particles {
         self.position.iter().map(|x| 1.0 / number(x)).collect()
     }
 
-    /// The sums over the particles that an agent at `r_i` can reach.
+    /// The sums over the particles within reach of an agent at `r_i`.
     pub fn integrals(&self, r_i: Vector) -> Integrals {
         self.near(r_i)
             .map(|b| Integrals::of_piece(self.position[b] - r_i, self.volume[b], self.h))
             .sum()
     }
 
-    /// All particles in reach of `x` and few others: row by row of the lattice, those along the chord.
+    /// All particles within reach of `x`, and few others: in each row of the lattice, the cells along the chord.
     fn near(&self, x: Vector) -> impl Iterator<Item = usize> {
         let from = (x - self.corner) / self.spacing;
         let reach = self.h / self.spacing;
@@ -146,14 +146,14 @@ impl Particles {
         self.position.is_empty()
     }
 
-    /// Memory of the particles and of the lattice they are found by.
+    /// Memory of the particles and of the lattice that finds them, bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.position) + size_of_val(&*self.volume) + size_of_val(&*self.starts)
     }
 }
 
-/// A polygon's part in a cell, side by side (Sutherland and Hodgman 1974). Parts that fall asunder stay joined
-/// by edges that enclose nothing.
+/// A polygon clipped to a cell, side by side (Sutherland and Hodgman 1974). Separate parts stay connected by edges that
+/// enclose no area.
 fn clipped(points: &[Vector], low: Vector, high: Vector) -> Vec<Vector> {
     let sides: [&dyn Fn(&Vector) -> f64; 4] = [
         &|p| p.x - low.x,
@@ -177,7 +177,7 @@ fn clipped(points: &[Vector], low: Vector, high: Vector) -> Vec<Vector> {
     })
 }
 
-/// Area in m² and centre of mass of what counter-clockwise outlines enclose and clockwise ones leave out, by
+/// Area in m² and centroid of the region that counter-clockwise outlines enclose, without the clockwise ones, by
 /// triangles from `origin`.
 fn area_and_middle(outlines: impl Iterator<Item = Vec<Vector>>, origin: Vector) -> (f64, Vector) {
     let (mut area, mut moment) = (0.0, Vector::zeros());

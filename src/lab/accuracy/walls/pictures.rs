@@ -1,24 +1,24 @@
-//! Density and force over each path, and error against time.
+//! Density and force along each path, and error against time.
 
 use super::{CaseReport, Error, METHODS, Method, MethodReport, Stored, Volumes, WallReport};
 use crate::engine::boundary::WallMethod;
 use crate::output::colors::Rgb;
 use crate::output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Point, Sheet, Style};
 
-/// What the truth is drawn with, below everything.
+/// The color of the exact values, drawn below everything else.
 const PALE: Rgb = [200, 200, 200];
-/// An eighth colour for lines.
+/// An eighth color for lines.
 const BROWN: Rgb = [130, 70, 20];
-/// Errors are drawn from here on; what is less is rounding. Percent.
+/// Smaller errors are drawn at this value: they are rounding errors. Percent.
 const LEAST_ERROR: f64 = 1e-3;
-/// Axes of error against time: nanoseconds, percent.
+/// Ranges of the axes of error against time: nanoseconds, percent.
 const TIMES: [f64; 2] = [20.0, 10_000.0];
 const ERRORS: [f64; 2] = [0.5 * LEAST_ERROR, 1000.0];
-/// Panels in a row.
+/// Panels per row.
 const COLUMNS: usize = 3;
 
 impl WallReport {
-    /// Density and force over each path in rows of three paths, and work against precision.
+    /// Density and force along each path in rows of three paths, and work-precision diagrams.
     pub fn sheet(&self) -> Sheet {
         let mut panels = Vec::new();
         for (row, cases) in self.cases.chunks(COLUMNS).enumerate() {
@@ -47,7 +47,7 @@ impl WallReport {
         }
     }
 
-    /// A dot for every path.
+    /// A work-precision diagram with one dot for each path.
     fn work_precision(&self, title: &str, error: fn(&MethodReport) -> Option<Error>) -> Panel {
         let dots = |k: usize| {
             let methods = self.cases.iter().map(|case| &case.methods[k]);
@@ -85,7 +85,7 @@ impl WallReport {
     }
 }
 
-/// Quantity `n` over a path.
+/// Quantity `n` along a path.
 fn curves(case: &CaseReport, n: usize, label: &str, legend: Option<Corner>) -> Panel {
     let line = |values: &[[f64; 2]], style| {
         let points = case.along.iter().zip(values);
@@ -110,7 +110,7 @@ fn curves(case: &CaseReport, n: usize, label: &str, legend: Option<Corner>) -> P
     }
 }
 
-/// One colour a kind; the coarser particles broken, and explained by the title.
+/// One color for each kind of method. Lines of coarser particles are broken; the title explains them.
 fn style(k: usize) -> Style {
     let method = METHODS[k];
     let color = match method {

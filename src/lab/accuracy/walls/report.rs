@@ -1,11 +1,11 @@
-//! What was measured, as tables for people and as rows for programs.
+//! The results as tables for readers and as rows for programs.
 
 use std::fmt::Write;
 
 use super::{CaseReport, Error, METHODS, Method, MethodReport, Region, WallReport};
 
 impl WallReport {
-    /// Tables with a method a row and a case a column.
+    /// Tables with one row per method and one column per case.
     pub fn markdown(&self) -> String {
         let error =
             |of: fn(&MethodReport) -> Error| move |method: &MethodReport| in_percent(of(method));
@@ -42,7 +42,7 @@ impl WallReport {
         text
     }
 
-    /// One row for each case and method; errors in parts of the largest exact value.
+    /// One row for each case and method; errors are relative to the largest exact value.
     pub fn csv(&self) -> String {
         let mut text =
             "case,method,against,density_rms,density_max,force_rms,force_max,roughness_rms,\
@@ -82,7 +82,7 @@ impl WallReport {
             .flat_map(|case| case.methods.iter().map(move |method| (case, method)))
     }
 
-    /// A column for each case that has something to say.
+    /// A table with a column for each case in which `cell` is not empty.
     fn table(&self, cell: impl Fn(&MethodReport) -> String) -> String {
         let speaks = |case: &&CaseReport| case.methods.iter().any(|m| !cell(m).is_empty());
         let cases: Vec<&CaseReport> = self.cases.iter().filter(speaks).collect();
@@ -128,7 +128,7 @@ fn in_percent(error: Error) -> String {
     format!("{} ({})", percent(error.rms), percent(error.max))
 }
 
-/// Three digits, and none of what is rounding: below 10⁻⁵ %.
+/// Three digits; values below 10⁻⁵ % are rounding errors and become 0.
 fn percent(part: f64) -> String {
     match 100.0 * part {
         value if value >= 99.5 => format!("{value:.0}"),

@@ -1,4 +1,4 @@
-//! What one evaluation costs.
+//! The cost of one evaluation.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -6,16 +6,16 @@ use std::time::Instant;
 use super::{Case, Method, Prepared, SUPPORT_RADIUS};
 use crate::lab::bench::Spread;
 
-/// How often is measured.
+/// The number of measurements.
 #[derive(Debug, Clone, Copy)]
 pub struct Effort {
-    /// Turns that all methods take.
+    /// Turns of all methods.
     pub turns: usize,
-    /// How often a method goes along the path in a turn.
+    /// Passes of a method along the path in each turn.
     pub passes: usize,
 }
 
-/// A method made ready, and how long that takes, milliseconds.
+/// A prepared method, and the time of its preparation, milliseconds.
 pub fn prepared(method: Method, case: &Case, effort: Effort) -> (Prepared<'_>, f64) {
     let turn = || {
         let start = Instant::now();
@@ -26,7 +26,7 @@ pub fn prepared(method: Method, case: &Case, effort: Effort) -> (Prepared<'_>, f
     (method.prepare(case), Spread::of(&times).median)
 }
 
-/// For each method, nanoseconds per place turn by turn; the methods take turns.
+/// Nanoseconds per place for each method and turn; the methods take turns.
 pub fn evaluations(methods: &mut [Prepared], case: &Case, effort: Effort) -> Vec<Vec<f64>> {
     let mut times = vec![Vec::with_capacity(effort.turns); methods.len()];
     for _ in 0..effort.turns {
@@ -39,7 +39,7 @@ pub fn evaluations(methods: &mut [Prepared], case: &Case, effort: Effort) -> Vec
     times
 }
 
-/// Nanoseconds to find the walls within reach of a place, turn by turn.
+/// Nanoseconds to find the walls within reach of a place, for each turn.
 pub fn searches(case: &Case, effort: Effort) -> Vec<f64> {
     let mut near = Vec::new();
     let mut turn = || {
