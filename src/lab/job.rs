@@ -1,4 +1,4 @@
-//! Work in pieces, side by side over the threads; what is finished is kept, and not done again.
+//! Jobs that run in parallel. Finished results are stored, and not computed again.
 
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
@@ -13,41 +13,42 @@ use serde_json::Value;
 use crate::lab::reproduce::{ReproduceError, Store};
 use crate::scenario::input::{self, LONGEST_TEXT};
 
-/// The engine's sources, in 16 letters: what another engine did is not taken for this one's.
+/// A hash of the engine's sources, 16 letters: results of other engines are not reused.
 const ENGINE: &str = env!("SANDBOX_ENGINE");
-/// To be raised with whatever changes a job's result and is no part of the engine.
+/// Increase this whenever a change outside the engine affects the result of a job.
 const VERSION: u32 = 7;
 
-/// Who is told how it goes.
+/// Receives progress reports.
 pub trait Listener: Sync {
-    /// So many jobs are to be done, in so many seconds on one core; so many were kept from before.
+    /// `jobs` jobs begin, which take about `seconds` seconds on one core; the results of `kept` others are in the
+    /// store.
     fn begins(&self, jobs: usize, kept: usize, seconds: f64);
-    /// Something worth a line.
+    /// A message, one line.
     fn notes(&self, text: &str);
     /// A job that was expected to take `expected` seconds took `seconds`.
     fn finishes(&self, job: &str, expected: f64, seconds: f64);
 }
 
-/// Nobody.
+/// Ignores all reports.
 impl Listener for () {
     fn begins(&self, _: usize, _: usize, _: f64) {}
     fn notes(&self, _: &str) {}
     fn finishes(&self, _: &str, _: f64, _: f64) {}
 }
 
-/// A piece of work and what it gives.
+/// A piece of work with a result.
 pub struct Job {
-    /// A readable name, different from that of any other job.
+    /// A readable name, unique among all jobs.
     pub name: String,
-    /// What else the result depends on.
+    /// Further input that the result depends on.
     input: String,
-    /// Roughly how long it takes on one core, seconds.
+    /// Estimated time on one core, seconds.
     pub expected_secs: f64,
-    /// Does it.
+    /// Does the work.
     pub work: Box<dyn Fn() -> Result<Value, ReproduceError> + Send + Sync>,
 }
 
-/// What a job's file says.
+/// The contents of a job's file.
 #[derive(Serialize, Deserialize)]
 struct Kept {
     identity: String,
@@ -55,7 +56,7 @@ struct Kept {
 }
 
 impl Job {
-    /// A job by what it does.
+    /// A job that does `work`.
     pub fn new<T: Serialize>(
         name: String,
         expected_secs: f64,
@@ -72,7 +73,7 @@ impl Job {
         }
     }
 
-    /// The same job, with a text that its result depends on.
+    /// The same job with a text that its result depends on.
     #[must_use]
     pub fn depending_on(self, input: impl Into<String>) -> Self {
         Self {
@@ -85,7 +86,7 @@ impl Job {
         format!("{ENGINE} {VERSION} {} {}", self.name, self.input)
     }
 
-    /// The file of its result in the store.
+    /// The file of its result, relative to the store.
     fn file(&self) -> String {
         let mut hasher = DefaultHasher::new();
         self.identity().hash(&mut hasher);
@@ -129,11 +130,11 @@ impl Job {
     }
 }
 
-/// Does the jobs that `store` does not have the results of, on as many threads as rayon has, each job on
-/// one; returns all results in the jobs' order.
+/// Does the jobs whose results are not in `store`, on as many threads as rayon has, each job on a single thread.
+/// Returns all results in the order of the jobs.
 ///
 /// # Errors
-/// The first job that fails or cannot be kept; what was finished before is kept.
+/// The first job that fails or whose result cannot be stored. Jobs that finished before stay stored.
 pub fn run(
     store: &Store,
     jobs: &[Job],
@@ -157,11 +158,11 @@ pub fn run(
     Ok(results.into_iter().flatten().collect())
 }
 
-/// Does `work` for 0, 1, … below `count` on as many threads as rayon has, each piece on one of them, in this
-/// order as threads become free.
+/// Calls `work` with 0, 1, … below `count`, on as many threads as rayon has, each call on a single thread. Calls begin
+/// in this order, as threads become free.
 ///
 /// # Errors
-/// The first piece that fails; none begins after it.
+/// The first call that fails; no call begins after it.
 pub fn side_by_side(
     count: usize,
     work: impl Fn(usize) -> Result<(), ReproduceError> + Sync,
@@ -180,7 +181,7 @@ pub fn side_by_side(
             }
         }
     };
-    // Threads of their own: one of rayon's would take up a second piece while it waits for the first.
+    // These are separate threads: a thread of rayon's pool would start a second call while it waits for the first.
     std::thread::scope(|scope| {
         let threads = rayon::current_num_threads().min(count);
         let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
@@ -191,10 +192,10 @@ pub fn side_by_side(
     })
 }
 
-/// What a job gave.
+/// Reads the result of a job.
 ///
 /// # Errors
-/// It gave something else.
+/// The result has another type.
 pub fn read<T: DeserializeOwned>(result: &Value) -> Result<T, ReproduceError> {
     T::deserialize(result).map_err(|error| ReproduceError::Data(error.to_string()))
 }

@@ -1,4 +1,4 @@
-//! This engine beside others, on the same crowd.
+//! This engine compared with others, on the same crowd.
 
 mod jupedsim;
 mod rustsim;
@@ -25,45 +25,45 @@ pub const BENCHMARK: Benchmark = Benchmark {
     run,
 };
 
-/// The paper's radius of social forces, metres.
+/// The paper's radius of social forces, meters.
 const WIDE: f64 = 5.0;
-/// Steps of a turn; as many come before the first that counts.
+/// Steps per turn; the same number of warm-up steps comes first.
 const STEPS: u64 = 10;
 
-/// One engine with one setting.
+/// An engine with one setting.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Description {
     engine: String,
     model: &'static str,
-    /// Others farther away do not count, metres.
+    /// Agents farther away have no effect, meters.
     radius: f64,
     precision: &'static str,
-    /// Seconds.
+    /// Δt, seconds.
     time_step: f64,
     threads: usize,
 }
 
-/// Somebody to compare.
+/// An engine that takes part.
 struct Entry {
     description: Description,
     contender: Box<dyn Contender>,
 }
 
-/// What an engine can be given: where everybody is, how wide, and where to.
+/// The initial state that every engine starts from.
 struct Start<'a> {
     scene: &'a Scene,
     agents: &'a Agents,
-    /// All threads of the machine.
+    /// The machine's hardware threads.
     threads: usize,
 }
 
-/// One engine's times.
+/// The times of one engine.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Row {
     #[serde(flatten)]
     description: Description,
     ms_per_step: Spread,
-    /// How many times as long it takes as this engine with the same radius on as many threads.
+    /// Time relative to this engine with the same radius and number of threads.
     ratio: Spread,
 }
 
@@ -96,7 +96,8 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, BenchError> {
     })
 }
 
-/// Lets all take turns; others are compared with the one of `ours` that is set alike.
+/// Lets all engines take turns. Each is compared with the entry of `ours` that has the same radius and number of
+/// threads.
 fn race(
     ours: Vec<Entry>,
     others: Vec<Entry>,
@@ -110,7 +111,7 @@ fn race(
         .unzip();
     say(&format!("{} engines and settings", contenders.len()));
     let steps = plan.choose(STEPS, 2);
-    alternate(&mut contenders, 1, steps)?; // all have their memory
+    alternate(&mut contenders, 1, steps)?; // warm-up: allocates memory
     let times = alternate(&mut contenders, plan.repeats, steps)?;
     let row = |(description, ms): (&Description, &Vec<f64>)| {
         let alike = |ours: &Description| {
@@ -126,7 +127,7 @@ fn race(
     Ok(descriptions.iter().zip(&times).map(row).collect())
 }
 
-/// This engine with the paper's radius on one and on all threads, and as the others are set.
+/// This engine with the paper's radius on one thread and on all, and with the settings of the others.
 fn ours(agents: u32, others: &[Entry], all: usize) -> Result<Vec<Entry>, BenchError> {
     let mut wanted = vec![(WIDE, 1), (WIDE, all)];
     wanted.extend(

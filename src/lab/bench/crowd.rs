@@ -8,39 +8,39 @@ use crate::engine::scene::{Group, Scene};
 use crate::engine::simulation::Simulation;
 use crate::scenario::catalog::{self, Parameters};
 
-/// How far ahead the goals of streams are, metres: nobody arrives.
+/// Distance to the goals of streams, meters: no agent arrives.
 const AHEAD: f64 = 100.0;
-/// Each coordinate is moved by up to ± this part of the distance between neighbours.
+/// Each coordinate is moved by up to ± this fraction of the distance between neighbors.
 const JITTER: f64 = 0.05;
 
-/// Where people want to be.
+/// Where agents want to go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Aim {
-    /// Where they are.
+    /// To their own positions.
     Stay,
-    /// Every second 100 m to the right, the others 100 m to the left: there is always somebody to avoid.
+    /// Every other agent 100 m to the right, the rest 100 m to the left: all of them have agents to avoid.
     Streams,
 }
 
-/// A square block of people on a hexagonal grid with jitter.
+/// A square block of agents on a hexagonal grid with jitter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crowd {
-    /// How many.
+    /// Number of agents.
     pub agents: u32,
-    /// P/m².
+    /// Density, P/m².
     pub density: f64,
-    /// One of the paper's profiles, by name.
+    /// The name of one of the paper's profiles.
     pub profile: &'static str,
-    /// What is changed in it.
+    /// Changes to the profile's parameters.
     pub parameters: Parameters,
-    /// Where they want to be.
+    /// Where the agents want to go.
     pub aim: Aim,
 }
 
 impl Crowd {
-    /// As dense as before the concert's stage, with its parameters: 5 P/m², μ = 5, K^goal = 0.1.
+    /// As dense as the crowd in front of the concert's stage, with its parameters: 5 P/m², μ = 5, K^goal = 0.1.
     ///
-    /// Everybody's goal is the own place, which holds crowds of all sizes at the same density.
+    /// The goal of each agent is its own position, which keeps crowds of all sizes at the same density.
     pub fn concert(agents: u32) -> Self {
         Self {
             agents,
@@ -55,7 +55,7 @@ impl Crowd {
         }
     }
 
-    /// People at 4 P/m² who avoid each other, half of them on their way to the right and half to the left.
+    /// Agents at 4 P/m² that avoid each other. Half of them walk to the right and half to the left.
     pub fn streams(agents: u32, profile: &'static str) -> Self {
         Self {
             agents,
@@ -69,7 +69,7 @@ impl Crowd {
     /// The scene before the first frame.
     ///
     /// # Errors
-    /// There is no such profile.
+    /// The profile does not exist.
     pub fn scene(&self) -> Result<Scene, BenchError> {
         let unknown = || BenchError::Profile(self.profile.to_owned());
         let blend = catalog::named(self.profile, &self.parameters).ok_or_else(unknown)?;
@@ -87,7 +87,7 @@ impl Crowd {
         Ok(scene)
     }
 
-    /// From where agent `k` stands to where it wants to be, metres.
+    /// The vector from agent `k` to its goal, meters.
     fn way(&self, k: usize) -> Vector {
         match self.aim {
             Aim::Stay => Vector::zeros(),
@@ -96,7 +96,7 @@ impl Crowd {
         }
     }
 
-    /// Row by row; every second row is moved by half the distance between neighbours.
+    /// Row by row; every other row is shifted by half the distance between neighbors.
     fn places(&self, seed: u64) -> Vec<Vector> {
         let spacing = (2.0 / (self.density * 3.0_f64.sqrt())).sqrt();
         let height = 0.75_f64.sqrt() * spacing;
@@ -121,10 +121,10 @@ impl Crowd {
         places.take(self.agents as usize).collect()
     }
 
-    /// The crowd after so many frames.
+    /// The crowd after `frames` frames.
     ///
     /// # Errors
-    /// As [`scene`](Self::scene), or the crowd cannot go on.
+    /// As [`scene`](Self::scene), or the simulation fails.
     pub fn settled(&self, frames: u64) -> Result<Simulation, BenchError> {
         let mut simulation = Simulation::new(self.scene()?)?;
         for _ in 0..frames {

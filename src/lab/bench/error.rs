@@ -1,39 +1,39 @@
-//! Why something could not be measured.
+//! Errors of benchmarks.
 
 use std::path::PathBuf;
 
 use crate::engine::simulation::Fault;
 use crate::scenario::{ScenarioError, SettingError};
 
-/// Why something could not be measured.
+/// Why a benchmark failed.
 #[derive(Debug, thiserror::Error)]
 pub enum BenchError {
-    /// A crowd cannot go on.
+    /// A simulation failed.
     #[error(transparent)]
     Fault(#[from] Fault),
     /// A scenario cannot be read.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
-    /// A scenario has no such setting.
+    /// A setting is invalid.
     #[error(transparent)]
     Setting(#[from] SettingError),
-    /// There is no such profile.
+    /// The profile does not exist.
     #[error("there is no profile {0}; `sandbox list` names all")]
     Profile(String),
     /// The threads cannot be started.
     #[error("{threads} thread(s) cannot be started: {reason}")]
     Threads {
-        /// How many.
+        /// Number of threads.
         threads: usize,
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// Another program stopped in the middle of a comparison.
     #[error("{engine} stopped: {reason}")]
     Stopped {
-        /// Which.
+        /// The program.
         engine: &'static str,
-        /// What it said last.
+        /// Why it stopped.
         reason: String,
     },
     /// A result cannot be written.
@@ -41,7 +41,7 @@ pub enum BenchError {
     Unwritable {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// A picture cannot be made.

@@ -1,4 +1,4 @@
-//! What is measured on. The only place that names sysinfo.
+//! The machine that runs the benchmarks. Only this module names sysinfo.
 
 use std::fmt;
 use std::path::Path;
@@ -6,26 +6,25 @@ use std::path::Path;
 use serde::Serialize;
 use sysinfo::{CpuRefreshKind, System};
 
-/// The machine, as far as times depend on it.
+/// The properties of the machine that affect times.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Machine {
     /// The processor's name.
     pub cpu: String,
-    /// Physical cores that the system sees.
+    /// Physical cores that the system reports.
     pub cores: usize,
-    /// Threads that run at once.
+    /// Hardware threads.
     pub hardware_threads: usize,
     /// Main memory, bytes.
     pub memory_bytes: u64,
-    /// The system and its kernel.
+    /// The operating system and its kernel.
     pub system: String,
-    /// How many threads wanted to run at once over the last minute, before anything was measured: what
-    /// else the machine does.
+    /// Average number of runnable threads in the minute before the measurements: the load by other programs.
     pub load: f64,
 }
 
 impl Machine {
-    /// This one.
+    /// The current machine.
     pub fn here() -> Self {
         let mut system = System::new();
         system.refresh_memory();
@@ -51,8 +50,8 @@ impl Machine {
     }
 }
 
-/// Main memory that this process may use, bytes: the machine's, or less where its control group or one of the
-/// groups around it has a limit; `None` where the system does not say.
+/// Main memory that this process may use, bytes: the machine's, or the smallest limit of its control group and that
+/// group's parents. `None` if the system does not report it.
 pub fn main_memory() -> Option<u64> {
     let mut system = System::new();
     system.refresh_memory();
@@ -64,8 +63,8 @@ pub fn main_memory() -> Option<u64> {
         .min()
 }
 
-/// The smallest limit on the memory of this process's control group and of those around it, bytes, by the
-/// files below `root`: version 2 of control groups, and the memory controller of version 1.
+/// The smallest memory limit of this process's control group and its parents, bytes, from the files below `root`.
+/// Supports version 2 of control groups, and the memory controller of version 1.
 fn group_limit(root: &Path) -> Option<u64> {
     let groups = std::fs::read_to_string(root.join("proc/self/cgroup")).ok()?;
     let mounts = root.join("sys/fs/cgroup");
@@ -80,11 +79,11 @@ fn group_limit(root: &Path) -> Option<u64> {
             }
             _ => return Vec::new(),
         };
-        // In a container some of the path may lie outside of what is mounted: what is missing has no limit.
+        // In a container, parts of the path may lie outside of the mount: a missing file sets no limit.
         let groups = Path::new(group.trim_start_matches('/')).ancestors();
         let limit = |group| {
             let text = std::fs::read_to_string(mount.join(group).join(file)).ok()?;
-            text.trim().parse::<u64>().ok() // `max` is none
+            text.trim().parse::<u64>().ok() // `max` means no limit
         };
         groups.filter_map(limit).collect()
     });
@@ -102,17 +101,17 @@ impl fmt::Display for Machine {
     }
 }
 
-/// How much memory this process holds, bytes; only Linux says.
+/// The memory of this process, bytes; only known on Linux.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Memory {
     /// Resident now.
     pub resident: u64,
-    /// The most that ever was.
+    /// Peak of the resident memory.
     pub peak: u64,
 }
 
 impl Memory {
-    /// Now, if the system says so.
+    /// The current values, if the system reports them.
     pub fn now() -> Option<Self> {
         Self::read(&std::fs::read_to_string("/proc/self/status").ok()?)
     }
@@ -143,7 +142,7 @@ mod tests {
         assert_eq!(Memory::read("VmRSS:\t 1024 kB\n"), None);
     }
 
-    /// A tree of files, as `group_limit` reads them.
+    /// Creates the files below a temporary root and reads the limit from them.
     fn limit(files: &[(&str, &str)]) -> Option<u64> {
         let root = tempfile::tempdir().unwrap();
         for (path, text) in files {
@@ -169,7 +168,7 @@ mod tests {
         assert_eq!(nested(["max\n", "500\n", "1000\n"]), Some(500));
         assert_eq!(nested(["300\n", "500\n", "max\n"]), Some(300));
         assert_eq!(nested(["max\n", "max\n", "max\n"]), None);
-        // In a container its own group is the root of what is mounted.
+        // In a container, the process's own group is the root of the mount.
         assert_eq!(
             limit(&[own, ("sys/fs/cgroup/memory.max", "700\n")]),
             Some(700)

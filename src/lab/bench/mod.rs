@@ -1,8 +1,8 @@
-//! How fast it is: five benchmarks, each a table, a JSON object and a picture.
+//! Benchmarks of the run time: five, each with a table, a JSON object and a picture.
 //!
-//! A benchmark takes the same steps several times and gives the least, the middle and the greatest
-//! time. What is compared takes turns within each repeat, so that whatever else the machine does hits
-//! all alike; ratios are taken turn by turn. A scene is run through the public API, as anybody would.
+//! A benchmark repeats the same steps several times and reports the minimum, median and maximum time. Contenders take
+//! turns within each repeat, so that other load on the machine affects all of them alike; ratios are taken turn by
+//! turn. Scenes run through the public API.
 
 mod compare;
 mod crowd;
@@ -28,16 +28,16 @@ pub(crate) use timing::{ms_per_frame, pool};
 
 use std::path::PathBuf;
 
-/// How much is to be measured.
+/// How much to measure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// How often the same steps are taken.
+    /// How often the same steps are repeated.
     pub repeats: usize,
-    /// Small crowds and few steps: whether it works, not how fast it is.
+    /// Small crowds and few steps: a check that everything works; the times are meaningless.
     pub quick: bool,
     /// The largest crowd of `scaling`.
     pub largest: u32,
-    /// The Python that `compare` asks for JuPedSim.
+    /// The Python interpreter in which `compare` looks for JuPedSim.
     pub python: PathBuf,
 }
 
@@ -53,29 +53,29 @@ impl Default for Plan {
 }
 
 impl Plan {
-    /// `usual`, or `few` if it is to be quick.
+    /// `usual`, or `few` if the plan is quick.
     fn choose<T>(&self, usual: T, few: T) -> T {
         if self.quick { few } else { usual }
     }
 }
 
-/// Measures something, and says on the way what it is at.
+/// Runs a benchmark, and reports its progress.
 type Measure = fn(&Plan, &dyn Fn(&str)) -> Result<Findings, BenchError>;
 
-/// Something to measure.
+/// A benchmark.
 pub struct Benchmark {
     /// Its name on the command line.
     pub name: &'static str,
-    /// What it measures, in a line.
+    /// A description, in one line.
     pub about: &'static str,
     run: Measure,
 }
 
 impl Benchmark {
-    /// Measures it, and says on the way what it is at.
+    /// Runs the benchmark, and reports its progress with `say`.
     ///
     /// # Errors
-    /// A crowd cannot go on, or another program stopped.
+    /// A simulation fails, or another program stops.
     pub fn measure(&self, plan: &Plan, say: &dyn Fn(&str)) -> Result<Report, BenchError> {
         Ok(Report {
             name: self.name,
@@ -86,7 +86,7 @@ impl Benchmark {
     }
 }
 
-/// Everything that can be measured.
+/// All benchmarks.
 pub const BENCHMARKS: [Benchmark; 5] = [
     scaling::BENCHMARK,
     stages::BENCHMARK,

@@ -1,9 +1,9 @@
-//! What the benchmarks' pictures share.
+//! Helpers for the benchmarks' pictures.
 
 use crate::output::colors::Rgb;
 use crate::output::plot::{Axis, Corner, LINES, Mark, Panel, Point, Sheet, Style};
 
-/// One panel with its legend beside it.
+/// A sheet with one panel and its legend beside it.
 pub fn sheet(title: String, x: Axis, y: Axis, marks: Vec<Mark>) -> Sheet {
     let panel = Panel {
         title: String::new(),
@@ -24,7 +24,7 @@ pub fn sheet(title: String, x: Axis, y: Axis, marks: Vec<Mark>) -> Sheet {
     }
 }
 
-/// A colour for line `k`; they come again after seven.
+/// The color of line `k`; colors repeat after seven.
 pub fn color(k: usize) -> Rgb {
     LINES[k % LINES.len()]
 }
@@ -38,7 +38,7 @@ pub fn dotted(points: &[[f64; 2]], color: Rgb, label: &str) -> [Mark; 2] {
     ]
 }
 
-/// From the least to the greatest.
+/// A vertical line from the minimum to the maximum.
 pub fn range(x: f64, [low, high]: [f64; 2], color: Rgb) -> Mark {
     Mark::Line(vec![[x, low], [x, high]], Style::full(color, 0.8, ""))
 }
@@ -49,12 +49,12 @@ pub fn bar([left, right]: [f64; 2], [low, high]: [f64; 2], color: Rgb) -> Mark {
     Mark::Area(corners, color)
 }
 
-/// What bars of this colour are called.
+/// A legend entry for bars of this color.
 pub fn key(color: Rgb, label: &str) -> Mark {
     Mark::Line(Vec::new(), Style::full(color, 6.0, label))
 }
 
-/// The least and the greatest value, each moved outwards by a factor, for a logarithmic axis.
+/// The smallest and the largest value, moved outward by a factor, for a logarithmic axis.
 pub fn around(values: impl Iterator<Item = f64>, factor: f64) -> [f64; 2] {
     let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
     for value in values.filter(|value| *value > 0.0 && value.is_finite()) {

@@ -1,4 +1,4 @@
-//! What was measured: as text, as JSON, as files.
+//! The results of a benchmark: as text, as JSON, as files.
 
 use std::fs;
 use std::io::{self, Write};
@@ -15,23 +15,23 @@ use crate::output::plot::Sheet;
 use crate::output::table::Table;
 use crate::runs::outputs::write_whole;
 
-/// What everything was measured with.
+/// The circumstances of all measurements.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Setting {
-    /// What was measured on.
+    /// The machine.
     pub machine: Machine,
-    /// The vectors that sums over pairs are taken in.
+    /// The vector instructions for sums over pairs.
     pub vectors: Vectors,
-    /// Threads, where a row does not say otherwise.
+    /// Threads, unless a row says otherwise.
     pub threads: usize,
-    /// How often the same was measured.
+    /// Number of repeats.
     pub repeats: usize,
-    /// Small crowds and few steps: these times say nothing.
+    /// Small crowds and few steps: the times are meaningless.
     pub quick: bool,
 }
 
 impl Setting {
-    /// Here and now.
+    /// The circumstances of this process.
     pub fn of(plan: &Plan) -> Self {
         Self {
             machine: Machine::here(),
@@ -43,34 +43,34 @@ impl Setting {
     }
 }
 
-/// What a benchmark itself has to say.
+/// The results of a benchmark.
 #[derive(Debug, Clone)]
 pub struct Findings {
-    /// For people.
+    /// The table for readers.
     pub table: Table,
-    /// For programs: one object a row.
+    /// The rows for programs: one object each.
     pub rows: Value,
-    /// What must be known to read them.
+    /// Notes that explain the results.
     pub notes: Vec<String>,
     /// The picture.
     pub sheet: Sheet,
 }
 
-/// What a benchmark has found, and with what.
+/// The results of a benchmark, and their circumstances.
 #[derive(Debug, Clone)]
 pub struct Report {
     /// The benchmark.
     pub name: &'static str,
-    /// What it measures, in a line.
+    /// A description, in one line.
     pub about: &'static str,
-    /// What was measured with.
+    /// The circumstances of the measurements.
     pub setting: Setting,
-    /// What was found.
+    /// The results.
     pub findings: Findings,
 }
 
 impl Report {
-    /// For people.
+    /// The text for a terminal.
     pub fn text(&self) -> String {
         let Setting {
             machine,
@@ -96,7 +96,7 @@ impl Report {
         text
     }
 
-    /// For programs.
+    /// The JSON for programs.
     pub fn json(&self) -> Value {
         json!({
             "benchmark": self.name,

@@ -21,21 +21,21 @@ pub const BENCHMARK: Benchmark = Benchmark {
 const SIZES: [u32; 7] = [1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000];
 /// The size that the others are compared with.
 const REFERENCE: u32 = 10_000;
-/// Frames until the crowd stands as it will: 2 s.
+/// Frames until the crowd has settled: 2 s.
 const SETTLING: u64 = 100;
-/// A window has this many steps of agents, in frames between the two.
+/// Agents × frames per repeat; the number of frames is clamped to `FRAMES`.
 const AGENT_FRAMES: u64 = 3_000_000;
 const FRAMES: [u64; 2] = [15, 1_000];
 
-/// One size.
+/// The results for one size.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Row {
     agents: u32,
-    /// In each repeat.
+    /// Frames per repeat.
     frames: u64,
     ns_per_agent_frame: Spread,
     ms_per_frame: Spread,
-    /// The median time per agent over that of 10,000.
+    /// Median time per agent relative to that of 10,000 agents.
     ratio_to_10000: Option<f64>,
     resident_bytes_per_agent: Option<f64>,
     peak_bytes_per_agent: Option<f64>,
@@ -76,7 +76,7 @@ fn measure(agents: u32, plan: &Plan, before: Option<Memory>) -> Result<Row, Benc
     let per_agent = |bytes: u64| bytes as f64 / f64::from(agents);
     let resident = before.zip(now);
     let resident = resident.map(|(b, n)| per_agent(n.resident.saturating_sub(b.resident)));
-    // A crowd that needs no more than one before it has no peak of its own.
+    // A crowd that needs no more memory than an earlier one has no peak of its own.
     let peak = before.zip(peak_before.zip(now));
     let peak = peak.filter(|(_, (then, now))| now.peak > then.peak);
     Ok(Row {

@@ -1,8 +1,8 @@
-//! What each skip saves: a scene's time with and without it.
+//! What each skip saves: the time of a scene with and without it.
 //!
-//! A skip is undone in one of two ways. Either the engine is told that more is needed than is
-//! ([`Simulation::pay_for`]), or the work that it skips is done beside it, on the frozen frame, through
-//! the public API. Nothing in the engine asks whether it is being measured.
+//! A skip is undone in one of two ways. Either the engine computes more than it needs ([`Simulation::pay_for`]), or the
+//! skipped work is done beside the engine, on the frozen frame, through the public API. The engine does not know
+//! whether it is being measured.
 
 mod work;
 
@@ -27,27 +27,27 @@ pub const BENCHMARK: Benchmark = Benchmark {
     run,
 };
 
-/// Something that is not computed where it is not needed.
+/// Work that is skipped if it is not needed.
 pub struct Skip {
     /// Its name in reports.
     pub name: &'static str,
-    /// What is skipped, in a line.
+    /// What is skipped, in one line.
     pub about: &'static str,
     undone: Undone,
 }
 
-/// How to do what is skipped.
+/// How to do the skipped work.
 enum Undone {
-    /// The engine is told that more is needed.
+    /// The engine computes more than it needs.
     Needs(Needs),
-    /// Other work takes the place of some stages.
+    /// Separate work replaces some stages.
     Work {
         instead_of: &'static [Stage],
         begin: fn() -> Box<dyn Work>,
     },
 }
 
-/// No scene needs less.
+/// No needs at all.
 const NOTHING: Needs = Needs {
     density: false,
     pairs: Wanted {
@@ -68,13 +68,13 @@ const ALL_PAIRS: Wanted = Wanted {
     contact: true,
 };
 
-/// As far as the paper's avoidance looks, metres (§5.5).
+/// The radius of the paper's avoidance, meters (§5.5).
 const AVOIDANCE: f64 = 5.0;
 
-/// Frames in a turn: few enough that whatever else the machine does hits all alike.
+/// Frames per turn: few enough that other load on the machine affects all contenders alike.
 const TURN: u64 = 10;
 
-/// What lists neighbours and walls.
+/// The stages that list neighbors and walls.
 const LISTING: &[Stage] = &[Stage::Sort, Stage::Neighbors];
 
 /// All skips that can be undone.
@@ -145,7 +145,7 @@ pub const SKIPS: [Skip; 8] = [
     },
 ];
 
-/// Everything that can be needed without changing what is chosen: all that [`Simulation::pay_for`] takes.
+/// Everything that can be needed without changing the motion: all that [`Simulation::pay_for`] accepts.
 pub fn everything() -> Needs {
     Needs {
         density: true,
@@ -157,17 +157,17 @@ pub fn everything() -> Needs {
     }
 }
 
-/// One skip in one scene.
+/// The result of one skip in one scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Row {
     scenario: &'static str,
     profile: String,
     skip: &'static str,
-    /// As it is.
+    /// With the skip, as shipped.
     with_skip_ms: Spread,
-    /// With the skip undone; `None` where there is nothing to skip.
+    /// With the skip undone; `None` if there is nothing to skip.
     without_skip_ms: Option<Spread>,
-    /// How many times as long a frame takes without the skip, turn by turn.
+    /// Frame time without the skip over frame time with it, turn by turn.
     ratio: Option<Spread>,
     /// Why there is nothing to skip.
     nothing_to_skip: Option<&'static str>,
@@ -190,7 +190,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, BenchError> {
     })
 }
 
-/// As shipped; and the small scenes with social forces alone, where nobody reads a density.
+/// The profiles of a stretch: the shipped one and, for small scenes, social forces alone, which read no density.
 fn profiles(stretch: &Stretch) -> &'static [Option<&'static str>] {
     if matches!(stretch.scenario, "concert" | "plaza") {
         &[None]
@@ -210,7 +210,7 @@ fn notes() -> Vec<String> {
     vec![skips.join("\n"), how.to_owned()]
 }
 
-/// Why there is nothing to skip, if so.
+/// Why there is nothing to skip, or `None` if there is something.
 fn nothing_to_skip(skip: &Skip, simulation: &Simulation) -> Option<&'static str> {
     match &skip.undone {
         Undone::Needs(more) => {
@@ -251,8 +251,7 @@ fn measure(started: &Started, plan: &Plan) -> Result<Vec<Row>, BenchError> {
     Ok(SKIPS.iter().map(row).collect())
 }
 
-/// Milliseconds per frame as it is, and with each skip undone: all go side by side, some frames each in
-/// turn.
+/// Milliseconds per frame as shipped, and with each skip undone. All of them take turns of a few frames.
 fn repeat(started: &Started, undone: &[&Skip]) -> Result<(f64, Vec<f64>), BenchError> {
     let mut base = Course::new(&started.simulation, &NOTHING, None)?;
     let mut others = Vec::new();
@@ -321,7 +320,7 @@ mod picture {
     use crate::lab::bench::pictures::{self, bar, color, key};
     use crate::output::plot::{Axis, BLACK, GRAY, Mark, Sheet, Style};
 
-    /// A group of bars for each scene: how many times as long a frame takes without each skip.
+    /// A group of bars for each scene: frame time without each skip over frame time with it.
     pub fn sheet(rows: &[Row]) -> Sheet {
         let scenes: Vec<&[Row]> = rows
             .chunk_by(|a, b| (a.scenario, &a.profile) == (b.scenario, &b.profile))

@@ -1,23 +1,23 @@
-//! What several measurements of the same say together.
+//! Summaries of repeated measurements.
 
 use serde::Serialize;
 
-/// The least, the middle and the greatest of some measurements.
+/// The minimum, median and maximum of some measurements.
 ///
-/// The least is what the machine can do, the middle what it usually does; far apart they say that it
-/// was busy with something else.
+/// The minimum is what the machine can do, the median what it usually does. If they are far apart, the machine was busy
+/// with other work.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spread {
-    /// The least.
+    /// The minimum.
     pub minimum: f64,
-    /// The middle one, or the mean of the two in the middle.
+    /// The median: the middle value, or the mean of the two middle values.
     pub median: f64,
-    /// The greatest.
+    /// The maximum.
     pub maximum: f64,
 }
 
 impl Spread {
-    /// Of these values; of none, no number.
+    /// The spread of `values`; NaN without values.
     pub fn of(values: &[f64]) -> Self {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -30,7 +30,7 @@ impl Spread {
         }
     }
 
-    /// The same in another unit, of which there are `factor` in the old one.
+    /// The same in another unit: all numbers times `factor`.
     pub fn times(&self, factor: f64) -> Self {
         Self {
             minimum: self.minimum * factor,
@@ -39,13 +39,13 @@ impl Spread {
         }
     }
 
-    /// The three numbers with so many digits after the point.
+    /// The three numbers with `digits` decimals.
     pub fn cells(&self, digits: usize) -> [String; 3] {
         [self.minimum, self.median, self.maximum].map(|value| format!("{value:.digits$}"))
     }
 }
 
-/// Turn by turn, how many times `base` each of `values` is.
+/// Turn by turn, `values` divided by `base`.
 pub fn ratios(values: &[f64], base: &[f64]) -> Vec<f64> {
     values.iter().zip(base).map(|(v, b)| v / b).collect()
 }

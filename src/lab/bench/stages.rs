@@ -1,4 +1,4 @@
-//! Where the time of a frame goes: Fig. 11's tasks, on each shipped scenario and on dense crowds.
+//! The time of a frame by stage, the tasks of Fig. 11: for each shipped scenario and for dense crowds.
 
 use serde_json::{Map, Value, json};
 
@@ -18,18 +18,18 @@ pub const BENCHMARK: Benchmark = Benchmark {
     run,
 };
 
-/// A stretch of a scenario.
+/// A time interval of a scenario.
 pub struct Stretch {
     /// The scenario's name.
     pub scenario: &'static str,
-    /// When it starts, seconds.
+    /// Its start, seconds.
     pub from: f64,
-    /// How long it lasts, seconds.
+    /// Its length, seconds.
     pub lasting: f64,
 }
 
-/// Before the door of the evacuation all have come together; in the crossing both streams meet; at the
-/// concert somebody pushes.
+/// The busiest stretches: in the evacuation all agents have gathered at the door; in the crossing the streams meet; in
+/// the concert the crowd is pushed.
 const BUSIEST: [Stretch; 4] = [
     Stretch {
         scenario: "evacuation",
@@ -53,17 +53,16 @@ const BUSIEST: [Stretch; 4] = [
     },
 ];
 
-/// The stretches that a plan has time for: all, or those of the small scenes.
+/// The stretches of a plan: all, or those of the small scenes if the plan is quick.
 pub fn busiest(plan: &Plan) -> &'static [Stretch] {
     plan.choose(&BUSIEST, &BUSIEST[..3])
 }
 
 impl Stretch {
-    /// The scenario where the stretch starts, as shipped or with another profile, and how many frames it
-    /// has.
+    /// The scenario at the start of the stretch, as shipped or with another profile, and the number of frames.
     ///
     /// # Errors
-    /// The profile is refused, or the crowd cannot go on.
+    /// The profile is invalid, or the simulation fails.
     pub fn begin(&self, plan: &Plan, profile: Option<&str>) -> Result<Started, BenchError> {
         let setting = profile.map(|name| format!("profile={name}").parse::<Setting>());
         let settings: Vec<Setting> = setting.into_iter().collect::<Result<_, _>>()?;
@@ -83,7 +82,7 @@ impl Stretch {
     }
 }
 
-/// A crowd at the start of what is timed.
+/// A crowd at the start of the timed frames.
 pub struct Started {
     pub name: &'static str,
     pub profile: String,
@@ -91,14 +90,14 @@ pub struct Started {
     pub frames: u64,
 }
 
-/// One crowd.
+/// The results for one crowd.
 struct Row {
     name: &'static str,
     profile: String,
     agents: usize,
     frames: u64,
     total: Spread,
-    /// Of all stages in their order; those that never run are 0.
+    /// All stages in order; stages that never run are 0.
     stages: Vec<Spread>,
 }
 
@@ -224,7 +223,7 @@ mod picture {
     use crate::lab::bench::pictures::{self, bar, color, key};
     use crate::output::plot::{Axis, BLACK, Mark, Sheet};
 
-    /// Bars as high as each other, cut by the stages' shares.
+    /// Bars of equal height, divided by the shares of the stages.
     pub fn sheet(rows: &[Row]) -> Sheet {
         let mut marks: Vec<Mark> = Vec::new();
         for (k, row) in rows.iter().enumerate() {
@@ -252,7 +251,7 @@ mod picture {
         pictures::sheet(title, Axis::names("", names), share, marks)
     }
 
-    /// Milliseconds with some three digits.
+    /// Milliseconds with about three digits.
     fn short(ms: f64) -> String {
         let digits = (2.0 - ms.log10().floor()).clamp(0.0, 3.0) as usize;
         format!("{ms:.digits$} ms")

@@ -19,27 +19,27 @@ pub const BENCHMARK: Benchmark = Benchmark {
 };
 
 const SIZES: [u32; 3] = [400, 10_000, 100_000];
-/// Frames until the crowd stands as it will.
+/// Frames until the crowd has settled.
 const SETTLING: u64 = 50;
-/// A window has this many steps of agents.
+/// Agents × frames per repeat; the number of frames is clamped to `FRAMES`.
 const AGENT_FRAMES: u64 = 2_000_000;
 const FRAMES: [u64; 2] = [20, 2_000];
 
-/// One crowd on some threads.
+/// The results for one crowd and number of threads.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Row {
     agents: u32,
     threads: usize,
-    /// In each repeat.
+    /// Frames per repeat.
     frames: u64,
     ms_per_frame: Spread,
-    /// How many times as fast as on one thread, turn by turn.
+    /// Speed relative to one thread, turn by turn.
     speed_up: Spread,
     /// The median speed-up per thread.
     efficiency: f64,
 }
 
-/// 1, 2, 4, … and all.
+/// The powers of two below `all`, and `all`.
 fn counts(all: usize) -> Vec<usize> {
     let doubled = std::iter::successors(Some(1), |count| Some(2 * count));
     let mut counts: Vec<usize> = doubled.take_while(|&count| count < all).collect();
@@ -78,7 +78,7 @@ fn measure(agents: u32, counts: &[usize], plan: &Plan) -> Result<Vec<Row>, Bench
             pool: pool(threads)?,
         }));
     }
-    alternate(&mut contenders, 1, frames)?; // copies come into the caches
+    alternate(&mut contenders, 1, frames)?; // warm-up: fills the caches
     let times = alternate(&mut contenders, plan.repeats, frames)?;
     let row = |(&threads, ms): (&usize, &Vec<f64>)| {
         let speed_up = Spread::of(&ratios(&times[0], ms));

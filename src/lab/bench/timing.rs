@@ -1,4 +1,4 @@
-//! Taking steps by the clock.
+//! Timing of simulation steps.
 
 use std::time::Instant;
 
@@ -7,23 +7,23 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use super::error::BenchError;
 use crate::engine::simulation::{Fault, Simulation, Stage, StageTimes};
 
-/// Frames after which a copy of a crowd is in the caches again.
+/// Warm-up frames, which bring a copied crowd into the caches.
 const WARMING: u64 = 5;
 
-/// Something that takes steps.
+/// A simulation whose steps are timed.
 pub trait Contender {
-    /// Takes so many steps, and returns milliseconds per step.
+    /// Takes `steps` steps, and returns milliseconds per step.
     ///
     /// # Errors
-    /// It cannot go on.
+    /// The simulation fails.
     fn ms_per_step(&mut self, steps: u64) -> Result<f64, BenchError>;
 }
 
-/// Lets everybody take `steps` steps in turn, `repeats` times; for each, milliseconds per step turn by
-/// turn.
+/// Lets all contenders take `steps` steps in turn, `repeats` times. Returns milliseconds per step for each contender
+/// and turn.
 ///
 /// # Errors
-/// One of them cannot go on.
+/// A contender fails.
 pub fn alternate(
     contenders: &mut [Box<dyn Contender + '_>],
     repeats: usize,
@@ -47,7 +47,7 @@ pub fn ms_per_frame(simulation: &mut Simulation, frames: u64) -> Result<f64, Fau
     Ok(1e3 * start.elapsed().as_secs_f64() / frames as f64)
 }
 
-/// A crowd that goes on from one turn to the next.
+/// A crowd that continues from one turn to the next.
 pub struct GoingOn {
     pub simulation: Simulation,
     pub pool: ThreadPool,
@@ -60,7 +60,7 @@ impl Contender for GoingOn {
     }
 }
 
-/// The stages of the same `frames` frames from a start on, whenever it is called.
+/// The stage times of the `frames` frames after a warm-up from `start`: the same frames in every call.
 pub fn replay(start: &Simulation, frames: u64) -> Result<StageTimes, Fault> {
     let mut simulation = warmed(start.clone())?;
     simulation.reset_stages();
@@ -70,7 +70,7 @@ pub fn replay(start: &Simulation, frames: u64) -> Result<StageTimes, Fault> {
     Ok(simulation.stages().clone())
 }
 
-/// Some frames on.
+/// The simulation after the warm-up.
 pub fn warmed(mut simulation: Simulation) -> Result<Simulation, Fault> {
     for _ in 0..WARMING {
         simulation.step()?;
@@ -86,7 +86,7 @@ pub fn ms_of(times: &StageTimes, wanted: Stage) -> f64 {
         .map_or(0.0, |(_, ms)| ms)
 }
 
-/// So many threads.
+/// A pool of `threads` threads.
 pub fn pool(threads: usize) -> Result<ThreadPool, BenchError> {
     let built = ThreadPoolBuilder::new().num_threads(threads).build();
     built.map_err(|error| BenchError::Threads {

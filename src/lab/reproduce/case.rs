@@ -1,4 +1,4 @@
-//! One run: a scenario with settings and a seed, and what to keep of it.
+//! One run: a scenario with settings and a seed, and the data to keep of it.
 
 use std::collections::BTreeMap;
 use std::collections::hash_map::DefaultHasher;
@@ -15,27 +15,26 @@ use super::snapshot::{Snapshot, SnapshotAt};
 use crate::engine::simulation::Simulation;
 use crate::scenario::{Scenario, ScenarioError, Setting};
 
-/// The engine's sources, in 16 letters: a result of another engine is not taken for one of this.
+/// A hash of the engine's sources, 16 letters: results of other engines are not reused.
 const ENGINE: &str = env!("SANDBOX_ENGINE");
 
-/// Something to keep of a run beside its metrics.
+/// Data to keep of a run, in addition to its metrics.
 pub trait Probe: Send + Sync {
-    /// Names what is kept, with everything that it depends on: two probes of one name give the same.
+    /// The name of the data, with everything that they depend on: probes with the same name keep the same data.
     fn name(&self) -> String;
-    /// Begins a run; here is the place to ask for densities
-    /// ([`Simulation::request_density_until`]).
+    /// Begins a run. Densities can be requested here ([`Simulation::request_density_until`]).
     fn begin(&self, simulation: &mut Simulation) -> Box<dyn Observer>;
 }
 
-/// A probe at work in one run.
+/// A probe during one run.
 pub trait Observer {
-    /// Looks at an evaluated frame; called in every one.
+    /// Observes an evaluated frame; called in every frame.
     fn observe(&mut self, simulation: &Simulation);
-    /// What was seen, after the last frame.
+    /// The data to keep, after the last frame.
     fn finish(self: Box<Self>) -> Value;
 }
 
-/// One run. Cases of the same scenario, settings and seed are the same run, whatever they keep.
+/// One run. Cases with the same scenario, settings and seed are the same run, whatever data they keep.
 #[derive(Clone)]
 pub struct Case {
     source: Source,
@@ -53,12 +52,12 @@ enum Source {
 }
 
 impl Case {
-    /// A scenario that comes with the program.
+    /// A scenario that ships with the program.
     pub fn shipped(name: &'static str) -> Self {
         Self::new(Source::Shipped(name))
     }
 
-    /// A scenario from its text, JSON.
+    /// A scenario from its JSON text.
     pub fn from_text(name: impl Into<String>, text: impl Into<String>) -> Self {
         Self::new(Source::Text {
             name: name.into(),
@@ -89,37 +88,37 @@ impl Case {
         self.set("seed", seed)
     }
 
-    /// Keeps what a probe sees.
+    /// Also keeps the data of `probe`.
     #[must_use]
     pub fn keep(mut self, probe: impl Probe + 'static) -> Self {
         self.probes.push(Arc::new(probe));
         self
     }
 
-    /// Keeps everybody's position, velocity, density and radius at a time in seconds.
+    /// Keeps all agents' positions, velocities, densities and radii at a time in seconds.
     #[must_use]
     pub fn snapshot(self, at: f64) -> Self {
         self.keep(SnapshotAt(at))
     }
 
-    /// Roughly how long it takes to compute on one core, seconds; the longest begin first, and the
-    /// time left is told from it.
+    /// Sets the estimated computing time on one core, seconds. The longest cases begin first, and the remaining time is
+    /// estimated from it.
     #[must_use]
     pub fn taking(mut self, seconds: f64) -> Self {
         self.expected_secs = seconds;
         self
     }
 
-    /// Runs when nothing else does, on all threads: for measuring how long it takes.
+    /// Runs on all threads while no other case runs, to measure its computing time.
     #[must_use]
     pub fn alone(mut self) -> Self {
         self.alone = true;
         self
     }
 
-    /// The settings as on the command line, behind the scenario's name; long ones are cut.
+    /// The scenario's name, then the settings as on the command line; long settings are cut.
     pub fn name(&self) -> String {
-        /// More letters of a setting tell nobody anything.
+        /// Longer settings are cut to this many characters.
         const LONGEST: usize = 40;
         let name = match &self.source {
             Source::Shipped(name) => name,
@@ -136,10 +135,10 @@ impl Case {
         text
     }
 
-    /// The scenario with the settings in it.
+    /// The scenario with the settings applied.
     ///
     /// # Errors
-    /// A setting or the text makes no sense.
+    /// A setting or the text is invalid.
     pub fn scenario(&self) -> Result<Scenario, ReproduceError> {
         let invalid = |error| ReproduceError::Scenario {
             case: self.name(),
@@ -157,7 +156,7 @@ impl Case {
         scenario.map_err(invalid)
     }
 
-    /// What the run is known by.
+    /// The key of the run.
     ///
     /// # Errors
     /// As [`scenario`](Self::scenario).
@@ -165,22 +164,22 @@ impl Case {
         Ok(Key::new(self, &self.scenario()?))
     }
 
-    /// Seconds on one core, roughly.
+    /// Estimated time on one core, seconds.
     pub fn expected_secs(&self) -> f64 {
         self.expected_secs
     }
 
-    /// Does it run when nothing else does?
+    /// Does it run while no other case runs?
     pub fn is_alone(&self) -> bool {
         self.alone
     }
 
-    /// What is kept.
+    /// The probes.
     pub fn probes(&self) -> &[Arc<dyn Probe>] {
         &self.probes
     }
 
-    /// Keeps what `other`, the same run, keeps as well.
+    /// Also keeps the data that `other`, a case of the same run, keeps.
     pub(super) fn keep_also(&mut self, other: &Self) {
         for probe in &other.probes {
             if self.probes.iter().all(|own| own.name() != probe.name()) {
@@ -190,17 +189,17 @@ impl Case {
     }
 }
 
-/// What a run is known by: the engine, the whole document, and if it ran alone.
+/// The identity of a run: the engine, the whole document, and whether it ran alone.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Key {
-    /// A readable name and a hash, fit for a file.
+    /// A readable name and a hash, suitable as a file name.
     stem: String,
-    /// What was hashed.
+    /// The hashed text.
     pub(super) identity: String,
 }
 
 impl Key {
-    /// A file's name is cut to this many letters before the hash.
+    /// The readable name is cut to this many letters.
     const LONGEST: usize = 80;
 
     fn new(case: &Case, scenario: &Scenario) -> Self {
@@ -228,24 +227,24 @@ impl Display for Key {
     }
 }
 
-/// What a run gave.
+/// The result of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CaseResult {
-    /// The case, readable.
+    /// The name of the case.
     pub case: String,
-    /// How long it took to compute, seconds.
+    /// Computing time, seconds.
     pub computed_in_secs: f64,
     /// The simulated time at its end, seconds.
     pub ended_at_secs: f64,
-    /// The scenario's measurements by name; `None` where the run gave none.
+    /// The scenario's measurements by name; `None` if the run gave no value.
     pub metrics: BTreeMap<String, Option<f64>>,
-    /// When each counted arrival was, seconds, in order.
+    /// The times of counted arrivals, seconds, in order.
     pub arrivals: Vec<f64>,
-    /// How many arrivals did not count.
+    /// Number of arrivals that are not counted.
     pub uncounted: usize,
-    /// How many agents were still there at the end.
+    /// Number of agents at the end.
     pub remaining: usize,
-    /// What the probes kept, by their names.
+    /// The data of the probes, by name.
     pub kept: BTreeMap<String, Value>,
 }
 
@@ -253,7 +252,7 @@ impl CaseResult {
     /// A metric by name.
     ///
     /// # Errors
-    /// It is not measured. (A run that gave no value has `None`.)
+    /// The metric is not measured. (A metric without a value is `None`.)
     pub fn metric(&self, name: &str) -> Result<Option<f64>, ReproduceError> {
         self.metrics
             .get(name)
@@ -261,10 +260,10 @@ impl CaseResult {
             .ok_or_else(|| self.missing(format!("metric `{name}`")))
     }
 
-    /// What the probe of that name kept.
+    /// The data of the probe with this name.
     ///
     /// # Errors
-    /// Nothing was kept, or something else.
+    /// There are no such data, or they have another form.
     pub fn kept<T: DeserializeOwned>(&self, name: &str) -> Result<T, ReproduceError> {
         let value = self.kept.get(name).cloned();
         let value = value.ok_or_else(|| self.missing(format!("`{name}`")))?;
@@ -275,7 +274,7 @@ impl CaseResult {
     /// The snapshot at a time in seconds.
     ///
     /// # Errors
-    /// None was kept, or the run ended before.
+    /// There is no snapshot of this time, or the run ended before it.
     pub fn snapshot(&self, at: f64) -> Result<Snapshot, ReproduceError> {
         self.kept(&SnapshotAt(at).name())
     }

@@ -1,20 +1,20 @@
-//! Ours beside the paper's: spread over seeds, difference, band.
+//! Our values beside the paper's: spread over seeds, difference, band.
 
 use serde::Serialize;
 
-/// Values over seeds.
+/// The spread of values over seeds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spread {
-    /// Their mean.
+    /// The mean.
     pub mean: f64,
-    /// Their sample standard deviation; none for a single value.
+    /// The sample standard deviation; `None` for a single value.
     pub deviation: Option<f64>,
-    /// How many there are.
+    /// Number of values.
     pub count: usize,
 }
 
 impl Spread {
-    /// Of some values; `None` of none.
+    /// The spread of `values`; `None` without values.
     pub fn of(values: &[f64]) -> Option<Self> {
         if values.is_empty() {
             return None;
@@ -38,13 +38,13 @@ impl Spread {
     }
 }
 
-/// How far from the paper's value a mean may lie, the border included.
+/// The largest allowed distance of a mean from the paper's value, inclusive.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Band {
-    /// As a part of the paper's value.
+    /// Relative to the paper's value.
     Relative(f64),
-    /// In the value's own unit.
+    /// In the unit of the value.
     Absolute(f64),
 }
 
@@ -53,16 +53,16 @@ pub enum Band {
 pub struct Comparison {
     /// The paper's value.
     pub paper: f64,
-    /// Ours over the seeds that gave a value.
+    /// Our values, over the seeds that gave one.
     pub ours: Option<Spread>,
-    /// How many seeds were run.
+    /// Number of seeds.
     pub seeds: usize,
-    /// The band, if one is asked for.
+    /// The band, if there is one.
     pub band: Option<Band>,
 }
 
 impl Comparison {
-    /// Values over seeds beside the paper's; `None` where a run gave no value.
+    /// Compares values over seeds with the paper's; `None` for a run without a value.
     pub fn new(paper: f64, values: &[Option<f64>], band: Option<Band>) -> Self {
         let given: Vec<f64> = values.iter().copied().flatten().collect();
         Self {
@@ -78,14 +78,14 @@ impl Comparison {
         self.ours.map(|ours| ours.mean - self.paper)
     }
 
-    /// The same as a part of the paper's value.
+    /// The difference relative to the paper's value.
     pub fn relative(&self) -> Option<f64> {
         self.difference().map(|difference| difference / self.paper)
     }
 
-    /// Is our mean inside the band? Not if a run gave no value; `None` without a band.
+    /// Is our mean inside the band? No if a run gave no value; `None` without a band.
     pub fn is_kept(&self) -> Option<bool> {
-        /// Decimal borders have no last bit.
+        /// Limits such as 0.015 are not exact in binary.
         const ROUNDING: f64 = 1e-12;
         let band = self.band?;
         let complete = self.ours.is_some_and(|ours| ours.count == self.seeds);
@@ -96,7 +96,7 @@ impl Comparison {
         Some(complete && off.is_some_and(|off| off.abs() <= most + ROUNDING))
     }
 
-    /// Ours, and how many seeds gave a value if not all did.
+    /// Our values, and the number of seeds with a value if it is not all of them.
     pub fn ours_written(&self) -> String {
         match self.ours {
             None => "–".to_owned(),
@@ -107,7 +107,7 @@ impl Comparison {
         }
     }
 
-    /// The difference in percent, or in the value's own unit where that is how the band is given.
+    /// The difference in percent, or in the unit of the value if the band is given in it.
     pub fn difference_written(&self) -> String {
         let text = match self.band {
             Some(Band::Absolute(_)) => self.difference().map(|off| format!("{off:+.2}")),

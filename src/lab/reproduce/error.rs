@@ -1,4 +1,4 @@
-//! Why something could not be reproduced.
+//! Errors of reproductions.
 
 use crate::engine::simulation::Fault;
 use crate::scenario::ScenarioError;
@@ -6,7 +6,7 @@ use crate::scenario::ScenarioError;
 /// Why something could not be reproduced.
 #[derive(Debug, thiserror::Error)]
 pub enum ReproduceError {
-    /// A case is no scenario.
+    /// The scenario of a case is invalid.
     #[error("{case}: {error}")]
     Scenario {
         /// The case.
@@ -14,12 +14,12 @@ pub enum ReproduceError {
         /// What is wrong with it.
         error: ScenarioError,
     },
-    /// A run could not go on.
+    /// A run failed.
     #[error("{case}: {fault}")]
     Fault {
         /// The case.
         case: String,
-        /// What happened.
+        /// The reason.
         fault: Fault,
     },
     /// A file or folder cannot be written.
@@ -27,23 +27,23 @@ pub enum ReproduceError {
     Unwritable {
         /// The file or folder.
         path: String,
-        /// What the system said.
+        /// The system's error message.
         reason: String,
-        /// What is there all the same.
+        /// The results that are stored nevertheless.
         kept: String,
     },
-    /// A result that was asked for is not there, or not of the expected form.
+    /// A requested result is missing, or has another form.
     #[error("{case}: there is no {what}")]
     Missing {
         /// The case.
         case: String,
-        /// What was asked for.
+        /// The requested result.
         what: String,
     },
     /// A picture cannot be made.
     #[error(transparent)]
     Picture(#[from] crate::output::plot::PlotError),
-    /// Data that comes with the program makes no sense.
+    /// Data that ship with the program are invalid.
     #[error("{0}")]
     Data(String),
 }

@@ -1,8 +1,7 @@
-//! The paper's tables and figures (§6) at one command.
+//! The paper's tables and figures (§6) with one command.
 //!
-//! A [`Product`] is a table or a figure: it lists the [`Case`]s that it needs, and writes files from
-//! their results. [`run`] computes what the [`Store`] does not have yet; what two products
-//! share is computed once.
+//! A [`Product`] is a table or a figure: it lists the [`Case`]s that it needs, and writes files from their results.
+//! [`run`] computes the cases that are not in the [`Store`] yet. Cases that several products share are computed once.
 
 mod case;
 mod comparison;

@@ -1,4 +1,4 @@
-//! What can be reproduced.
+//! The tables and figures that can be reproduced.
 
 use super::case::Case;
 use super::error::ReproduceError;
@@ -11,17 +11,17 @@ use super::{questions, table1, table2};
 pub struct Product {
     /// Its name on the command line.
     pub name: &'static str,
-    /// What it is, in a line.
+    /// A description, in one line.
     pub about: &'static str,
-    /// Does it belong to `all`?
+    /// Is it part of `all`?
     pub in_all: bool,
     /// The cases that it needs.
     pub cases: fn(&Plan) -> Result<Vec<Case>, ReproduceError>,
-    /// Writes its files into the store's folder, and returns what to say about them.
+    /// Writes its files into the store's folder, and returns a text about them.
     pub write: fn(&Plan, &Results, &Store) -> Result<String, ReproduceError>,
 }
 
-/// How much is to be done.
+/// How much to compute.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Plan {
     /// Seeds per row of a table: 1, 2, …
@@ -35,7 +35,7 @@ impl Plan {
     }
 }
 
-/// Everything that can be reproduced, in the paper's order.
+/// All products, in the paper's order.
 pub const PRODUCTS: &[Product] = &[
     table1::PRODUCT,
     table2::PRODUCT,
@@ -51,7 +51,7 @@ pub const PRODUCTS: &[Product] = &[
     questions::PRODUCT,
 ];
 
-/// Computes what is missing for `products` and writes them; returns what to say about each.
+/// Computes the missing cases of `products` and writes the products. Returns the text about each.
 ///
 /// # Errors
 /// A case cannot be computed, or a file cannot be written.

@@ -1,10 +1,10 @@
-//! What the paper published (`published.json`).
+//! The values that the paper published (`published.json`).
 
 use serde::Deserialize;
 
 use super::error::ReproduceError;
 
-/// Everything, with its source.
+/// All values, with their source.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Published {
     /// The paper.
@@ -18,7 +18,7 @@ pub struct Published {
 /// One table of the paper.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Table<Row> {
-    /// Where it stands and what it says.
+    /// Where it is in the paper, and what it contains.
     pub place: String,
     /// Its rows, in order.
     pub rows: Vec<Row>,
@@ -33,7 +33,7 @@ pub struct EvacuationRow {
     pub setting: String,
     /// Its value.
     pub value: f64,
-    /// How many got out.
+    /// Number of agents that left the room.
     pub evacuated: f64,
     /// Mean of ρ_i at 15 s, P/m².
     pub density: f64,
@@ -48,7 +48,7 @@ pub struct EvacuationRow {
 pub struct CrossingRow {
     /// The profile's name (§5.5).
     pub profile: String,
-    /// Mean of ρ_i at 45 s before the door, P/m².
+    /// Mean of ρ_i at 45 s in front of the door, P/m².
     pub density: f64,
     /// Standard deviation of ρ_i there, P/m².
     pub deviation: f64,
@@ -56,16 +56,16 @@ pub struct CrossingRow {
     pub flow: f64,
 }
 
-/// Reads what comes with the program.
+/// Reads the values that ship with the program.
 ///
 /// # Errors
-/// The file is no JSON of this form.
+/// The file is not JSON of this form.
 pub fn published() -> Result<Published, ReproduceError> {
     let invalid = |error| ReproduceError::Data(format!("published.json: {error}"));
     serde_json::from_str(include_str!("published.json")).map_err(invalid)
 }
 
-/// A profile as the paper writes it: `rvo->sph` is RVO→SPH.
+/// A profile in the paper's notation: `rvo->sph` is RVO→SPH.
 pub fn written(profile: &str) -> String {
     profile.to_uppercase().replace("->", "→")
 }

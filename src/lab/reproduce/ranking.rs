@@ -1,14 +1,14 @@
-//! Which of two rows is the higher, in the paper and here.
+//! The order of two rows, in the paper and here.
 
 use serde::Serialize;
 
-/// Rows closer than this in the paper, as a part of the lower, are not ranked.
+/// Rows with a smaller difference in the paper, relative to the lower one, are not ranked.
 pub const LEAST_DIFFERENCE: f64 = 0.1;
 
-/// Two rows of which the paper has one well above the other.
+/// Two rows that differ clearly in the paper.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ranking {
-    /// What is compared.
+    /// The compared quantity.
     pub quantity: &'static str,
     /// The higher in the paper.
     pub higher: String,
@@ -16,25 +16,25 @@ pub struct Ranking {
     pub lower: String,
     /// The paper's two values.
     pub paper: [f64; 2],
-    /// Our two means.
+    /// Our two means, if all runs gave a value.
     pub ours: Option<[f64; 2]>,
-    /// In how many seeds the order is the paper's, and how many there are.
+    /// Number of seeds with the paper's order, and of all seeds.
     pub seeds: [usize; 2],
 }
 
-/// What ranks a row: its name, the paper's value, ours by seed.
+/// The data for ranking a row.
 #[derive(Debug, Clone)]
 pub struct Ranked {
     /// The row.
     pub name: String,
     /// The paper's value.
     pub paper: f64,
-    /// Ours, seed by seed in the same order for all rows.
+    /// Our values by seed, in the same order for all rows.
     pub ours: Vec<Option<f64>>,
 }
 
 impl Ranking {
-    /// Is the order of the means the paper's?
+    /// Do our means have the paper's order?
     pub fn is_kept(&self) -> bool {
         self.ours.is_some_and(|[higher, lower]| higher > lower)
     }

@@ -1,4 +1,4 @@
-//! Cases side by side over the threads.
+//! Runs cases in parallel.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -14,19 +14,19 @@ use crate::runs::drive::{Then, drive, unless_over};
 use crate::scenario::Scenario;
 use crate::scenario::metrics::Metrics;
 
-/// Who is told how it goes; times are expected seconds on one core.
+/// Receives progress reports; times are expected seconds on one core.
 pub trait Listener: Sync {
-    /// So much is to be computed; so many cases were kept from before.
+    /// `cases` cases begin, which take `seconds` seconds; `kept` others are in the store.
     fn begins(&self, cases: usize, kept: usize, seconds: f64);
-    /// So much more has been computed.
+    /// Another `seconds` of the expected time are done.
     fn advances(&self, seconds: f64);
     /// A case is finished.
     fn finishes(&self, result: &CaseResult);
-    /// Something worth knowing.
+    /// A message.
     fn notes(&self, text: &str);
 }
 
-/// Nobody.
+/// Ignores all reports.
 impl Listener for () {
     fn begins(&self, _: usize, _: usize, _: f64) {}
     fn advances(&self, _: f64) {}
@@ -58,15 +58,15 @@ struct Job {
     case: Case,
     key: Key,
     scenario: Scenario,
-    /// What was kept of it before.
+    /// The result from an earlier run, which lacks some of the data to keep.
     before: Option<CaseResult>,
 }
 
-/// Computes the cases that `store` does not have, side by side on as many threads as rayon has, each
-/// on one of them; then those that want to be alone. Everything that is finished is kept at once.
+/// Computes the cases that are not in `store`, on as many threads as rayon has, each on a single thread; then the cases
+/// that run alone. Each result is stored as soon as it is finished.
 ///
 /// # Errors
-/// The first case that cannot be computed or kept; those that had begun are finished and kept.
+/// The first case that fails or cannot be stored. Cases that had begun are finished and stored.
 pub fn run(
     store: &Store,
     cases: &[Case],
@@ -112,7 +112,7 @@ pub fn run(
     Ok(results)
 }
 
-/// Every run once, with everything that is to be kept of it.
+/// All distinct runs, each with all data to keep of it.
 fn merged(cases: &[Case]) -> Result<Vec<(Key, Case)>, ReproduceError> {
     let mut order: Vec<(Key, Case)> = Vec::new();
     let mut places = HashMap::new();
@@ -132,7 +132,7 @@ fn merged(cases: &[Case]) -> Result<Vec<(Key, Case)>, ReproduceError> {
     Ok(order)
 }
 
-/// Takes the jobs in their order, as threads become free.
+/// Runs the jobs in order, as threads become free.
 fn side_by_side(
     store: &Store,
     jobs: &[Job],
@@ -155,7 +155,7 @@ fn side_by_side(
         }
         Ok::<(), ReproduceError>(())
     };
-    // Threads of their own: one of rayon's would take up a second case while it waits for the first.
+    // These are separate threads: a thread of rayon's pool would start a second case while it waits for the first.
     std::thread::scope(|scope| {
         let threads = rayon::current_num_threads().min(jobs.len());
         let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
@@ -177,7 +177,7 @@ fn one_thread() -> Result<rayon::ThreadPool, ReproduceError> {
 }
 
 impl Job {
-    /// Runs the case and keeps its result.
+    /// Runs the case and stores its result.
     fn run(&self, store: &Store, listener: &dyn Listener) -> Result<CaseResult, ReproduceError> {
         let mut told = 0.0;
         let mut tell = |part: f64| {
@@ -205,7 +205,7 @@ impl Job {
     }
 }
 
-/// Runs one case on rayon's current threads; `tell` hears how much of the simulated time is over.
+/// Runs one case on rayon's current threads; `tell` receives the finished fraction of the simulated time.
 fn compute(
     case: &Case,
     scenario: &Scenario,

@@ -1,4 +1,4 @@
-//! Everybody at one moment, for pictures.
+//! All agents at one time, for pictures.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -6,16 +6,16 @@ use serde_json::Value;
 use super::case::{Observer, Probe};
 use crate::engine::simulation::Simulation;
 
-/// Everybody at one moment, to the millimetre; one list per quantity, in the same order.
+/// All agents at one time, rounded to three decimals. The lists of all quantities have the same order.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
-    /// The moment, seconds.
+    /// The time, seconds.
     pub time_secs: f64,
-    /// Positions, metres.
+    /// x of the positions, meters.
     pub x: Vec<f64>,
-    /// Positions, metres.
+    /// y of the positions, meters.
     pub y: Vec<f64>,
-    /// D_i, metres.
+    /// D_i, meters.
     pub radius: Vec<f64>,
     /// |v_i|, m/s.
     pub speed: Vec<f64>,
@@ -39,7 +39,7 @@ impl Probe for SnapshotAt {
     }
 }
 
-/// Waits for the frame.
+/// Waits for the frame of the snapshot.
 struct Waiting {
     frame: u64,
     seen: Option<Snapshot>,
@@ -58,11 +58,11 @@ impl Observer for Waiting {
 }
 
 impl Snapshot {
-    /// An evaluated frame that has its densities.
+    /// A snapshot of an evaluated frame whose densities are known.
     pub fn of(simulation: &Simulation) -> Self {
         let frame = simulation.frame();
         let agents = frame.agents;
-        // More digits would only make the files longer.
+        // More digits would only make the files larger.
         let rounded = |value: f64| (1e3 * value).round() / 1e3;
         let all = |values: &[f64]| values.iter().map(|&v| rounded(v)).collect();
         Self {

@@ -1,4 +1,4 @@
-//! Finished cases on disk: one file each, whole or not there.
+//! Finished cases on disk: one file each, written whole or not at all.
 
 use std::fs;
 use std::io::{self, Write};
@@ -12,48 +12,48 @@ use crate::runs::outputs::{try_folder, write_whole};
 use crate::scenario::input::{self, LONGEST_TEXT};
 use crate::scenario::quote::shown_message;
 
-/// A folder with finished cases in `cases/`, and beside it what was made of them.
+/// A folder with the finished cases in `cases/`, and the products made from them beside it.
 #[derive(Debug, Clone)]
 pub struct Store {
     folder: PathBuf,
 }
 
-/// What a case's file says.
+/// The contents of a case's file.
 #[derive(Serialize, Deserialize)]
 struct Kept {
-    /// The engine and the whole document, to be sure of what this is.
+    /// The engine and the whole document, to recognize the case.
     identity: String,
     result: CaseResult,
 }
 
-/// What the store knows of a case.
+/// The state of a case in the store.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Found {
-    /// Everything.
+    /// Complete.
     Whole(CaseResult),
-    /// The run, but not all that is to be kept of it.
+    /// The result of the run, which lacks some of the data to keep.
     Part(CaseResult),
-    /// Nothing.
+    /// Not in the store.
     Nothing,
-    /// A file that cannot be read: why.
+    /// The file cannot be read, with the reason.
     Damaged(String),
 }
 
 impl Store {
-    /// Opens `folder`, and makes it if there is none.
+    /// Opens `folder`; creates it if it does not exist.
     ///
     /// # Errors
-    /// It cannot be made.
+    /// It cannot be created or written to.
     pub fn open(folder: &Path) -> Result<Self, ReproduceError> {
         let store = Self::at(folder);
         let cases = store.cases();
-        // Better known now than when the first case is finished.
+        // Check this now rather than when the first case is finished.
         let writable = fs::create_dir_all(&cases).and_then(|()| try_folder(&cases));
         writable.map_err(|error| store.unwritable(folder, &error))?;
         Ok(store)
     }
 
-    /// What may be in `folder`; makes nothing.
+    /// A store in `folder`, without creating anything.
     pub fn at(folder: &Path) -> Self {
         Self {
             folder: folder.to_owned(),
@@ -65,7 +65,7 @@ impl Store {
         &self.folder
     }
 
-    /// Where a file of this name belongs.
+    /// The path of a file with this name.
     pub fn path(&self, file: &str) -> PathBuf {
         self.folder.join(file)
     }
@@ -81,7 +81,7 @@ impl Store {
         Ok(path)
     }
 
-    /// The failure to write `path`, and what is there all the same.
+    /// The error that `path` cannot be written, with a count of the stored results.
     pub(crate) fn unwritable(&self, path: &Path, error: &io::Error) -> ReproduceError {
         let cases = self.cases();
         let finished =
@@ -96,7 +96,7 @@ impl Store {
         }
     }
 
-    /// What is known of a case.
+    /// Looks up a case.
     pub fn find(&self, case: &Case, key: &Key) -> Found {
         let text = match input::bytes(&self.case_path(key), LONGEST_TEXT) {
             Ok(text) => text,
@@ -119,7 +119,7 @@ impl Store {
         }
     }
 
-    /// Keeps a finished case.
+    /// Stores a finished case.
     ///
     /// # Errors
     /// Its file cannot be written.

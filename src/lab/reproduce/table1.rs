@@ -22,7 +22,7 @@ pub const PRODUCT: Product = Product {
     write,
 };
 
-/// One row of the paper beside ours.
+/// A row of the paper beside ours.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
     /// The profile's name (§5.5).
@@ -31,7 +31,7 @@ pub struct Row {
     pub setting: String,
     /// Its value.
     pub value: f64,
-    /// How many got out.
+    /// Number of agents that left the room.
     pub evacuated: Comparison,
     /// Mean of ρ_i at 15 s, P/m².
     pub density: Comparison,
@@ -50,7 +50,7 @@ pub fn case(row: &EvacuationRow, seed: u64) -> Case {
         .taking(expected_secs(&row.profile))
 }
 
-/// Roughly, on one core.
+/// Estimated time on one core, seconds.
 fn expected_secs(profile: &str) -> f64 {
     match profile {
         "sph" => 0.7,
@@ -72,7 +72,7 @@ fn cases(plan: &Plan) -> Result<Vec<Case>, ReproduceError> {
 }
 
 impl Row {
-    /// Over some seeds.
+    /// Compares a row with its runs over some seeds.
     ///
     /// # Errors
     /// A case was not run.
@@ -106,7 +106,7 @@ impl Row {
         })
     }
 
-    /// What lies outside of its band.
+    /// The quantities outside of their bands.
     pub fn missed(&self) -> Vec<&'static str> {
         [
             ("density", &self.density),
@@ -119,7 +119,7 @@ impl Row {
         .collect()
     }
 
-    /// "kept", or what is missed.
+    /// "kept", or the quantities outside of their bands.
     pub fn verdict(&self) -> String {
         match self.missed().as_slice() {
             [] => "kept".to_owned(),
@@ -128,7 +128,7 @@ impl Row {
     }
 }
 
-/// A parameter and its value in the paper's letters.
+/// A parameter and its value in the paper's notation.
 pub fn setting_written(key: &str, value: f64) -> String {
     let symbol = match key {
         "agent_stiffness" => "K^ag",

@@ -23,19 +23,19 @@ pub const PRODUCT: Product = Product {
     write,
 };
 
-/// The metric behind the table's density.
+/// The metric of the table's density.
 const DENSITY: &str = "density_mean_45s";
-/// The metric behind its standard deviation.
+/// The metric of its standard deviation.
 const DEVIATION: &str = "density_std_45s";
-/// The metric behind the table's flow.
+/// The metric of the table's flow.
 const FLOW: &str = "flow_first_60s_per_s";
 
-/// One row of the paper beside ours.
+/// A row of the paper beside ours.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
     /// The profile's name (§5.5).
     pub profile: String,
-    /// Mean of ρ_i at 45 s before the door, P/m².
+    /// Mean of ρ_i at 45 s in front of the door, P/m².
     pub density: Comparison,
     /// Standard deviation of ρ_i there, P/m².
     pub deviation: Comparison,
@@ -48,7 +48,7 @@ pub struct Row {
 pub struct Table {
     /// Its rows.
     pub rows: Vec<Row>,
-    /// Every ranking of flow and of density that the paper shows clearly.
+    /// All rankings of flow and of density with a clear difference in the paper.
     pub rankings: Vec<Ranking>,
 }
 
@@ -60,7 +60,7 @@ pub fn case(profile: &str, seed: u64) -> Case {
         .taking(expected_secs(profile))
 }
 
-/// Roughly, on one core.
+/// Estimated time on one core, seconds.
 pub fn expected_secs(profile: &str) -> f64 {
     match profile {
         "sph" => 0.5,
@@ -82,7 +82,7 @@ fn cases(plan: &Plan) -> Result<Vec<Case>, ReproduceError> {
 }
 
 impl Table {
-    /// Over the runs that `case` makes of a profile and a seed.
+    /// Compares the table with the runs that `case` returns for a profile and a seed.
     ///
     /// # Errors
     /// A case was not run.
@@ -122,13 +122,13 @@ impl Table {
         })
     }
 
-    /// How many rankings are kept, and how many there are.
+    /// The number of rankings that are kept, and of all rankings.
     pub fn kept(&self, quantity: &str) -> [usize; 2] {
         let all = self.rankings.iter().filter(|r| r.quantity == quantity);
         [all.clone().filter(|r| r.is_kept()).count(), all.count()]
     }
 
-    /// The rankings that are broken, in words.
+    /// The broken rankings as text.
     pub fn broken(&self) -> Vec<String> {
         let broken = self.rankings.iter().filter(|r| !r.is_kept());
         broken
@@ -194,7 +194,7 @@ impl Table {
         table.markdown()
     }
 
-    /// The rows, the rankings, and how many of them are kept.
+    /// The rows, the rankings, and the number of rankings that are kept.
     pub fn markdown(&self) -> String {
         let [flows, all_flows] = self.kept("flow");
         let [densities, all_densities] = self.kept("density");

@@ -1,11 +1,11 @@
-//! Numbers in tables, and texts in documents.
+//! Numbers in tables, and generated text in documents.
 
-/// A number with all its digits, or nothing.
+/// A number with all its digits; empty for `None`.
 pub fn number(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
-/// `document` with `text` between the lines `<!-- name -->` and `<!-- /name -->`; `None` without them.
+/// `document` with `text` between the lines `<!-- name -->` and `<!-- /name -->`; `None` if they are missing.
 pub fn put_between(document: &str, name: &str, text: &str) -> Option<String> {
     let (open, close) = (format!("<!-- {name} -->\n"), format!("<!-- /{name} -->"));
     let (before, rest) = document.split_once(&open)?;

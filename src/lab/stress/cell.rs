@@ -11,25 +11,25 @@ use crate::engine::stability::{FITTED, Mode};
 use crate::lab::job::Job;
 use crate::lab::reproduce::ReproduceError;
 
-/// No step is longer, seconds: Δt_fine never is longer than Δt_coarse.
+/// No time step is longer, seconds: Δt_fine never exceeds Δt_coarse.
 const LONGEST: f64 = PAPER_COARSE_STEP;
-/// A step so much shorter than the formula's shows what the model does by itself.
+/// A time step of this fraction of the formula's shows the motion of the model itself.
 const FINE: f64 = 0.2;
-/// The search goes up or down from the formula's step by this factor, until it has gone too far.
+/// The search changes the formula's step by this factor until it passes the limit.
 const WIDTH: f64 = 1.25;
-/// It gives up at this part of it.
+/// The search gives up at this fraction of the formula's step.
 const SHORTEST: f64 = 1e-3;
 
-/// What is found under one condition.
+/// The result under one condition.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
     /// The largest stable step, seconds.
     pub largest: f64,
-    /// What `auto` takes, seconds.
+    /// The step that `auto` chooses, seconds.
     pub auto: f64,
-    /// Is that stable?
+    /// Is `auto` stable?
     pub auto_is_stable: bool,
-    /// The speed that the model keeps by itself, at fine steps, in the more restless room, m/s.
+    /// The speed that remains at fine steps, in the room with the higher speed, m/s.
     pub fine_speed: f64,
     /// The same at `auto`.
     pub auto_speed: f64,
@@ -49,13 +49,14 @@ impl Limit {
         })
     }
 
-    /// `auto` in parts of the largest stable step.
+    /// `auto` over the largest stable step.
     pub fn ratio(&self) -> f64 {
         self.auto / self.largest
     }
 }
 
-/// The largest stable step, seconds, by bisection between the last on one side of it and the first on the other.
+/// The largest stable step, seconds, by bisection between the last step on one side of the limit and the first on the
+/// other.
 fn largest(
     crowd: &Rest,
     guess: f64,
@@ -88,20 +89,20 @@ fn fastest(rooms: &[Remains]) -> f64 {
     speeds.fold(0.0, f64::max)
 }
 
-/// One place on the maps.
+/// One point of the maps.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
     /// The crowd.
     pub crowd: Rest,
-    /// What was found, in the order of [`Condition::ALL`].
+    /// The results, in the order of [`Condition::ALL`].
     pub limits: [Limit; Condition::ALL.len()],
 }
 
 impl Cell {
-    /// Finds the largest stable step of a crowd of people after `first_seed`.
+    /// Finds the largest stable step of a crowd; its agents are drawn with the seeds after `first_seed`.
     ///
     /// # Errors
-    /// Somebody has no place at the start.
+    /// An agent cannot be placed at the start.
     pub fn find(crowd: Rest, detail: Detail, first_seed: u64) -> Result<Self, Fault> {
         let limit = |condition| {
             let surroundings = Surroundings {
@@ -117,14 +118,14 @@ impl Cell {
         })
     }
 
-    /// The job of finding it.
+    /// The job that finds it.
     pub fn job(crowd: Rest, detail: Detail, first_seed: u64) -> Job {
         let steps = detail.bisections();
         let name = format!(
             "map k={} ρ⁰max={} K^ag={} μ={}, {steps} bisections, people after {first_seed}",
             crowd.gas_constant, crowd.rest_density_max, crowd.agent_stiffness, crowd.viscosity
         );
-        // Seconds of simulated time: 8 s, in two rooms, with three crowds, the fine steps foremost.
+        // Simulated seconds: 8 s in two rooms with three crowds, mostly for the fine steps.
         let simulated = 48.0 * (1.0 / FINE + f64::from(steps) + 3.0);
         let mode = crowd.mode();
         let frames = Condition::ALL.map(|condition| {

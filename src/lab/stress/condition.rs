@@ -1,16 +1,16 @@
-//! Under what every place of the maps is looked at.
+//! The conditions under which every point of the maps is tested.
 
 use crate::engine::boundary::WallMethod;
 use crate::engine::stability::Scheme;
 
-/// Walls and how people are moved.
+/// The wall method, and the integration scheme.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Condition {
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
     /// How walls enter SPH.
     pub walls: WallMethod,
-    /// What moves people.
+    /// The integration scheme.
     pub scheme: Scheme,
 }
 
@@ -33,6 +33,6 @@ impl Condition {
         scheme: Scheme::VelocityVerlet,
         ..Self::PAPER
     };
-    /// All of them, the paper's first.
+    /// All conditions, the paper's first.
     pub const ALL: [Self; 3] = [Self::PAPER, Self::EXACT_WALLS, Self::VERLET];
 }

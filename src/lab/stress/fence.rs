@@ -1,16 +1,16 @@
-//! Walls as a bystander sees them: does a path lead through one? Nothing here is the engine's own, whose
-//! moves it checks: neither the index of walls, nor the crossing of one, nor what is inside.
+//! An independent check whether a path leads through a wall. It shares no code with the engine whose moves it checks:
+//! not the index of walls, the test for crossings, or the test for points inside.
 
 use crate::engine::geometry::Walls;
 use crate::engine::math::{Vector, perpendicular};
 
-/// Walls count from so far inside, metres: the engine stops people 10⁻⁶ m before a wall, and coordinates
-/// of 10⁶ m are rounded to 10⁻¹⁰ m.
+/// Walls begin this far inside, meters: the engine stops agents 10⁻⁶ m in front of a wall, and coordinates of 10⁶ m are
+/// rounded to 10⁻¹⁰ m.
 const TOLERANCE: f64 = 1e-8;
 /// Cells along the longer side of the index.
 const CELLS: usize = 64;
 
-/// One edge, its solid side on the left.
+/// An edge, with its solid side to the left.
 #[derive(Debug, Clone, Copy)]
 struct Edge {
     start: Vector,
@@ -19,11 +19,11 @@ struct Edge {
     inward: Vector,
 }
 
-/// Every edge of a scene, by the square cells that its bounding box touches.
+/// All edges of a scene, indexed by the square cells that their bounding boxes touch.
 #[derive(Debug, Clone)]
 pub struct Fence {
     edges: Vec<Edge>,
-    /// How many edges each obstacle has, in their order, and whether it is solid outside.
+    /// Number of edges of each obstacle, in order, and whether the obstacle is solid outside.
     counts: Vec<(usize, bool)>,
     low: Vector,
     cell: f64,
@@ -93,14 +93,14 @@ impl Fence {
         })
     }
 
-    /// Does the straight way from `a` to `b` lead into an obstacle?
+    /// Does the straight path from `a` to `b` lead into an obstacle?
     pub fn is_crossed(&self, a: Vector, b: Vector) -> bool {
         self.touched(a, b)
             .flat_map(|cell| &self.cells[cell])
             .any(|&k| self.edges[k as usize].is_crossed(a, b))
     }
 
-    /// Does `p` lie inside an obstacle? By the edges that a ray to the right meets.
+    /// Is `p` inside an obstacle? Counts the edges that a ray to the right crosses.
     pub fn encloses(&self, p: Vector) -> bool {
         let mut edges = self.edges.iter();
         self.counts.iter().any(|&(count, unbounded)| {
@@ -123,7 +123,7 @@ impl Edge {
         self.start + self.along * self.length
     }
 
-    /// Does the way from `a` to `b` come from the free side and end, or pass, behind this edge?
+    /// Does the path from `a` to `b` start on the free side and cross this edge?
     fn is_crossed(&self, a: Vector, b: Vector) -> bool {
         let depth = |p: Vector| (p - self.start).dot(&self.inward) - TOLERANCE;
         let (before, after) = (depth(a), depth(b));
@@ -135,7 +135,7 @@ impl Edge {
         (-TOLERANCE..=self.length + TOLERANCE).contains(&place)
     }
 
-    /// Distance of `p`, metres.
+    /// Distance from `p`, meters.
     fn distance(&self, p: Vector) -> f64 {
         let place = (p - self.start).dot(&self.along).clamp(0.0, self.length);
         (p - self.start - self.along * place).norm()

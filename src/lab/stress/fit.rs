@@ -1,19 +1,19 @@
-//! The formula's constants from the maps, by least squares.
+//! Fits the formula's constants to the maps, by least squares.
 
 use super::cell::Cell;
 use super::condition::Condition;
 use crate::engine::stability::{Constants, FITTED, Scheme};
 
-/// The least that `auto` may be of the largest stable step.
+/// The smallest allowed ratio of `auto` to the largest stable step.
 pub const LEAST: f64 = 0.7;
-/// The most that the fit lets it be: other people, and places between those of the maps, may allow less.
+/// The largest ratio that the fit allows: other crowds, and points between those of the maps, may need shorter steps.
 const MOST: f64 = 0.97;
-/// Steps of the search, as factors of a constant: coarse, then ever finer.
+/// Factors by which the search changes a constant, from coarse to fine.
 const STEPS: [f64; 5] = [1.3, 1.1, 1.03, 1.01, 1.003];
 
-/// The constants whose formula is nearest to the maps, by the squares of the logarithms of step over step;
-/// the margins keep every step a little below the largest stable one. The search goes down one constant after the
-/// other from those of the engine.
+/// The constants whose formula fits the maps best, by the squares of the logarithms of the step ratios. The margins
+/// keep every step slightly below the largest stable one. The search is a coordinate descent from the engine's
+/// constants.
 pub fn fit(cells: &[Cell]) -> Constants {
     let mut best = FITTED;
     let mut least = misfit(cells, &best);
@@ -50,7 +50,7 @@ fn scaled(constants: Constants, which: usize, factor: f64) -> Constants {
     scaled
 }
 
-/// The formula's step in parts of the largest stable ones of a scheme.
+/// The formula's step over the largest stable steps of a scheme.
 fn ratios<'a>(
     cells: &'a [Cell],
     constants: &'a Constants,
@@ -64,8 +64,8 @@ fn ratios<'a>(
     })
 }
 
-/// The sum of the squares of all ratios' logarithms. Velocity Verlet has no part in it: that the same constants hold
-/// for it is what its limits show.
+/// The sum of the squares of the logarithms of all ratios. Velocity Verlet is left out: its limits test whether the
+/// same constants hold for it.
 fn misfit(cells: &[Cell], constants: &Constants) -> f64 {
     let ratios = ratios(cells, constants, Scheme::SemiImplicit);
     ratios.map(|r| r.ln().powi(2)).sum()

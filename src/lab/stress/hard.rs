@@ -1,4 +1,4 @@
-//! The hard cases: what no sensible scenario asks for, and every careless one may.
+//! The hard cases: extreme scenarios, which careless input can produce.
 
 use std::time::Instant;
 
@@ -16,7 +16,7 @@ pub struct Hard {
     pub name: &'static str,
     /// The file.
     pub text: &'static str,
-    /// Simulated seconds where little time is to be spent; `None`: all.
+    /// Simulated seconds in a quick run; `None` for all.
     pub quick_secs: Option<u32>,
 }
 
@@ -30,7 +30,7 @@ macro_rules! hard {
     };
 }
 
-/// All of them.
+/// All hard cases.
 pub const HARD: [Hard; 17] = [
     hard!("packed", None),
     hard!("one_point", None),
@@ -51,31 +51,31 @@ pub const HARD: [Hard; 17] = [
     hard!("soak", Some(800)),
 ];
 
-/// What became of a hard case.
+/// The result of a hard case.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Survival {
-    /// What it shows, in a line.
+    /// What the case tests, in one line.
     pub description: String,
-    /// What was seen.
+    /// What the watch found.
     pub found: Found,
-    /// Why the run broke off; `None` if it came to its end.
+    /// Why the run failed; `None` if it reached its end.
     pub fault: Option<String>,
-    /// How long it took to compute, seconds.
+    /// Computing time, seconds.
     pub computed_in_secs: f64,
 }
 
 impl Survival {
-    /// Did the run come to its end with everything finite and nobody through a wall?
+    /// Did the run reach its end with finite values and without an agent passing through a wall?
     pub fn is_passed(&self) -> bool {
         self.fault.is_none() && self.found.finite && self.found.passed == 0
     }
 }
 
 impl Hard {
-    /// The scenario with some settings.
+    /// The scenario with some settings applied.
     ///
     /// # Errors
-    /// A setting makes no sense.
+    /// A setting is invalid.
     pub fn scenario(&self, settings: &[Setting]) -> Result<Scenario, ScenarioError> {
         Scenario::parse(self.text, &format!("{}.json", self.name), settings)
     }
@@ -94,7 +94,7 @@ impl Hard {
     }
 }
 
-/// Runs a scenario under a bystander's eyes.
+/// Runs a scenario and watches it.
 fn watched(scenario: &Scenario, seen: &mut Option<Found>) -> Result<(), Fault> {
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     let mut watch = Watch::new(&simulation);

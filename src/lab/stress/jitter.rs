@@ -1,4 +1,4 @@
-//! Jitter: how much a crowd at rest still moves (§6.3.2 and §6.3.3 as numbers).
+//! Jitter: the residual motion of a crowd at rest (§6.3.2 and §6.3.3 in numbers).
 
 use serde::{Deserialize, Serialize};
 
@@ -10,21 +10,21 @@ use crate::scenario::{Scenario, ScenarioError, Setting, SettingError};
 
 /// The crowd: `scenarios/stress/small_concert.json`.
 const CONCERT: &str = include_str!("../../../scenarios/stress/small_concert.json");
-/// When is looked: before the push and long after it, seconds.
+/// The measured intervals: before the push and long after it, seconds.
 const WINDOWS: [[f64; 2]; 2] = [[35.0, 40.0], [50.0, 60.0]];
-/// The least dense part of the crowd is its rim.
+/// The agents in this fraction with the lowest densities form the rim.
 const RIM: f64 = 0.25;
 
-/// A way to settle the same crowd.
+/// A variant of the settings for the same crowd.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Variant {
-    /// What it is called.
+    /// Its name.
     pub label: &'static str,
-    /// What makes it, as `--set` takes it.
+    /// Its settings, as `--set` takes them.
     pub settings: &'static [&'static str],
 }
 
-/// The baseline first.
+/// All variants, the baseline first.
 pub const VARIANTS: [Variant; 12] = [
     variant("dynamic ρ⁰, μ = 5", &[]),
     variant("dynamic ρ⁰, μ = 0", &["viscosity=0"]),
@@ -67,24 +67,24 @@ const fn variant(label: &'static str, settings: &'static [&'static str]) -> Vari
     Variant { label, settings }
 }
 
-/// How much a crowd moves.
+/// The residual motion of a crowd.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Jitter {
-    /// Mean kinetic energy of a person before the push and long after it, m²/s² (mass 1 = average).
+    /// Mean kinetic energy of an agent before the push and long after it, m²/s² (an average agent has mass 1).
     pub energy: [f64; 2],
-    /// The same of the inner crowd and of its rim, the least dense quarter, long after the push.
+    /// The same for the inner crowd and for its rim, the least dense quarter, long after the push.
     pub inside_and_rim: [f64; 2],
     /// Mean density at the end, P/m².
     pub density: f64,
-    /// The least distance of two centres at the end, in parts of the sum of their radii.
+    /// The smallest distance between two centers at the end, relative to the sum of their radii.
     pub closest: f64,
 }
 
 impl Variant {
-    /// The crowd.
+    /// The scenario.
     ///
     /// # Errors
-    /// A setting makes no sense.
+    /// A setting is invalid.
     pub fn scenario(&self) -> Result<Scenario, ReproduceError> {
         let settings: Result<Vec<Setting>, SettingError> =
             self.settings.iter().map(|text| text.parse()).collect();
@@ -96,7 +96,7 @@ impl Variant {
         })
     }
 
-    /// The job of measuring it.
+    /// The job that measures it.
     pub fn job(self) -> Job {
         let expected = if self.settings.contains(&"time_step_secs=0.002") {
             15.0
@@ -107,10 +107,10 @@ impl Variant {
         Job::new(name, expected, move || self.measure()).depending_on(CONCERT)
     }
 
-    /// Runs it and measures.
+    /// Runs and measures it.
     ///
     /// # Errors
-    /// The run cannot go on.
+    /// The run fails.
     pub fn measure(&self) -> Result<Jitter, ReproduceError> {
         let scenario = self.scenario()?;
         let failed = |fault| ReproduceError::Fault {
@@ -158,7 +158,7 @@ impl Mean {
     }
 }
 
-/// Adds everybody's kinetic energy to the means of all, of the inside and of the rim.
+/// Adds the kinetic energy of each agent to the means of all agents, of the inner crowd and of the rim.
 fn add_energies(simulation: &Simulation, [all, inside, rim]: &mut [Mean; 3]) {
     let frame = simulation.frame();
     let (agents, density) = (frame.agents, &frame.fields.density);

@@ -1,10 +1,10 @@
-//! The places of the stability maps: every k and ρ⁰max, every K^ag, every μ; and places in between, on
-//! which the maps' formula is tested.
+//! The points of the stability maps: every k and ρ⁰max, every K^ag, every μ; and other points that test the maps'
+//! formula.
 
 use super::rest::Rest;
 
-/// k, ρ⁰max, K^ag and μ of places that the fit never sees: between those of the maps, three of theirs with
-/// other people, stiff gas with stiff contact and with viscosity.
+/// k, ρ⁰max, K^ag and μ of points that the fit does not use: points between those of the maps, three points of the maps
+/// with other agents, and stiff gas with stiff contact and with viscosity.
 const HELD_OUT: [[f64; 4]; 27] = [
     [70.0, 3.5, 50.0, 0.0],
     [150.0, 6.5, 50.0, 0.0],
@@ -35,7 +35,7 @@ const HELD_OUT: [[f64; 4]; 27] = [
     [12_800.0, 8.0, 50_000.0, 100.0],
 ];
 
-/// How finely the maps are drawn.
+/// The resolution of the maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Detail {
     /// Few points and few bisections.
@@ -43,7 +43,7 @@ pub struct Detail {
 }
 
 impl Detail {
-    /// k, rising.
+    /// k, in increasing order.
     pub fn gas_constants(self) -> Vec<f64> {
         let every = if self.quick { 4 } else { 1 };
         (0..9)
@@ -52,7 +52,7 @@ impl Detail {
             .collect()
     }
 
-    /// ρ⁰max, P/m², rising.
+    /// ρ⁰max, P/m², in increasing order.
     pub fn rest_densities(self) -> Vec<f64> {
         if self.quick {
             vec![3.0, 5.0, 8.0]
@@ -61,7 +61,7 @@ impl Detail {
         }
     }
 
-    /// K^ag, rising.
+    /// K^ag, in increasing order.
     pub fn stiffnesses(self) -> Vec<f64> {
         if self.quick {
             vec![0.0, 1e3, 1e4]
@@ -70,7 +70,7 @@ impl Detail {
         }
     }
 
-    /// μ, rising.
+    /// μ, in increasing order.
     pub fn viscosities(self) -> Vec<f64> {
         if self.quick {
             vec![0.0, 5.0, 35.0]
@@ -79,7 +79,7 @@ impl Detail {
         }
     }
 
-    /// The crowds that the fit never sees.
+    /// The crowds that the fit does not use.
     pub fn held_out(self) -> Vec<Rest> {
         let every = if self.quick { 7 } else { 1 };
         let places = HELD_OUT.into_iter().step_by(every);
@@ -92,7 +92,7 @@ impl Detail {
         places.map(crowd).collect()
     }
 
-    /// Every crowd of the maps, each once.
+    /// All distinct crowds of the maps.
     pub fn crowds(self) -> Vec<Rest> {
         let paper = Rest::default();
         let mut crowds = Vec::new();
@@ -123,7 +123,7 @@ impl Detail {
         once
     }
 
-    /// How often the search for a step is halved.
+    /// Number of bisections in the search for a step.
     pub fn bisections(self) -> u32 {
         if self.quick { 3 } else { 4 }
     }

@@ -1,5 +1,5 @@
-//! Where the model breaks: hard cases that nobody may get through a wall in, under a bystander's eyes; maps
-//! of the longest frame at which a crowd comes to rest; and how much it still moves then.
+//! The limits of the model: hard cases in which no agent may pass through a wall, checked independently of the engine;
+//! maps of the largest time step at which a crowd comes to rest; and the motion that remains then.
 
 mod cell;
 mod condition;

@@ -1,8 +1,8 @@
-"""Takes steps of JuPedSim's social force model, so many at a time.
+"""Takes steps of JuPedSim's social force model on request.
 
-Argument: a file with one person a line: x, y, radius, x and y of the goal. Says
-"ready VERSION TIME_STEP"; then, for each line with a number of steps on stdin,
-the seconds that they took.
+Arguments: a file with one agent per line (x, y, radius, x and y of the goal), and the preferred
+speed. Prints "ready VERSION TIME_STEP". Then, for each line on stdin with a number of steps, takes
+that many steps and prints the seconds that they took.
 """
 
 import sys

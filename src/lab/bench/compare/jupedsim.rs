@@ -1,4 +1,4 @@
-//! JuPedSim's social forces, in a Python of its own.
+//! JuPedSim's social force model, in a separate Python process.
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
@@ -12,10 +12,10 @@ use crate::lab::bench::timing::Contender;
 
 const SCRIPT: &str = include_str!("jupedsim.py");
 const ENGINE: &str = "JuPedSim";
-/// Where its social force is cut off, metres: `_cutOffRadius` in its SocialForceModel.hpp.
+/// The cutoff radius of its social force, meters: `_cutOffRadius` in its SocialForceModel.hpp.
 const RADIUS: f64 = 2.5;
 
-/// JuPedSim, if this Python has it; else how to have it.
+/// JuPedSim, if this Python has it; otherwise the error says how to install it.
 pub fn entries(start: &Start, python: &Path) -> Result<Vec<Entry>, String> {
     let how = |said: &str| {
         format!(
@@ -46,7 +46,7 @@ pub fn entries(start: &Start, python: &Path) -> Result<Vec<Entry>, String> {
     }])
 }
 
-/// A Python that takes steps when told so.
+/// A Python process that takes steps on request.
 struct Walking {
     child: Child,
     orders: ChildStdin,
@@ -62,7 +62,7 @@ fn stopped(reason: impl ToString) -> BenchError {
 }
 
 impl Walking {
-    /// Starts it with everybody in place, and returns its version and its time step in seconds.
+    /// Starts the process with all agents, and returns its version and its time step in seconds.
     fn begin(start: &Start, python: &Path) -> Result<(Self, String, f64), BenchError> {
         let people = people(start).map_err(stopped)?;
         let mut child = Command::new(python)
@@ -112,13 +112,13 @@ impl Contender for Walking {
 
 impl Drop for Walking {
     fn drop(&mut self) {
-        // It only waits for orders; if it has gone already there is nothing to end.
+        // The process only waits for requests. Killing one that has already exited does no harm.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// A file with one person a line: place, radius and goal, metres.
+/// A file with one agent per line: position, radius and goal, meters.
 fn people(start: &Start) -> std::io::Result<NamedTempFile> {
     let mut file = NamedTempFile::new()?;
     let agents = start.agents;

@@ -1,4 +1,4 @@
-//! rustsim-crowd's social forces. The only place that names rustsim_crowd.
+//! rustsim-crowd's social forces. Only this module names rustsim_crowd.
 
 #[cfg(feature = "compare")]
 pub use present::entries;
@@ -15,12 +15,12 @@ mod present {
     use crate::lab::bench::error::BenchError;
     use crate::lab::bench::timing::{Contender, pool};
 
-    /// As this engine's.
+    /// The time step of this engine, seconds.
     const TIME_STEP: f64 = 0.02;
 
     type Step = fn(&mut [Pedestrian], &[WallSegment], &Params, f64, &mut Scratch);
 
-    /// Its ways to take a step.
+    /// Its step functions: name, function, and whether it uses all threads.
     const STEPS: [(&str, Step, bool); 3] = [
         ("rustsim-crowd 0.0.1", social_force::step_scratch, false),
         (
@@ -35,10 +35,10 @@ mod present {
         ),
     ];
 
-    /// With its own radius, and with the paper's.
+    /// Its entries, with its default radius and with the paper's.
     pub fn entries(start: &Start) -> Result<Vec<Entry>, String> {
         let own = Params::default();
-        // 8 B + 1 m.
+        // Its radius is 8 B + 1 m.
         let wide = Params {
             b_ped: (WIDE - 1.0) / 8.0,
             ..own
@@ -110,7 +110,7 @@ mod present {
     }
 }
 
-/// Says how to have it.
+/// Says how to include rustsim-crowd.
 #[cfg(not(feature = "compare"))]
 pub fn entries(_: &super::Start) -> Result<Vec<super::Entry>, String> {
     Err(

@@ -13,29 +13,29 @@ use crate::engine::scene::Needs;
 use crate::engine::simulation::{Fault, Simulation, StageTimes};
 use crate::lab::bench::timing::warmed;
 
-/// Something to do in every evaluated frame.
+/// Work for every evaluated frame.
 pub trait Work {
-    /// Does it, and returns the seconds that it took.
+    /// Does the work, and returns the seconds that it took.
     fn seconds(&mut self, simulation: &Simulation) -> f64;
 
-    /// Why there is nothing to do in this scene, if so.
+    /// Why there is nothing to do in this scene, or `None` if there is something.
     fn nothing_to_do(&self, simulation: &Simulation) -> Option<&'static str> {
         let _ = simulation;
         None
     }
 }
 
-/// A crowd that moves on, perhaps with work beside it.
+/// A crowd that moves on, optionally with work beside it.
 pub struct Course {
     simulation: Simulation,
     work: Option<Box<dyn Work>>,
-    /// That the work took.
+    /// Time that the work took.
     seconds: f64,
     frames: u64,
 }
 
 impl Course {
-    /// A copy that pays for more, some frames on. All copies are sorted in the same frame.
+    /// A copy that also computes `more`, after the warm-up. All copies are sorted in the same frame.
     pub fn new(
         start: &Simulation,
         more: &Needs,
@@ -53,7 +53,7 @@ impl Course {
         })
     }
 
-    /// Goes on for so many frames.
+    /// Simulates `frames` frames.
     pub fn advance(&mut self, frames: u64) -> Result<(), Fault> {
         for _ in 0..frames {
             self.simulation.evaluate()?;
@@ -66,12 +66,12 @@ impl Course {
         Ok(())
     }
 
-    /// What the crowd itself took.
+    /// The time of the simulation itself.
     pub fn times(&self) -> &StageTimes {
         self.simulation.stages()
     }
 
-    /// What the work took.
+    /// The time of the work.
     pub fn work_ms_per_frame(&self) -> f64 {
         1e3 * self.seconds / self.frames as f64
     }
@@ -89,7 +89,7 @@ fn is_sorted(simulation: &Simulation) -> bool {
     frame.neighbors.sorted_at() == frame.agents.position
 }
 
-/// RVO for everybody who could avoid by it but does not now.
+/// RVO for all agents whose blend contains RVO but gives it no weight at the moment.
 pub struct RvoByBlend;
 
 impl Work for RvoByBlend {
@@ -122,7 +122,7 @@ impl Work for RvoByBlend {
     }
 }
 
-/// Sorting and listing on a fixed schedule.
+/// Sorting and listing at fixed intervals.
 pub struct KeptLists {
     coarse: bool,
     neighbors: Neighbors,
@@ -170,7 +170,7 @@ impl Work for KeptLists {
     }
 }
 
-/// Walls looked for person by person, less what looking for them by blocks takes.
+/// The time of a wall search agent by agent, minus that of a search by blocks.
 #[derive(Default)]
 pub struct WallsByBlocks {
     near: Lists,
@@ -189,7 +189,7 @@ impl Work for WallsByBlocks {
         let mut neighbors = frame.neighbors.clone();
         let by_blocks = seconds(|| neighbors.list_walls(agents, walls));
         let list = |lists: &mut Lists, reach: &(dyn Fn(usize) -> f64 + Sync)| {
-            let nobody_knows = |_| vec![0]; // of any walls that could be near
+            let nobody_knows = |_| vec![0]; // no search by blocks
             lists.rebuild(agents.len(), nobody_knows, |i, _, found| {
                 walls.near(agents.position[i], reach(i) + ranges.drift, found);
             });

@@ -1,4 +1,4 @@
-//! The concert's variants (§6.3) and what is kept of a run. One run serves all figures that show it.
+//! The concert's variants (§6.3) and the data to keep of a run. One run serves all figures that show it.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -14,23 +14,23 @@ use crate::lab::reproduce::runner::Results;
 
 /// When the push begins, seconds.
 pub const PUSH: f64 = 150.0;
-/// Nothing later is shown, seconds: the slowest wave has come back.
+/// End of the runs, seconds: the slowest wave has come back.
 pub const UNTIL: f64 = 161.0;
-/// When the paper's Figs. 7 and 9 look, seconds.
+/// The times of the paper's Figs. 7 and 9, seconds.
 pub const TIMES: [f64; 6] = [150.3, 151.0, 152.0, 153.0, 154.0, 156.0];
-/// The diagram begins so many seconds before the push.
+/// The diagram begins this long before the push, seconds.
 const BEFORE: f64 = 1.0;
-/// Every second frame: a wave then moves by about a bin from one time to the next.
+/// Every second frame: meanwhile a wave moves by about one bin.
 const EVERY: u64 = 2;
 
-/// What starts the wave and what throws it back.
+/// The source of the wave, and the obstacle that reflects it.
 pub const RUN: Run = Run {
     start: PUSH,
     source: 55.5,
     obstacle: 80.0,
 };
 
-/// A concert that differs from the baseline.
+/// A concert with settings that differ from the baseline's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Variant {
     /// Its name in figures.
@@ -88,7 +88,7 @@ pub const FIG8: [Variant; 2] = [
 ];
 /// Fig. 9.
 pub const FIG9: [Variant; 2] = [DRY_50, DRY_1000];
-/// Fig. 10 shows the first; the baseline stands beside it.
+/// Fig. 10 shows the first; the second is the baseline.
 pub const FIG10: [Variant; 2] = [
     NO_CONTACT,
     Variant {
@@ -96,7 +96,7 @@ pub const FIG10: [Variant; 2] = [
         ..BASELINE
     },
 ];
-/// The space-time diagrams, each with its k.
+/// The runs of the space-time diagrams, each with its k.
 pub const SPEEDS: [(f64, Variant); 5] = [
     (50.0, K50),
     (100.0, K100),
@@ -106,14 +106,14 @@ pub const SPEEDS: [(f64, Variant); 5] = [
 ];
 
 impl Variant {
-    /// The run, with its wave; its pictures are asked for where they are shown.
+    /// The run, which keeps its wave. Figures add the snapshots that they show.
     pub fn case(&self) -> Case {
         self.settings
             .iter()
             .fold(case(), |case, (key, value)| case.set(key, value))
     }
 
-    /// What was kept of the wave.
+    /// The data kept of the wave.
     ///
     /// # Errors
     /// The case was not run.
@@ -122,7 +122,7 @@ impl Variant {
     }
 }
 
-/// A concert until the wave is over, and what is kept of the wave.
+/// A concert until the wave is over; keeps the data of the wave.
 pub fn case() -> Case {
     Case::shipped("concert")
         .set("duration_secs", UNTIL)
@@ -130,20 +130,20 @@ pub fn case() -> Case {
         .taking(12.0)
 }
 
-/// What is kept of a concert's wave.
+/// The data kept of a concert's wave.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Seen {
-    /// Along the middle of the crowd before the stage.
+    /// Space-time diagram along the middle of the crowd in front of the stage.
     pub diagram: SpaceTime,
-    /// There, at the push.
+    /// Contacts in the same place at the time of the push.
     pub contacts: Option<Contacts>,
 }
 
 impl Seen {
-    /// What a run has kept.
+    /// The data that a run has kept.
     ///
     /// # Errors
-    /// The run was not watched.
+    /// The run has kept no wave.
     pub fn of(result: &CaseResult) -> Result<Self, ReproduceError> {
         result.kept(&WaveProbe.name())
     }
@@ -190,7 +190,7 @@ impl Observer for Watching {
     }
 }
 
-/// The crowd that the wave runs through, away from its rim and the stage, metres.
+/// The part of the crowd that the wave runs through, away from its rim and the stage, meters.
 fn interior() -> Region {
     Region {
         min: Vector::new(58.0, -8.0),

@@ -9,10 +9,10 @@ use crate::lab::reproduce::product::Product;
 use crate::lab::reproduce::snapshot::Snapshot;
 use crate::output::plot::{Mark, Sheet, Style};
 
-/// When the paper looks, seconds.
+/// The time of the paper's figure, seconds.
 const AT_SECS: f64 = 45.0;
 
-/// (a)–(f): the text speaks of six; SF+SPH, which Table 2 has too, is not among them.
+/// (a)–(f): the paper speaks of six profiles; SF+SPH, which is in Table 2, is not among them.
 const PROFILES: [&str; 6] = ["sf", "rvo", "sph", "rvo+sph", "sf->sph", "rvo->sph"];
 
 /// The figure.
@@ -29,7 +29,7 @@ pub const PRODUCT: Product = Product {
     },
 };
 
-/// The run, until the moment of the figure.
+/// The run, until the time of the figure.
 fn case(profile: &str) -> Case {
     Case::shipped("crossing")
         .set("profile", profile)
@@ -38,7 +38,7 @@ fn case(profile: &str) -> Case {
         .taking(3.0)
 }
 
-/// Where the paper takes the density (Fig. 4b), metres.
+/// The region in which the paper measures the density (Fig. 4b), meters.
 const MEASURED: [[f64; 2]; 5] = [
     [8.0, 4.0],
     [14.0, 4.0],

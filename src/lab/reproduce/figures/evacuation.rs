@@ -9,7 +9,7 @@ use crate::lab::reproduce::product::Product;
 use crate::lab::reproduce::snapshot::Snapshot;
 use crate::output::plot::Sheet;
 
-/// When the paper looks, seconds.
+/// The time of the paper's figure, seconds.
 const AT_SECS: f64 = 15.0;
 
 /// The figure.
@@ -26,17 +26,17 @@ pub const PRODUCT: Product = Product {
     },
 };
 
-/// One panel: profile, and the one parameter that is set.
+/// One panel: a profile, and the one parameter that is set.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Panel {
     /// The profile's name (§5.5).
     profile: &'static str,
-    /// The setting's key and value; `None`: the profile as it is.
+    /// The key and value of the setting; `None` for the unchanged profile.
     setting: Option<(&'static str, f64)>,
 }
 
-/// (a)–(e) SF, (f) RVO, (g)–(l) SPH, (m)–(o) SF+SPH, (p)–(r) RVO+SPH, (s)–(u) SF→SPH, (v)–(x)
-/// RVO→SPH. Which three ρ⁰max the paper's (m)–(r) have it does not say; here those of (s)–(x).
+/// (a)–(e) SF, (f) RVO, (g)–(l) SPH, (m)–(o) SF+SPH, (p)–(r) RVO+SPH, (s)–(u) SF→SPH, (v)–(x) RVO→SPH. The paper does
+/// not give the three ρ⁰max of (m)–(r); here they are those of (s)–(x).
 fn panels() -> Vec<Panel> {
     let with = |profile, key, values: &[f64]| -> Vec<Panel> {
         let panel = |&value| Panel {
@@ -61,7 +61,7 @@ fn panels() -> Vec<Panel> {
 }
 
 impl Panel {
-    /// The run, until the moment of the figure.
+    /// The run, until the time of the figure.
     fn case(&self) -> Case {
         let case = Case::shipped("evacuation")
             .set("profile", self.profile)

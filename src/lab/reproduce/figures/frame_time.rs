@@ -1,4 +1,4 @@
-//! How long a frame of the concert takes, for crowds of several sizes (Fig. 11).
+//! The frame time of the concert, for crowds of several sizes (Fig. 11).
 
 use std::fmt::Write;
 use std::time::Duration;
@@ -10,20 +10,20 @@ use crate::engine::simulation::{Simulation, Stage};
 use crate::lab::reproduce::case::{Case, CaseResult, Observer, Probe};
 use crate::lab::reproduce::error::ReproduceError;
 
-/// How many people, from the paper's sizes to ten times as many.
+/// Numbers of agents, from the paper's sizes to ten times as many.
 pub const SIZES: [u32; 7] = [2_500, 5_000, 10_000, 20_000, 30_000, 50_000, 100_000];
-/// The most who can walk in within 100 s and arrive in time.
+/// The largest crowd that can walk in within 100 s and arrive in time.
 const MOST_WALKING: u32 = 30_000;
-/// A crowd that is put there comes to rest in this time, seconds.
+/// Time in which a standing crowd comes to rest, seconds.
 const RELAXING: f64 = 10.0;
-/// Frames are timed for so long from the push on, seconds; the paper takes 30.
+/// Duration of the timed frames, which begin at the push, seconds; the paper takes 30.
 const TIMED: f64 = 6.0;
 /// The push of the shipped concert, seconds.
 const PUSH: f64 = super::concert::PUSH;
 
-/// A concert for so many, timed from its push on; it runs alone. Up to 30,000 walk in as in the
-/// paper, in rows over 100 m; beyond, where nobody could arrive in time, they stand at 5 P/m² in a
-/// jittered hexagonal half disc before the stage.
+/// A concert with `agents` agents, timed from its push on; it runs alone. Up to 30,000 agents walk in as in the paper,
+/// in rows over 100 m. More agents could not arrive in time: they stand at 5 P/m² in a jittered hexagonal half disc in
+/// front of the stage.
 pub fn case(agents: u32) -> Case {
     let (name, text, push) = if agents <= MOST_WALKING {
         (format!("concert-{agents}"), walking(agents), PUSH)
@@ -44,7 +44,7 @@ pub fn case(agents: u32) -> Case {
         .alone()
 }
 
-/// What all sizes share; the push is the shipped concert's.
+/// The common part of all sizes; the push is the shipped concert's.
 fn concert(push: f64) -> Value {
     json!({
         "duration_secs": push + TIMED,
@@ -59,7 +59,7 @@ fn concert(push: f64) -> Value {
     })
 }
 
-/// Everybody enters in 100 rows on 100 m.
+/// All agents enter, in 100 batches over a width of 100 m.
 fn walking(agents: u32) -> Value {
     let mut text = concert(PUSH);
     text["sources"] = json!([{
@@ -70,7 +70,7 @@ fn walking(agents: u32) -> Value {
     text
 }
 
-/// Everybody is there: a half disc of columns along y, every second one shifted.
+/// All agents stand: a half disc of columns along y, every other one shifted.
 fn standing(agents: f64) -> Value {
     const DENSITY: f64 = 5.0;
     let spacing = (2.0 / (DENSITY * 3.0_f64.sqrt())).sqrt();
@@ -95,19 +95,19 @@ fn standing(agents: f64) -> Value {
     text
 }
 
-/// Mean frame time of one crowd.
+/// The mean frame time of one crowd.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FrameTime {
-    /// How many people.
+    /// Number of agents.
     pub agents: usize,
-    /// On how many threads.
+    /// Number of threads.
     pub threads: usize,
     /// Milliseconds per frame of every stage that ran, by [`Stage::name`].
     pub stages: Vec<(String, f64)>,
 }
 
 impl FrameTime {
-    /// What a run has kept.
+    /// The data that a run has kept.
     ///
     /// # Errors
     /// The run was not timed.
@@ -115,7 +115,7 @@ impl FrameTime {
         result.kept(NAME)
     }
 
-    /// All stages together, ms.
+    /// The sum of all stages, ms.
     pub fn total(&self) -> f64 {
         self.stages.iter().map(|(_, ms)| ms).sum()
     }
@@ -146,7 +146,7 @@ pub fn csv(times: &[FrameTime]) -> String {
 
 const NAME: &str = "frame time from the push on";
 
-/// Keeps a [`FrameTime`] from a time in seconds on.
+/// Keeps a [`FrameTime`] of all frames from a time in seconds on.
 struct TimeProbe {
     from: f64,
 }
@@ -165,7 +165,7 @@ impl Probe for TimeProbe {
     }
 }
 
-/// Frames and time spent so far.
+/// Frames so far, and the time of each stage.
 type Spent = (u64, Vec<(Stage, Duration)>);
 
 struct Watch {

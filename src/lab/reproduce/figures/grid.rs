@@ -1,5 +1,5 @@
-//! The parameter study of the concert that the paper leaves to future work: wave speed, amplitude and
-//! reflection against k, ρ⁰max, μ and K^ag.
+//! The parameter study of the concert that the paper leaves to future work: speed, amplitude and reflection of the wave
+//! against k, ρ⁰max, μ and K^ag.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use super::concert::{self, RUN};
 use crate::analysis::wave::{self, Estimate, SpaceTime};
 use crate::lab::reproduce::case::Case;
 
-/// Seeds of every cell.
+/// The seeds of every cell.
 pub const SEEDS: [u64; 3] = [1, 2, 3];
 
 /// k, ρ⁰max in P/m², μ and K^ag of one cell.
@@ -68,7 +68,7 @@ impl Grid {
 }
 
 impl Cell {
-    /// One of its runs.
+    /// The run with one seed.
     pub fn case(&self, seed: u64) -> Case {
         concert::case()
             .set("gas_constant", self.gas_constant)
@@ -79,19 +79,19 @@ impl Cell {
     }
 }
 
-/// What is measured in every cell.
+/// A quantity that is measured in every cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
-    /// Of the arriving wave, m/s.
+    /// Speed of the arriving wave, m/s.
     Speed,
-    /// Of the arriving wave before the stage, m/s.
+    /// Amplitude of the arriving wave in front of the stage, m/s.
     Amplitude,
-    /// Returning over arriving amplitude there.
+    /// Amplitude of the returning wave over that of the arriving one, in front of the stage.
     Reflection,
 }
 
 impl Quantity {
-    /// All of them.
+    /// All quantities.
     pub const ALL: [Self; 3] = [Self::Speed, Self::Amplitude, Self::Reflection];
 
     /// Its name and unit.
@@ -112,25 +112,25 @@ impl Quantity {
     }
 }
 
-/// One cell over its seeds.
+/// The result of one cell over its seeds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Result {
-    /// Which cell.
+    /// The cell.
     pub cell: Cell,
-    /// How many runs showed a wave.
+    /// Number of runs with a wave.
     pub waves: usize,
-    /// How many runs there were.
+    /// Number of runs.
     pub runs: usize,
-    /// Mean and standard error over seeds; `None` if not two runs showed a wave.
+    /// Mean and standard error over seeds; `None` with fewer than two waves.
     pub speed: Option<Estimate>,
-    /// The same of the amplitude.
+    /// The same for the amplitude.
     pub amplitude: Option<Estimate>,
-    /// The same of the reflection; `None` if not two runs showed one.
+    /// The same for the reflection; `None` with fewer than two reflections.
     pub reflection: Option<Estimate>,
 }
 
 impl Result {
-    /// A cell from the diagrams of its runs.
+    /// The result of a cell from the diagrams of its runs.
     pub fn of<'a>(cell: Cell, diagrams: impl IntoIterator<Item = &'a SpaceTime>) -> Self {
         let waves: Vec<_> = diagrams
             .into_iter()
@@ -138,7 +138,7 @@ impl Result {
             .collect();
         let over_seeds = |value: &dyn Fn(&wave::Wave) -> Option<f64>| {
             let values: Vec<f64> = waves.iter().flatten().filter_map(value).collect();
-            // One value has no error.
+            // A single value has no standard error.
             (values.len() > 1).then(|| Estimate::of_mean(&values))?
         };
         Self {
@@ -151,7 +151,7 @@ impl Result {
         }
     }
 
-    /// One of the quantities.
+    /// The estimate of one quantity.
     pub fn get(&self, quantity: Quantity) -> Option<Estimate> {
         match quantity {
             Quantity::Speed => self.speed,
@@ -161,7 +161,7 @@ impl Result {
     }
 }
 
-/// All cells as CSV, empty where there is no value.
+/// All cells as CSV; values that do not exist are empty.
 pub fn csv(results: &[Result]) -> String {
     let mut text = "gas_constant,rest_density_max,viscosity,agent_stiffness,runs,waves".to_owned();
     for quantity in Quantity::ALL {

@@ -1,4 +1,4 @@
-//! What each figure of the paper shows, from what the runs have left.
+//! The figures of the paper, drawn from the results of runs.
 
 mod concert;
 mod crossing;
@@ -29,7 +29,7 @@ pub use shockwave::{FIG7_PRODUCT as FIG7, FIG9_PRODUCT as FIG9};
 pub use speeds::PRODUCT as WAVES;
 pub use study::PRODUCT as STUDY;
 
-/// Writes a picture into the store's folder, and says so.
+/// Writes a picture into the store's folder, and returns a line with the file names.
 fn save(sheet: &Sheet, store: &Store, name: &str) -> Result<String, ReproduceError> {
     let stem = store.path(name);
     sheet.save(&stem)?;
@@ -41,15 +41,15 @@ fn scene(case: &Case) -> Result<Scene, ReproduceError> {
     Ok(case.scenario()?.scene)
 }
 
-/// Inferno up to 1 m/s: the push itself reaches 0.9.
+/// Inferno up to 1 m/s: the push itself reaches 0.9 m/s.
 static CROWD_SPEED: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::inferno([0.0, 1.0]));
 
-/// What the discs' colours say (Fig. 3).
+/// The meaning of the discs' colors (Fig. 3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Coloring {
     /// |v_i|.
     Speed,
-    /// |v_i| in a crowd that hardly moves: the colours end where its waves do.
+    /// |v_i| in a crowd that hardly moves: the color range ends at the speed of its waves.
     CrowdSpeed,
     /// ρ_i.
     Density,
@@ -64,7 +64,7 @@ impl Coloring {
         }
     }
 
-    /// What explains it.
+    /// Its color bar.
     pub fn bar(self) -> ColorBar {
         let label = match self {
             Self::Speed | Self::CrowdSpeed => "speed [m/s]",
@@ -85,7 +85,7 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// A part of a scene.
+    /// The part of `scene` inside `region`.
     pub fn new(scene: &Scene, region: Region) -> Self {
         let corners =
             |p: &crate::engine::geometry::Polygon| p.points().iter().map(|c| [c.x, c.y]).collect();
@@ -95,7 +95,7 @@ impl Stage {
         }
     }
 
-    /// Width and height of a panel that is so many points wide, with equal scales on both axes.
+    /// Width and height of a panel that is `width` points wide, with equal scales on both axes.
     pub fn panel_size(&self, width: f64) -> [f64; 2] {
         let size = self.region.max - self.region.min;
         [width, width * size.y / size.x]

@@ -55,7 +55,7 @@ fn write(
 
 /// The sheet from two snapshots; `title` begins with the figure's number.
 fn sheet(title: &str, scene: &Scene, pair: &[(Variant, Snapshot)]) -> Sheet {
-    // The whole crowd with its rim.
+    // The whole crowd.
     let region = Region {
         min: Vector::new(44.0, -32.0),
         max: Vector::new(110.0, 32.0),

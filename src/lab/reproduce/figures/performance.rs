@@ -24,10 +24,10 @@ pub const PRODUCT: Product = Product {
     },
 };
 
-/// The paper's totals, six threads of a laptop Core i7-7920HQ (§6.4): agents, ms per frame.
+/// The paper's totals on six threads of a laptop with a Core i7-7920HQ (§6.4): agents, ms per frame.
 const PAPER: [[f64; 2]; 2] = [[10_000.0, 4.94], [30_000.0, 18.57]];
 
-/// What the paper calls a stage.
+/// The paper's name of a stage.
 fn task(stage: Stage) -> &'static str {
     match stage {
         Stage::Sort => "1 sorting (paper: kd-tree)",
@@ -43,7 +43,7 @@ fn task(stage: Stage) -> &'static str {
     }
 }
 
-/// The sheet from measurements by rising number of agents; `machine` says on what.
+/// The sheet from measurements in order of the number of agents; `machine` names the machine.
 fn sheet(times: &[FrameTime], machine: &str) -> Sheet {
     let order = [
         Stage::Sort,

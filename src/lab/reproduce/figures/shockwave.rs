@@ -1,4 +1,4 @@
-//! Figs. 7 and 9: the shockwave, a row for each variant, by speed.
+//! Figs. 7 and 9: the shockwave by speed, one row for each variant.
 
 use super::concert::{self, FIG7, FIG9, TIMES, Variant};
 use super::{Coloring, Stage, letter, save, scene};
@@ -57,7 +57,7 @@ fn write(
     save(&sheet(title, &concert, &rows), store, name)
 }
 
-/// The crowd before and beside the stage, metres.
+/// The crowd in front of the stage and beside it, meters.
 fn region() -> Region {
     Region {
         min: Vector::new(44.0, -31.0),

@@ -1,4 +1,4 @@
-//! Beside Fig. 7: the wave over place and time for several k, and its speed against linear theory.
+//! An addition to Fig. 7: the wave over space and time for several k, and its speed against linear theory.
 
 use super::concert::{RUN, SPEEDS, Seen, Variant};
 use super::save;
@@ -11,9 +11,9 @@ use crate::output::plot::{Axis, Cells, ColorBar, Corner, LINES, Mark, Panel, Poi
 
 /// K^ag of the baseline (§5.5).
 const AGENT_STIFFNESS: f64 = 50.0;
-/// D_i + D_j of average people, metres (§5.6).
+/// D_i + D_j of average agents, meters (§5.6).
 const REACH: f64 = 0.48;
-/// Mean speed that has the last colour, m/s.
+/// The mean speed at the end of the color range, m/s.
 const FASTEST: f32 = 0.8;
 
 /// The diagrams.
@@ -35,20 +35,20 @@ pub const PRODUCT: Product = Product {
     },
 };
 
-/// One concert's wave and what theory says of it.
+/// The wave of one concert, and the speeds of linear theory.
 #[derive(Debug, Clone)]
 struct Speed {
     /// k.
     gas_constant: f64,
-    /// What was measured; `None` if no wave stands out.
+    /// The measured wave; `None` if no wave stands out.
     wave: Option<Wave>,
     /// √(k/2), m/s.
     fluid: f64,
-    /// How many others a person touches before the push.
+    /// Mean number of contacts of an agent before the push.
     contacts: Option<f64>,
     /// √(k/2 + K^ag M) with the contacts of this crowd before the push, m/s.
     with_contacts: Option<f64>,
-    /// The same with every disc just touching six others, m/s.
+    /// The same if every disc just touches six others, m/s.
     all_touching: f64,
 }
 
@@ -67,7 +67,7 @@ impl Speed {
     }
 }
 
-/// The diagrams, and speed against k as the last panel.
+/// The diagrams, and the speed against k as the last panel.
 fn sheet(runs: &[(f64, Variant, Seen)], speeds: &[Speed]) -> Sheet {
     let map = ColorMap::inferno([0.0, FASTEST]);
     let mut panels: Vec<Panel> = runs
@@ -90,7 +90,7 @@ fn sheet(runs: &[(f64, Variant, Seen)], speeds: &[Speed]) -> Sheet {
     }
 }
 
-/// One run: mean speed, the fitted crests, and where theory has the first one.
+/// One run: the mean speed, the fitted crests, and the crest of linear theory.
 fn diagram(seen: &SpaceTime, speed: &Speed, map: &ColorMap) -> Panel {
     let (first, last) = match seen.times[..] {
         [first, .., last] => (first, last),
@@ -127,7 +127,7 @@ fn summary(wave: &Wave) -> String {
     text
 }
 
-/// The lines through the crests, and theory's from the same beginning.
+/// Lines along the crests, and those of linear theory with the same start.
 fn crests(wave: &Wave, speed: &Speed) -> Vec<Mark> {
     let ends = [RUN.source, RUN.obstacle];
     let line = |ridge: &wave::Ridge| ends.map(|x| [x, ridge.time_at(x)]).to_vec();
@@ -151,7 +151,7 @@ fn crests(wave: &Wave, speed: &Speed) -> Vec<Mark> {
     marks
 }
 
-/// What was measured and what theory says, empty where there is nothing.
+/// Measured and theoretical values as CSV; values that do not exist are empty.
 fn csv(speeds: &[Speed]) -> String {
     let mut text =
         "gas_constant,arriving_m_per_s,arriving_error,returning_m_per_s,returning_error,\

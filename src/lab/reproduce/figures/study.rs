@@ -1,4 +1,4 @@
-//! The study's heat maps: a column for each quantity, a row for each pair of μ and K^ag.
+//! Heat maps of the study: a column for each quantity, a row for each pair of μ and K^ag.
 
 use super::concert::Seen;
 use super::grid::{self, Grid, Quantity, Result};
@@ -57,7 +57,7 @@ fn sheet(grid: &Grid, results: &[Result]) -> Sheet {
     }
 }
 
-/// Round ends for the colours of one quantity.
+/// Round limits for the color range of one quantity.
 fn range(results: &[Result], quantity: Quantity) -> [f32; 2] {
     let values = || {
         results
@@ -99,7 +99,7 @@ fn panel(grid: &Grid, block: &[Result], quantity: Quantity, range: [f32; 2]) -> 
             None if result.waves > 1 => ("not clear".to_owned(), BLACK),
             None => ("no wave".to_owned(), BLACK),
             Some(e) => {
-                // White on the dark half of the colours.
+                // White text on the dark half of the color range.
                 let part = (e.value as f32 - range[0]) / (range[1] - range[0]);
                 let light = part > 0.6;
                 let text = format!("{:.digits$} ± {:.digits$}", e.value, e.error);
@@ -131,7 +131,7 @@ mod tests {
     use super::*;
     use crate::analysis::wave::Estimate;
 
-    /// What a study may give; one cell has no wave.
+    /// Made-up results of a study; one cell has no wave.
     fn results(grid: &Grid) -> Vec<Result> {
         let estimate = |value: f64| {
             Some(Estimate {

@@ -1,4 +1,4 @@
-//! How the crossing (§6.2) behaves per profile, and under three guesses of its geometry.
+//! How the crossing (§6.2) behaves with each profile, under three guesses of its geometry.
 
 use serde_json::json;
 
@@ -13,7 +13,7 @@ use crate::lab::reproduce::runner::Results;
 use crate::lab::reproduce::table2;
 use crate::output::table::Table;
 
-/// The run of a profile in a guess.
+/// The run of a profile with a guessed geometry.
 fn case(guess: Crossing, profile: &str, seed: u64) -> Case {
     let case = table2::case(profile, seed);
     if guess == Crossing::Streets {

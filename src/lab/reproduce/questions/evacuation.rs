@@ -1,4 +1,4 @@
-//! Questions about the room (§6.1): the social force's flow, walls and starts, who stays behind.
+//! Questions about the room (§6.1): flow with social forces, walls and start positions, agents that stay behind.
 
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -17,17 +17,17 @@ use crate::lab::reproduce::runner::Results;
 use crate::lab::reproduce::table1;
 use crate::output::table::Table;
 
-/// A pause between two arrivals, seconds: a clog.
+/// A gap between two arrivals of at least this counts as a clog, seconds.
 const PAUSE: f64 = 2.0;
 
-/// Some rows of Table 1 under some variants.
+/// Some rows of Table 1 with some variants.
 struct Question {
     title: &'static str,
     text: &'static str,
-    /// Profile and value of the row.
+    /// The rows by profile and value.
     rows: &'static [(&'static str, f64)],
     variants: &'static [Variant],
-    /// The runs end here, seconds; `None`: at their own end.
+    /// The end of the runs, seconds; `None` for the scenario's own end.
     until: Option<f64>,
 }
 
@@ -82,7 +82,7 @@ const QUESTIONS: [Question; 5] = [
     },
 ];
 
-/// The row of Table 1.
+/// A row of Table 1.
 fn row(profile: &str, value: f64) -> Result<EvacuationRow, ReproduceError> {
     let mut rows = published()?.table1.rows.into_iter();
     rows.find(|row| row.profile == profile && row.value == value)
@@ -105,7 +105,7 @@ impl Question {
         Ok(runs)
     }
 
-    /// What only a whole run tells.
+    /// `text`, or a dash if the runs are shortened and cannot tell.
     fn at_the_end(&self, text: String) -> String {
         match self.until {
             Some(_) => "–".to_owned(),
@@ -170,7 +170,7 @@ impl Question {
     }
 }
 
-/// What the paper has for a row.
+/// The paper's values of a row.
 fn paper(row: &EvacuationRow) -> String {
     format!(
         "{}, {}: {} evacuated, {:.2} [{:.2}] P/m², {:.2} P/s",
@@ -183,7 +183,7 @@ fn paper(row: &EvacuationRow) -> String {
     )
 }
 
-/// A row and variant over the seeds.
+/// The results of a row and variant over the seeds.
 #[derive(Debug, Clone, Serialize)]
 struct Outcome {
     evacuated: Vec<usize>,
@@ -225,7 +225,7 @@ impl Outcome {
         })
     }
 
-    /// The number of all runs, or each.
+    /// The number of evacuees: once if all runs agree, else for each run.
     fn evacuated_written(&self) -> String {
         let mut numbers = self.evacuated.clone();
         numbers.dedup();

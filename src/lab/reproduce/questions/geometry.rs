@@ -1,26 +1,26 @@
-//! Rooms and streets, as the lists of polygons that `obstacles` takes.
+//! Rooms and streets, as lists of polygons for the key `obstacles`.
 
 use std::f64::consts::FRAC_PI_2;
 
-/// One corner, metres.
+/// A corner, meters.
 type Corner = [f64; 2];
 
-/// Half the width of the doorway, metres.
+/// Half the width of the doorway, meters.
 const HALF_DOOR: f64 = 0.4;
-/// Straight pieces in a quarter circle.
+/// Straight segments per quarter circle.
 const PIECES: u32 = 6;
 
 /// The room of §6.1, [0, 20]², with its door of 0.8 m in the middle of the right wall.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Room {
-    /// Thickness of its wall, metres.
+    /// Thickness of its walls, meters.
     pub thickness: f64,
-    /// Radius of the corners of the doorway, metres, at most half the thickness; 0: square.
+    /// Corner radius of the doorway, meters, at most half the thickness; 0 for square corners.
     pub rounding: f64,
 }
 
 impl Room {
-    /// Its one obstacle.
+    /// Its walls as one obstacle.
     pub fn obstacles(&self) -> Vec<Vec<Corner>> {
         let (low, high) = (-self.thickness, 20.0 + self.thickness);
         let mut corners = vec![[low, low], [high, low]];
@@ -31,7 +31,7 @@ impl Room {
         vec![corners]
     }
 
-    /// 1 m beyond the outer face.
+    /// The goal, 1 m beyond the outer face of the wall.
     pub fn goal(&self) -> Corner {
         [21.0 + self.thickness, 10.0]
     }
@@ -52,13 +52,13 @@ impl Room {
         let outer = arc(20.0 + self.thickness - r, 0.0);
         let inner = arc(20.0 + r, FRAC_PI_2);
         let mut corners: Vec<Corner> = outer.collect();
-        // Where the arcs meet, one corner is enough.
+        // Where the arcs meet, a single corner is enough.
         corners.extend(inner.skip(usize::from(self.thickness == 2.0 * r)));
         corners
     }
 }
 
-/// A guess of the surroundings of the room in §6.2.
+/// A guess of the geometry around the room in §6.2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Crossing {
     /// Two walled streets that cross 8 m before the room.
@@ -70,7 +70,7 @@ pub enum Crossing {
 }
 
 impl Crossing {
-    /// All guesses, with what they are.
+    /// All guesses, with descriptions.
     pub const ALL: [(Self, &'static str); 3] = [
         (
             Self::Streets,
@@ -80,7 +80,7 @@ impl Crossing {
         (Self::Near, "walled streets, crossing at x = −5 … −1 m"),
     ];
 
-    /// x of the left and right side of the vertical street, metres.
+    /// x of the left and right side of the vertical street, meters.
     pub fn stream(self) -> [f64; 2] {
         match self {
             Self::Streets | Self::Open => [-12.0, -8.0],
@@ -109,7 +109,7 @@ fn mirrored(lower: Vec<Vec<Corner>>) -> Vec<Vec<Corner>> {
 }
 
 fn streets([left, right]: [f64; 2]) -> Vec<Vec<Corner>> {
-    // Left of the vertical street, and right of it with the room's wall; each 1 m thick.
+    // Left of the vertical street, and right of it including the room's wall; each 1 m thick.
     let street = vec![
         [-20.0, 4.0],
         [-20.0, 3.0],

@@ -1,4 +1,4 @@
-//! What the paper leaves open, answered with runs: its tables again, with one thing changed.
+//! Questions that the paper leaves open, answered with runs of its tables with one change at a time.
 
 mod crossing;
 mod evacuation;
@@ -24,7 +24,7 @@ pub const PRODUCT: Product = Product {
     write,
 };
 
-/// A question with what the runs say.
+/// A question with the answer from the runs.
 struct Answer {
     title: &'static str,
     /// What was varied, and how to read the table.

@@ -1,39 +1,39 @@
-//! What is changed in the room (§6.1), one thing at a time.
+//! Changes to the room (§6.1), one at a time.
 
 use serde_json::json;
 
 use super::geometry::Room;
 use crate::lab::reproduce::case::Case;
 
-/// What is changed in the room.
+/// A change to the room.
 #[derive(Debug, Clone, Copy)]
 pub struct Variant {
-    /// What it is called in a table.
+    /// Its name in tables.
     pub name: &'static str,
-    /// Another wall, if any.
+    /// Another wall, if it changes.
     room: Option<Room>,
     /// Other settings.
     settings: &'static [(&'static str, &'static str)],
 }
 
-/// Nothing is changed.
+/// No change.
 pub const SHIPPED: Variant = set("as in Table 1", &[]);
-/// Both edges of a corner repel, as far as a parameter can say it.
+/// Approximates a repulsion by both edges of a corner: twice the wall strength.
 pub const TWICE: Variant = set("walls repel twice as much (U₀ = 4.2)", &[U0_TWICE]);
 const U0_TWICE: (&str, &str) = ("wall_strength", "4.2");
-/// Three times.
+/// Three times the wall strength.
 pub const THRICE: Variant = set("three times (U₀ = 6.3)", &[("wall_strength", "6.3")]);
-/// Both, with next to no doorway to stand in.
+/// Twice the wall strength, and a doorway too short to stand in.
 pub const THIN_TWICE: Variant = Variant {
     settings: &[U0_TWICE],
     ..room("wall 0.1 m thick and U₀ = 4.2", 0.1, 0.0)
 };
-/// Starts off the grid.
+/// Start positions off the grid.
 pub const JITTER: Variant = set(
     "starts ± 0.25 m off the grid",
     &[("grids.0.jitter", "0.25")],
 );
-/// The paper's words.
+/// Forward Euler, as the paper's text says.
 pub const EULER: Variant = set("forward Euler", &[("integrator", "forward-euler")]);
 /// Half the time step.
 pub const FINE: Variant = set("Δt = 0.01 s", &[("time_step_secs", "0.01")]);
@@ -69,7 +69,7 @@ const fn room(name: &'static str, thickness: f64, rounding: f64) -> Variant {
 }
 
 impl Variant {
-    /// The case with the changes.
+    /// `case` with the changes.
     pub fn of(&self, mut case: Case) -> Case {
         if let Some(room) = self.room {
             case = case
@@ -81,7 +81,7 @@ impl Variant {
     }
 }
 
-/// What might make RVO denser or looser.
+/// Changes that might affect the density with RVO.
 pub const AVOIDING: [Variant; 9] = [
     SHIPPED,
     set("1000 candidates", &[("candidates", "1000")]),
@@ -94,7 +94,7 @@ pub const AVOIDING: [Variant; 9] = [
     JITTER,
 ];
 
-/// What might make the blend of SF and SPH more even.
+/// Changes that might make the density of the blend of SF and SPH more even.
 pub const BLENDING: [Variant; 9] = [
     SHIPPED,
     set("K^ag = 100", &[("agent_stiffness", "100")]),
