@@ -30,7 +30,7 @@ pub struct Scene {
     pub kind: Kind,
     /// The number of seeds, if it is judged over seeds.
     pub seeds: u64,
-    /// Is it left out where time is short and nobody has named it?
+    /// Do quick plans skip it unless it is named?
     pub is_long: bool,
     document: fn() -> Result<Value, ReproduceError>,
 }

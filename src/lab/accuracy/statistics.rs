@@ -47,7 +47,7 @@ pub fn names(kind: Kind) -> &'static [(&'static str, &'static str)] {
 /// Runs a document under some settings with a seed.
 ///
 /// # Errors
-/// A setting makes no sense, or the run cannot go on.
+/// A setting is invalid, or the run fails.
 pub fn sample(
     kind: Kind,
     document: &Value,

@@ -11,7 +11,7 @@ pub enum ReproduceError {
     Scenario {
         /// The case.
         case: String,
-        /// What is wrong with it.
+        /// What is invalid.
         error: ScenarioError,
     },
     /// A run failed.

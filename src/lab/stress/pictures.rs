@@ -9,9 +9,9 @@ use crate::lab::reproduce::{ReproduceError, Store};
 use crate::output::colors::ColorMap;
 use crate::output::plot::{Axis, Cells, ColorBar, Corner, LINES, Mark, Panel, Point, Sheet, Style};
 
-/// Axis of all curves, milliseconds.
+/// Range of the step axis of all curves, milliseconds.
 const STEPS: [f64; 2] = [2.0, 200.0];
-/// Where a logarithmic axis puts zero.
+/// The position of zero on a logarithmic axis.
 const ZERO: f64 = 0.5;
 
 /// Draws `maps.svg` and `maps.png`.
@@ -37,7 +37,7 @@ pub fn save(report: &Report, detail: Detail, store: &Store) -> Result<(), Reprod
     Ok(())
 }
 
-/// What a map shows.
+/// The quantity of a map.
 struct Shown {
     value: fn(&Cell) -> f64,
     write: fn(f64) -> String,
@@ -68,7 +68,7 @@ fn find(cells: &[Cell], crowd: Rest) -> Option<&Cell> {
     cells.iter().find(|cell| cell.crowd == crowd)
 }
 
-/// A map over k and ρ⁰max with its numbers.
+/// A map over k and ρ⁰max, with the numbers as text.
 fn map(title: &str, cells: &[Cell], detail: Detail, shown: &Shown) -> Panel {
     let (columns, rows) = (detail.gas_constants(), detail.rest_densities());
     let colors = ColorMap::viridis(shown.range);
@@ -111,7 +111,7 @@ fn map(title: &str, cells: &[Cell], detail: Detail, shown: &Shown) -> Panel {
     }
 }
 
-/// What was found along one parameter, the formula and `auto`; steps in milliseconds.
+/// The results along one parameter, the formula and `auto`; steps in milliseconds.
 fn curve(cells: &[Cell], crowds: &[(f64, Rest)], x: Axis, title: &str) -> Panel {
     let along = |step: fn(&Cell) -> f64| -> Vec<[f64; 2]> {
         let found = crowds

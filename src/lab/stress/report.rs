@@ -1,4 +1,4 @@
-//! What `sandbox stress` says and writes.
+//! What `sandbox stress` prints and writes.
 
 use std::fmt::Write;
 
@@ -10,23 +10,23 @@ use super::jitter::{Jitter, Variant};
 use crate::engine::stability::{Constants, FITTED};
 use crate::lab::reproduce::{ReproduceError, Store};
 
-/// Everything that was found.
+/// All results.
 #[derive(Debug, Clone)]
 pub struct Report {
     /// The hard cases by name.
     pub hard: Vec<(&'static str, Survival)>,
     /// The maps.
     pub cells: Vec<Cell>,
-    /// Places that the constants were not fitted to.
+    /// Points that the fit does not use.
     pub held_out: Vec<Cell>,
-    /// The constants that the maps give.
+    /// The constants fitted to the maps.
     pub fitted: Constants,
-    /// Crowds at rest.
+    /// The residual motion of crowds at rest.
     pub jitter: Vec<(Variant, Jitter)>,
 }
 
 impl Report {
-    /// What is not as it must be; empty if all is well.
+    /// All violated requirements; empty if there are none.
     pub fn failures(&self) -> Vec<String> {
         let hard = self
             .hard
@@ -45,7 +45,7 @@ impl Report {
         hard.chain(unstable).chain(short).collect()
     }
 
-    /// Everything as Markdown: (name, text).
+    /// All results as Markdown: (name, text).
     pub fn parts(&self) -> [(&'static str, String); 3] {
         [
             ("hard", hard_table(&self.hard)),
@@ -94,7 +94,7 @@ impl Report {
     }
 }
 
-/// The least and the greatest that `auto` is of the largest stable steps under one of the conditions.
+/// The smallest and the largest ratio of `auto` to the largest stable step under one of the conditions.
 fn range(cells: &[Cell], condition: usize) -> [f64; 2] {
     let ratios = || cells.iter().map(|cell| cell.limits[condition].ratio());
     [
@@ -205,7 +205,7 @@ fn jitter_table(jitter: &[(Variant, Jitter)]) -> String {
     text
 }
 
-/// A line for every place and condition.
+/// One row for each point and condition.
 fn csv(cells: &[Cell]) -> String {
     let mut text = "gas_constant,rest_density_max,agent_stiffness,viscosity,condition,auto_secs,auto_is_stable,\
                     largest_secs,fine_speed,auto_speed\n"

@@ -1,4 +1,4 @@
-//! A crowd that should come to rest, and whether it does.
+//! A crowd that should come to rest, and a check whether it does.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,33 +15,33 @@ use crate::engine::simulation::{Fault, Simulation};
 use crate::engine::stability::Mode;
 use crate::scenario::catalog::{NavigationKind, Parameters};
 
-/// People along each side of the room.
+/// Agents along each side of the room.
 const COLUMNS: u32 = 10;
-/// People in a full room for each whom ρ⁰max asks for: everybody is pressed.
+/// Density of a full room relative to ρ⁰max: more than 1, so that all agents are under pressure.
 const FILLING: f64 = 1.1;
-/// People in a loose room, P/m²: the fewer neighbours, the more each of them matters to viscosity.
+/// Density of a loose room, P/m²: with fewer neighbors, each of them has more effect on viscosity.
 const LOOSE: f64 = 2.0;
-/// How far from their places people start, in distances between places.
+/// Jitter of the start positions, relative to the distance between them.
 const JITTER: f64 = 0.1;
-/// How fast everybody is thrown about at the start, m/s.
+/// Speed of every agent at the start, m/s.
 const KICK: f64 = 0.7;
-/// How long a crowd is given to come to rest, seconds: the goal force alone slows by e⁻¹ in τ = 0.5 s.
+/// Time in which a crowd must come to rest, seconds: the goal force alone slows by e⁻¹ in τ = 0.5 s.
 const DURATION: f64 = 8.0;
-/// The last part of it, in which the crowd is judged, seconds.
+/// The last part of it, in which the crowd is tested, seconds.
 const JUDGED: f64 = 3.0;
-/// So many crowds of different people are looked at.
+/// Number of crowds, each with another seed.
 const SEEDS: u64 = 3;
-/// Crowds that are so slow have come to rest, m/s.
+/// Crowds below this speed are at rest, m/s.
 const RESTING: f64 = 0.1;
-/// Nobody's centre may be nearer to another's than this part of their radii's sum.
+/// The smallest allowed distance between the centers of two agents, relative to the sum of their radii.
 const CLOSEST: f64 = 0.1;
 
-/// Square rooms of people who want to stay where they are, thrown about a little at the start.
+/// Square rooms of agents whose goals are their own positions, with random directions of motion at the start.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rest {
     /// k.
     pub gas_constant: f64,
-    /// ρ⁰max, P/m²; the full room holds a tenth more.
+    /// ρ⁰max, P/m²; the density of the full room is a tenth higher.
     pub rest_density_max: f64,
     /// K^ag.
     pub agent_stiffness: f64,
@@ -49,12 +49,12 @@ pub struct Rest {
     pub viscosity: f64,
 }
 
-/// Under what a crowd is looked at, and whose.
+/// The condition and the seeds of a test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Surroundings {
-    /// Walls and integrator.
+    /// The wall method, and the integration scheme.
     pub condition: Condition,
-    /// The seeds are those that follow.
+    /// The seeds are the numbers after this one.
     pub first_seed: u64,
 }
 
@@ -70,23 +70,24 @@ impl Default for Rest {
     }
 }
 
-/// What became of some crowds.
+/// The results of some crowds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Remains {
-    /// Root mean square speed in the last seconds, m/s; `None` if a run broke off.
+    /// Root mean square speed in the last seconds, m/s; `None` if a run failed.
     pub speed: Option<f64>,
-    /// How far velocities last from one frame to the next in those seconds, Σ v(t)·v(t − Δt) / Σ v²: 1 where
-    /// everybody goes on, −1 where everybody turns round in every frame.
+    /// How much of the velocities remains from one frame to the next in those seconds, Σ v(t)·v(t − Δt) / Σ v²: 1 if
+    /// all velocities are constant, −1 if all of them reverse in every frame.
     pub persistence: f64,
-    /// The least distance of two centres, in parts of their radii's sum.
+    /// The smallest distance between two centers, relative to the sum of their radii.
     pub closest: f64,
-    /// How many got through a wall.
+    /// Number of times that an agent passed through a wall.
     pub escaped: u64,
 }
 
 impl Remains {
-    /// Did the crowds come to rest, or is their motion at least none that the step makes, and all in one piece?
-    /// A step that is too long has people turn round in every frame; what the model does by itself takes several.
+    /// Is the time step stable? Agents must stay apart and inside the room, and the crowds must come to rest, or at
+    /// least not move because of the step. If a step is too long, velocities reverse in every frame; oscillations of
+    /// the model itself take several frames.
     pub fn are_stable(&self) -> bool {
         let moves_on = self.persistence > 0.0;
         let rests = self.speed.is_some_and(|speed| speed <= RESTING || moves_on);
@@ -94,18 +95,18 @@ impl Remains {
     }
 }
 
-/// What moves in the last seconds, summed over people and frames.
+/// The motion in the last seconds, summed over agents and frames.
 #[derive(Debug, Clone, Copy, Default)]
 struct Motion {
     people: f64,
     /// |v|², m²/s².
     squares: f64,
-    /// v · v of the frame before, m²/s².
+    /// v · v of the previous frame, m²/s².
     lasting: f64,
 }
 
 impl Motion {
-    /// Adds a frame; `before` are the velocities of the one before by id, and are replaced.
+    /// Adds a frame. `before` are the previous frame's velocities by id; they are replaced.
     fn add(&mut self, agents: &Agents, before: &mut [Vector]) {
         for (&id, velocity) in agents.id.iter().zip(&agents.velocity) {
             let last = std::mem::replace(&mut before[id as usize], *velocity);
@@ -117,7 +118,7 @@ impl Motion {
 }
 
 impl Rest {
-    /// A full room and a loose one, P/m²: a crowd passes through all densities between them.
+    /// The densities of the full and the loose room, P/m²: a crowd passes through all densities between them.
     pub fn densities(&self) -> [f64; 2] {
         [FILLING * self.rest_density_max, LOOSE]
     }
@@ -132,7 +133,7 @@ impl Rest {
         }
     }
 
-    /// A room and its people, `density` P/m², at a time step in seconds.
+    /// A room with its agents at `density` P/m², for a time step in seconds.
     pub fn scene(&self, density: f64, time_step: f64) -> Scene {
         let parameters = self.parameters();
         let spacing = (1.0 / density).sqrt();
@@ -156,7 +157,7 @@ impl Rest {
         };
         let places = grid.positions(scene.seed, 0).zip(0_u32..);
         let thrown = places.map(|(place, id)| {
-            // The golden angle: no two neighbours are thrown the same way.
+            // The golden angle: no two neighbors start in the same direction.
             let angle = 2.399_963 * f64::from(id);
             NewAgent {
                 velocity: Vector::new(angle.cos(), angle.sin()) * KICK,
@@ -167,10 +168,10 @@ impl Rest {
         scene
     }
 
-    /// Runs rooms of one density at a time step in seconds, with people after people.
+    /// Runs rooms of one density at a time step in seconds, each with another seed.
     ///
     /// # Errors
-    /// Somebody has no place at the start.
+    /// An agent cannot be placed at the start.
     pub fn run(
         &self,
         density: f64,
@@ -199,7 +200,7 @@ impl Rest {
         })
     }
 
-    /// The full and the loose room at a time step in seconds.
+    /// Runs the full and the loose room at a time step in seconds.
     ///
     /// # Errors
     /// As [`run`](Self::run).
@@ -230,7 +231,7 @@ impl Rest {
     }
 }
 
-/// Runs one crowd to its end; `false` if it broke off.
+/// Runs one crowd to its end; `false` if it fails.
 fn settle(
     simulation: &mut Simulation,
     watch: &mut Watch,
@@ -257,7 +258,7 @@ fn settle(
     Ok(true)
 }
 
-/// Two angles of wall, 1 m thick, round [0, side]²: nowhere more than two edges push the same way.
+/// Two L-shaped walls, 1 m thick, around [0, side]²: at no place do more than two edges push in the same direction.
 pub fn walls(side: f64) -> Vec<Polygon> {
     let outer = side + 1.0;
     let lower = [

@@ -9,10 +9,10 @@ use super::report::Report;
 use crate::lab::job::{Job, Listener, read, run};
 use crate::lab::reproduce::{ReproduceError, Store};
 
-/// Held-out crowds are of people after this seed, whom the maps have not seen.
+/// Held-out crowds use the seeds after this one, which the maps do not use.
 const OTHER_PEOPLE: u64 = 100;
 
-/// Runs everything that `store` does not have yet, and writes tables and pictures.
+/// Does all jobs whose results are not in `store`, and writes tables and pictures.
 ///
 /// # Errors
 /// A run or a file fails.
@@ -52,7 +52,7 @@ pub fn stress(
 }
 
 impl Hard {
-    /// The job of running it.
+    /// The job that runs it.
     fn job(&self, quick: bool) -> Result<Job, ReproduceError> {
         let invalid = |error| ReproduceError::Scenario {
             case: self.name.to_owned(),

@@ -1,4 +1,4 @@
-//! Looks on while a crowd moves: everybody's whole path against the walls, and what was clipped.
+//! Watches a moving crowd: checks the path of every agent against the walls, and counts clamped values.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,19 +6,19 @@ use super::fence::Fence;
 use crate::engine::math::{Vector, are_finite, numbers_are_finite};
 use crate::engine::simulation::Simulation;
 
-/// Distances between people are looked at in every so many frames.
+/// Distances between agents are checked every this many frames.
 const CLOSEST_EVERY: u64 = 5;
 
-/// What was seen of a run.
+/// The findings of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Found {
-    /// Frames looked at.
+    /// Number of watched frames.
     pub frames: u64,
-    /// How many entered.
+    /// Number of agents that entered.
     pub entered: u32,
-    /// How many reached their goal and left.
+    /// Number of agents that reached their goal and left.
     pub arrived: usize,
-    /// How often somebody was seen inside an obstacle or on a path through a wall.
+    /// Number of times that an agent was inside an obstacle or on a path through a wall.
     pub passed: u64,
     /// Was every position, velocity, acceleration and density finite?
     pub finite: bool,
@@ -26,18 +26,18 @@ pub struct Found {
     pub fastest: f64,
     /// Root mean square speed in the last frame, m/s.
     pub speed_at_end: f64,
-    /// The least distance of two centres, in parts of the sum of their radii; at most 1.
+    /// The smallest distance between two centers, relative to the sum of their radii; at most 1.
     pub closest: f64,
-    /// How many moves ended at a wall that they would have crossed.
+    /// Number of moves that were stopped at a wall.
     pub contained_moves: u64,
-    /// How often a speed was cut to the highest allowed.
+    /// Number of speeds that were clamped to the maximum.
     pub clamped_speeds: u64,
-    /// How many entered inside an obstacle and were put out.
+    /// Number of agents that entered inside an obstacle and were moved out of it.
     pub displaced: usize,
 }
 
 impl Default for Found {
-    /// Nothing yet.
+    /// The findings before the first frame.
     fn default() -> Self {
         Self {
             frames: 0,
@@ -55,12 +55,12 @@ impl Default for Found {
     }
 }
 
-/// A bystander.
+/// An independent observer of a run.
 pub struct Watch {
     fence: Fence,
-    /// Where everybody was last, by id; `None` for who has not been seen.
+    /// The last known position of each agent, by id; `None` before the agent's first frame.
     last: Vec<Option<Vector>>,
-    /// How many arrivals have been seen.
+    /// Number of arrivals that were processed.
     arrivals: usize,
     found: Found,
 }
@@ -76,7 +76,7 @@ impl Watch {
         }
     }
 
-    /// Looks at an evaluated frame; to be called in every one.
+    /// Observes an evaluated frame; must be called in every frame.
     pub fn look(&mut self, simulation: &Simulation) {
         let frame = simulation.frame();
         let agents = frame.agents;
@@ -84,7 +84,7 @@ impl Watch {
         for (&id, &position) in agents.id.iter().zip(&agents.position) {
             self.follow(id, position);
         }
-        // Who has left made a last move before.
+        // Agents that have left made one more move before.
         for arrival in &simulation.outcome().arrivals[self.arrivals..] {
             let before = self.last[arrival.id as usize];
             if before.is_some_and(|before| self.fence.is_crossed(before, arrival.position)) {
@@ -108,7 +108,7 @@ impl Watch {
         self.note_outcome(simulation);
     }
 
-    /// One agent's path since it was last seen.
+    /// Checks the path of one agent since its last known position.
     fn follow(&mut self, id: u32, position: Vector) {
         let before = self.last[id as usize].replace(position);
         let passed = match before {
@@ -128,7 +128,7 @@ impl Watch {
         self.found.displaced = outcome.displaced.len();
     }
 
-    /// What was seen, after a last look at who stands inside an obstacle.
+    /// The findings, with a last check for agents inside obstacles.
     pub fn found(&self, simulation: &Simulation) -> Found {
         let positions = simulation.frame().agents.position.iter();
         let inside = positions.filter(|&&p| self.fence.encloses(p)).count();
@@ -140,14 +140,14 @@ impl Watch {
     }
 }
 
-/// The mean of |v_i|² over everybody, m²/s²; zero where nobody is.
+/// The mean of |v_i|² over all agents, m²/s²; zero without agents.
 pub fn mean_square_speed(simulation: &Simulation) -> f64 {
     let velocities = &simulation.frame().agents.velocity;
     let sum: f64 = velocities.iter().map(|v| v.norm_squared()).sum();
     sum / velocities.len().max(1) as f64
 }
 
-/// The least distance of two centres, in parts of the sum of their radii; at most 1.
+/// The smallest distance between two centers, relative to the sum of their radii; at most 1.
 pub fn closest(simulation: &Simulation) -> f64 {
     let frame = simulation.frame();
     let agents = frame.agents;

@@ -11,28 +11,28 @@ use super::memory::Memory;
 use crate::scenario::quote::shown;
 use crate::scenario::{Need, SHIPPED, Scenario, ScenarioError, Setting, read_text, shipped_text};
 
-/// The engine's sources, in 16 letters: a result of another engine is not taken for one of this.
+/// A hash of the engine's sources, 16 letters: results of other engines are not reused.
 const ENGINE: &str = env!("SANDBOX_ENGINE");
-/// To be raised with whatever changes what is kept of a cell and is no part of the engine.
+/// Increase this whenever a change outside the engine affects the stored result of a cell.
 const VERSION: u32 = 1;
 
 /// Where a cell's scenario comes from.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Source {
-    /// From the program.
+    /// A scenario that ships with the program.
     Shipped(&'static str),
-    /// From a file.
+    /// A scenario from a file.
     File(PathBuf),
 }
 
 impl Source {
-    /// A scenario of that name that comes with the program.
+    /// The scenario of this name that ships with the program.
     pub(super) fn shipped(name: &str) -> Option<Self> {
         let found = SHIPPED.iter().find(|shipped| shipped.name == name)?;
         Some(Self::Shipped(found.name))
     }
 
-    /// The scenario's text, and what messages call its file.
+    /// The scenario's text, and the name of its file for messages.
     fn text(&self) -> Result<(String, String), ScenarioError> {
         match self {
             Self::Shipped(name) => Ok((shipped_text(name)?.to_owned(), format!("{name}.json"))),
@@ -49,29 +49,29 @@ impl Source {
 /// One run of a study.
 #[derive(Debug, Clone)]
 pub struct Cell {
-    /// Its number in the study, from 1.
+    /// Its number in the study; the first is 1.
     pub number: usize,
-    /// What is varied: names and values, without the seeds.
+    /// The varied settings: names and values, without the seeds.
     pub values: Vec<(String, Value)>,
     /// The scenario's seed.
     pub seed: u64,
-    /// Roughly how long it takes on one core, seconds.
+    /// Estimated time on one core, seconds.
     pub expected_secs: f64,
-    /// How much memory it takes.
+    /// The memory that it needs.
     pub need: Need,
     pub(super) source: Source,
     pub(super) settings: Vec<Setting>,
-    /// The floor plans that its scenario names.
+    /// The floor plans that its scenario refers to.
     plans: Vec<PathBuf>,
-    /// What its result is known by.
+    /// The key of its result.
     key: String,
 }
 
 impl Cell {
-    /// A cell, checked; its scenario itself is read again when it runs.
+    /// A cell, after validation. The scenario is read again when the cell runs.
     ///
     /// # Errors
-    /// Its scenario or a setting makes no sense, or it needs more memory than there is.
+    /// The scenario or a setting is invalid, or the cell needs more memory than there is.
     pub(super) fn new(
         number: usize,
         values: Vec<(String, Value)>,
@@ -101,7 +101,7 @@ impl Cell {
         })
     }
 
-    /// The files that it is read from, without the study's.
+    /// The files that it is read from, other than the study's.
     pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
         let own = match &self.source {
             Source::File(path) => Some(path),
@@ -110,26 +110,26 @@ impl Cell {
         own.into_iter().chain(&self.plans).map(PathBuf::as_path)
     }
 
-    /// The scenario with the settings in it.
+    /// The scenario with the settings applied.
     ///
     /// # Errors
-    /// As when the study was read.
+    /// As in [`Study::read`](super::Study::read).
     pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
         self.source.scenario(&self.settings)
     }
 
-    /// What its result is known by: a hash of the engine and of the whole scenario with its settings.
+    /// The key of its result: a hash of the engine and of the whole scenario with its settings.
     pub fn key(&self) -> &str {
         &self.key
     }
 
-    /// Is this still the cell's scenario?
+    /// Does this cell still describe `scenario`?
     pub(super) fn is_of(&self, scenario: &Scenario) -> bool {
         self.key == key(scenario)
     }
 }
 
-/// The number, and what makes it different from others.
+/// The number, and the settings that distinguish the cell from others.
 impl fmt::Display for Cell {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "cell {}:", self.number)?;
@@ -151,7 +151,7 @@ pub(super) fn plain(value: &Value) -> String {
     }
 }
 
-/// The same, as messages repeat it.
+/// The same, shortened for messages.
 pub(super) fn short(value: &Value) -> String {
     shown(&plain(value))
 }
@@ -165,9 +165,9 @@ fn key(scenario: &Scenario) -> String {
         .collect()
 }
 
-/// By how many agents there are for how many frames, and what they are asked to do; to put cells in order.
+/// Estimates the time from the number of agents and frames, and from their forces; used to sort cells.
 fn expected_secs(scenario: &Scenario) -> f64 {
-    /// Seconds for one agent and frame, with SPH alone, social forces, RVO.
+    /// Seconds per agent and frame with SPH alone, with social forces, and with RVO.
     const SECONDS: [f64; 3] = [0.8e-6, 3.5e-6, 8e-6];
     let scene = &scenario.scene;
     let frames = scenario.duration_secs / scene.clock.time_step();
@@ -178,7 +178,7 @@ fn expected_secs(scenario: &Scenario) -> f64 {
                 .times
                 .map_or(times, |most| times.min(f64::from(most)))
     });
-    // Who enters on the way is there half of the time.
+    // Agents that enter during the run are present for half of it on average.
     let agents = scene.agents.len() as f64 + 0.5 * entering.sum::<f64>();
     let needs = scene.needs();
     let seconds = match (needs.rvo, needs.social) {

@@ -1,4 +1,4 @@
-//! A setting at its place in a study's file.
+//! A setting, and its place in a study's file.
 
 use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
@@ -12,23 +12,23 @@ use super::study::MOST_CELLS;
 use crate::scenario::quote::shown;
 use crate::scenario::{Problem, SHIPPED, Setting, suggestion};
 
-/// The key of the scenario, which may be varied like a setting.
+/// The key of the scenario, which can be varied like a setting.
 pub(super) const SCENARIO: &str = "scenario";
 
-/// A setting at its place in the file.
+/// A setting, and its place in the file.
 #[derive(Debug, Clone)]
 pub(super) struct Choice {
-    /// As written.
+    /// The key as written.
     pub(super) key: String,
-    /// As written.
+    /// The value as written.
     pub(super) value: Value,
-    /// As in `grid.viscosity[2]`.
+    /// The place, such as `grid.viscosity[2]`.
     pub(super) place: String,
-    /// What it means.
+    /// Its meaning.
     pub(super) meaning: Meaning,
 }
 
-/// What a key may stand for.
+/// The meaning of a key.
 #[derive(Debug, Clone)]
 pub(super) enum Meaning {
     /// Another scenario.
@@ -38,7 +38,7 @@ pub(super) enum Meaning {
 }
 
 impl Choice {
-    /// Does it set the same?
+    /// Do both set the same thing?
     pub(super) fn is_as(&self, other: &Self) -> bool {
         match (&self.meaning, &other.meaning) {
             (Meaning::Setting(own), Meaning::Setting(other)) => own.path() == other.path(),
@@ -48,7 +48,7 @@ impl Choice {
     }
 }
 
-/// What an object says, in whatever order: two that say the same are equal.
+/// The content of an object, independent of the order of its keys.
 pub(super) fn said(choices: &[Choice]) -> BTreeSet<(Option<&[String]>, String)> {
     let said = choices.iter().map(|choice| {
         let path = match &choice.meaning {
@@ -60,7 +60,7 @@ pub(super) fn said(choices: &[Choice]) -> BTreeSet<(Option<&[String]>, String)> 
     said.collect()
 }
 
-/// The settings of an object at `place`; with a folder, a scenario may be among them.
+/// The settings of an object at `place`. Given a folder, a scenario may be among them.
 pub(super) fn choices(
     entries: &Entries,
     place: &str,
@@ -107,7 +107,7 @@ pub(super) fn axis(key: &str, values: &Value, folder: &Path) -> Result<Vec<Choic
     values.iter().enumerate().map(value).collect()
 }
 
-/// One key with its value, inside of an object and at its own place.
+/// A key with its value. `inside` is the place of the object, `place` that of the key.
 fn choice(
     key: &str,
     value: &Value,
@@ -138,7 +138,7 @@ fn choice(
     })
 }
 
-/// A scenario by its name, or a file.
+/// A shipped scenario by its name, or a file.
 pub(super) fn source(name: &str, place: &str, folder: &Path) -> Result<Source, Problem> {
     if let Some(shipped) = Source::shipped(name) {
         return Ok(shipped);

@@ -1,4 +1,4 @@
-//! An object of a study's file with its keys in the order in which they are written.
+//! An object of a study's file that preserves the order of its keys.
 
 use std::fmt;
 

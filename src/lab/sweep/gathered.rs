@@ -1,4 +1,4 @@
-//! What is there of a study: its cells, finished, failed or missing, and means over seeds.
+//! The state of a study: its cells, finished, failed or missing, and means over seeds.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -12,19 +12,19 @@ use crate::analysis::statistics::student_95;
 use crate::analysis::wave::Estimate;
 use crate::lab::reproduce::ReproduceError;
 
-/// What is there of a cell.
+/// The state of a cell.
 #[derive(Debug, Clone, PartialEq)]
 pub enum State {
-    /// Its result.
+    /// The cell has a result.
     Finished(Box<CellResult>),
-    /// Why there is none.
+    /// The cell failed, with the reason.
     Failed(String),
-    /// It was not run yet.
+    /// The cell has not run yet.
     Missing,
 }
 
 impl State {
-    /// In a word.
+    /// The name of the state.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Finished(_) => "finished",
@@ -42,23 +42,23 @@ impl State {
     }
 }
 
-/// A study with the state of every cell.
+/// A study with the states of all cells.
 #[derive(Debug, Clone)]
 pub struct Gathered<'a> {
     /// The study.
     pub study: &'a Study,
-    /// By cell.
+    /// The states, in the order of the cells.
     pub states: Vec<State>,
 }
 
-/// A number over the seeds of one combination of settings.
+/// The mean of a number over the seeds of one combination of settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Mean {
     /// The mean.
     pub mean: f64,
-    /// Half the width of its 95 % confidence interval (Student's t); none of a single value.
+    /// Half the width of its 95 % confidence interval (Student's t); `None` for a single value.
     pub interval: Option<f64>,
-    /// Of how many values.
+    /// Number of values.
     pub count: usize,
 }
 
@@ -73,18 +73,18 @@ impl Mean {
     }
 }
 
-/// One combination of settings, over its seeds.
+/// One combination of settings, with all its seeds.
 pub(super) struct Combination<'a> {
     /// Its cells.
     pub cells: &'a [Cell],
-    /// How many of them are finished.
+    /// Number of finished cells.
     pub runs: usize,
-    /// In the order of [`Gathered::numbers`]; `None` where no run gave a value.
+    /// The means in the order of [`Gathered::numbers`]; `None` if no run gave a value.
     pub means: Vec<Option<Mean>>,
 }
 
 impl<'a> Gathered<'a> {
-    /// What `shelf` has of a study.
+    /// The state of a study according to `shelf`.
     pub fn of(study: &'a Study, shelf: &Shelf) -> Self {
         let state = |cell: &Cell| match (shelf.result(cell), shelf.failure(cell)) {
             (Ok(Some(result)), _) => State::Finished(Box::new(result)),
@@ -97,7 +97,7 @@ impl<'a> Gathered<'a> {
         }
     }
 
-    /// How many cells are finished, failed and missing.
+    /// Number of cells that are finished, failed and missing.
     pub fn counts(&self) -> [usize; 3] {
         let count = |name| {
             self.states
@@ -126,7 +126,7 @@ impl<'a> Gathered<'a> {
         tables::text(self).text()
     }
 
-    /// Everything as one object.
+    /// All results as one object.
     pub fn json(&self) -> Value {
         let names = self.numbers();
         let cells = self.study.cells.iter().zip(&self.states);
@@ -165,14 +165,14 @@ impl<'a> Gathered<'a> {
         })
     }
 
-    /// The names of all measurements, by the alphabet.
+    /// The names of all metrics, in alphabetical order.
     pub(super) fn metrics(&self) -> Vec<String> {
         let results = self.states.iter().filter_map(State::result);
         let names: BTreeSet<&String> = results.flat_map(|r| r.summary.metrics.keys()).collect();
         names.into_iter().cloned().collect()
     }
 
-    /// What is averaged over seeds.
+    /// The names of all numbers that are averaged over seeds.
     pub(super) fn numbers(&self) -> Vec<String> {
         let mut names = self.metrics();
         for name in ["evacuated", "time_secs"] {
@@ -210,7 +210,7 @@ impl Mean {
     }
 }
 
-/// What is varied, as an object.
+/// The varied settings as an object.
 fn settings(cell: &Cell) -> Value {
     Value::Object(cell.values.iter().cloned().collect())
 }

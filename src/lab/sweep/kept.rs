@@ -1,4 +1,4 @@
-//! What is finished of a study, and what failed: one file per cell, whole or not there.
+//! The finished and failed cells of a study on disk: one file per cell, written whole or not at all.
 
 use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
@@ -13,35 +13,35 @@ use crate::runs::summary::Summary;
 use crate::scenario::input::{self, LONGEST_TEXT};
 use crate::scenario::quote::shown_message;
 
-/// What a cell gave.
+/// The result of a cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CellResult {
     /// As `sandbox run --json` reports it.
     #[serde(flatten)]
     pub summary: Summary,
-    /// Counted arrivals.
+    /// Number of counted arrivals.
     pub evacuated: usize,
-    /// Who was still there at the end.
+    /// Number of agents at the end.
     pub remaining: usize,
-    /// How long it took to compute on one thread, seconds.
+    /// Computing time on one thread, seconds.
     pub wall_secs: f64,
 }
 
 /// Why a cell has no result.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Failure {
-    /// What happened.
+    /// The error message.
     pub message: String,
-    /// How often it was tried.
+    /// Number of attempts.
     pub attempts: u32,
 }
 
-/// What a file says.
+/// The contents of a file.
 #[derive(Serialize, Deserialize)]
 struct Kept<T> {
-    /// The cell's key, to be sure of what this is.
+    /// The cell's key, to recognize the cell.
     key: String,
-    /// What the cell was called in the study that it was run for.
+    /// The name of the cell in the study that it was computed for.
     cell: String,
     #[serde(flatten)]
     content: T,
@@ -51,7 +51,7 @@ struct Kept<T> {
 #[derive(Debug, Clone)]
 pub struct Shelf(Store);
 
-/// The right to compute a cell, which only one process has at a time; it ends with the process.
+/// The exclusive right to compute a cell. It ends with the process.
 #[derive(Debug)]
 pub(super) struct Claim {
     path: PathBuf,
@@ -59,22 +59,22 @@ pub(super) struct Claim {
 }
 
 impl Drop for Claim {
-    /// Whoever waits for this very file finds the cell's result, or its failure, before anything else.
+    /// Removing the file is safe: a process that waits for it looks for the cell's result or failure first.
     fn drop(&mut self) {
         let _ = fs::remove_file(&self.path);
     }
 }
 
 impl Shelf {
-    /// Opens `folder`, and makes it if there is none.
+    /// Opens `folder`; creates it if it does not exist.
     ///
     /// # Errors
-    /// It cannot be made.
+    /// It cannot be created or written to.
     pub fn open(folder: &Path) -> Result<Self, ReproduceError> {
         Store::open(folder).map(Self)
     }
 
-    /// What may be in `folder`; makes nothing.
+    /// A shelf in `folder`, without creating anything.
     pub fn at(folder: &Path) -> Self {
         Self(Store::at(folder))
     }
@@ -84,7 +84,7 @@ impl Shelf {
         self.0.folder()
     }
 
-    /// Were cells ever kept here?
+    /// Have cells been stored here before?
     pub fn is_begun(&self) -> bool {
         self.0.path("cases").is_dir()
     }
@@ -97,20 +97,20 @@ impl Shelf {
         self.0.write(file, contents)
     }
 
-    /// The result of a cell, if it is there.
+    /// The result of a cell, if it exists.
     ///
     /// # Errors
-    /// Its file is damaged: its name, and what shows it.
+    /// Its file is damaged: the path and the reason.
     pub fn result(&self, cell: &Cell) -> Result<Option<CellResult>, String> {
         self.read(cell, FINISHED)
     }
 
-    /// How a cell failed, if it has; a damaged file says nothing.
+    /// The failure of a cell, if it failed; `None` if the file is damaged.
     pub fn failure(&self, cell: &Cell) -> Option<Failure> {
         self.read(cell, FAILED).unwrap_or_default()
     }
 
-    /// Keeps a result.
+    /// Stores a result.
     ///
     /// # Errors
     /// It cannot be written.
@@ -120,7 +120,7 @@ impl Shelf {
         Ok(())
     }
 
-    /// Keeps why there is none.
+    /// Stores a failure.
     ///
     /// # Errors
     /// It cannot be written.
@@ -132,15 +132,15 @@ impl Shelf {
         self.put(cell, FAILED, failure)
     }
 
-    /// Claims a cell; `None` if it is another process's and this one will not wait.
+    /// Claims a cell; `None` if another process has claimed it and `wait` is false.
     ///
     /// # Errors
-    /// The claim cannot be written.
+    /// The file of the claim cannot be written.
     pub(super) fn claim(&self, cell: &Cell, wait: bool) -> Result<Option<Claim>, ReproduceError> {
         let path = self.path(cell, "lock");
         let opened = File::options().create(true).append(true).open(&path);
         let file = opened.map_err(|error| self.0.unwritable(&path, &error))?;
-        // A file system without locks lets everybody in: two may compute the same, to the same bits.
+        // On file systems without locks several processes may compute the same cell; their results are identical.
         if wait {
             let _ = file.lock();
         } else if let Err(TryLockError::WouldBlock) = file.try_lock() {
@@ -182,6 +182,6 @@ impl Shelf {
     }
 }
 
-/// Kinds of files.
+/// Extensions of the files.
 const FINISHED: &str = "json";
 const FAILED: &str = "failed";

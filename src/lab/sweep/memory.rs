@@ -2,7 +2,7 @@
 
 use std::sync::{Condvar, Mutex, PoisonError};
 
-/// Lends memory to as many cells at once as fit.
+/// Lends memory to as many cells at a time as fit.
 pub(super) struct Memory {
     /// Bytes; `None` without a limit.
     limit: Option<u64>,
@@ -10,7 +10,7 @@ pub(super) struct Memory {
     returned: Condvar,
 }
 
-/// Memory lent to one cell, until it is dropped.
+/// Memory lent to a cell, until it is dropped.
 pub(super) struct Lent<'a> {
     memory: &'a Memory,
     bytes: u64,
@@ -25,7 +25,7 @@ impl Memory {
         }
     }
 
-    /// Waits until so many bytes are free. More than the limit is lent to a cell that is alone.
+    /// Waits until `bytes` bytes are free. A cell that needs more than the limit waits until no other cell has memory.
     pub(super) fn lend(&self, bytes: u64) -> Lent<'_> {
         let limit = self.limit.unwrap_or(u64::MAX);
         let full = |lent: &mut u64| *lent > 0 && lent.saturating_add(bytes) > limit;
@@ -58,7 +58,7 @@ mod tests {
     use super::*;
     use std::sync::atomic::{AtomicU64, Ordering};
 
-    /// The most that eight threads hold at once.
+    /// The largest amount of memory that eight threads hold at the same time.
     fn most(limit: Option<u64>, bytes: u64) -> u64 {
         let memory = Memory::new(limit);
         let (held, most) = (AtomicU64::new(0), AtomicU64::new(0));

@@ -1,24 +1,24 @@
-//! Studies: a scenario over a grid or list of settings and over seeds, from one file.
+//! Studies: a scenario with a grid or list of settings and with several seeds, from one file.
 //!
-//! A [`Study`] is a list of [`Cell`]s, numbered from 1: one scenario with its settings and seed each. [`run`]
-//! computes those of a [`Shard`] that the [`Shelf`] does not have yet, side by side, each on one thread;
-//! [`Gathered`] is what is there of all of them, as tables. A cell that fails is written down and the others
-//! go on; it is tried again by the next call. Any number of processes may work on one folder at once.
+//! A [`Study`] is a list of [`Cell`]s, numbered from 1. Each cell is one scenario with its settings and seed. [`run`]
+//! computes the cells of a [`Shard`] that are not on the [`Shelf`] yet, in parallel, each on a single thread.
+//! [`Gathered`] is the state of all cells, as tables. A failed cell is recorded, and the others continue; the next call
+//! tries it again. Any number of processes may work on the same folder at the same time.
 //!
 //! The file is a JSON object; an unknown key is an error:
 //!
-//! | key | what it says |
+//! | key | meaning |
 //! |---|---|
-//! | `scenario` | a scenario that comes with the program by name, or a file, seen from the study's folder |
-//! | `settings` | an object of settings that hold in every cell: keys as `--set` takes them, values JSON |
-//! | `list` | a list of such objects: one cell each |
-//! | `grid` | an object of settings with a list of values each: every combination of them |
-//! | `seeds` | how many (1, 2, …), or a list of them |
-//! | `name` | what the results are called; else the file's name |
-//! | `description` | a line about it |
+//! | `scenario` | the name of a shipped scenario, or the path of a file, relative to the study's folder |
+//! | `settings` | an object of settings for every cell: keys as for `--set`, values in JSON |
+//! | `list` | a list of such objects, one for each cell |
+//! | `grid` | an object of settings, each with a list of values; all combinations are run |
+//! | `seeds` | the number of seeds (1, 2, …), or a list of seeds |
+//! | `name` | the name of the results; by default the file's name |
+//! | `description` | a description, in one line |
 //!
-//! `list`, `grid` and `seeds` multiply; the first changes slowest. `scenario` may also be a key of `grid` and
-//! `list`. A setting of the `list` goes before one of `settings`.
+//! The cells are all combinations of `list`, `grid` and `seeds`; `list` changes slowest, `seeds` fastest. `scenario`
+//! may also be a key of `grid` and `list`. A setting of the `list` overrides one of `settings`.
 
 mod cell;
 mod choice;
@@ -42,23 +42,23 @@ pub use study::Study;
 use crate::lab::reproduce::ReproduceError;
 use crate::scenario::{Problem, ScenarioError, TooLarge};
 
-/// Why a study makes no sense.
+/// Why a study is invalid.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
-    /// The study's file.
+    /// The study's file is invalid.
     #[error(transparent)]
     File(#[from] ScenarioError),
-    /// One of its cells.
+    /// One of its cells is invalid.
     #[error("{file}: cell {cell}: {error}")]
     Cell {
         /// The study's file.
         file: String,
         /// The cell's number.
         cell: usize,
-        /// What is wrong with its scenario.
+        /// The reason.
         error: CellError,
     },
-    /// The cells cannot be checked side by side.
+    /// The cells cannot be checked in parallel.
     #[error(transparent)]
     Machine(#[from] ReproduceError),
 }
@@ -66,7 +66,7 @@ pub enum StudyError {
 /// Why a cell cannot be computed.
 #[derive(Debug, thiserror::Error)]
 pub enum CellError {
-    /// Its scenario or its settings make no sense.
+    /// Its scenario or its settings are invalid.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
     /// It needs more memory than there is.
@@ -74,7 +74,7 @@ pub enum CellError {
     TooLarge(#[from] TooLarge),
 }
 
-/// Something wrong at a place of the study's file.
+/// A problem at a place of the study's file.
 fn problem(path: impl Into<String>, reason: impl Into<String>) -> Problem {
     Problem {
         path: path.into(),

@@ -1,4 +1,4 @@
-//! Cells side by side over the threads, each on one.
+//! Runs cells in parallel, each on a single thread.
 
 use std::collections::HashSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -18,21 +18,21 @@ use crate::scenario::Scenario;
 use crate::scenario::metrics::Metrics;
 use crate::scenario::quote::shown;
 
-/// Who is told how it goes; times are expected seconds on one core.
+/// Receives progress reports; times are expected seconds on one core.
 pub trait Listener: Sync {
-    /// So much is to be computed; so many cells were kept from before.
+    /// `cells` cells begin, which take `seconds` seconds; `kept` others are on the shelf.
     fn begins(&self, cells: usize, kept: usize, seconds: f64);
-    /// So much more has been computed.
+    /// Another `seconds` of the expected time are done.
     fn advances(&self, seconds: f64);
-    /// A cell is finished, in so many seconds.
+    /// A cell finished after `seconds` seconds.
     fn finishes(&self, cell: &Cell, seconds: f64);
-    /// A cell has failed.
+    /// A cell failed.
     fn fails(&self, cell: &Cell, message: &str);
-    /// Something worth knowing.
+    /// A message.
     fn notes(&self, text: &str);
 }
 
-/// Nobody.
+/// Ignores all reports.
 impl Listener for () {
     fn begins(&self, _: usize, _: usize, _: f64) {}
     fn advances(&self, _: f64) {}
@@ -41,24 +41,24 @@ impl Listener for () {
     fn notes(&self, _: &str) {}
 }
 
-/// What became of some cells.
+/// Counts of the outcomes of some cells.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// How many there are.
+    /// Number of cells.
     pub cells: usize,
-    /// Those whose results were there before.
+    /// Cells whose results existed before.
     pub kept: usize,
-    /// Those with the same scenario, settings and seed as an earlier cell, whose result they share.
+    /// Cells with the same scenario, settings and seed as an earlier cell; they share its result.
     pub repeated: usize,
-    /// Those finished now.
+    /// Cells finished by this call.
     pub finished: usize,
-    /// Those finished meanwhile by another process.
+    /// Cells finished by another process during this call.
     pub by_others: usize,
-    /// Those that failed, in their order: which, and what happened.
+    /// Failed cells in order: name and error message.
     pub failed: Vec<(String, String)>,
 }
 
-/// What became of one cell.
+/// The outcome of one cell.
 enum End {
     Finished,
     ByOthers,
@@ -69,16 +69,17 @@ enum End {
 struct Todo<'a> {
     cell: &'a Cell,
     memory: &'a Memory,
-    /// How often it was tried before.
+    /// Number of earlier attempts.
     attempts: u32,
 }
 
-/// Computes the cells of a shard that `shelf` does not have, the longest first, side by side on as many
-/// threads as rayon has, each on one, but only as many at once as fit into the study's memory; every one is kept as soon as it is finished. What another process is
-/// computing is waited for at the end, and computed only if that process goes without a result.
+/// Computes the cells of a shard that are not on the `shelf`, the longest first, on as many threads as rayon has, each
+/// cell on a single thread. At any time only as many cells run as fit into the study's memory. Each result is stored as
+/// soon as it is finished. At the end, waits for cells that another process is computing, and computes those for which
+/// that process leaves no result.
 ///
 /// # Errors
-/// Results cannot be kept. A cell that fails is none: it is in the tally, and tried again by the next call.
+/// Results cannot be stored. A failed cell is not an error: it is in the tally, and the next call tries it again.
 pub fn run(
     study: &Study,
     shard: Shard,
@@ -156,8 +157,8 @@ pub fn run(
 }
 
 impl Todo<'_> {
-    /// Computes the cell and keeps its result, unless another process has; `None` if one is about to, and
-    /// this one will not wait.
+    /// Computes the cell and stores its result, unless another process has. `None` if another process is computing it
+    /// and `wait` is false.
     fn run(
         &self,
         shelf: &Shelf,
@@ -207,7 +208,7 @@ impl Todo<'_> {
     }
 }
 
-/// Runs a cell on rayon's current threads; `tell` hears how much of the simulated time is over.
+/// Runs a cell on rayon's current threads; `tell` receives the finished fraction of the simulated time.
 fn compute(cell: &Cell, tell: &mut dyn FnMut(f64)) -> Result<CellResult, String> {
     let scenario = cell.scenario().map_err(|error| error.to_string())?;
     if !cell.is_of(&scenario) {
@@ -238,7 +239,7 @@ fn simulated(scenario: &Scenario, tell: &mut dyn FnMut(f64)) -> Result<CellResul
     })
 }
 
-/// Even a panic in one cell is no reason to leave the others.
+/// Turns a panic into an error, so that other cells continue.
 fn caught<T>(work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);

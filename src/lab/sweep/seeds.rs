@@ -1,4 +1,4 @@
-//! `seeds`: how many, or which.
+//! The key `seeds`: a number of seeds, or a list of them.
 
 use std::collections::HashSet;
 use std::fmt;
@@ -8,17 +8,17 @@ use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Unexpected, Visitor
 use super::problem;
 use crate::scenario::Problem;
 
-/// As written.
+/// The seeds as written.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Seeds {
-    /// 1, 2, …
+    /// The seeds 1, 2, … up to this number.
     Count(u64),
-    /// These.
+    /// These seeds.
     List(Vec<u64>),
 }
 
 impl Seeds {
-    /// The seeds, checked.
+    /// All seeds, after validation; at most `most` are allowed.
     pub(super) fn all(&self, most: usize) -> Result<Vec<u64>, Problem> {
         match self {
             Self::Count(0) => Err(problem("seeds", "must be at least 1")),

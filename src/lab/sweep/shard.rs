@@ -1,9 +1,9 @@
-//! Parts of a study that machines work on apart.
+//! Parts of a study for separate machines.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// Number i of n parts, from 1: the cells i, i + n, i + 2n, …
+/// Part i of n, counted from 1: the cells i, i + n, i + 2n, …
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     number: usize,
@@ -11,7 +11,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Everything.
+    /// The whole study.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
     /// Shard `number` of `of`; `None` unless 1 ≤ number ≤ of.
@@ -19,7 +19,7 @@ impl Shard {
         (1..=of).contains(&number).then_some(Self { number, of })
     }
 
-    /// Does it have the cell of that number?
+    /// Does it contain the cell with this number?
     pub fn has(&self, cell: usize) -> bool {
         cell % self.of == self.number % self.of
     }

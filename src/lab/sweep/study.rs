@@ -1,4 +1,4 @@
-//! What a study's file says → its cells, checked.
+//! Turns a study's file into validated cells.
 
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
@@ -18,10 +18,10 @@ use crate::scenario::input;
 use crate::scenario::quote::shown;
 use crate::scenario::{Problem, ScenarioError, Setting, in_plain_words, read_document};
 
-/// A study with more cells is taken for a mistake.
+/// Studies with more cells are rejected as mistakes.
 pub(super) const MOST_CELLS: usize = 100_000;
 
-/// A longer name, with what results add to it, would be too long for a file's, bytes.
+/// The maximum length of a name, bytes: results add to it, and file names are limited.
 const LONGEST_NAME: usize = 200;
 
 /// The whole file.
@@ -41,44 +41,45 @@ struct File {
 /// A scenario over settings and seeds.
 #[derive(Debug, Clone)]
 pub struct Study {
-    /// What it is called, fit for a file.
+    /// Its name, suitable as a file name.
     pub name: String,
-    /// The file.
+    /// The contents of the file.
     pub document: Value,
-    /// The names of what is varied, without the seeds: keys of the list, then of the grid, as written.
+    /// The names of the varied settings, without the seeds: keys of the list, then of the grid, as written.
     pub axes: Vec<String>,
-    /// Seeds per combination.
+    /// Number of seeds per combination.
     pub seeds: usize,
-    /// In the order of their numbers; seeds change first, then the grid's last key, the list last.
+    /// The cells in the order of their numbers. The seed changes fastest, then the last key of the grid; the list
+    /// changes slowest.
     pub cells: Vec<Cell>,
-    /// Bytes of memory that cells share; `None` without a limit.
+    /// Memory that the cells share, bytes; `None` without a limit.
     pub memory: Option<u64>,
 }
 
 impl Study {
-    /// Is the seed itself among what is varied?
+    /// Is the seed among the varied settings?
     pub(super) fn varies_seed(&self) -> bool {
         self.axes.iter().any(|axis| axis == "seed")
     }
 
-    /// The files that its scenarios are read from, each once.
+    /// The files that its scenarios are read from, without duplicates.
     pub fn inputs(&self) -> BTreeSet<&Path> {
         self.cells.iter().flat_map(Cell::files).collect()
     }
 
-    /// Reads a study, and checks the scenario of every cell.
+    /// Reads a study, and validates the scenario of every cell.
     ///
     /// # Errors
-    /// The first thing that is wrong, with its place in the file or the cell.
+    /// The first problem, with its place in the file or the number of the cell.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
         Self::read_within(path, None)
     }
 
-    /// The same on a machine with so many bytes of memory: cells are checked and computed only as many at once
-    /// as fit into it.
+    /// As [`read`](Self::read), with `memory` bytes: only as many cells are validated and computed at the same time as
+    /// fit.
     ///
     /// # Errors
-    /// As [`read`](Self::read), or a cell alone needs more memory.
+    /// As [`read`](Self::read), or a single cell needs more memory.
     pub fn read_within(path: &Path, memory: Option<u64>) -> Result<Self, StudyError> {
         let text = input::text(path).map_err(|error| ScenarioError::Unreadable {
             file: path.display().to_string(),
@@ -87,8 +88,8 @@ impl Study {
         Self::parse_within(&text, path, memory)
     }
 
-    /// Reads a study from JSON; `path` is what messages call it, and files that it names are in that one's
-    /// folder.
+    /// Reads a study from JSON. `path` is its name in messages; files that it refers to are relative to the folder of
+    /// `path`.
     ///
     /// # Errors
     /// As [`read`](Self::read).
@@ -111,7 +112,7 @@ impl Study {
         check_name(&name).map_err(invalid)?;
         let shared = Memory::new(memory);
         let cells = Mutex::new(Vec::with_capacity(plan.count));
-        // Not on rayon's threads, which could take up another cell while they work on one that holds memory.
+        // Not on rayon's threads: they could start another cell while they hold memory for the first.
         side_by_side(plan.count, |index| {
             let cell = plan.cell(index, &shared);
             let mut cells = cells.lock().unwrap_or_else(PoisonError::into_inner);
@@ -138,7 +139,7 @@ impl Study {
     }
 }
 
-/// Is a name fit for the results' files on every system?
+/// Is the name suitable for result files on every system?
 fn check_name(name: &str) -> Result<(), Problem> {
     let reason = if name.is_empty() {
         "it is empty"
@@ -159,7 +160,7 @@ fn check_name(name: &str) -> Result<(), Problem> {
     Err(problem("name", reason))
 }
 
-/// Names and types.
+/// Checks names and types.
 fn parse(text: &str) -> Result<File, Problem> {
     if !text.trim_start().starts_with('{') {
         return Err(problem("", "must be an object, {…}, with a `scenario`"));
@@ -175,17 +176,17 @@ fn parse(text: &str) -> Result<File, Problem> {
     })
 }
 
-/// Everything that cells are put together from.
+/// Everything that cells are combined from.
 struct Plan {
     names: Vec<String>,
-    /// That of cells whose settings name none.
+    /// The scenario of cells whose settings do not name one.
     scenario: Source,
     fixed: Vec<Choice>,
-    /// The combinations of the list; one of nothing without a list.
+    /// The combinations of the list; a single empty one without a list.
     rows: Vec<Vec<Choice>>,
     /// The values of each axis of the grid.
     grid: Vec<Vec<Choice>>,
-    /// The seeds as settings; one of nothing if the study gives none.
+    /// The seeds as settings; a single `None` if the study gives no seeds.
     seeds: Vec<Option<Setting>>,
     count: usize,
 }
@@ -234,7 +235,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// How many cells there are.
+    /// The number of cells.
     fn cells(&self) -> Result<usize, Problem> {
         let sizes = self.grid.iter().map(Vec::len);
         let sizes = sizes.chain([self.rows.len(), self.seeds.len()]);
@@ -246,7 +247,7 @@ impl Plan {
         Ok(count as usize)
     }
 
-    /// A setting that another one always goes before means nothing, and nothing is run twice.
+    /// Rejects settings that another one always overrides, and cells that would run twice.
     fn refuse_repetitions(&self) -> Result<(), Problem> {
         let mut seen = HashMap::new();
         for (k, row) in self.rows.iter().enumerate() {
@@ -290,7 +291,7 @@ impl Plan {
         Ok(())
     }
 
-    /// A cell by its place, from 0.
+    /// The cell at `index`, counted from 0.
     fn cell(&self, index: usize, memory: &Memory) -> Result<Cell, CellError> {
         let mut rest = index;
         let mut digit = |size: usize| {
@@ -323,7 +324,7 @@ impl Plan {
     }
 }
 
-/// One of the scenarios of a study that gives none at the top, if it gives every cell one.
+/// One of the study's scenarios, if there is none at the top but every cell has one.
 fn varied_scenario(rows: &[Vec<Choice>], grid: &[Vec<Choice>]) -> Result<Source, Problem> {
     let of = |choices: &[Choice]| {
         choices.iter().find_map(|choice| match &choice.meaning {

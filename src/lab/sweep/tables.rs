@@ -1,4 +1,4 @@
-//! A study as tables: cell by cell, and means over seeds.
+//! A study as tables: all cells, and means over seeds.
 
 use serde_json::Value;
 
@@ -8,7 +8,7 @@ use super::{CellResult, Shard, Study};
 use crate::output::table::Table;
 use crate::scenario::quote::shown;
 
-/// Columns about a run that are no measurements, before and after which others stand.
+/// Columns about the run itself, between the metrics and the computing time.
 const COUNTS: [&str; 8] = [
     "entered",
     "remaining",
@@ -65,7 +65,7 @@ pub(super) fn cells(gathered: &Gathered) -> Table {
     }
 }
 
-/// One row per combination of settings: mean, half the 95 % confidence interval, and of how many values.
+/// One row per combination of settings: the means, half their 95 % confidence intervals, and the numbers of values.
 pub(super) fn summary(gathered: &Gathered) -> Table {
     let mut head = gathered.study.axes.clone();
     head.push("runs".to_owned());
@@ -92,7 +92,7 @@ pub(super) fn summary(gathered: &Gathered) -> Table {
     }
 }
 
-/// The same for a terminal: mean ± half the interval.
+/// The same for a terminal: mean ± half the confidence interval.
 pub(super) fn text(gathered: &Gathered) -> Table {
     let study = gathered.study;
     let mut head: Vec<String> = study.axes.iter().map(|axis| shown(axis)).collect();
@@ -112,7 +112,7 @@ pub(super) fn text(gathered: &Gathered) -> Table {
 }
 
 impl Study {
-    /// The names of the files with all results: by cell, means over seeds, everything as JSON.
+    /// The names of the result files: one row per cell, means over seeds, and everything as JSON.
     pub fn files(&self) -> [String; 3] {
         let name = &self.name;
         [
@@ -124,7 +124,7 @@ impl Study {
 }
 
 impl Gathered<'_> {
-    /// The cells of a shard with their state, for a terminal.
+    /// The cells of a shard with their states, for a terminal.
     pub fn list(&self, shard: Shard) -> String {
         let cells = self.study.cells.iter().zip(&self.states);
         let rows = cells
@@ -146,7 +146,7 @@ impl Gathered<'_> {
     }
 }
 
-/// The number, what is varied, and the seed.
+/// The names of the first columns: the number, the varied settings, and the seed.
 fn columns(study: &Study) -> Vec<String> {
     let mut names = vec!["cell".to_owned()];
     names.extend(study.axes.iter().cloned());
@@ -154,7 +154,7 @@ fn columns(study: &Study) -> Vec<String> {
     names
 }
 
-/// What stands in these columns.
+/// The values of these columns.
 fn values(study: &Study, cell: &Cell, write: fn(&Value) -> String) -> Vec<String> {
     let mut row = vec![cell.number.to_string()];
     row.extend(axes(study, Some(cell), write));
@@ -162,7 +162,7 @@ fn values(study: &Study, cell: &Cell, write: fn(&Value) -> String) -> Vec<String
     row
 }
 
-/// The values of what is varied; nothing where a cell does not say.
+/// The values of the varied settings; empty if a cell does not have the setting.
 fn axes(study: &Study, cell: Option<&Cell>, write: fn(&Value) -> String) -> Vec<String> {
     let value = |axis: &String| {
         let mut values = cell.iter().flat_map(|cell| &cell.values);
@@ -186,7 +186,7 @@ fn counts(result: &CellResult) -> [String; COUNTS.len()] {
     ]
 }
 
-/// A measured value with all digits; nothing where there is none.
+/// A metric with all its digits; empty if it has no value.
 fn number(value: &Value) -> String {
     match value {
         Value::Null => String::new(),

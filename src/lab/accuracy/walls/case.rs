@@ -22,7 +22,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 pub struct Place {
     /// The x value of its curves, meters; see [`Case::axis`].
     pub along: f64,
-    /// r_i, metres.
+    /// r_i, meters.
     pub position: Vector,
 }
 

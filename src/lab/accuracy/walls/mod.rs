@@ -24,5 +24,5 @@ pub use measure::{CaseReport, Error, MethodReport, WallReport, measure};
 pub use method::{METHODS, Method, Prepared};
 pub use particles::{Particles, Volumes};
 
-/// h of the paper's experiments (§5.2), metres.
+/// h of the paper's experiments (§5.2), meters.
 pub const SUPPORT_RADIUS: f64 = 1.0;

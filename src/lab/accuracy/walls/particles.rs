@@ -41,7 +41,7 @@ pub struct Particles {
 }
 
 impl Particles {
-    /// Fills the obstacles; `spacing` in metres.
+    /// Fills the obstacles; `spacing` in meters.
     pub fn fill(walls: &Walls, spacing: f64, volumes: Volumes, h: f64) -> Self {
         let corners = || {
             walls
