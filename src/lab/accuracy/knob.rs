@@ -81,7 +81,7 @@ const STEPS: [&str; 6] = ["0.0025", "0.005", "0.01", "0.02", "0.04", "0.08"];
 /// How many values are tried.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Detail {
-    /// Everything.
+    /// All values.
     All,
     /// All but the finest step, which statistics cannot tell from the reference.
     Coarser,
