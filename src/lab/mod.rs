@@ -1,6 +1,6 @@
 //! The lab: experiments of many runs. The paper's tables and figures ([`reproduce`]), studies over settings and seeds
-//! ([`sweep`]), run time ([`bench`]), hard cases and the largest stable time step ([`stress`]), and run time against
-//! error ([`accuracy`]).
+//! ([`sweep`]), run time ([`mod@bench`]), hard cases and the largest stable time step ([`stress`]), and run time
+//! against error ([`accuracy`]).
 
 pub mod reproduce;
 

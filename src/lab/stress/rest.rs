@@ -36,7 +36,7 @@ const RESTING: f64 = 0.1;
 /// The smallest allowed distance between the centers of two agents, relative to the sum of their radii.
 const CLOSEST: f64 = 0.1;
 
-/// Square rooms of agents whose goals are their own positions, with random directions of motion at the start.
+/// Square rooms of agents whose goals are their own positions, each moving in another direction at the start.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rest {
     /// k.

@@ -4,8 +4,8 @@
 //! [`Region`]s: what the walls *hide* (the union of the paper's P_k, counted once), or the *solid* itself. The engine's
 //! methods integrate over the hidden region. Boundary particles and volume maps, which the paper argues against (§3.4)
 //! and which exist only here, integrate over the solid. Akinci's particles are an exception: their volumes make a solid
-//! body of every wall. Each method is measured against the region that it integrates over. The difference between the
-//! two regions is reported separately.
+//! body of every wall, so they count as a method for the hidden region. Each method is measured against its region. The
+//! difference between the two regions is reported separately.
 
 mod case;
 mod integrals;

@@ -15,7 +15,7 @@ pub enum Volumes {
     /// positions inside obstacles* (§3.4). Walls become stairs, and thin ones have holes.
     Whole,
     /// A particle at the centroid of the solid part of every cell. It stands for that part: a quadrature of the solid,
-    /// and the most accurate choice.
+    /// and the choice that favors particles most.
     Cut,
     /// The same positions, with V_b = 1 / Σ W(x_b − x_c) over all boundary particles c, including b (Akinci, Ihmsen,
     /// Akinci, Solenthaler and Teschner 2012, *Versatile rigid-fluid coupling for incompressible SPH*, doi
