@@ -1,4 +1,4 @@
-//! The seven profiles of §5.5, and any other from its parameters.
+//! The seven profiles of §5.5, and custom profiles from parameters.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +21,7 @@ pub const ALIASES: [(&str, &str); 2] = [("sf-sph", "sf->sph"), ("rvo-sph", "rvo-
 /// ρ^j of the paper's two blends, P/m² (§5.5).
 const BLEND_DENSITIES: [f64; 2] = [2.0, 4.0];
 
-/// Which kind of navigation.
+/// The kind of navigation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NavigationKind {
@@ -33,7 +33,7 @@ pub enum NavigationKind {
     Rvo,
 }
 
-/// Values for the parameters of a profile; `None` is the paper's (§5.5).
+/// Parameters of a profile; `None` means the paper's value (§5.5).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Parameters {
@@ -43,21 +43,21 @@ pub struct Parameters {
     pub relaxation_time: Option<f64>,
     /// V₀.
     pub agent_strength: Option<f64>,
-    /// σ, metres.
+    /// σ, meters.
     pub agent_range: Option<f64>,
     /// T, seconds.
     pub anticipation_time: Option<f64>,
     /// U₀.
     pub wall_strength: Option<f64>,
-    /// R, metres.
+    /// R, meters.
     pub wall_range: Option<f64>,
-    /// Range of the avoidance methods, metres.
+    /// Range of the avoidance methods, meters.
     pub avoidance_radius: Option<f64>,
-    /// Forces of the social force below this are left out, m/s².
+    /// Social forces below this are left out, m/s².
     pub avoidance_tolerance: Option<f64>,
-    /// w, metres.
+    /// w, meters.
     pub collision_weight: Option<f64>,
-    /// Candidate velocities of RVO.
+    /// Number of candidate velocities of RVO.
     pub candidates: Option<u32>,
     /// μ.
     pub viscosity: Option<f64>,
@@ -65,7 +65,7 @@ pub struct Parameters {
     pub agent_stiffness: Option<f64>,
     /// K^obs.
     pub wall_stiffness: Option<f64>,
-    /// h, metres.
+    /// h, meters.
     pub support_radius: Option<f64>,
     /// k.
     pub gas_constant: Option<f64>,
@@ -78,7 +78,7 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// These, and `fallback` where these say nothing.
+    /// These values, and those of `fallback` where these are `None`.
     pub fn or(&self, fallback: &Self) -> Self {
         Self {
             goal_scale: self.goal_scale.or(fallback.goal_scale),
@@ -115,8 +115,7 @@ impl Parameters {
         }
     }
 
-    /// A profile that navigates by `kind`, with or without SPH. Zero stiffness, k or μ switches the
-    /// term off.
+    /// A profile with navigation `kind`, with or without SPH. Zero stiffness, k or μ switches the term off.
     pub fn profile(&self, name: &str, kind: NavigationKind, sph: bool) -> Profile {
         let switch = |value: f64| (value != 0.0).then_some(value);
         let (agent_stiffness, wall_stiffness) = if sph { (50.0, 200.0) } else { (1000.0, 1000.0) };
@@ -169,7 +168,7 @@ impl Parameters {
     }
 }
 
-/// One profile or blend of §5.5 with some parameters changed; `None` for an unknown name.
+/// A profile or blend of §5.5 with some parameters changed; `None` for an unknown name.
 pub fn named(name: &str, parameters: &Parameters) -> Option<Result<Blend, BlendError>> {
     let alias = ALIASES.into_iter().find(|&(alias, _)| alias == name);
     let name = alias.map_or(name, |(_, name)| name);
@@ -196,7 +195,7 @@ pub fn named(name: &str, parameters: &Parameters) -> Option<Result<Blend, BlendE
     ))
 }
 
-/// One of the five profiles of §5.5 that are no blends.
+/// One of the five profiles of §5.5 that are not blends; `None` for other names.
 pub fn plain(name: &str, parameters: &Parameters) -> Option<Profile> {
     let (kind, sph) = match name {
         "sf" => (NavigationKind::Social, false),

@@ -1,4 +1,4 @@
-//! What a file says → a scenario that can run, or the first thing that is wrong with it.
+//! The contents of a file → a scenario that can run, or the first problem.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -20,26 +20,26 @@ use crate::engine::scene::{Push, Region, Scene};
 use crate::engine::stability;
 use crate::scenario::metrics::Measurement;
 
-/// How long a run lasts that says nothing, seconds.
+/// Default duration, seconds.
 const DEFAULT_DURATION: f64 = 60.0;
-/// The profile of a scenario that names none.
+/// Default profile.
 const DEFAULT_PROFILE: &str = "sph";
-/// Round everything there is, metres: the view of a scenario that gives none.
+/// Margin of the default view around walls, agents, goals and sources, meters.
 const DEFAULT_MARGIN: f64 = 1.0;
 /// K^goal of a push.
 pub(super) const GOAL_SCALE: Range = Range::at_least(0.0, 1e9);
-/// Times that something is divided by, seconds.
+/// Times that must not be zero, seconds.
 pub(super) const UNTIL: Range = Range::above(0.0, 1e7);
 
-/// How large a run of `document` becomes; nothing else in it is checked but names and types.
+/// Estimates the size of a run of `document`. Apart from that only names and types are checked.
 pub(super) fn need(document: &Value, path: &Path) -> Result<Need, Problem> {
     let file = read(&complete(document, path)?.0)?;
     let duration_secs = duration(&file)?;
     Need::of(&file, &first_clock(&file)?, duration_secs)
 }
 
-/// The document with all that it stands for: nothing in it is looked up elsewhere any more. Files that it
-/// names are in the folder of `path`, and returned with their keys.
+/// The document with its preset expanded and the files that it names inlined. File names are relative to the folder
+/// of `path`. Returns the files with their keys.
 fn complete(document: &Value, path: &Path) -> Result<(Value, Vec<PlanFile>), Problem> {
     let mut document = preset::fill(document);
     without_schema(&mut document)?;
@@ -47,8 +47,8 @@ fn complete(document: &Value, path: &Path) -> Result<(Value, Vec<PlanFile>), Pro
     Ok((document, files))
 }
 
-/// Checks `document`, which is or came from `path`: by it a scenario without a name is called, and in its
-/// folder are the files that the scenario names.
+/// Checks `document`, which was read from `path`. The file's name is the default name of the scenario, and its folder
+/// holds the files that the scenario names.
 pub(super) fn scenario(document: &Value, path: &Path) -> Result<Scenario, Problem> {
     let (document, files) = complete(document, path)?;
     let file = read(&document)?;
@@ -90,7 +90,7 @@ pub(super) fn scenario(document: &Value, path: &Path) -> Result<Scenario, Proble
     })
 }
 
-/// Takes out the key by which editors find the schema.
+/// Removes `$schema`, by which editors find the schema.
 fn without_schema(document: &mut Value) -> Result<(), Problem> {
     let given = document
         .as_object_mut()
@@ -101,7 +101,7 @@ fn without_schema(document: &mut Value) -> Result<(), Problem> {
     }
 }
 
-/// Names and types.
+/// Deserializes the document, which checks names and types.
 fn read(document: &Value) -> Result<File, Problem> {
     let file: Result<Object<File>, _> = serde_path_to_error::deserialize(document);
     file.map(|Object(file)| file).map_err(|error| {
@@ -116,7 +116,7 @@ fn duration(file: &File) -> Result<f64, Problem> {
     TIME.check("duration_secs", duration_secs)
 }
 
-/// The clock, the paper's where the step is to be found.
+/// The clock; with the paper's step if the step is missing or `auto`.
 fn first_clock(file: &File) -> Result<Clock, Problem> {
     TIME_STEP.check_given("longest_step_secs", file.longest_step_secs)?;
     match file.time_step_secs {
@@ -125,7 +125,7 @@ fn first_clock(file: &File) -> Result<Clock, Problem> {
     }
 }
 
-/// Everything but the people.
+/// The scene without agents, sources and pushes.
 fn empty_scene(file: &File) -> Result<Scene, Problem> {
     let paper = Scene::default();
     let clock = first_clock(file)?;
@@ -156,7 +156,7 @@ fn clock(file: &File, time_step: f64) -> Result<Clock, Problem> {
     Ok(Clock::new(time_step, coarse_every))
 }
 
-/// The clock of a scene that is complete but for its step.
+/// The clock with the step that `auto` finds for `scene`, which is otherwise complete.
 fn automatic_clock(file: &File, scene: &Scene) -> Result<Clock, Problem> {
     let step = stability::time_step(scene).ok_or_else(|| {
         let reason = "`auto` is known for the integrators `semi-implicit` and `velocity-verlet` alone; \
@@ -278,7 +278,7 @@ fn view(given: Option<&Object<file::View>>, scene: &Scene) -> Result<View, Probl
     })
 }
 
-/// Everything there is, and a margin.
+/// The bounding box of walls, agents, goals and sources, with a margin.
 fn surroundings(scene: &Scene) -> Region {
     let corners = scene.walls.iter().map(|wall| wall.start);
     let agents = scene
@@ -302,7 +302,7 @@ fn surroundings(scene: &Scene) -> Region {
     }
 }
 
-/// A dozen ids evenly among `entering` agents, all if there are fewer.
+/// A dozen ids spread evenly over `entering` agents, or all ids if there are fewer.
 fn spread(entering: u64) -> Vec<u32> {
     const DOZEN: u64 = 12;
     let count = entering.min(DOZEN);

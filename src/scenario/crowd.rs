@@ -1,4 +1,4 @@
-//! Agents, grids and sources as given → groups, agents and sources of a scene.
+//! Agents, grids and sources of a file → groups, agents and sources of a scene.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,40 +12,41 @@ use crate::engine::placement::Grid;
 use crate::engine::profile::Blend;
 use crate::engine::scene::{Goal, Group, Region, Scene, Source};
 
-/// Groups and pushes are numbered in 16 bits.
+/// Most groups or pushes: their numbers have 16 bits.
 pub(super) const MOST_NUMBERED: usize = u16::MAX as usize;
 
-/// So many profiles in full, all different: each is a sum of its own over everybody.
+/// Most different profiles defined in full: each takes its own sum over all agents.
 const MOST_CUSTOM: usize = 1_000;
 
-/// D_i, metres.
+/// D_i, meters.
 pub(super) const RADIUS: Range = Range::at_least(0.01, 10.0);
 /// m_i.
 pub(super) const MASS: Range = Range::at_least(1e-6, 1e6);
-/// Removal radius and jitter, metres.
+/// Removal radius, meters.
 pub(super) const DISTANCE: Range = Range::above(0.0, 1e6);
+/// Jitter, meters.
 pub(super) const JITTER: Range = Range::at_least(0.0, 1e6);
 /// Time between entries, seconds.
 pub(super) const EVERY: Range = Range::above(0.0, 1e7);
 /// Initial speeds, m/s.
 pub(super) const VELOCITY: Range = Range::at_least(-100.0, 100.0);
 
-/// A speed that was cut to `max_speed` may be this part above it, by rounding.
+/// Relative rounding error that a speed clamped to `max_speed` may have.
 const ROUNDING: f64 = 1e-9;
 
-/// Fills a scene with people.
+/// Adds the agents to a scene.
 pub(super) struct Crowd<'a> {
     file: &'a File,
     default: &'a Blend,
     scene: &'a mut Scene,
-    /// Groups of single agents by behaviour.
+    /// Groups of single agents, by behavior.
     shared: BTreeMap<String, u16>,
-    /// The different profiles given in full.
+    /// The different profiles defined in full.
     custom: BTreeSet<String>,
 }
 
 impl<'a> Crowd<'a> {
-    /// `default` is the blend of agents that name none.
+    /// `default` is the blend of agents that name no profile.
     pub(super) fn new(file: &'a File, default: &'a Blend, scene: &'a mut Scene) -> Self {
         Self {
             file,
@@ -56,7 +57,7 @@ impl<'a> Crowd<'a> {
         }
     }
 
-    /// Single agents, then grids, then sources, which have been counted.
+    /// Adds single agents, then grids, then sources. Their number has been checked.
     pub(super) fn enter(mut self) -> Result<(), Problem> {
         for (k, Object(agent)) in self.file.agents.iter().enumerate() {
             self.agent(agent).under(&format!("agents[{k}]"))?;
@@ -131,7 +132,7 @@ impl<'a> Crowd<'a> {
         Ok(())
     }
 
-    /// What grids and sources share: where agents enter, and where they go.
+    /// Checks what grids and sources share: the grid and the goal.
     fn placed(&self, given: &file::Grid) -> Result<(Grid, Goal), Problem> {
         let grid = Grid {
             min: point("min", given.min)?,
@@ -183,7 +184,7 @@ impl<'a> Crowd<'a> {
         Ok([x, y].into())
     }
 
-    /// The group of single agents with this behaviour.
+    /// The group of single agents with this behavior; creates it if needed.
     fn shared_group(&mut self, behaviour: &Behaviour) -> Result<u16, Problem> {
         let key = serde_json::json!([
             behaviour.profile,

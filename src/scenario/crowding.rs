@@ -1,4 +1,4 @@
-//! Where more people are put, or more corners, than any place holds: nothing would come of it but a wait.
+//! Rejects overcrowded cells and agents that start inside obstacles.
 
 use super::error::Problem;
 use super::file::{File, Object};
@@ -8,11 +8,11 @@ use crate::engine::math::Vector;
 use crate::engine::placement::Grid;
 use crate::engine::scene::Scene;
 
-/// People, or corners of obstacles, on one square metre. Ten are a crush; what is computed grows with the
-/// square of it.
+/// Most agents, or corners of obstacles, in one square meter. Ten agents are a crush, and run time grows with the
+/// square of the density.
 const MOST_PER_CELL: usize = 1_000;
 
-/// Refuses crowds that no place holds, and people locked up in obstacles.
+/// Rejects overcrowded cells, and agents inside obstacles with no free point nearby.
 pub(super) fn check(file: &File, scene: &Scene, duration_secs: f64) -> Result<(), Problem> {
     let corners: Vec<Vector> = scene.walls.iter().map(|wall| wall.start).collect();
     if let Some((k, count)) = crowded(&corners) {
@@ -43,7 +43,7 @@ pub(super) fn check(file: &File, scene: &Scene, duration_secs: f64) -> Result<()
                 too_close(count, people[i]),
             ));
         }
-        // Where jitter puts whom is known only when they enter.
+        // The jittered positions are known only on entry, so check the cell centers.
         let grid = Grid {
             jitter: 0.0,
             ..source.grid
@@ -72,7 +72,7 @@ fn near(p: Vector) -> String {
     )
 }
 
-/// What puts agent `id` there at the start.
+/// The list element that places agent `id` at the start.
 fn place_of(file: &File, id: usize) -> String {
     let mut before = file.agents.len();
     if id < before {
@@ -87,7 +87,7 @@ fn place_of(file: &File, id: usize) -> String {
     String::new()
 }
 
-/// The first of `points` with too many on its square metre, and how many.
+/// The first of `points` in an overcrowded square meter, and the number of points there.
 fn crowded(points: &[Vector]) -> Option<(usize, usize)> {
     if points.len() <= MOST_PER_CELL {
         return None;
@@ -105,7 +105,7 @@ fn crowded(points: &[Vector]) -> Option<(usize, usize)> {
     })
 }
 
-/// The first of `people` who is inside an obstacle without a way out, and what is said about it.
+/// The first of `people` inside an obstacle with no free point nearby, and the message.
 fn locked(walls: &Walls, people: &[Vector]) -> Option<(usize, String)> {
     people.iter().enumerate().find_map(|(k, &p)| {
         let obstacle = walls.obstacle_at(p)?;

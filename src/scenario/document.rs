@@ -1,4 +1,4 @@
-//! Text → JSON document; a key that is given twice is an error.
+//! Text → JSON document. A duplicate key is an error.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use serde_json::{Map, Number, Value};
 use super::error::{ScenarioError, in_plain_words};
 use crate::scenario::quote::shown;
 
-/// Reads `text`, which came from `file`.
+/// Parses `text`; messages call it `file`.
 pub(crate) fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
     let document: Result<Document, _> = serde_json::from_str(text);
     document.map(|document| document.0).map_err(|error| {
@@ -24,13 +24,13 @@ pub(crate) fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
     })
 }
 
-/// Writes a document for people: what fits into a line stands in one.
+/// Writes a document as indented JSON. Values that fit on one line are written on one line.
 pub(super) fn write(value: &Value) -> String {
     indented(value, 0)
 }
 
 fn indented(value: &Value, indent: usize) -> String {
-    /// Characters in a line at most.
+    /// Most characters in a line.
     const WIDTH: usize = 76;
     let line = in_a_line(value);
     if indent + line.chars().count() <= WIDTH {
@@ -75,7 +75,7 @@ fn in_a_line(value: &Value) -> String {
     }
 }
 
-/// A JSON value whose objects have every key once.
+/// A JSON value whose objects have no duplicate keys.
 struct Document(Value);
 
 impl<'de> Deserialize<'de> for Document {

@@ -1,4 +1,4 @@
-//! What can be wrong with a scenario, and where.
+//! Errors in scenarios, with their places.
 
 use crate::scenario::quote::shown;
 
@@ -10,10 +10,10 @@ pub enum ScenarioError {
     Unreadable {
         /// The file.
         file: String,
-        /// What the system said.
+        /// The system's message, with advice.
         reason: String,
     },
-    /// The text is no JSON, or gives a key twice.
+    /// The text is not JSON, or has a duplicate key.
     #[error("{file}: line {line}, column {column}: {reason}")]
     Syntax {
         /// The file.
@@ -25,38 +25,38 @@ pub enum ScenarioError {
         /// What is wrong there.
         reason: String,
     },
-    /// A key or value that means nothing.
+    /// A key or value is wrong.
     #[error("{file}: {problem}")]
     Invalid {
-        /// The file, and the settings with which it was read if these alone make the difference.
+        /// The file, and the settings if it is valid without them.
         file: String,
-        /// Where and why.
+        /// The place and the reason.
         problem: Problem,
     },
-    /// The same, put there by a setting.
+    /// A key or value that a setting put there is wrong.
     #[error("{setting}: {problem}")]
     Setting {
         /// The setting as given: `--set viscosity=-1`.
         setting: String,
-        /// Where below the setting's own key, and why.
+        /// The place, relative to the setting's key, and the reason.
         problem: Problem,
     },
-    /// No scenario of this name comes with the program.
+    /// There is no built-in scenario of this name.
     #[error("no scenario is called `{}`; there are {known}", shown(name))]
     UnknownName {
         /// The name asked for.
         name: String,
-        /// Those there are.
+        /// The known names.
         known: String,
     },
 }
 
-/// One thing that is wrong: a key path, empty for the whole document, and the reason.
+/// A problem in a document: a key path and a reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
-    /// Where, as in `sources[0].every_secs`.
+    /// The key path, as in `sources[0].every_secs`; empty for the whole document.
     pub path: String,
-    /// Why.
+    /// The reason.
     pub reason: String,
 }
 
@@ -78,14 +78,14 @@ impl Problem {
         }
     }
 
-    /// The same problem as seen from `path`, if it lies there or below.
+    /// The problem with its path relative to `path`, if it lies there or below.
     pub(super) fn seen_from(&self, path: &str) -> Option<Self> {
         let rest = self.path.strip_prefix(path)?;
         let inside = rest.is_empty() || rest.starts_with(['.', '[']);
         inside.then(|| Self::new(rest.trim_start_matches('.'), self.reason.clone()))
     }
 
-    /// The same problem seen from outside of `parent`.
+    /// The problem with `parent` before its path.
     pub(super) fn under(self, parent: &str) -> Self {
         let joint = match self.path.chars().next() {
             None | Some('[') => "",
@@ -98,7 +98,7 @@ impl Problem {
     }
 }
 
-/// Puts the parent's key before the path of a problem.
+/// Puts the parent's key before the path of a problem in a result.
 pub(super) trait Under {
     fn under(self, parent: &str) -> Self;
 }
@@ -109,9 +109,9 @@ impl<T> Under for Result<T, Problem> {
     }
 }
 
-/// "; did you mean `x`?" if one of `known` looks like `given`, else nothing.
+/// "; did you mean `x`?" if one of `known` is similar to `given`, else empty.
 pub(crate) fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    /// A name begun with so many letters may be meant in full.
+    /// A prefix of at least this length suggests the full name.
     const STEM: usize = 4;
     let slips = |name: &str| {
         if given.len() >= STEM && name.starts_with(given) {
@@ -123,7 +123,7 @@ pub(crate) fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a st
     let most = (given.len() / 4).max(1);
     known
         .into_iter()
-        .filter(|name| given.len() < 2 * name.len()) // else more than its own letters would have to go
+        .filter(|name| given.len() < 2 * name.len()) // else more letters would have to go than it has
         .map(|name| (slips(name), name))
         .filter(|&(slips, name)| slips <= most && slips < name.len())
         .min()
@@ -131,7 +131,7 @@ pub(crate) fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a st
         .unwrap_or_default()
 }
 
-/// What serde says about a document, for people who write no Rust, with a suggestion.
+/// Rewrites a message of serde without Rust terms, and adds a suggestion for unknown names.
 pub(crate) fn in_plain_words(said: &str) -> String {
     let (head, given, tail) = around_the_given(said);
     let is_name = said.starts_with("unknown field") || said.starts_with("unknown variant");
@@ -151,7 +151,7 @@ pub(crate) fn in_plain_words(said: &str) -> String {
     format!("{}{}{tail}", plain(head), shown(given))
 }
 
-/// A message of serde's before, in and after the text of the document that it repeats, if it repeats any.
+/// Splits a message of serde into the parts before, in and after the text that it quotes from the document.
 fn around_the_given(said: &str) -> (&str, &str, &str) {
     const BEFORE: [&str; 4] = [
         "unknown field `",
@@ -170,7 +170,7 @@ fn around_the_given(said: &str) -> (&str, &str, &str) {
     (&said[..start], &said[start..end], &said[end..])
 }
 
-/// What serde and serde_json say, and what people say.
+/// Phrases of serde and serde_json with their replacements.
 const WORDS: [(&str, &str); 22] = [
     ("expected f64", "expected a number"),
     ("expected u32", "expected a whole number from 0 to 2^32 - 1"),

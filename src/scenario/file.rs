@@ -1,4 +1,4 @@
-//! What a scenario file says, key by key; nothing is checked here but names and types.
+//! The contents of a scenario file, key by key. Only names and types are checked here.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -15,10 +15,10 @@ use crate::engine::pairs::Precision;
 use crate::engine::scene::Integrator;
 use crate::scenario::catalog::{NavigationKind, Parameters};
 
-/// Lower left and upper right corner.
+/// The lower left and the upper right corner.
 pub(super) type Corners = [[f64; 2]; 2];
 
-/// A value that is written as an object; serde would take a list of its fields as well.
+/// A value that must be a JSON object. Without this wrapper serde would also accept a list of the fields.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[serde(transparent)]
 pub(super) struct Object<T>(pub T);
@@ -53,7 +53,7 @@ pub(super) struct File {
     pub population_seed: Option<u64>,
     pub behaviour_seed: Option<u64>,
     pub duration_secs: Option<f64>,
-    /// What it stands for has been written out by [`super::preset::fill`].
+    /// Unused: [`super::preset::fill`] has expanded it.
     #[serde(rename = "preset")]
     pub _preset: Preset,
     pub time_step_secs: Option<TimeStep>,
@@ -85,7 +85,7 @@ pub(super) struct File {
 pub(super) enum TimeStep {
     /// Seconds.
     Given(f64),
-    /// The largest that is stable.
+    /// The largest stable step.
     Auto,
 }
 
@@ -125,7 +125,7 @@ impl Visitor<'_> for TimeStepVisitor {
     }
 }
 
-/// How agents behave, and what becomes of them.
+/// The keys about behavior and removal that agents, grids and sources share.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Behaviour {
     pub profile: Option<ProfileChoice>,
@@ -148,7 +148,7 @@ pub(super) struct Agent {
     pub counted: Option<bool>,
 }
 
-/// Agents on a grid, there from the start.
+/// Agents that stand on a grid at the start.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Grid {
@@ -166,7 +166,7 @@ pub(super) struct Grid {
     pub counted: Option<bool>,
 }
 
-/// Agents that enter on a grid again and again.
+/// Agents that enter on a grid repeatedly.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Source {
@@ -209,7 +209,7 @@ impl Grid {
 }
 
 impl Source {
-    /// What it shares with a grid.
+    /// The keys that it shares with a grid.
     pub(super) fn grid(&self) -> Grid {
         Grid {
             name: self.name.clone(),
@@ -227,7 +227,7 @@ impl Source {
     }
 }
 
-/// A push.
+/// A push: agents in a region behave differently for a while.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Event {
@@ -260,14 +260,14 @@ pub(super) struct DensityAt {
     pub region: Option<Corners>,
 }
 
-/// The flow of the first who arrive.
+/// The flow of the first n arrivals.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FlowOfFirst {
     pub arrivals: u32,
 }
 
-/// The flow of those who arrive in time.
+/// The flow of the arrivals until a time.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FlowUntil {
@@ -279,7 +279,7 @@ pub(super) struct FlowUntil {
 #[serde(deny_unknown_fields)]
 pub(super) struct Nothing {}
 
-/// When to stop before the end.
+/// When to stop early.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Stop {
@@ -287,7 +287,7 @@ pub(super) struct Stop {
     pub idle_secs: Option<f64>,
 }
 
-/// What a recording shows first.
+/// The initial view of a recording.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct View {
@@ -296,7 +296,7 @@ pub(super) struct View {
     pub opens_at_secs: f64,
 }
 
-/// A profile by name or in full.
+/// A profile, by name or defined in full.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub(super) enum ProfileChoice {
@@ -304,7 +304,7 @@ pub(super) enum ProfileChoice {
     Custom(Box<CustomProfile>),
 }
 
-/// A profile or blend in full: exactly one of `base`, `navigation` and `blend`.
+/// A profile or blend defined in full, with exactly one of `base`, `navigation` and `blend`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct CustomProfile {
@@ -324,7 +324,7 @@ pub(super) struct Step {
     pub profile: ProfileChoice,
 }
 
-/// Not an untagged enum, because of whose errors nobody would find the wrong key.
+/// Implemented by hand: the errors of an untagged enum do not name the wrong key.
 impl<'de> Deserialize<'de> for ProfileChoice {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(ProfileVisitor)

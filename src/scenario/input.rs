@@ -1,23 +1,23 @@
-//! Files that are read whole, and lines: none that is longer than anything meant to be read so.
+//! Reading whole files and lines, with limits on their length.
 
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read, Result};
 use std::path::Path;
 
-/// A longer text is refused, bytes: a scenario of ten million corners has 200 MB.
+/// Longest text that is read, bytes. A scenario with ten million corners takes 200 MB.
 pub const LONGEST_TEXT: u64 = 1 << 28;
-/// About as long is a line at most, bytes.
+/// Approximate limit on the length of a line, bytes.
 pub const LONGEST_LINE: u64 = 1 << 20;
 
-/// A whole file.
+/// Reads a whole file.
 ///
 /// # Errors
-/// It cannot be read, or has more than `most` bytes.
+/// The file cannot be read, or has more than `most` bytes.
 pub fn bytes(path: &Path, most: u64) -> Result<Vec<u8>> {
     rest(File::open(path)?, most)
 }
 
-/// A whole text.
+/// Reads a whole text file.
 ///
 /// # Errors
 /// The file cannot be read, has more than [`LONGEST_TEXT`] bytes, or is not UTF-8.
@@ -26,10 +26,10 @@ pub fn text(path: &Path) -> Result<String> {
     text.map_err(|_| Error::new(ErrorKind::InvalidData, "no text in UTF-8"))
 }
 
-/// What is left to be read.
+/// Reads the rest of a file.
 ///
 /// # Errors
-/// It cannot be read, or is more than `most` bytes.
+/// The file cannot be read, or the rest has more than `most` bytes.
 pub fn rest(file: impl Read, most: u64) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     file.take(most + 1).read_to_end(&mut bytes)?;
@@ -40,15 +40,15 @@ pub fn rest(file: impl Read, most: u64) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Reads on for about [`LONGEST_LINE`] bytes at a time, then fails unless [`next_line`](Self::next_line) was
-/// called: under a buffered reader of lines, a line that never ends takes no more memory.
+/// A reader that fails after about [`LONGEST_LINE`] bytes unless [`next_line`](Self::next_line) is called in
+/// between. Under a buffered line reader it bounds the memory that an endless line can take.
 pub struct Lines<R> {
     file: R,
     left: u64,
 }
 
 impl<R: Read> Lines<R> {
-    /// Of a file.
+    /// Wraps a file.
     pub fn new(file: R) -> Self {
         Self {
             file,
@@ -56,7 +56,7 @@ impl<R: Read> Lines<R> {
         }
     }
 
-    /// A line was complete.
+    /// Restarts the count: a line was complete.
     pub fn next_line(&mut self) {
         self.left = LONGEST_LINE;
     }

@@ -1,46 +1,46 @@
-//! A key of a scenario: which values it takes, in words for people and as JSON Schema for editors.
+//! A key of a scenario file, with the values that it takes in words and as JSON Schema.
 
 use serde_json::{Map, Value, json};
 
 use super::range::{COORDINATE, Range};
 
-/// Which values a key takes.
+/// The values that a key takes.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Kind {
     /// Any text.
     Text,
     /// Text that is not empty.
     Name,
-    /// One of these.
+    /// One of these words.
     Word(&'static [&'static str]),
     /// `true` or `false`.
     Switch,
-    /// Any number in a range.
+    /// A number in a range.
     Number(Range),
     /// A number of seconds, or `auto`.
     Step(Range),
     /// A whole number in a range.
     Whole(Range),
-    /// A whole number of so many bits.
+    /// An unsigned integer of this many bits.
     Unsigned(u32),
-    /// Two coordinates, metres.
+    /// Two coordinates, meters.
     Point,
     /// Two numbers in a range.
     Pair(Range),
-    /// Something defined under `$defs`, in words.
+    /// The name of a definition under `$defs`, and its description in words.
     Defined(&'static str, &'static str),
-    /// A list of it.
+    /// A list of such values; the words describe the list.
     List(&'static str, &'static str),
 }
 
-/// May a key be missing?
+/// Whether a key may be missing or `null`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Presence {
-    /// No.
+    /// Must be present.
     Required,
-    /// Yes, but it is never `null`.
+    /// May be missing, but not `null`.
     Optional,
-    /// Yes, which is the same as `null`.
+    /// May be missing or `null`, which mean the same.
     Nullable,
 }
 
@@ -49,7 +49,7 @@ pub(super) enum Presence {
 pub(super) struct Key {
     pub key: &'static str,
     pub unit: &'static str,
-    /// What holds without it, in words or as JSON.
+    /// The default, in words or as JSON.
     pub default: &'static str,
     pub kind: Kind,
     pub presence: Presence,
@@ -91,7 +91,7 @@ impl Key {
         }
     }
 
-    /// The schema of its value, with what people should know.
+    /// The schema of its value, with description, unit and default.
     fn schema(&self) -> Value {
         let mut schema = self.kind.schema();
         if self.presence == Presence::Nullable {
@@ -114,7 +114,7 @@ impl Key {
 }
 
 impl Kind {
-    /// Which values are allowed, in words.
+    /// The allowed values in words.
     pub(super) fn words(&self) -> String {
         match self {
             Self::Text | Self::Name => "text".to_owned(),
@@ -149,7 +149,7 @@ impl Kind {
         }
     }
 
-    /// What holds without the key as a value, where the words for it are one.
+    /// The default as a JSON value, if `words` is one.
     fn default(&self, words: &str) -> Option<Value> {
         match self {
             Self::Word(known) => known.contains(&words).then(|| words.into()),
@@ -161,18 +161,18 @@ impl Kind {
     }
 }
 
-/// Two numbers in a range.
+/// The schema of two numbers in a range.
 pub(super) fn pair(range: Range) -> Value {
     let number = range.schema("number");
     json!({"type": "array", "items": number, "minItems": 2, "maxItems": 2})
 }
 
-/// What stands under `$defs`.
+/// A reference to a definition under `$defs`.
 pub(super) fn defined(name: &str) -> Value {
     json!({"$ref": format!("#/$defs/{name}")})
 }
 
-/// The schema of what `schema` allows, and of `null`.
+/// `schema`, extended to allow `null`.
 fn or_null(mut schema: Value) -> Value {
     if let Some(Value::String(name)) = schema.get("type") {
         schema["type"] = json!([name, "null"]);

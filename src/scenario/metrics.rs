@@ -1,16 +1,16 @@
-//! What Tables 1 and 2 report: densities at one time, flow, evacuees.
+//! The measurements of Tables 1 and 2: density at one time, flow, number of evacuated agents.
 
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 
-/// One thing to measure in a run.
+/// A measurement in a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Measurement {
-    /// Mean and standard deviation of ρ_i at a time in seconds, over everybody or in a region, P/m².
+    /// Mean and standard deviation of ρ_i at one time, over all agents or those in a region, P/m².
     Density {
-        /// When, seconds.
+        /// The time, seconds.
         at: f64,
-        /// Where; `None`: everywhere.
+        /// The region; `None` means everywhere.
         region: Option<Region>,
     },
     /// (n − 1) / (time of the n-th counted arrival − time of the first), P/s.
@@ -18,7 +18,7 @@ pub enum Measurement {
         /// n, at least 2.
         arrivals: usize,
     },
-    /// Counted arrivals until the frame nearest to a time in seconds, over the time of that frame, P/s.
+    /// Counted arrivals until the frame nearest to a given time, divided by the time of that frame, P/s.
     FlowUntil {
         /// The time, seconds.
         until: f64,
@@ -28,7 +28,7 @@ pub enum Measurement {
 }
 
 impl Measurement {
-    /// The names of the values it gives.
+    /// The names of its values.
     pub fn names(&self) -> Vec<String> {
         match self {
             Self::Density { at, .. } => {
@@ -50,12 +50,12 @@ impl Measurement {
     }
 }
 
-/// A measured value; `None` where the run gave none (nobody there, too few arrivals, ended before).
+/// A measured value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Metric {
     /// Its name in reports.
     pub name: String,
-    /// The value.
+    /// The value; `None` if there were no agents or too few arrivals, or if the run ended too early.
     pub value: Option<f64>,
     /// The unit of the value.
     pub unit: &'static str,
@@ -70,7 +70,7 @@ pub struct Metrics {
 }
 
 impl Metrics {
-    /// Prepares to measure, and asks `simulation` for the densities that will be needed.
+    /// Prepares the measurements, and requests from `simulation` the densities that they need.
     pub fn new(measurements: Vec<Measurement>, simulation: &mut Simulation) -> Self {
         for measurement in &measurements {
             if let Measurement::Density { at, .. } = measurement {
@@ -89,15 +89,14 @@ impl Metrics {
         &self.densities
     }
 
-    /// Goes on with densities that were [`taken`](Self::taken) before; does nothing with those of another
-    /// scenario.
+    /// Restores densities that were [`taken`](Self::taken) before. Ignores them if their number does not match.
     pub fn resume(&mut self, taken: &[Option<(f64, f64)>]) {
         if taken.len() == self.densities.len() {
             self.densities.copy_from_slice(taken);
         }
     }
 
-    /// Measures what is due in an evaluated frame.
+    /// Takes the densities that are due in this evaluated frame.
     pub fn observe(&mut self, simulation: &Simulation) {
         let frame = simulation.frame();
         for (measurement, taken) in self.measurements.iter().zip(&mut self.densities) {
@@ -117,7 +116,7 @@ impl Metrics {
         }
     }
 
-    /// What has been measured so far.
+    /// The values measured so far.
     pub fn results(&self, simulation: &Simulation) -> Vec<Metric> {
         let clock = simulation.frame().clock;
         let counted = simulation
@@ -160,14 +159,14 @@ impl Metrics {
     }
 }
 
-/// (n − 1) / (t_n − t_1) over rising arrival times.
+/// (n − 1) / (t_n − t_1) for ascending arrival times.
 fn flow_of_first(times: &[f64], arrivals: usize) -> Option<f64> {
     let last = times.get(arrivals.checked_sub(1)?)?;
     let span = last - times[0];
     (span > 0.0).then(|| (arrivals - 1) as f64 / span)
 }
 
-/// Mean and (population) standard deviation; `None` for nobody.
+/// Mean and population standard deviation; `None` if there are no values.
 pub fn mean_and_deviation(values: &[f64]) -> Option<(f64, f64)> {
     if values.is_empty() {
         return None;

@@ -1,27 +1,27 @@
-//! What a scenario file says → a checked [`Scenario`] → a [`Scene`] for the simulation.
+//! Scenario files: the text of a file → a checked [`Scenario`] → a [`Scene`] for the simulation.
 //!
-//! A file is a JSON object; every key is optional, and an unknown one is an error. Lengths are in
-//! metres, times in seconds, points `[x, y]`, regions `[[x0, y0], [x1, y1]]`. The keys with their
-//! units, defaults and ranges are in [`settings`]; the nested ones:
+//! A file is a JSON object. Every top-level key is optional; an unknown key is an error. Lengths are in
+//! meters, times in seconds; points are `[x, y]`, regions `[[x0, y0], [x1, y1]]`. [`settings`] lists the
+//! top-level keys with their units, defaults and ranges. The nested keys:
 //!
 //! | in | keys |
 //! |---|---|
-//! | `agents` | `position`, and optionally `velocity`, `radius`, `mass`, `goal`, `mean_density` (ρ̂ of the frame before), `profile`, `remove_within`, `counted` |
-//! | `grids` | `min`, `max`, `columns`, `rows`, and optionally `name`, `jitter`, `goal` or `goal_offset` (from each agent's start), `profile`, `remove_within`, `counted` |
-//! | `sources` | the same, `every_secs`, and optionally `start_secs`, `times` |
+//! | `agents` | `position`, and optionally `velocity`, `radius`, `mass`, `goal`, `mean_density` (ρ̂ of the previous frame), `profile`, `remove_within`, `counted` |
+//! | `grids` | `min`, `max`, `columns`, `rows`, and optionally `name`, `jitter`, `goal` or `goal_offset` (relative to each agent's start), `profile`, `remove_within`, `counted` |
+//! | `sources` | the keys of `grids`, `every_secs`, and optionally `start_secs`, `times` |
 //! | `events` | `at_secs`, `for_secs`, `region`, and optionally `name`, `goal_scale`, `ignore_contact`, `ignore_sph` |
-//! | `measurements` | one of `density` (`at_secs`, optionally `region`), `flow_of_first` (`arrivals`), `flow_until` (`until_secs`), `evacuated` (nothing) |
+//! | `measurements` | one of `density` (`at_secs`, optionally `region`), `flow_of_first` (`arrivals`), `flow_until` (`until_secs`), `evacuated` (no keys) |
 //! | `stop` | `when_empty`, `idle_secs` |
 //! | `view` | `region`, and optionally `opens_at_secs` |
-//! | `profile` | one of `base` (a name), `navigation` (`goal`, `social` or `rvo`; with it `sph`, true or false) and `blend` (a list of `at_density`, `profile`), and optionally `name`, `parameters` |
+//! | `profile` | one of `base` (a name), `navigation` (`goal`, `social` or `rvo`; optionally with `sph`, true or false) and `blend` (a list of `at_density`, `profile`), and optionally `name`, `parameters` |
 //!
-//! People walk in the `walkable_area`, everywhere without it, but not in the `obstacles`. Either is written
-//! out, or is the name of a file that [`floor_plan`](crate::scenario::floor_plan) reads. `$schema` is left alone, for
-//! editors.
+//! Agents can walk in the `walkable_area` (everywhere if it is missing) except in the `obstacles`. Each of the two
+//! is a list of polygons, or the name of a file that [`floor_plan`](crate::scenario::floor_plan) reads. `$schema` is
+//! ignored; editors use it.
 //!
-//! An agent is removed `remove_within` metres of its goal, and never without that key; unless
-//! `counted` is false, its arrival counts as evacuated. `parameters` at the top go before those of
-//! the profiles. Ids are given from 0 in the order of entry: agents, grids, then sources as they come.
+//! An agent is removed within `remove_within` meters of its goal, or never if the key is missing. Its arrival
+//! counts as evacuated unless `counted` is false. Top-level `parameters` override those of the profiles. Ids count
+//! from 0 in order of entry: agents, then grids, then sources as their agents enter.
 
 pub mod quote;
 
@@ -72,67 +72,66 @@ use serde_json::Value;
 use crate::engine::scene::{Region, Scene};
 use crate::scenario::metrics::Measurement;
 
-/// A floor plan's file, after the key that names it.
+/// The key that names a floor plan file, and the file.
 pub type PlanFile = (&'static str, PathBuf);
 
-/// A checked scenario: what to simulate, for how long, and what to look at.
+/// A checked scenario: what to simulate, for how long, and what to measure and show.
 #[derive(Debug, Clone)]
 pub struct Scenario {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// What it shows, in a line; may be empty.
+    /// What it shows, in one line; may be empty.
     pub description: String,
     /// What to simulate.
     pub scene: Scene,
-    /// For how long, seconds.
+    /// Simulated time, seconds.
     pub duration_secs: f64,
-    /// When to stop before.
+    /// When to stop earlier.
     pub stop: Stop,
     /// What to measure.
     pub measurements: Vec<Measurement>,
-    /// What a recording shows first.
+    /// The initial view of a recording.
     pub view: View,
-    /// Ids of agents that a recording lays open; not all of them need ever enter.
+    /// Ids of the agents whose forces a recording shows. Some of them may never enter.
     pub debug_agents: Vec<u32>,
-    /// How many enter in the whole run at most; ids are lower than this.
+    /// Upper bound on the agents that enter during the run; all ids are lower.
     pub entering: u64,
-    /// The name of the profile of agents that name none.
+    /// The name of the default profile, for agents that name none.
     pub profile_name: String,
-    /// The file as given, with the settings, what its preset stands for and what the files that it names say.
+    /// The file with the settings applied, its preset expanded and the contents of the files that it names.
     pub document: Value,
-    /// The floor plans that it was read from.
+    /// The floor plan files that it names.
     pub files: Vec<PlanFile>,
 }
 
 /// When a run stops before its end.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Stop {
-    /// When nobody is there and nobody will come.
+    /// Stop when no agents are left and none will enter.
     pub when_empty: bool,
-    /// After so many seconds without a counted arrival, from the start or the last one.
+    /// Stop after this many seconds without a counted arrival, counted from the last arrival or the start.
     pub idle_secs: Option<f64>,
 }
 
-/// What a recording shows first.
+/// The initial view of a recording.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    /// The part of the plane, metres.
+    /// The visible part of the plane, meters.
     pub region: Region,
-    /// The moment, seconds.
+    /// The time at which it opens, seconds.
     pub opens_at_secs: f64,
 }
 
 impl Scenario {
-    /// The file with the settings in it, to be read by people and by [`parse`](Self::parse).
+    /// The [`document`](Self::document) as indented JSON, which [`parse`](Self::parse) reads.
     pub fn to_text(&self) -> String {
         document::write(&self.document)
     }
 
-    /// Reads a scenario from JSON; `file` is what messages call it, and files that it names are in that one's
-    /// folder.
+    /// Reads a scenario from JSON. Messages call it `file`; paths in it are relative to the folder of `file`.
     ///
     /// # Errors
-    /// Anything wrong with the text or with the settings: the first thing, with its place.
+    /// The first problem in the text or the settings, with its place.
     pub fn parse(text: &str, file: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
         checked(text, file, settings, check::scenario)
     }
@@ -140,27 +139,26 @@ impl Scenario {
     /// Reads a scenario from a file.
     ///
     /// # Errors
-    /// The file cannot be read or is too long, or as [`parse`](Self::parse).
+    /// The file cannot be read or is too long, or an error of [`parse`](Self::parse).
     pub fn load(path: &Path, settings: &[Setting]) -> Result<Self, ScenarioError> {
         let text = read_text(path)?;
         Self::parse(&text, &path.display().to_string(), settings)
     }
 
-    /// One of the scenarios that come with the program.
+    /// Reads one of the built-in scenarios.
     ///
     /// # Errors
-    /// No such name, or as [`parse`](Self::parse) because of the settings.
+    /// An unknown name, or an error of [`parse`](Self::parse) caused by the settings.
     pub fn shipped(name: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
         Self::parse(shipped_text(name)?, &format!("{name}.json"), settings)
     }
 }
 
 impl Need {
-    /// Of the scenario that [`Scenario::parse`] would read, before anybody is placed.
+    /// Estimates the scenario that [`Scenario::parse`] would read, without placing any agents.
     ///
     /// # Errors
-    /// What is wrong with names, types or the number of agents; the rest is checked by
-    /// [`Scenario::parse`].
+    /// Wrong names or types, or too many agents. [`Scenario::parse`] checks the rest.
     pub fn parse(text: &str, file: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
         let need = checked(text, file, settings, check::need)?;
         let text = text.len() as u64;
@@ -168,10 +166,10 @@ impl Need {
     }
 }
 
-/// The text of one of the scenarios that come with the program.
+/// The text of one of the built-in scenarios.
 ///
 /// # Errors
-/// No such name.
+/// An unknown name.
 pub fn shipped_text(name: &str) -> Result<&'static str, ScenarioError> {
     let found = SHIPPED.iter().find(|shipped| shipped.name == name);
     let shipped = found.ok_or_else(|| ScenarioError::UnknownName {
@@ -181,7 +179,7 @@ pub fn shipped_text(name: &str) -> Result<&'static str, ScenarioError> {
     Ok(shipped.text)
 }
 
-/// The text of a scenario file.
+/// Reads the text of a scenario file.
 ///
 /// # Errors
 /// The file cannot be read, or is longer than 256 MiB.
@@ -193,7 +191,7 @@ pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
     input::text(path).map_err(|error| unreadable(unreadable_because(&error)))
 }
 
-/// What the system says about a file, and what may help.
+/// The system's message about a file, with advice.
 fn unreadable_because(error: &std::io::Error) -> String {
     let said = error.to_string();
     let said = said.split(" (os error").next().unwrap_or_default();
@@ -208,7 +206,7 @@ fn unreadable_because(error: &std::io::Error) -> String {
     }
 }
 
-/// What `check` makes of a text, which is or came from `file`, with some settings.
+/// Parses `text`, applies the settings and runs `check`. Errors name the setting that caused them, else `file`.
 fn checked<T>(
     text: &str,
     file: &str,

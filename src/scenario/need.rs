@@ -1,4 +1,4 @@
-//! How many people enter, and how much memory that takes, told before anybody is placed.
+//! How many agents enter a run and how much memory it takes, estimated before any agents are placed.
 
 use super::crowd::EVERY;
 use super::error::{Problem, Under};
@@ -9,13 +9,13 @@ use super::wall_lists;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP};
 use crate::engine::scene::Scene;
 
-/// So many agents may enter in one run.
+/// Most agents that may enter in one run.
 pub(super) const MOST_AGENTS: u64 = 10_000_000;
 
-/// The program itself with its threads, bytes.
+/// Memory of the program itself with its threads, bytes.
 const PROGRAM: u64 = 12 << 20;
-/// An agent in the scenario, and with everything that the engine keeps of it, bytes. With the program,
-/// measured at 5 P/m² on two threads (peak resident memory, MB, and this estimate):
+/// Memory per initial agent, in the scenario and in the engine, bytes. Measured at 5 P/m² on two threads (peak
+/// resident memory including the program, MB, and this estimate):
 ///
 /// | agents | sph | rvo | estimate |
 /// |---|---|---|---|
@@ -24,41 +24,40 @@ const PROGRAM: u64 = 12 << 20;
 /// | 100,000 | 54.8 | 47.1 | 67.6 |
 /// | 1,000,000 | 465 | – | 563 |
 const AGENT: u64 = 550;
-/// The same of an agent that comes later: what grows has room to spare.
+/// Memory per agent that enters later, bytes: growing arrays have spare capacity.
 const LATER_AGENT: u64 = 650;
-/// A corner of an obstacle with its wall, and the indices over them, bytes.
+/// Memory per corner of an obstacle, with its wall and its share of the indices, bytes.
 const WALL: u64 = 400;
-/// A byte of a scenario's text as a document and what is made of it, bytes: 100,000 agents one by one, in 2.9 MB
-/// of text, take 228 MB, and 100,000 square obstacles, in 6.5 MB, 322 MB; the estimates are 258 and 595 MB.
+/// Memory per byte of a scenario's text, for the document and the parsed scenario, bytes. 100,000 single agents (2.9
+/// MB of text) take 228 MB, and 100,000 square obstacles (6.5 MB) take 322 MB; the estimates are 258 and 595 MB.
 const TEXT: u64 = 65;
 
-/// An entry in the lists of walls near agents, bytes; the lists' memory grows in steps.
+/// Memory per entry in the lists of walls near agents, bytes, with spare capacity: the lists grow in steps.
 const LISTED: u64 = 5;
 
-/// A run needs more memory than there is.
+/// A run needs more memory than the machine has.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct TooLarge(String);
 
-/// How large a scenario's run becomes at most.
+/// Upper bounds on the size of a scenario's run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Need {
-    /// Who is there at the start.
+    /// Agents at the start.
     pub initial: u64,
-    /// Who enters in the whole run, those among them.
+    /// Agents that enter during the whole run, including the initial ones.
     pub entering: u64,
-    /// Walls of all obstacles.
+    /// Walls of all obstacles and of the walkable area.
     pub walls: u64,
     /// Bytes of the scenario's text.
     pub text: u64,
-    /// Entries in the lists of walls near agents; known once the walls are, see
-    /// [`with_lists`](Self::with_lists).
+    /// Entries in the lists of walls near agents; 0 until [`with_lists`](Self::with_lists) sets it.
     pub listed: u64,
 }
 
 impl Need {
-    /// Main memory that a run takes at its largest, if nobody leaves, bytes: from what was measured,
-    /// between once and twice of it. What a run writes comes to this.
+    /// Estimate of a run's peak memory if no agents leave, bytes: between one and two times the measured memory.
+    /// Memory for writing output files is not included.
     pub fn bytes(&self) -> u64 {
         let later = self.entering.saturating_sub(self.initial);
         let parts = [
@@ -72,7 +71,7 @@ impl Need {
         products.into_iter().fold(PROGRAM, u64::saturating_add)
     }
 
-    /// The same with the lists of walls near agents, in which `scene`'s ranges and walls count.
+    /// The same need, with the lists of walls near agents for the ranges and walls of `scene`.
     pub fn with_lists(self, scene: &Scene) -> Self {
         Self {
             listed: wall_lists::entries(scene, self.entering),
@@ -80,11 +79,11 @@ impl Need {
         }
     }
 
-    /// Checks that a run fits into `there` bytes of memory; `file` is what messages call its scenario, and its
-    /// outputs take `output` bytes per agent.
+    /// Checks that a run fits into `there` bytes of memory. Writing its outputs takes `output` bytes per agent;
+    /// messages call its scenario `file`.
     ///
     /// # Errors
-    /// It does not, with the estimate.
+    /// It does not fit; the message has the estimate.
     pub fn check(&self, file: &str, output: u64, there: u64) -> Result<(), TooLarge> {
         let output = self.entering.saturating_mul(output);
         let estimate = self.bytes().saturating_add(output);
@@ -120,7 +119,8 @@ impl Need {
         )))
     }
 
-    /// Counts what `file` asks for, and checks what that depends on; `clock` is its clock, if it gives one.
+    /// Counts the agents and walls of `file`, and checks the values that the counts depend on. `clock` is the
+    /// scenario's clock; it does not matter if the time step is `auto`.
     pub(super) fn of(file: &File, clock: &Clock, duration_secs: f64) -> Result<Self, Problem> {
         let mut need = Self {
             walls: plan::walls(file),
@@ -164,27 +164,27 @@ impl Need {
     }
 }
 
-/// Nobody who is due later enters before the end, seconds.
+/// The latest time at which agents enter, seconds: agents due later do not enter before the end.
 pub(super) fn last_entry(file: &File, clock: &Clock, duration_secs: f64) -> f64 {
     if file.time_step_secs == Some(TimeStep::Auto) {
-        // The step is chosen by who is there; the end is at most half of it late.
+        // The step depends on the agents; the last frame is at most half a step late.
         let longest = file.longest_step_secs.unwrap_or(PAPER_COARSE_STEP);
         return duration_secs + 0.5 * longest;
     }
     let last = clock.frame_at(duration_secs);
     let coarse = last - last % u64::from(clock.coarse_every());
-    // As `Clock::coarse_frame_at` rounds.
+    // The same rounding as in `Clock::coarse_frame_at`.
     (coarse as f64 + 1e-6) * clock.time_step()
 }
 
-/// How often a source lets people in.
+/// How many times agents enter from a source.
 pub(super) fn entries(source: &Source, last_entry: f64) -> u64 {
-    // What is negative is none.
+    // The cast saturates: a negative number becomes 0.
     let entries = ((last_entry - source.start_secs) / source.every_secs).floor() + 1.0;
     (entries as u64).min(source.times.map_or(u64::MAX, u64::from))
 }
 
-/// As people read it: three digits.
+/// Formats a number of bytes with three digits and a unit.
 pub fn in_units(bytes: u64) -> String {
     const UNITS: [&str; 6] = ["bytes", "kB", "MB", "GB", "TB", "PB"];
     let mut value = bytes as f64;

@@ -1,6 +1,6 @@
-//! The keys of the objects inside a file's lists, for the list of settings.
+//! The keys of nested objects, for the list of settings.
 
-/// The keys of the objects that stand in a file's lists, in words; `?` marks those that may be missing.
+/// The keys of the nested objects; `?` marks optional keys.
 pub const NESTED: [(&str, &str); 9] = [
     (
         "agents",

@@ -1,14 +1,13 @@
-//! The parameters of profiles ([`Parameters`]), which stand under `parameters` in a file: unit, default,
-//! range, meaning.
+//! The parameters of profiles ([`Parameters`]), under `parameters` in a file, with unit, default, range and meaning.
 
 use super::error::Problem;
 use super::key::{Key, Kind};
 use super::range::Range;
 use crate::scenario::catalog::Parameters;
 
-/// Lengths over which agents act on each other, metres.
+/// Interaction ranges, meters.
 const REACH: Range = Range::at_least(0.01, 100.0);
-/// Times that divide, seconds.
+/// Times in denominators, seconds.
 const RELAXATION: Range = Range::at_least(1e-6, 1e6);
 /// Strengths and stiffnesses; 0 switches a term off.
 const STRENGTH: Range = Range::at_least(0.0, 1e9);
@@ -148,14 +147,14 @@ pub(super) fn is_parameter(key: &str) -> bool {
     PARAMETERS.iter().any(|known| known.key == key)
 }
 
-/// Every given parameter with its key.
+/// All given parameters with their keys.
 pub(super) fn given(parameters: &Parameters) -> Vec<(&'static str, f64)> {
     let values = serde_json::to_value(parameters).unwrap_or_default();
     let value = |known: &Key| Some((known.key, values.get(known.key)?.as_f64()?));
     PARAMETERS.iter().filter_map(value).collect()
 }
 
-/// Is every given parameter in range?
+/// Checks the ranges of all given parameters.
 pub(super) fn check(parameters: &Parameters) -> Result<(), Problem> {
     for (key, value) in given(parameters) {
         for known in PARAMETERS.iter().filter(|known| known.key == key) {

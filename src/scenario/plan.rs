@@ -1,4 +1,4 @@
-//! Walkable areas and obstacles: written out in a scenario, or in files that it names.
+//! Walkable areas and obstacles, given in a scenario or in files that it names.
 
 use std::fmt;
 use std::path::Path;
@@ -19,12 +19,12 @@ use crate::scenario::quote::shown;
 const WALKABLE_AREA: &str = "walkable_area";
 const OBSTACLES: &str = "obstacles";
 
-/// Corners of one ring: to find edges that cross, all that are near each other are compared.
+/// Most corners of one ring: the search for crossing edges compares all nearby pairs.
 const MOST_CORNERS: usize = 20_000;
-/// Walls in all.
+/// Most walls of a scenario.
 const MOST_WALLS: u64 = 1_000_000;
 
-/// Numbers in lists in lists: a point, a ring of points or a list of rings.
+/// Nested lists of numbers: a point, a ring of points or a list of rings.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Nested {
     Number(f64),
@@ -67,8 +67,8 @@ impl<'de> Visitor<'de> for NestedVisitor {
     }
 }
 
-/// Puts what files say in the place of their names, which are relative to `folder`: the document says
-/// everything itself then. Returns the files, each with its key.
+/// Replaces the names of floor plan files, relative to `folder`, with their contents. Returns the files, each with
+/// its key.
 pub(super) fn fill(document: &mut Value, folder: &Path) -> Result<Vec<PlanFile>, Problem> {
     let mut files = Vec::new();
     let Value::Object(document) = document else {
@@ -106,7 +106,7 @@ pub(super) fn fill(document: &mut Value, folder: &Path) -> Result<Vec<PlanFile>,
 }
 
 impl Setting {
-    /// What puts `plan` in the place of a scenario's walkable area and obstacles; messages call it `text`.
+    /// Settings that replace a scenario's walkable area and obstacles with `plan`; messages call them `text`.
     pub fn floor_plan(plan: &FloorPlan, text: &str) -> [Self; 2] {
         let walkable = match plan.walkable.is_empty() {
             true => Value::Null,
@@ -139,14 +139,14 @@ fn ring_value(ring: &Ring) -> Value {
     ring.points().iter().map(|p| json!([p.x, p.y])).collect()
 }
 
-/// How many walls a file has, one for every corner.
+/// The number of walls in a file: one per corner.
 pub(super) fn walls(file: &File) -> u64 {
     let obstacles = file.obstacles.iter().flatten().map(corners).sum::<u64>();
     let areas = file.walkable_area.iter().flatten().flatten();
     obstacles + areas.map(|ring| ring.len() as u64).sum::<u64>()
 }
 
-/// Corners in an obstacle's corner, or in one of its rings.
+/// The number of corners in an element of an obstacle: one for a corner, all of them for a ring.
 fn corners(item: &Nested) -> u64 {
     match item {
         Nested::List(inner) if matches!(inner.first(), Some(Nested::List(_))) => inner.len() as u64,
@@ -154,7 +154,7 @@ fn corners(item: &Nested) -> u64 {
     }
 }
 
-/// Says if a ring has too many corners to be looked through.
+/// Rejects a ring with too many corners.
 fn check_length(count: usize) -> Result<(), Problem> {
     if count <= MOST_CORNERS {
         return Ok(());
@@ -164,7 +164,7 @@ fn check_length(count: usize) -> Result<(), Problem> {
     Err(Problem::new("", reason))
 }
 
-/// The obstacles in their order, then what is round the walkable area.
+/// The obstacles in order, then the solid around the walkable area.
 pub(super) fn solids(file: &File) -> Result<Vec<Polygon>, Problem> {
     let walls = walls(file);
     if walls > MOST_WALLS {
@@ -197,7 +197,7 @@ fn walls_round(polygons: &[Vec<Vec<[f64; 2]>>]) -> Result<Vec<Polygon>, Problem>
         .map_err(|error| Problem::new("", error.to_string()))
 }
 
-/// A ring, or a list of rings: the outline, then the holes.
+/// Reads an obstacle: a ring, or a list of rings (the outline, then the holes).
 fn obstacle(given: &[Nested]) -> Result<Polygon, Problem> {
     let is_corner = |item: &Nested| match item {
         Nested::List(inner) => matches!(inner.first(), None | Some(Nested::Number(_))),
@@ -235,7 +235,7 @@ fn ring(given: &[Nested]) -> Result<Vec<[f64; 2]>, Problem> {
     given.iter().enumerate().map(corner).collect()
 }
 
-/// With the place in the path if it is one.
+/// Converts an error; its place becomes the path if it is an index.
 fn problem(error: FloorPlanError) -> Problem {
     match error {
         FloorPlanError::Ring { place, reason } => Problem::new(place, reason),

@@ -1,30 +1,30 @@
-//! Presets: numerics by one name, measured in `docs/accuracy.md`.
+//! Presets: named choices of the numerics, measured in `docs/accuracy.md`.
 
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-/// How exactly, and how fast, a scenario is computed where it says nothing else.
+/// The numerics for keys that a scenario does not give: a trade-off between accuracy and run time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Preset {
-    /// What reproduces the paper: semi-implicit Euler, Δt = 0.02 s, representative points, nobody left out.
+    /// Reproduces the paper: semi-implicit Euler, Δt = 0.02 s, representative points, no social force left out.
     #[default]
     Paper,
-    /// Twice the paper's step where the crowd bears it, and no social forces that hardly matter.
+    /// Up to twice the paper's step, where that is stable; leaves out tiny social forces.
     Fast,
-    /// Near to where the model's motion tends as Δt → 0, with walls integrated exactly.
+    /// Close to the limit of the model's motion as Δt → 0, with walls integrated exactly.
     Accurate,
 }
 
 impl Preset {
-    /// All of them, with their names.
+    /// All presets with their names.
     pub const ALL: [(&'static str, Self); 3] = [
         ("paper", Self::Paper),
         ("fast", Self::Fast),
         ("accurate", Self::Accurate),
     ];
 
-    /// The keys that it gives a value, as at the top of a file.
+    /// The top-level keys that it sets, with their values.
     pub fn document(self) -> Value {
         match self {
             Self::Paper => json!({}),
@@ -42,7 +42,7 @@ impl Preset {
     }
 }
 
-/// The document with what its preset stands for, wherever it says nothing itself.
+/// The document with its preset's values for the keys that it does not give.
 pub(super) fn fill(document: &Value) -> Value {
     let mut filled = document.clone();
     let named = document.get("preset").and_then(Value::as_str);
@@ -53,7 +53,7 @@ pub(super) fn fill(document: &Value) -> Value {
     filled
 }
 
-/// Puts those values into an object that it lacks, and into objects in it.
+/// Adds missing values to an object, recursively.
 fn complete(given: &mut Value, values: Value) {
     let (Value::Object(given), Value::Object(values)) = (given, values) else {
         return;

@@ -1,4 +1,4 @@
-//! Profiles and blends as given → as the engine takes them.
+//! Profiles and blends of a file → blends of the engine.
 
 use super::error::{Problem, Under, suggestion};
 use super::file::{CustomProfile, Object, ProfileChoice, Step};
@@ -7,7 +7,7 @@ use crate::engine::profile::{Blend, BlendStep, Profile};
 use crate::scenario::catalog::{self, NAMES, Parameters};
 use crate::scenario::quote::shown;
 
-/// The blend that is meant; `overriding` are the scenario-wide values, which go before its own.
+/// Converts a profile or blend; the scenario-wide values `overriding` override its own.
 pub(super) fn blend(choice: &ProfileChoice, overriding: &Parameters) -> Result<Blend, Problem> {
     let blend = match choice {
         ProfileChoice::Named(name) => named(name, overriding)?,
@@ -64,7 +64,7 @@ fn custom_blend(custom: &CustomProfile, overriding: &Parameters) -> Result<Blend
     ))
 }
 
-/// One profile that is no blend.
+/// A profile that is not a blend.
 fn custom_profile(custom: &CustomProfile, parameters: &Parameters) -> Result<Profile, Problem> {
     let profile = match (&custom.base, custom.navigation) {
         (Some(base), _) => plain(base, parameters).under("base")?,
@@ -151,7 +151,7 @@ fn step_profile(choice: &ProfileChoice, parameters: &Parameters) -> Result<Profi
     }
 }
 
-/// The SPH parameters given anywhere in a blend: they belong to all of it.
+/// The SPH parameters given anywhere in a blend, which apply to all of it.
 fn shared_by(custom: &CustomProfile, steps: &[Object<Step>]) -> Result<Parameters, Problem> {
     let mut shared = sph_only(&custom.parameters.0);
     for (k, Object(step)) in steps.iter().enumerate() {

@@ -1,22 +1,22 @@
-//! How messages repeat what a file or a user says: short, and without anything that a terminal obeys.
+//! Quoting of user input in messages: shortened, and without control characters.
 
-/// Characters of a value, name or key that a message repeats.
+/// Most characters of a value, name or key in a message.
 const LONGEST: usize = 80;
-/// Characters of a library's own message, which may repeat what it has read.
+/// Most characters of a library's message, which may quote its input.
 const LONGEST_MESSAGE: usize = 400;
 
-/// A value, name or key as messages repeat it: control characters are escaped, and of a long text its
-/// beginning and its length are given.
+/// Quotes a value, name or key: control characters are escaped, and a long text is shortened to its beginning and
+/// its length.
 pub fn shown(text: &str) -> String {
     within(text, LONGEST)
 }
 
-/// The same for the message of a library, which is longer and may repeat its input.
+/// Like [`shown`], with a higher limit, for a library's message.
 pub fn shown_message(text: &str) -> String {
     within(text, LONGEST_MESSAGE)
 }
 
-/// Any text with its control characters escaped, but for the ends of its lines.
+/// Escapes control characters except line feeds.
 pub fn printable(text: &str) -> String {
     let mut lines = text.split('\n').map(|line| escaped(line.chars()));
     let first = lines.next().unwrap_or_default();
@@ -43,7 +43,7 @@ fn escaped(characters: impl Iterator<Item = char>) -> String {
     text
 }
 
-/// Control characters, and those that reorder or hide text (Unicode Technical Report 36).
+/// Is this a control character, or one that reorders or hides text (Unicode Technical Report 36)?
 fn is_obeyed(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')

@@ -1,4 +1,4 @@
-//! Which numbers are allowed, and how to say so.
+//! Ranges of allowed numbers, with their error messages and schemas.
 
 use std::fmt;
 
@@ -9,16 +9,16 @@ use crate::engine::clock::SHORTEST_TIME_STEP;
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
 
-/// An interval of finite numbers, closed above.
+/// An interval of finite numbers that includes its upper end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Range {
     lowest: f64,
-    /// Is `lowest` itself left out?
+    /// Is `lowest` itself excluded?
     open: bool,
     highest: f64,
 }
 
-/// x or y of any point, metres; walls and contacts keep their digits up to here.
+/// x or y of any point, meters. Beyond this, walls and contacts lose precision.
 pub(super) const COORDINATE: Range = Range::at_least(-1e6, 1e6);
 /// Times and durations, seconds.
 pub(super) const TIME: Range = Range::at_least(0.0, 1e7);
@@ -48,7 +48,7 @@ impl Range {
         }
     }
 
-    /// The same as JSON Schema of a `number` or `integer`.
+    /// The range as JSON Schema; `number` is the type, `number` or `integer`.
     pub(super) fn schema(&self, number: &str) -> Value {
         let lowest = if self.open {
             "exclusiveMinimum"
@@ -62,7 +62,7 @@ impl Range {
         json!({"type": number, lowest: plain(self.lowest), "maximum": plain(self.highest)})
     }
 
-    /// `value`, if it is allowed for `key`.
+    /// Returns `value` if it is in range; the error names `key`.
     pub(super) fn check(&self, key: &str, value: f64) -> Result<f64, Problem> {
         let high_enough = value > self.lowest || (value == self.lowest && !self.open);
         if high_enough && value <= self.highest {
@@ -75,7 +75,7 @@ impl Range {
         }
     }
 
-    /// `value`, if there is none or it is allowed for `key`.
+    /// Returns `value` if it is `None` or in range; the error names `key`.
     pub(super) fn check_given(
         &self,
         key: &str,
@@ -93,7 +93,7 @@ impl fmt::Display for Range {
     }
 }
 
-/// As people write it: very large and very small numbers with an exponent.
+/// Very large and very small numbers in scientific notation, others in decimal notation.
 fn brief(value: f64) -> String {
     let plain = value == 0.0 || (1e-4..1e6).contains(&value.abs());
     if plain {
@@ -103,13 +103,13 @@ fn brief(value: f64) -> String {
     }
 }
 
-/// Both coordinates in range.
+/// A point with both coordinates in range.
 pub(super) fn point(key: &str, [x, y]: [f64; 2]) -> Result<Vector, Problem> {
     let checked = |place: &str, value| COORDINATE.check(&format!("{key}{place}"), value);
     Ok(Vector::new(checked("[0]", x)?, checked("[1]", y)?))
 }
 
-/// Lower left and upper right corner, in this order.
+/// A region from its lower left and upper right corner, which must be in this order.
 pub(super) fn region(key: &str, [min, max]: [[f64; 2]; 2]) -> Result<Region, Problem> {
     let region = Region {
         min: point(&format!("{key}[0]"), min)?,
@@ -119,7 +119,7 @@ pub(super) fn region(key: &str, [min, max]: [[f64; 2]; 2]) -> Result<Region, Pro
     Ok(region)
 }
 
-/// Is `min` really below and left of `max`?
+/// Checks that `min` is not above or right of `max`.
 pub(super) fn ordered(region: &Region) -> Result<(), String> {
     let (min, max) = (region.min, region.max);
     if min.x <= max.x && min.y <= max.y {

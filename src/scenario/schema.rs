@@ -1,4 +1,4 @@
-//! The JSON Schema of scenario files, of the tables that checking and the list of settings are made of.
+//! The JSON Schema of scenario files, from the same tables as the checks and the list of settings.
 
 use serde_json::{Value, json};
 
@@ -10,9 +10,9 @@ use super::range::{COORDINATE, Range, TIME};
 use super::settings;
 use crate::scenario::catalog::{ALIASES, NAMES};
 
-/// Cells of a grid.
+/// Columns or rows of a grid.
 const CELLS: Range = Range::at_least(1.0, u32::MAX as f64);
-/// Arrivals that have a flow.
+/// Numbers of arrivals that define a flow.
 const ARRIVALS: Range = Range::at_least(2.0, u32::MAX as f64);
 
 const PROFILE: Key = Key::new(
@@ -99,7 +99,7 @@ const GRID: [Key; 11] = [
     COUNTED,
 ];
 
-/// What a source has and a grid has not.
+/// The keys that a source has in addition to those of a grid.
 const AGAIN: [Key; 3] = [
     Key::new("start_secs", Kind::Number(TIME), "first entry")
         .unit("s")
@@ -236,8 +236,8 @@ const STEP: [Key; 2] = [
     .required(),
 ];
 
-/// The JSON Schema (draft 2020-12) of scenario files. Whatever the program takes is valid by it; relations
-/// between values (corners in order, one goal at least) it does not know.
+/// The JSON Schema (draft 2020-12) of scenario files. Every file that the program accepts is valid. The schema does
+/// not check relations between values (order of corners, at least one goal).
 pub fn schema() -> Value {
     let source: Vec<Key> = GRID.iter().chain(&AGAIN).copied().collect();
     let mut schema = object(&settings::KEYS, "A scenario for `sandbox run`");
@@ -287,7 +287,7 @@ pub fn schema() -> Value {
     schema
 }
 
-/// Exactly one of three keys is given.
+/// A profile in full: exactly one of three keys is given.
 fn full_profile() -> Value {
     let given =
         |key: &str| json!({"required": [key], "properties": {key: {"not": {"type": "null"}}}});

@@ -1,4 +1,4 @@
-//! `--set key=value`: one change to a scenario's document.
+//! `--set key=value`: a change to a scenario's document.
 
 use std::str::FromStr;
 
@@ -9,22 +9,22 @@ use super::parameters;
 use super::settings::{TEXTS, settings};
 use crate::scenario::quote::shown;
 
-/// One change: `viscosity=5`, `seed=7`, `profile=sf`, `sources.0.rows=50`.
+/// A change: `viscosity=5`, `seed=7`, `profile=sf`, `sources.0.rows=50`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setting {
-    /// What messages call it: `--set viscosity=5`.
+    /// Its name in messages: `--set viscosity=5`.
     text: String,
     path: Vec<String>,
     value: Value,
 }
 
-/// Why a text is no setting.
+/// Why a text is not a setting.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SettingError {
     /// There is no `=`.
     #[error("a setting is written key=value")]
     NoValue,
-    /// No such key.
+    /// The key is unknown.
     #[error(
         "unknown setting `{}`{suggestion} (`sandbox list --settings` shows them all)",
         shown(key)
@@ -32,7 +32,7 @@ pub enum SettingError {
     UnknownKey {
         /// The key as given.
         key: String,
-        /// "; did you mean …?", or nothing.
+        /// "; did you mean …?", or empty.
         suggestion: String,
     },
 }
@@ -40,7 +40,7 @@ pub enum SettingError {
 impl FromStr for Setting {
     type Err = SettingError;
 
-    /// The value is read as JSON, and as text where it is none.
+    /// Reads the value as JSON, or as text if it is not JSON.
     fn from_str(text: &str) -> Result<Self, SettingError> {
         let (key, value) = text.split_once('=').ok_or(SettingError::NoValue)?;
         let key = key.trim();
@@ -61,10 +61,10 @@ impl std::fmt::Display for Setting {
 }
 
 impl Setting {
-    /// Sets a key, `sources.0.rows`, to a value; messages call it `text`.
+    /// Sets a key such as `sources.0.rows` to a value; messages call it `text`.
     ///
     /// # Errors
-    /// No such key.
+    /// The top-level key is unknown.
     pub fn new(key: &str, value: Value, text: String) -> Result<Self, SettingError> {
         let mut path: Vec<String> = key.split('.').map(str::to_owned).collect();
         let known = settings();
@@ -80,18 +80,18 @@ impl Setting {
         Ok(Self { text, path, value })
     }
 
-    /// Where it goes in a document: `["parameters", "viscosity"]`.
+    /// The path in the document: `["parameters", "viscosity"]`.
     pub fn path(&self) -> &[String] {
         &self.path
     }
 
-    /// The same setting, which messages call `text`: `--seed 5`.
+    /// The same setting under another name in messages: `--seed 5`.
     #[must_use]
     pub fn typed_as(self, text: String) -> Self {
         Self { text, ..self }
     }
 
-    /// A value for `key` at the top of a file, which messages call `text`.
+    /// Sets a top-level key; messages call it `text`.
     pub(super) fn of(key: &str, value: Value, text: &str) -> Self {
         Self {
             text: text.to_owned(),
@@ -131,10 +131,10 @@ impl Setting {
     }
 }
 
-/// Objects that a setting may begin where a file has none.
+/// Top-level objects that a setting creates if they are missing.
 const BEGUN: [&str; 2] = ["parameters", "stop"];
 
-/// What `segment` means in the value at `path`; an object without it gets `begun`.
+/// The element `segment` of the value at `path`; an object that lacks it gets `begun` first.
 fn inner<'a>(
     outer: &'a mut Value,
     segment: &str,

@@ -1,4 +1,4 @@
-//! Every key that `--set` takes at the top of a scenario: unit, default, range, meaning.
+//! The top-level keys of a scenario, which `--set` takes, with unit, default, range and meaning.
 
 use super::key::{Key, Kind};
 use super::parameters;
@@ -7,15 +7,15 @@ use super::range;
 /// One line of the list of settings.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SettingDoc {
-    /// As in `--set key=value` and in the file.
+    /// The key, as in `--set key=value` and in the file.
     pub key: &'static str,
-    /// The unit of its value; empty where it has none.
+    /// The unit of its value; empty if it has none.
     pub unit: &'static str,
-    /// The value without it: the paper's, where the paper gives one.
+    /// The default: the paper's value, if the paper gives one.
     pub default: &'static str,
-    /// Which values are allowed.
+    /// The allowed values, in words.
     pub range: String,
-    /// What it is.
+    /// Its meaning.
     pub description: &'static str,
 }
 
@@ -31,10 +31,10 @@ impl From<&Key> for SettingDoc {
     }
 }
 
-/// Keys of the file whose value is text, never parsed as JSON.
+/// Keys whose value is text and never parsed as JSON.
 pub(super) const TEXTS: [&str; 2] = ["name", "description"];
 
-/// Every key: those of the file, then the parameters of profiles.
+/// All keys: those at the top of the file, then the parameters of profiles.
 pub fn settings() -> Vec<SettingDoc> {
     let keys = KEYS.iter().chain(&parameters::PARAMETERS);
     keys.map(SettingDoc::from).collect()

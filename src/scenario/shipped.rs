@@ -1,17 +1,17 @@
-//! The scenarios that come with the program.
+//! The built-in scenarios.
 
 use serde_json::Value;
 
-/// A scenario file inside the program.
+/// A scenario file built into the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shipped {
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
-    /// The file.
+    /// The text of the file.
     pub text: &'static str,
 }
 
-/// The paper's three scenarios (§6), and its open challenge (§7).
+/// The paper's three scenarios (§6) and its open challenge (§7).
 pub const SHIPPED: [Shipped; 4] = [
     Shipped {
         name: "evacuation",

@@ -1,21 +1,21 @@
-//! An upper bound on the lists of walls near agents, found before any list is made.
+//! An upper bound on the size of the lists of walls near agents, without building the lists.
 
 use crate::engine::geometry::{Wall, Walls};
 use crate::engine::math::Vector;
 use crate::engine::scene::Scene;
 
-/// Cells per side at most.
+/// Most cells per side.
 const MOST_CELLS: f64 = 1024.0;
-/// Cells per reach: with more of them the bound is tighter.
+/// Cells per reach: more cells make the bound tighter.
 const CELLS_PER_REACH: f64 = 4.0;
-/// Below this, a few megabytes, the plain product of agents and walls is a good enough bound.
+/// Below this (a few megabytes), agents times walls is a good enough bound.
 const FEW_ENTRIES: u64 = 1 << 20;
-/// More agents than this do not stand on a square meter: twice what the paper's crowds reach.
+/// Most agents per square meter: twice the density of the paper's crowds.
 const DENSEST: f64 = 20.0;
 
-/// Entries of all lists of walls of a crowd of `agents`, at most.
+/// Upper bound on the entries of the wall lists of `agents` agents.
 ///
-/// Agents move, so the bound puts them where the lists are longest, as densely as they can stand.
+/// Agents move, so the bound packs them as densely as possible where the lists are longest.
 pub(super) fn entries(scene: &Scene, agents: u64) -> u64 {
     let ranges = scene.ranges(&scene.needs());
     let radii = scene.agents.iter().filter_map(|agent| agent.radius);
@@ -47,7 +47,7 @@ fn bound(walls: &Walls, reach: f64, agents: u64) -> u64 {
     entries
 }
 
-/// Square cells over everything within reach of a wall.
+/// A grid of square cells that covers all points within reach of a wall.
 struct Cells {
     corner: Vector,
     side: f64,
@@ -72,11 +72,11 @@ impl Cells {
         }
     }
 
-    /// By cell, how many walls may be within `reach` of a point in it: every wall counts in the square cells
-    /// around its part in a row of cells and the reach above and below.
+    /// For each cell, an upper bound on the walls within `reach` of a point in it. For each row of cells, a wall
+    /// is clipped to the row's height ± reach and counted in the columns of this part ± reach.
     fn count(&self, walls: &Walls, reach: f64) -> Vec<u64> {
         let width = self.columns + 1;
-        // First the differences between neighbors in a row.
+        // First the differences between neighboring cells in a row.
         let mut counts = vec![0_i64; width * self.rows];
         for wall in walls.iter() {
             let (low, high) = (
@@ -104,13 +104,13 @@ impl Cells {
         rows.collect()
     }
 
-    /// Which cell of so many a coordinate is in.
+    /// The index of the cell that contains a coordinate, at most `cells - 1`.
     fn place(&self, along: f64, cells: usize) -> usize {
         ((along / self.side).floor() as usize).min(cells - 1)
     }
 }
 
-/// From where to where in x a wall goes between two heights.
+/// The extent in x of the part of a wall between two heights; `None` if there is no such part.
 fn span(wall: &Wall, low: f64, high: f64) -> Option<[f64; 2]> {
     let (a, b) = match wall.start.y <= wall.end.y {
         true => (wall.start, wall.end),
@@ -185,7 +185,7 @@ mod tests {
             Vector::new(rng.random_range(20.0..80.0), rng.random_range(20.0..80.0))
         });
         let listed: u64 = places.take(1000).map(near).sum();
-        // Fewer agents than that find room in the cells with the most walls.
+        // 1000 agents fill several cells, so the bound is not just the longest list times 1000.
         let bound = bound(&walls, 10.0, 1000);
         assert!((listed..3 * listed).contains(&bound), "{listed} {bound}");
     }

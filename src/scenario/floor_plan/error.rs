@@ -1,32 +1,32 @@
-//! What can be wrong with a floor plan.
+//! Errors in floor plans.
 
 use std::path::PathBuf;
 
 use crate::scenario::quote::{shown, shown_message};
 
-/// Why a file or text is no floor plan, and what to do about it.
+/// Why a file or text is not a floor plan, with advice.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FloorPlanError {
-    /// Something is wrong with a file.
+    /// An error in a file.
     #[error("{}: {error}", shown_message(&path.display().to_string()))]
     File {
         /// The file.
         path: PathBuf,
-        /// What.
+        /// The error.
         error: Box<Self>,
     },
-    /// What the system said.
+    /// The file cannot be read; with the system's message.
     #[error("cannot be read: {0}")]
     Unreadable(String),
-    /// The text is not what it begins as.
+    /// The text is not valid WKT or GeoJSON.
     #[error("no {format}: {}", shown_message(reason))]
     Syntax {
         /// WKT or GeoJSON.
         format: &'static str,
-        /// What and where.
+        /// The parser's message, with the place.
         reason: String,
     },
-    /// A geometry that has no area.
+    /// A geometry of a type that has no area.
     #[error("{}a {found} has no area; a floor plan is made of polygons", at(.place))]
     NoPolygon {
         /// Which feature or geometry.
@@ -37,30 +37,30 @@ pub enum FloorPlanError {
     /// A geometry without coordinates.
     #[error("{}the geometry is empty; remove it", at(.0))]
     EmptyGeometry(String),
-    /// Nothing at all.
+    /// The plan has no polygons.
     #[error("has no polygons")]
     Empty,
-    /// Degrees, as the file says itself.
+    /// The file declares a coordinate system in degrees.
     #[error(
         "the coordinates are degrees ({}); a floor plan is in metres: project it, to UTM for example",
         shown(.0)
     )]
     Degrees(String),
-    /// So small that it must be a mistake, metres.
+    /// The plan is so small that it must be a mistake.
     #[error(
         "no person fits in: everything lies within {width} by {height} m. Coordinates are metres; if these \
          are degrees, project them, to UTM for example"
     )]
     TooSmall {
-        /// Along x, metres.
+        /// Extent along x, meters.
         width: f64,
-        /// Along y, metres.
+        /// Extent along y, meters.
         height: f64,
     },
     /// The obstacles fill the walkable area.
     #[error("the obstacles leave no room for anybody")]
     NoRoom,
-    /// A point where lengths lose their digits.
+    /// A point so far from the origin that lengths lose precision.
     #[error(
         "{}({x}, {y}) is out of range: x and y must be at least -1e6 and at most 1e6 m; move the plan \
          near to the origin", at(.place)
@@ -68,22 +68,22 @@ pub enum FloorPlanError {
     TooFar {
         /// Which feature or geometry.
         place: String,
-        /// Metres.
+        /// x, meters.
         x: f64,
-        /// Metres.
+        /// y, meters.
         y: f64,
     },
-    /// A ring that is none.
+    /// A ring is invalid.
     #[error("{}{reason}", at(.place))]
     Ring {
         /// Which feature, geometry and ring.
         place: String,
-        /// Why.
+        /// The reason.
         reason: String,
     },
 }
 
-/// A place before what is wrong there.
+/// A place as the prefix of a message; empty if there is none.
 fn at(place: &str) -> String {
     if place.is_empty() {
         String::new()

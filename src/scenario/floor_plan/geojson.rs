@@ -1,4 +1,4 @@
-//! GeoJSON (RFC 7946), in metres. The only file that names geojson.
+//! GeoJSON (RFC 7946), in meters. The only file that names the geojson crate.
 
 use geojson::{Feature, GeoJson, Geometry, GeometryValue, Position};
 use serde_json::Value;
@@ -31,7 +31,7 @@ fn syntax(error: &impl ToString) -> FloorPlanError {
     }
 }
 
-/// Files of before RFC 7946 may say what their coordinates are.
+/// Files older than RFC 7946 may declare their coordinate system.
 fn refuse_degrees(document: &Value) -> Result<(), FloorPlanError> {
     let Some(name) = document["crs"]["properties"]["name"].as_str() else {
         return Ok(());
@@ -44,7 +44,7 @@ fn refuse_degrees(document: &Value) -> Result<(), FloorPlanError> {
     Ok(())
 }
 
-/// What messages call feature `k`: by its `name`, if it has one, and its number from 1.
+/// The name of feature `k` in messages: its number from 1, and its `name` if it has one.
 fn named(feature: &Feature, k: usize) -> String {
     let properties = feature.properties.as_ref();
     match properties.and_then(|properties| properties.get("name")?.as_str()) {

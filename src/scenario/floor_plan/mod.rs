@@ -1,14 +1,13 @@
-//! Floor plans: where people can walk, or what is in their way, from WKT and GeoJSON files.
+//! Floor plans: walkable areas and obstacles from WKT and GeoJSON files.
 //!
 //! | | WKT | GeoJSON |
 //! |---|---|---|
-//! | read | `POLYGON`, `MULTIPOLYGON`, `GEOMETRYCOLLECTION` of them, one or several | `Polygon`, `MultiPolygon`, `GeometryCollection`; `Feature`, `FeatureCollection` |
-//! | are obstacles | none | features with `"properties": {"kind": "obstacle"}` |
+//! | geometries | one or more of `POLYGON`, `MULTIPOLYGON`, `GEOMETRYCOLLECTION` of these | `Polygon`, `MultiPolygon`, `GeometryCollection`; `Feature`, `FeatureCollection` |
+//! | obstacles | none | features with `"properties": {"kind": "obstacle"}` |
 //!
-//! Everything else is walkable area. Coordinates are metres: degrees are refused. What touches or overlaps
-//! becomes one area, and obstacles are taken out of it; so a plan is the same however it was cut in pieces.
-//! Orientations, third coordinates, a first point that is repeated at the end and points that are repeated
-//! on the way do not matter.
+//! All other polygons are walkable area. Coordinates are in meters; degrees are rejected. Areas that touch or overlap
+//! are united, and obstacles are subtracted, so the result does not depend on how a plan is cut into pieces.
+//! Orientation, third coordinates, a closing point and repeated points do not matter.
 
 mod error;
 mod geojson;
@@ -26,35 +25,35 @@ use crate::engine::math::Vector;
 use crate::scenario::input;
 use shape::Shape;
 
-/// What a person needs to stand, m².
+/// The area that a person needs to stand, m².
 const STANDING_ROOM: f64 = 0.18;
-/// A plan without standing room that is shorter than this, metres, must be a mistake.
+/// A plan without standing room that is smaller than this is a mistake, meters.
 const SHORT: f64 = 1.0;
-/// Obstacles that are all within so many metres are a mistake.
+/// Obstacles that all lie within this extent are a mistake, meters.
 const LEAST_EXTENT: f64 = 0.01;
 
-/// Where people can walk, and what is in their way.
+/// A walkable area, or obstacles.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FloorPlan {
-    /// Where people can walk, without the plan's obstacles; areas that do not touch, but at points. None:
-    /// everywhere but in the obstacles.
+    /// The walkable area without the plan's obstacles, as areas that touch at points at most. If empty, agents can
+    /// walk everywhere except in the obstacles.
     pub walkable: Vec<Area>,
-    /// Obstacles of a plan that says no more; they may overlap.
+    /// The obstacles of a plan without walkable area; they may overlap.
     pub obstacles: Vec<Area>,
 }
 
 /// Reads a file: GeoJSON if it begins with `{`, else WKT.
 ///
 /// # Errors
-/// The file cannot be read, is neither, or makes no floor plan: what and where, after the file's name.
+/// The file cannot be read, is neither format, or is not a valid floor plan. The message has the file and the place.
 pub fn read(path: &Path) -> Result<FloorPlan, FloorPlanError> {
     in_file(path, parse)
 }
 
-/// Reads a file of which everything is an obstacle.
+/// Reads a file in which every polygon is an obstacle.
 ///
 /// # Errors
-/// As [`read`].
+/// Those of [`read`].
 pub fn read_obstacles(path: &Path) -> Result<FloorPlan, FloorPlanError> {
     in_file(path, |text| {
         let mut shapes = shapes(text)?;
@@ -68,20 +67,20 @@ pub fn read_obstacles(path: &Path) -> Result<FloorPlan, FloorPlanError> {
 /// Reads GeoJSON if `text` begins with `{`, else WKT.
 ///
 /// # Errors
-/// As [`read`].
+/// Those of [`read`].
 pub fn parse(text: &str) -> Result<FloorPlan, FloorPlanError> {
     FloorPlan::of(shapes(text)?)
 }
 
-/// Reads well-known text, all of it walkable area: a file's, or what a trajectory's `geometry` table holds.
+/// Reads well-known text, such as that in the `geometry` table of a trajectory file. All of it is walkable area.
 ///
 /// # Errors
-/// As [`read`].
+/// Those of [`read`].
 pub fn parse_wkt(text: &str) -> Result<FloorPlan, FloorPlanError> {
     FloorPlan::of(wkt::shapes(text)?)
 }
 
-/// What `parse` makes of a file's text.
+/// Applies `parse` to a file's text; errors name the file.
 fn in_file(
     path: &Path,
     parse: impl Fn(&str) -> Result<FloorPlan, FloorPlanError>,
@@ -105,11 +104,11 @@ fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
 }
 
 impl FloorPlan {
-    /// A walkable area from polygons as GeoJSON's coordinates have them, each a list of rings of points in
-    /// metres: the outline, then the holes.
+    /// A walkable area from polygons in the form of GeoJSON's coordinates: each is a list of rings (the outline, then
+    /// the holes) of points in meters.
     ///
     /// # Errors
-    /// As [`read`]; places count from 0.
+    /// Those of [`read`]; places count from 0.
     pub fn walkable(polygons: &[Vec<Vec<[f64; 2]>>]) -> Result<Self, FloorPlanError> {
         let numbered = polygons.iter().enumerate();
         let shapes = numbered.map(|(k, rings)| Shape {
@@ -120,10 +119,10 @@ impl FloorPlan {
         Self::of(shapes.collect())
     }
 
-    /// An obstacle from a list of rings of points in metres: the outline, then the holes.
+    /// An obstacle from a list of rings (the outline, then the holes) of points in meters.
     ///
     /// # Errors
-    /// As [`Ring::new`](crate::engine::geometry::Ring::new) and [`Polygon::filling`], with coordinates.
+    /// Those of [`Ring::new`](crate::engine::geometry::Ring::new) and [`Polygon::filling`], with coordinates.
     pub fn obstacle(rings: &[Vec<[f64; 2]>]) -> Result<Area, FloorPlanError> {
         let shape = Shape {
             place: String::new(),
@@ -133,10 +132,10 @@ impl FloorPlan {
         shape.area()
     }
 
-    /// The bodies that a scene has because of it: what is round the walkable area, then the obstacles.
+    /// The solid bodies of the plan: the surroundings of the walkable area, then the obstacles.
     ///
     /// # Errors
-    /// Areas or holes that overlap: never of a plan that was read.
+    /// Overlapping areas or holes, which a plan that was read never has.
     pub fn solids(self) -> Result<Vec<Polygon>, PolygonError> {
         let mut solids = Vec::new();
         if !self.walkable.is_empty() {
@@ -174,7 +173,7 @@ impl FloorPlan {
         let largest = |areas: &[Area]| areas.iter().map(Area::area).fold(0.0, f64::max);
         let whole = largest(&walkable);
         let mut walkable = unite::without(&walkable, &obstacles)?;
-        // Where less is left, corners are computed on a finer grid.
+        // A smaller extent means a finer grid: compute the corners again.
         let mut before = width.max(height);
         loop {
             let [along, across] = extent(walkable.iter());
@@ -200,7 +199,7 @@ impl FloorPlan {
     }
 }
 
-/// Along x and along y, metres; negative without areas.
+/// The extent along x and along y, meters; negative without areas.
 fn extent<'a>(areas: impl Iterator<Item = &'a Area>) -> [f64; 2] {
     let points = areas.flat_map(Area::rings).flat_map(Ring::points);
     let none = [f64::INFINITY, f64::NEG_INFINITY].map(Vector::repeat);

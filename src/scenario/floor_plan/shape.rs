@@ -1,27 +1,27 @@
-//! A polygon as a file has it → an area with valid rings.
+//! A polygon of a file → an area with valid rings.
 
 use super::error::FloorPlanError;
 use crate::engine::geometry::{Area, Polygon, PolygonError, Ring};
 use crate::engine::math::Vector;
 
-/// x and y are within ± this, metres: walls and contacts keep their digits up to here.
+/// Largest |x| and |y|, meters. Beyond this, walls and contacts lose precision.
 const FARTHEST: f64 = 1e6;
-/// Points nearer to each other are one, metres: the engine tells no smaller lengths.
+/// Points closer than this are merged, meters: the engine does not resolve shorter lengths.
 pub const SAME: f64 = 1e-6;
 
-/// A polygon as given.
+/// A polygon of a file.
 #[derive(Debug, Clone)]
 pub struct Shape {
-    /// What messages call it.
+    /// Its name in messages.
     pub place: String,
-    /// The outline, then the holes, metres.
+    /// The outline, then the holes, meters.
     pub rings: Vec<Vec<[f64; 2]>>,
-    /// Or walkable area?
+    /// Is it an obstacle, not walkable area?
     pub is_obstacle: bool,
 }
 
 impl Shape {
-    /// The rings, checked one by one; holes of obstacles also as to where they are.
+    /// Checks each ring and, for obstacles, that the holes lie inside the outline.
     pub fn area(&self) -> Result<Area, FloorPlanError> {
         let points = self.rings.iter().flatten();
         if let Some(&[x, y]) = points
@@ -49,7 +49,7 @@ impl Shape {
             holes: rings.collect(),
         };
         if self.is_obstacle {
-            // Those of walkable areas are cut out of them, wherever they are.
+            // Holes of walkable areas are subtracted, wherever they are.
             Polygon::filling(area.clone()).map_err(|error| self.wrong(&error.to_string()))?;
         }
         Ok(area)
@@ -63,7 +63,7 @@ impl Shape {
     }
 }
 
-/// A ring without repeated points, or what is wrong with it, after its name.
+/// A ring without repeated points. The error continues a sentence that begins with the ring's name.
 fn ring(points: &[[f64; 2]]) -> Result<Ring, String> {
     if let Some([x, y]) = points.iter().find(|p| !p.iter().all(|x| x.is_finite())) {
         return Err(format!("has a point that is not finite: ({x}, {y})"));
@@ -89,7 +89,7 @@ fn ring(points: &[[f64; 2]]) -> Result<Ring, String> {
     })
 }
 
-/// The points without those that repeat the one before, and the last if it repeats the first.
+/// Removes points that repeat the previous one, and those at the end that repeat the first.
 fn distinct(points: impl Iterator<Item = Vector>) -> Vec<Vector> {
     let mut kept: Vec<Vector> = Vec::new();
     let same = |a: &Vector, b: &Vector| (a - b).norm() < SAME;

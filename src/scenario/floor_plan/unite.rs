@@ -1,4 +1,4 @@
-//! Areas that touch or overlap as one, less what stands on them.
+//! The union of areas minus the union of obstacles.
 
 use geo::bool_ops::FillRule;
 use geo::orient::Direction;
@@ -9,23 +9,23 @@ use super::shape::SAME;
 use crate::engine::geometry::{Area, Ring, assemble};
 use crate::engine::math::Vector;
 
-/// How far, in parts of the whole extent, corners may be from where they were given: geo computes on a grid
-/// of some 2⁻³⁰.
+/// Largest distance between a computed and a given corner, relative to the whole extent: geo computes on a grid of
+/// about 2⁻³⁰ of it.
 const ROUNDING: f64 = 1.0 / (1 << 28) as f64;
 
-/// Closed outlines: what lies on the left of more of them than on the right is inside.
+/// Closed outlines. A point is inside if its winding number is positive.
 pub type Rings = Vec<Vec<Vector>>;
 
-/// The union of `areas` without the union of `obstacles`, as areas that touch at points at most.
+/// The union of `areas` minus the union of `obstacles`, as areas that touch at points at most.
 pub fn without(areas: &[Area], obstacles: &[Area]) -> Result<Vec<Area>, FloorPlanError> {
     free(&[rings(areas)], &rings(obstacles))
 }
 
-/// What is inside of all `floors` and of none of the `bodies`, as areas that touch at points at most. Corners
-/// are those given, to the last bit, wherever there are any.
+/// The intersection of all `floors` minus the union of the `bodies`, as areas that touch at points at most. Corners
+/// near a given point are that point, to the last bit.
 ///
 /// # Errors
-/// None is known: rings that cross each other after all.
+/// Rings that cross each other in the result; no input is known that causes this.
 pub fn free(floors: &[Rings], bodies: &Rings) -> Result<Vec<Area>, FloorPlanError> {
     let Some((first, others)) = floors.split_first() else {
         return Ok(Vec::new());
@@ -53,7 +53,7 @@ pub fn free(floors: &[Rings], bodies: &Rings) -> Result<Vec<Area>, FloorPlanErro
     })
 }
 
-/// Outlines counter-clockwise, holes clockwise.
+/// The rings of `areas`: outlines counterclockwise, holes clockwise.
 fn rings(areas: &[Area]) -> Rings {
     let reversed = |hole: &Ring| hole.points().iter().rev().copied().collect();
     let rings = areas.iter().flat_map(|area| {
@@ -72,7 +72,8 @@ fn to_geo(rings: &Rings) -> MultiPolygon {
     polygons.collect()
 }
 
-/// What geo has computed, of which holes that touch their outline run as the outline does.
+/// The rings of geo's result: outlines counterclockwise, holes clockwise. geo itself gives holes that touch their
+/// outline the outline's orientation.
 fn oriented(area: &MultiPolygon) -> Rings {
     let ring = |line: &LineString| {
         let open = &line.0[..line.0.len().saturating_sub(1)];

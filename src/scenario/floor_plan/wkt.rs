@@ -1,4 +1,4 @@
-//! Well-known text. The only file that names wkt.
+//! Well-known text. The only file that names the wkt crate.
 
 use std::str::FromStr;
 
@@ -8,15 +8,15 @@ use wkt::types::{LineString, Polygon};
 use super::error::FloorPlanError;
 use super::shape::Shape;
 
-/// EPSG codes of the systems in degrees that plans come in.
+/// EPSG codes of common coordinate systems in degrees.
 pub(super) const IN_DEGREES: [u32; 16] = [
     4326, 4979, 4258, 4937, 4269, 4267, 4277, 4230, 4283, 7844, 4490, 4612, 6668, 4674, 4171, 4312,
 ];
 
-/// Parentheses in each other: the parser takes some stack for every one. Three suffice without collections.
+/// Deepest nesting of parentheses: the parser recurses. Three levels suffice without collections.
 const DEEPEST: usize = 64;
 
-/// The polygons of `text`: one geometry or several.
+/// The polygons of `text`, which has one or more geometries.
 pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
     let pieces = pieces(text)?;
     let several = pieces.len() > 1;
@@ -36,13 +36,13 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
     Ok(shapes)
 }
 
-/// The geometries that stand one after the other, with the lines they begin on, from 1.
+/// Splits a text into its geometries, each with the line that it begins on, from 1.
 fn pieces(text: &str) -> Result<Vec<(usize, &str)>, FloorPlanError> {
     let between = |c: char| c.is_whitespace() || c == ';';
     let (mut depth, mut found) = (0_usize, Vec::new());
-    // The number of the line, and where it begins.
+    // The number of the current line, and where it begins.
     let (mut line, mut line_start) = (1, 0);
-    // Where the piece begins that is being read.
+    // Line and offset where the current piece begins.
     let mut begun: Option<(usize, usize)> = None;
     for (at, c) in text.char_indices() {
         if begun.is_none() && !between(c) {
@@ -74,7 +74,7 @@ fn pieces(text: &str) -> Result<Vec<(usize, &str)>, FloorPlanError> {
     Ok(found)
 }
 
-/// PostGIS writes `SRID=25832;POLYGON …`.
+/// Removes a prefix as in `SRID=25832;POLYGON …`, which PostGIS writes.
 fn without_srid(piece: &str) -> Result<&str, FloorPlanError> {
     let Some((srid, geometry)) = piece.split_once(';') else {
         return Ok(piece);
@@ -126,7 +126,7 @@ fn collect(wkt: &Wkt<f64>, place: &str, shapes: &mut Vec<Shape>) -> Result<(), F
     })
 }
 
-/// Part `k` of several, counted from 1 for people.
+/// The name of part `k` in messages, where it counts from 1.
 pub(super) fn part(place: &str, kind: &str, k: usize) -> String {
     let comma = if place.is_empty() { "" } else { ", " };
     format!("{place}{comma}{kind} {}", k + 1)
