@@ -1,4 +1,4 @@
-//! `sandbox accuracy`: run time against error.
+//! `sandbox accuracy`: work-precision measurements.
 
 use std::path::PathBuf;
 
@@ -37,7 +37,7 @@ pub struct AccuracyOptions {
     pub json: bool,
 }
 
-/// The scenes with a line about each.
+/// All scenes, each with a line about it.
 pub fn about() -> String {
     let walls = "density and force by five ways of seeing walls, beside the exact integrals";
     let lines = SCENES.iter().map(|scene| (scene.name, scene.about));
@@ -47,12 +47,12 @@ pub fn about() -> String {
         .collect()
 }
 
-/// What `--knob` takes.
+/// The values of `--knob`.
 pub fn knobs() -> Vec<&'static str> {
     KNOBS.iter().map(|(name, _)| *name).collect()
 }
 
-/// What can be asked for.
+/// The names of all scenes.
 pub fn scenes() -> Vec<&'static str> {
     let names = SCENES.iter().map(|scene| scene.name);
     names.chain([WALLS]).collect()
@@ -83,7 +83,7 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
     let report = accuracy(&plan, &store, &watch);
     watch.ends();
     let report = report?;
-    // What was found is told even if it cannot be kept.
+    // Results are printed even if they cannot be saved.
     let updated = options.update.as_ref().map_or(Ok(()), |file| {
         let parts = report.parts();
         let texts = parts

@@ -1,4 +1,4 @@
-//! The command line as typed.
+//! The command line arguments, as typed.
 
 use std::path::PathBuf;
 
@@ -118,7 +118,7 @@ pub enum Command {
     },
 }
 
-/// What changes a scenario, and how it is computed.
+/// Options that change a scenario and how it is computed.
 #[derive(Args)]
 pub struct SceneOptions {
     /// Profile of all agents that name none of their own: sf, rvo, sf+sph, rvo+sph, sph, sf->sph or rvo->sph (quote the arrow)
@@ -143,7 +143,7 @@ pub struct SceneOptions {
     pub program: ProgramOptions,
 }
 
-/// How it is computed and told.
+/// Options of computing and reporting.
 #[derive(Args)]
 pub struct ProgramOptions {
     /// Threads to compute on; the results do not depend on it [default: all cores]
@@ -175,7 +175,7 @@ pub struct ResumeOptions {
     pub output: OutputOptions,
 }
 
-/// How long a run lasts, and what it writes.
+/// The length of a run and its output files.
 #[derive(Args)]
 pub struct OutputOptions {
     /// Stop at this time, seconds [default: the scenario's]
@@ -189,7 +189,7 @@ pub struct OutputOptions {
     pub checkpoint: CheckpointOptions,
 }
 
-/// What can be gone on with after a crash.
+/// Options of checkpoints.
 #[derive(Args)]
 pub struct CheckpointOptions {
     /// Write checkpoints to this file, each in place of the one before, and one at the end of a run that has none
@@ -200,7 +200,7 @@ pub struct CheckpointOptions {
     pub checkpoint_every: f64,
 }
 
-/// What is recorded, and where it goes.
+/// Options of recordings.
 #[derive(Args)]
 #[command(group(ArgGroup::new("record").multiple(true).args(["save", "spawn", "connect"])))]
 pub struct RecordOptions {
@@ -237,7 +237,7 @@ pub struct RecordOptions {
     pub debug_region: Option<String>,
 }
 
-/// What is written for other programs.
+/// Options of trajectory files.
 #[derive(Args)]
 pub struct TrajectoryOptions {
     /// Write everybody's trajectory: .sqlite or .db for JuPedSim and PedPy, .txt, or .csv with every quantity; may be repeated
@@ -269,14 +269,14 @@ pub struct InspectOptions {
     pub save: Option<PathBuf>,
 }
 
-/// Where a scenario comes from.
+/// The source of a scenario.
 pub enum Source {
     Shipped(&'static str),
     File(PathBuf),
 }
 
 impl Source {
-    /// A shipped scenario of that name, else a file.
+    /// The built-in scenario of that name, else a file.
     pub fn named(text: &str) -> Self {
         let names = SHIPPED.iter().map(|shipped| shipped.name);
         match names.into_iter().find(|&name| name == text) {

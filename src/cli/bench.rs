@@ -1,4 +1,4 @@
-//! `sandbox bench`: how fast it is on this machine.
+//! `sandbox bench`: performance on this machine.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use super::{Failure, say, talk, use_threads};
 use crate::lab::bench::{BENCHMARKS, BenchError, Plan, Report, files};
 use crate::runs::outputs::{Manner, Outputs};
 
-/// What may be typed.
+/// Examples of commands.
 pub const EXAMPLES: &str = "\
 Examples:
   sandbox bench scaling --largest 100000
@@ -50,12 +50,12 @@ pub struct BenchOptions {
     pub python: PathBuf,
 }
 
-/// What can be measured.
+/// The names of all benchmarks.
 pub fn names() -> Vec<&'static str> {
     BENCHMARKS.iter().map(|benchmark| benchmark.name).collect()
 }
 
-/// What can be measured, with a line about each.
+/// All benchmarks, each with a line about it.
 pub fn about() -> String {
     let lines = BENCHMARKS.iter();
     lines
@@ -85,7 +85,7 @@ pub fn run(options: &BenchOptions) -> Result<(), Failure> {
         python: options.python.clone(),
     };
     let report = benchmark.measure(&plan, &|text| talk(&format!("{}: {text}", benchmark.name)))?;
-    // What was measured is told even if it cannot be kept.
+    // Results are printed even if they cannot be saved.
     let saved = options
         .out
         .as_deref()

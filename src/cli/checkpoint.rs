@@ -1,4 +1,4 @@
-//! Checkpoints, as far as the command line is concerned.
+//! Writing checkpoints during a run.
 
 use std::path::PathBuf;
 
@@ -12,32 +12,32 @@ use crate::scenario::metrics::Metrics;
 /// The checkpoints of a run.
 pub struct Checkpoints {
     file: Option<PathBuf>,
-    /// Frames between them.
+    /// Frames between checkpoints.
     every: u64,
-    /// The frame of the next.
+    /// The frame of the next checkpoint.
     due: u64,
-    /// The time of the last one that was written, seconds.
+    /// The time of the last checkpoint written, seconds.
     kept: Option<f64>,
-    /// Why the last one was not written, if it was not.
+    /// Why the last attempt failed, if it did.
     failure: Option<CheckpointError>,
 }
 
-/// Where a frame is in a run.
+/// The position of a frame in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Moment {
-    /// Others follow.
+    /// More frames follow.
     Underway,
-    /// It is the last.
+    /// The last frame.
     Last,
-    /// It is the last, because of a signal.
+    /// The last frame, because of a signal.
     Interrupted,
 }
 
 impl Checkpoints {
-    /// Prepares to write them; the first comes a while after where `simulation` is.
+    /// Prepares the checkpoints; the first is due one interval after the current frame.
     pub fn create(options: &CheckpointOptions, simulation: &mut Simulation) -> Self {
         if options.checkpoint.is_some() {
-            // A resumed run may record densities that no force reads here.
+            // The resumed run may record densities, which this run might not need.
             simulation.request_density_until(u64::MAX);
         }
         let clock = simulation.frame().clock;
@@ -51,8 +51,8 @@ impl Checkpoints {
         }
     }
 
-    /// Writes one of an evaluated frame if its turn has come, and at the end of a run that has none. A failure
-    /// does not end the run: the next one may succeed.
+    /// Writes a checkpoint of an evaluated frame if one is due, if a signal ends the run, or if the run ends without
+    /// any. A failure does not end the run: the next attempt may succeed.
     pub fn write(
         &mut self,
         scenario: &Scenario,
@@ -86,7 +86,7 @@ impl Checkpoints {
         }
     }
 
-    /// Says what is kept if the last one was not written.
+    /// Fails if the last attempt failed; the message says which checkpoint is kept.
     pub fn finish(self) -> Result<(), Failure> {
         let (Some(path), Some(error)) = (&self.file, &self.failure) else {
             return Ok(());

@@ -1,4 +1,4 @@
-//! A scenario from its first frame to its end, with a progress bar, recordings and a report.
+//! Runs a scenario to its end, with a progress bar, output files and a report.
 
 use std::path::Path;
 
@@ -89,7 +89,7 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
     run.go_on(&options.program, &options.output)
 }
 
-/// Refuses an end before the checkpoint's time, which the run has passed.
+/// Rejects an end before the checkpoint's time.
 fn refuse_the_past(options: &ResumeOptions, clock: &Clock) -> Result<(), Failure> {
     match options.output.until {
         Some(until) if clock.frame_at(until) < clock.frame() => Err(Failure::Input(format!(
@@ -101,7 +101,8 @@ fn refuse_the_past(options: &ResumeOptions, clock: &Clock) -> Result<(), Failure
     }
 }
 
-/// Refuses a checkpoint that is longer than the memory that there is; what its run needs is known when it was read.
+/// Rejects a checkpoint file that is larger than main memory. The memory that its run needs is checked after
+/// reading it.
 fn fits_into_memory(file: &Path) -> Result<(), Failure> {
     let length = file.metadata().map_or(0, |about| about.len());
     match main_memory() {
@@ -144,7 +145,7 @@ impl Run {
         let mut interrupted = None;
         let progress = Progress::new(duration);
 
-        // From a thread of the pool, parallel work starts without a detour.
+        // On a thread of the pool, parallel work starts without handing it over to the pool first.
         let driven = rayon::scope(|_| {
             drive(&mut simulation, duration, |simulation, ms| {
                 metrics.observe(simulation);
@@ -166,7 +167,7 @@ impl Run {
             })
         });
         progress.finish();
-        // What was recorded is kept, whatever ended the run.
+        // Close all files first, so that they are kept even if the run failed.
         let (recorded, traced) = (output.finish(), trajectories.finish());
         let saved = recorded.and(traced).and(checkpoints.finish());
         driven.map_err(|failure| failure.laid_open(&mut simulation))?;
@@ -182,7 +183,7 @@ impl Run {
     }
 }
 
-/// Says by how much a step is longer than a crowd at rest bears, if that is known of the integrator.
+/// Warns if the time step is longer than the stability limit of a crowd at rest, if that is known for the integrator.
 fn warn_of_the_step(scene: &Scene) {
     let Some(scheme) = Scheme::of(scene.integrator) else {
         return;
@@ -205,7 +206,7 @@ fn warn_of_the_step(scene: &Scene) {
     }
 }
 
-/// Says what a careful reader of the results should know.
+/// Prints notes on displaced agents, stopped moves, clamped speeds and pushes without agents.
 fn report_oddities(simulation: &Simulation) {
     let outcome = simulation.outcome();
     if !outcome.displaced.is_empty() {
@@ -238,7 +239,7 @@ fn report_oddities(simulation: &Simulation) {
     }
 }
 
-/// Names agents that were to be laid open and have not entered.
+/// Prints the agents of `--debug-agents` that never entered.
 fn report_absent(record: &RecordOptions, simulation: &Simulation) {
     let entered = simulation.frame().agents.entered();
     let asked = laid_open(record).ok().flatten().unwrap_or_default();
@@ -255,7 +256,7 @@ fn report_absent(record: &RecordOptions, simulation: &Simulation) {
     }
 }
 
-/// A progress bar on stderr, shown only if that is a terminal.
+/// A progress bar on stderr, shown only if stderr is a terminal.
 pub struct Progress {
     bar: ProgressBar,
 }

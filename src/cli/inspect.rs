@@ -1,4 +1,4 @@
-//! `sandbox inspect`: single agents, term by term.
+//! `sandbox inspect`: the forces on single agents, term by term.
 
 use serde_json::json;
 
@@ -21,7 +21,7 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     let mut outputs = Outputs::new(options.scene.program.force);
     let mut scenario = read(&source, &options.scene, None, writing, &mut outputs)?;
     if options.at > scenario.duration_secs {
-        // Sources go on until then.
+        // Extend the scenario, so that sources continue until then.
         let at = Some(("--at", options.at));
         scenario = read(&source, &options.scene, at, writing, &mut outputs)?;
     }
@@ -30,7 +30,7 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     }
     outputs.check()?;
     let mut simulation = Simulation::new(scenario.scene.clone())?;
-    // The rest density follows the density's history, so every frame needs it.
+    // The rest density depends on the density's history, so every frame needs the density.
     simulation.request_density_until(u64::MAX);
     let progress = Progress::new(options.at);
     let went = rayon::scope(|_| go_to(options.at, &mut simulation, &progress));
@@ -44,7 +44,7 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     let clock = simulation.frame().clock;
     let (time, frame) = (clock.time(), clock.frame());
     let as_json = options.scene.program.json;
-    // Agent by agent: breakdowns of a whole crowd would take far more memory than the run.
+    // Print agent by agent: breakdowns of a whole crowd would take far more memory than the run.
     say(match as_json {
         true => "{\"agents\":[".to_owned(),
         false => format!("t = {time:.2} s, frame {frame}\n"),
@@ -65,8 +65,8 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     }
 }
 
-/// Advances to a moment in seconds, even beyond the scenario's own end; stops early when no agent is left.
-/// The state is that of a run; only the last frame is computed in double precision throughout.
+/// Advances to the time `at` in seconds, even beyond the scenario's end; fails if no agents are left before. The state
+/// is that of a normal run; only the last frame is evaluated in double precision throughout.
 fn go_to(at: f64, simulation: &mut Simulation, progress: &Progress) -> Result<(), Failure> {
     let last = simulation.frame().clock.frame_at(at);
     while simulation.frame().clock.frame() < last {
@@ -84,7 +84,7 @@ fn go_to(at: f64, simulation: &mut Simulation, progress: &Progress) -> Result<()
     Ok(())
 }
 
-/// Ids and indices of the agents that are asked for.
+/// Ids and indices of the requested agents.
 fn inspected(
     simulation: &Simulation,
     options: &InspectOptions,

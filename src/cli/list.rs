@@ -1,4 +1,4 @@
-//! `sandbox list`: the scenarios and profiles, or what `--set` takes; `sandbox schema`: the same for editors.
+//! `sandbox list`: the scenarios and profiles, or the settings that `--set` takes. `sandbox schema`: the JSON Schema.
 
 use super::{Failure, say};
 use crate::scenario::catalog::NAMES;

@@ -1,4 +1,4 @@
-//! What shells and `man` are to know about the program.
+//! Shell completions and man pages.
 
 use std::fs;
 use std::io;
@@ -21,7 +21,7 @@ pub fn completions(shell: Shell) -> Result<(), Failure> {
     say(script)
 }
 
-/// `sandbox man`: the program's page, or all pages into a folder.
+/// `sandbox man`: prints the program's page, or writes all pages into a folder.
 pub fn man(folder: Option<&Path>) -> Result<(), Failure> {
     // `sandbox help` has no page.
     let command = Arguments::command().disable_help_subcommand(true);

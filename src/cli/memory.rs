@@ -1,4 +1,4 @@
-//! Runs that need more memory than there is: refused before anything is allocated.
+//! Rejects runs that need more memory than the machine has, before anything is allocated.
 
 use std::path::Path;
 
@@ -7,16 +7,21 @@ use super::arguments::OutputOptions;
 use crate::lab::bench::main_memory;
 use crate::scenario::Need;
 
-/// What is written of an agent, bytes of memory in one frame: in a recording, laid open in it, in a
-/// trajectory with every quantity and in another, in a checkpoint. Measured with 100,000 agents, where a run
-/// took 47.5 MB: 84.4, 305 (all laid open, recording and all), 150, 77.1 and 68.2 MB.
+// Memory that output files take per agent, bytes. Measured as peak memory with 100,000 agents, where a run without
+// output files took 47.5 MB.
+
+/// Recording: 84.4 MB.
 const RECORDED: u64 = 420;
+/// Recording with the forces on every agent, in addition to [`RECORDED`]: 305 MB together.
 const LAID_OPEN: u64 = 2_600;
+/// Trajectory with every quantity: 150 MB.
 const WITH_EVERYTHING: u64 = 1_200;
+/// Other trajectories: 77.1 MB.
 const TRAJECTORY: u64 = 360;
+/// Checkpoint: 68.2 MB.
 const CHECKPOINT: u64 = 260;
 
-/// Bytes of memory per agent that writing the files of a run takes.
+/// Memory that the output files of a run take, bytes per agent.
 pub fn of_writing(options: &OutputOptions) -> u64 {
     let trajectory = |path: &Path| match path.extension() {
         Some(extension) if extension == "csv" => WITH_EVERYTHING,
@@ -33,14 +38,14 @@ pub fn of_writing(options: &OutputOptions) -> u64 {
     parts.map(|(_, bytes)| bytes).sum::<u64>() + files.map(|path| trajectory(path)).sum::<u64>()
 }
 
-/// Bytes of memory per agent that writing what `inspect` found takes; what it prints is printed agent by agent.
+/// Memory that the recording of `inspect` takes, bytes per agent. Its printed output is made agent by agent.
 pub fn of_inspecting(saves: bool, all: bool) -> u64 {
     let laid_open = if all { LAID_OPEN } else { 0 };
     if saves { RECORDED + laid_open } else { 0 }
 }
 
-/// Refuses a run that needs more memory than this machine has, where the system says how much that is;
-/// `file` is what messages call its scenario, and writing takes so many bytes per agent.
+/// Rejects a run that needs more memory than this machine has, if the system tells how much that is. Output files
+/// take `writing` bytes per agent; messages call the scenario `file`.
 pub fn check(file: &str, need: &Need, writing: u64) -> Result<(), Failure> {
     let fits = main_memory().map_or(Ok(()), |there| need.check(file, writing, there));
     fits.map_err(|error| Failure::Input(error.to_string()))

@@ -1,4 +1,4 @@
-//! What was typed and what it means. The only place that names clap.
+//! The command line: arguments, commands, messages and exit codes. The only module that names clap.
 
 mod accuracy;
 mod arguments;
@@ -35,38 +35,38 @@ use crate::scenario::quote::{printable, shown};
 use crate::scenario::{Need, Scenario, ScenarioError, Setting, read_text, shipped_text};
 use arguments::{Arguments, Command, Source};
 
-/// Why a command did not do what was asked.
+/// Why a command failed.
 #[derive(Debug, thiserror::Error)]
 enum Failure {
-    /// What was typed or read makes no sense: exit code 2.
+    /// A scenario or a setting is invalid: exit code 2.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
-    /// The same, on the command line: exit code 2.
+    /// Another input is invalid: exit code 2.
     #[error("{0}")]
     Input(String),
-    /// The run cannot go on: exit code 1.
+    /// The simulation failed: exit code 1.
     #[error(transparent)]
     Fault(#[from] Fault),
-    /// The same, and somebody laid open in the frame where it ended: exit code 1.
+    /// The simulation failed, with the forces on the agent concerned: exit code 1.
     #[error("{fault}\n{agent}")]
     LaidOpen {
-        /// What happened.
+        /// The fault.
         fault: Fault,
-        /// To whom.
+        /// The forces on the agent in the last frame.
         agent: Box<Breakdown>,
     },
     /// A file cannot be written: exit code 1.
     #[error("{0}")]
     Output(String),
-    /// Something cannot be reproduced: exit code 1.
+    /// `reproduce`, `accuracy` or `stress` failed: exit code 1.
     #[error(transparent)]
     Reproduce(#[from] ReproduceError),
-    /// Somebody asked the run to end, and it did: exit code 130 or 143.
+    /// A signal ended the run: exit code 130 or 143.
     #[error("interrupted at {time:.2} s; results and files end there")]
     Interrupted {
-        /// The frame it ended with, seconds.
+        /// The time of the last frame, seconds.
         time: f64,
-        /// By which signal.
+        /// The exit code, 128 + the signal's number.
         exit_code: u8,
     },
 }
@@ -91,7 +91,7 @@ impl From<OutputsError> for Failure {
 }
 
 impl Failure {
-    /// With every force on whom it happened to.
+    /// Adds the forces on the agent that caused a fault.
     fn laid_open(self, simulation: &mut Simulation) -> Self {
         match self {
             Self::Fault(fault) => match Breakdown::of_fault(simulation, &fault) {
@@ -106,8 +106,8 @@ impl Failure {
     }
 }
 
-/// Runs the program; results go to stdout, talk to stderr. Exit code 0: done, 1: the run failed,
-/// 2: bad input, 130 and 143: interrupted.
+/// Runs the program. Results go to stdout, messages to stderr. Exit codes: 0 success, 1 the command failed, 2 invalid
+/// input, 130 and 143 interrupted.
 pub fn main() -> ExitCode {
     let command = Arguments::parse().command;
     match run(command) {
@@ -141,8 +141,8 @@ fn run(command: Command) -> Result<(), Failure> {
     }
 }
 
-/// Reads a scenario with the settings of the command line, among them its end, after the flag that gives
-/// it; what is written of it takes `writing` bytes of memory per agent. `outputs` learns what was read.
+/// Reads a scenario and applies the settings of the command line. `until` is a new end with the flag that gives it.
+/// Writing the output files takes `writing` bytes of memory per agent. Adds the files that were read to `outputs`.
 fn scenario(
     source: &Source,
     scene: &arguments::SceneOptions,
@@ -172,7 +172,7 @@ fn scenario(
         let setting = setting(&format!("{key}={value}"))?;
         let setting = setting.typed_as(format!("{flag} {}", shown(&value)));
         if flag == "--at" {
-            last = Some(setting); // a moment beyond the end moves the end, however it was given
+            last = Some(setting); // applied last: --at beyond the end moves the end, even one given by --set
             continue;
         }
         if let Some(other) = typed.iter().find(|other| other.path() == setting.path()) {
@@ -212,7 +212,7 @@ fn setting(text: &str) -> Result<Setting, Failure> {
         .map_err(|error| Failure::Input(format!("--set {}: {error}", shown(text))))
 }
 
-/// Writes results to stdout; a reader that has gone (`| head`) is no failure.
+/// Writes results to stdout. A closed pipe (`| head`) is not an error.
 fn say(text: impl AsRef<[u8]>) -> Result<(), Failure> {
     let mut stdout = std::io::stdout();
     let said = stdout.write_all(text.as_ref());
@@ -224,17 +224,16 @@ fn say(text: impl AsRef<[u8]>) -> Result<(), Failure> {
     }
 }
 
-/// Writes a line to stderr, without anything that a terminal obeys; where that is not possible nothing is lost
-/// that the exit code does not tell.
+/// Writes a line to stderr, with control characters escaped. Errors are ignored: the exit code tells of failures.
 fn talk(line: &str) {
     writeln!(std::io::stderr(), "{}", printable(line)).ok();
 }
 
-/// Where rayon looks for a number of threads, in this order.
+/// The environment variables from which rayon takes the number of threads, in this order.
 const THREADS: [&str; 2] = ["RAYON_NUM_THREADS", "RAYON_RS_NUM_CPUS"];
 
-/// Makes rayon use so many threads, else as many as the environment says, else all cores; to be called before
-/// anything else, which may compute in parallel.
+/// Sets the number of rayon's threads: `threads`, else the environment's number, else all cores. Call it before
+/// anything that may compute in parallel.
 fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
     let given = THREADS.into_iter().find_map(|name| {
         Some((

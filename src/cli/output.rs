@@ -1,4 +1,4 @@
-//! What a run writes beside its results, as far as the command line is concerned.
+//! The output files of a run: options, checks and the recording.
 
 use crate::engine::scene::Region;
 use crate::output::recording::{
@@ -12,7 +12,7 @@ use crate::engine::simulation::Simulation;
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::Scenario;
 
-/// Refuses outputs that cannot be, before any file is touched.
+/// Rejects outputs that cannot be written, before any file is touched.
 pub fn check(
     mut outputs: Outputs,
     options: &OutputOptions,
@@ -37,7 +37,7 @@ pub fn check(
     Ok(outputs.check()?)
 }
 
-/// The ids that `--debug-agents` names; none for `all` and `none`.
+/// The ids that `--debug-agents` lists; `None` without the option and for `all` and `none`.
 pub fn laid_open(record: &RecordOptions) -> Result<Option<Vec<u32>>, Failure> {
     let text = match record.debug_agents.as_deref() {
         None | Some("all" | "none") => return Ok(None),
@@ -51,17 +51,17 @@ pub fn laid_open(record: &RecordOptions) -> Result<Option<Vec<u32>>, Failure> {
     })
 }
 
-/// What a run writes beside its results.
+/// The recording of a run, if there is one.
 pub struct Output {
     recorder: Option<Recorder>,
     every: u64,
     from: u64,
-    /// Frames in the recording.
+    /// Number of frames recorded so far.
     recorded: u64,
 }
 
 impl Output {
-    /// Opens the recording, if one is asked for.
+    /// Opens the recording, if one is requested.
     pub fn create(
         record: &RecordOptions,
         scenario: &Scenario,
@@ -84,7 +84,7 @@ impl Output {
         })
     }
 
-    /// Records an evaluated frame if its turn has come.
+    /// Records an evaluated frame if it is due.
     pub fn log(&mut self, simulation: &Simulation, ms_per_frame: f64) -> Result<(), Failure> {
         let frame = simulation.frame().clock.frame();
         if let Some(recorder) = &mut self.recorder
@@ -106,7 +106,7 @@ impl Output {
             );
         }
         match self.recorder.map_or(Ok(()), Recorder::finish) {
-            // Whoever closes a window has seen enough.
+            // Closing the viewer is not an error.
             Err(gone @ RecordingError::ViewerGone { .. }) => {
                 talk(&format!("note: {gone}"));
                 Ok(())
@@ -116,7 +116,7 @@ impl Output {
     }
 }
 
-/// Where the recording goes, if there is to be one.
+/// Where the recording goes, if one is requested.
 fn destination(record: &RecordOptions) -> Result<Option<Destination>, Failure> {
     let address = |text: &String| {
         let address = text.parse().map(Viewer::At);
@@ -131,12 +131,12 @@ fn destination(record: &RecordOptions) -> Result<Option<Destination>, Failure> {
     Ok(asked.then_some(Destination { file, viewer }))
 }
 
-/// Refuses to record where the environment switches recordings off.
+/// Fails if the environment disables recordings.
 pub fn check_enabled() -> Result<(), Failure> {
     Ok(recording::check_enabled()?)
 }
 
-/// Writes one evaluated frame with some agents laid open.
+/// Records one evaluated frame, with the forces on some agents.
 pub fn save_moment(
     path: &Path,
     scenario: &Scenario,
@@ -152,7 +152,7 @@ pub fn save_moment(
     Ok(recorder.finish()?)
 }
 
-/// What a recording from the time `from` on says and shows.
+/// The options of a recording that begins at the time `from`.
 fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> RecordingOptions {
     let seed = scenario.scene.seed;
     let opens_at = scenario.view.opens_at_secs;

@@ -1,4 +1,4 @@
-//! What a run found, as text or JSON, on stdout.
+//! The results of a run as text or JSON.
 
 use serde_json::{Map, Value, json};
 
@@ -42,7 +42,7 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// The summary, and how it was computed.
+    /// The summary, with threads and run times.
     fn json(&self) -> Value {
         let stages: Map<String, Value> = self
             .simulation
@@ -95,7 +95,7 @@ impl<'a> Report<'a> {
         text
     }
 
-    /// Simulation alone, without recording.
+    /// Run time of the simulation, without output files.
     fn ms_per_frame(&self) -> f64 {
         self.simulation.stages().total_ms_per_frame()
     }

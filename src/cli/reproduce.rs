@@ -30,10 +30,10 @@ pub struct ReproduceOptions {
     pub threads: Option<usize>,
 }
 
-/// The name for everything that has `in_all`.
+/// The name of all products with `in_all`.
 const ALL: &str = "all";
 
-/// What can be asked for.
+/// The names of all products, and [`ALL`].
 pub fn names() -> Vec<&'static str> {
     PRODUCTS
         .iter()
@@ -42,7 +42,7 @@ pub fn names() -> Vec<&'static str> {
         .collect()
 }
 
-/// What can be asked for, with a line about each.
+/// All products and [`ALL`], each with a line about it.
 pub fn about() -> String {
     let products = PRODUCTS.iter().map(|p| (p.name, p.about));
     let outside = PRODUCTS.iter().filter(|p| !p.in_all).map(|p| p.name);
@@ -75,7 +75,7 @@ pub fn run(options: &ReproduceOptions) -> Result<(), Failure> {
     let said = reproduce(&products, &plan, &store, &watch);
     watch.ends();
     let said = said?;
-    // What was found is told even if it cannot be kept.
+    // Results are printed even if they cannot be saved.
     let updated = options.update.as_ref().map_or(Ok(()), |file| {
         let names = products.iter().map(|product| product.name);
         update(file, names.zip(said.iter().map(String::as_str)))

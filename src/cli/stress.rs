@@ -1,4 +1,4 @@
-//! `sandbox stress`: where the model breaks.
+//! `sandbox stress`: hard cases, stability maps, jitter.
 
 use std::path::PathBuf;
 
@@ -41,7 +41,7 @@ pub fn run(options: &StressOptions) -> Result<(), Failure> {
     watch.ends();
     let report = report?;
     let parts = report.parts();
-    // What was found is told even if it cannot be kept.
+    // Results are printed even if they cannot be saved.
     let updated = options.update.as_ref().map_or(Ok(()), |file| {
         let texts = parts.iter().map(|(name, text)| (*name, text.as_str()));
         update(file, texts)

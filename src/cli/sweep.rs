@@ -1,4 +1,4 @@
-//! `sandbox sweep`: a study from one file.
+//! `sandbox sweep`: a study, run from one file.
 
 use std::path::PathBuf;
 
@@ -13,7 +13,7 @@ use crate::lab::sweep::{
 };
 use crate::runs::outputs::{Manner, Outputs};
 
-/// What a study may look like.
+/// An example of a study, and of commands.
 pub const EXAMPLE: &str = r#"A study, JSON:
   {
     "scenario": "evacuation",
@@ -57,7 +57,7 @@ pub struct SweepOptions {
 
 pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     use_threads(options.threads)?;
-    // What is only listed or put together may have been computed on a larger machine.
+    // For --list and --merge the cells may have been computed on a larger machine.
     let computes = !options.list && !options.merge;
     let memory = computes.then(main_memory).flatten();
     let study = Study::read_within(&options.file, memory)?;
@@ -101,8 +101,8 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     }
 }
 
-/// Refuses results that cannot be written, or that would replace what the study is read from. A folder that this
-/// program did not make may have files of these names that are somebody's.
+/// Rejects results that cannot be written or would replace an input. In a folder that does not belong to a study,
+/// existing files with the results' names are replaced only with --force.
 fn check_outputs(study: &Study, shelf: &Shelf, options: &SweepOptions) -> Result<(), Failure> {
     let mut outputs = Outputs::new(options.force || shelf.is_begun());
     outputs.reads("the study", &options.file);
@@ -110,7 +110,7 @@ fn check_outputs(study: &Study, shelf: &Shelf, options: &SweepOptions) -> Result
         outputs.reads("the study's", path);
     }
     for file in study.files() {
-        // Others may begin the same study at the same time, so that nothing is tried that is not there.
+        // Another process may start the same study at the same time, so do not create trial files.
         outputs.writes("--out", &shelf.folder().join(file), Manner::Beside);
     }
     Ok(outputs.check()?)
@@ -130,7 +130,7 @@ fn list(gathered: &Gathered, options: &SweepOptions) -> Result<(), Failure> {
     say(gathered.list(shard))
 }
 
-/// Puts together what is there.
+/// Merges the finished cells.
 fn merge(study: &Study, shelf: &Shelf, options: &SweepOptions) -> Result<(), Failure> {
     let gathered = Gathered::of(study, shelf);
     for path in gathered.write(shelf)? {
@@ -171,7 +171,7 @@ fn merge(study: &Study, shelf: &Shelf, options: &SweepOptions) -> Result<(), Fai
 }
 
 fn some_failed(failed: &[String], of: usize) -> Failure {
-    /// More would only push the first ones out of sight.
+    /// Most failures to print: more would scroll the first ones off the screen.
     const MOST: usize = 5;
     let mut text = format!(
         "{} of {of} cells failed (run the same command to try them again):",
@@ -220,7 +220,7 @@ fn told(tally: &Tally, shard: Shard, as_json: bool) -> String {
     )
 }
 
-/// Rising numbers: `1–3, 7`.
+/// Formats ascending numbers as ranges: `1–3, 7`.
 fn ranges(numbers: &[usize]) -> String {
     let mut runs: Vec<[usize; 2]> = Vec::new();
     for &number in numbers {

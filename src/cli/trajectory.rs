@@ -1,4 +1,4 @@
-//! Trajectories, as far as the command line is concerned.
+//! Trajectory files: options and checks.
 
 use super::Failure;
 use super::arguments::TrajectoryOptions;
@@ -18,7 +18,7 @@ pub fn add(
         let format = Format::of(path)?;
         outputs.writes(option, path, Manner::InPlace);
         if format == Format::Sqlite {
-            // SQLite's own file, which goes with every commit.
+            // SQLite's journal, which exists during every transaction.
             let journal = journal(path).map_err(|error| Failure::Output(error.to_string()))?;
             outputs.writes(option, &journal, Manner::Beside);
         }
@@ -33,7 +33,7 @@ pub fn add(
 pub struct Trajectories(Vec<Trajectory>);
 
 impl Trajectories {
-    /// Opens those that are asked for.
+    /// Opens the requested files.
     pub fn create(
         options: &TrajectoryOptions,
         scenario: &Scenario,
@@ -45,7 +45,7 @@ impl Trajectories {
         Ok(Self(opened.collect::<Result<_, _>>()?))
     }
 
-    /// Adds an evaluated frame where its turn has come.
+    /// Adds an evaluated frame to the files in which it is due.
     pub fn log(&mut self, simulation: &Simulation) -> Result<(), Failure> {
         for trajectory in &mut self.0 {
             trajectory.log(simulation)?;
@@ -53,7 +53,7 @@ impl Trajectories {
         Ok(())
     }
 
-    /// Closes them all, whatever becomes of each.
+    /// Closes all files, even if one fails.
     pub fn finish(self) -> Result<(), Failure> {
         let finished: Vec<_> = self.0.into_iter().map(Trajectory::finish).collect();
         Ok(finished.into_iter().collect::<Result<(), _>>()?)

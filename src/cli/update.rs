@@ -1,4 +1,4 @@
-//! Texts put into a document that has places for them.
+//! `--update`: inserts tables into a document at marked places.
 
 use std::fs;
 use std::io::{self, Write};
@@ -9,7 +9,7 @@ use crate::lab::reproduce::put_between;
 use crate::runs::outputs::{Manner, Outputs, write_whole};
 use crate::scenario::input;
 
-/// Can the file be updated, and does no result replace it? Better told before hours of computing than after.
+/// Checks before a long computation that the file can be updated and that no result replaces it.
 pub fn check(file: &Path, out: &Path) -> Result<(), Failure> {
     let place = fs::canonicalize(file).map_err(|error| failed(file, &error))?;
     let mut outputs = Outputs::new(true);
@@ -26,7 +26,7 @@ pub fn check(file: &Path, out: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Puts texts into the places that a file has for them.
+/// Inserts texts at the places of a file that are marked with their names.
 pub fn update<'a>(
     file: &Path,
     texts: impl Iterator<Item = (&'a str, &'a str)>,

@@ -1,4 +1,4 @@
-//! What may be typed for a value.
+//! Parsers for the values of options.
 
 use std::path::PathBuf;
 
@@ -57,7 +57,7 @@ pub fn every_frames(text: &str) -> Result<u64, &'static str> {
     }
 }
 
-/// A path whose name the Rerun viewer knows for a recording's.
+/// A path with the extension that the Rerun viewer expects of a recording.
 pub fn recording() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| match path.extension() {
         Some(extension) if extension.eq_ignore_ascii_case("rrd") => Ok(path),

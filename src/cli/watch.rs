@@ -1,4 +1,4 @@
-//! How far long work has come.
+//! Progress of long computations.
 
 use std::io::IsTerminal;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use crate::lab::job;
 use crate::lab::reproduce::{self, CaseResult};
 use crate::lab::sweep::{self, Cell};
 
-/// A progress bar on stderr; where that is no terminal, a line for every finished case.
+/// A progress bar on stderr. If stderr is not a terminal, a line for every finished case instead.
 pub struct Watch {
     bar: ProgressBar,
     lines: bool,
@@ -29,7 +29,7 @@ impl Watch {
         }
     }
 
-    /// Nothing is left to be done.
+    /// Removes the bar.
     pub fn ends(&self) {
         self.bar.finish_and_clear();
     }
@@ -61,7 +61,7 @@ impl Watch {
     }
 }
 
-/// Expected seconds → steps of the bar.
+/// Converts expected seconds to steps of the bar.
 fn steps(seconds: f64) -> u64 {
     (seconds * 1e3).round() as u64
 }

@@ -1,8 +1,8 @@
-//! Checkpoints: a run written down whole, to be gone on with after a crash as if it had never stopped.
+//! Checkpoints: the complete state of a run, from which it resumes to the same bits as without interruption.
 //!
-//! A file is a line of text, the format's version, a SHA-256 of what follows, and that: the scenario as JSON,
-//! the state and what was measured so far, in postcard's encoding. It is written [whole](write_whole):
-//! whatever happens, a checkpoint of before is not lost.
+//! A file consists of a line of text, the format's version, a SHA-256 of the payload, and the payload in postcard's
+//! encoding: the scenario as JSON, the state, and the measurements so far. It is written [atomically](write_whole),
+//! so an earlier checkpoint is never lost.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -17,38 +17,38 @@ use crate::scenario::input;
 use crate::scenario::metrics::Metrics;
 use crate::scenario::{Need, Scenario, ScenarioError, Setting};
 
-/// How every file begins.
+/// The first bytes of every file.
 const MAGIC: &[u8] = b"sandbox checkpoint\n";
-/// To be raised with whatever changes what a file holds.
+/// Format version: increase it with every change to the contents of a file.
 const VERSION: u32 = 2;
-/// A longer file is refused, bytes: ten million agents, the most that may be, take 1 GB (99 bytes each, in the
-/// plaza), and the text of their scenario 256 MiB at most.
+/// Longest file that is read, bytes. Ten million agents, the most allowed, take 1 GB (99 bytes each, in the plaza),
+/// and the text of their scenario takes at most 256 MiB.
 const LONGEST: u64 = 1 << 32;
-/// The engine's sources: another engine goes on otherwise.
+/// Identifies the engine by a hash: a run may continue differently in another engine.
 const ENGINE: &str = env!("SANDBOX_ENGINE");
 
-/// A run that can be gone on with.
+/// A run that can be resumed.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Checkpoint {
-    /// The engine that wrote it.
+    /// [`ENGINE`] of the program that wrote it.
     engine: String,
-    /// What messages call the scenario's file.
+    /// The name of the scenario's file in messages.
     file: String,
-    /// The scenario with all settings in it.
+    /// The scenario as JSON, with all settings applied.
     document: String,
     state: State,
     densities: Vec<Option<(f64, f64)>>,
 }
 
-/// Why a checkpoint cannot be written or gone on with.
+/// Why a checkpoint cannot be written or resumed.
 #[derive(Debug, thiserror::Error)]
 pub enum CheckpointError {
-    /// The file cannot be written; one of before is as it was.
+    /// The file cannot be written; an existing one is unchanged.
     #[error("{}: cannot be written: {reason}", path.display())]
     Unwritable {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         reason: String,
     },
     /// The file cannot be read.
@@ -56,13 +56,13 @@ pub enum CheckpointError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         reason: String,
     },
-    /// It is something else.
+    /// The file is not a checkpoint.
     #[error("{}: is no checkpoint", .0.display())]
     Foreign(PathBuf),
-    /// It is of another version.
+    /// The checkpoint has another format version.
     #[error("{}: is a checkpoint of version {found}; this program reads version {VERSION}", path.display())]
     Version {
         /// The file.
@@ -70,24 +70,24 @@ pub enum CheckpointError {
         /// Its version.
         found: u32,
     },
-    /// It is not as it was written.
+    /// The file was changed or cut short.
     #[error("{}: is damaged: {reason}", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What shows it.
+        /// How this was found.
         reason: String,
     },
-    /// Its scenario makes no sense with the settings given now.
+    /// The scenario is invalid with the new settings.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
-    /// Its state and its scenario do not belong together.
+    /// The state does not match the scenario.
     #[error(transparent)]
     State(#[from] StateError),
 }
 
 impl Checkpoint {
-    /// Of an evaluated frame.
+    /// The checkpoint of an evaluated frame.
     pub fn of(scenario: &Scenario, simulation: &Simulation, metrics: &Metrics) -> Self {
         Self {
             engine: ENGINE.to_owned(),
@@ -98,31 +98,31 @@ impl Checkpoint {
         }
     }
 
-    /// Was it written by this very engine? Another one goes on, but perhaps not to the same bits.
+    /// Was it written by this version of the engine? Another version can resume, but perhaps not to the same bits.
     pub fn is_of_this_engine(&self) -> bool {
         self.engine == ENGINE
     }
 
-    /// How large its run becomes with some more settings.
+    /// Estimates the size of its run with additional settings.
     ///
     /// # Errors
-    /// A setting makes no sense.
+    /// A setting is invalid.
     pub fn need(&self, settings: &[Setting]) -> Result<Need, ScenarioError> {
         Need::parse(&self.document, &self.file, settings)
     }
 
-    /// The scenario with some more settings.
+    /// The scenario with additional settings.
     ///
     /// # Errors
-    /// A setting makes no sense.
+    /// A setting is invalid.
     pub fn scenario(&self, settings: &[Setting]) -> Result<Scenario, ScenarioError> {
         Scenario::parse(&self.document, &self.file, settings)
     }
 
-    /// Goes on with `scenario`, which is the checkpoint's own but for when it ends.
+    /// Resumes `scenario`, which is the checkpoint's own but may end at another time.
     ///
     /// # Errors
-    /// The scenario cannot have been in this state.
+    /// The state does not match the scenario.
     pub fn resume(self, scenario: &Scenario) -> Result<(Simulation, Metrics), CheckpointError> {
         let mut simulation = Simulation::resumed(scenario.scene.clone(), self.state)?;
         let mut metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
@@ -130,10 +130,10 @@ impl Checkpoint {
         Ok((simulation, metrics))
     }
 
-    /// Writes it, whole or not at all, through symbolic links.
+    /// Writes it atomically; follows symbolic links.
     ///
     /// # Errors
-    /// The file cannot be written, or is no regular file.
+    /// The file cannot be written, or is not a regular file.
     pub fn write(&self, path: &Path) -> Result<(), CheckpointError> {
         let failed = |reason: String| CheckpointError::Unwritable {
             path: path.to_owned(),
@@ -150,10 +150,10 @@ impl Checkpoint {
         written.map_err(|error| failed(error.to_string()))
     }
 
-    /// Reads it.
+    /// Reads a checkpoint.
     ///
     /// # Errors
-    /// There is no such file, or it is no checkpoint of this version that is as it was written.
+    /// The file cannot be read, is not a checkpoint of this version, or is damaged.
     pub fn read(path: &Path) -> Result<Self, CheckpointError> {
         let unreadable = |error: io::Error| CheckpointError::Unreadable {
             path: path.to_owned(),
@@ -163,17 +163,17 @@ impl Checkpoint {
         let start = Read::by_ref(&mut file).take(MAGIC.len() as u64);
         let start = input::rest(start, LONGEST).map_err(unreadable)?;
         if start != MAGIC {
-            return Err(CheckpointError::Foreign(path.to_owned())); // however long it is
+            return Err(CheckpointError::Foreign(path.to_owned())); // without reading the rest, which may be long
         }
         let bytes =
             input::rest(Read::chain(start.as_slice(), file), LONGEST).map_err(unreadable)?;
         Self::parse(&bytes, path)
     }
 
-    /// Reads it from bytes; `path` is what messages call it.
+    /// Reads a checkpoint from bytes; messages call it `path`.
     ///
     /// # Errors
-    /// It is no checkpoint of this version that is as it was written.
+    /// The bytes are not a checkpoint of this version, or are damaged.
     pub fn parse(bytes: &[u8], path: &Path) -> Result<Self, CheckpointError> {
         let damaged = |reason: &str| CheckpointError::Damaged {
             path: path.to_owned(),

@@ -5,20 +5,20 @@ use std::time::Instant;
 use crate::engine::simulation::{Fault, Simulation};
 use crate::scenario::Scenario;
 
-/// After a frame.
+/// Whether a run continues after a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Then {
-    /// On to the next.
+    /// Compute the next frame.
     GoOn,
-    /// This was the last.
+    /// This frame is the last.
     Stop,
 }
 
-/// Runs to `duration` seconds, or until `observe` says to stop: it sees every evaluated frame with the
-/// milliseconds that the frame before took.
+/// Runs until `duration` seconds, or until `observe` returns [`Then::Stop`]. `observe` gets every evaluated frame and
+/// the milliseconds that the previous frame took.
 ///
 /// # Errors
-/// The simulation cannot go on, or `observe` fails.
+/// The simulation fails, or `observe` does.
 pub fn drive<E: From<Fault>>(
     simulation: &mut Simulation,
     duration: f64,
@@ -40,7 +40,7 @@ pub fn drive<E: From<Fault>>(
     }
 }
 
-/// Stops when the scenario has come to its own end.
+/// Stops when one of the scenario's [`stop`](Scenario::stop) conditions holds.
 pub fn unless_over(simulation: &Simulation, scenario: &Scenario) -> Then {
     let frame = simulation.frame();
     let empty = frame.agents.is_empty() && !simulation.expects_agents();

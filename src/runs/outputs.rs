@@ -1,40 +1,39 @@
-//! The files that the program writes: one way to write each, and the trial of all of them before anything is
-//! computed.
+//! Output files: how they are written, and a check of all of them before the computation starts.
 //!
-//! A file is written in place (recordings, trajectories, tables, pictures), or whole: under a temporary name
-//! beside it, and renamed (checkpoints, finished cases). Either way symbolic links are followed, devices and
-//! FIFOs are never replaced, and the umask decides who may read a new file.
+//! Recordings, trajectories, tables and pictures are written in place. Checkpoints and finished cases are written
+//! atomically: under a temporary name in the same folder, then renamed. In both cases symbolic links are followed,
+//! devices and FIFOs are never replaced, and new files get permissions from the umask.
 
 use std::fs::{self, File, Metadata};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// Longer chains of symbolic links are circles.
+/// A chain of more symbolic links than this counts as a cycle.
 const MOST_LINKS: usize = 40;
 
-/// How an output is written, which decides how it is tried.
+/// How an output is written, which determines how it is checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Manner {
     /// The file is opened and truncated.
     InPlace,
-    /// The file is replaced by a whole one, see [`write_whole`].
+    /// The file is replaced atomically, see [`write_whole`].
     Whole,
-    /// The file is one of several in a folder, or beside another: only an existing one is tried.
+    /// The file is one of several in a folder, or goes with another file. Checked only if it exists.
     Beside,
-    /// The folder is made if there is none.
+    /// A folder, created if missing.
     Folder,
 }
 
-/// Why a file is not written.
+/// Why a file cannot be written.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OutputsError {
-    /// The file is there, and must not be replaced.
+    /// The file exists and must not be replaced.
     #[error("{0}: exists already; give --force to replace it")]
     Exists(String),
-    /// Two options have the same file.
+    /// Two options name the same file.
     #[error("{0} and {1} are one file; give each a file of its own")]
     Shared(String, String),
-    /// An option has the file of an input.
+    /// An option names an input file.
     #[error(
         "{output} and {input} are one file; an input is never replaced, not even with --force: write to another file"
     )]
@@ -49,7 +48,7 @@ pub enum OutputsError {
     Unwritable {
         /// The option with its file.
         output: String,
-        /// What the system says.
+        /// The system's message.
         reason: String,
     },
 }
@@ -66,7 +65,7 @@ pub struct Outputs {
 struct Input {
     name: String,
     path: PathBuf,
-    /// The option that may go on with this file.
+    /// The option that may replace this file.
     goes_on: Option<&'static str>,
 }
 
@@ -78,14 +77,14 @@ struct Output {
 }
 
 impl Output {
-    /// As messages call it.
+    /// Its name in messages.
     fn name(&self) -> String {
         format!("{} {}", self.option, self.path.display())
     }
 }
 
 impl Outputs {
-    /// Of a command that replaces existing files only with `force`.
+    /// No files yet. Existing files may be replaced only with `force`.
     pub fn new(force: bool) -> Self {
         Self {
             force,
@@ -102,8 +101,8 @@ impl Outputs {
         });
     }
 
-    /// Adds an input that is read whole before anything is written; `option` may replace it, also without
-    /// force.
+    /// Adds an input that is read completely before anything is written. `option` may replace it, even without
+    /// `force`.
     pub fn goes_on_with(&mut self, name: &str, path: &Path, option: &'static str) {
         self.reads(name, path);
         if let Some(input) = self.inputs.last_mut() {
@@ -111,7 +110,7 @@ impl Outputs {
         }
     }
 
-    /// Adds an output, which `option` names.
+    /// Adds an output file of `option`.
     pub fn writes(&mut self, option: &'static str, path: &Path, manner: Manner) {
         self.outputs.push(Output {
             option,
@@ -120,12 +119,12 @@ impl Outputs {
         });
     }
 
-    /// Tries all outputs and leaves everything as it was: existing files are opened, not truncated; missing
-    /// files and folders are made and removed.
+    /// Checks that all outputs can be written, and leaves everything unchanged: existing files are opened but not
+    /// truncated; missing files and folders are created and removed.
     ///
     /// # Errors
-    /// An output cannot be written, is the file of another output or of an input (also through symbolic and
-    /// hard links and other spellings), or exists and `force` is not given.
+    /// An output cannot be written, is the same file as another output or an input (also through links or other
+    /// spellings), or exists without `force`.
     pub fn check(&self) -> Result<(), OutputsError> {
         let mut trial = Trial::default();
         let mut existed = Vec::with_capacity(self.outputs.len());
@@ -136,7 +135,7 @@ impl Outputs {
                 reason: error.to_string(),
             })?);
         }
-        // By now every file is there that will be, so that each has an identity.
+        // The trial files still exist, so every output has an identity.
         let files: Vec<_> = self.outputs.iter().map(|o| identity(&o.path)).collect();
         let inputs: Vec<_> = self.inputs.iter().map(|i| identity(&i.path)).collect();
         for (k, (output, file)) in self.outputs.iter().zip(&files).enumerate() {
@@ -164,7 +163,7 @@ impl Outputs {
     }
 }
 
-/// What a trial has made, to be removed again.
+/// The files and folders that a check created; removed on drop.
 #[derive(Default)]
 struct Trial {
     files: Vec<PathBuf>,
@@ -172,7 +171,7 @@ struct Trial {
 }
 
 impl Trial {
-    /// Tries one output. Was it there before?
+    /// Checks one output. Returns whether it existed.
     fn attempt(&mut self, output: &Output) -> io::Result<bool> {
         let path = &output.path;
         let there = match fs::metadata(path) {
@@ -198,7 +197,7 @@ impl Trial {
                     refuse_device(&about)?;
                     try_folder(folder_of(&fs::canonicalize(path)?))?;
                 }
-                // To open a FIFO is to wait for its reader.
+                // Opening a FIFO would wait for its reader.
                 if about.is_file() {
                     File::options().append(true).open(path)?;
                 }
@@ -207,12 +206,12 @@ impl Trial {
         Ok(true)
     }
 
-    /// Makes a folder and those that it is in.
+    /// Creates a folder and its missing parents.
     fn make_folder(&mut self, folder: &Path) -> io::Result<()> {
         let mut missing: Vec<&Path> = folder.ancestors().collect();
         missing.retain(|folder| !folder.as_os_str().is_empty() && !folder.exists());
         for folder in missing.into_iter().rev() {
-            // `a/..` is there as soon as `a` is.
+            // `a/..` exists as soon as `a` does.
             if !folder.exists() {
                 fs::create_dir(folder)?;
                 self.folders.push(folder.to_owned());
@@ -233,11 +232,11 @@ impl Drop for Trial {
     }
 }
 
-/// Writes a file whole or not at all: under a temporary name beside it, and renamed. A symbolic link stays, and
-/// what it leads to is replaced; an existing file's permissions are kept.
+/// Writes a file atomically: under a temporary name in the same folder, then renamed. The target of a symbolic link
+/// is replaced, not the link. The permissions of an existing file are kept.
 ///
 /// # Errors
-/// It cannot be written, or is a folder, a device or a FIFO. A file of before is as it was.
+/// The file cannot be written, or is a folder, a device or a FIFO. An existing file is then unchanged.
 pub fn write_whole(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
     let permissions = match fs::metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => None,
@@ -252,32 +251,32 @@ pub fn write_whole(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>)
     let mut temporary = temporary_in(folder_of(&place))?;
     write(temporary.as_file_mut())?;
     if let Some(permissions) = permissions {
-        // Not every file system has them.
+        // Not every file system supports permissions.
         temporary.as_file().set_permissions(permissions).ok();
     }
     temporary.persist(&place)?;
     Ok(())
 }
 
-/// Makes a file in `folder` and removes it.
+/// Checks that a file can be created in `folder`.
 ///
 /// # Errors
-/// It cannot be made.
+/// It cannot.
 pub fn try_folder(folder: &Path) -> io::Result<()> {
     temporary_in(folder).map(|_| ())
 }
 
-/// A file with a name of its own and the permissions of any new file; errors do not name it.
+/// A temporary file with a unique name and the default permissions. Errors do not contain its name.
 fn temporary_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut new = File::options();
     let new = new.read(true).write(true).create_new(true);
     tempfile::Builder::new().make_in(folder, |path| new.open(path))
 }
 
-/// Where `path` leads, through symbolic links to a file that may be missing.
+/// Resolves symbolic links; the file at the end may be missing.
 ///
 /// # Errors
-/// Links go in a circle, or cannot be read.
+/// The links form a cycle, or cannot be read.
 pub fn followed(path: &Path) -> io::Result<PathBuf> {
     let mut place = path.to_owned();
     for _ in 0..MOST_LINKS {
@@ -306,7 +305,7 @@ fn refuse_folder(about: &Metadata) -> io::Result<()> {
     }
 }
 
-/// A device that is replaced by a file is lost.
+/// Rejects anything but regular files: a rename would replace a device.
 fn refuse_device(about: &Metadata) -> io::Result<()> {
     match about.is_file() {
         true => Ok(()),
@@ -316,8 +315,8 @@ fn refuse_device(about: &Metadata) -> io::Result<()> {
     }
 }
 
-/// What two paths have in common that lead to the same file; none of a missing file, nor of a device that
-/// many may write to, like /dev/null.
+/// An identity that is equal for two paths to the same file. `None` for missing files, folders and character devices
+/// such as /dev/null, which several outputs may share.
 #[cfg(unix)]
 fn identity(path: &Path) -> Option<(u64, u64)> {
     use std::os::unix::fs::{FileTypeExt, MetadataExt};

@@ -1,4 +1,4 @@
-//! What a run found, without how long it took: any other run of the same scenario finds the same.
+//! The reproducible results of a run, without run times.
 
 use std::collections::BTreeMap;
 
@@ -9,37 +9,37 @@ use crate::engine::simulation::Simulation;
 use crate::scenario::Scenario;
 use crate::scenario::metrics::{Metric, Metrics};
 
-/// The results of one run, as `--json` reports them.
+/// The results of a run, part of what `--json` reports.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
-    /// What the scenario is called.
+    /// The name of the scenario.
     pub scenario: String,
-    /// The profile of agents that name none.
+    /// The default profile.
     pub profile: String,
-    /// Seed of who enters.
+    /// Seed of the population: bodies and start positions.
     pub seed: u64,
-    /// Seed of what they do.
+    /// Seed of the behavior: RVO's candidate velocities.
     pub behaviour_seed: u64,
     /// SHA-256 of the final state.
     pub state_sha256: String,
     /// Frames computed.
     pub frames: u64,
-    /// The simulated time at the end, seconds.
+    /// Simulated time at the end, seconds.
     pub time_secs: f64,
-    /// How many agents entered.
+    /// Number of agents that entered.
     pub agents: u32,
-    /// The measurements by name; counts are whole numbers, `null` where the run gave none.
+    /// The measurements by name; counts are integers, missing values are `null`.
     pub metrics: BTreeMap<String, Value>,
-    /// Moves that would have crossed a wall.
+    /// Moves that were stopped at a wall that they would have crossed.
     pub contained_moves: u64,
-    /// Speeds that were cut to `max_speed`.
+    /// How many times a speed was clamped to `max_speed`.
     pub clamped_speeds: u64,
-    /// Agents who would have entered inside an obstacle.
+    /// Agents that would have entered inside an obstacle and were moved.
     pub displaced_agents: usize,
 }
 
 impl Summary {
-    /// Of a run that has come to its end.
+    /// The summary of a finished run.
     pub fn of(scenario: &Scenario, simulation: &Simulation, metrics: &Metrics) -> Self {
         let (frame, outcome) = (simulation.frame(), simulation.outcome());
         let measured = metrics.results(simulation).into_iter();
@@ -60,7 +60,7 @@ impl Summary {
     }
 }
 
-/// A metric's value; counts of agents are whole numbers.
+/// A metric's value as JSON; counts of agents are integers.
 pub fn value(metric: &Metric) -> Value {
     match metric.value {
         Some(count) if metric.unit == "agents" => json!(count as u64),

@@ -1,4 +1,4 @@
-//! What `sandbox measure` takes.
+//! The options of `sandbox measure`.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! The pictures and the recording of what is measured.
+//! The pictures and the recording of measurements.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::output::trajectory::read::Tracks;
 
 const RECORDING: &str = "measured.rrd";
 
-/// The names of the files that may be written.
+/// The names of the files that can be written.
 pub fn names() -> impl Iterator<Item = String> {
     let pictures = pictures::STEMS.into_iter().flat_map(|stem| {
         let name = |kind| format!("{stem}.{kind}");
@@ -17,13 +17,13 @@ pub fn names() -> impl Iterator<Item = String> {
     [RECORDING.to_owned()].into_iter().chain(pictures)
 }
 
-/// Draws what was measured.
+/// Draws the measurements.
 pub fn save_pictures(folder: &Path, measured: &Measured, site: &Site) -> Result<(), Failure> {
     let saved = pictures::save(folder, measured, site);
     saved.map_err(|error| Failure::Output(error.to_string()))
 }
 
-/// The recording of what is measured.
+/// The recording of the measurements.
 pub struct Recording<'a>(MomentRecorder<'a>);
 
 impl<'a> Recording<'a> {

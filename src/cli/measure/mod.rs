@@ -20,7 +20,7 @@ use crate::output::trajectory::read::{ReadError, ReadOptions, Tracks, Unit, read
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::floor_plan::{self, FloorPlan};
 
-/// Instead of a floor plan.
+/// The value of `--geometry` for no walls.
 const NO_WALLS: &str = "none";
 
 pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
@@ -68,7 +68,7 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     say(report.text())
 }
 
-/// Refuses results that cannot be written, or that would replace what is measured.
+/// Rejects results that cannot be written or would replace an input.
 fn check_outputs(options: &MeasureOptions, folder: &Path) -> Result<(), Failure> {
     let mut outputs = Outputs::new(options.program.force);
     outputs.reads("the trajectories", &options.trajectory);
@@ -83,7 +83,7 @@ fn check_outputs(options: &MeasureOptions, folder: &Path) -> Result<(), Failure>
     Ok(outputs.check()?)
 }
 
-/// Where results go: beside where the user is, not beside the data.
+/// The folder for the results. By default it lies in the current folder, not beside the data.
 fn folder(options: &MeasureOptions) -> PathBuf {
     let named = || {
         let stem = options.trajectory.file_stem().unwrap_or_default();
@@ -124,7 +124,7 @@ fn what(options: &MeasureOptions, tracks: &Tracks) -> Options {
     }
 }
 
-/// Walls from a plan, else from the trajectories' own file.
+/// The walls, from a floor plan or else from the trajectory file.
 fn site(options: &MeasureOptions, tracks: &Tracks) -> Result<Site, Failure> {
     let plan = match (&options.geometry, tracks.walkable.as_slice()) {
         (Some(path), _) if path.as_os_str() == NO_WALLS => None,
@@ -144,7 +144,7 @@ fn site(options: &MeasureOptions, tracks: &Tracks) -> Result<Site, Failure> {
     Ok(Site::new(solids))
 }
 
-/// Something is wrong with the geometry in the trajectories' own file.
+/// The error for a problem with the geometry in the trajectory file.
 fn own(options: &MeasureOptions, problem: &dyn std::fmt::Display) -> Failure {
     let path = options.trajectory.display();
     Failure::Input(format!(
@@ -152,7 +152,7 @@ fn own(options: &MeasureOptions, problem: &dyn std::fmt::Display) -> Failure {
     ))
 }
 
-/// Says what a careful reader of the results should know.
+/// Prints notes on unusual rows and crossings.
 fn report_oddities(measured: &Measured) {
     let overview = &measured.overview;
     let (inside, deepest) = overview.inside;
@@ -183,7 +183,7 @@ fn report_oddities(measured: &Measured) {
     }
 }
 
-/// Rows measured, shown only if stderr is a terminal.
+/// A progress bar of the measured rows, shown only if stderr is a terminal.
 struct Progress(ProgressBar);
 
 impl Progress {
