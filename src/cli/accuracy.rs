@@ -14,22 +14,22 @@ use crate::lab::reproduce::Store;
 
 #[derive(Args)]
 pub struct AccuracyOptions {
-    /// The scenes [default: all]
+    /// Scenes to measure [default: all]
     #[arg(value_parser = PossibleValuesParser::new(scenes()))]
     pub scene: Vec<String>,
-    /// What is turned; may be repeated [default: all that matter in the scene]
+    /// Numerical choice to vary; may be repeated [default: all that matter in the scene]
     #[arg(long, value_name = "KNOB", value_parser = PossibleValuesParser::new(knobs()))]
     pub knob: Vec<String>,
-    /// Few values, seeds and turns: less than a minute
+    /// Few values, seeds and repeats; takes less than a minute
     #[arg(long)]
     pub quick: bool,
-    /// Folder for the results; what is finished in it is not done again
+    /// Folder for the results; runs finished there are not repeated
     #[arg(long, value_name = "DIR", default_value = "accuracy")]
     pub out: PathBuf,
-    /// Put the tables also between the lines <!-- NAME --> and <!-- /NAME --> of a file
+    /// Also insert the tables into this file, between the lines <!-- NAME --> and <!-- /NAME -->
     #[arg(long, value_name = "FILE.md")]
     pub update: Option<PathBuf>,
-    /// Runs to compute at once, each on one thread [default: all cores]
+    /// Number of runs to compute at once, each on one thread [default: all cores]
     #[arg(long, value_parser = threads)]
     pub threads: Option<usize>,
     /// Print one JSON object instead of text
@@ -39,7 +39,7 @@ pub struct AccuracyOptions {
 
 /// All scenes, each with a line about it.
 pub fn about() -> String {
-    let walls = "density and force by five ways of seeing walls, beside the exact integrals";
+    let walls = "density and force of five ways to treat walls, compared with the exact integrals";
     let lines = SCENES.iter().map(|scene| (scene.name, scene.about));
     lines
         .chain([(WALLS, walls)])

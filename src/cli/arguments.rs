@@ -29,7 +29,7 @@ const SCHEMA_EXAMPLE: &str = "\
 Example: sandbox schema > scenario.schema.json
 Editors use it where a scenario has the key \"$schema\": \"scenario.schema.json\".";
 
-/// Simulate, measure and inspect dense crowds (SPH crowds, van Toll et al. 2021).
+/// Simulate, measure and inspect dense crowds (SPH crowds, van Toll et al. 2021)
 #[derive(Parser)]
 #[command(version, arg_required_else_help = true, after_help = EXAMPLES)]
 pub struct Arguments {
@@ -39,54 +39,54 @@ pub struct Arguments {
 
 #[derive(Subcommand)]
 pub enum Command {
-    /// 400 people leave a room through a narrow door (§6.1)
+    /// Run the evacuation: 400 people leave a room through a narrow door (§6.1)
     #[command(
         after_help = "Example: sandbox evacuation --profile 'sf->sph' --set rest_density_max=6 --json"
     )]
     Evacuation(RunOptions),
-    /// A crowd crosses a stream on its way to a narrow door (§6.2)
+    /// Run the crossing: a crowd crosses a stream on its way to a narrow door (§6.2)
     #[command(after_help = "Example: sandbox crossing --profile rvo --save crossing.rrd")]
     Crossing(RunOptions),
-    /// 10,000 people before a stage, and a shockwave (§6.3)
+    /// Run the concert: 10,000 people before a stage, and a shockwave (§6.3)
     #[command(
         after_help = "Example: sandbox concert --record-from 149 --save recordings/concert.rrd --force"
     )]
     Concert(RunOptions),
-    /// 50,000 people stream over a square into the queues before ten gates (§7)
+    /// Run the plaza: 50,000 people cross a square to the queues before ten gates (§7)
     #[command(after_help = "Example: sandbox plaza --until 30 --save plaza.rrd --record-every 25")]
     Plaza(RunOptions),
     /// Run a scenario file
     #[command(after_help = "Example: sandbox run my_station.json --until 60 --threads 2 --json")]
     Run {
-        /// The scenario, JSON
+        /// The scenario, a JSON file
         file: PathBuf,
         #[command(flatten)]
         options: RunOptions,
     },
-    /// Go on with a run from a checkpoint, as if it had never stopped
+    /// Resume a run from a checkpoint, with the same results as without interruption
     #[command(after_help = "Example: sandbox resume concert.checkpoint --json")]
     Resume(ResumeOptions),
-    /// Lay open the forces on single agents at one moment
+    /// Print every force on single agents at one moment
     #[command(after_help = "Example: sandbox inspect evacuation --agent 17 --at 15 --json")]
     Inspect(InspectOptions),
-    /// Regenerate the paper's tables and figures (§6) beside the published ones
+    /// Regenerate the paper's tables and figures (§6) and compare them with the published ones
     #[command(
         after_help = format!("{}Example: sandbox reproduce table1 fig5 --seeds 3", reproduce::about())
     )]
     Reproduce(reproduce::ReproduceOptions),
-    /// Measure how fast it is on this machine: a table, one JSON object, a picture
+    /// Measure performance on this machine: a table, a JSON object, pictures
     #[command(after_help = format!("{}{}", bench::about(), bench::EXAMPLES))]
     Bench(bench::BenchOptions),
-    /// Measure run time against error for every numerical choice: tables and work-precision diagrams
+    /// Measure run time against error for each numerical choice: tables and work-precision diagrams
     #[command(after_help = format!("{}Example: sandbox accuracy relaxed wall --knob integrator", accuracy::about()))]
     Accuracy(accuracy::AccuracyOptions),
     /// Run hard cases, map the largest stable time step, measure jitter
     #[command(after_help = "Example: sandbox stress --quick")]
     Stress(stress::StressOptions),
-    /// Print the JSON Schema of scenario files, by which editors complete and check them
+    /// Print the JSON Schema of scenario files, for completion and checks in editors
     #[command(after_help = SCHEMA_EXAMPLE)]
     Schema,
-    /// Run a scenario over a grid or list of settings and over seeds: a table, on many threads or machines
+    /// Run a scenario over a grid or list of settings and over seeds, on many threads or machines
     #[command(after_help = sweep::EXAMPLE)]
     Sweep(sweep::SweepOptions),
     /// Measure densities, speeds and flows in trajectories, real or simulated (§8)
@@ -94,14 +94,14 @@ pub enum Command {
         after_help = "Example: sandbox measure run.sqlite --line 21,9.6,21,10.4 --region 15,8,19,12"
     )]
     Measure(measure::MeasureOptions),
-    /// List the scenarios and profiles, or the settings that --set takes
+    /// List the built-in scenarios and the profiles, or the settings that --set takes
     #[command(after_help = "Example: sandbox list --settings")]
     List {
-        /// List what --set takes instead of the scenarios and profiles
+        /// List the settings that --set takes, with meaning, unit, default and range
         #[arg(long)]
         settings: bool,
     },
-    /// Print what a shell needs to complete commands and options
+    /// Print a shell completion script
     #[command(
         after_help = "Example: sandbox completions bash > ~/.local/share/bash-completion/completions/sandbox"
     )]
@@ -109,10 +109,10 @@ pub enum Command {
         /// The shell
         shell: Shell,
     },
-    /// Print the man page of the program, or write those of all subcommands too
+    /// Print the man page, or write the pages of all subcommands
     #[command(after_help = "Example: sandbox man --out ~/.local/share/man/man1")]
     Man {
-        /// Write a page for the program and one for every subcommand into this folder instead
+        /// Write the pages of the program and of all subcommands to this folder instead
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
@@ -121,19 +121,20 @@ pub enum Command {
 /// Options that change a scenario and how it is computed.
 #[derive(Args)]
 pub struct SceneOptions {
-    /// Profile of all agents that name none of their own: sf, rvo, sf+sph, rvo+sph, sph, sf->sph or rvo->sph (quote the arrow)
+    /// Default profile, for agents that name none: sf, rvo, sf+sph, rvo+sph, sph, sf->sph or rvo->sph (quote the
+    /// arrow)
     #[arg(long, value_name = "NAME")]
     pub profile: Option<String>,
     /// Seed of all random numbers
     #[arg(long, allow_negative_numbers = true, value_parser = seed)]
     pub seed: Option<u64>,
-    /// Numerics: the paper's, cheaper ones, or nearer to the model's own limit (see docs/accuracy.md)
+    /// Numerical settings: the paper's, cheaper ones, or more accurate ones (see docs/accuracy.md)
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Preset::ALL.map(|(name, _)| name)))]
     pub preset: Option<String>,
-    /// Δt_fine in seconds, or `auto`: the largest step at which the crowd is sure to come to rest
+    /// Time step Δt_fine in seconds, or `auto`: the largest step that is safely stable
     #[arg(long, value_name = "SECS|auto")]
     pub time_step: Option<String>,
-    /// A floor plan, WKT or GeoJSON in metres, in place of the scenario's walkable area and obstacles
+    /// A floor plan that replaces the scenario's walkable area and obstacles, WKT or GeoJSON in meters
     #[arg(long, value_name = "FILE")]
     pub geometry: Option<PathBuf>,
     /// Change a setting of the scenario (see `sandbox list --settings`); may be repeated
@@ -146,7 +147,7 @@ pub struct SceneOptions {
 /// Options of computing and reporting.
 #[derive(Args)]
 pub struct ProgramOptions {
-    /// Threads to compute on; the results do not depend on it [default: all cores]
+    /// Number of threads; the results do not depend on it [default: all cores]
     #[arg(long, value_parser = threads)]
     pub threads: Option<usize>,
     /// Replace existing output files
@@ -178,7 +179,7 @@ pub struct ResumeOptions {
 /// The length of a run and its output files.
 #[derive(Args)]
 pub struct OutputOptions {
-    /// Stop at this time, seconds [default: the scenario's]
+    /// Time at which the run ends, seconds [default: the scenario's duration]
     #[arg(long, value_name = "SECS", allow_negative_numbers = true, value_parser = seconds)]
     pub until: Option<f64>,
     #[command(flatten)]
@@ -192,10 +193,11 @@ pub struct OutputOptions {
 /// Options of checkpoints.
 #[derive(Args)]
 pub struct CheckpointOptions {
-    /// Write checkpoints to this file, each in place of the one before, and one at the end of a run that has none
+    /// Write checkpoints to this file, each replacing the previous one; a run shorter than the interval writes one at
+    /// its end
     #[arg(long, value_name = "FILE")]
     pub checkpoint: Option<PathBuf>,
-    /// Every so many simulated seconds
+    /// Simulated seconds between checkpoints
     #[arg(long, value_name = "SECS", default_value_t = 10.0, requires = "checkpoint", value_parser = positive_seconds)]
     pub checkpoint_every: f64,
 }
@@ -207,19 +209,19 @@ pub struct RecordOptions {
     /// Write a recording for the Rerun viewer
     #[arg(long, value_name = "FILE.rrd", value_parser = recording())]
     pub save: Option<PathBuf>,
-    /// Show the run in a Rerun viewer while it goes on; starts one if none is there
+    /// Show the run live in a Rerun viewer; starts one if none is running
     #[arg(long)]
     pub spawn: bool,
-    /// Show the run in the viewer that listens there: rerun+http://HOST:PORT/proxy, or HOST:PORT
+    /// Show the run live in the viewer at this address: rerun+http://HOST:PORT/proxy, or HOST:PORT
     #[arg(long, value_name = "URL", conflicts_with = "spawn")]
     pub connect: Option<String>,
-    /// Record every so many frames
-    #[arg(long, value_name = "FRAMES", default_value_t = 5, requires = "record", value_parser = every_frames)]
+    /// Record every N-th frame
+    #[arg(long, value_name = "N", default_value_t = 5, requires = "record", value_parser = every_frames)]
     pub record_every: u64,
-    /// Record from this time on, seconds
+    /// Start recording at this time, seconds
     #[arg(long, value_name = "SECS", default_value_t = 0.0, requires = "record", allow_negative_numbers = true, value_parser = seconds)]
     pub record_from: f64,
-    /// Lay these agents open in the recording: ids, all or none [default: the scenario's choice]
+    /// Agents whose forces the recording shows: ids, all or none [default: the scenario's choice]
     #[arg(
         long,
         value_name = "17,42|all|none",
@@ -227,7 +229,7 @@ pub struct RecordOptions {
         conflicts_with = "debug_region"
     )]
     pub debug_agents: Option<String>,
-    /// Lay open the agents that are in this rectangle at each recorded frame
+    /// Show the forces on the agents that are in this rectangle in each recorded frame
     #[arg(
         long,
         value_name = "X0,Y0,X1,Y1",
@@ -240,31 +242,32 @@ pub struct RecordOptions {
 /// Options of trajectory files.
 #[derive(Args)]
 pub struct TrajectoryOptions {
-    /// Write everybody's trajectory: .sqlite or .db for JuPedSim and PedPy, .txt, or .csv with every quantity; may be repeated
+    /// Write the trajectories: .sqlite or .db for JuPedSim and PedPy, .txt, or .csv with all quantities; may be
+    /// repeated
     #[arg(long = "trajectory", value_name = "FILE")]
     pub files: Vec<PathBuf>,
-    /// Frames per second of the trajectories; must divide the simulation's
+    /// Frames per second of the trajectories; must divide the simulation's frame rate
     #[arg(long = "trajectory-fps", value_name = "N", default_value_t = 10.0, requires = "files", value_parser = frame_rate)]
     pub fps: f64,
 }
 
 #[derive(Args)]
 pub struct InspectOptions {
-    /// A scenario by name, or a scenario file
+    /// A built-in scenario or a scenario file
     #[arg(value_name = "SCENARIO_OR_FILE")]
     pub scenario: String,
     #[command(flatten)]
     pub scene: SceneOptions,
-    /// The agent's id; may be repeated
+    /// Id of an agent; may be repeated
     #[arg(long, value_name = "ID", required_unless_present = "all", value_parser = id)]
     pub agent: Vec<u32>,
     /// Inspect every agent
     #[arg(long, conflicts_with = "agent")]
     pub all: bool,
-    /// The moment, seconds; 0 is the scenario's start, nobody moved
+    /// The moment, seconds; at 0 no agent has moved yet
     #[arg(long, value_name = "SECS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = seconds)]
     pub at: f64,
-    /// Write the same as a recording for the Rerun viewer
+    /// Also write this moment as a recording for the Rerun viewer
     #[arg(long, value_name = "FILE.rrd", value_parser = recording())]
     pub save: Option<PathBuf>,
 }

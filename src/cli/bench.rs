@@ -21,10 +21,10 @@ Examples:
 
 #[derive(Args)]
 pub struct BenchOptions {
-    /// What to measure
+    /// The benchmark to run
     #[arg(value_parser = PossibleValuesParser::new(names()))]
     pub what: String,
-    /// Folder for the results as JSON, SVG and PNG
+    /// Write the results to this folder as JSON, SVG and PNG
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Replace existing results
@@ -33,19 +33,19 @@ pub struct BenchOptions {
     /// Print one JSON object instead of text
     #[arg(long)]
     pub json: bool,
-    /// How often to measure the same [default: 7, or 2 with --quick]
+    /// Number of repeats of each measurement [default: 7, or 2 with --quick]
     #[arg(long, value_name = "N", value_parser = repeats)]
     pub repeats: Option<usize>,
-    /// Small crowds and few steps, in seconds: shows that it works, not how fast it is
+    /// Small crowds and few steps; takes seconds and checks that the benchmark works, not the speed
     #[arg(long)]
     pub quick: bool,
-    /// Threads to compute on, where the benchmark does not choose them itself [default: all cores]
+    /// Number of threads, unless the benchmark varies it [default: all cores]
     #[arg(long, value_parser = threads)]
     pub threads: Option<usize>,
-    /// scaling: the largest crowd
+    /// scaling: size of the largest crowd
     #[arg(long, value_name = "AGENTS", default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(1_000..))]
     pub largest: u32,
-    /// compare: the Python that has JuPedSim
+    /// compare: a Python interpreter with JuPedSim installed
     #[arg(long, value_name = "PATH", default_value = "python3")]
     pub python: PathBuf,
 }

@@ -13,19 +13,19 @@ use crate::lab::reproduce::{PRODUCTS, Plan, Product, Store, reproduce};
 
 #[derive(Args)]
 pub struct ReproduceOptions {
-    /// Tables and figures, or all
+    /// Tables and figures to regenerate
     #[arg(required = true, value_parser = PossibleValuesParser::new(names()))]
     pub what: Vec<String>,
-    /// Seeds per row of a table: 1, 2, …
+    /// Number of seeds per row of a table: 1, 2, …
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub seeds: u64,
-    /// Folder for the results; finished cases in it are not run again
+    /// Folder for the results; cases finished there are not run again
     #[arg(long, value_name = "DIR", default_value = "reproduction")]
     pub out: PathBuf,
-    /// Put what is said about each table also between the lines <!-- NAME --> and <!-- /NAME --> of a file
+    /// Also insert the text about each table into this file, between the lines <!-- NAME --> and <!-- /NAME -->
     #[arg(long, value_name = "FILE.md")]
     pub update: Option<PathBuf>,
-    /// Cases to compute at once, each on one thread [default: all cores]
+    /// Number of cases to compute at once, each on one thread [default: all cores]
     #[arg(long, value_parser = threads)]
     pub threads: Option<usize>,
 }

@@ -13,16 +13,16 @@ use crate::lab::stress::{Detail, stress};
 
 #[derive(Args)]
 pub struct StressOptions {
-    /// Fewer places on the maps and a shorter soak: less than a minute
+    /// Coarser maps and a shorter soak test; takes less than a minute
     #[arg(long)]
     pub quick: bool,
-    /// Folder for the results; what is finished in it is not done again
+    /// Folder for the results; cases finished there are not run again
     #[arg(long, value_name = "DIR", default_value = "stress")]
     pub out: PathBuf,
-    /// Put the tables also between the lines <!-- NAME --> and <!-- /NAME --> of a file
+    /// Also insert the tables into this file, between the lines <!-- NAME --> and <!-- /NAME -->
     #[arg(long, value_name = "FILE.md")]
     pub update: Option<PathBuf>,
-    /// Cases to compute at once, each on one thread [default: all cores]
+    /// Number of cases to compute at once, each on one thread [default: all cores]
     #[arg(long, value_parser = threads)]
     pub threads: Option<usize>,
 }

@@ -30,24 +30,24 @@ Examples:
 
 #[derive(Args)]
 pub struct SweepOptions {
-    /// The study, JSON: a scenario, settings, a grid or a list of them, seeds
+    /// The study, a JSON file with a scenario, settings, a grid or list of settings, and seeds
     pub file: PathBuf,
-    /// Run part I of N (1 ≤ I ≤ N): the cells I, I + N, I + 2N, …; put together with --merge
+    /// Run only part I of N (1 ≤ I ≤ N): the cells I, I + N, I + 2N, …; combine the parts with --merge
     #[arg(long, value_name = "I/N", conflicts_with = "merge")]
     pub shard: Option<Shard>,
-    /// Run nothing; put together what is finished
+    /// Run nothing; combine the finished cells into tables
     #[arg(long)]
     pub merge: bool,
-    /// Run nothing; list the cells and which of them are finished
+    /// Run nothing; list the cells and whether they are finished
     #[arg(long, conflicts_with = "merge")]
     pub list: bool,
-    /// Folder for the results; what is finished in it is not done again [default: the study's name]
+    /// Folder for the results; cells finished there are not run again [default: the study's name]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Cells to compute at once, each on one thread [default: all cores]
+    /// Number of cells to compute at once, each on one thread [default: all cores]
     #[arg(long, value_parser = super::values::threads)]
     pub threads: Option<usize>,
-    /// Replace files of the results' names in a folder that is no study's
+    /// Replace existing files with the results' names in a folder that does not belong to a study
     #[arg(long)]
     pub force: bool,
     /// Print one JSON object instead of text

@@ -124,7 +124,7 @@ impl Kind {
             Self::Number(range) | Self::Whole(range) => range.to_string(),
             Self::Step(range) => format!("{range}, or auto"),
             Self::Unsigned(bits) => format!("a whole number from 0 to 2^{bits} - 1"),
-            Self::Point => "a point [x, y], metres".to_owned(),
+            Self::Point => "a point [x, y] in meters".to_owned(),
             Self::Pair(range) => format!("two numbers, {range}"),
             Self::Defined(_, words) | Self::List(_, words) => (*words).to_owned(),
         }

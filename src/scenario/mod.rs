@@ -1,7 +1,7 @@
 //! Scenario files: the text of a file → a checked [`Scenario`] → a [`Scene`] for the simulation.
 //!
 //! A file is a JSON object. Every top-level key is optional; an unknown key is an error. Lengths are in
-//! meters, times in seconds; points are `[x, y]`, regions `[[x0, y0], [x1, y1]]`. [`settings`] lists the
+//! meters, times in seconds; points are `[x, y]`, regions `[[x0, y0], [x1, y1]]`. [`settings()`] lists the
 //! top-level keys with their units, defaults and ranges. The nested keys:
 //!
 //! | in | keys |
@@ -16,8 +16,7 @@
 //! | `profile` | one of `base` (a name), `navigation` (`goal`, `social` or `rvo`; optionally with `sph`, true or false) and `blend` (a list of `at_density`, `profile`), and optionally `name`, `parameters` |
 //!
 //! Agents can walk in the `walkable_area` (everywhere if it is missing) except in the `obstacles`. Each of the two
-//! is a list of polygons, or the name of a file that [`floor_plan`](crate::scenario::floor_plan) reads. `$schema` is
-//! ignored; editors use it.
+//! is a list of polygons, or the name of a file that [`floor_plan`] reads. `$schema` is ignored; editors use it.
 //!
 //! An agent is removed within `remove_within` meters of its goal, or never if the key is missing. Its arrival
 //! counts as evacuated unless `counted` is false. Top-level `parameters` override those of the profiles. Ids count

@@ -10,20 +10,23 @@ pub const NESTED: [(&str, &str); 9] = [
         "grids",
         "min, max, columns, rows, name?, jitter?, goal? or goal_offset?, profile?, remove_within?, counted?",
     ),
-    ("sources", "those of grids, every_secs, start_secs?, times?"),
+    (
+        "sources",
+        "the keys of grids, and every_secs, start_secs?, times?",
+    ),
     (
         "events",
         "at_secs, for_secs, region, name?, goal_scale?, ignore_contact?, ignore_sph?",
     ),
     (
         "measurements",
-        "density (at_secs, region?), flow_of_first (arrivals), flow_until (until_secs), evacuated ()",
+        "one of density (at_secs, region?), flow_of_first (arrivals), flow_until (until_secs), evacuated ()",
     ),
     ("stop", "when_empty?, idle_secs?"),
     ("view", "region, opens_at_secs?"),
     (
         "profile",
-        "base, or navigation (goal, social or rvo) and sph?, or blend; name?, parameters?",
+        "one of base, navigation (goal, social or rvo; with sph?) and blend; name?, parameters?",
     ),
     ("profile.blend", "at_density, profile"),
 ];

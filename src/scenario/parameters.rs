@@ -25,21 +25,21 @@ pub(super) const PARAMETERS: [Key; 19] = [
     Key::new(
         "relaxation_time",
         Kind::Number(RELAXATION),
-        "τ, in which the goal force corrects the velocity (Eq. 17)",
+        "τ, time in which the goal force corrects the velocity (Eq. 17)",
     )
     .unit("s")
     .default("0.5"),
     Key::new(
         "agent_strength",
         Kind::Number(STRENGTH),
-        "V₀, strength of the social force of agents (Eq. 18)",
+        "V₀, strength of the social force between agents (Eq. 18)",
     )
     .unit("m²/s²")
     .default("2.1"),
     Key::new(
         "agent_range",
         Kind::Number(REACH),
-        "σ, range of the social force of agents (Eq. 18)",
+        "σ, range of the social force between agents (Eq. 18)",
     )
     .unit("m")
     .default("0.3"),
@@ -67,14 +67,14 @@ pub(super) const PARAMETERS: [Key; 19] = [
     Key::new(
         "avoidance_radius",
         Kind::Number(REACH),
-        "social force and RVO look this far",
+        "distance up to which social forces and RVO see agents and walls",
     )
     .unit("m")
     .default("5"),
     Key::new(
         "avoidance_tolerance",
         Kind::Number(STRENGTH),
-        "social forces that are certainly below this, on a person of mass 1, are left out",
+        "leave out social forces that are certainly smaller than this, for an agent of mass 1",
     )
     .unit("m/s²")
     .default("0"),
@@ -88,21 +88,26 @@ pub(super) const PARAMETERS: [Key; 19] = [
     Key::new(
         "candidates",
         Kind::Whole(Range::at_least(1.0, 1e6)),
-        "candidate velocities of RVO per agent and coarse frame; a whole number",
+        "number of candidate velocities of RVO per agent and coarse frame; a whole number",
     )
     .default("250"),
-    Key::new("viscosity", Kind::Number(STRENGTH), "μ (Eq. 2); 0: none").default("0"),
+    Key::new(
+        "viscosity",
+        Kind::Number(STRENGTH),
+        "μ, viscosity (Eq. 2); 0: none",
+    )
+    .default("0"),
     Key::new(
         "agent_stiffness",
         Kind::Number(STRENGTH),
-        "K^ag, contact between agents (Eq. 22); 0: none",
+        "K^ag, stiffness of contacts between agents (Eq. 22); 0: no contact force",
     )
     .unit("1/s²")
     .default("1000; with SPH 50"),
     Key::new(
         "wall_stiffness",
         Kind::Number(STRENGTH),
-        "K^obs, contact with walls (Eq. 23); 0: none",
+        "K^obs, stiffness of contacts with walls (Eq. 23); 0: no contact force",
     )
     .unit("1/s²")
     .default("1000; with SPH 200"),
@@ -136,7 +141,7 @@ pub(super) const PARAMETERS: [Key; 19] = [
     Key::new(
         "averaging_time",
         Kind::Number(RELAXATION),
-        "T^ρ, over which the personal rest density adapts (Eq. 8)",
+        "T^ρ, time in which the personal rest density adapts (Eq. 8)",
     )
     .unit("s")
     .default("0.1"),

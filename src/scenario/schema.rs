@@ -18,45 +18,44 @@ const ARRIVALS: Range = Range::at_least(2.0, u32::MAX as f64);
 const PROFILE: Key = Key::new(
     "profile",
     Kind::Defined("profile", ""),
-    "how it behaves; default: the scenario's profile",
+    "behavior; default: the scenario's profile",
 );
 const REMOVE_WITHIN: Key = Key::new(
     "remove_within",
     Kind::Number(DISTANCE),
-    "who is so near to the goal leaves; without it nobody does",
+    "agents leave within this distance of their goal; if missing, they stay",
 )
 .unit("m");
-const COUNTED: Key =
-    Key::new("counted", Kind::Switch, "do arrivals count as evacuated?").default("true");
-const NAME: Key = Key::new("name", Kind::Name, "what it is called in reports");
-const GOAL: Key = Key::new(
-    "goal",
-    Kind::Point,
-    "where to go; default: the scenario's goal",
+const COUNTED: Key = Key::new(
+    "counted",
+    Kind::Switch,
+    "whether arrivals count as evacuated",
 )
-.unit("m");
+.default("true");
+const NAME: Key = Key::new("name", Kind::Name, "name in reports");
+const GOAL: Key = Key::new("goal", Kind::Point, "goal; default: the scenario's goal").unit("m");
 
 const AGENT: [Key; 9] = [
-    Key::new("position", Kind::Point, "where it starts")
+    Key::new("position", Kind::Point, "start position")
         .unit("m")
         .required(),
     Key::new(
         "velocity",
         Kind::Pair(VELOCITY),
-        "of the start; default: [0, 0]",
+        "initial velocity; default: [0, 0]",
     )
     .unit("m/s"),
-    Key::new("radius", Kind::Number(RADIUS), "D_i; default: by the seed").unit("m"),
+    Key::new("radius", Kind::Number(RADIUS), "D_i; default: random").unit("m"),
     Key::new(
         "mass",
         Kind::Number(MASS),
-        "m_i, 1 for an average person; default: by the radius",
+        "m_i, 1 for an average person; default: from the radius",
     ),
     GOAL,
     Key::new(
         "mean_density",
         Kind::Number(DENSITY),
-        "ρ̂ of the frame before",
+        "ρ̂ of the previous frame",
     )
     .unit("P/m²"),
     PROFILE,
@@ -75,14 +74,14 @@ const GRID: [Key; 11] = [
     Key::new(
         "columns",
         Kind::Whole(CELLS),
-        "cells along x, an agent at the centre of each",
+        "cells along x; one agent at the center of each cell",
     )
     .required(),
     Key::new("rows", Kind::Whole(CELLS), "cells along y").required(),
     Key::new(
         "jitter",
         Kind::Number(JITTER),
-        "each coordinate is moved by up to ± this",
+        "each coordinate is shifted at random by up to ± this",
     )
     .unit("m")
     .default("0")
@@ -91,7 +90,7 @@ const GRID: [Key; 11] = [
     Key::new(
         "goal_offset",
         Kind::Point,
-        "in place of a goal: where to go, from each agent's start",
+        "instead of a goal: the goal relative to each agent's start",
     )
     .unit("m"),
     PROFILE,
@@ -101,7 +100,7 @@ const GRID: [Key; 11] = [
 
 /// The keys that a source has in addition to those of a grid.
 const AGAIN: [Key; 3] = [
-    Key::new("start_secs", Kind::Number(TIME), "first entry")
+    Key::new("start_secs", Kind::Number(TIME), "time of the first entry")
         .unit("s")
         .default("0")
         .never_null(),
@@ -111,33 +110,37 @@ const AGAIN: [Key; 3] = [
     Key::new(
         "times",
         Kind::Unsigned(32),
-        "how many entries; without it, no end",
+        "number of entries; if missing, unlimited",
     ),
 ];
 
 const EVENT: [Key; 7] = [
     NAME,
-    Key::new("at_secs", Kind::Number(TIME), "when it begins")
+    Key::new("at_secs", Kind::Number(TIME), "time at which it begins")
         .unit("s")
         .required(),
-    Key::new("for_secs", Kind::Number(TIME), "for how long")
+    Key::new("for_secs", Kind::Number(TIME), "duration")
         .unit("s")
         .required(),
     Key::new(
         "region",
         Kind::Defined("region", ""),
-        "who stands here then takes part",
+        "agents in it at that time take part",
     )
     .required(),
     Key::new(
         "goal_scale",
         Kind::Number(GOAL_SCALE),
-        "K^goal of those who take part",
+        "K^goal of these agents; default: unchanged",
     ),
-    Key::new("ignore_contact", Kind::Switch, "no contact forces on them")
-        .default("false")
-        .never_null(),
-    Key::new("ignore_sph", Kind::Switch, "no SPH forces on them")
+    Key::new(
+        "ignore_contact",
+        Kind::Switch,
+        "they feel no contact forces",
+    )
+    .default("false")
+    .never_null(),
+    Key::new("ignore_sph", Kind::Switch, "they feel no SPH forces")
         .default("false")
         .never_null(),
 ];
@@ -146,14 +149,14 @@ const STOP: [Key; 2] = [
     Key::new(
         "when_empty",
         Kind::Switch,
-        "when nobody is there and nobody will come",
+        "stop when no agents are left and none will enter",
     )
     .default("false")
     .never_null(),
     Key::new(
         "idle_secs",
         Kind::Number(UNTIL),
-        "so long after the last counted arrival, or the start",
+        "stop this long after the last counted arrival, or after the start",
     )
     .unit("s"),
 ];
@@ -162,30 +165,37 @@ const VIEW: [Key; 2] = [
     Key::new(
         "region",
         Kind::Defined("region", ""),
-        "the part of the plane",
+        "the visible part of the plane",
     )
     .required(),
-    Key::new("opens_at_secs", Kind::Number(TIME), "the moment")
-        .unit("s")
-        .default("0")
-        .never_null(),
+    Key::new(
+        "opens_at_secs",
+        Kind::Number(TIME),
+        "time at which the recording opens",
+    )
+    .unit("s")
+    .default("0")
+    .never_null(),
 ];
 
 const DENSITY_AT: [Key; 2] = [
-    Key::new("at_secs", Kind::Number(TIME), "when")
+    Key::new("at_secs", Kind::Number(TIME), "time of the measurement")
         .unit("s")
         .required(),
     Key::new(
         "region",
         Kind::Defined("region", ""),
-        "where; default: everywhere",
+        "region of the measurement; default: everywhere",
     ),
 ];
 const FLOW_OF_FIRST: [Key; 1] =
-    [Key::new("arrivals", Kind::Whole(ARRIVALS), "of how many").required()];
-const FLOW_UNTIL: [Key; 1] = [Key::new("until_secs", Kind::Number(UNTIL), "until when")
-    .unit("s")
-    .required()];
+    [Key::new("arrivals", Kind::Whole(ARRIVALS), "number of arrivals").required()];
+const FLOW_UNTIL: [Key; 1] =
+    [
+        Key::new("until_secs", Kind::Number(UNTIL), "end of the measurement")
+            .unit("s")
+            .required(),
+    ];
 
 /// What a profile may be called.
 fn names() -> Vec<&'static str> {
@@ -194,28 +204,24 @@ fn names() -> Vec<&'static str> {
 }
 
 const FULL_PROFILE: [Key; 6] = [
-    Key::new("name", Kind::Name, "what it is called"),
-    Key::new(
-        "base",
-        Kind::Word(&NAMES),
-        "a profile of the catalogue to begin with",
-    ),
+    Key::new("name", Kind::Name, "name of the profile"),
+    Key::new("base", Kind::Word(&NAMES), "a named profile to start from"),
     Key::new(
         "navigation",
         Kind::Word(&["goal", "social", "rvo"]),
-        "how agents find their way",
+        "method of navigation",
     ),
     Key::new(
         "sph",
         Kind::Switch,
-        "with `navigation`: are they a fluid, too?",
+        "with `navigation`: whether SPH forces act, too",
     )
     .default("true"),
     Key::new("blend", Kind::List("blend_step", ""), "profiles by density"),
     Key::new(
         "parameters",
         Kind::Defined("parameters", ""),
-        "values for it",
+        "parameters of the profile",
     )
     .never_null(),
 ];
@@ -224,14 +230,14 @@ const STEP: [Key; 2] = [
     Key::new(
         "at_density",
         Kind::Number(DENSITY),
-        "where it counts alone; between two, both",
+        "density at which this profile acts alone; between two densities both are blended",
     )
     .unit("P/m²")
     .required(),
     Key::new(
         "profile",
         Kind::Defined("profile", ""),
-        "a plain profile, no blend",
+        "a plain profile, not a blend",
     )
     .required(),
 ];
@@ -244,7 +250,7 @@ pub fn schema() -> Value {
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
     schema["title"] = "sandbox scenario".into();
     schema["properties"]["$schema"] =
-        json!({"type": "string", "description": "where this schema is, for editors"});
+        json!({"type": "string", "description": "location of this schema, for editors"});
     schema["$defs"] = json!({
         "point": pair(COORDINATE),
         "region": {
@@ -252,7 +258,7 @@ pub fn schema() -> Value {
             "type": "array", "items": defined("point"), "minItems": 2, "maxItems": 2,
         },
         "ring": {
-            "description": "corners in turn, either way round",
+            "description": "corners in order, in either orientation",
             "type": "array", "items": defined("point"), "minItems": 3,
         },
         "polygon": {
@@ -261,13 +267,13 @@ pub fn schema() -> Value {
         },
         "walkable_area": {
             "anyOf": [
-                {"type": "string", "description": "a WKT or GeoJSON file, from this one's folder"},
+                {"type": "string", "description": "a WKT or GeoJSON file, relative to this file's folder"},
                 {"type": "array", "items": defined("polygon"), "minItems": 1},
             ],
         },
         "obstacles": {
             "anyOf": [
-                {"type": "string", "description": "a WKT or GeoJSON file, from this one's folder"},
+                {"type": "string", "description": "a WKT or GeoJSON file, relative to this file's folder"},
                 {"type": "array", "items": {"anyOf": [defined("ring"), defined("polygon")]}},
             ],
         },
@@ -275,13 +281,13 @@ pub fn schema() -> Value {
         "full_profile": full_profile(),
         "blend_step": object(&STEP, "one profile of a blend"),
         "parameters": object(&parameters::PARAMETERS, "parameters of profiles (§5.5)"),
-        "agent": object(&AGENT, "one person"),
-        "grid": object(&GRID, "people on a grid, there from the start"),
-        "source": object(&source, "people who enter on a grid again and again"),
-        "event": object(&EVENT, "a push"),
+        "agent": object(&AGENT, "a single agent"),
+        "grid": object(&GRID, "agents that stand on a grid at the start"),
+        "source": object(&source, "agents that enter on a grid repeatedly"),
+        "event": object(&EVENT, "a push: agents in a region behave differently for a while"),
         "measurement": measurement(),
-        "stop": object(&STOP, "when to stop before the end"),
-        "view": object(&VIEW, "what a recording shows first"),
+        "stop": object(&STOP, "conditions for stopping early"),
+        "view": object(&VIEW, "initial view of a recording"),
         "id": {"type": "integer", "minimum": 0, "maximum": u32::MAX},
     });
     schema
@@ -291,7 +297,7 @@ pub fn schema() -> Value {
 fn full_profile() -> Value {
     let given =
         |key: &str| json!({"required": [key], "properties": {key: {"not": {"type": "null"}}}});
-    let mut schema = object(&FULL_PROFILE, "a profile or blend in full");
+    let mut schema = object(&FULL_PROFILE, "a profile or blend defined in full");
     schema["oneOf"] = ["base", "navigation", "blend"].map(given).to_vec().into();
     schema["properties"]["blend"]["minItems"] = 1.into();
     schema
@@ -308,14 +314,14 @@ fn measurement() -> Value {
         (
             "flow_of_first",
             &FLOW_OF_FIRST,
-            "flow of the first who arrive",
+            "flow of the first arrivals",
         ),
         (
             "flow_until",
             &FLOW_UNTIL,
-            "flow of those who arrive in time",
+            "flow of the arrivals until a given time",
         ),
-        ("evacuated", &[], "how many have arrived"),
+        ("evacuated", &[], "number of counted arrivals"),
     ];
     let way = |(key, keys, description): (&str, &[Key], &str)| {
         json!({
@@ -325,5 +331,5 @@ fn measurement() -> Value {
             "additionalProperties": false,
         })
     };
-    json!({"description": "something to measure", "oneOf": ways.map(way)})
+    json!({"description": "a measurement", "oneOf": ways.map(way)})
 }
