@@ -389,7 +389,7 @@ fn the_program_goes_on_from_a_checkpoint() {
     assert!(to_the_end["time_secs"].as_f64().unwrap() > 20.0);
     let taken = run(&first);
     assert_eq!(taken.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&taken.stderr).contains("exists already; give --force"));
+    assert!(String::from_utf8_lossy(&taken.stderr).contains("already exists; use --force"));
     let nothing = run(&["resume", "/nowhere"]);
     assert_eq!(nothing.status.code(), Some(2));
 }

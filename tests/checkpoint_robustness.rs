@@ -130,6 +130,6 @@ fn what_is_no_checkpoint_is_refused_however_long_it_is() {
     let mut said = String::new();
     let held =
         allocation_counter::measure(|| said = Checkpoint::read(&path).unwrap_err().to_string());
-    assert!(said.ends_with("is no checkpoint"), "{said}");
+    assert!(said.ends_with("is not a checkpoint"), "{said}");
     assert!(held.bytes_max < 1 << 20, "{}", held.bytes_max);
 }

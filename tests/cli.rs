@@ -278,7 +278,7 @@ fn a_trajectory_that_cannot_be_is_refused_before_anything_is_written() {
         2,
         &["a.h5", ".sqlite", ".txt", ".csv"],
     );
-    with(&["--trajectory", &csv], 2, &["a.csv", "are one file"]);
+    with(&["--trajectory", &csv], 2, &["a.csv", "are the same file"]);
     with(&["--trajectory-fps", "11"], 2, &["--trajectory-fps", " 10"]);
     with(&["--trajectory-fps", "0"], 2, &["--trajectory-fps"]);
     assert!(!folder.path().join("a.csv").exists());

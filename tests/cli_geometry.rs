@@ -49,7 +49,7 @@ fn a_floor_plan_that_is_none_is_refused_with_its_name_and_exit_code_2() {
     let output = sandbox(&["evacuation", "--geometry", plan]);
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
-    let start = format!("error: --geometry {plan}: no person fits in");
+    let start = format!("error: --geometry {plan}: too small for a person");
     assert!(said(&output).starts_with(&start), "{}", said(&output));
     let missing = sandbox(&["evacuation", "--geometry", "no/such.geojson"]);
     assert_eq!(missing.status.code(), Some(2));
@@ -82,12 +82,12 @@ fn the_geometry_of_a_trajectory_is_read_as_carefully_as_a_file() {
         (None, "has no polygons"),
         (
             Some("GEOMETRYCOLLECTION (".repeat(20_000)),
-            "no WKT: line 1, column 1300: more than 64 parentheses are open",
+            "not valid WKT: line 1, column 1300: more than 64 parentheses are open",
         ),
     ] {
         let file = trajectory(folder.path(), wkt);
         let output = sandbox(&["measure", &file, "--out", out]);
-        let fix = "give one by --geometry, or none by --geometry none";
+        let fix = "give another one with --geometry, or use --geometry none";
         let expected = format!("error: {file}: its geometry: {reason}; {fix}\n");
         assert_eq!(output.status.code(), Some(2), "{}", said(&output));
         assert!(said(&output).ends_with(&expected), "{}", said(&output));

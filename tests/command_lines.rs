@@ -73,6 +73,6 @@ fn an_agent_to_be_laid_open_who_never_enters_is_named_at_the_end() {
         .unwrap();
     let stderr = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(0), "{stderr}");
-    let note = "note: --debug-agents: 1 never entered: only 1 agents did, with ids from 0";
+    let note = "note: --debug-agents: 1 never entered: only 1 agents entered, with ids from 0";
     assert!(stderr.contains(note), "{stderr}");
 }

@@ -194,16 +194,19 @@ fn what_is_no_floor_plan_is_refused_with_the_place_and_the_fix() {
             r#"{"type": "FeatureCollection", "features": []}"#,
             vec!["has no polygons"],
         ),
-        ("POLYGON ((0 0, 1 0, 1", vec!["no WKT", "line 1"]),
+        ("POLYGON ((0 0, 1 0, 1", vec!["not valid WKT", "line 1"]),
         (
             "POLYGON ((0 0, 9 0, 9 9))\n rubbish",
-            vec!["no WKT", "line 2"],
+            vec!["not valid WKT", "line 2"],
         ),
         (
             "{\"type\": \"Polygon\",\n \"coordinates\": ",
-            vec!["no GeoJSON", "line 2"],
+            vec!["not valid GeoJSON", "line 2"],
         ),
-        (r#"{"type": "Polygon"}"#, vec!["no GeoJSON", "coordinates"]),
+        (
+            r#"{"type": "Polygon"}"#,
+            vec!["not valid GeoJSON", "coordinates"],
+        ),
         ("LINESTRING (0 0, 9 9)", vec!["a LINESTRING has no area"]),
         (
             "GEOMETRYCOLLECTION (POLYGON ((0 0, 9 0, 9 9)), POINT (1 1))",
@@ -224,7 +227,7 @@ fn what_is_no_floor_plan_is_refused_with_the_place_and_the_fix() {
         ),
         (
             "POLYGON ((8.41 49.01, 8.42 49.01, 8.42 49.02, 8.41 49.02))",
-            vec!["no person fits in", "degrees"],
+            vec!["too small for a person", "degrees"],
         ),
         (
             "POLYGON ((0 0, 4 4, 4 0, 0 4))",
@@ -264,7 +267,7 @@ fn what_is_no_floor_plan_is_refused_with_the_place_and_the_fix() {
                       "features": [feature(pillar(), ""), feature(room(), "obstacle")]});
     let error = json(&full).unwrap_err().to_string();
     assert!(
-        error.ends_with("the obstacles leave no room for anybody"),
+        error.ends_with("the obstacles leave no room for a person"),
         "{error}"
     );
     let missing = floor_plan::read(std::path::Path::new("no/such.wkt")).unwrap_err();
@@ -290,11 +293,11 @@ fn plans_nested_deeper_than_any_is_are_refused_with_their_place_on_a_thread_with
     for depth in [65, 2_000, 20_000, 1_000_000] {
         assert_eq!(
             said(wkt(depth)),
-            "no WKT: line 2, column 1300: more than 64 parentheses are open"
+            "not valid WKT: line 2, column 1300: more than 64 parentheses are open"
         );
     }
-    assert!(said(wkt(64)).starts_with("no WKT: line 2: "));
-    assert!(said("()".repeat(300_000)).starts_with("no WKT: line 1: "));
+    assert!(said(wkt(64)).starts_with("not valid WKT: line 2: "));
+    assert!(said("()".repeat(300_000)).starts_with("not valid WKT: line 1: "));
     assert_eq!(
         said(json(60)),
         format!(
@@ -303,7 +306,9 @@ fn plans_nested_deeper_than_any_is_are_refused_with_their_place_on_a_thread_with
         )
     );
     for depth in [70, 20_000] {
-        assert!(said(json(depth)).starts_with("no GeoJSON: recursion limit exceeded at line 1"));
+        assert!(
+            said(json(depth)).starts_with("not valid GeoJSON: recursion limit exceeded at line 1")
+        );
     }
 }
 

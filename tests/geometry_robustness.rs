@@ -197,12 +197,11 @@ fn obstacles_with_too_many_corners_are_refused() {
     assert_eq!(message(vec![zigzag(4_000)]), None);
     assert_eq!(
         message(vec![zigzag(20_002)]).unwrap(),
-        "f.json: obstacles[0]: 20002 corners; at most 20000 may be: make it several obstacles"
+        "f.json: obstacles[0]: 20002 corners; at most 20000 are allowed: split it into several"
     );
     assert_eq!(
         message(vec![vec![[0.0, 0.0]; 20_000]; 51]).unwrap(),
-        "f.json: obstacles: 1020000 corners in all; at most 1000000 may be: leave out corners that hardly \
-         matter"
+        "f.json: obstacles: 1020000 corners in total; at most 1000000 are allowed: leave out unimportant corners"
     );
     let dense = (0..1_500).map(|k| f64::from(k) * std::f64::consts::TAU / 1_500.0);
     let dense = dense
@@ -210,7 +209,7 @@ fn obstacles_with_too_many_corners_are_refused() {
         .collect();
     assert_eq!(
         message(vec![dense]).unwrap(),
-        "f.json: obstacles[0]: 1500 corners of obstacles on the square metre from (5, 5) to (6, 6); at most \
-         1000 may be: leave out corners that hardly matter"
+        "f.json: obstacles[0]: 1500 corners of obstacles in the square meter from (5, 5) to (6, 6); at most \
+         1000 are allowed: leave out unimportant corners"
     );
 }

@@ -133,7 +133,7 @@ fn a_corridor_is_measured_into_a_folder() {
     let agents = format!("{}", folder.join("agents.csv").display());
     refused(
         &arguments,
-        &format!("--out {agents}: exists already; give --force to replace it"),
+        &format!("--out {agents}: already exists; use --force to replace it"),
     );
     let again = measure(&[&arguments[..], &["--force"]].concat());
     assert_eq!(again.stdout, output.stdout);
@@ -181,11 +181,11 @@ fn what_is_typed_wrong_is_refused_with_the_fix() {
         (vec!["no.txt"], "no.txt: cannot be read"),
         (
             vec![&*trajectory, "--line", "1,2,3"],
-            "four numbers x0,y0,x1,y1 are needed",
+            "expected four numbers x0,y0,x1,y1",
         ),
         (
             vec![&*trajectory, "--region", "1,0,0,1"],
-            "x0 < x1, y0 < y1",
+            "x0 < x1 and y0 < y1",
         ),
         (
             vec![&*trajectory, "--fps", "0"],

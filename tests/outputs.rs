@@ -47,7 +47,7 @@ fn two_outputs_of_one_file_are_refused_whatever_they_are_called() {
             folder.path(),
             &typed,
             2,
-            &[names[0], names[1], "are one file"],
+            &[names[0], names[1], "are the same file"],
         );
     }
     // Many may write to a device.
@@ -113,7 +113,11 @@ fn a_recording_replaces_no_scenario_and_has_its_extension() {
     let folder = folder();
     let inspect = "inspect s.json --agent 0 --force --save";
     for run in ["run s.json --force --save", inspect] {
-        let words = ["--save link.rrd", "the scenario s.json", "are one file"];
+        let words = [
+            "--save link.rrd",
+            "the scenario s.json",
+            "are the same file",
+        ];
         refused(folder.path(), &format!("{run} link.rrd"), 2, &words);
         let words = ["'s.json'", "--save", "must end in .rrd"];
         refused(folder.path(), &format!("{run} s.json"), 2, &words);
@@ -140,7 +144,7 @@ fn a_resumed_run_goes_on_writing_into_its_own_checkpoint() {
     let goes_on = run(folder.path(), "resume c --checkpoint ./c --until 2");
     assert_eq!(goes_on.status.code(), Some(0), "{}", said(&goes_on));
     assert_ne!(fs::read(folder.path().join("c")).unwrap(), first);
-    let words = ["--until 1:", "the checkpoint c is of 2.00 s"];
+    let words = ["--until 1:", "the checkpoint c was written at 2.00 s"];
     refused(folder.path(), "resume c --until 1", 2, &words);
     // No other output may be the checkpoint, nor the checkpoint another file.
     fs::copy(folder.path().join("c"), folder.path().join("d")).unwrap();
@@ -148,7 +152,7 @@ fn a_resumed_run_goes_on_writing_into_its_own_checkpoint() {
         folder.path(),
         "resume c --checkpoint d",
         2,
-        &["d: exists already"],
+        &["d: already exists"],
     );
 }
 

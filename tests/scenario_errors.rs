@@ -119,14 +119,14 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
         "viscocity=1",
         "unknown setting `viscocity`; did you mean `viscosity`? (`sandbox list --settings` shows them all)",
     ],
-    ["viscosity", "a setting is written key=value"],
+    ["viscosity", "a setting has the form key=value"],
     [
         "seed=x",
         r#"--set seed=x: invalid type: text "x", expected a whole number from 0 to 2^64 - 1"#,
     ],
     [
         "profile=fs",
-        "--set profile=fs: no profile is called `fs`; did you mean `sf`? (there are sf, rvo, sf+sph, rvo+sph, sph, sf->sph, rvo->sph)",
+        "--set profile=fs: unknown profile `fs`; did you mean `sf`? (known profiles: sf, rvo, sf+sph, rvo+sph, sph, sf->sph, rvo->sph)",
     ],
     [
         "profile={\"base\": \"sf\", \"parameters\": {\"candidates\": 0}}",
@@ -134,7 +134,7 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
     ],
     [
         "rest_density_min=6",
-        "f.json with --set rest_density_min=6: profile: rest_density_min 6 is above rest_density_max 5; give both",
+        "f.json with --set rest_density_min=6: profile: rest_density_min 6 is above rest_density_max 5; set both",
     ],
     [
         "sources.0.rows=0",
@@ -181,6 +181,6 @@ fn a_file_that_is_not_there_is_named() {
     let error = Scenario::shipped("concerto", &[]).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "no scenario is called `concerto`; there are evacuation, crossing, concert, plaza"
+        "unknown scenario `concerto`; the built-in scenarios are evacuation, crossing, concert, plaza"
     );
 }

@@ -84,7 +84,7 @@ fn what_is_wrong_with_a_plan_is_said_with_the_scenario_the_key_and_the_file() {
         ),
         (
             json!({"walkable_area": "plans/kiosk.geojson"}),
-            vec!["walkable_area: plans/kiosk.geojson: has nothing but obstacles"],
+            vec!["walkable_area: plans/kiosk.geojson: contains only obstacles"],
         ),
         (
             json!({"walkable_area": 5}),
@@ -110,7 +110,7 @@ fn what_is_wrong_with_a_plan_is_said_with_the_scenario_the_key_and_the_file() {
         ),
         (
             json!({"walkable_area": [[[[0, 0], [0.1, 0], [0, 0.1]]]]}),
-            vec!["walkable_area: no person fits in", "degrees"],
+            vec!["walkable_area: too small for a person", "degrees"],
         ),
         (
             json!({"obstacles": [[[[0, 0], [4, 0], [4, 4]], [[5, 5], [6, 6], [5, 6]]]]}),

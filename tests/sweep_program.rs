@@ -195,10 +195,7 @@ fn merging_writes_what_there_is_and_says_what_is_missing() {
     let merge = ["sweep", "study.json", "--merge"];
     let (code, _, stderr) = run(folder.path(), &merge);
     assert_eq!(code, Some(2));
-    assert!(
-        stderr.contains("study: no study was begun there"),
-        "{stderr}"
-    );
+    assert!(stderr.contains("study: contains no study"), "{stderr}");
     let (code, stdout, _) = run(folder.path(), &["sweep", "study.json", "--shard", "1/3"]);
     assert_eq!(code, Some(0));
     assert_eq!(

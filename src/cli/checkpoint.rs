@@ -92,9 +92,9 @@ impl Checkpoints {
             return Ok(());
         };
         let kept = match self.kept {
-            _ if !path.is_file() => "no checkpoint is there".to_owned(),
+            _ if !path.is_file() => "there is no checkpoint".to_owned(),
             Some(time) => format!("the checkpoint of {time:.2} s is kept"),
-            None => "what was there before the run is kept".to_owned(),
+            None => "the file from before the run is kept".to_owned(),
         };
         Err(Failure::Output(format!("--checkpoint {error}; {kept}")))
     }

@@ -58,8 +58,8 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
     let checkpoint = Checkpoint::read(&options.file)?;
     if !checkpoint.is_of_this_engine() {
         talk(&format!(
-            "note: {} was written by another version of the engine; what follows may differ from what it \
-             would have done",
+            "note: {} was written by another version of the engine; the results may differ from those of \
+             that version",
             options.file.display()
         ));
     }
@@ -93,7 +93,7 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
 fn refuse_the_past(options: &ResumeOptions, clock: &Clock) -> Result<(), Failure> {
     match options.output.until {
         Some(until) if clock.frame_at(until) < clock.frame() => Err(Failure::Input(format!(
-            "--until {until}: the checkpoint {} is of {:.2} s; give a later time",
+            "--until {until}: the checkpoint {} was written at {:.2} s; give a later time",
             options.file.display(),
             clock.time()
         ))),
@@ -107,7 +107,7 @@ fn fits_into_memory(file: &Path) -> Result<(), Failure> {
     let length = file.metadata().map_or(0, |about| about.len());
     match main_memory() {
         Some(there) if length > there => Err(Failure::Input(format!(
-            "{}: {} do not fit into this machine's {} of memory; resume it on a larger one",
+            "{}: {} do not fit into this machine's {} of memory; resume it on a larger machine",
             file.display(),
             in_units(length),
             in_units(there),
@@ -193,13 +193,12 @@ fn warn_of_the_step(scene: &Scene) {
     if step > largest {
         let automatic = mode.time_step(scheme);
         let advice = if automatic >= SHORTEST_TIME_STEP {
-            format!("--time-step auto takes {automatic}")
+            format!("--time-step auto uses {automatic}")
         } else {
-            "no step that is allowed is short enough: lower the stiffness or raise the masses"
-                .to_owned()
+            "no allowed step is short enough: lower the stiffness or raise the masses".to_owned()
         };
         talk(&format!(
-            "warning: time_step_secs {step} is {:.1} times {largest:.4}, the longest at which a crowd comes to \
+            "warning: time_step_secs {step} is {:.1} times {largest:.4}, the largest step at which a crowd comes to \
              rest; {advice}",
             step / largest,
         ));
@@ -213,8 +212,8 @@ fn report_oddities(simulation: &Simulation) {
         let count = outcome.displaced.len();
         let (agent, obstacle) = outcome.displaced[0];
         talk(&format!(
-            "note: {count} agent(s) entered inside an obstacle or outside of the walkable area and were put \
-             at the nearest free point (the first: agent {agent}, obstacle {obstacle})"
+            "note: {count} agent(s) entered inside an obstacle or outside of the walkable area and were moved \
+             to the nearest free point (the first: agent {agent}, obstacle {obstacle})"
         ));
     }
     if outcome.contained_moves > 0 {
@@ -228,13 +227,15 @@ fn report_oddities(simulation: &Simulation) {
         let (count, most) = (outcome.clamped_speeds, simulation.scene().max_speed);
         let frames = frame.clock.frame();
         talk(&format!(
-            "note: a speed was cut to {most} m/s {count} time(s) in {frames} frames"
+            "note: speeds were clamped to {most} m/s {count} time(s) in {frames} frames"
         ));
     }
     for event in simulation.events() {
         if event.kind == EventKind::PushBegan(0) {
             let name = shown(&event.name);
-            talk(&format!("note: nobody stood where \"{name}\" began"));
+            talk(&format!(
+                "note: no agents were in the region of \"{name}\" when it began"
+            ));
         }
     }
 }
@@ -250,7 +251,7 @@ fn report_absent(record: &RecordOptions, simulation: &Simulation) {
         .collect();
     if !absent.is_empty() {
         talk(&format!(
-            "note: --debug-agents: {} never entered: only {entered} agents did, with ids from 0",
+            "note: --debug-agents: {} never entered: only {entered} agents entered, with ids from 0",
             absent.join(", ")
         ));
     }

@@ -75,7 +75,7 @@ fn go_to(at: f64, simulation: &mut Simulation, progress: &Progress) -> Result<()
         if simulation.frame().agents.is_empty() && !simulation.expects_agents() {
             let time = simulation.frame().clock.time();
             return Err(Failure::Input(format!(
-                "--at {at}: no agent is left then: the last one leaves at {time:.2} s"
+                "--at {at}: no agents are left at that time: the last one leaves at {time:.2} s"
             )));
         }
     }
@@ -111,5 +111,7 @@ fn absent(simulation: &Simulation, id: u32) -> Failure {
     } else {
         "it has left".to_owned()
     };
-    Failure::Input(format!("--agent {id}: not there at {time:.2} s: {reason}"))
+    Failure::Input(format!(
+        "--agent {id}: not present at {time:.2} s: {reason}"
+    ))
 }

@@ -18,12 +18,12 @@ pub fn run(list_settings: bool) -> Result<(), Failure> {
                 setting.range,
             );
         }
-        text += "\nKeys of the objects in these lists (metres, seconds; ? = may be left out):\n";
+        text += "\nKeys of nested objects (meters, seconds; ? = optional):\n";
         for (list, keys) in NESTED {
             text += &format!("{list:<20} {keys}\n");
         }
-        text += "\nA dotted path reaches into the scenario's own lists: --set sources.0.rows=50\n\
-                 Parameters of profiles hold for every profile of the scenario.\n";
+        text += "\nA dotted path sets a value inside a list or object: --set sources.0.rows=50\n\
+                 Parameters set this way apply to all profiles of the scenario.\n";
     } else {
         for scenario in SHIPPED {
             text += &format!("{:<12} {}\n", scenario.name, scenario.description());

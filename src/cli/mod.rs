@@ -177,7 +177,7 @@ fn scenario(
         }
         if let Some(other) = typed.iter().find(|other| other.path() == setting.path()) {
             return Err(Failure::Input(format!(
-                "{setting} and {other} set the same key: give one of them"
+                "{setting} and {other} set the same key: give only one of them"
             )));
         }
         settings.push(setting);

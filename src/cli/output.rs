@@ -23,7 +23,7 @@ pub fn check(
     let (clock, end) = (&scenario.scene.clock, scenario.duration_secs);
     if clock.frame_at(record.record_from) > clock.frame_at(end) {
         return Err(Failure::Input(format!(
-            "--record-from {}: the run ends at {end} s, so that nothing would be recorded; give an earlier time, \
+            "--record-from {}: the run ends at {end} s, so nothing would be recorded; give an earlier time, \
              or a later end with --until",
             record.record_from
         )));
@@ -46,7 +46,7 @@ pub fn laid_open(record: &RecordOptions) -> Result<Option<Vec<u32>>, Failure> {
     let ids: Result<Vec<u32>, _> = text.split(',').map(|id| id.trim().parse()).collect();
     ids.map(Some).map_err(|_| {
         Failure::Input(format!(
-            "--debug-agents {text}: ids separated by commas, all or none are needed"
+            "--debug-agents {text}: expected ids separated by commas, all or none"
         ))
     })
 }
@@ -101,8 +101,8 @@ impl Output {
     pub fn finish(self) -> Result<(), Failure> {
         if self.recorder.is_some() && self.recorded == 0 {
             talk(
-                "note: no frame was recorded: the run ended before the first that --record-from and \
-                 --record-every ask for",
+                "note: no frame was recorded: the run ended before the first frame that --record-from and \
+                 --record-every select",
             );
         }
         match self.recorder.map_or(Ok(()), Recorder::finish) {
@@ -176,7 +176,7 @@ fn debug_agents(record: &RecordOptions, scenario: &Scenario) -> Result<DebugAgen
     if let Some(text) = &record.debug_region {
         return region(text).map(DebugAgents::Region).ok_or_else(|| {
             Failure::Input(format!(
-                "--debug-region {text}: four numbers x0,y0,x1,y1 are needed, x0 < x1, y0 < y1"
+                "--debug-region {text}: expected four numbers x0,y0,x1,y1 with x0 < x1 and y0 < y1"
             ))
         });
     }
@@ -184,7 +184,7 @@ fn debug_agents(record: &RecordOptions, scenario: &Scenario) -> Result<DebugAgen
         if let Some(id) = ids.iter().find(|&&id| u64::from(id) >= scenario.entering) {
             let entering = scenario.entering;
             return Err(Failure::Input(format!(
-                "--debug-agents {id}: never enters: {entering} agents do until {} s, with ids from 0",
+                "--debug-agents {id}: never enters: {entering} agents enter until {} s, with ids from 0",
                 scenario.duration_secs
             )));
         }

@@ -72,7 +72,7 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     if options.merge {
         if !shelf.is_begun() {
             let folder = folder.display();
-            let reason = format!("{folder}: no study was begun there; name its folder with --out");
+            let reason = format!("{folder}: contains no study; give its folder with --out");
             return Err(Failure::Input(reason));
         }
         check_outputs(&study, &shelf, options)?;
@@ -162,8 +162,8 @@ fn merge(study: &Study, shelf: &Shelf, options: &SweepOptions) -> Result<(), Fai
     match (failed.is_empty(), missing.is_empty()) {
         (true, true) => Ok(()),
         (true, false) => Err(Failure::Output(
-            "the study is not finished; what there is was written (what another version of the engine \
-             computed does not count)"
+            "the study is not finished; the tables have the finished cells (those of another version of the engine \
+             do not count)"
                 .to_owned(),
         )),
         (false, _) => Err(some_failed(&failed, study.cells.len())),
@@ -174,7 +174,7 @@ fn some_failed(failed: &[String], of: usize) -> Failure {
     /// Most failures to print: more would scroll the first ones off the screen.
     const MOST: usize = 5;
     let mut text = format!(
-        "{} of {of} cells failed (run the same command to try them again):",
+        "{} of {of} cells failed (run the same command to retry them):",
         failed.len()
     );
     for line in failed.iter().take(MOST) {

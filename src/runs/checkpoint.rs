@@ -60,7 +60,7 @@ pub enum CheckpointError {
         reason: String,
     },
     /// The file is not a checkpoint.
-    #[error("{}: is no checkpoint", .0.display())]
+    #[error("{}: is not a checkpoint", .0.display())]
     Foreign(PathBuf),
     /// The checkpoint has another format version.
     #[error("{}: is a checkpoint of version {found}; this program reads version {VERSION}", path.display())]
@@ -195,7 +195,7 @@ impl Checkpoint {
             .split_first_chunk::<32>()
             .ok_or_else(|| damaged("cut short"))?;
         if Sha256::digest(payload).as_slice() != sum {
-            return Err(damaged("its checksum is another"));
+            return Err(damaged("its checksum does not match"));
         }
         postcard::from_bytes(payload).map_err(|error| damaged(&error.to_string()))
     }

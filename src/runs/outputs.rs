@@ -28,14 +28,14 @@ pub enum Manner {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OutputsError {
     /// The file exists and must not be replaced.
-    #[error("{0}: exists already; give --force to replace it")]
+    #[error("{0}: already exists; use --force to replace it")]
     Exists(String),
     /// Two options name the same file.
-    #[error("{0} and {1} are one file; give each a file of its own")]
+    #[error("{0} and {1} are the same file; use a different file for each")]
     Shared(String, String),
     /// An option names an input file.
     #[error(
-        "{output} and {input} are one file; an input is never replaced, not even with --force: write to another file"
+        "{output} and {input} are the same file; an input is never replaced, not even with --force: write to another file"
     )]
     Input {
         /// The option with its file.
@@ -287,7 +287,7 @@ pub fn followed(path: &Path) -> io::Result<PathBuf> {
             _ => return Ok(place),
         }
     }
-    Err(io::Error::other("its symbolic links go in a circle"))
+    Err(io::Error::other("its symbolic links form a cycle"))
 }
 
 /// The folder that a file is in.

@@ -97,7 +97,10 @@ fn without_schema(document: &mut Value) -> Result<(), Problem> {
         .and_then(|document| document.remove("$schema"));
     match given {
         None | Some(Value::String(_)) => Ok(()),
-        Some(_) => Err(Problem::new("$schema", "must be text, where the schema is")),
+        Some(_) => Err(Problem::new(
+            "$schema",
+            "must be text, the location of the schema",
+        )),
     }
 }
 
@@ -159,7 +162,7 @@ fn clock(file: &File, time_step: f64) -> Result<Clock, Problem> {
 /// The clock with the step that `auto` finds for `scene`, which is otherwise complete.
 fn automatic_clock(file: &File, scene: &Scene) -> Result<Clock, Problem> {
     let step = stability::time_step(scene).ok_or_else(|| {
-        let reason = "`auto` is known for the integrators `semi-implicit` and `velocity-verlet` alone; \
+        let reason = "`auto` works only with the integrators `semi-implicit` and `velocity-verlet`; \
                       give a number";
         Problem::new("time_step_secs", reason)
     })?;
@@ -177,7 +180,10 @@ fn automatic_clock(file: &File, scene: &Scene) -> Result<Clock, Problem> {
 
 fn pushes(events: &[Object<file::Event>]) -> Result<Vec<Push>, Problem> {
     if events.len() > MOST_NUMBERED {
-        let reason = format!("{} events; at most {MOST_NUMBERED} may be", events.len());
+        let reason = format!(
+            "{} events; at most {MOST_NUMBERED} are allowed",
+            events.len()
+        );
         return Err(Problem::new("events", reason));
     }
     let numbered = events.iter().enumerate();
@@ -215,7 +221,7 @@ fn measurements(given: &[file::Measurement]) -> Result<Vec<Measurement>, Problem
         let measurement = measurement(given).under(&place)?;
         for name in measurement.names() {
             if names.contains(&name) {
-                let reason = format!("`{name}` is measured already; remove one");
+                let reason = format!("`{name}` is already measured; remove one");
                 return Err(Problem::new(place, reason));
             }
             names.insert(name);
@@ -314,7 +320,7 @@ fn without_repetition(ids: &[u32]) -> Result<Vec<u32>, Problem> {
     let mut seen = BTreeSet::new();
     for (k, id) in ids.iter().enumerate() {
         if !seen.insert(id) {
-            let reason = format!("agent {id} is named twice; remove one");
+            let reason = format!("agent {id} is listed twice; remove one");
             return Err(Problem::new(format!("debug_agents[{k}]"), reason));
         }
     }

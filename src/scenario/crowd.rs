@@ -80,7 +80,7 @@ impl<'a> Crowd<'a> {
         let (speed, most) = (x.hypot(y), self.scene.max_speed);
         if speed > most * (1.0 + ROUNDING) {
             let reason = format!(
-                "its speed, {speed} m/s, is above max_speed {most}; give a slower one, or raise max_speed"
+                "the speed {speed} m/s is above max_speed {most}; lower it, or raise max_speed"
             );
             return Err(Problem::new("velocity", reason));
         }
@@ -152,7 +152,7 @@ impl<'a> Crowd<'a> {
             }
             if cells > 1 && extent == 0.0 && grid.jitter == 0.0 {
                 let reason = format!(
-                    "{cells} agents would stand on one point: `min` and `max` are 0 m apart; move one, or give jitter"
+                    "{cells} agents would stand at one point: `min` and `max` are 0 m apart; move one, or set `jitter`"
                 );
                 return Err(Problem::new(key, reason));
             }
@@ -174,7 +174,7 @@ impl<'a> Crowd<'a> {
 
     fn default_goal(&self) -> Result<crate::engine::math::Vector, Problem> {
         let [x, y] = self.file.goal.ok_or_else(|| {
-            let reason = "no goal: give `goal` here, or one for all at the top of the file";
+            let reason = "no goal: set `goal` here or at the top of the file";
             Problem::new("", reason)
         })?;
         debug_assert!(
@@ -216,7 +216,7 @@ impl<'a> Crowd<'a> {
             self.custom.insert(serde_json::json!(choice).to_string());
             if self.custom.len() > MOST_CUSTOM {
                 let reason = format!(
-                    "more than {MOST_CUSTOM} different profiles in full; let agents share them"
+                    "more than {MOST_CUSTOM} different profiles defined in full; let agents share profiles"
                 );
                 return Err(Problem::new("profile", reason));
             }

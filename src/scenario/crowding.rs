@@ -18,8 +18,8 @@ pub(super) fn check(file: &File, scene: &Scene, duration_secs: f64) -> Result<()
     if let Some((k, count)) = crowded(&corners) {
         let place = format!("obstacles[{}]", scene.walls.wall(k as u32).obstacle);
         let reason = format!(
-            "{count} corners of obstacles {}; at most {MOST_PER_CELL} may be: leave out corners that hardly \
-             matter",
+            "{count} corners of obstacles {}; at most {MOST_PER_CELL} are allowed: leave out unimportant \
+             corners",
             near(corners[k])
         );
         return Err(Problem::new(place, reason));
@@ -58,7 +58,7 @@ pub(super) fn check(file: &File, scene: &Scene, duration_secs: f64) -> Result<()
 
 fn too_close(count: usize, p: Vector) -> String {
     format!(
-        "{count} people {}; at most {MOST_PER_CELL} may stand there: give them more room, or take fewer",
+        "{count} agents {}; at most {MOST_PER_CELL} are allowed: give them more room, or use fewer",
         near(p)
     )
 }
@@ -66,7 +66,7 @@ fn too_close(count: usize, p: Vector) -> String {
 fn near(p: Vector) -> String {
     let (x, y) = (p.x.floor(), p.y.floor());
     format!(
-        "on the square metre from ({x}, {y}) to ({}, {})",
+        "in the square meter from ({x}, {y}) to ({}, {})",
         x + 1.0,
         y + 1.0
     )
@@ -113,8 +113,8 @@ fn locked(walls: &Walls, people: &[Vector]) -> Option<(usize, String)> {
             return None;
         }
         let reason = format!(
-            "somebody at ({:.2}, {:.2}) is inside obstacles[{obstacle}], and no free point is near; move \
-             them, or the obstacle",
+            "an agent at ({:.2}, {:.2}) is inside obstacles[{obstacle}], and no free point is near; move \
+             the agent or the obstacle",
             p.x, p.y
         );
         Some((k, reason))

@@ -42,7 +42,10 @@ pub enum ScenarioError {
         problem: Problem,
     },
     /// There is no built-in scenario of this name.
-    #[error("no scenario is called `{}`; there are {known}", shown(name))]
+    #[error(
+        "unknown scenario `{}`; the built-in scenarios are {known}",
+        shown(name)
+    )]
     UnknownName {
         /// The name asked for.
         name: String,

@@ -23,7 +23,7 @@ pub fn bytes(path: &Path, most: u64) -> Result<Vec<u8>> {
 /// The file cannot be read, has more than [`LONGEST_TEXT`] bytes, or is not UTF-8.
 pub fn text(path: &Path) -> Result<String> {
     let text = String::from_utf8(bytes(path, LONGEST_TEXT)?);
-    text.map_err(|_| Error::new(ErrorKind::InvalidData, "no text in UTF-8"))
+    text.map_err(|_| Error::new(ErrorKind::InvalidData, "not UTF-8 text"))
 }
 
 /// Reads the rest of a file.

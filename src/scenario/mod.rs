@@ -196,11 +196,11 @@ fn unreadable_because(error: &std::io::Error) -> String {
     let said = said.split(" (os error").next().unwrap_or_default();
     match error.kind() {
         ErrorKind::NotFound => {
-            format!("{said}; `sandbox list` names the scenarios that come with the program")
+            format!("{said}; `sandbox list` shows the built-in scenarios")
         }
         ErrorKind::IsADirectory => format!("{said}; a scenario is a file"),
-        ErrorKind::InvalidData => format!("{said}; save it as that"),
-        ErrorKind::FileTooLarge => format!("{said}; no scenario is"),
+        ErrorKind::InvalidData => format!("{said}; save it as UTF-8"),
+        ErrorKind::FileTooLarge => format!("{said}; a scenario must be shorter"),
         _ => said.to_owned(),
     }
 }

@@ -101,7 +101,7 @@ impl Need {
             (listed, "to list walls near agents"),
         ];
         let parts = parts.into_iter().filter(|&(bytes, _)| bytes > 0);
-        let parts = parts.map(|(bytes, what)| format!("{} of them {what}", in_units(bytes)));
+        let parts = parts.map(|(bytes, what)| format!("{} of it {what}", in_units(bytes)));
         let parts = match parts.collect::<Vec<_>>().join(", ") {
             none if none.is_empty() => none,
             some => format!(" ({some})"),
@@ -112,7 +112,7 @@ impl Need {
         };
         Err(TooLarge(format!(
             "{file}: {agents} agents{entering} and {} walls would take {} of memory{parts}, and this machine has \
-             {}: take {smaller}fewer agents, a shorter run (--until) if they come from sources, or another machine",
+             {}: use {smaller}fewer agents, a shorter run (--until) if they come from sources, or a larger machine",
             self.walls,
             in_units(estimate),
             in_units(there),
@@ -137,7 +137,7 @@ impl Need {
             };
             let reason = format!(
                 "too many: with these, {agents} agents enter within {duration_secs} s, which takes {} of \
-                 memory; at most {MOST_AGENTS} may: take fewer columns, rows or entries",
+                 memory; at most {MOST_AGENTS} are allowed: use fewer columns, rows or entries",
                 in_units(need.bytes()),
             );
             Err(Problem::new(format!("{place}[{k}]"), reason))
@@ -236,8 +236,8 @@ mod tests {
                 .unwrap_err()
                 .to_string(),
             "f.json: 1000000 agents (600000 of them from sources) and 12 walls would take 723 MB of memory \
-             (100 MB of them to write files), and this machine has 256 MB: take fewer agents, a shorter run \
-             (--until) if they come from sources, or another machine"
+             (100 MB of it to write files), and this machine has 256 MB: use fewer agents, a shorter run \
+             (--until) if they come from sources, or a larger machine"
         );
     }
 
@@ -249,11 +249,11 @@ mod tests {
         };
         let said = need.check("f.json", 0, 1 << 30).unwrap_err().to_string();
         assert!(
-            said.contains("5.62 GB of memory (5.00 GB of them to list walls near agents)"),
+            said.contains("5.62 GB of memory (5.00 GB of it to list walls near agents)"),
             "{said}"
         );
         assert!(
-            said.contains("take smaller avoidance_radius and support_radius, "),
+            said.contains("use smaller avoidance_radius and support_radius, "),
             "{said}"
         );
     }

@@ -93,7 +93,7 @@ pub(super) fn fill(document: &mut Value, folder: &Path) -> Result<Vec<PlanFile>,
             OBSTACLES => obstacles_value(&plan),
             _ if plan.walkable.is_empty() => {
                 let reason = format!(
-                    "{}: has nothing but obstacles; name it under `obstacles`",
+                    "{}: contains only obstacles; name it under `obstacles`",
                     shown(name)
                 );
                 return Err(Problem::new(key, reason));
@@ -160,7 +160,7 @@ fn check_length(count: usize) -> Result<(), Problem> {
         return Ok(());
     }
     let reason =
-        format!("{count} corners; at most {MOST_CORNERS} may be: make it several obstacles");
+        format!("{count} corners; at most {MOST_CORNERS} are allowed: split it into several");
     Err(Problem::new("", reason))
 }
 
@@ -169,7 +169,7 @@ pub(super) fn solids(file: &File) -> Result<Vec<Polygon>, Problem> {
     let walls = walls(file);
     if walls > MOST_WALLS {
         let reason = format!(
-            "{walls} corners in all; at most {MOST_WALLS} may be: leave out corners that hardly matter"
+            "{walls} corners in total; at most {MOST_WALLS} are allowed: leave out unimportant corners"
         );
         return Err(Problem::new(OBSTACLES, reason));
     }

@@ -15,7 +15,7 @@ pub(super) fn blend(choice: &ProfileChoice, overriding: &Parameters) -> Result<B
     };
     let (min, max) = (blend.sph.rest_density_min, blend.sph.rest_density_max);
     if min > max {
-        let reason = format!("rest_density_min {min} is above rest_density_max {max}; give both");
+        let reason = format!("rest_density_min {min} is above rest_density_max {max}; set both");
         return Err(Problem::new("", reason));
     }
     Ok(blend)
@@ -37,7 +37,7 @@ fn unknown(name: &str) -> Problem {
     Problem::new(
         "",
         format!(
-            "no profile is called `{}`{near} (there are {names})",
+            "unknown profile `{}`{near} (known profiles: {names})",
             shown(name)
         ),
     )
@@ -70,7 +70,7 @@ fn custom_profile(custom: &CustomProfile, parameters: &Parameters) -> Result<Pro
         (Some(base), _) => plain(base, parameters).under("base")?,
         (None, Some(kind)) => parameters.profile("custom", kind, custom.sph.unwrap_or(true)),
         (None, None) => {
-            let reason = "a blend is made of plain profiles, not of blends";
+            let reason = "a blend must consist of plain profiles, not of blends";
             return Err(Problem::new("blend", reason));
         }
     };
@@ -81,7 +81,7 @@ fn custom_profile(custom: &CustomProfile, parameters: &Parameters) -> Result<Pro
 fn plain(name: &str, parameters: &Parameters) -> Result<Profile, Problem> {
     catalog::plain(name, parameters).ok_or_else(|| {
         if catalog::named(name, parameters).is_some() {
-            let reason = format!("a blend is made of plain profiles; `{name}` is a blend itself");
+            let reason = format!("a blend must consist of plain profiles; `{name}` is a blend");
             Problem::new("", reason)
         } else {
             unknown(name)
@@ -99,13 +99,13 @@ fn checked(custom: &CustomProfile) -> Result<(), Problem> {
         custom.blend.is_some(),
     ];
     if ways.into_iter().filter(|&given| given).count() != 1 {
-        let reason = "a profile in full has exactly one of `base`, `navigation` and `blend`";
+        let reason = "needs exactly one of `base`, `navigation` and `blend`";
         return Err(Problem::new("", reason));
     }
     if custom.sph.is_some() && custom.navigation.is_none() {
         return Err(Problem::new(
             "sph",
-            "goes with `navigation` only; remove it",
+            "is allowed only with `navigation`; remove it",
         ));
     }
     parameters::check(&custom.parameters.0).under("parameters")
@@ -164,7 +164,7 @@ fn shared_by(custom: &CustomProfile, steps: &[Object<Step>]) -> Result<Parameter
             if let Some((_, other)) = so_far.iter().find(|(k, v)| *k == key && *v != value) {
                 let path = format!("blend[{k}].profile.parameters.{key}");
                 let reason = format!(
-                    "all profiles of a blend share it: {value} here, {other} before; give it once"
+                    "must be the same in all profiles of a blend: {value} here, {other} before; give it once"
                 );
                 return Err(Problem::new(path, reason));
             }

@@ -22,7 +22,7 @@ pub struct Setting {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SettingError {
     /// There is no `=`.
-    #[error("a setting is written key=value")]
+    #[error("a setting has the form key=value")]
     NoValue,
     /// The key is unknown.
     #[error(
@@ -233,7 +233,7 @@ mod tests {
             "unknown setting `viscosty`; did you mean `viscosity`? \
              (`sandbox list --settings` shows them all)"
         );
-        assert_eq!(reason("viscosity"), "a setting is written key=value");
+        assert_eq!(reason("viscosity"), "a setting has the form key=value");
         assert!(reason("=5").starts_with("unknown setting ``"));
     }
 }

@@ -88,7 +88,7 @@ fn region(text: &str) -> Result<Region, String> {
             min: [x0, y0].into(),
             max: [x1, y1].into(),
         }),
-        _ => Err("four numbers x0,y0,x1,y1 are needed, x0 < x1, y0 < y1".to_owned()),
+        _ => Err("expected four numbers x0,y0,x1,y1 with x0 < x1 and y0 < y1".to_owned()),
     }
 }
 
@@ -98,6 +98,6 @@ fn line(text: &str) -> Result<Line, String> {
             start: [x0, y0].into(),
             end: [x1, y1].into(),
         }),
-        _ => Err("four numbers x0,y0,x1,y1 are needed, the ends of a line".to_owned()),
+        _ => Err("expected four numbers x0,y0,x1,y1, the ends of a line".to_owned()),
     }
 }

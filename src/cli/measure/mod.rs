@@ -148,7 +148,7 @@ fn site(options: &MeasureOptions, tracks: &Tracks) -> Result<Site, Failure> {
 fn own(options: &MeasureOptions, problem: &dyn std::fmt::Display) -> Failure {
     let path = options.trajectory.display();
     Failure::Input(format!(
-        "{path}: its geometry: {problem}; give one by --geometry, or none by --geometry {NO_WALLS}"
+        "{path}: its geometry: {problem}; give another one with --geometry, or use --geometry {NO_WALLS}"
     ))
 }
 
@@ -158,14 +158,14 @@ fn report_oddities(measured: &Measured) {
     let (inside, deepest) = overview.inside;
     if inside > 0 {
         talk(&format!(
-            "note: {inside} of {} rows are outside of where people can walk, by {deepest:.2} m at most; they \
-             count, and see walls as from the nearest point where people can; from farther than h, none",
+            "note: {inside} of {} rows are outside of the walkable area, by {deepest:.2} m at most; they \
+             count, with the walls as seen from the nearest walkable point, or without walls if it is farther than h",
             overview.rows
         ));
     }
     if overview.crammed > 0 {
         talk(&format!(
-            "note: of {} rows walls hide more than {} % of the kernel; {} % are taken",
+            "note: in {} rows walls hide more than {} % of the kernel; {} % are used",
             overview.crammed,
             100.0 * MOST_HIDDEN,
             100.0 * MOST_HIDDEN
@@ -174,7 +174,7 @@ fn report_oddities(measured: &Measured) {
     for (k, crossings) in measured.crossings.iter().enumerate() {
         if crossings.across_gaps > 0 {
             talk(&format!(
-                "note: line {}: {} person(s) who were missing in between came back on the other side; they \
+                "note: line {}: {} person(s) crossed it during a gap in their trajectory; these crossings \
                  do not count",
                 k + 1,
                 crossings.across_gaps

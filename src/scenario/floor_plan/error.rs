@@ -19,7 +19,7 @@ pub enum FloorPlanError {
     #[error("cannot be read: {0}")]
     Unreadable(String),
     /// The text is not valid WKT or GeoJSON.
-    #[error("no {format}: {}", shown_message(reason))]
+    #[error("not valid {format}: {}", shown_message(reason))]
     Syntax {
         /// WKT or GeoJSON.
         format: &'static str,
@@ -27,7 +27,7 @@ pub enum FloorPlanError {
         reason: String,
     },
     /// A geometry of a type that has no area.
-    #[error("{}a {found} has no area; a floor plan is made of polygons", at(.place))]
+    #[error("{}a {found} has no area; a floor plan consists of polygons", at(.place))]
     NoPolygon {
         /// Which feature or geometry.
         place: String,
@@ -42,14 +42,14 @@ pub enum FloorPlanError {
     Empty,
     /// The file declares a coordinate system in degrees.
     #[error(
-        "the coordinates are degrees ({}); a floor plan is in metres: project it, to UTM for example",
+        "the coordinates are degrees ({}); a floor plan must be in meters: project it, for example to UTM",
         shown(.0)
     )]
     Degrees(String),
     /// The plan is so small that it must be a mistake.
     #[error(
-        "no person fits in: everything lies within {width} by {height} m. Coordinates are metres; if these \
-         are degrees, project them, to UTM for example"
+        "too small for a person: everything lies within {width} by {height} m. Coordinates are in meters; if these \
+         are degrees, project them, for example to UTM"
     )]
     TooSmall {
         /// Extent along x, meters.
@@ -58,12 +58,12 @@ pub enum FloorPlanError {
         height: f64,
     },
     /// The obstacles fill the walkable area.
-    #[error("the obstacles leave no room for anybody")]
+    #[error("the obstacles leave no room for a person")]
     NoRoom,
     /// A point so far from the origin that lengths lose precision.
     #[error(
         "{}({x}, {y}) is out of range: x and y must be at least -1e6 and at most 1e6 m; move the plan \
-         near to the origin", at(.place)
+         closer to the origin", at(.place)
     )]
     TooFar {
         /// Which feature or geometry.

@@ -79,7 +79,9 @@ fn ring(points: &[[f64; 2]]) -> Result<Ring, String> {
                 format!("the edge from ({}, {}) to ({}, {})", a.x, a.y, b.x, b.y)
             };
             let (one, other) = (edge(i), edge(j));
-            format!("crosses or touches itself: {one} meets {other}; draw it as rings that do not")
+            format!(
+                "crosses or touches itself: {one} meets {other}; split it into rings that do not"
+            )
         }
         PolygonError::NoArea => format!(
             "encloses no area: all points are on a line, from ({}, {})",
