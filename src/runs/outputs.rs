@@ -35,7 +35,8 @@ pub enum OutputsError {
     Shared(String, String),
     /// An option names an input file.
     #[error(
-        "{output} and {input} are the same file; an input is never replaced, not even with --force: write to another file"
+        "{output} and {input} are the same file; an input is never replaced, not even with --force: write to another \
+         file"
     )]
     Input {
         /// The option with its file.
