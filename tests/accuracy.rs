@@ -1,5 +1,5 @@
-//! Run time against error: every scene and knob makes sense, errors are what they are called, and the
-//! command writes what it says.
+//! Work and precision: scenes and knobs are valid, errors decrease with the time step, and the command writes its
+//! tables and pictures.
 
 use sandbox::engine::boundary::WallMethod;
 use sandbox::lab::accuracy::{Detail, KNOBS, Kind, Knob, Lyapunov, Motion, SCENES, Scene, sample};
@@ -96,7 +96,7 @@ fn walkers_alone_keep_their_distance_and_people_who_press_do_not() {
         .map(|k| json!({ "position": [5 * k, 0], "goal": [5 * k, 1000] }))
         .collect();
     let alone = Lyapunov::of(&json!({ "agents": alone })).unwrap();
-    // Ways to a goal 1 km away draw together by a thousandth of what is walked.
+    // Paths to a goal 1 km away converge by a thousandth of the distance walked.
     assert!(
         alone.rate().abs() < 0.01 && (alone.growth - 1.0).abs() < 0.01,
         "{alone:?}"
@@ -114,7 +114,7 @@ fn a_sample_depends_on_its_seed_and_on_nothing_else() {
     let (one, again, other) = (speed(1), speed(1), speed(2));
     assert_eq!(one, again);
     assert_ne!(one, other);
-    // √(k/2) = 10 m/s.
+    // In theory √(k/2) = 10 m/s.
     assert!((one / 10.0 - 1.0).abs() < 0.05, "{one}");
 }
 

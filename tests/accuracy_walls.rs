@@ -1,4 +1,4 @@
-//! The wall benchmark: its exact integrals, and that each method does what it is said to do.
+//! The wall benchmark: its exact integrals, and the documented properties of each method.
 
 use crate::common::quadrature;
 use crate::common::{rectangle, vector};
@@ -25,7 +25,7 @@ fn found(method: Method, case: &Case) -> Vec<Integrals> {
     places.map(|r_i| prepared.integrals(r_i)).collect()
 }
 
-/// The larger of the errors of density and force, root mean square over the path.
+/// The larger of the root-mean-square errors of density and force over the path.
 fn error(method: Method, case: &Case, exact: &[Integrals]) -> f64 {
     let mean = |of: fn(Integrals) -> f64| {
         let differences = found(method, case)
@@ -170,14 +170,15 @@ fn before_an_infinite_wall_every_polygon_method_gives_the_printed_values() {
     );
 }
 
-/// Orders of convergence as a spacing is halved twice, for one of `coarse`, half and a quarter of it.
+/// Orders of convergence between the spacings `coarse`, `coarse / 2` and `coarse / 4`.
 fn orders(case: &Case, coarse: f64, method: impl Fn(f64) -> Method) -> [f64; 2] {
     let exact = exact(Region::Solid, case);
     let [a, b, c] = [1.0, 0.5, 0.25].map(|part| error(method(part * coarse), case, &exact));
     [(a / b).log2(), (b / c).log2()]
 }
 
-/// The paths that keep a body's radius off all walls: nearer, the force's kernel has a cusp in reach.
+/// The paths that stay at least a body radius away from all walls. Nearer, the cusp of the force kernel reaches the
+/// solid.
 fn off_the_walls() -> impl Iterator<Item = Case> {
     let cases = cases(PLACES).into_iter();
     cases.filter(|case| case.tangent.is_none())

@@ -1,5 +1,5 @@
-//! The house: wings and their modules use only what stands above them, each foreign crate has one home,
-//! nothing panics on `unwrap`, and no file grows over the eyes' reach.
+//! The architecture: wings and modules use only those declared above them, each foreign crate is used in one place,
+//! there is no `unwrap` outside of tests, and no file has more than 400 lines.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            // Where something has been built, there is code that nobody wrote.
+            // Build folders contain generated code.
             if !path.ends_with("target") {
                 found.extend(files(&path));
             }
@@ -28,16 +28,16 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// A line without its comment; `//` in a string is rare enough here to count as one.
+/// A line without its comment. `//` in a string also counts as a comment.
 fn without_comment(line: &str) -> &str {
     line.split_once("//").map_or(line, |(code, _)| code)
 }
 
-/// The code of a file, line by line from 1, without comments and without its tests.
+/// The code of a file without comments and tests, as lines numbered from 1.
 fn code(path: &Path) -> Vec<(usize, String)> {
     let text = fs::read_to_string(path).unwrap();
     let lines: Vec<&str> = text.lines().collect();
-    // By convention the tests are the last module of a file.
+    // By convention, the tests are the last module of a file.
     let tests = lines
         .windows(2)
         .position(|pair| pair[0] == "#[cfg(test)]" && pair[1].starts_with("mod "));
@@ -48,7 +48,7 @@ fn code(path: &Path) -> Vec<(usize, String)> {
         .collect()
 }
 
-/// The modules that a file declares, in its order: `pub mod name;` and `mod name;`.
+/// The modules that a file declares by `pub mod name;` and `mod name;`, in order.
 fn declared(path: &Path) -> Vec<String> {
     let lines = code(path).into_iter();
     let name = |(_, line): (usize, String)| {
@@ -60,14 +60,14 @@ fn declared(path: &Path) -> Vec<String> {
     lines.filter_map(name).collect()
 }
 
-/// The wings of the house from top to bottom, each with its modules in their order.
+/// The wings from top to bottom, each with its modules in order.
 fn wings() -> Vec<(String, Vec<String>)> {
     let wings = declared(&source().join("lib.rs")).into_iter();
     let modules = |wing: &str| declared(&source().join(wing).join("mod.rs"));
     wings.map(|wing| (wing.clone(), modules(&wing))).collect()
 }
 
-/// The wing of a file and its module in it, as in `engine` and `frame`.
+/// The wing and the module of a file, such as `engine` and `frame`.
 fn place_of(path: &Path) -> (String, String) {
     let inside = path.strip_prefix(source()).unwrap();
     let mut names = inside
@@ -77,10 +77,10 @@ fn place_of(path: &Path) -> (String, String) {
     (wing, names.next().unwrap_or_default().to_owned())
 }
 
-/// Wings of one module each: their files may use one another.
+/// Wings that count as one module: their files may use each other.
 const WHOLE: [&str; 2] = ["scenario", "cli"];
 
-/// Every identifier that directly follows `prefix` in a piece of code, the parts of a `{…}` list too.
+/// Every identifier directly after `prefix` in a text, including the entries of a `{…}` list.
 fn names_after(text: &str, prefix: &str) -> Vec<String> {
     let identifier = |text: &str| -> String {
         let letters = text.trim_start().chars();
@@ -98,7 +98,7 @@ fn names_after(text: &str, prefix: &str) -> Vec<String> {
             found.push(identifier(rest));
             continue;
         };
-        // Top-level entries of the list: those at depth 0 of inner braces.
+        // Collect the top-level entries of the list, outside of inner braces.
         let (mut depth, mut entry) = (0, String::new());
         for c in list.chars() {
             match c {
@@ -177,7 +177,7 @@ fn wings_and_modules_use_only_what_stands_above_them() {
     }
 }
 
-/// Every place in the code that uses `krate`, outside the modules that may.
+/// Every line of code that uses `krate` outside of the modules in `homes`.
 fn strays(krate: &str, homes: &[&str]) -> Vec<String> {
     let names = |line: &str| {
         let path = format!("{krate}::");
@@ -219,7 +219,7 @@ fn each_foreign_crate_has_one_home() {
     ] {
         assert_eq!(strays(krate, &[home]), Vec::<String>::new());
     }
-    // What people walk on is cut to shape on the way in and on the way out.
+    // `geo` clips walkable areas, both when floor plans are read and when trajectories are written.
     assert_eq!(
         strays("geo", &["scenario/floor_plan", "output/trajectory"]),
         Vec::<String>::new()

@@ -1,5 +1,5 @@
-//! Disks that are full, folders that cannot be or that vanish: exit code 1, one sentence with the path, and
-//! what was found until then is kept.
+//! Full disks, and folders that cannot be created or that vanish: exit code 1, one error line that names the path,
+//! and earlier results are kept.
 #![cfg(target_os = "linux")]
 
 use std::fs::{self, File};
@@ -14,7 +14,7 @@ fn sandbox(arguments: &[&str]) -> Output {
     Command::new(PROGRAM).args(arguments).output().unwrap()
 }
 
-/// With no file longer than so many blocks of 1 KiB: to the program, a disk that becomes full.
+/// Runs the program with files limited to `blocks` KiB, as on a disk that fills up.
 fn limited(blocks: u32, arguments: &[&str]) -> Output {
     let limit = format!(r#"trap "" XFSZ; ulimit -f {blocks}; exec "$0" "$@""#);
     let mut bash = Command::new("bash");
@@ -22,7 +22,7 @@ fn limited(blocks: u32, arguments: &[&str]) -> Output {
     bash.output().unwrap()
 }
 
-/// Exit code 1, and the one sentence on stderr that says what failed.
+/// Expects exit code 1, and returns the only error line on stderr, which must be the last line.
 fn sentence(arguments: &[&str], output: &Output) -> String {
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
@@ -36,7 +36,7 @@ fn sentence(arguments: &[&str], output: &Output) -> String {
     errors[0].to_owned()
 }
 
-/// Commands that write, each with the option that takes the path still to come.
+/// Commands that write a file or folder: the arguments before its path, and its extension (none for a folder).
 const WRITERS: [(&[&str], &str); 9] = [
     (
         &["evacuation", "--until", "0.1", "--force", "--save"],
@@ -82,7 +82,7 @@ fn what_cannot_be_written_is_named_before_anything_is_computed() {
         let below = file.join("x").with_extension(extension);
         let missing = folder.path().join("no").join("x").with_extension(extension);
         let is_folder = extension.is_empty();
-        // A missing folder is made where it is the folder that was asked for.
+        // A missing output folder is created, so that only a file in its place is an error.
         for path in [&below, if is_folder { &file } else { &missing }] {
             let arguments = [arguments, &[text(path)]].concat();
             let output = sandbox(&arguments);
@@ -136,7 +136,7 @@ fn json(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// The frames that a file has, as its own readers see them.
+/// The number of frames in a trajectory file, all of which must be complete.
 fn frames(path: &Path) -> u64 {
     if path.extension().unwrap() == "sqlite" {
         let connection = rusqlite::Connection::open(path).unwrap();

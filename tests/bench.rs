@@ -1,6 +1,6 @@
-//! The benchmarks: what they report, and that paying for more changes nothing but the time.
+//! The benchmarks: what they report, and that computing more than needed changes only the run time.
 //!
-//! No test here looks at how long something took.
+//! No test here checks how long something takes.
 
 use std::path::{Path, PathBuf};
 
@@ -217,7 +217,7 @@ fn paying_for_everything_changes_no_bit_of_the_motion() {
     }
 }
 
-/// Everybody's id, position and velocity, bit by bit.
+/// The ids of all agents, with the bits of their positions and velocities.
 fn motion(simulation: &Simulation) -> Vec<(u32, [u64; 4])> {
     let numbers = |(id, bits): (u32, [u64; 5])| (id, [bits[0], bits[1], bits[2], bits[3]]);
     common::bits(simulation).into_iter().map(numbers).collect()
@@ -247,7 +247,7 @@ fn an_engine_that_is_missing_is_named_with_how_to_have_it() {
     assert_eq!(text.contains("--features compare"), !with_rustsim);
 }
 
-/// A Python that has a JuPedSim of version 9.9, which takes half a second for any number of steps.
+/// A fake Python with JuPedSim 9.9, which takes half a second for any number of steps.
 #[cfg(unix)]
 fn pretender(folder: &Path) -> PathBuf {
     use std::os::unix::fs::PermissionsExt;

@@ -1,4 +1,4 @@
-//! Blends (§4.4): weights, continuity, and what is not evaluated.
+//! Blends (§4.4): weights, continuity, and profiles that are not evaluated.
 
 use crate::common::{
     acceleration, blend, blend_with, evaluated, laid_open, person, scene, state, vector, walker,
@@ -23,7 +23,7 @@ fn three() -> Blend {
     sequence(&[("rvo", 1.5), ("sf+sph", 2.5), ("sph", 4.0)]).unwrap()
 }
 
-/// Agent 0 among eight others, who come closer as `scale` falls.
+/// Agent 0 among eight others; the smaller `scale`, the closer they are.
 fn huddle(blend: Blend, scale: f64) -> Scene {
     let mut scene = scene(Vec::new(), blend);
     let own = walker(Vector::zeros(), vector(0.9, 0.2), vector(30.0, 0.0));

@@ -1,4 +1,4 @@
-//! A run that goes on from a checkpoint is the run that never stopped, to the last bit.
+//! A run resumed from a checkpoint is bit-identical to an uninterrupted run.
 
 use std::fs;
 use std::path::Path;
@@ -15,7 +15,7 @@ use sandbox::scenario::catalog::NAMES;
 use sandbox::scenario::metrics::Metrics;
 use sandbox::scenario::{Scenario, Setting};
 
-/// A crowd that leaves a room through a door, with latecomers and a push.
+/// A crowd that leaves a room through a door, with a source and a push.
 fn busy_room(profile: &str) -> Scene {
     let mut scene = scene(vec![room(8.0, 1.2)], blend(profile));
     scene.precision = Precision::Mixed;
@@ -66,8 +66,8 @@ fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     pool.unwrap().install(work)
 }
 
-/// Stops at every one of `stops` and goes on from what was written down, on another number of threads;
-/// returns the digests at `end` of this run and of one that never stopped.
+/// Saves and resumes a run at each frame of `stops`, each time on another number of threads. Returns the digests at
+/// frame `end` of this run and of an uninterrupted one.
 fn digests(scene: &Scene, stops: &[u64], end: u64) -> [String; 2] {
     let without = on_threads(2, || {
         let mut simulation = Simulation::new(scene.clone()).unwrap();
@@ -92,7 +92,7 @@ fn digests(scene: &Scene, stops: &[u64], end: u64) -> [String; 2] {
 fn all_profiles_go_on_as_if_they_had_never_stopped() {
     for profile in NAMES {
         let mut scene = busy_room(profile);
-        // Before anything, between coarse frames, in the push, after it.
+        // At the start, between coarse frames, during the push and after it.
         let stops = [0, 1, 13, 27, 30, 31, 48, 90];
         let [resumed, without] = digests(&scene, &stops, 150);
         assert_eq!(resumed, without, "{profile}");
@@ -234,7 +234,7 @@ fn a_state_of_another_scene_is_refused() {
     assert!(Simulation::resumed(other, state).is_err());
 }
 
-/// Ids, densities, mean densities and pressures of the evaluated frame, as bits, by id.
+/// Bits of the densities, mean densities and pressures of the evaluated frame, sorted by id.
 fn observed(simulation: &Simulation) -> Vec<(u32, [u64; 3])> {
     let frame = simulation.frame();
     let fields = frame.fields;
@@ -259,7 +259,7 @@ fn a_resumed_run_observes_the_densities_of_one_that_never_stopped() {
         let scene = busy_room(profile);
         let mut whole = Simulation::new(scene.clone()).unwrap();
         whole.request_density_until(u64::MAX);
-        // As with `--checkpoint`: every frame has its density.
+        // As with `--checkpoint`, every frame has densities.
         let mut stopped = Simulation::new(scene.clone()).unwrap();
         stopped.request_density_until(u64::MAX);
         go_to(&mut stopped, 37);
@@ -292,7 +292,7 @@ fn digests_and_resumed_files_do_not_depend_on_what_is_written() {
         result["state_sha256"].as_str().unwrap().to_owned()
     };
     let (checkpoint, resumed, whole) = (file("c"), file("resumed.csv"), file("whole.csv"));
-    // The densities of the scenario's own measurement end at 15 s: here at 2 s, before the checkpoint.
+    // The scenario measures the density at 15 s. Here it does so at 2 s, before the checkpoint.
     let run = [
         "evacuation",
         "--profile",

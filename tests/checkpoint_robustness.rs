@@ -1,8 +1,7 @@
-//! Whatever a checkpoint's file holds, reading it and going on ends in finite numbers or in an error, in little
-//! memory.
+//! Any checkpoint file either can be resumed with finite numbers or gives an error, within bounded memory.
 //!
-//! 100,000 cases; more with `BAD_INPUT_TIMES=10 cargo test …`. At most this is held at once: 2 MB and 300 bytes
-//! for every byte of the file.
+//! 100,000 cases; more with `BAD_INPUT_TIMES=10 cargo test …`. The memory limit is 2 MB plus 300 bytes per byte of
+//! the file.
 
 use std::fs::{self, File};
 use std::io::Write;
@@ -17,7 +16,7 @@ use sandbox::runs::checkpoint::Checkpoint;
 use sandbox::scenario::Scenario;
 use sandbox::scenario::metrics::Metrics;
 
-/// Few people, latecomers, a push and a wall.
+/// A few people, a source, a push and a wall.
 const SCENARIO: &str = r#"{
   "goal": [9, 1], "profile": "sf->sph", "obstacles": [[[3, 0], [4, 0], [4, 0.5]]], "duration_secs": 9,
   "agents": [{"position": [1, 1], "velocity": [1, 0]}, {"position": [1.5, 1]}, {"position": [1, 1.6]}],
@@ -26,14 +25,14 @@ const SCENARIO: &str = r#"{
   "measurements": [{"density": {"at_secs": 0.1}}, {"density": {"at_secs": 5, "region": [[0, 0], [5, 5]]}}]
 }"#;
 
-/// The length of what precedes the payload: a line, the version, the checksum.
+/// The length of the header: a line, the version and the checksum.
 const HEAD: usize = 19 + 4 + 32;
 
 fn most(bytes: usize) -> u64 {
     (2 << 20) + 300 * bytes as u64
 }
 
-/// A checkpoint of a run under way.
+/// A checkpoint taken during a run.
 fn whole() -> Vec<u8> {
     let scenario = Scenario::parse(SCENARIO, "f.json", &[]).unwrap();
     let mut simulation = Simulation::new(scenario.scene.clone()).unwrap();
@@ -93,7 +92,7 @@ fn a_checkpoint_with_values_changed_goes_on_or_is_refused() {
     let whole = whole();
     let payload = &whole[HEAD..];
     assert_eq!(sealed(payload), whole);
-    // Half of the payload is the scenario's text, which `scenario_robustness.rs` is about.
+    // Half of the payload is the text of the scenario, which `scenario_robustness.rs` tests.
     let text = payload
         .windows(2)
         .rposition(|pair| pair == b"}\n" || pair == b"]}")
@@ -110,7 +109,7 @@ fn a_checkpoint_with_values_changed_goes_on_or_is_refused() {
         match how {
             0 => bytes.truncate(from),
             1 => drop(bytes.drain(from.min(to)..from.max(to))),
-            2 => bytes[from..(from + 10).min(payload.len())].fill(0xff), // the largest of all lengths
+            2 => bytes[from..(from + 10).min(payload.len())].fill(0xff), // the largest possible length
             _ => {}
         }
         went_on.fetch_add(u32::from(read(&sealed(&bytes))), Relaxed);
@@ -126,7 +125,7 @@ fn what_is_no_checkpoint_is_refused_however_long_it_is() {
     let path = folder.path().join("c");
     let mut file = File::create(&path).unwrap();
     file.write_all(b"PK").unwrap();
-    file.set_len(1 << 40).unwrap(); // nothing of it is on the disk
+    file.set_len(1 << 40).unwrap(); // a sparse file
     let mut said = String::new();
     let held =
         allocation_counter::measure(|| said = Checkpoint::read(&path).unwrap_err().to_string());

@@ -1,4 +1,4 @@
-//! The program as a user runs it: exit codes, what goes where, and the shape of its JSON.
+//! The command line: exit codes, contents of stdout and stderr, and the shape of the JSON.
 
 use std::path::Path;
 use std::process::{Command, Output};

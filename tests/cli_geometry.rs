@@ -1,4 +1,4 @@
-//! `--geometry` and `sandbox schema` as a user runs them.
+//! `--geometry` and `sandbox schema` on the command line.
 
 use std::process::{Command, Output};
 
@@ -19,7 +19,7 @@ fn said(output: &Output) -> String {
 fn a_floor_plan_replaces_the_walls_of_a_shipped_scenario() {
     let folder = tempfile::tempdir().unwrap();
     let plan = folder.path().join("hall.wkt");
-    // Without a doorway nobody gets near to the goal, 2 m outside.
+    // Without a doorway no agent gets near the goal, which is 2 m outside.
     std::fs::write(&plan, "POLYGON ((0 0, 20 0, 20 20, 0 20, 0 0))").unwrap();
     let plan = plan.to_str().unwrap();
     let output = sandbox(&["evacuation", "--geometry", plan, "--until", "20", "--json"]);

@@ -1,4 +1,4 @@
-//! Broken command lines and files, and all that the program says about them, word by word.
+//! Broken command lines and files, and their exact error messages.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -6,14 +6,14 @@ use std::process::Command;
 
 use serde::Deserialize;
 
-/// Files that are there, and what is typed in their folder's terms: `{}` is the folder.
+/// Input files, and command lines in which `{}` stands for the folder of these files.
 #[derive(Deserialize)]
 struct Broken {
     files: BTreeMap<String, String>,
     lines: Vec<Line>,
 }
 
-/// What is typed, and the lines that stderr then has.
+/// A command line, and the expected lines on stderr.
 #[derive(Deserialize)]
 struct Line {
     typed: Vec<String>,
@@ -46,7 +46,7 @@ fn every_broken_command_line_is_refused_in_these_very_words() {
         assert_eq!(output.status.code(), Some(2), "{typed:?}");
         assert!(output.stdout.is_empty(), "{typed:?}");
     }
-    // Nothing has been written, and nothing replaced.
+    // No file has been created or replaced.
     assert_eq!(
         fs::read_dir(folder.path()).unwrap().count(),
         broken.files.len() + 1
@@ -61,7 +61,7 @@ fn every_broken_command_line_is_refused_in_these_very_words() {
 fn an_agent_to_be_laid_open_who_never_enters_is_named_at_the_end() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    // The run is over before the second agent comes, which could not be known.
+    // The run ends before the second agent enters, which is not known in advance.
     let text = r#"{"goal": [0.1, 0], "stop": {"idle_secs": 0.2}, "agents": [{"position": [0, 0]}],
         "sources": [{"min": [0, 5], "max": [0, 9], "columns": 1, "rows": 1, "every_secs": 9, "start_secs": 9}]}"#;
     fs::write(path("late.json"), text).unwrap();

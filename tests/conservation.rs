@@ -1,5 +1,5 @@
-//! What forces between people conserve: momentum, angular momentum where they are central, energy where
-//! they have a potential.
+//! Conservation laws of the forces between agents: momentum, angular momentum for central forces, and energy for
+//! forces with a potential.
 
 use crate::common::{blend_with, block, rectangle, run, scene, vector};
 use sandbox::engine::agents::{Agents, NewAgent};
@@ -9,7 +9,8 @@ use sandbox::engine::scene::{Integrator, Scene};
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::Parameters;
 
-/// No goal force, and a rest density below that of anybody alone: every pressure is positive.
+/// A crowd without goal forces. The rest density is below the density of a lone agent, so that every pressure is
+/// positive.
 fn free(parameters: Parameters) -> Scene {
     let parameters = Parameters {
         goal_scale: Some(0.0),
@@ -23,7 +24,7 @@ fn free(parameters: Parameters) -> Scene {
     scene
 }
 
-/// The same people, each thrown another way.
+/// The same agents, each with another direction of motion.
 fn moving(agents: Vec<NewAgent>) -> Vec<NewAgent> {
     let thrown = agents.into_iter().zip(0_u32..);
     thrown
@@ -48,7 +49,7 @@ fn angular_momentum(agents: &Agents) -> f64 {
     parts.map(|((mass, r), v)| mass * r.perp(v)).sum()
 }
 
-/// Before and after so many frames with an integrator, by a function of the crowd.
+/// The value of `of` before and after `frames` frames with `integrator`.
 fn before_and_after<T>(
     scene: &Scene,
     integrator: Integrator,
@@ -83,7 +84,7 @@ fn a_free_crowd_keeps_its_momentum_whatever_the_integrator() {
             let [before, after] = before_and_after(&scene, integrator, 100, momentum);
             let change = (after - before).norm();
             assert!(before.norm() > 3.0, "{before:?}");
-            // 64 people times 100 frames of rounding.
+            // Rounding errors of 64 agents in 100 frames.
             assert!(
                 change < 1e-11,
                 "{integrator:?} {k} {mu} {contact}: {change}"
@@ -109,11 +110,11 @@ fn central_forces_keep_the_angular_momentum_with_semi_implicit_steps() {
     let central = crowd(200.0, 0.0);
     assert!(change(&central, Integrator::SemiImplicit) < 1e-10);
     assert!(change(&central, Integrator::ForwardEuler) > 0.1);
-    // Drag along the difference of two velocities is not central.
+    // Viscosity acts along the velocity difference: it is not a central force.
     assert!(change(&crowd(200.0, 5.0), Integrator::SemiImplicit) > 0.1);
 }
 
-/// Soft discs in a closed room, which overlap a little from the start.
+/// Soft discs in a closed room, which overlap slightly at the start.
 fn billiard(time_step: f64) -> Scene {
     let parameters = Parameters {
         goal_scale: Some(0.0),
@@ -136,7 +137,7 @@ fn billiard(time_step: f64) -> Scene {
     scene
 }
 
-/// Kinetic energy and that of all overlaps: K/2 for the square of each.
+/// The kinetic energy plus K/2 times the square of each overlap.
 fn energy(simulation: &Simulation) -> f64 {
     let frame = simulation.frame();
     let agents = frame.agents;
@@ -155,7 +156,7 @@ fn energy(simulation: &Simulation) -> f64 {
     energy
 }
 
-/// The mean energy over the last second of 20, in parts of that at the start, less 1.
+/// The relative difference between the mean energy in the last of 20 seconds and the initial energy.
 fn drift(integrator: Integrator, time_step: f64) -> f64 {
     let scene = Scene {
         integrator,
@@ -181,7 +182,7 @@ fn contact_alone_keeps_its_energy_as_well_as_the_integrator_can() {
         assert!(symplectic.abs() < 0.03, "{symplectic}");
     }
     assert!(forward > 10.0, "{forward}");
-    // Of each oscillation the midpoint method adds (ω Δt)⁴/8 by the step: an eighth at half of it.
+    // The midpoint method amplifies oscillations by (ω Δt)⁴/8 per step: half the step gives an eighth of the drift.
     let halved = drift(Integrator::Midpoint, 0.005);
     assert!(
         midpoint > 0.1 && (4.0..16.0).contains(&(midpoint / halved)),

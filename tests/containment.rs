@@ -1,4 +1,4 @@
-//! Nobody passes a wall, however thin, and however hard the crowd presses.
+//! No agent passes through a wall, however thin it is and however hard the crowd presses.
 
 use crate::common;
 use crate::common::{
@@ -11,7 +11,7 @@ use sandbox::engine::scene::Integrator;
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::Parameters;
 
-/// A closed ring of wall round [0, side]², with a slit at the left that is 1 µm wide.
+/// A ring of wall around [0, side]², with a slit 1 µm wide on the left.
 fn cell(side: f64, thickness: f64) -> Polygon {
     let (low, high) = (-thickness, side + thickness);
     let [below, above] = [0.5 * side, 0.5 * side + 1e-6];
@@ -72,7 +72,7 @@ fn a_wall_of_one_centimetre_holds_three_hundred_people_who_push() {
 
 #[test]
 fn a_stopped_move_is_counted_and_loses_its_inward_velocity() {
-    // Without contact nothing but the wall itself stops anybody.
+    // Without contact and social forces, only containment stops the agent.
     let parameters = Parameters {
         wall_stiffness: Some(0.0),
         ..Parameters::default()
@@ -127,7 +127,8 @@ proptest! {
             .first()
             .map(|&c| [shift, c])
             .unwrap();
-        // Starts on the diagonal to the corner, the goal far beyond it, and at random places.
+        // One agent starts on the diagonal to the corner, the other at a random place. Their goals lie far beyond
+        // the corner.
         let (sine, cosine) = angle.sin_cos();
         let centre = middle + vector(cosine - sine, sine + cosine);
         let starts = [
@@ -154,7 +155,7 @@ proptest! {
 
 #[test]
 fn nobody_slips_through_where_walls_meet_in_line() {
-    // Many short walls in line at an odd angle, and somebody who slides along them, pressing.
+    // Many short collinear walls at an odd angle, and agents that press against them while they slide along.
     let none = Parameters {
         wall_stiffness: Some(0.0),
         wall_strength: Some(0.0),

@@ -8,20 +8,20 @@ use sandbox::engine::scene::{Integrator, Scene};
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::Parameters;
 
-/// How long a crowd moves, seconds.
+/// Simulated time, seconds.
 const DURATION: f64 = 0.4;
-/// The coarsest step, seconds.
+/// The largest time step, seconds.
 const STEP: f64 = 0.01;
 
-/// 36 people who are pressed, walk and drag each other along. Nothing is switched on or off on their way:
-/// nobody comes below the rest density, is too fast, or begins to touch somebody.
+/// 36 agents with pressure, goal forces and viscosity. No force switches on or off: no agent falls below its rest
+/// density, reaches the maximum speed or begins to touch another.
 fn smooth(parameters: &Parameters) -> Scene {
     let mut scene = scene(Vec::new(), blend_with("sph", parameters));
     scene.max_speed = 100.0;
     let places = (0..36).map(|k| (f64::from(k % 6), f64::from(k / 6)));
     scene.agents = places
         .map(|(x, y)| {
-            // Wavy rows: no symmetry that would hide an error.
+            // The rows are wavy, because a symmetry could hide an error.
             let bend = vector((3.0 * y).sin(), (2.0 * x).cos()) * 0.05;
             NewAgent {
                 velocity: vector((1.7 * y).cos(), (1.3 * x).sin()) * 0.4,
@@ -33,7 +33,7 @@ fn smooth(parameters: &Parameters) -> Scene {
     scene
 }
 
-/// Pressure and viscosity at a fixed rest density below that of anybody alone.
+/// Pressure and viscosity at a fixed rest density below the density of a lone agent.
 fn fixed() -> Parameters {
     Parameters {
         rest_density_min: Some(1.0),
@@ -45,7 +45,7 @@ fn fixed() -> Parameters {
     }
 }
 
-/// Everybody's place by id after [`DURATION`].
+/// The positions of all agents after [`DURATION`], sorted by id.
 fn places(mut scene: Scene, integrator: Integrator, step: f64) -> Vec<Vector> {
     scene.integrator = integrator;
     scene.clock = Clock::new(step, Clock::nearest_coarse_every(step));
@@ -62,8 +62,8 @@ fn distance(a: &[Vector], b: &[Vector]) -> f64 {
     (squares.sum::<f64>() / a.len() as f64).sqrt()
 }
 
-/// Errors at ever halved steps against the midpoint method at a 256th of the coarsest, and the orders
-/// between them.
+/// Errors at four time steps, each half as long as the one before, and the orders between them. The reference is
+/// the midpoint method with a time step of [`STEP`]/256.
 fn orders(scene: &Scene, integrator: Integrator) -> (Vec<f64>, Vec<f64>) {
     let exact = places(scene.clone(), Integrator::Midpoint, STEP / 256.0);
     let errors: Vec<f64> = (0..4)
@@ -101,7 +101,7 @@ fn errors_and_orders(parameters: &Parameters, towards: Option<f64>) -> [(Vec<f64
     Integrator::ALL.map(|integrator| orders(&scene, integrator))
 }
 
-/// The paper's rest density (§4.2).
+/// The paper's rest density (§4.2), which follows the moving average.
 fn dynamic() -> Parameters {
     Parameters {
         rest_density_min: Some(0.0),
@@ -112,8 +112,7 @@ fn dynamic() -> Parameters {
 
 #[test]
 fn the_papers_moving_average_leaves_first_order_and_the_same_errors_to_all() {
-    // A crowd that draws together is everywhere denser than the average of its past: no pressure is
-    // switched off.
+    // A contracting crowd is everywhere denser than its moving average, so that no pressure is switched off.
     let found = errors_and_orders(&dynamic(), Some(0.8));
     let semi_implicit = found[0].0[0];
     for (errors, orders) in found {

@@ -1,4 +1,4 @@
-//! The same bits, whatever the number of threads and whoever looks on.
+//! Results are bit-identical with any number of threads, and with or without observers.
 
 use crate::common;
 use crate::common::{bits, blend, block, room, scene, vector};
@@ -8,15 +8,15 @@ use sandbox::engine::scene::{Goal, Push, Region, Scene, Source};
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::NAMES;
 
-/// A crowd in a small room with an exit; a row more every second, and a push. Large enough to be
-/// spread over eight threads.
+/// A crowd in a small room with an exit, a source that adds a row every second, and a push. The crowd is large
+/// enough for eight threads.
 fn busy_room(profile: &str) -> Scene {
     let mut scene = scene(vec![room(12.0, 1.2)], blend(profile));
     scene.seed = 5;
     scene.precision = Precision::Mixed;
     scene.groups[0].removal_radius = Some(0.5);
     let exit = vector(13.5, 6.0);
-    // Dense enough that blends blend.
+    // Dense enough that both profiles of a blend have weight.
     scene.agents = block(vector(0.4, 0.4), 28, 22, 0.42, exit);
     scene.sources = vec![Source {
         name: "late".to_owned(),
@@ -94,7 +94,7 @@ fn another_seed_gives_other_bits() {
     assert!(bits(&other) != bits(&simulated(busy_room("sph"), 1, 10)));
 }
 
-/// Everybody's bits without the mean density, which is only there for who asks.
+/// The bits of all agents without the mean density, which is only computed on request.
 fn motion(simulation: &Simulation) -> Vec<(u32, [u64; 4])> {
     let all = bits(simulation).into_iter();
     all.map(|(id, [x, y, u, v, _])| (id, [x, y, u, v]))
@@ -185,7 +185,7 @@ fn who_comes_and_what_they_do_have_seeds_of_their_own() {
     assert_eq!(bodies(&one), bodies(&other));
     assert_ne!(one.digest(), other.digest());
     assert_ne!(bodies(&one), bodies(&run(6, 1, 20)));
-    // Without a seed of its own, behaviour has that of the population.
+    // Without its own seed, behavior uses that of the population.
     let mut same = busy_room("rvo->sph");
     same.behaviour_seed = None;
     assert_eq!(simulated(same, 2, 20).digest(), run(5, 5, 20).digest());

@@ -1,4 +1,4 @@
-//! A room whose walls are solid without end is, from the inside, the room with walls of any thickness.
+//! From the inside, a room in an infinite solid is equivalent to one with walls of any thickness.
 
 use crate::common;
 use crate::common::{blend, blend_with, block, person, rectangle, run, scene, vector, walker};
@@ -34,7 +34,7 @@ fn enclosed() -> Vec<Polygon> {
     vec![Polygon::enclosing(vec![floor()]).unwrap()]
 }
 
-/// The same walls, `thickness` metres thick at least, and the pillar as a body of its own.
+/// The same room with walls at least `thickness` meters thick, and the pillar as an obstacle of its own.
 fn walled(thickness: f64) -> Vec<Polygon> {
     let (low, high) = (-thickness, 6.0 + thickness);
     let around = [[low, low], [high, low], [high, high], [low, high]];
@@ -47,7 +47,7 @@ fn walled(thickness: f64) -> Vec<Polygon> {
     vec![Polygon::filling(walls).unwrap(), pillar]
 }
 
-/// People all over the room, on the walk.
+/// Walking people all over the room.
 fn crowd() -> Vec<sandbox::engine::agents::NewAgent> {
     let room = Walls::new(enclosed());
     block(vector(0.05, 0.08), 13, 11, 0.45, vector(5.5, 4.5))

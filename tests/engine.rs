@@ -1,5 +1,5 @@
-//! What holds of the model, the numerics and the reading of scenarios. One program of all these: to link one
-//! for each file would take longer than to run them.
+//! Tests of the model, the numerics and the parsing of scenarios, in one program: linking one per file would take
+//! longer than running them.
 
 mod common;
 

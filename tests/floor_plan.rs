@@ -1,4 +1,4 @@
-//! A floor plan is the same however it was written and cut in pieces.
+//! A floor plan gives the same walls in every format and however it is split into pieces.
 
 use std::fs;
 
@@ -19,7 +19,7 @@ fn json(document: &Value) -> Result<FloorPlan, FloorPlanError> {
     read("plan.geojson", &document.to_string())
 }
 
-/// The walls of a plan, from the lowest up, wherever their rings begin.
+/// The walls of a plan, sorted, because rings may begin at any point.
 fn walls(plan: FloorPlan) -> Vec<[f64; 4]> {
     let mut walls: Vec<[f64; 4]> = plan
         .solids()
@@ -57,12 +57,12 @@ fn all_ways_of_writing_a_room_with_a_pillar_give_the_same_walls() {
     let expected = walls(parse_wkt(ROOM).unwrap());
     assert_eq!(expected.len(), 8);
     for text in [
-        // The other way round, another first point, repeated points, a third coordinate.
+        // Reversed rings, another first point, repeated points, a third coordinate.
         "POLYGON ((10 10, 10 0, 0 0, 0 10, 10 10), (3 3, 3 2, 2 2, 2 3, 3 3))",
         "polygon((0 0,10 0,10 0,10 10,0 10),(2 2,2 2.5,2 3,3 3,3 2,2 2,2 2))",
         "POLYGON Z ((0 0 5, 10 0 5, 10 10 5, 0 10 5, 0 0 5), (2 2 1, 3 2 1, 3 3 1, 2 3 1, 2 2 1))",
         "SRID=25832;POLYGON ((0 0, 10 0, 10 10, 0 10, 0 0), (2 2, 2 3, 3 3, 3 2, 2 2))",
-        // Two halves that share an edge, through the pillar; overlapping halves; one geometry a line.
+        // Two halves that share an edge through the pillar, overlapping areas, one geometry per line.
         "MULTIPOLYGON (((0 0, 10 0, 10 2.5, 3 2.5, 3 2, 2 2, 2 2.5, 0 2.5, 0 0)), \
          ((0 2.5, 2 2.5, 2 3, 3 3, 3 2.5, 10 2.5, 10 10, 0 10, 0 2.5)))",
         "GEOMETRYCOLLECTION (POLYGON ((0 0, 10 0, 10 10, 0 10), (2 2, 3 2, 3 3, 2 3)), \
@@ -83,7 +83,7 @@ fn all_ways_of_writing_a_room_with_a_pillar_give_the_same_walls() {
             feature(room(), "floor"),
             feature(pillar(), "obstacle")
         ])),
-        // An obstacle that lies on the wall of the pillar, in it.
+        // An obstacle inside the pillar, along its walls.
         features(json!([
             feature(whole.clone(), "floor"),
             feature(json!([[[2, 2], [3, 2], [3, 2.5], [2, 2.5]]]), "Obstacle")
@@ -106,7 +106,7 @@ fn obstacles_alone_stand_in_the_open() {
     assert!(solid(plan.clone(), 1.0, 1.0));
     assert!(!solid(plan.clone(), 2.5, 2.5), "the hole of an obstacle");
     assert!(!solid(plan, 11.0, 1.0));
-    // A thin post is no mistake.
+    // A thin post is valid.
     fs::write(&path, "POLYGON ((0 0, 0.1 0, 0.1 0.1, 0 0.1))").unwrap();
     assert!(floor_plan::read_obstacles(&path).is_ok());
 }
@@ -134,7 +134,7 @@ fn several_areas_have_solid_between_them_and_one_may_lie_in_anothers_hole() {
 
 #[test]
 fn holes_may_touch_the_outline_and_each_other() {
-    // A hole with an edge on the outline is a notch; one with a corner on it stays a hole.
+    // A hole with an edge on the outline is a notch. A hole with only a corner on it stays a hole.
     let notch = parse_wkt("POLYGON ((0 0, 9 0, 9 9, 0 9), (0 3, 2 3, 2 5, 0 5))").unwrap();
     assert_eq!(notch.walkable[0].holes.len(), 0);
     assert!((notch.walkable[0].area() - 77.0).abs() < 1e-9);
@@ -144,7 +144,7 @@ fn holes_may_touch_the_outline_and_each_other() {
     assert!((free - 78.0).abs() < 1e-9);
     assert!(solid(touching.clone(), 1.5, 4.0) && solid(touching.clone(), 3.5, 5.5));
     assert!(!solid(touching, 0.2, 1.0));
-    // Holes that share an edge are one, and one that cuts the floor in two leaves two areas.
+    // Holes that share an edge are merged. A hole that cuts the floor in two leaves two areas.
     let shared = "POLYGON ((0 0, 9 0, 9 9, 0 9), (1 1, 2 1, 2 2, 1 2), (2 1, 3 1, 3 2, 2 2))";
     assert_eq!(parse_wkt(shared).unwrap().walkable[0].holes.len(), 1);
     let cut = "POLYGON ((0 0, 9 0, 9 9, 0 9), (-1 4, 10 4, 10 5, -1 5))";
@@ -312,7 +312,7 @@ fn plans_nested_deeper_than_any_is_are_refused_with_their_place_on_a_thread_with
     }
 }
 
-/// The first geometry in the first one, and so on.
+/// The place of the first geometry in the first geometry, and so on, `depth` times.
 fn nested_place(depth: usize) -> String {
     vec!["geometry 1"; depth].join(", ")
 }

@@ -1,5 +1,4 @@
-//! Floor plans of many pieces that lie across each other: what is free is what some piece covers and no
-//! obstacle does.
+//! Floor plans of many overlapping pieces: a point is free if a piece covers it and no obstacle does.
 
 use proptest::prelude::*;
 use sandbox::engine::geometry::{Polygon, Ring, Walls};
@@ -7,10 +6,10 @@ use sandbox::engine::math::{Vector, perpendicular};
 use sandbox::scenario::floor_plan::{self, FloorPlanError};
 use serde_json::{Value, json};
 
-/// The corners of a rectangle, turned, and whether it is an obstacle.
+/// The corners of a rotated rectangle, and whether it is an obstacle.
 type Piece = ([[f64; 2]; 4], bool);
 
-/// Rectangles at any angle, and on a grid, where they touch and have edges in common.
+/// Rectangles at any angle, or on a grid, where they touch and share edges.
 fn piece() -> impl Strategy<Value = Piece> {
     let turned = (
         (0.0..20.0_f64, 0.0..20.0_f64),
@@ -79,7 +78,7 @@ proptest! {
         for (x, y) in places {
             let p = Vector::new(x, y) + shift;
             let within = |obstacle| rings.iter().any(|(ring, is)| *is == obstacle && ring.contains(p));
-            // Within rounding of an edge nothing is certain.
+            // Within rounding error of an edge, both answers are right.
             let nearest = edges
                 .iter()
                 .map(|edge| (edge.nearest_point(p).point - p).norm())

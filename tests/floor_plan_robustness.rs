@@ -1,7 +1,7 @@
-//! Whatever a floor plan says, reading it ends in walls or in an error, soon, and in little memory.
+//! Any floor plan gives walls or an error, quickly and within bounded memory.
 //!
-//! 100,000 cases: half of them are plans by structure, on coarse grids and with extreme numbers, half are
-//! valid plans with some bytes changed. At most 1 MB and 2 kB for every byte are held at once.
+//! 100,000 cases: half are structured plans on coarse grids with some extreme numbers, half are valid plans with
+//! some characters changed. The memory limit is 1 MB plus 2 kB per byte of the text.
 
 use crate::common::bounded::cases;
 use crate::common::plan_reading;
@@ -40,7 +40,7 @@ fn polygons() -> impl Strategy<Value = Vec<Vec<Ring>>> {
     prop::collection::vec(prop::collection::vec(ring(), 1..4), 1..5)
 }
 
-/// A plan in one of the ways to write it.
+/// A plan in one of five formats.
 fn written(polygons: &[Vec<Ring>], how: u8) -> String {
     let point = |[x, y]: &[f64; 2]| format!("{x} {y}");
     let join = |parts: Vec<String>| format!("({})", parts.join(","));
@@ -76,7 +76,7 @@ fn any_polygons_are_read_or_refused_at_a_place_that_is_drawn() {
     });
 }
 
-/// Plans that are read, in all ways of writing.
+/// A valid plan in all five formats.
 fn valid() -> Vec<String> {
     let square = |x: f64, side: f64| vec![[x, 0.0], [x + side, 0.0], [x + side, side], [x, side]];
     let polygons = [

@@ -1,5 +1,5 @@
-//! Floor plans of pieces that touch at corners, along edges and in several places, on coarse grids; and of
-//! very many pieces.
+//! Floor plans of pieces on coarse grids, which touch at corners, along edges and in several places, and floor
+//! plans of very many pieces.
 
 use crate::common::plans::{Ring, contains, margin, multipolygon, rings};
 use geo::{LineString, Polygon, Validation};
@@ -10,7 +10,7 @@ use sandbox::engine::math::Vector;
 use sandbox::scenario::floor_plan::{self, FloorPlan, FloorPlanError};
 use serde_json::json;
 
-/// Three rooms of which one has a corner on the diagonal of another.
+/// Three rooms; one has a corner on the diagonal of another.
 const ON_A_DIAGONAL: &str = "MULTIPOLYGON (((.8 .8,.9 .8,.9 1,.8 1,.8 .8)),\
     ((.7000000000000001 .7000000000000001,.9 .7000000000000001,.7000000000000001 .9,\
     .7000000000000001 .7000000000000001)),\
@@ -30,7 +30,7 @@ fn given(area: &Area) -> Vec<Ring> {
         .collect()
 }
 
-/// The walls of a plan after it has been written and read again, if all its rings are valid to `geo`.
+/// The walls of a plan after writing and reading it. Checks that `geo` considers all its rings valid.
 fn walls(plan: &FloorPlan, text: &str) -> Walls {
     let written: Vec<Vec<Ring>> = plan.walkable.iter().map(given).collect();
     for rings in &written {
@@ -45,7 +45,7 @@ fn walls(plan: &FloorPlan, text: &str) -> Walls {
     Walls::new(again.solids().unwrap())
 }
 
-/// Reads rooms and compares what is free with what they cover, at random places up to `reach` metres.
+/// Reads rooms and checks, at random points up to `reach` meters, that a point is free if a room covers it.
 fn check(random: &mut ChaCha8Rng, rooms: &[Ring], text: &str, reach: f64) {
     let plan = match floor_plan::parse(text) {
         Err(FloorPlanError::TooSmall { .. }) => return assert!(reach < 7.0, "{text}"),
@@ -93,7 +93,7 @@ fn room(random: &mut ChaCha8Rng, unit: f64) -> Ring {
             [x, y + w],
         ],
     };
-    // Tenths: 7 × 0.1 is 0.7000000000000001.
+    // Products are rounded: 7 × 0.1 is 0.7000000000000001.
     let place = |p: [i32; 2]| p.map(|c| f64::from(c) * unit);
     corners.into_iter().map(place).collect()
 }

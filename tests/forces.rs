@@ -14,7 +14,7 @@ use sandbox::engine::scene::Scene;
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::{NAMES, Parameters};
 
-/// Everything in the plane turned, perhaps mirrored, and moved.
+/// A motion of the plane: a rotation, perhaps after a reflection, and a translation.
 #[derive(Debug, Clone, Copy)]
 struct Motion {
     angle: f64,
@@ -48,12 +48,12 @@ impl Motion {
     }
 }
 
-/// Numbers in [0, 1) that fill it evenly, for crowds without pattern.
+/// A low-discrepancy sequence in [0, 1), for crowds without a pattern.
 fn spread(k: u32, of: u32) -> f64 {
     (f64::from(k + 1) * [0.754_877_666_2, 0.569_840_290_9, 0.819_172_513_3][of as usize]).fract()
 }
 
-/// `count` people of different bodies and speeds in the square [0, side]².
+/// `count` people with different bodies and velocities in the square [0, side]².
 fn crowd(count: u32, side: f64) -> Vec<NewAgent> {
     (0..count)
         .map(|k| {
@@ -80,7 +80,7 @@ fn sum_of(simulation: &Simulation, term: impl Fn(&Terms) -> Option<Vector>) -> V
         .sum()
 }
 
-/// Two people whose rest density lags behind, so that both press.
+/// Two people whose rest densities lag behind, so that both have a positive pressure.
 fn pressing_pair(distance: f64, angle: f64, masses: [f64; 2], means: [f64; 2]) -> Scene {
     let parameters = Parameters {
         viscosity: Some(5.0),
@@ -174,7 +174,7 @@ proptest! {
     }
 }
 
-/// A dozen people close together, all of whom press, with a velocity added to each.
+/// Twelve people close together, all with a positive pressure; `common` is added to every velocity.
 fn pressing_crowd(common: Vector) -> Simulation {
     let parameters = Parameters {
         viscosity: Some(5.0),
@@ -211,7 +211,7 @@ fn nobody_feels_pressure_below_the_own_rest_density_and_negative_neighbours_attr
     let lopsided = pair([0.0, 5.0]);
     assert!(laid_open(&lopsided, 1).pressure < 0.0);
     assert_eq!(pressed(&lopsided, 1), Vector::zeros());
-    // The negative pressure stays in the sum: −Σ m_j (p_i + p_j) / (2ρ_j) ∇W.
+    // A negative pressure of a neighbor stays in the sum: −Σ m_j (p_i + p_j) / (2ρ_j) ∇W.
     let [a, b] = [0, 1].map(|id| laid_open(&lopsided, id));
     let slope = -30.0 / std::f64::consts::PI * 0.16;
     let expected = slope * (a.pressure + b.pressure) / (2.0 * b.density) / a.density;

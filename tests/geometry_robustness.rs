@@ -1,6 +1,7 @@
-//! Any obstacles, any people among them: no panic, no wait, little memory, and what must hold holds.
+//! Any obstacles with any people among them: no panics, no long waits, bounded memory, and the properties of walls
+//! hold.
 //!
-//! 20,000 cases, more with `BAD_INPUT_TIMES=10 cargo test …`; see `scenario_robustness.rs`.
+//! 20,000 cases; more with `BAD_INPUT_TIMES=10 cargo test …`; see `scenario_robustness.rs`.
 
 use crate::common::bounded::cases;
 use crate::common::reading;
@@ -13,7 +14,7 @@ use sandbox::engine::math::Vector;
 use sandbox::scenario::Scenario;
 use serde_json::{Value, json};
 
-/// Where edges touch, lie on one line, and nearly do so.
+/// Coordinates with which edges touch or are collinear, exactly or nearly.
 fn coordinate() -> impl Strategy<Value = f64> + Clone {
     prop_oneof![
         4 => (-4..=4_i32).prop_map(f64::from),
@@ -28,7 +29,7 @@ fn point() -> impl Strategy<Value = [f64; 2]> + Clone {
     [coordinate(), coordinate()]
 }
 
-/// A polygon round a point: simple, whatever its corners.
+/// A star-shaped polygon around a point, which never intersects itself.
 fn star() -> impl Strategy<Value = Vec<[f64; 2]>> {
     let size = select(vec![1e-7, 1e-3, 1.0, 10.0, 1e5]);
     let corners = prop::collection::vec(0.01..1.0, 3..40);
@@ -68,13 +69,13 @@ fn what_must_hold_of_walls_holds_of_any() {
             for (p, goal, radius) in asked {
                 wall_checks::check(&walls, p.into(), goal.into(), radius);
             }
-            // Where all walls cross each other there are as many corners as pairs of walls.
+            // If all walls cross each other, there are as many corners as pairs of walls.
             (1 << 20) + 400 * walls.len() as u64 + 100 * (walls.len() as u64).pow(2)
         },
     );
 }
 
-/// Anybody whom a file can describe: on one point, in walls, with huge bodies.
+/// Any agent that a file can describe, including coincident agents, agents in walls and huge bodies.
 fn agent() -> impl Strategy<Value = Value> {
     let radius = select(vec![0.01, 0.24, 1.0, 10.0, 1e308]);
     let mass = select(vec![1e-6, 1.0, 1e6]);
@@ -111,7 +112,7 @@ fn any_people_among_any_obstacles_move_or_are_refused() {
         10_000,
         input,
         |(mut lists, agents, method, integrator, step)| {
-            // One that is no polygon would hide what the others do.
+            // Because of one invalid polygon, the others would not be tested.
             lists
                 .retain(|points| !wall_checks::obstacles(vec![vectors(points.clone())]).is_empty());
             let document = json!({
@@ -127,8 +128,7 @@ fn any_people_among_any_obstacles_move_or_are_refused() {
 
 #[test]
 fn on_the_corner_of_a_wall_no_more_than_its_quarter_is_hidden() {
-    // The distance of this corner from one of its walls is −0, and what that wall hid was 1.5 discs: found
-    // by fuzzing.
+    // Found by fuzzing: the distance of this corner from one of its walls is −0, and that wall hid 1.5 discs.
     let corner = Vector::new(-10.0, -6.875);
     let points = vec![
         Vector::new(9.125, -7.9375),
@@ -155,7 +155,7 @@ fn on_the_corner_of_a_wall_no_more_than_its_quarter_is_hidden() {
 
 #[test]
 fn on_a_wall_that_another_crosses_no_more_than_a_disc_is_hidden() {
-    // At distance 0 every part of the wall was all of it: found by fuzzing.
+    // Found by fuzzing: at distance 0, every part of the wall counted as the whole wall.
     let [wedge, bar] = [
         [
             [0.5, 0.5],

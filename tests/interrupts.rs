@@ -1,11 +1,11 @@
-//! Ctrl-C: a run ends with its current frame and closes everything; the second time at once.
+//! Ctrl-C: a run finishes its current frame and closes its outputs; a second Ctrl-C ends it at once.
 #![cfg(unix)]
 
 use std::fs;
 
 use crate::common::program::{ended, text, under_way};
 
-/// One person for days.
+/// One person, for days.
 const LONG: &str = r#"{"duration_secs": 1e6, "agents": [{"position": [0, 0], "goal": [9, 0]}]}"#;
 
 #[test]

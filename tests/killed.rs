@@ -1,4 +1,4 @@
-//! `kill -9` at any moment: what was recorded more than two seconds earlier is readable.
+//! After `kill -9` at any moment, data recorded more than two seconds earlier is readable.
 #![cfg(unix)]
 
 use std::fs;
@@ -11,19 +11,20 @@ use rand_chacha::ChaCha8Rng;
 use sandbox::output::recording::Recording;
 use sandbox::runs::checkpoint::Checkpoint;
 
-/// So many runs are killed, so many at a time.
+/// The number of runs that are killed.
 const KILLED: u64 = 50;
+/// The number of runs at a time.
 const AT_A_TIME: u64 = 5;
-/// What is older than this is safe.
+/// Data older than this is safe.
 const SAFE: Duration = Duration::from_secs(2);
 
-/// 100 people who stay, for days: one frame in 50 is recorded everywhere.
+/// 100 people who stay for days. One frame in 50 is recorded in every output.
 const LONG: &str = r#"{
   "duration_secs": 1e6, "profile": "rvo->sph", "goal": [5, 5],
   "grids": [{"min": [0, 0], "max": [10, 10], "columns": 10, "rows": 10}]
 }"#;
 
-/// The last frame of the text, counted as the recording does; it has each as soon as it is there.
+/// The last frame in the CSV file, which is written without delay, numbered as in the recording.
 fn last_frame(csv: &Path) -> u64 {
     let text = fs::read_to_string(csv).unwrap();
     let whole = text.rsplit_once('\n').unwrap().0;
@@ -31,7 +32,7 @@ fn last_frame(csv: &Path) -> u64 {
     50 * last.split(',').next().unwrap().parse::<u64>().unwrap()
 }
 
-/// Kills a run at a random moment, and reads what it leaves.
+/// Kills a run at a random moment and checks its outputs.
 fn kill_one(seed: u64) {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name);

@@ -1,4 +1,4 @@
-//! `--spawn` and `--connect`: what is said where nobody looks on, or somebody has gone.
+//! `--spawn` and `--connect` with missing, disconnected and unresponsive viewers.
 
 use std::io::Read;
 use std::net::{TcpListener, TcpStream};
@@ -55,7 +55,7 @@ fn where_no_viewer_is_installed_its_source_is_named() {
         .env("PATH", "")
         .output()
         .unwrap();
-    // Somebody who runs these tests may have a viewer open: it is then taken.
+    // A viewer that happens to be open on this machine is used.
     if output.status.code() != Some(0) {
         assert_eq!(output.status.code(), Some(1));
         let said = said(&output);
@@ -68,7 +68,7 @@ fn where_no_viewer_is_installed_its_source_is_named() {
 fn a_viewer_that_goes_away_is_a_note_and_the_file_is_whole() {
     let viewer = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = viewer.local_addr().unwrap().to_string();
-    // Takes every connection, and closes it.
+    // Accepts every connection and closes it.
     std::thread::spawn(move || viewer.incoming().for_each(drop));
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.rrd");
@@ -86,7 +86,7 @@ fn note(address: &str) -> String {
     format!("note: the viewer at rerun+http://{address}/proxy went away before the run had ended: ")
 }
 
-/// A viewer that gives every connection to `then`, each on a thread of its own; its address.
+/// Starts a viewer that passes every connection to `then`, each on its own thread; returns its address.
 fn viewer(then: fn(TcpStream)) -> String {
     let viewer = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = viewer.local_addr().unwrap().to_string();
@@ -99,24 +99,24 @@ fn viewer(then: fn(TcpStream)) -> String {
     address
 }
 
-/// Accepts, and neither reads nor answers: a viewer that is frozen, or behind a line that was cut.
+/// Neither reads nor answers, like a viewer that hangs or whose network is down.
 fn silent(connection: TcpStream) {
     std::thread::park();
     drop(connection);
 }
 
-/// Reads as much as rerun sends before a viewer has answered, then is silent.
+/// Reads as much as rerun sends before a viewer answers, then nothing more.
 fn falls_silent(mut connection: TcpStream) {
     connection.read_exact(&mut [0; 20_000]).ok();
     silent(connection);
 }
 
-/// Reads the same, then closes the connection.
+/// Reads the same amount, then closes the connection.
 fn closes(mut connection: TcpStream) {
     connection.read_exact(&mut [0; 20_000]).ok();
 }
 
-/// What the crowd does in a recording.
+/// Entities of a recording, and the positions and densities of its crowd.
 fn crowd(path: &Path) -> impl PartialEq + use<> {
     let recording = Recording::read(path).unwrap();
     let positions = recording.pairs("/world/agents", "Points2D:positions");
@@ -131,7 +131,7 @@ fn a_viewer_that_takes_nothing_holds_up_neither_the_run_nor_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let run = |name: &str, more: &[&str]| {
         let file = folder.path().join(name);
-        let mut program = Command::new("timeout"); // against a run that hangs
+        let mut program = Command::new("timeout"); // in case the run hangs
         let output = program
             .args(["--signal=KILL", "60", PROGRAM, "evacuation", "--until", "2"])
             .args(["--record-every", "1", "--json", "--save", text(&file)])
@@ -169,7 +169,7 @@ fn a_run_that_waits_for_a_viewer_can_be_interrupted() {
         let run = ["concert", "--json", "--record-every", "1"];
         let more = ["--connect", &address, "--save", text(&file)];
         let child = under_way(&[&run[..], &more].concat(), &[(&file, 1_000)]);
-        // And after a minute, in which it should have ended, for good.
+        // Kill the run if it has not ended after a minute.
         let guard = "for k in $(seq 300); do sleep 0.2; kill -0 $1 || exit; done; kill -KILL $1";
         let output = ended(child, &format!("kill -{signal} $1; {guard}"));
         let said = said(&output);
@@ -217,7 +217,7 @@ fn rerun_off_in_the_environment_is_refused_before_anything_is_computed() {
             assert_eq!(files, 1, "{command:?}");
         }
     }
-    // Without a recording it means nothing; and rerun takes other values for none at all.
+    // Without a recording, `RERUN` has no effect; and rerun ignores other values.
     assert_eq!(run(&commands[0][..3], "off").status.code(), Some(0));
     let output = run(commands[0], "no");
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));

@@ -1,4 +1,4 @@
-//! Completions and man pages name what there is.
+//! Shell completions and man pages are complete.
 
 use std::collections::BTreeSet;
 use std::fs;

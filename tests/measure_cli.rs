@@ -1,4 +1,4 @@
-//! `sandbox measure` as a user runs it.
+//! `sandbox measure` on the command line.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -129,7 +129,7 @@ fn a_corridor_is_measured_into_a_folder() {
         assert!(folder.join(name).metadata().unwrap().len() > 1000);
     }
 
-    // Nothing is replaced without being asked for.
+    // Existing files are replaced only with `--force`.
     let agents = format!("{}", folder.join("agents.csv").display());
     refused(
         &arguments,

@@ -1,4 +1,4 @@
-//! Densities that are measured: the engine's own, those of lattices, and fields that hold everybody.
+//! Measured densities: those of the engine and of lattices, and fields that contain all people.
 
 use std::collections::BTreeMap;
 
@@ -40,8 +40,8 @@ fn measured(tracks: &Tracks, site: &Site, options: &Options) -> (Measured, Vec<M
     (measured.unwrap(), all)
 }
 
-/// Runs a crowd through a door, writes every frame, and measures what was written: the walls of the file, its
-/// masses, and the engine's rest density.
+/// Runs a crowd through a door, writes every frame, and measures the file with its walls and masses and with the
+/// engine's rest density.
 #[test]
 fn what_the_engine_computed_is_measured_again_in_what_it_wrote() {
     for walls in [
@@ -100,7 +100,7 @@ fn what_the_engine_computed_is_measured_again_in_what_it_wrote() {
     }
 }
 
-/// A square lattice with its centre in the origin, as one frame.
+/// A square lattice centered at the origin, as one frame.
 fn lattice(spacing: f64, half: i32) -> Vec<(i64, i64, f64, f64)> {
     let places = (-half..=half).flat_map(|i| (-half..=half).map(move |j| (i, j)));
     let rows = places.enumerate();
@@ -129,7 +129,7 @@ fn a_lattice_has_the_density_of_its_kernel_sum_whatever_the_radius() {
     }
 }
 
-/// A room [0, 4]² as walkable area with people in the middles of squares of side `spacing`.
+/// A walkable room [0, 4]² with people at the centers of squares of side `spacing`.
 fn full_room(spacing: f64) -> (Site, Tracks) {
     let plan = parse_wkt("POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0))").unwrap();
     let side = (4.0 / spacing).round() as i64;
@@ -155,7 +155,7 @@ fn a_uniform_crowd_is_as_dense_at_walls_and_in_corners_as_elsewhere() {
         }
         let (mean, count) = (whole.overview.density.mean, whole.overview.rows);
         assert!((mean / uniform - 1.0).abs() < 0.01, "{mean} of {count}");
-        // Without walls the corners have less.
+        // Without walls, the density in a corner is lower.
         let (_, open) = measured(&tracks, &Site::new(Vec::new()), &options());
         assert!(open[0].people[0].density < 0.7 * uniform);
     }
@@ -201,7 +201,8 @@ fn mass(measured: &Measured) -> f64 {
 
 #[test]
 fn the_field_holds_everybody() {
-    // People strewn over some metres, all kernels inside the grid; half of them only half of the time.
+    // People spread over several meters with all kernels inside the grid. Half of the people are present only half
+    // of the time.
     let places = (0..60).map(|k| {
         let k = f64::from(k);
         (7.0 * (k * 0.618).fract(), 5.0 * (k * 0.7548).fract())
@@ -226,7 +227,7 @@ fn the_field_holds_everybody() {
         errors[0] < 0.02 && errors[1] < 1e-3 && errors[2] < 1e-4,
         "{errors:?}"
     );
-    // In a full room, with what walls hide taken into account, as many as there are.
+    // In a full room, hidden parts of the kernels count too, so that the integral is still the number of people.
     let (site, tracks) = full_room(0.25);
     let (walled, _) = measured(
         &tracks,
@@ -245,7 +246,7 @@ fn the_field_holds_everybody() {
 
 #[test]
 fn the_field_at_a_person_is_the_persons_density() {
-    // The only cell centre that somebody stands on, beside a wall.
+    // Only the first person stands at the center of a cell; a wall is near.
     let rows = [(1, 0, 0.125, 0.125), (2, 0, 0.6, 0.3), (3, 0, -0.4, 0.9)];
     let site = Site::new(vec![rectangle([-5.0, 5.0], [-1.0, 0.0])]);
     let (measured, moments) = measured(&tracks(10.0, &rows), &site, &options());

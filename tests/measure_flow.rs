@@ -1,4 +1,4 @@
-//! Velocities, crossings and fundamental diagrams of motions that are known.
+//! Velocities, crossings and fundamental diagrams of known motions.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ fn line(start: [f64; 2], end: [f64; 2]) -> Line {
     }
 }
 
-/// Upwards along x = 0: forward is to the right.
+/// A line upward along x = 0: forward is to the right.
 fn gate() -> Line {
     line([0.0, -1.0], [0.0, 1.0])
 }
@@ -47,7 +47,7 @@ fn measured(tracks: &Tracks, regions: Vec<Region>, lines: Vec<Line>) -> Measured
     .unwrap()
 }
 
-/// `people` in a file, `spacing` apart, at x = −0.3 and behind at the start, `speed` to the right.
+/// A column of `people`, `spacing` apart, that walks to the right at `speed`; the first starts at x = −0.3.
 fn column(people: i64, spacing: f64, speed: f64, frames: i64) -> Tracks {
     let rows: Vec<_> = (0..people)
         .flat_map(|id| {
@@ -76,14 +76,14 @@ fn a_column_has_the_flow_of_its_line_density_times_its_speed() {
     }
     assert!((crossings.flow(1).unwrap() - v / spacing).abs() < 1e-12);
     assert_eq!(crossings.flow(-1), None);
-    // Only what happens in the time asked for.
+    // Only crossings in the given time interval count.
     let later = Crossings::of(&tracks, 1, gate(), [10.0, 15.0]);
     let within = crossings
         .list
         .iter()
         .filter(|c| (10.0..=15.0).contains(&c.time));
     assert_eq!(later.list.len(), within.count());
-    // From the other side it is the same, backward.
+    // With the line reversed, the same crossings are backward.
     let turned = Crossings::of(&tracks, 1, line([0.0, 1.0], [0.0, -1.0]), ALWAYS);
     assert_eq!(turned.passages(-1).count(), 37);
 }
@@ -102,7 +102,7 @@ fn velocities_of_even_motion_are_exact_and_one_sided_at_the_ends() {
             assert!((velocity.unwrap() - v).norm() < 1e-12);
         }
     }
-    // Who is seen for less than the window in either direction: nobody knows.
+    // Without a full window in either direction, the velocity is unknown.
     let short = speed::velocities(&tracks(16.0, &rows[..6]), 5);
     let known: Vec<bool> = short.iter().map(Option::is_some).collect();
     assert_eq!(known, [true, false, false, false, false, true]);
@@ -130,7 +130,7 @@ fn accelerating_people_have_the_mean_velocity_of_the_window() {
 
 #[test]
 fn nothing_moves_across_a_gap() {
-    // Away from frame 10 to 19, while the line is crossed.
+    // The person is missing from frame 10 to 19, while crossing the line.
     let rows: Vec<_> = (0..30)
         .filter(|frame| !(10..20).contains(frame))
         .map(|frame| (1, frame, frame as f64 * 0.1 - 1.45, 0.0))
@@ -141,7 +141,7 @@ fn nothing_moves_across_a_gap() {
     for (k, velocity) in speed::velocities(&tracks, 3).into_iter().enumerate() {
         assert!((velocity.unwrap().x - 1.0).abs() < 1e-12, "{k}");
     }
-    // A window that is wider than either part has nothing to look at.
+    // With a window wider than either part, no velocity is known.
     let wide = speed::velocities(&tracks, 10);
     assert!(wide.iter().all(Option::is_none));
 }
@@ -152,7 +152,7 @@ fn who_lingers_on_a_line_passes_it_once() {
     let rows: Vec<_> = (0..8).map(|k| (1, k as i64, way[k], 0.0)).collect();
     let crossings = Crossings::of(&tracks(10.0, &rows), 1, gate(), ALWAYS);
     let directions: Vec<i8> = crossings.list.iter().map(|c| c.direction).collect();
-    // 0.0 is on the line, and that is its right side.
+    // 0.0 is on the line, which counts as its right side.
     assert_eq!(directions, [1, -1, 1, -1, 1]);
     assert_eq!(
         (
@@ -236,8 +236,8 @@ fn a_region_has_the_density_and_speed_of_who_is_in_it() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Whatever people do: N only grows, the net number is that of who has changed sides, and nobody who
-    /// walks on passes more than once.
+    /// For any motion, counts never decrease, the net count is the number of people that changed sides, and every
+    /// person passes at most once.
     #[test]
     fn counts_add_up(steps in prop::collection::vec((0_i64..6, -1.0..1.0_f64), 60)) {
         let mut x = [0.5; 6];

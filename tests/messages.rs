@@ -1,4 +1,4 @@
-//! What messages and results repeat of files: short, and nothing that a terminal obeys.
+//! Messages and results quote files shortened and without control characters.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 use crate::common::program::PROGRAM;
 use serde_json::{Value, json};
 
-/// Colors and a new title for the terminal, in text of 100,000 letters.
+/// Terminal escape sequences, then 100,000 letters.
 fn hostile() -> String {
     format!(
         "\u{1b}[31m\u{1b}]0;title\u{7}\u{9b}2J\r\n\u{202e}{}",
@@ -24,7 +24,7 @@ fn sandbox(folder: &Path, arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-/// Everything that was written is short and harmless, and says `words`.
+/// Checks that all output is short and without control characters, and contains `words`.
 fn assert_harmless(output: &Output, code: i32, words: &str) {
     for bytes in [&output.stdout, &output.stderr] {
         let said = String::from_utf8_lossy(bytes);
@@ -162,7 +162,7 @@ fn what_plans_and_trajectories_say_is_repeated_short_and_harmless() {
 fn files_longer_than_what_is_read_whole_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let long = folder.path().join("long.json");
-    // Nothing of it is on the disk.
+    // A sparse file.
     fs::File::create(&long).unwrap().set_len(1 << 40).unwrap();
     let reason = "longer than 268435456 bytes";
     for typed in [

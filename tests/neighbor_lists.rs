@@ -1,5 +1,4 @@
-//! Who is missed: nobody with complete lists, whatever the integrator; with coarse ones some agents, but no
-//! wall.
+//! Complete lists miss no neighbor with any integrator. Coarse lists miss some agents, but no wall.
 
 use crate::common::{blend, block, rectangle, run, scene, vector};
 use sandbox::engine::agents::NewAgent;
@@ -10,7 +9,7 @@ use sandbox::engine::scene::{Integrator, Scene};
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::{Need, Scenario};
 
-/// Two blocks of people who run through each other.
+/// Two blocks of people that run through each other.
 fn streams(lists: ListPolicy, integrator: Integrator, time_step: f64) -> Simulation {
     let mut scene = scene(Vec::new(), blend("sph"));
     scene.neighbor_lists = lists;
@@ -27,7 +26,8 @@ fn streams(lists: ListPolicy, integrator: Integrator, time_step: f64) -> Simulat
     Simulation::new(scene).unwrap()
 }
 
-/// Who lacks how much of the density of the people round him, P/m²: over all frames of three seconds.
+/// How often the density of an agent lacks neighbors, in all frames of three seconds, and the largest missing
+/// density, P/m².
 fn lacking(mut simulation: Simulation) -> (usize, f64) {
     let (mut count, mut most) = (0, 0.0_f64);
     while simulation.frame().clock.time() < 3.0 {
@@ -63,7 +63,8 @@ fn complete_lists_miss_nobody_in_any_frame() {
 fn coarse_lists_miss_some_at_the_rim_of_their_circle() {
     let streams = streams(ListPolicy::Coarse, Integrator::SemiImplicit, 0.02);
     let (count, most) = lacking(streams);
-    // Few: whoever shares a cluster is seen by all of it. In four frames two people come 0.29 m nearer.
+    // Few agents, because all agents of a cluster share their neighbors. In four frames, two people approach by
+    // 0.29 m.
     let nearest = kernel::density(0.71 * 0.71, 1.0);
     assert!(count > 0 && most < nearest, "{count} {most}");
 }
@@ -82,7 +83,7 @@ fn coarse_lists_miss_no_wall_however_rarely_they_are_made() {
     assert!(positions.iter().all(|p| p.x < 3.0));
 }
 
-/// The second evaluation of the midpoint method lies half a step ahead of where lists were checked.
+/// The second evaluation of the midpoint method is half a step ahead of the positions for which lists were checked.
 #[test]
 fn the_midpoint_method_sees_everybody_half_a_frame_ahead() {
     let finest = streams(ListPolicy::Complete, Integrator::Midpoint, 0.08);
@@ -91,7 +92,7 @@ fn the_midpoint_method_sees_everybody_half_a_frame_ahead() {
     assert!(ranges.margin >= 0.5 * sandbox::engine::neighbors::SKIN + half_a_move);
 }
 
-/// Agents among round pillars, all of which are within reach of everybody.
+/// Agents among round pillars, all of which are within reach of every agent.
 fn pillars() -> String {
     let pillar = |k: usize| {
         let center = [2.0 * (k % 16) as f64, 2.0 * (k / 16) as f64];

@@ -1,4 +1,5 @@
-//! Every output is tried before anything is computed: no file is lost to another, none is left behind.
+//! All outputs are checked before anything is computed: no output replaces another file, and failed commands leave
+//! no files behind.
 #![cfg(unix)]
 
 use std::collections::BTreeMap;
@@ -50,7 +51,7 @@ fn two_outputs_of_one_file_are_refused_whatever_they_are_called() {
             &[names[0], names[1], "are the same file"],
         );
     }
-    // Many may write to a device.
+    // Several outputs may write to a device.
     let null = folder.path().join("null.csv");
     symlink("/dev/null", null).unwrap();
     let typed = "run s.json --trajectory null.csv --trajectory null.csv --force";
@@ -146,7 +147,7 @@ fn a_resumed_run_goes_on_writing_into_its_own_checkpoint() {
     assert_ne!(fs::read(folder.path().join("c")).unwrap(), first);
     let words = ["--until 1:", "the checkpoint c was written at 2.00 s"];
     refused(folder.path(), "resume c --until 1", 2, &words);
-    // No other output may be the checkpoint, nor the checkpoint another file.
+    // A run may not replace another checkpoint than its own.
     fs::copy(folder.path().join("c"), folder.path().join("d")).unwrap();
     refused(
         folder.path(),
@@ -194,7 +195,7 @@ fn a_path_that_cannot_be_written_is_refused_in_plain_words() {
         2,
         &["no.txt"],
     );
-    // To root every file is writable.
+    // Root can write to every file, so another user runs the program.
     let file = folder.path().join("theirs.csv");
     fs::write(&file, "theirs").unwrap();
     fs::set_permissions(&file, Permissions::from_mode(0o444)).unwrap();
@@ -250,7 +251,7 @@ fn the_umask_decides_who_may_read_a_checkpoint() {
         assert!(shell.output().unwrap().status.success());
         assert_eq!(fs::metadata(&file).unwrap().mode() & 0o777, mode, "{umask}");
     }
-    // A file that was there keeps its own.
+    // An existing file keeps its permissions.
     let file = folder.path().join("077");
     run(folder.path(), "run s.json --checkpoint 077 --force");
     assert_eq!(fs::metadata(&file).unwrap().mode() & 0o777, 0o600);
@@ -259,7 +260,7 @@ fn the_umask_decides_who_may_read_a_checkpoint() {
 #[test]
 fn a_run_outlives_a_checkpoint_that_cannot_be_written() {
     let folder = folder();
-    // 400 people enter after a second: their checkpoint is too long for the disk.
+    // 400 people enter after a second, and their checkpoint exceeds the file size limit.
     let text = r#"{"goal": [99, 0], "duration_secs": 1.9, "agents": [{"position": [0, 0]}], "sources": [
         {"min": [0, 2], "max": [10, 12], "columns": 20, "rows": 20, "every_secs": 9, "start_secs": 1}]}"#;
     fs::write(folder.path().join("grows.json"), text).unwrap();

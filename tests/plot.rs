@@ -1,11 +1,11 @@
-//! Pictures: both formats of one sheet, complete and of the same size.
+//! Plots: both formats of a sheet are complete and have the same size.
 
 use sandbox::output::colors;
 use sandbox::output::plot::{
     Axis, BLACK, Cells, ColorBar, Corner, Disc, GRAY, LINES, Mark, Panel, Point, Sheet, Style,
 };
 
-/// `count` people on a grid, and every other mark.
+/// A sheet with `count` people on a grid and every other kind of mark.
 fn sheet(count: usize) -> Sheet {
     let disc = |k: usize| Disc {
         center: [0.1 + 0.2 * (k % 50) as f64, 0.1 + 0.2 * (k / 50) as f64],
@@ -76,7 +76,7 @@ fn saved(sheet: &Sheet) -> (String, Vec<u8>) {
     (String::from_utf8(read("svg")).unwrap(), read("png"))
 }
 
-/// Width and height in the head of a PNG.
+/// Width and height from the header of a PNG.
 fn png_size(png: &[u8]) -> [u32; 2] {
     [16, 20].map(|at| u32::from_be_bytes(png[at..at + 4].try_into().unwrap()))
 }

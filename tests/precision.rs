@@ -1,4 +1,4 @@
-//! Mixed precision against double, on the same frozen states.
+//! Mixed precision compared with double precision, in the same states.
 
 use crate::common;
 use crate::common::{blend_with, room, scene, vector};
@@ -11,11 +11,11 @@ use sandbox::engine::scene::Scene;
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::Parameters;
 
-/// The largest error of an acceleration, over the sum of the magnitudes of what it is a sum of.
+/// The largest allowed error of an acceleration, relative to the sum of the magnitudes of its terms.
 const BOUND: f64 = 1e-5;
 
-/// 300 people at random in a room of 8 m × 8 m whose lower left corner is at `corner`, some of them
-/// a millimetre apart.
+/// 300 people at random in a square with its lower left corner at `corner` and a side of 8 m × `stretch`. Some are
+/// a millimeter apart. The square has walls only at the origin and without stretching.
 fn crowd(corner: Vector, stretch: f64, seed: u64) -> Scene {
     let parameters = Parameters {
         viscosity: Some(5.0),
@@ -49,7 +49,7 @@ fn evaluated(mut scene: Scene, precision: Precision) -> Simulation {
     common::evaluated(scene)
 }
 
-/// Σ_j |a_ij| over all forces between agents, pair by pair, with the walls' and the goal's.
+/// Σ_j |a_ij| over all forces between agents, pair by pair, plus the magnitudes of the goal and wall terms.
 fn magnitude(simulation: &Simulation, i: usize) -> f64 {
     let frame = simulation.frame();
     let (agents, fields) = (frame.agents, frame.fields);

@@ -1,4 +1,4 @@
-//! What holds of the program, of what it writes and of the studies that it does.
+//! Tests of the command-line program, its outputs and its studies.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! Trajectories of other programs, as they are and as they should not be.
+//! Trajectories of other programs, valid and broken.
 
 use crate::common::tracks::{file, read_as};
 use crate::common::vector;
@@ -14,7 +14,7 @@ fn read_text(text: &str) -> Tracks {
     read_as("crowd.txt", text, &PLAIN).unwrap()
 }
 
-/// Everybody in every frame: (frame, id, x, y).
+/// All rows: (frame, id, x, y).
 fn rows(tracks: &Tracks) -> Vec<(i64, i64, f64, f64)> {
     let frames = 0..tracks.frames.len();
     let rows = frames.flat_map(|k| tracks.rows(k).map(move |row| (k, row)));
@@ -37,7 +37,7 @@ fn text_is_read_with_every_header_that_is_about() {
             let place = [x * factor, y * factor].map(|x| x.to_string());
             format!("{}{rest}\n", [cells, place].concat().join(separator))
         };
-        // In no order.
+        // Unsorted.
         line(1, 4, 1.75, -2.0) + &line(2, 3, 0.25, 4.0) + &line(1, 3, 1.5, -2.0)
     };
     for (header, separator, factor, rest, fps) in [

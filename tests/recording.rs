@@ -51,10 +51,10 @@ fn options(debug: DebugAgents) -> RecordingOptions {
     }
 }
 
-/// What the simulation had in one frame, by id: position and density.
+/// The position and density of every agent in one frame of the simulation, by id.
 type Truth = BTreeMap<u32, (Vector, Option<f64>)>;
 
-/// Records `frames` frames and returns the file read back and the truth.
+/// Records `frames` frames; returns the file as read back, and the truth.
 fn record(
     profile: &str,
     debug: DebugAgents,

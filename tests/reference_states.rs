@@ -1,5 +1,5 @@
-//! Thirty small states with every term of the model but RVO, computed by an independent
-//! double-precision implementation; ours must agree to 1e-9.
+//! Thirty small states with every term of the model except RVO, computed by an independent double-precision
+//! implementation. The engine must agree to 1e-9.
 
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::boundary::WallMethod;
@@ -50,9 +50,9 @@ struct Expected {
     rest_density: f64,
     pressure: f64,
     acceleration: [f64; 2],
-    /// Given for plain profiles only; terms that are switched off (μ = 0) are listed as zero.
+    /// Given only for plain profiles; terms that are switched off (μ = 0) are zero.
     accelerations: Option<BTreeMap<String, [f64; 2]>>,
-    /// Given for the representative points only, in the order of the walls.
+    /// Given only for representative points, in the order of the walls.
     walls: Option<Vec<ExpectedWall>>,
 }
 

@@ -1,4 +1,4 @@
-//! Tables at one command: what is finished is kept, and four rows of Table 1 stay in their bands.
+//! `sandbox reproduce`: finished cases are kept, and four rows of Table 1 stay within their bands.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use sandbox::lab::reproduce::{
 };
 use tempfile::TempDir;
 
-/// Writes down what a run says.
+/// Records the progress of a run.
 #[derive(Default)]
 struct Ear {
     begun: Mutex<Vec<[usize; 2]>>,
@@ -36,7 +36,7 @@ impl Listener for Ear {
     }
 }
 
-/// A room of the evacuation for half a second.
+/// The evacuation, for half a second.
 fn short(seed: u64) -> Case {
     Case::shipped("evacuation")
         .set("duration_secs", 0.5)
@@ -57,7 +57,7 @@ fn kept_files(store: &Store) -> Vec<PathBuf> {
     files
 }
 
-/// Runs cases and returns how many were computed and how many kept, and what was noted.
+/// Runs cases; returns how many were computed and how many were kept, and the notes.
 fn computed(store: &Store, cases: &[Case]) -> ([usize; 2], Vec<String>) {
     let ear = Ear::default();
     let results = run(store, cases, &ear).unwrap();
@@ -85,7 +85,7 @@ fn finished_cases_are_not_run_again_and_new_ones_are() {
         .filter(|file| before.contains(&fs::metadata(file).unwrap().modified().unwrap()))
         .count();
     assert_eq!(untouched, 2);
-    // A file that was left half written under its temporary name is in nobody's way.
+    // A partial file under a temporary name is ignored.
     fs::write(store.path("cases/.tmp1234"), "{").unwrap();
     assert_eq!(computed(&store, &[short(1), short(2), short(3)]).0, [0, 3]);
 }
@@ -144,7 +144,7 @@ fn the_same_run_is_run_once_and_keeps_all_that_is_asked_of_it() {
     let (early, late) = (short(1).snapshot(0.1), short(1).snapshot(0.4));
     assert_eq!(computed(&store, &[early.clone(), late.clone()]).0, [1, 0]);
     assert_eq!(computed(&store, slice::from_ref(&late)).0, [0, 1]);
-    // Something new to keep makes a new run, and loses nothing of the old one.
+    // A new snapshot needs a new run, which keeps the old snapshots.
     assert_eq!(computed(&store, &[short(1).snapshot(0.3)]).0, [1, 0]);
     assert_eq!(computed(&store, &[early, late]).0, [0, 1]);
     assert_eq!(kept_files(&store).len(), 1);
@@ -186,7 +186,7 @@ fn a_case_that_makes_no_sense_is_refused_before_anything_runs() {
 #[test]
 fn a_result_that_cannot_be_kept_is_named_and_those_before_it_are_kept() {
     let (_folder, store) = store();
-    // The longest begin first: with one thread or more, the first case is done by then.
+    // The longest cases begin first, so that `first` is finished by then.
     let (first, last) = (short(1).taking(1.0), short(2));
     let place = store.case_path(&key(&last));
     fs::create_dir(&place).unwrap();
@@ -229,7 +229,7 @@ fn every_product_has_a_name_of_its_own_and_only_cases_that_make_sense() {
     }
 }
 
-/// The row of Table 1 with that profile and value.
+/// The row of Table 1 with this profile and value.
 fn row(profile: &str, value: f64) -> EvacuationRow {
     let rows = published().unwrap().table1.rows;
     let mut found = rows
@@ -241,7 +241,7 @@ fn row(profile: &str, value: f64) -> EvacuationRow {
 #[test]
 fn four_rows_of_table_1_stay_inside_their_bands() {
     let (_folder, store) = store();
-    // Avoidance by random candidates differs more from seed to seed than a band is wide.
+    // RVO has random candidates: one seed differs from another by more than the width of a band.
     let rows = [
         (row("sph", 3.0), 1),
         (row("sph", 5.0), 1),
@@ -264,7 +264,7 @@ fn tables_are_written_in_three_forms_from_what_is_kept() {
     let (folder, store) = store();
     let table2 = PRODUCTS.iter().find(|p| p.name == "table2").unwrap();
     let plan = Plan { seeds: 1 };
-    // Results as a run leaves them, with the paper's own numbers in them.
+    // Kept results as a run writes them, but with the numbers of the paper.
     let paper = published().unwrap().table2.rows;
     let cases = (table2.cases)(&plan).unwrap();
     for (case, row) in cases.iter().zip(&paper) {

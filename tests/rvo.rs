@@ -1,4 +1,4 @@
-//! RVO's choice against a slow, obvious search, and who takes part in it.
+//! The choice of RVO compared with an exhaustive search, and which agents and walls it considers.
 
 use crate::common;
 use crate::common::{
@@ -13,7 +13,7 @@ use sandbox::engine::geometry::{Polygon, Wall, Walls};
 use sandbox::engine::math::Vector;
 use sandbox::engine::simulation::Simulation;
 
-/// When two discs meet, from the roots of |offset − velocity t|² = reach².
+/// The time when two discs meet, from the roots of |offset − velocity t|² = reach².
 fn meeting(offset: Vector, velocity: Vector, reach: f64) -> f64 {
     if offset.norm() <= reach || velocity.norm() == 0.0 {
         return f64::INFINITY;
@@ -26,7 +26,7 @@ fn meeting(offset: Vector, velocity: Vector, reach: f64) -> f64 {
     future.fold(f64::INFINITY, f64::min)
 }
 
-/// When a disc meets a wall: in the wall's own coordinates, s along it and d before it.
+/// The time when a disc meets a wall, in coordinates of the wall: s along it and d in front of it.
 fn meeting_wall(wall: &Wall, position: Vector, velocity: Vector, radius: f64) -> f64 {
     let way = wall.end - wall.start;
     let length = (way.x * way.x + way.y * way.y).sqrt();
@@ -47,7 +47,7 @@ fn meeting_wall(wall: &Wall, position: Vector, velocity: Vector, radius: f64) ->
     first
 }
 
-/// Eq. 20 for every candidate, and the first of the cheapest.
+/// Evaluates Eq. 20 for every candidate; returns the first one with the lowest cost.
 fn exhaustive(situation: &Situation, candidates: &[Candidate], collision_weight: f64) -> Vector {
     let mut costs = Vec::new();
     for candidate in candidates {
@@ -86,7 +86,8 @@ fn disc_of(rng: &mut ChaCha8Rng, radius: f64) -> Vector {
 fn random_situation(rng: &mut ChaCha8Rng) -> Situation {
     let position = disc_of(rng, 50.0);
     let radius = rng.random_range(0.215..0.265);
-    // Few and fast, hundreds, nearly still, nearly touching: single precision must never decide.
+    // Few or hundreds of discs, fast or nearly still, some nearly touching: errors of single precision must not
+    // change the choice.
     let most = if rng.random_bool(0.02) { 300 } else { 30 };
     let fastest = 1.8 * 10_f64.powf(rng.random_range(-5.0..1.0_f64).min(0.0));
     let nearest = rng.random_bool(0.1);
@@ -206,7 +207,7 @@ fn if_all_candidates_are_too_fast_the_agent_stops() {
     assert_eq!(acceleration(&simulation, 0), -velocity / (5.0 * 0.02));
 }
 
-/// The acceleration of somebody walking to the right, among others.
+/// The acceleration of an agent that walks to the right, among `others`.
 fn among(profile: &str, others: &[NewAgent], obstacles: Vec<Polygon>) -> Vector {
     let mut scene = scene(obstacles, blend(profile));
     let own = walker(Vector::zeros(), vector(1.4, 0.0), vector(90.0, 0.0));
@@ -240,8 +241,8 @@ fn walls_count_just_inside_five_metres_and_not_outside() {
     let facing = |profile: &str, x: f64, seed: u64| {
         let mut scene = scene(vec![rectangle([x, x + 1.0], [-9.0, 9.0])], blend(profile));
         scene.seed = seed;
-        // Fast, so that the wall is not far off in time; but a social force of e^(−50) shows only
-        // where there is no goal force.
+        // With RVO, a fast agent is near the wall in time. A social force of e^(−50) shows only without a goal
+        // force, at the preferred speed.
         let speed = if profile == "rvo" { 1.8 } else { 1.4 };
         scene.agents = vec![walker(
             Vector::zeros(),
@@ -322,7 +323,7 @@ fn a_choice_is_held_for_five_frames() {
 
 #[test]
 fn the_choice_comes_when_its_weight_becomes_positive_and_goes_when_it_is_zero() {
-    // A dense block, at more than 4 P/m², that runs apart.
+    // A dense block with more than 4 P/m² that disperses.
     let mut scene = scene(Vec::new(), blend("rvo->sph"));
     let centre = vector(1.8, 1.8);
     scene.agents = block(Vector::zeros(), 10, 10, 0.4, centre);
@@ -369,7 +370,7 @@ fn candidates_depend_on_the_coarse_frame() {
         choices.push(held(&simulation, 0).unwrap() * 0.1 + velocity);
         run(&mut simulation, 5);
     }
-    // Alone on the way, the best of 250 candidates is close to the preferred velocity, never equal.
+    // For a lone agent, the best of 250 candidates is close to the preferred velocity, but never equal.
     for (k, choice) in choices.iter().enumerate() {
         assert!((choice - vector(1.4, 0.0)).norm() < 0.6);
         assert!(choices[..k].iter().all(|other| other != choice));

@@ -1,4 +1,4 @@
-//! Broken scenarios and what is said about them, word by word.
+//! Broken scenarios and their exact error messages.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use sandbox::scenario::{Scenario, Setting};
 use serde::Deserialize;
 use serde_json::Value;
 
-/// A small scenario with one of everything; tests break it.
+/// A small scenario with one object of each kind; the tests break it.
 const WHOLE: &str = r#"{
   "seed": 1, "goal": [9, 5], "profile": "sph",
   "obstacles": [[[0, 0], [1, 0], [1, 1]]],
@@ -18,7 +18,7 @@ const WHOLE: &str = r#"{
   "view": {"region": [[0, 0], [9, 9]]}
 }"#;
 
-/// `WHOLE` with the value at a JSON pointer replaced, or put in.
+/// `WHOLE` with the value at a JSON pointer replaced or inserted.
 fn with(pointer: &str, value: Value) -> String {
     let mut document: Value = serde_json::from_str(WHOLE).unwrap();
     let (parent, key) = pointer.rsplit_once('/').unwrap();
@@ -42,7 +42,7 @@ fn message(text: &str, settings: &[&str]) -> String {
     }
 }
 
-/// What is put where in `WHOLE`, and the message.
+/// A value, its place in `WHOLE`, and the expected message.
 #[derive(Deserialize)]
 struct Broken {
     at: String,
@@ -67,7 +67,7 @@ fn every_broken_value_is_reported_with_its_place_and_reason() {
     }
 }
 
-/// A whole text, and the message.
+/// Broken texts and the expected messages.
 const BROKEN_TEXTS: &[[&str; 2]] = &[
     ["", "f.json: line 1, column 0: the text ends within a value"],
     [
@@ -101,7 +101,7 @@ fn broken_texts_are_reported_with_line_and_column() {
     }
 }
 
-/// What is set, and the message.
+/// Broken settings and the expected messages.
 const BROKEN_SETTINGS: &[[&str; 2]] = &[
     [
         "viscosity=-1",

@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 const ROOM: &str = "POLYGON ((0 0, 10 0, 10 10, 0 10, 0 0), (2 2, 2 3, 3 3, 3 2, 2 2))";
 
-/// A folder with a scenario and plans beside it.
+/// A folder with a scenario, and plans next to it.
 fn folder(scenario: &Value) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("plans")).unwrap();
@@ -64,7 +64,7 @@ fn files_are_found_beside_the_scenario_and_written_out_in_its_document() {
         json!([[[6.0, 6.0], [7.0, 6.0], [7.0, 7.0], [6.0, 7.0]]])
     );
     assert!(scenario.document["walkable_area"].is_array());
-    // Elsewhere, without any file, it is the same to the last bit.
+    // In another folder, without the plans, the scenario is bit-identical.
     let again = Scenario::parse(&scenario.to_text(), "elsewhere/room.json", &[]).unwrap();
     assert_eq!(again.document, scenario.document);
     assert_eq!(again.scene.walls.obstacles(), walls.obstacles());
@@ -152,7 +152,7 @@ fn a_plan_of_the_command_line_takes_the_place_of_the_scenarios_walls() {
         None,
         "an open plane"
     );
-    // Where a scenario names its own file, settings do, too.
+    // Like a scenario, settings may name a file.
     let set = ["walkable_area=plans/kiosk.wkt", "obstacles=[]"]
         .map(|set| set.parse::<Setting>().unwrap());
     let walls = Scenario::load(&path, &set).unwrap().scene.walls;
@@ -163,7 +163,7 @@ fn a_plan_of_the_command_line_takes_the_place_of_the_scenarios_walls() {
 fn passengers_cross_the_station_and_a_checkpoint_of_it_needs_no_floor_plan() {
     let scenario = Scenario::load(&station(), &[]).unwrap();
     let walls = &scenario.scene.walls;
-    // The hall, the stairs and the exits are one; the bakery at the wall is cut out.
+    // The hall, the stairs and the exits form one area; the bakery at the wall is cut out.
     assert_eq!(walls.obstacles().len(), 1);
     for (place, solid) in [
         ([-1.0, 12.0], false),

@@ -1,8 +1,8 @@
-//! Whatever a file says, reading it ends in a scenario or in an error, soon, and in little memory.
+//! Any scenario file gives a scenario or an error, quickly and within bounded memory.
 //!
-//! 80,000 cases here, 20,000 in `geometry_robustness.rs`; more with `BAD_INPUT_TIMES=10 cargo test …`. What
-//! is read is built and runs for some frames. Case by case at most this is held at once: 1 MB, 150 bytes for
-//! every byte of the text, 2 kB for everybody who enters, and 8 bytes for every two of a small crowd.
+//! 80,000 cases here, 20,000 in `geometry_robustness.rs`; more with `BAD_INPUT_TIMES=10 cargo test …`. Valid
+//! scenarios run for a few frames. The memory limit of a case is 1 MB plus 150 bytes per byte of the text, 2 kB per
+//! agent, and 8 bytes per pair of agents in a small crowd.
 
 use crate::common::bounded::cases;
 use crate::common::reading;
@@ -16,7 +16,7 @@ fn read(text: &str, settings: &[Setting]) -> u64 {
     (1 << 20) + 150 * text.len() as u64 + 2_000 * people + 8 * people.min(500).pow(2)
 }
 
-/// Numbers at the ends of what there is.
+/// Extreme numbers.
 const EXTREMES: [f64; 14] = [
     0.0,
     -0.0,
@@ -34,7 +34,7 @@ const EXTREMES: [f64; 14] = [
     -1e308,
 ];
 
-/// Values that break something somewhere.
+/// Values that are invalid in many places.
 fn nasty() -> impl Strategy<Value = Value> {
     prop_oneof![
         Just(Value::Null),
@@ -94,7 +94,7 @@ fn any_json() -> impl Strategy<Value = Value> {
     })
 }
 
-/// The shipped scenarios with few people, and one with everything that a file may have.
+/// The shipped scenarios with few people, and one with every key.
 fn small_scenarios() -> Vec<Value> {
     let mut documents: Vec<Value> = SHIPPED
         .iter()
@@ -140,7 +140,7 @@ const EVERYTHING: &str = r#"{
   "view": {"region": [[0, 0], [9, 9]], "opens_at_secs": 0}, "debug_agents": [0, 1]
 }"#;
 
-/// Every value in `document`, the whole one first.
+/// The number of values in `document`, including `document` itself.
 fn count(document: &Value) -> usize {
     let inside = match document {
         Value::Array(list) => list.iter().map(count).sum(),
@@ -150,7 +150,7 @@ fn count(document: &Value) -> usize {
     1 + inside
 }
 
-/// Does something to value number `k` in the order of [`count`].
+/// Applies `by` to value number `k`, counted from 0 in depth-first order.
 fn change(document: &mut Value, k: &mut usize, by: &mut dyn FnMut(&mut Value)) {
     if *k == 0 {
         by(document);
@@ -163,7 +163,7 @@ fn change(document: &mut Value, k: &mut usize, by: &mut dyn FnMut(&mut Value)) {
     }
 }
 
-/// One thing that is done to a value.
+/// Changes a value in one of several ways.
 fn edit(value: &mut Value, how: u8, by: &Value) {
     match (how, value) {
         (0, Value::Array(list)) => list.extend(list.clone()),

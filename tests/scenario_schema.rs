@@ -1,4 +1,4 @@
-//! The schema of scenarios allows what the program takes, and knows every key, word and range.
+//! The schema of scenarios accepts what the program accepts, and has every key, word and range.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use sandbox::scenario::{SHIPPED, Scenario, schema};
 use serde_json::{Value, json};
 
-/// One of everything.
+/// A scenario with every key.
 fn whole() -> Value {
     json!({
         "$schema": "scenario.schema.json", "name": "whole", "description": "", "seed": 1,
@@ -84,7 +84,7 @@ fn every_scenario_there_is_and_one_with_everything_are_valid() {
     );
 }
 
-/// The names that the parser says it knows, where `whole` has a `?` put in.
+/// The valid keys at `pointer` in `whole`, from the error message for an additional key `?`.
 fn known(pointer: &str) -> Vec<String> {
     let mut document = whole();
     let object = document.pointer_mut(pointer).unwrap();
@@ -138,7 +138,7 @@ fn every_object_has_the_keys_that_the_parser_knows() {
         let mut expected = known(pointer);
         expected.sort();
         assert_eq!(keys, expected, "{place}");
-        // Without a key that is required the parser refuses as well, and only then.
+        // The parser refuses an object without a key only if the key is required.
         let required = object
             .get("required")
             .map_or(vec![], |keys| keys.as_array().unwrap().clone());
@@ -193,7 +193,7 @@ fn words_are_those_that_the_parser_knows() {
     assert_eq!(seen, 5);
 }
 
-/// What no schema can say: how values relate to each other, and geometry.
+/// Messages about rules that no schema can express: relations between values, and geometry.
 const RELATIONS: [&str; 22] = [
     "lower left corner comes first",
     "too many",
@@ -214,7 +214,7 @@ const RELATIONS: [&str; 22] = [
     "is above max_speed",
     "key `seed` is given twice",
     "agents in the square meter",
-    "floating point `1.8446744073709552e+19`", // a whole number to a schema
+    "floating point `1.8446744073709552e+19`", // an integer for a schema
     "profiles in one blend",
     "no free point is near",
 ];

@@ -1,4 +1,4 @@
-//! What is documented about settings is what the program does.
+//! The documentation of settings agrees with the program.
 
 use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::scene::{Integrator, Scene};

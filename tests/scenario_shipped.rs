@@ -1,4 +1,4 @@
-//! The paper's three scenarios, and profiles and behaviours as files can give them.
+//! The shipped scenarios, and profiles and groups as files give them.
 
 use sandbox::engine::math::Vector;
 use sandbox::engine::scene::{Goal, Region};
@@ -141,7 +141,7 @@ fn the_plaza_is_50_000_people_in_queues_and_in_streams() {
     assert_eq!(scenario.profile_name, "rvo->sph");
     let agents = &scenario.scene.agents;
     assert!((49_500..50_500).contains(&agents.len()));
-    // Each lane is 14 m high; queues begin at x = 139.2 m, streams 50 m before.
+    // Each lane is 14 m high; queues begin at x = 139.2 m, streams 50 m before that.
     let within = |x: [f64; 2], y: f64| {
         let inside = agents.iter().filter(|agent| {
             (x[0]..x[1]).contains(&agent.position.x) && (y..y + 15.0).contains(&agent.position.y)

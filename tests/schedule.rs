@@ -1,4 +1,4 @@
-//! Who enters, pushes and leaves, and when.
+//! When agents enter, push and leave.
 
 use crate::common::{acceleration, blend, block, laid_open, run, scene, state, vector, walker};
 use sandbox::engine::math::Vector;
@@ -54,7 +54,7 @@ fn a_source_lets_its_rows_in_on_time_and_then_no_more() {
     let mut simulation = Simulation::new(scene).unwrap();
     for frame in 0..200 {
         simulation.evaluate().unwrap();
-        // Coarse frames only: 0.25, 1.25 and 2.25 s act at 0.3, 1.3 and 2.3 s.
+        // Agents enter in coarse frames only: those due at 0.25, 1.25 and 2.25 s enter at 0.3, 1.3 and 2.3 s.
         let rows = [15, 65, 115].iter().filter(|&&due| due <= frame).count();
         assert_eq!(simulation.frame().agents.len(), 5 * rows, "frame {frame}");
         assert_eq!(simulation.expects_agents(), rows < 3);
@@ -143,7 +143,7 @@ fn a_push_changes_those_in_its_region_for_its_time_and_the_others_still_feel_the
             assert!(agent.neighbors.len() > 1);
         }
         if frame == 10 {
-            // Whoever does not push has all neighbours in its sum, the pushing ones too.
+            // Agents that do not push still have pushing agents among their neighbors.
             let agents = simulation.frame().agents;
             let others = (0..24).filter(|id| !pushing.contains(id));
             let feels = others.filter(|&id| {

@@ -12,7 +12,7 @@ use sandbox::engine::simulation::{Fault, Simulation};
 use sandbox::scenario::catalog::{NAMES, Parameters};
 use sandbox::scenario::metrics::{Measurement, Metrics};
 
-/// One agent from rest towards a goal far to the right, and how far the two integrators take it.
+/// One agent at rest, with a goal far to the right.
 fn alone(integrator: Integrator, time_step: f64) -> Simulation {
     let mut scene = scene(Vec::new(), blend("sph"));
     scene.integrator = integrator;
@@ -26,7 +26,7 @@ proptest! {
 
     #[test]
     fn one_agent_follows_the_closed_form_of_its_integrator(frames in 1..200_u64) {
-        // v_n = 1.4 (1 − q^n), q = 1 − Δt/τ; r is the sum of the new or of the old velocities.
+        // v_n = 1.4 (1 − q^n), q = 1 − Δt/τ; r sums the new velocities (semi-implicit) or the old ones (forward).
         let (dt, q) = (0.02, 0.96_f64);
         let n = frames as i32;
         let speed = 1.4 * (1.0 - q.powi(n));

@@ -1,4 +1,4 @@
-//! What a scene does not need is not computed, and shows as absent.
+//! Quantities that a scene does not need are not computed and are absent.
 
 use crate::common;
 use crate::common::{blend, blend_with, block, person, rectangle, room, scene, vector};
@@ -189,7 +189,7 @@ fn agents_far_from_walls_have_no_walls_to_work_on() {
 
 #[test]
 fn a_moving_average_that_was_interrupted_starts_anew() {
-    // Two who meet after the density was last asked for: the old average knows nothing of it.
+    // Two agents meet after the last requested density, so that the old average is out of date.
     let mut scene = scene(Vec::new(), blend("sf"));
     scene.agents = vec![
         person(vector(0.0, 0.0), vector(20.0, 0.0)),

@@ -1,4 +1,4 @@
-//! Social forces between agents (Eq. 18): sums over crowds against the equation, pair by pair.
+//! Social forces between agents (Eq. 18): sums over crowds compared with the equation, pair by pair.
 
 use crate::common;
 use crate::common::social::{condition, force, potential, weight};
@@ -14,7 +14,7 @@ use sandbox::engine::scene::{Group, Scene};
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::Parameters;
 
-/// The largest error of a sum of social forces in mixed precision, over the sum of their magnitudes.
+/// The largest allowed error of a sum of social forces in mixed precision, relative to the sum of their magnitudes.
 const BOUND: f64 = 1e-5;
 
 fn random(seed: u64) -> impl FnMut() -> f64 {
@@ -22,12 +22,12 @@ fn random(seed: u64) -> impl FnMut() -> f64 {
     move || rng.random_range(-1.0..1.0)
 }
 
-/// Eq. 18 on agent `i` of an evaluated frame, pair by pair: accelerations, and how uncertain these are.
+/// Eq. 18 for agent `i` of an evaluated frame, pair by pair: accelerations and their rounding errors.
 fn felt(simulation: &Simulation, i: usize) -> Vec<(Vector, f64)> {
     felt_by(&SocialForce::default(), simulation, i)
 }
 
-/// The same, by another law.
+/// The same with other parameters.
 fn felt_by(social: &SocialForce, simulation: &Simulation, i: usize) -> Vec<(Vector, f64)> {
     let agents = simulation.frame().agents;
     let others = (0..agents.len()).filter(|&j| j != i);
@@ -39,8 +39,8 @@ fn felt_by(social: &SocialForce, simulation: &Simulation, i: usize) -> Vec<(Vect
         near.then(|| {
             let force = force(social, r_ij, v_ij) * share;
             let noise = 4.0 * f64::EPSILON * condition(social, r_ij, v_ij);
-            // Who comes within 5 cm of the other's place is no part of the promise: |r_ij + T v_ij| is then
-            // known to some 10⁻⁵ of itself.
+            // The bound does not hold for agents that come within 5 cm of the other's place, where the relative
+            // error of |r_ij + T v_ij| is about 10⁻⁵.
             let ahead = r_ij + v_ij * social.anticipation_time;
             let noise = if ahead.norm() < 0.05 { 1.0 } else { noise };
             (force, force.norm() * noise)
@@ -49,7 +49,7 @@ fn felt_by(social: &SocialForce, simulation: &Simulation, i: usize) -> Vec<(Vect
     pairs.collect()
 }
 
-/// What the engine makes of it.
+/// The sum as computed by the engine.
 fn summed(simulation: &Simulation, i: usize) -> Vector {
     let frame = simulation.frame();
     let laid_open = common::laid_open(simulation, frame.agents.id[i]);
@@ -57,7 +57,7 @@ fn summed(simulation: &Simulation, i: usize) -> Vector {
     terms.social_agents.unwrap()
 }
 
-/// 300 people at random in a square of `side` metres from `corner` on, at up to 1.8 m/s.
+/// 300 people at random in a square of `side` meters centered at `corner`, at up to 1.7 m/s.
 fn crowd(corner: Vector, side: f64, seed: u64, parameters: &Parameters) -> Scene {
     let mut scene = scene(vec![], blend_with("sf", parameters));
     let mut next = random(seed);
@@ -72,7 +72,7 @@ fn crowd(corner: Vector, side: f64, seed: u64, parameters: &Parameters) -> Scene
     scene
 }
 
-/// The largest error over all agents, over the sum of the magnitudes.
+/// The largest error of any agent, relative to the sum of the magnitudes of its pairs.
 fn largest_error(scene: Scene) -> f64 {
     let simulation = common::evaluated(scene);
     let error = |i: usize| {
@@ -226,7 +226,7 @@ fn nobody_beyond_the_reach_of_a_tolerance_exerts_more_than_it() {
         let relative_speed = 2.0 * next().abs();
         let reach = social.reach(relative_speed);
         let towards = vector(next(), next()).normalize();
-        // Most dangerous is who comes straight on.
+        // Agents on a collision course exert the largest forces.
         let turn = next() * 0.1;
         let v_ij = -(towards + vector(-towards.y, towards.x) * turn).normalize() * relative_speed;
         let r_ij = towards * reach * (1.0 + 0.2 * next().abs());
@@ -244,9 +244,9 @@ fn two_who_meet_head_on_feel_nothing_and_nearly_so_nearly_all() {
         ];
         summed(&common::evaluated(scene), 0)
     };
-    // r_ij and r_ij + s are opposite: b = 0, where the potential has its edge, and no direction.
+    // r_ij and r_ij + s are opposite: b = 0, where the potential has an edge and no gradient.
     assert_eq!(pair(0.0), Vector::zeros());
-    // Beside the edge, |d| = |a| = 2: V₀/σ (2 + 2)/(2 · 2), across.
+    // Next to the edge, |d| = |a| = 2: the force is V₀/σ (2 + 2)/(2 · 2), sideways.
     for aside in [1e-9, 1e-6] {
         let [left, right] = [pair(aside), pair(-aside)];
         assert!((left - vector(0.0, -7.0)).norm() < 1e-4, "{left}");

@@ -1,5 +1,5 @@
-//! The linear theory of sound against the engine itself: a patch of a hexagonal lattice is displaced
-//! by a small plane wave, and the acceleration of its middle read.
+//! The linear theory of sound compared with the engine: a patch of a hexagonal lattice is displaced by a small
+//! plane wave, which accelerates the agent in its middle.
 
 use crate::common::{acceleration, blend_with, evaluated, person, scene, vector};
 use sandbox::engine::agents::NewAgent;
@@ -8,7 +8,7 @@ use sandbox::engine::scene::Region;
 use sandbox::engine::sound::{self, Lattice};
 use sandbox::scenario::catalog::Parameters;
 
-/// Who the middle feels, and whom those feel.
+/// The radius of the patch, meters. It includes the neighbors of the middle agent and their neighbors.
 const PATCH: f64 = 2.6;
 
 fn lattice(spacing: f64, gas_constant: f64, agent_stiffness: f64) -> Lattice {
@@ -23,7 +23,7 @@ fn lattice(spacing: f64, gas_constant: f64, agent_stiffness: f64) -> Lattice {
     }
 }
 
-/// The patch, its middle first, displaced by `amplitude` · cos(q x) along x; ρ⁰ is at its maximum.
+/// The patch, with its middle agent first, displaced by `amplitude` · cos(q x) along x; ρ⁰ has its maximum value.
 fn displaced(lattice: &Lattice, q: f64, amplitude: f64) -> Vec<NewAgent> {
     let rows = (PATCH / lattice.spacing).ceil() as i32 + 1;
     let cells = (-rows..=rows).flat_map(|row| (-2 * rows..=2 * rows).map(move |c| (row, c)));
@@ -44,7 +44,7 @@ fn displaced(lattice: &Lattice, q: f64, amplitude: f64) -> Vec<NewAgent> {
         .collect()
 }
 
-/// ω² by the engine: −∂a/∂u of the middle.
+/// ω² from the engine: −∂a/∂u of the middle agent.
 fn frequency_squared(lattice: &Lattice, q: f64) -> f64 {
     let parameters = Parameters {
         gas_constant: Some(lattice.sph.gas_constant),

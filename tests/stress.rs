@@ -1,5 +1,4 @@
-//! The hard cases: no panic, nothing that is not finite, nobody through a wall, and what was clipped is
-//! told.
+//! Hard cases: no panics, only finite numbers, no agent passes through a wall, and clamped values are reported.
 
 use std::path::Path;
 
@@ -14,7 +13,7 @@ use sandbox::lab::stress::{
 use sandbox::scenario::catalog::{NAMES, Parameters};
 use sandbox::scenario::{Scenario, Setting};
 
-/// Runs a file of `scenarios/stress` with some settings; fails unless it survives.
+/// Runs a file of `scenarios/stress` with some settings and checks that it passes.
 fn survives(name: &str, settings: &[&str]) -> Found {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenarios/stress/{name}.json"));
     let settings: Vec<Setting> = settings.iter().map(|s| s.parse().unwrap()).collect();
@@ -84,7 +83,7 @@ fn a_wall_of_ten_thousand_edges_is_a_wall() {
 #[test]
 fn a_wall_of_one_centimetre_holds_whatever_presses_against_it() {
     survives("thin_wall", &[]);
-    // Without contact and SPH only the containment holds them.
+    // Without contact and SPH, only containment holds the agents.
     let bare = ["gas_constant=0", "wall_stiffness=0", "duration_secs=5"];
     assert!(survives("thin_wall", &bare).contained_moves > 1000);
 }
@@ -316,7 +315,7 @@ fn a_scenario_takes_the_automatic_step_and_says_where_it_is_unknown() {
         ))
     };
     let ratio = thick("semi-implicit") / thick("velocity-verlet");
-    // Half as long, but for the margins.
+    // Half as long for velocity Verlet, apart from the margins.
     assert!((1.9..=2.0).contains(&ratio), "{ratio}");
     let refused = |text: &str| parse(text).unwrap_err().to_string();
     for integrator in ["forward-euler", "midpoint"] {
@@ -351,7 +350,7 @@ fn a_step_that_is_too_long_is_warned_of_with_its_number() {
     assert!(stderr("0.25", &[]).contains("warning: time_step_secs 0.25 is "));
     assert!(!stderr("auto", &[]).contains("warning"));
     assert!(!stderr("0.02", &[]).contains("warning"));
-    // Velocity Verlet bears half as much friction.
+    // Velocity Verlet tolerates only half as much viscosity.
     let (verlet, thick) = ("integrator=velocity-verlet", "viscosity=30");
     assert!(!stderr("0.02", &[thick]).contains("warning"));
     assert!(stderr("0.02", &[thick, verlet]).contains("warning: time_step_secs 0.02 is "));

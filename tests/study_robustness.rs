@@ -1,7 +1,7 @@
-//! Whatever a study's file says, reading it ends in checked cells or in an error, in little memory.
+//! Any study file gives checked cells or an error, within bounded memory.
 //!
-//! 25,000 cases, for the scenario of every cell is read; more with `BAD_INPUT_TIMES=10 cargo test …`. At most
-//! this is held at once: 1 MB, 200 bytes for every byte of the text, and 100 kB for every cell.
+//! Only 25,000 cases, because the scenario of every cell is read; more with `BAD_INPUT_TIMES=10 cargo test …`. The
+//! memory limit is 1 MB plus 200 bytes per byte of the text and 100 kB per cell.
 
 use crate::common::bounded::cases;
 use crate::common::documents::{count, nasty, replace};
@@ -14,7 +14,7 @@ fn most(text: &str, cells: u64) -> u64 {
     (1 << 20) + 200 * text.len() as u64 + 100_000 * cells
 }
 
-/// Studies of two to eight cells, with everything that a study may have.
+/// Valid studies of two or more cells, with every key.
 fn studies() -> [Value; 3] {
     let few = json!({"grids.0.columns": 2, "grids.0.rows": 2});
     [

@@ -1,4 +1,4 @@
-//! Studies as they run: shards, what is kept, what fails, and what is put together.
+//! Running studies: shards, kept results, failures and merging.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -9,7 +9,7 @@ use crate::common::sweep::{ROOM, cases, column, folder, put, rows};
 use sandbox::analysis::statistics::student_95;
 use sandbox::lab::sweep::{Cell, Gathered, Listener, Shard, Shelf, State, Study, Tally, run};
 
-/// Writes down what a run says.
+/// Records the progress of a run.
 #[derive(Default)]
 struct Ear {
     begun: Mutex<Vec<[usize; 2]>>,
@@ -38,7 +38,7 @@ impl Listener for Ear {
     }
 }
 
-/// Two settings, two profiles, three seeds.
+/// Two gas constants, two profiles, three seeds.
 const GRID: &str = r#"{"scenario": "room.json", "seeds": 3,
     "grid": {"gas_constant": [100, 200], "profile": ["sph", "sf->sph"]}}"#;
 

@@ -1,4 +1,4 @@
-//! `sandbox sweep` as a user runs it: exit codes, what goes where, two processes at once.
+//! `sandbox sweep` on the command line: exit codes, outputs, two processes at once.
 
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -51,7 +51,7 @@ fn a_cell_is_the_run_that_its_settings_make() {
     ];
     let alone = [&["run", "room.json", "--seed", "6", "--json"], &set[..]].concat();
     let alone = json(folder.path(), &alone);
-    // Everything that a run reports, but for how it was computed.
+    // All reported values, except those about the computation itself.
     let how = [
         "interrupted",
         "threads",

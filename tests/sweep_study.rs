@@ -1,4 +1,4 @@
-//! Studies as written: which cells they make, in which order, and what is said about broken ones.
+//! Study files: their cells, the order of these, and the messages for broken files.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -17,7 +17,7 @@ use crate::common::sweep::folder;
 const SCENARIO: &str = r#"{"goal": [10, 0], "profile": "sph", "duration_secs": 1,
     "grids": [{"min": [0, 0], "max": [3, 1], "columns": 3, "rows": 1}]}"#;
 
-/// The study of a text, in `folder` beside the scenario `walk.json`.
+/// Reads a text as a study, in `folder` next to the scenario `walk.json`.
 fn read(folder: &Path, text: &str) -> Result<Study, String> {
     fs::write(folder.join("walk.json"), SCENARIO).unwrap();
     let path = folder.join("study.json");
@@ -26,7 +26,7 @@ fn read(folder: &Path, text: &str) -> Result<Study, String> {
     Study::read(&path).map_err(|error| error.to_string().replace(&place, ""))
 }
 
-/// A study, and the folder that its scenario is in.
+/// A study, and the folder of its scenario.
 fn study(document: &Value) -> (Study, TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let study = read(folder.path(), &document.to_string()).unwrap();
@@ -174,7 +174,7 @@ fn shards_are_even_and_begin_with_the_cell_of_their_own_number() {
     }
 }
 
-/// A whole study and the message.
+/// A broken study and the expected message.
 #[derive(Deserialize)]
 struct Broken {
     study: Value,

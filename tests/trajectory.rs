@@ -20,7 +20,7 @@ const VIEW: Region = Region {
     max: Vector::new(1.0, 1.0),
 };
 
-/// Social forces alone: nothing but the trajectory asks for densities. Some leave.
+/// A crowd with social forces only, so that only the trajectory requests densities. Some agents leave.
 fn small_crowd() -> Scene {
     let mut scene = scene(vec![room(4.0, 0.8)], blend("sf"));
     scene.groups[0].removal_radius = Some(0.5);
@@ -28,7 +28,7 @@ fn small_crowd() -> Scene {
     scene
 }
 
-/// Writes `scene` for so many frames into files of these names.
+/// Runs `scene` for `frames` frames and writes them to all of `paths`.
 fn written(scene: Scene, frames: u64, paths: &[PathBuf], fps: f64) -> Simulation {
     let mut simulation = Simulation::new(scene).unwrap();
     let create = |path: &PathBuf| Trajectory::create(path, &mut simulation, VIEW, fps).unwrap();
@@ -44,7 +44,7 @@ fn written(scene: Scene, frames: u64, paths: &[PathBuf], fps: f64) -> Simulation
     simulation
 }
 
-/// What a file must hold, by frame and id: some quantities in the order of `NAMES`.
+/// The expected contents of a file by frame and id: the quantities in `NAMES`.
 type Truth = BTreeMap<(u64, u32), [f64; 9]>;
 
 const NAMES: [&str; 9] = [
@@ -86,7 +86,7 @@ fn truth(scene: Scene, frames: u64, every: u64) -> Truth {
     truth
 }
 
-/// A folder and a file in it for each name.
+/// A folder, and the path of a file in it for each name.
 fn files<const N: usize>(names: [&str; N]) -> (tempfile::TempDir, [PathBuf; N]) {
     let folder = tempfile::tempdir().unwrap();
     let paths = names.map(|name| folder.path().join(name));
@@ -250,7 +250,7 @@ fn a_run_that_is_cut_short_leaves_whole_frames() {
     assert_eq!(one_count(&paths[1], "SELECT count(*) FROM frame_data"), 2);
 }
 
-/// The rings of a polygon in well-known text: the outer one, then holes.
+/// The rings of a polygon in well-known text: the outline, then the holes.
 fn rings(wkt: &str) -> Vec<Polygon> {
     let inside = wkt
         .strip_prefix("POLYGON ((")
@@ -273,7 +273,7 @@ fn contains(rings: &[Polygon], p: Vector) -> bool {
     rings[0].contains(p) && !rings[1..].iter().any(|hole| hole.contains(p))
 }
 
-/// The area of a scene after some frames, as text.
+/// The walkable area of a scene after some frames, as well-known text.
 fn area(scene: Scene, frames: u64) -> String {
     let (_folder, paths) = files(["area.sqlite"]);
     written(scene, frames, &paths, 10.0);
@@ -323,7 +323,7 @@ fn everybody_walks_in_the_walkable_area_of_every_shipped_scenario() {
 fn of_closed_rooms_only_those_count_that_somebody_is_in() {
     let ring = |x: f64| {
         let side = |dx: [f64; 2], y: [f64; 2]| rectangle([x + dx[0], x + dx[1]], y);
-        // Overlapping corners, and sides that touch.
+        // Some sides overlap at the corners, others only touch.
         [
             side([-1.0, 5.0], [-1.0, 0.0]),
             side([-1.0, 5.0], [4.0, 5.0]),
@@ -348,7 +348,7 @@ fn of_closed_rooms_only_those_count_that_somebody_is_in() {
     );
 }
 
-/// The same polygon, beginning where `other` does.
+/// The same polygon, beginning at the first point of `other`.
 fn rotated(polygon: &Polygon, other: &Polygon) -> Polygon {
     let mut points = polygon.points().to_vec();
     let first = points.iter().position(|p| *p == other.points()[0]).unwrap();
@@ -362,7 +362,7 @@ fn the_area_grows_with_who_walks_out_of_it() {
     open.agents = vec![person(vector(0.0, 0.0), vector(0.0, 0.0))];
     let start = rings(&area(open.clone(), 1));
     assert_eq!(start[0].area(), 11.0 * 11.0);
-    // Somebody in the same open plane, but farther than the free space reaches.
+    // An agent in the same open plane, but outside of the walkable area.
     let (_folder, [path]) = files(["open.sqlite"]);
     let mut simulation = Simulation::new(open.clone()).unwrap();
     let mut file = Trajectory::create(&path, &mut simulation, VIEW, 10.0).unwrap();

@@ -1,4 +1,4 @@
-//! The walkable area beside trajectories is where the engine lets people walk, point by point.
+//! The walkable area in a trajectory file is where the engine lets people walk, point by point.
 
 use crate::common::plans::{Ring, contains, margin, rings};
 use rand::{Rng, SeedableRng};
@@ -9,14 +9,15 @@ use sandbox::output::trajectory::Trajectory;
 use sandbox::scenario::Scenario;
 use serde_json::json;
 
-/// So many plans are in one scene, in rows of ten.
+/// The number of plans in one scene, in rows of ten.
 const PLANS: usize = 50;
-/// The side of a plan's cells, and from one plan to the next, metres.
+/// The side of a plan's cells, meters.
 const CELL: f64 = 1.5;
+/// The distance from one plan to the next, meters.
 const APART: f64 = 20.0;
 
-/// A room whose holes are cells and halves of cells of a grid: they touch each other and the outline, at
-/// corners and along edges. Every other plan is turned.
+/// A room whose holes are cells and half cells of a grid, which touch each other and the outline at corners and
+/// along edges. Every other plan is rotated.
 fn plan(random: &mut ChaCha8Rng, k: usize) -> Vec<Ring> {
     let turn = if k.is_multiple_of(2) {
         0.0
@@ -65,7 +66,7 @@ fn what_is_written_is_where_people_can_walk() {
                 }
             }
         }
-        // Somebody stands at every free place: what nobody enters is not written.
+        // A person stands at every free place, because empty areas are not written.
         let free = places.iter().filter(|(_, free)| *free);
         let person = |(p, _): &(Vector, bool)| json!({"position": [p.x, p.y], "goal": [p.x, p.y]});
         let people: Vec<_> = free.map(person).collect();
@@ -82,7 +83,7 @@ fn what_is_written_is_where_people_can_walk() {
             .unwrap();
         let written = rings(&text);
         for (p, free) in places {
-            // Outlines and holes: what is in an odd number of rings.
+            // The area consists of the points inside an odd number of rings (outlines and holes).
             let around = written.iter().filter(|ring| contains(ring, p)).count();
             assert_eq!(around % 2 == 1, free, "scene {scene}: {p}");
             assert_eq!(engine.obstacle_at(p).is_none(), free, "scene {scene}: {p}");

@@ -1,8 +1,7 @@
-//! Whatever a trajectory file holds, reading and measuring it ends in finite numbers or in an error, in little
-//! memory.
+//! Reading and measuring any trajectory file gives finite numbers or an error, within bounded memory.
 //!
-//! 100,000 texts and 5,000 databases; more with `BAD_INPUT_TIMES=10 cargo test …`. At most this is held at once:
-//! 4 MB and 300 bytes for every byte of the file.
+//! 100,000 texts and 6,500 databases; more with `BAD_INPUT_TIMES=10 cargo test …`. The memory limit is 4 MB plus
+//! 300 bytes per byte of the file, and twice that for databases.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -23,13 +22,13 @@ fn most(bytes: usize) -> u64 {
     (4 << 20) + 300 * bytes as u64
 }
 
-/// Some of what was made up is no error.
+/// Checks that enough of the generated files are valid.
 fn assert_some(rows_read: AtomicU64) {
     let rows = rows_read.into_inner();
     assert!(rows > 1_000, "{rows} rows were read");
 }
 
-/// Cells that break something somewhere.
+/// Cells that are invalid in many places.
 const NASTY: [&str; 26] = [
     "",
     "0",
@@ -59,7 +58,7 @@ const NASTY: [&str; 26] = [
     "#",
 ];
 
-/// A whole number, as ids and frames are, or something else.
+/// A whole number for an id or a frame, or rarely something else.
 fn whole() -> impl Strategy<Value = String> {
     prop_oneof![
         20 => (-3..9_i64).prop_map(|n| n.to_string()),
@@ -76,14 +75,14 @@ fn coordinate() -> impl Strategy<Value = String> {
     ]
 }
 
-/// Rows of id, frame, x, y and one more.
+/// Rows of id, frame, x, y and one more column.
 fn rows() -> impl Strategy<Value = Vec<[String; 5]>> {
     let row = (whole(), whole(), coordinate(), coordinate(), coordinate());
     let row = row.prop_map(|(id, frame, x, y, more)| [id, frame, x, y, more]);
     prop::collection::vec(row, 0..8)
 }
 
-/// How a text is damaged.
+/// A way to damage a text.
 fn damage() -> impl Strategy<Value = (u8, [Index; 2], u8)> {
     (0..12_u8, any::<[Index; 2]>(), any::<u8>())
 }
@@ -181,7 +180,7 @@ fn tables_with_values_changed_are_read_or_refused() {
     assert_some(rows_read);
 }
 
-/// A database of JuPedSim's, of pages of 512 bytes, with three rows.
+/// Writes a JuPedSim database with pages of 512 bytes and three rows.
 fn database(path: &Path) {
     let connection = Connection::open(path).unwrap();
     connection
@@ -197,8 +196,8 @@ fn database(path: &Path) {
         .unwrap();
 }
 
-/// 5,000 cases: SQLite opens, locks and reads a file for each. The damage is written over one small file and
-/// mended again.
+/// Only 5,000 cases, because SQLite opens, locks and reads a file in each. One small file is damaged and restored
+/// each time.
 #[test]
 fn databases_with_bytes_changed_are_read_or_refused() {
     let rows_read = AtomicU64::new(0);
@@ -214,7 +213,7 @@ fn databases_with_bytes_changed_are_read_or_refused() {
         || (changes(), cut()),
         |(changes, cut)| {
             for (place, by) in &changes {
-                let at = place.index(whole.len() - 16) + 16; // else it is no database
+                let at = place.index(whole.len() - 16) + 16; // keep the magic number
                 disk.write_all_at(&[*by], at as u64).unwrap();
             }
             if let Some(cut) = cut {
@@ -233,7 +232,7 @@ fn databases_with_bytes_changed_are_read_or_refused() {
     assert_some(rows_read);
 }
 
-/// 1,500 cases, a transaction each.
+/// Only 1,500 cases, because each takes a transaction.
 #[test]
 fn databases_with_values_changed_are_read_or_refused() {
     let rows_read = AtomicU64::new(0);

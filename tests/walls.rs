@@ -1,4 +1,4 @@
-//! The hidden regions P_k and what they integrate to, against quadrature in two dimensions.
+//! The hidden regions P_k and their integrals, compared with quadrature in two dimensions.
 
 use std::f64::consts::{PI, TAU};
 
@@ -37,7 +37,7 @@ fn an_infinite_wall_gives_the_printed_values() {
         for (method, [kernel, gradient]) in cases {
             let found = Integrals::of(&shares(method, &walls, vector(3.0, d), 1.0));
             assert!((found.kernel - kernel).abs() < 5e-6, "{method:?} {found:?}");
-            // ∇W points from the neighbour's side to where W grows: into the wall.
+            // ∇W points to where W grows, here into the wall.
             assert!(
                 (found.gradient.norm() - gradient).abs() < 5.1e-6,
                 "{found:?}"
@@ -73,8 +73,8 @@ fn a_wall_hides_the_points_whose_line_of_sight_crosses_it() {
     assert!(swept(walls.wall(found[0].wall), r_i, h).difference(&seen) < 1e-3);
 }
 
-/// A wall of any direction near an agent at `r_i`, `d` metres before its line; `foot` metres from its
-/// start to the foot of the perpendicular.
+/// A wall in any direction near an agent at `r_i`, which is `d` meters in front of its line. The foot of the
+/// perpendicular is `foot` meters from the start of the wall.
 fn facing_wall(r_i: Vector, angle: f64, d: f64, foot: f64, length: f64) -> Walls {
     let (towards, along) = (
         vector(angle.cos(), angle.sin()),
@@ -129,7 +129,7 @@ proptest! {
 
     #[test]
     fn the_integrals_stay_finite_and_continuous_down_to_the_wall(
-        // Below, squared distances are no longer normal numbers.
+        // At smaller distances, squares are subnormal numbers.
         exponent in -150..-9_i32,
         foot in -0.5..2.5_f64,
     ) {
@@ -190,7 +190,7 @@ fn a_distance_too_small_to_be_squared_gives_no_nan() {
     }
 }
 
-/// Obstacles among which shadows overlap, and a box in which to stand.
+/// Obstacles with overlapping shadows, and a box of places for an agent.
 fn tight_places() -> Vec<(&'static str, Vec<Polygon>, [f64; 4])> {
     vec![
         (
@@ -234,7 +234,7 @@ fn the_union_of_shadows_is_what_quadrature_of_the_visible_walls_gives() {
     for (name, obstacles, [x0, x1, y0, y1]) in tight_places() {
         let walls = Walls::new(obstacles);
         for k in 1..150 {
-            // Low-discrepancy points of the box.
+            // Low-discrepancy points in the box.
             let u = vector(
                 (f64::from(k) * 0.754_877_67).fract(),
                 (f64::from(k) * 0.569_840_29).fract(),

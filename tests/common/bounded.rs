@@ -1,13 +1,13 @@
-//! Many cases of anything, each with a bound on the memory that it takes.
+//! Property tests in which each case has a memory limit.
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
-/// Runs `count` cases, `BAD_INPUT_TIMES` times as many where that is set, on the calling thread alone.
+/// Runs `count` cases, times `BAD_INPUT_TIMES` if that is set, on a single thread.
 ///
-/// `case` returns the most bytes that it may have held at once.
+/// `case` returns its memory limit: the number of bytes that it may have allocated at once.
 pub fn cases<S: Strategy>(
     count: u32,
     input: impl FnOnce() -> S + Send,
@@ -16,12 +16,12 @@ pub fn cases<S: Strategy>(
     let times = std::env::var("BAD_INPUT_TIMES").map_or(1, |times| times.parse().unwrap());
     let mut config = Config::with_cases(count * times);
     config.failure_persistence = None;
-    // What is computed in parallel would else be allocated elsewhere.
+    // Allocations on other threads would not be counted.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     pool.unwrap().install(|| {
         TestRunner::new(config)
             .run(&input(), |value| {
-                // A panic that passed through the counter would count as one that is still measured.
+                // A panic must not unwind through `measure`, or the counter would keep counting.
                 let mut ended = Ok(0);
                 let counted = || ended = catch_unwind(AssertUnwindSafe(|| case(value)));
                 let held = allocation_counter::measure(counted).bytes_max;

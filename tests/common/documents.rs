@@ -1,9 +1,9 @@
-//! Scenario documents with values exchanged.
+//! Changes values in JSON documents.
 
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-/// Values that break something somewhere.
+/// Values that are invalid in many places.
 pub fn nasty() -> impl Strategy<Value = Value> {
     prop_oneof![
         Just(Value::Null),
@@ -28,7 +28,7 @@ pub fn nasty() -> impl Strategy<Value = Value> {
     ]
 }
 
-/// Every value in `document`, the whole one first.
+/// The number of values in `document`, including `document` itself.
 pub fn count(document: &Value) -> usize {
     let inside = match document {
         Value::Array(list) => list.iter().map(count).sum(),
@@ -38,7 +38,7 @@ pub fn count(document: &Value) -> usize {
     1 + inside
 }
 
-/// Replaces value number `k` in the order of [`count`].
+/// Replaces value number `k`, counted from 0 in depth-first order.
 pub fn replace(document: &mut Value, k: &mut usize, by: &Value) {
     if *k == 0 {
         *document = by.clone();

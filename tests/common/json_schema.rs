@@ -1,9 +1,9 @@
-//! JSON Schema as far as the schema of scenarios needs it; any other keyword is a panic, so that nothing is
-//! passed over.
+//! A validator for the JSON Schema keywords in the schema of scenarios. Any other keyword is a panic, so that none
+//! is ignored.
 
 use serde_json::Value;
 
-/// Why `value` is not valid by `schema`, whose definitions are in `root`; `None` if it is.
+/// Why `value` does not match `schema`, whose definitions are in `root`; `None` if it matches.
 pub fn refusal(root: &Value, schema: &Value, value: &Value) -> Option<String> {
     let mut reasons = schema
         .as_object()

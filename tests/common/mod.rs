@@ -1,4 +1,4 @@
-//! Scenes that the tests are built from. Each test file uses its own part of this.
+//! Scenes and helpers for the tests. Each test file uses only some of them.
 #![allow(dead_code)]
 
 pub mod bounded;
@@ -46,7 +46,7 @@ pub fn rectangle(x: [f64; 2], y: [f64; 2]) -> Polygon {
     polygon(&[[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]])
 }
 
-/// A square room [0, side]² with walls 1 m thick and a doorway in the middle of the right one.
+/// A square room [0, side]² with walls 1 m thick and a doorway in the middle of the right wall.
 pub fn room(side: f64, door: f64) -> Polygon {
     let [low, high] = [0.5 * (side - door), 0.5 * (side + door)];
     let (inner, outer) = (side, side + 1.0);
@@ -74,7 +74,7 @@ pub fn blend_with(name: &str, parameters: &Parameters) -> Blend {
     catalog::named(name, parameters).unwrap().unwrap()
 }
 
-/// A scene in double precision with one group, number 0, whose agents stay for ever.
+/// A scene in double precision with one group, number 0, whose agents are never removed.
 pub fn scene(obstacles: Vec<Polygon>, blend: Blend) -> Scene {
     let mut scene = Scene::with_obstacles(obstacles);
     scene.precision = Precision::Double;
@@ -87,7 +87,7 @@ pub fn scene(obstacles: Vec<Polygon>, blend: Blend) -> Scene {
     scene
 }
 
-/// An average person of group 0 at rest.
+/// A person of average size in group 0, at rest.
 pub fn person(position: Vector, goal: Vector) -> NewAgent {
     NewAgent {
         radius: Some(0.24),
@@ -104,7 +104,7 @@ pub fn walker(position: Vector, velocity: Vector, goal: Vector) -> NewAgent {
     }
 }
 
-/// `columns` × `rows` people, `spacing` metres apart from `corner` on, with bodies by seed.
+/// `columns` × `rows` people, `spacing` meters apart, the first at `corner`. Their bodies depend on the seed.
 pub fn block(corner: Vector, columns: u32, rows: u32, spacing: f64, goal: Vector) -> Vec<NewAgent> {
     let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
     cells
@@ -115,7 +115,7 @@ pub fn block(corner: Vector, columns: u32, rows: u32, spacing: f64, goal: Vector
         .collect()
 }
 
-/// The simulation with its first frame evaluated, densities included.
+/// A simulation with its first frame evaluated, including densities.
 pub fn evaluated(scene: Scene) -> Simulation {
     let mut simulation = Simulation::new(scene).unwrap();
     simulation.request_density_until(1);
@@ -129,7 +129,7 @@ pub fn run(simulation: &mut Simulation, frames: u64) {
     }
 }
 
-/// Agent `id` of an evaluated frame, laid open.
+/// The breakdown of agent `id` in an evaluated frame.
 pub fn laid_open(simulation: &Simulation, id: u32) -> Breakdown {
     let i = simulation.frame().agents.index_of(id).unwrap();
     Breakdown::of(simulation, i).unwrap()
@@ -148,7 +148,7 @@ pub fn state(simulation: &Simulation, id: u32) -> (Vector, Vector) {
     (agents.position[i], agents.velocity[i])
 }
 
-/// Everybody's id, position, velocity and mean density, bit by bit, by id.
+/// The ids of all agents, with the bits of their positions, velocities and mean densities, sorted by id.
 pub fn bits(simulation: &Simulation) -> Vec<(u32, [u64; 5])> {
     let agents = simulation.frame().agents;
     let mut bits: Vec<(u32, [u64; 5])> = (0..agents.len())

@@ -1,4 +1,4 @@
-//! A folder of inputs, and what commands that write beside them do to it.
+//! A folder of inputs, and checks of what commands do to it.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -43,7 +43,7 @@ pub fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// All that is in a folder: names, and what regular files hold.
+/// The names in a folder, with the contents of regular files.
 pub fn contents(folder: &Path) -> BTreeMap<String, Option<Vec<u8>>> {
     let entries = fs::read_dir(folder).unwrap().flatten();
     let content = |path: &Path| path.is_file().then(|| fs::read(path).unwrap());
@@ -55,7 +55,7 @@ pub fn contents(folder: &Path) -> BTreeMap<String, Option<Vec<u8>>> {
         .collect()
 }
 
-/// Refused with an exit code and a message, and without a trace.
+/// Expects exit code `code`, `words` on stderr, nothing on stdout, and an unchanged folder.
 pub fn refused(folder: &Path, typed: &str, code: i32, words: &[&str]) {
     let before = contents(folder);
     let output = run(folder, typed);

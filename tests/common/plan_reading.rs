@@ -1,9 +1,9 @@
-//! Reads any text as a floor plan: for tests and for fuzzing.
+//! Reads any text as a floor plan, for tests and for fuzzing.
 
 use sandbox::engine::geometry::{Area, Polygon, Walls};
 use sandbox::scenario::floor_plan::{self, FloorPlan, FloorPlanError};
 
-/// Ends in walls that can be asked, or in an error at a place that is in the text.
+/// Checks the walls of a valid plan, or that the error names a place in the text.
 pub fn read(text: &str) {
     let plan = match floor_plan::parse(text) {
         Ok(plan) => plan,
@@ -17,8 +17,8 @@ pub fn read(text: &str) {
     };
     let written: Vec<_> = plan.walkable.iter().map(rings).collect();
     if !written.is_empty() {
-        // What is read and written is the same plan again; near to the origin, where corners are computed
-        // to less than a micrometer, its areas are obstacles as well.
+        // Writing and reading a plan gives the same plan. Near the origin, where corners are accurate to less than
+        // a micrometer, its areas are valid obstacles, too.
         let again = FloorPlan::walkable(&written).unwrap();
         let size = |plan: &FloorPlan| plan.walkable.iter().map(Area::area).sum::<f64>();
         let points = written.iter().flatten().flatten().flatten();
@@ -39,12 +39,12 @@ pub fn read(text: &str) {
     }
 }
 
-/// The length of all edges, metres.
+/// The total length of all edges, meters.
 fn perimeter(solid: &Polygon) -> f64 {
     solid.edges().map(|(a, b)| (b - a).norm()).sum()
 }
 
-/// Every point that a message names is one of the text.
+/// Checks that every point in a message is a point of the text.
 fn check_place(text: &str, error: &FloorPlanError) {
     let said = error.to_string();
     assert!(!said.is_empty() && !said.contains("near ("), "{said}");

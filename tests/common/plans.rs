@@ -1,11 +1,11 @@
-//! Floor plans as lists of rings, and what lies in them: independent of the code under test.
+//! Floor plans as lists of rings, with queries that are independent of the code under test.
 
 use sandbox::engine::math::Vector;
 
-/// Corners in metres, the first not repeated.
+/// Corners in meters; the first is not repeated.
 pub type Ring = Vec<[f64; 2]>;
 
-/// The rings in well-known text: whatever stands in innermost parentheses.
+/// The rings in well-known text: the contents of the innermost parentheses.
 pub fn rings(wkt: &str) -> Vec<Ring> {
     let inner = wkt.split(')').filter_map(|part| part.rsplit_once('('));
     let ring = |(_, points): (&str, &str)| {
@@ -20,7 +20,7 @@ pub fn rings(wkt: &str) -> Vec<Ring> {
     inner.map(ring).collect()
 }
 
-/// Well-known text of polygons, each of its rings.
+/// The well-known text of polygons, each given by its rings.
 pub fn multipolygon(polygons: &[Vec<Ring>]) -> String {
     let point = |[x, y]: &[f64; 2]| format!("{x} {y}");
     let join = |parts: Vec<String>| format!("({})", parts.join(", "));
@@ -40,7 +40,7 @@ fn edges(ring: &Ring) -> impl Iterator<Item = [Vector; 2]> {
         .map(|(&a, &b)| [a, b].map(Vector::from))
 }
 
-/// Does `p` lie inside? By the parity of the edges above it.
+/// Whether `p` lies inside, by the parity of the number of edges above it.
 pub fn contains(ring: &Ring, p: Vector) -> bool {
     let above = |[a, b]: &[Vector; 2]| {
         (a.x > p.x) != (b.x > p.x) && p.y < a.y + (b.y - a.y) * (p.x - a.x) / (b.x - a.x)
@@ -48,7 +48,7 @@ pub fn contains(ring: &Ring, p: Vector) -> bool {
     edges(ring).filter(above).count() % 2 == 1
 }
 
-/// How far `p` is from the nearest edge, metres.
+/// The distance from `p` to the nearest edge, meters.
 pub fn margin(rings: &[Ring], p: Vector) -> f64 {
     let distance = |[a, b]: [Vector; 2]| {
         let along = (b - a).dot(&(p - a)) / (b - a).norm_squared();

@@ -1,4 +1,4 @@
-//! The kernels over hidden regions by quadrature, formulated independently of the engine.
+//! Integrals of the kernels over hidden regions by quadrature, independent of the engine.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ use sandbox::engine::math::Vector;
 
 use super::vector;
 
-/// Area, ∫ W and ∫ ∇W over some region of the kernel.
+/// Area, ∫ W and ∫ ∇W over a region.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Integrals {
     pub area: f64,
@@ -26,7 +26,7 @@ impl Integrals {
         }
     }
 
-    /// Adds what a small piece of `weight` m² at `offset` = x − r_i holds.
+    /// Adds a small piece of `weight` m² at `offset` = x − r_i.
     pub fn add(&mut self, offset: Vector, weight: f64, h: f64) {
         self.area += weight;
         self.kernel += weight * kernel::density(offset.norm_squared(), h);
@@ -74,7 +74,7 @@ pub fn cross(a: Vector, b: Vector) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// Where the segment from `a` to `b` leaves and enters the circle of radius `h`, as fractions.
+/// Where the line through `a` and `b` enters and leaves the circle of radius `h`, as fractions of the segment.
 fn circle_cuts(a: Vector, b: Vector, h: f64) -> Vec<f64> {
     let way = b - a;
     let (p, q) = (
@@ -88,8 +88,8 @@ fn circle_cuts(a: Vector, b: Vector, h: f64) -> Vec<f64> {
     vec![-p - root.sqrt(), -p + root.sqrt()]
 }
 
-/// The region behind one wall, swept by the rays through its points w(u): x = λ w, 1 ≤ λ ≤ h/|w|,
-/// dx = λ |w × w′| dλ du. No angle is involved.
+/// The region behind one wall, integrated along the rays through its points w(u): x = λ w, 1 ≤ λ ≤ h/|w|,
+/// dx = λ |w × w′| dλ du. No angles are involved.
 pub fn swept(wall: &Wall, r_i: Vector, h: f64) -> Integrals {
     let (a, b) = (wall.start - r_i, wall.end - r_i);
     let mut sum = Integrals::none();
@@ -99,7 +99,7 @@ pub fn swept(wall: &Wall, r_i: Vector, h: f64) -> Integrals {
     let foot = (-a.dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
     let mut cuts = vec![0.0, 1.0, foot];
     cuts.extend(circle_cuts(a, b, h));
-    // Panels that shrink towards the foot of the perpendicular, where the rays turn fastest.
+    // Panels shrink toward the foot of the perpendicular, where the rays turn fastest.
     for k in 0..40 {
         let step = 0.6_f64.powi(k);
         cuts.extend([foot - step, foot + step]);
@@ -125,7 +125,7 @@ pub fn swept(wall: &Wall, r_i: Vector, h: f64) -> Integrals {
     sum
 }
 
-/// How far along a ray in `direction` the wall `a`–`b` is hit from its free side.
+/// The distance along a ray in `direction` at which it hits the wall `a`–`b` from its free side.
 fn hit(a: Vector, b: Vector, direction: Vector) -> Option<f64> {
     let turn = cross(direction, b - a);
     let (along, fraction) = (cross(a, b - a) / turn, cross(a, direction) / turn);
@@ -133,7 +133,7 @@ fn hit(a: Vector, b: Vector, direction: Vector) -> Option<f64> {
     (free_side && along >= 0.0 && (0.0..=1.0).contains(&fraction)).then_some(along)
 }
 
-/// Everything that any wall hides, once: ray by ray, from the first wall to the rim.
+/// The union of the regions hidden by all walls, ray by ray from the first wall to the rim.
 pub fn shadow(walls: &Walls, r_i: Vector, h: f64) -> Integrals {
     let segments: Vec<(Vector, Vector)> =
         walls.iter().map(|w| (w.start - r_i, w.end - r_i)).collect();

@@ -1,18 +1,19 @@
-//! Reads any text as a scenario, and runs what is read for some frames: for tests and for fuzzing.
+//! Reads any text as a scenario and runs it for a few frames, for tests and for fuzzing.
 
 use sandbox::engine::simulation::{Fault, Simulation};
 use sandbox::runs::drive::{Then, drive};
 use sandbox::scenario::metrics::Metrics;
 use sandbox::scenario::{Need, Scenario, Setting};
 
-/// So many people are let in at most, and so many frames computed.
+/// Scenarios with more agents are not run.
 const FEW: u64 = 500;
+/// The number of frames to compute.
 const FRAMES: u64 = 3;
-/// RVO's candidates of all of them at most.
+/// Scenarios with more RVO candidates of all agents are not run.
 const CANDIDATES: u64 = 20_000;
 
-/// Ends in a scenario whose first frames are computed, or in an error that says something; returns how many
-/// people entered.
+/// Runs the first frames of a valid scenario, or checks that the error names the file or setting. Returns the
+/// number of agents that took memory.
 pub fn read(text: &str, settings: &[Setting]) -> u64 {
     let need = Need::parse(text, "f.json", settings);
     let scenario = match Scenario::parse(text, "f.json", settings) {
@@ -26,14 +27,14 @@ pub fn read(text: &str, settings: &[Setting]) -> u64 {
             return 0;
         }
     };
-    // What can be read has been counted before, and the count is an upper bound.
+    // A valid scenario has an estimate of its needs, which is an upper bound.
     let need = need.unwrap();
     assert_eq!(need.initial, scenario.scene.agents.len() as u64);
-    // Corners given twice are dropped; where areas overlap, there are others.
+    // Repeated corners are dropped. Walkable areas that overlap have additional corners.
     let walls = scenario.scene.walls.len() as u64;
     assert!(walls <= need.walls || scenario.document.get("walkable_area").is_some());
     assert_eq!(need.entering, scenario.entering);
-    // What is read and written is the same scenario.
+    // Writing and reading the scenario gives the same document.
     let again = Scenario::parse(&scenario.to_text(), "f.json", &[]).unwrap();
     assert_eq!(again.document, scenario.document);
     if scenario.entering > FEW || scenario.entering * candidates(&scenario) > CANDIDATES {
@@ -63,7 +64,7 @@ pub fn read(text: &str, settings: &[Setting]) -> u64 {
     need.entering
 }
 
-/// The most candidates that RVO tries for anybody.
+/// The largest number of RVO candidates of any agent.
 fn candidates(scenario: &Scenario) -> u64 {
     let rvos = scenario
         .scene

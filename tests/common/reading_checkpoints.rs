@@ -1,17 +1,17 @@
-//! Reads any bytes as a checkpoint, and goes on with what is read: for tests and for fuzzing.
+//! Reads any bytes as a checkpoint and resumes it, for tests and for fuzzing.
 
 use std::path::Path;
 
 use sandbox::runs::checkpoint::Checkpoint;
 use sha2::{Digest, Sha256};
 
-/// So many frames are computed.
+/// The number of frames to compute.
 const FRAMES: u64 = 2;
-/// So long texts are short.
+/// Error messages must be shorter, bytes.
 const SHORT: usize = 1000;
 
-/// Ends in a run that goes on with finite numbers, or in a short error that is harmless to a terminal; returns
-/// whether it went on.
+/// Checks that the resumed run has finite numbers, or that the error is short and without control characters.
+/// Returns whether the run could be resumed without a fault.
 pub fn read(bytes: &[u8]) -> bool {
     let harmless = |said: String| {
         let is_harmless = said.len() < SHORT && !said.contains(char::is_control);
@@ -35,7 +35,7 @@ pub fn read(bytes: &[u8]) -> bool {
         Err(error) => return harmless(error.to_string()),
     };
     for _ in 0..FRAMES {
-        // A fault names an agent whose numbers are not finite.
+        // Numbers that are not finite are reported as a fault.
         if simulation.step().is_err() {
             return false;
         }
@@ -46,7 +46,7 @@ pub fn read(bytes: &[u8]) -> bool {
     true
 }
 
-/// The payload of a checkpoint with the head that belongs to it.
+/// The checkpoint with this payload: its header is valid.
 pub fn sealed(payload: &[u8]) -> Vec<u8> {
     let mut bytes = b"sandbox checkpoint\n".to_vec();
     bytes.extend(2_u32.to_le_bytes());

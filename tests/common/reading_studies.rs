@@ -1,11 +1,11 @@
-//! Reads any text as a study: for tests and for fuzzing.
+//! Reads any text as a study, for tests and for fuzzing.
 
 use std::path::Path;
 
 use sandbox::lab::sweep::Study;
 
-/// Ends in a study whose cells are scenarios, or in a short error that names the file and is harmless to a
-/// terminal; returns how many cells there are.
+/// Checks the cells of a valid study, or that the error is short, names the file and has no control characters.
+/// Returns the number of cells.
 pub fn read(text: &str) -> u64 {
     let study = match Study::parse(text, Path::new("study.json")) {
         Ok(study) => study,

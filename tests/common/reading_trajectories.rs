@@ -1,4 +1,4 @@
-//! Reads any bytes as trajectories, and measures what is read: for tests and for fuzzing.
+//! Reads any bytes as trajectories and measures them, for tests and for fuzzing.
 
 use std::path::Path;
 
@@ -9,19 +9,19 @@ use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::math::Vector;
 use sandbox::output::trajectory::read::{FRAME_RATES, ReadError, ReadOptions, Tracks, read_text};
 
-/// So many rows are measured at most.
+/// Trajectories with more rows are not measured.
 const FEW: usize = 60;
-/// Cells of fields along each side, at most.
+/// The largest number of field cells along each side.
 const CELLS: f64 = 10.0;
 
-/// A text by its name; returns how many rows it has.
+/// Reads the contents of a text file called `name`; returns the number of rows.
 pub fn read(name: &str, bytes: &[u8]) -> u64 {
     let options = ReadOptions::default();
     judge(name, read_text(Path::new(name), bytes, &options))
 }
 
-/// Trajectories whose numbers are all finite, whatever is measured in them, or a short error that names the
-/// file and is harmless to a terminal.
+/// Checks that all numbers in the trajectories and their measurements are finite, or that the error is short, names
+/// the file and has no control characters. Returns the number of rows.
 pub fn judge(name: &str, read: Result<Tracks, ReadError>) -> u64 {
     match read {
         Err(error) => {

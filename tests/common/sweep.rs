@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Nine people in a room for half a second, and a density and arrivals to measure.
+/// Nine people in a room for 0.4 s, with measurements of density and arrivals.
 pub const ROOM: &str = r#"{"goal": [10, 1], "profile": "sph", "duration_secs": 0.4,
     "obstacles": [[[-1, -1], [4, -1], [4, -0.5], [-1, -0.5]]],
     "grids": [{"min": [0, 0], "max": [2, 2], "columns": 3, "rows": 3, "jitter": 0.1}],
     "measurements": [{"density": {"at_secs": 0.2}}, {"evacuated": {}}]}"#;
 
-/// One person in a crack between two walls that fill all that is round it: somebody whom jitter puts beside it
-/// is let out nowhere, a run that fails when it begins.
+/// One person in a crack between two obstacles that fill the rest of the floor. If jitter puts the person beside
+/// the crack, there is no free point nearby and the run fails at its start.
 pub const CRACK: &str = r#"{"goal": [2, 40], "duration_secs": 0.1,
     "walkable_area": [[[[0, 0], [4, 0], [4, 4], [0, 4]]]],
     "obstacles": [[[-1, -1], [2, -1], [2, 5], [-1, 5]],
@@ -37,7 +37,7 @@ pub fn put(folder: &Path, study: &str) -> PathBuf {
     path
 }
 
-/// A CSV file as rows of named values, without how long runs took.
+/// The rows of a CSV file as named values, without `wall_secs`.
 pub fn rows(path: &Path) -> Vec<Vec<(String, String)>> {
     let mut reader = csv::Reader::from_path(path).unwrap();
     let head = reader.headers().unwrap().clone();
@@ -53,7 +53,7 @@ pub fn rows(path: &Path) -> Vec<Vec<(String, String)>> {
         .collect()
 }
 
-/// A column of such rows.
+/// One column of the rows of a CSV file.
 pub fn column(rows: &[Vec<(String, String)>], name: &str) -> Vec<String> {
     let value = |row: &Vec<(String, String)>| {
         let found = row.iter().find(|(other, _)| other == name);
@@ -65,7 +65,7 @@ pub fn column(rows: &[Vec<(String, String)>], name: &str) -> Vec<String> {
     rows.iter().map(value).collect()
 }
 
-/// The files in `cases/` with an extension.
+/// The files in `cases/` with this extension.
 pub fn cases(out: &Path, extension: &str) -> Vec<PathBuf> {
     let entries = fs::read_dir(out.join("cases")).unwrap();
     let paths = entries.map(|entry| entry.unwrap().path());
@@ -74,7 +74,7 @@ pub fn cases(out: &Path, extension: &str) -> Vec<PathBuf> {
         .collect()
 }
 
-/// A number of a JSON object.
+/// An integer in a JSON object.
 pub fn number(value: &Value, key: &str) -> u64 {
     value[key]
         .as_u64()

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use sandbox::output::trajectory::read::{ReadError, ReadOptions, Tracks, read};
 
-/// A file with this name and text, and the folder that it is in.
+/// Writes a file with this name and text; returns its folder and its path.
 pub fn file(name: &str, text: &str) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
@@ -13,14 +13,14 @@ pub fn file(name: &str, text: &str) -> (tempfile::TempDir, PathBuf) {
     (folder, path)
 }
 
-/// What a file with this name and text is read as; errors without the folder.
+/// Reads a file with this name and text; the folder is removed from error messages.
 pub fn read_as(name: &str, text: &str, options: &ReadOptions) -> Result<Tracks, String> {
     let (folder, path) = file(name, text);
     let folder = format!("{}/", folder.path().display());
     read(&path, options).map_err(|error: ReadError| error.to_string().replace(&folder, ""))
 }
 
-/// Rows `id frame x y` in metres at so many frames per second.
+/// Trajectories of the rows `id frame x y` in meters, at `fps` frames per second.
 pub fn tracks(fps: f64, rows: &[(i64, i64, f64, f64)]) -> Tracks {
     let mut text = format!("# framerate: {fps}\n# id frame x/m y/m\n");
     for (id, frame, x, y) in rows {

@@ -1,4 +1,4 @@
-//! What must hold of any obstacles and any points: for tests and for fuzzing.
+//! Properties of any obstacles at any points, for tests and for fuzzing.
 
 use std::f64::consts::PI;
 
@@ -6,12 +6,12 @@ use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::geometry::{Polygon, Walls};
 use sandbox::engine::math::Vector;
 
-/// Rounding of coordinates up to 10⁶ m, and of what is computed from them, metres.
+/// The rounding error of lengths computed from coordinates up to 10⁶ m, meters.
 const ROUNDING: f64 = 1e-8;
-/// How far outside of a wall somebody is put, metres, and some rounding.
+/// The distance from a wall at which an agent is put, with some rounding, meters.
 const HAIR: f64 = 2e-6;
 
-/// The obstacles that can be made of some lists of points.
+/// The lists of points that are valid polygons.
 pub fn obstacles(lists: Vec<Vec<Vector>>) -> Vec<Polygon> {
     let made = lists.into_iter().map(|points| {
         let count = points.len();
@@ -23,7 +23,7 @@ pub fn obstacles(lists: Vec<Vec<Vector>>) -> Vec<Polygon> {
     made.filter_map(Result::ok).collect()
 }
 
-/// Asks everything that can be asked about `walls` at `p`, on the way to `goal`, within `radius` metres.
+/// Checks all queries of `walls` at `p`, within `radius` meters and for a move to `goal`.
 pub fn check(walls: &Walls, p: Vector, goal: Vector, radius: f64) {
     let all: Vec<u32> = (0..walls.len() as u32).collect();
     let near = near(walls, p, radius);
@@ -34,7 +34,7 @@ pub fn check(walls: &Walls, p: Vector, goal: Vector, radius: f64) {
         .position(|polygon| polygon.contains(p));
     let distance = |k: &u32| (walls.wall(*k).nearest_point(p).point - p).norm();
     let nearest = all.iter().map(distance).fold(f64::INFINITY, f64::min);
-    // Within rounding of its boundary nobody is sure to be in an obstacle or not.
+    // Within rounding error of a wall, both answers are right.
     if nearest > ROUNDING {
         assert_eq!(walls.obstacle_at(p), inside);
     }
@@ -42,7 +42,7 @@ pub fn check(walls: &Walls, p: Vector, goal: Vector, radius: f64) {
     stopped(walls, p, goal, &all);
 }
 
-/// The index finds what brute force finds.
+/// Checks that the index finds the same walls as brute force, and returns them.
 fn near(walls: &Walls, p: Vector, radius: f64) -> Vec<u32> {
     let mut found = Vec::new();
     walls.near(p, radius, &mut found);
@@ -57,7 +57,7 @@ fn near(walls: &Walls, p: Vector, radius: f64) -> Vec<u32> {
     found
 }
 
-/// What walls hide lies in the disc, and no integral is more than that over the whole disc.
+/// Checks that no hidden area or integral exceeds that of the whole disc.
 fn shares(walls: &Walls, near: &[u32], p: Vector, h: f64) {
     let disc = PI * h * h;
     for method in [
@@ -84,7 +84,7 @@ fn shares(walls: &Walls, near: &[u32], p: Vector, h: f64) {
     }
 }
 
-/// A way out leads out, and no wall has a nearer one.
+/// Checks that the nearest free point is free, and that no point on a wall is nearer and free.
 fn way_out(walls: &Walls, p: Vector) {
     let Some(exit) = walls.free_point_near(p) else {
         return;
@@ -101,14 +101,14 @@ fn way_out(walls: &Walls, p: Vector) {
         (exit - p).norm() <= nearest + ROUNDING,
         "{exit} is farther than {nearest} m"
     );
-    // Nor is it nearer than the nearest wall.
+    // It is not nearer than the nearest wall, either.
     let distance =
         |wall: &sandbox::engine::geometry::Wall| (wall.nearest_point(p).point - p).norm();
     let least = walls.iter().map(distance).fold(f64::INFINITY, f64::min);
     assert!((exit - p).norm() >= least - HAIR);
 }
 
-/// A move that is stopped ends on its way, on the free side of the wall that stopped it.
+/// Checks that a stopped move ends on its path, on the free side of the wall that stopped it.
 fn stopped(walls: &Walls, from: Vector, to: Vector, all: &[u32]) {
     let Some((end, k)) = walls.stop(from, to, all) else {
         return;
@@ -117,7 +117,7 @@ fn stopped(walls: &Walls, from: Vector, to: Vector, all: &[u32]) {
     assert!((end - from).norm() <= (to - from).norm() + rounding);
     assert!(end.norm().is_finite());
     if (to - from).norm() < f64::MIN_POSITIVE {
-        return; // without a direction
+        return; // no direction
     }
     let aside = (to - from).perp(&(end - from)) / (to - from).norm();
     assert!(aside.abs() <= rounding, "{aside} m off its way");

@@ -1,4 +1,4 @@
-//! Any payload under a checksum that belongs to it: a run that goes on, or an error. Nothing panics.
+//! Any payload with a valid checksum is resumed or gives an error, without a panic.
 
 #![no_main]
 

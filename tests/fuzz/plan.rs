@@ -1,4 +1,4 @@
-//! Any text: a floor plan, or an error at a place that is in the text. Nothing panics.
+//! Any text is a floor plan or gives an error at a place in the text, without a panic.
 
 #![no_main]
 

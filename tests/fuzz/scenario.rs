@@ -1,4 +1,4 @@
-//! Any text: a scenario that runs, or an error. Nothing panics.
+//! Any text is a scenario that runs or gives an error, without a panic.
 
 #![no_main]
 

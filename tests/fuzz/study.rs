@@ -1,4 +1,4 @@
-//! Any text: a study whose cells are scenarios, or an error. Nothing panics.
+//! Any text is a study with valid cells or gives an error, without a panic.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! Any bytes, as text or as a table: trajectories whose numbers are finite, or an error. Nothing panics.
+//! Any bytes, read as text and as CSV, are trajectories with finite numbers or give an error, without a panic.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! Any obstacles and any points: what must hold of walls holds.
+//! The properties of walls hold for any obstacles at any points.
 
 #![no_main]
 
@@ -9,10 +9,10 @@ use sandbox::engine::math::Vector;
 #[path = "../common/wall_checks.rs"]
 mod wall_checks;
 
-/// So many points; beyond them nothing new is to be expected.
+/// The largest number of points; more would find nothing new.
 const MOST_POINTS: usize = 200;
 
-/// Reads numbers from bytes: a byte that says how, then as many as that takes.
+/// Decodes numbers from bytes: the first byte of a number selects its format.
 struct Numbers<'a>(&'a [u8]);
 
 impl Numbers<'_> {
@@ -22,8 +22,7 @@ impl Numbers<'_> {
         Some(first)
     }
 
-    /// A coordinate that a scenario may have: on a coarse grid, where edges touch and lie on one line, or
-    /// anything.
+    /// A valid coordinate: on a coarse grid, where edges touch and are collinear, or any number.
     fn coordinate(&mut self) -> Option<f64> {
         let kind = self.byte()?;
         if kind < 200 {
