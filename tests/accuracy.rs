@@ -28,7 +28,7 @@ fn every_value_of_every_knob_is_a_setting() {
 }
 
 #[test]
-fn knobs_are_turned_only_where_they_change_something() {
+fn knobs_act_only_in_scenes_where_they_change_something() {
     let turned = |name: &str| -> Vec<&str> {
         let scenario = parse(&scene(name).document().unwrap(), &[]);
         let (needs, has_walls) = (scenario.scene.needs(), !scenario.scene.walls.is_empty());
@@ -59,7 +59,7 @@ fn small(profile: &str) -> Value {
 }
 
 #[test]
-fn errors_are_distances_and_fall_with_the_step() {
+fn errors_are_symmetric_and_decrease_with_the_time_step() {
     let document = small("sph");
     let motion = |settings: &[&str]| {
         let settings: Vec<String> = settings.iter().map(|s| (*s).to_owned()).collect();
@@ -85,13 +85,13 @@ fn errors_are_distances_and_fall_with_the_step() {
 }
 
 #[test]
-fn a_step_that_meets_not_all_moments_is_refused() {
+fn a_time_step_that_misses_a_sample_time_is_refused() {
     let refused = Motion::of(&small("sph"), &["time_step_secs=0.025".to_owned()]);
     assert!(refused.unwrap_err().to_string().contains("0.025"));
 }
 
 #[test]
-fn walkers_alone_keep_their_distance_and_people_who_press_do_not() {
+fn perturbations_grow_in_a_crowd_but_not_among_lone_walkers() {
     let alone: Vec<Value> = (0..20)
         .map(|k| json!({ "position": [5 * k, 0], "goal": [5 * k, 1000] }))
         .collect();
@@ -106,7 +106,7 @@ fn walkers_alone_keep_their_distance_and_people_who_press_do_not() {
 }
 
 #[test]
-fn a_sample_depends_on_its_seed_and_on_nothing_else() {
+fn a_sample_depends_only_on_its_seed() {
     let wave = scene("wave");
     assert_eq!(wave.kind, Kind::Wave);
     let document = wave.document().unwrap();
@@ -133,7 +133,7 @@ fn best_values_are_among_those_tried() {
 }
 
 #[test]
-fn the_command_writes_tables_and_pictures_and_keeps_what_is_finished() {
+fn the_command_writes_tables_and_pictures_and_keeps_finished_cases() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let run = |arguments: &[&str]| {

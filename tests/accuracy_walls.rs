@@ -38,7 +38,7 @@ fn error(method: Method, case: &Case, exact: &[Integrals]) -> f64 {
 }
 
 #[test]
-fn everybody_on_the_paths_stands_on_free_floor_near_walls() {
+fn every_path_lies_on_free_floor_near_walls() {
     for case in cases(PLACES) {
         assert_eq!(case.places.len(), PLACES);
         let free = |place: &Place| case.walls.obstacle_at(place.position).is_none();
@@ -53,7 +53,7 @@ fn everybody_on_the_paths_stands_on_free_floor_near_walls() {
 }
 
 #[test]
-fn what_is_hidden_is_what_another_quadrature_gives() {
+fn the_hidden_integrals_agree_with_another_quadrature() {
     for case in cases(PLACES) {
         for (place, hidden) in case.places.iter().zip(exact(Region::Hidden, &case)) {
             let other = quadrature::shadow(&case.walls, place.position, SUPPORT_RADIUS);
@@ -68,7 +68,7 @@ fn what_is_hidden_is_what_another_quadrature_gives() {
 }
 
 #[test]
-fn the_solid_is_what_small_squares_of_it_add_up_to() {
+fn the_solid_integrals_agree_with_a_sum_over_small_squares() {
     for case in cases(5) {
         let solid = exact(Region::Solid, &case);
         for (place, solid) in case.places.iter().zip(solid) {
@@ -89,7 +89,7 @@ fn the_solid_is_what_small_squares_of_it_add_up_to() {
 }
 
 #[test]
-fn a_wall_of_one_centimetre_hides_a_half_plane_and_is_the_difference_of_two() {
+fn a_thin_wall_hides_a_half_plane_and_is_the_difference_of_two_half_planes() {
     let walls = cases(PLACES).into_iter();
     for mut case in walls.filter(|case| case.name == "wall of 1 cm") {
         let [hidden, solid] = [Region::Hidden, Region::Solid].map(|region| exact(region, &case));
@@ -106,7 +106,7 @@ fn a_wall_of_one_centimetre_hides_a_half_plane_and_is_the_difference_of_two() {
 }
 
 #[test]
-fn the_union_is_what_the_walls_hide_and_exact_is_more_only_where_shadows_overlap() {
+fn the_union_is_the_hidden_region_and_exact_exceeds_it_only_where_shadows_overlap() {
     for case in cases(PLACES) {
         let hidden = exact(Region::Hidden, &case);
         let union = found(Method::Polygons(WallMethod::Union), &case);
@@ -134,7 +134,7 @@ fn the_union_is_what_the_walls_hide_and_exact_is_more_only_where_shadows_overlap
 }
 
 #[test]
-fn before_an_infinite_wall_every_polygon_method_gives_the_printed_values() {
+fn in_front_of_an_infinite_wall_every_polygon_method_gives_the_printed_values() {
     let place = |along: f64| Place {
         along,
         position: vector(0.3, along),
@@ -200,7 +200,7 @@ fn particles_in_cut_cells_converge_to_the_solid_with_order_two() {
 }
 
 #[test]
-fn particles_in_whole_cells_converge_too_and_are_worse_than_those_in_cut_ones() {
+fn particles_in_whole_cells_converge_with_larger_errors_than_in_cut_cells() {
     for case in off_the_walls() {
         let exact = exact(Region::Solid, &case);
         let error = |spacing, volumes| {
@@ -246,7 +246,7 @@ fn a_volume_map_puts_the_whole_solid_at_the_nearest_point() {
 }
 
 #[test]
-fn particles_with_akincis_volumes_make_the_middle_of_a_solid_full_and_its_surface_too_heavy() {
+fn particles_with_akinci_volumes_are_right_inside_a_solid_and_too_dense_at_its_surface() {
     let solid = Walls::new(vec![rectangle([-2.5, 2.5], [-4.0, 0.0])]);
     let density = |volumes, y: f64| {
         let particles = sandbox::lab::accuracy::walls::Particles::fill(&solid, 0.1, volumes, 1.0);

@@ -122,7 +122,7 @@ fn joined(path: &Path) -> String {
 }
 
 #[test]
-fn wings_and_modules_use_only_what_stands_above_them() {
+fn wings_and_modules_use_only_those_above_them() {
     let wings = wings();
     assert!(wings.len() >= 3, "lib.rs was read: {wings:?}");
     for path in files(&source()) {
@@ -200,7 +200,7 @@ fn strays(krate: &str, homes: &[&str]) -> Vec<String> {
 }
 
 #[test]
-fn each_foreign_crate_has_one_home() {
+fn each_foreign_crate_is_used_in_one_place() {
     for (krate, home) in [
         ("parry2d", "engine/geometry"),
         ("wkt", "scenario/floor_plan"),
@@ -273,7 +273,7 @@ fn every_test_file_is_part_of_a_test_program() {
 }
 
 #[test]
-fn the_check_itself_sees_what_it_should() {
+fn the_helpers_of_these_checks_work() {
     let text = "use crate::{agents::Agents, math::{Vector, direction}, frame};\nlet x = crate::kernel::density(0.0);";
     assert_eq!(
         names_after(text, "crate::"),

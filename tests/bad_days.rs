@@ -7,7 +7,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::common::program::{PROGRAM, ended, text, under_way};
+use crate::common::program::{PROGRAM, start_and_wait, stop_with, text};
 use serde_json::Value;
 
 fn sandbox(arguments: &[&str]) -> Output {
@@ -15,7 +15,7 @@ fn sandbox(arguments: &[&str]) -> Output {
 }
 
 /// Runs the program with files limited to `blocks` KiB, as on a disk that fills up.
-fn limited(blocks: u32, arguments: &[&str]) -> Output {
+fn with_file_limit(blocks: u32, arguments: &[&str]) -> Output {
     let limit = format!(r#"trap "" XFSZ; ulimit -f {blocks}; exec "$0" "$@""#);
     let mut bash = Command::new("bash");
     let bash = bash.args(["-c", &limit, PROGRAM]).args(arguments);
@@ -23,7 +23,7 @@ fn limited(blocks: u32, arguments: &[&str]) -> Output {
 }
 
 /// Expects exit code 1, and returns the only error line on stderr, which must be the last line.
-fn sentence(arguments: &[&str], output: &Output) -> String {
+fn only_error(arguments: &[&str], output: &Output) -> String {
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
     let mut lines = stderr.lines().filter(|line| !line.starts_with("note: "));
@@ -73,7 +73,7 @@ fn writers() -> impl Iterator<Item = (&'static [&'static str], &'static str)> {
 }
 
 #[test]
-fn what_cannot_be_written_is_named_before_anything_is_computed() {
+fn an_unwritable_path_is_named_before_anything_is_computed() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "precious").unwrap();
@@ -86,7 +86,7 @@ fn what_cannot_be_written_is_named_before_anything_is_computed() {
         for path in [&below, if is_folder { &file } else { &missing }] {
             let arguments = [arguments, &[text(path)]].concat();
             let output = sandbox(&arguments);
-            let said = sentence(&arguments, &output);
+            let said = only_error(&arguments, &output);
             assert!(said.contains(text(path)), "{said}");
             assert!(output.stdout.is_empty(), "{arguments:?}");
         }
@@ -95,20 +95,20 @@ fn what_cannot_be_written_is_named_before_anything_is_computed() {
 }
 
 #[test]
-fn a_full_disk_is_named_by_whoever_writes_to_it() {
+fn every_writer_names_its_path_on_a_full_disk() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, extension) in writers().filter(|(_, extension)| !extension.is_empty()) {
         let path = folder.path().join("full").with_extension(extension);
         symlink("/dev/full", &path).ok();
         let arguments = [arguments, &[text(&path)]].concat();
-        let said = sentence(&arguments, &sandbox(&arguments));
+        let said = only_error(&arguments, &sandbox(&arguments));
         assert!(said.contains(text(&path)), "{said}");
         assert!(said.ends_with("; nothing is in it"), "{said}");
     }
 }
 
 #[test]
-fn results_that_nobody_gets_are_a_failure_and_notes_that_nobody_gets_are_not() {
+fn unprintable_results_are_an_error_and_unprintable_notes_are_not() {
     let full = || File::create("/dev/full").unwrap();
     let run = [
         "evacuation",
@@ -155,7 +155,7 @@ fn frames(path: &Path) -> u64 {
 }
 
 #[test]
-fn a_disk_that_becomes_full_leaves_whole_frames_and_says_how_many() {
+fn a_disk_that_fills_up_leaves_whole_frames_and_the_error_counts_them() {
     let folder = tempfile::tempdir().unwrap();
     for extension in ["csv", "txt", "sqlite"] {
         let path = folder.path().join("run").with_extension(extension);
@@ -168,8 +168,8 @@ fn a_disk_that_becomes_full_leaves_whole_frames_and_says_how_many() {
             "--trajectory",
             text(&path),
         ];
-        let output = limited(400, &run);
-        let said = sentence(&run, &output);
+        let output = with_file_limit(400, &run);
+        let said = only_error(&run, &output);
         assert!(said.contains(text(&path)), "{said}");
         let kept = frames(&path);
         let words = match kept {
@@ -183,7 +183,7 @@ fn a_disk_that_becomes_full_leaves_whole_frames_and_says_how_many() {
 }
 
 #[test]
-fn a_recording_on_a_disk_that_becomes_full_opens_and_the_run_is_reported() {
+fn a_recording_on_a_disk_that_fills_up_is_readable_and_the_run_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.rrd");
     let run = [
@@ -196,8 +196,8 @@ fn a_recording_on_a_disk_that_becomes_full_opens_and_the_run_is_reported() {
         "--save",
         text(&path),
     ];
-    let output = limited(1_000, &run);
-    let said = sentence(&run, &output);
+    let output = with_file_limit(1_000, &run);
+    let said = only_error(&run, &output);
     assert!(
         said.contains(text(&path)) && said.contains("File too large"),
         "{said}"
@@ -209,7 +209,7 @@ fn a_recording_on_a_disk_that_becomes_full_opens_and_the_run_is_reported() {
 }
 
 #[test]
-fn a_folder_that_vanishes_under_a_run_is_a_failure() {
+fn a_folder_that_vanishes_during_a_run_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     for extension in ["csv", "sqlite", "rrd"] {
         let place = folder.path().join("place");
@@ -221,17 +221,17 @@ fn a_folder_that_vanishes_under_a_run_is_a_failure() {
             "--trajectory"
         };
         let run = ["concert", option, text(&path)];
-        let child = under_way(&run, &[(&path, 0)]);
+        let child = start_and_wait(&run, &[(&path, 0)]);
         fs::remove_dir_all(&place).unwrap();
-        let output = ended(child, "kill -INT $1");
-        let said = sentence(&run, &output);
+        let output = stop_with(child, "kill -INT $1");
+        let said = only_error(&run, &output);
         assert!(said.contains(text(&path)), "{said}");
         assert!(!said.contains("kept"), "{said}");
     }
 }
 
 #[test]
-fn measurements_are_told_even_if_they_cannot_be_kept() {
+fn measurements_are_printed_even_if_they_cannot_be_saved() {
     let folder = tempfile::tempdir().unwrap();
     let run = [
         "bench",
@@ -241,8 +241,8 @@ fn measurements_are_told_even_if_they_cannot_be_kept() {
         "--out",
         text(folder.path()),
     ];
-    let output = limited(0, &run);
-    let said = sentence(&run, &output);
+    let output = with_file_limit(0, &run);
+    let said = only_error(&run, &output);
     assert!(
         said.contains(text(&folder.path().join("threads.json"))),
         "{said}"
@@ -265,7 +265,7 @@ fn finished_cases_are_kept_and_counted_when_a_result_cannot_be_written() {
     ];
     let place = folder.path().join("accuracy.md");
     fs::create_dir(&place).unwrap();
-    let said = sentence(&run, &sandbox(&run));
+    let said = only_error(&run, &sandbox(&run));
     assert!(said.contains(text(&place)), "{said}");
     let cases = folder.path().join("cases");
     let count = fs::read_dir(&cases).unwrap().count();

@@ -36,7 +36,7 @@ fn assert_is_spread(value: &Value) {
 }
 
 #[test]
-fn every_report_says_what_was_measured_with_and_the_spread_of_every_time() {
+fn every_report_has_the_machine_and_the_spread_of_every_time() {
     for (name, keys, times) in [
         (
             "scaling",
@@ -109,7 +109,7 @@ fn every_report_says_what_was_measured_with_and_the_spread_of_every_time() {
 }
 
 #[test]
-fn ratios_are_to_what_they_say() {
+fn ratios_have_the_stated_baseline() {
     let scaling = rows(&measure("scaling", &quick()));
     let agents: Vec<_> = scaling
         .iter()
@@ -135,7 +135,7 @@ fn ratios_are_to_what_they_say() {
 }
 
 #[test]
-fn a_crowd_smaller_than_the_largest_has_no_ratio_to_one_that_was_not_measured() {
+fn without_a_measured_baseline_there_is_no_ratio() {
     let plan = Plan {
         largest: 3_000,
         ..quick()
@@ -146,7 +146,7 @@ fn a_crowd_smaller_than_the_largest_has_no_ratio_to_one_that_was_not_measured() 
 }
 
 #[test]
-fn a_skip_is_measured_exactly_where_there_is_something_to_skip() {
+fn a_skip_is_measured_only_where_there_is_something_to_skip() {
     let rows = rows(&measure("skips", &quick()));
     assert_eq!(rows.len() % SKIPS.len(), 0);
     let mut measured: Vec<(String, String, String)> = Vec::new();
@@ -177,7 +177,7 @@ fn a_skip_is_measured_exactly_where_there_is_something_to_skip() {
 }
 
 #[test]
-fn paying_for_everything_changes_no_bit_of_the_motion() {
+fn computing_everything_does_not_change_the_motion() {
     for name in NAMES {
         let mut scene = scene(vec![room(8.0, 1.0)], blend(name));
         scene.agents = block(vector(1.0, 1.0), 12, 12, 0.45, vector(9.0, 4.0));
@@ -224,7 +224,7 @@ fn motion(simulation: &Simulation) -> Vec<(u32, [u64; 4])> {
 }
 
 #[test]
-fn an_engine_that_is_missing_is_named_with_how_to_have_it() {
+fn a_missing_engine_is_named_with_how_to_install_it() {
     let report = measure("compare", &quick());
     let text = report.text();
     for words in [
@@ -249,7 +249,7 @@ fn an_engine_that_is_missing_is_named_with_how_to_have_it() {
 
 /// A fake Python with JuPedSim 9.9, which takes half a second for any number of steps.
 #[cfg(unix)]
-fn pretender(folder: &Path) -> PathBuf {
+fn fake_python(folder: &Path) -> PathBuf {
     use std::os::unix::fs::PermissionsExt;
     let path = folder.join("python");
     let script = "#!/bin/sh\n[ $# -gt 2 ] || exit 0\nwc -l < \"$3\" > \"$(dirname \"$0\")/people\"\n\
@@ -261,10 +261,10 @@ fn pretender(folder: &Path) -> PathBuf {
 
 #[cfg(unix)]
 #[test]
-fn jupedsim_gets_everybody_and_is_compared_with_the_same_radius_on_one_thread() {
+fn jupedsim_gets_all_agents_and_is_compared_with_the_same_radius_on_one_thread() {
     let folder = tempfile::tempdir().unwrap();
     let plan = Plan {
-        python: pretender(folder.path()),
+        python: fake_python(folder.path()),
         ..quick()
     };
     let rows = rows(&measure("compare", &plan));
@@ -287,7 +287,7 @@ fn jupedsim_gets_everybody_and_is_compared_with_the_same_radius_on_one_thread() 
 }
 
 #[test]
-fn results_are_written_once_and_replaced_only_by_force() {
+fn results_are_replaced_only_with_force() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("results");
     let out = out.to_str().unwrap();

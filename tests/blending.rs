@@ -1,7 +1,7 @@
 //! Blends (§4.4): weights, continuity, and profiles that are not evaluated.
 
 use crate::common::{
-    acceleration, blend, blend_with, evaluated, laid_open, person, scene, state, vector, walker,
+    acceleration, blend, blend_with, breakdown, evaluated, person, scene, state, vector, walker,
 };
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::density::SphParameters;
@@ -47,7 +47,7 @@ fn huddle(blend: Blend, scale: f64) -> Scene {
 }
 
 fn density(simulation: &Simulation) -> f64 {
-    laid_open(simulation, 0).density
+    breakdown(simulation, 0).density
 }
 
 /// The scale at which agent 0 has a given density.
@@ -66,7 +66,7 @@ fn scale_for(target: f64) -> f64 {
 }
 
 #[test]
-fn weights_sum_to_one_and_shift_steadily_to_the_denser_profile() {
+fn weights_sum_to_one_and_shift_monotonically_to_the_denser_profile() {
     for blend in NAMES.map(blend).into_iter().chain([three()]) {
         let rank = |density: f64| -> f64 {
             let weights: Vec<(usize, f64)> = blend
@@ -98,7 +98,7 @@ fn weights_sum_to_one_and_shift_steadily_to_the_denser_profile() {
 }
 
 #[test]
-fn half_way_between_two_densities_both_profiles_weigh_the_same() {
+fn halfway_between_two_densities_both_profiles_have_the_same_weight() {
     let blend = three();
     let at = |density: f64| -> Vec<(String, f64)> {
         let weights = blend.weights(density);
@@ -167,7 +167,7 @@ fn a_profile_without_weight_is_not_evaluated() {
         (4.5, vec!["sph"]),
     ] {
         let simulation = evaluated(huddle(blend("rvo->sph"), scale_for(target)));
-        let agent = laid_open(&simulation, 0);
+        let agent = breakdown(&simulation, 0);
         let found: Vec<&str> = agent.profiles.iter().map(|p| p.name.as_str()).collect();
         assert_eq!(found, names);
         let view = simulation.frame();
@@ -183,7 +183,7 @@ fn terms_that_a_profile_lacks_are_absent() {
         ..Parameters::default()
     };
     let simulation = evaluated(huddle(blend_with("sph", &parameters), 1.0));
-    let terms = laid_open(&simulation, 0).profiles[0].accelerations;
+    let terms = breakdown(&simulation, 0).profiles[0].accelerations;
     let present: Vec<&str> = terms
         .listed()
         .iter()
@@ -193,7 +193,7 @@ fn terms_that_a_profile_lacks_are_absent() {
 }
 
 #[test]
-fn sequences_that_are_no_blend_are_refused() {
+fn invalid_sequences_are_refused() {
     assert_eq!(sequence(&[]), Err(BlendError::Empty));
     assert_eq!(
         sequence(&[("sf", 2.0), ("sph", 2.0)]),
@@ -203,7 +203,7 @@ fn sequences_that_are_no_blend_are_refused() {
 }
 
 #[test]
-fn one_profile_alone_is_the_same_as_a_blend_of_one() {
+fn a_blend_of_one_profile_equals_that_profile() {
     let one = sequence(&[("sf+sph", 3.0)]).unwrap();
     let single = blend("sf+sph");
     for scale in [0.5, 1.0, 2.0] {

@@ -89,7 +89,7 @@ fn digests(scene: &Scene, stops: &[u64], end: u64) -> [String; 2] {
 }
 
 #[test]
-fn all_profiles_go_on_as_if_they_had_never_stopped() {
+fn all_profiles_resume_bit_identically() {
     for profile in NAMES {
         let mut scene = busy_room(profile);
         // At the start, between coarse frames, during the push and after it.
@@ -103,7 +103,7 @@ fn all_profiles_go_on_as_if_they_had_never_stopped() {
 }
 
 #[test]
-fn all_integrators_and_lists_go_on_as_if_they_had_never_stopped() {
+fn all_integrators_and_neighbor_lists_resume_bit_identically() {
     for integrator in Integrator::ALL {
         for neighbor_lists in [ListPolicy::Complete, ListPolicy::Coarse] {
             let scene = Scene {
@@ -118,7 +118,7 @@ fn all_integrators_and_lists_go_on_as_if_they_had_never_stopped() {
 }
 
 #[test]
-fn every_frame_of_a_run_can_be_the_last_before_a_crash() {
+fn a_run_can_be_resumed_at_every_frame() {
     let scene = busy_room("rvo->sph");
     let stops: Vec<u64> = (0..120).collect();
     let [resumed, without] = digests(&scene, &stops, 121);
@@ -134,7 +134,7 @@ fn evacuation() -> (Scenario, Simulation, Metrics) {
 }
 
 #[test]
-fn what_was_measured_goes_on_too() {
+fn measurements_are_resumed_too() {
     let (scenario, mut simulation, mut metrics) = evacuation();
     go_to(&mut simulation, 750);
     metrics.observe(&simulation);
@@ -154,7 +154,7 @@ fn what_was_measured_goes_on_too() {
 }
 
 #[test]
-fn what_is_no_whole_checkpoint_is_refused_with_its_reason() {
+fn damaged_and_foreign_checkpoints_are_refused_with_the_reason() {
     let (scenario, mut simulation, metrics) = evacuation();
     simulation.evaluate().unwrap();
     let folder = tempfile::tempdir().unwrap();
@@ -203,7 +203,7 @@ fn what_is_no_whole_checkpoint_is_refused_with_its_reason() {
 }
 
 #[test]
-fn a_checkpoint_that_cannot_be_written_leaves_the_one_before() {
+fn failed_and_repeated_writes_of_a_checkpoint_leave_no_other_files() {
     let (scenario, mut simulation, metrics) = evacuation();
     simulation.evaluate().unwrap();
     let checkpoint = Checkpoint::of(&scenario, &simulation, &metrics);
@@ -254,7 +254,7 @@ fn observed(simulation: &Simulation) -> Vec<(u32, [u64; 3])> {
 }
 
 #[test]
-fn a_resumed_run_observes_the_densities_of_one_that_never_stopped() {
+fn a_resumed_run_has_the_densities_of_an_uninterrupted_run() {
     for profile in NAMES {
         let scene = busy_room(profile);
         let mut whole = Simulation::new(scene.clone()).unwrap();
@@ -277,7 +277,7 @@ fn a_resumed_run_observes_the_densities_of_one_that_never_stopped() {
 }
 
 #[test]
-fn digests_and_resumed_files_do_not_depend_on_what_is_written() {
+fn digests_and_resumed_trajectories_do_not_depend_on_the_outputs() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let digest = |arguments: &[&str]| {
@@ -343,7 +343,7 @@ fn digests_and_resumed_files_do_not_depend_on_what_is_written() {
 }
 
 #[test]
-fn the_program_goes_on_from_a_checkpoint() {
+fn the_program_resumes_from_a_checkpoint() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("c");
     let path = file.to_str().unwrap();

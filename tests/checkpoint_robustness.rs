@@ -28,7 +28,7 @@ const SCENARIO: &str = r#"{
 /// The length of the header: a line, the version and the checksum.
 const HEAD: usize = 19 + 4 + 32;
 
-fn most(bytes: usize) -> u64 {
+fn memory_limit(bytes: usize) -> u64 {
     (2 << 20) + 300 * bytes as u64
 }
 
@@ -55,7 +55,7 @@ fn changes() -> impl Strategy<Value = Vec<(Index, u8)>> {
 }
 
 #[test]
-fn any_bytes_are_refused() {
+fn random_bytes_are_refused() {
     let bytes = || (prop::collection::vec(any::<u8>(), 0..200), 0..4_u8);
     cases(20_000, bytes, |(bytes, how)| {
         let head = &sealed(&[])[..[0, 19, 23, 23][usize::from(how)]];
@@ -65,7 +65,7 @@ fn any_bytes_are_refused() {
             [head, &bytes].concat()
         };
         assert!(!read(&bytes));
-        most(bytes.len())
+        memory_limit(bytes.len())
     });
 }
 
@@ -83,12 +83,12 @@ fn a_damaged_checkpoint_is_refused() {
             bytes.truncate(cut.index(whole.len()));
         }
         assert_eq!(read(&bytes), bytes == whole);
-        most(bytes.len())
+        memory_limit(bytes.len())
     });
 }
 
 #[test]
-fn a_checkpoint_with_values_changed_goes_on_or_is_refused() {
+fn a_checkpoint_with_changed_values_is_resumed_or_refused() {
     let whole = whole();
     let payload = &whole[HEAD..];
     assert_eq!(sealed(payload), whole);
@@ -99,7 +99,7 @@ fn a_checkpoint_with_values_changed_goes_on_or_is_refused() {
         .unwrap();
     let state = payload.len() - text;
     let input = || (changes(), 0..8_u8, any::<[Index; 2]>());
-    let went_on = AtomicU32::new(0);
+    let resumed = AtomicU32::new(0);
     cases(60_000, input, |(changes, how, places)| {
         let mut bytes = payload.to_vec();
         changes
@@ -112,15 +112,15 @@ fn a_checkpoint_with_values_changed_goes_on_or_is_refused() {
             2 => bytes[from..(from + 10).min(payload.len())].fill(0xff), // the largest possible length
             _ => {}
         }
-        went_on.fetch_add(u32::from(read(&sealed(&bytes))), Relaxed);
-        most(bytes.len())
+        resumed.fetch_add(u32::from(read(&sealed(&bytes))), Relaxed);
+        memory_limit(bytes.len())
     });
-    let went_on = went_on.into_inner();
-    assert!(went_on > 3_000, "{went_on} have values that make sense");
+    let resumed = resumed.into_inner();
+    assert!(resumed > 3_000, "{resumed} have values that make sense");
 }
 
 #[test]
-fn what_is_no_checkpoint_is_refused_however_long_it_is() {
+fn a_long_file_that_is_not_a_checkpoint_is_refused_in_little_memory() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("c");
     let mut file = File::create(&path).unwrap();

@@ -84,7 +84,7 @@ fn a_crowd_without_sph_has_a_density_only_while_a_metric_reads_it() {
 }
 
 #[test]
-fn an_inspection_at_zero_lays_open_the_state_as_given() {
+fn an_inspection_at_zero_shows_the_initial_state() {
     let folder = tempfile::tempdir().unwrap();
     let file = scenario_file(folder.path());
     let moment = json(&["inspect", &file, "--all", "--at", "0", "--json"]);
@@ -112,7 +112,7 @@ fn an_inspection_at_zero_lays_open_the_state_as_given() {
 }
 
 #[test]
-fn an_inspection_goes_on_to_its_moment_beyond_the_scenarios_own_end() {
+fn an_inspection_may_go_beyond_the_end_of_the_scenario() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("idle.json");
     let text = r#"{"goal": [10, 0], "stop": {"idle_secs": 0.5}, "agents": [{"position": [0, 0]}]}"#;
@@ -125,7 +125,7 @@ fn an_inspection_goes_on_to_its_moment_beyond_the_scenarios_own_end() {
 }
 
 #[test]
-fn help_and_lists_name_what_there_is() {
+fn help_and_lists_name_commands_profiles_and_settings() {
     let text = |arguments: &[&str]| String::from_utf8(sandbox(arguments).stdout).unwrap();
     for command in [
         "evacuation",
@@ -181,7 +181,7 @@ fn bad_input_is_refused_with_its_place_and_exit_code_2() {
 }
 
 #[test]
-fn a_run_that_is_saved_reads_back_with_everybody_and_a_dozen_laid_open() {
+fn a_recording_has_all_agents_and_the_details_of_twelve() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run.rrd");
     let path = file.to_str().unwrap();
@@ -209,7 +209,7 @@ fn a_run_that_is_saved_reads_back_with_everybody_and_a_dozen_laid_open() {
 }
 
 #[test]
-fn an_existing_file_is_replaced_only_by_force() {
+fn an_existing_file_is_replaced_only_with_force() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("kept.rrd");
     std::fs::write(&file, "precious").unwrap();
@@ -245,7 +245,7 @@ fn an_existing_file_is_replaced_only_by_force() {
 }
 
 #[test]
-fn trajectories_are_written_beside_each_other_and_change_nothing() {
+fn several_trajectories_are_written_without_changing_the_results() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let files = ["a.sqlite", "b.txt", "c.csv"].map(path);
@@ -267,7 +267,7 @@ fn trajectories_are_written_beside_each_other_and_change_nothing() {
 }
 
 #[test]
-fn a_trajectory_that_cannot_be_is_refused_before_anything_is_written() {
+fn an_impossible_trajectory_is_refused_before_anything_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let [csv, hdf5, nowhere] = ["a.csv", "a.h5", "no/folder.txt"].map(path);
@@ -296,7 +296,7 @@ fn a_trajectory_that_cannot_be_is_refused_before_anything_is_written() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_ends_the_run_and_is_named() {
+fn a_full_disk_ends_the_run_with_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("full.csv");
     std::os::unix::fs::symlink("/dev/full", &file).unwrap();
@@ -313,7 +313,7 @@ fn a_full_disk_ends_the_run_and_is_named() {
 }
 
 #[test]
-fn what_cannot_be_reproduced_is_told_in_plain_words() {
+fn invalid_reproduce_commands_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     std::fs::write(&file, "").unwrap();
@@ -328,7 +328,7 @@ fn what_cannot_be_reproduced_is_told_in_plain_words() {
 }
 
 #[test]
-fn numbers_of_threads_from_the_environment_have_the_bounds_of_the_option() {
+fn thread_counts_in_the_environment_have_the_bounds_of_the_option() {
     let run = |name: &str, text: &str, more: &[&str]| {
         let mut program = Command::new(env!("CARGO_BIN_EXE_sandbox"));
         let program = program.args(["evacuation", "--until", "0", "--json"]);

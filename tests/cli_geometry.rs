@@ -41,7 +41,7 @@ fn a_floor_plan_replaces_the_walls_of_a_shipped_scenario() {
 }
 
 #[test]
-fn a_floor_plan_that_is_none_is_refused_with_its_name_and_exit_code_2() {
+fn an_invalid_floor_plan_is_refused_with_its_name_and_exit_code_2() {
     let folder = tempfile::tempdir().unwrap();
     let plan = folder.path().join("hall.wkt");
     std::fs::write(&plan, "POLYGON ((8.41 49.01, 8.42 49.01, 8.42 49.02))").unwrap();
@@ -74,7 +74,7 @@ fn trajectory(folder: &std::path::Path, wkt: Option<String>) -> String {
 }
 
 #[test]
-fn the_geometry_of_a_trajectory_is_read_as_carefully_as_a_file() {
+fn an_invalid_geometry_in_a_trajectory_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let out = out.to_str().unwrap();

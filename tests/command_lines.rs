@@ -21,7 +21,7 @@ struct Line {
 }
 
 #[test]
-fn every_broken_command_line_is_refused_in_these_very_words() {
+fn every_broken_command_line_is_refused_with_its_exact_message() {
     let broken: Broken =
         serde_json::from_str(include_str!("data/broken_command_lines.json")).unwrap();
     assert!(broken.lines.len() >= 60);
@@ -58,7 +58,7 @@ fn every_broken_command_line_is_refused_in_these_very_words() {
 }
 
 #[test]
-fn an_agent_to_be_laid_open_who_never_enters_is_named_at_the_end() {
+fn a_debug_agent_that_never_enters_is_named_at_the_end() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     // The run ends before the second agent enters, which is not known in advance.

@@ -26,8 +26,8 @@ fn free(parameters: Parameters) -> Scene {
 
 /// The same agents, each with another direction of motion.
 fn moving(agents: Vec<NewAgent>) -> Vec<NewAgent> {
-    let thrown = agents.into_iter().zip(0_u32..);
-    thrown
+    let numbered = agents.into_iter().zip(0_u32..);
+    numbered
         .map(|(agent, id)| {
             let angle = 2.399_963 * f64::from(id);
             NewAgent {
@@ -67,7 +67,7 @@ fn before_and_after<T>(
 }
 
 #[test]
-fn a_free_crowd_keeps_its_momentum_whatever_the_integrator() {
+fn every_integrator_conserves_the_momentum_of_a_free_crowd() {
     for (k, mu, contact) in [
         (200.0, 0.0, 0.0),
         (0.0, 5.0, 0.0),
@@ -94,7 +94,7 @@ fn a_free_crowd_keeps_its_momentum_whatever_the_integrator() {
 }
 
 #[test]
-fn central_forces_keep_the_angular_momentum_with_semi_implicit_steps() {
+fn semi_implicit_steps_conserve_angular_momentum_under_central_forces() {
     let crowd = |k, mu| {
         free(Parameters {
             gas_constant: Some(k),
@@ -175,7 +175,7 @@ fn drift(integrator: Integrator, time_step: f64) -> f64 {
 }
 
 #[test]
-fn contact_alone_keeps_its_energy_as_well_as_the_integrator_can() {
+fn only_symplectic_integrators_conserve_the_energy_of_contacts() {
     let [semi_implicit, forward, verlet, midpoint] =
         Integrator::ALL.map(|integrator| drift(integrator, 0.01));
     for symplectic in [semi_implicit, verlet] {

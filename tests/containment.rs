@@ -37,7 +37,7 @@ fn turned(polygon: &Polygon, angle: f64, shift: Vector) -> Polygon {
     Polygon::new(polygon.points().iter().map(place).collect()).unwrap()
 }
 
-fn everybody_in(simulation: &Simulation, inside: impl Fn(Vector) -> bool) -> bool {
+fn all_agents_in(simulation: &Simulation, inside: impl Fn(Vector) -> bool) -> bool {
     simulation
         .frame()
         .agents
@@ -47,7 +47,7 @@ fn everybody_in(simulation: &Simulation, inside: impl Fn(Vector) -> bool) -> boo
 }
 
 #[test]
-fn a_wall_of_one_centimetre_holds_three_hundred_people_who_push() {
+fn a_wall_of_one_centimeter_holds_three_hundred_people() {
     let parameters = Parameters {
         goal_scale: Some(10.0),
         ..Parameters::default()
@@ -65,7 +65,7 @@ fn a_wall_of_one_centimetre_holds_three_hundred_people_who_push() {
         let mut simulation = Simulation::new(scene).unwrap();
         run(&mut simulation, 1000);
         let inside = |p: Vector| p.x <= 6.0 && p.x >= -2.0 && p.y >= -1.0 && p.y <= 7.0;
-        assert!(everybody_in(&simulation, inside), "{profile}");
+        assert!(all_agents_in(&simulation, inside), "{profile}");
         assert_eq!(simulation.frame().agents.len(), 300);
     }
 }
@@ -108,7 +108,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(200) })]
 
     #[test]
-    fn nobody_slips_through_a_corner(
+    fn no_agent_slips_through_a_corner(
         angle in proptest::sample::select(vec![0.0, 0.5, std::f64::consts::FRAC_PI_4, 1.1, 2.9]),
         shift in proptest::sample::select(vec![0.0, 0.3, 17.7, -1234.5]),
         start in 0.1..1.9_f64,
@@ -154,7 +154,7 @@ proptest! {
 }
 
 #[test]
-fn nobody_slips_through_where_walls_meet_in_line() {
+fn no_agent_slips_through_joints_of_collinear_walls() {
     // Many short collinear walls at an odd angle, and agents that press against them while they slide along.
     let none = Parameters {
         wall_stiffness: Some(0.0),
@@ -203,7 +203,7 @@ fn nobody_slips_through_where_walls_meet_in_line() {
 }
 
 #[test]
-fn a_velocity_above_the_maximum_cannot_jump_a_wall() {
+fn an_agent_above_the_maximum_speed_cannot_jump_a_wall() {
     for integrator in Integrator::ALL {
         for speed in [1.8, 20.0, 400.0] {
             let mut scene = scene(vec![rectangle([2.0, 2.01], [-9.0, 9.0])], blend("sph"));

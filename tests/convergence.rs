@@ -78,7 +78,7 @@ fn orders(scene: &Scene, integrator: Integrator) -> (Vec<f64>, Vec<f64>) {
 }
 
 #[test]
-fn on_smooth_motion_both_eulers_are_of_first_order_and_the_others_of_second() {
+fn on_smooth_motion_the_euler_methods_have_order_one_and_the_others_order_two() {
     let scene = smooth(&fixed());
     for integrator in Integrator::ALL {
         let expected = match integrator {
@@ -111,7 +111,7 @@ fn dynamic() -> Parameters {
 }
 
 #[test]
-fn the_papers_moving_average_leaves_first_order_and_the_same_errors_to_all() {
+fn with_the_papers_moving_average_all_integrators_have_order_one_and_similar_errors() {
     // A contracting crowd is everywhere denser than its moving average, so that no pressure is switched off.
     let found = errors_and_orders(&dynamic(), Some(0.8));
     let semi_implicit = found[0].0[0];
@@ -122,7 +122,7 @@ fn the_papers_moving_average_leaves_first_order_and_the_same_errors_to_all() {
 }
 
 #[test]
-fn the_pressure_switch_takes_the_second_order_away_but_leaves_small_errors() {
+fn the_pressure_switch_reduces_the_order_to_one_but_errors_stay_small() {
     let [semi_implicit, forward, verlet, midpoint] = errors_and_orders(&dynamic(), None);
     for (errors, orders) in [&verlet, &midpoint] {
         let mean = (errors[0] / errors[3]).log2() / 3.0;
@@ -133,7 +133,7 @@ fn the_pressure_switch_takes_the_second_order_away_but_leaves_small_errors() {
 }
 
 #[test]
-fn drag_alone_is_of_second_order_with_verlet_too() {
+fn viscosity_alone_has_order_two_with_velocity_verlet() {
     let scene = smooth(&Parameters {
         gas_constant: Some(0.0),
         viscosity: Some(10.0),

@@ -65,7 +65,7 @@ fn simulated(scene: Scene, threads: usize, frames: u32) -> Simulation {
 }
 
 #[test]
-fn the_bits_do_not_depend_on_the_number_of_threads() {
+fn results_do_not_depend_on_the_number_of_threads() {
     for profile in NAMES {
         assert_same_bits(profile, Precision::Mixed);
     }
@@ -86,7 +86,7 @@ fn assert_same_bits(profile: &str, precision: Precision) {
 }
 
 #[test]
-fn another_seed_gives_other_bits() {
+fn another_seed_gives_other_results() {
     let mut other = busy_room("sph");
     other.seed = 6;
     let mut other = Simulation::new(other).unwrap();
@@ -102,7 +102,7 @@ fn motion(simulation: &Simulation) -> Vec<(u32, [u64; 4])> {
 }
 
 #[test]
-fn asking_for_the_density_changes_neither_the_motion_nor_the_digest() {
+fn requesting_densities_changes_neither_the_motion_nor_the_digest() {
     for profile in NAMES {
         for (asked_at, until) in [(0, 1), (0, 200), (3, 40), (31, 33), (40, 200)] {
             let mut plain = Simulation::new(busy_room(profile)).unwrap();
@@ -122,7 +122,7 @@ fn asking_for_the_density_changes_neither_the_motion_nor_the_digest() {
 }
 
 #[test]
-fn looking_at_a_frame_twice_changes_nothing() {
+fn evaluating_a_frame_twice_changes_nothing() {
     let mut once = Simulation::new(busy_room("rvo->sph")).unwrap();
     let mut often = Simulation::new(busy_room("rvo->sph")).unwrap();
     for _ in 0..30 {
@@ -135,7 +135,7 @@ fn looking_at_a_frame_twice_changes_nothing() {
 }
 
 #[test]
-fn a_density_asked_for_between_coarse_frames_misses_nobody() {
+fn densities_requested_between_coarse_frames_include_all_neighbors() {
     for asked_at in 0..6 {
         let mut scene = busy_room("sf");
         scene.precision = Precision::Double;
@@ -163,7 +163,7 @@ fn a_density_asked_for_between_coarse_frames_misses_nobody() {
 }
 
 #[test]
-fn who_comes_and_what_they_do_have_seeds_of_their_own() {
+fn population_and_behavior_have_separate_seeds() {
     let run = |population: u64, behaviour: u64, frames: u32| {
         let mut scene = busy_room("rvo->sph");
         scene.seed = population;
@@ -192,7 +192,7 @@ fn who_comes_and_what_they_do_have_seeds_of_their_own() {
 }
 
 #[test]
-fn the_digest_is_that_of_the_state_whatever_the_threads() {
+fn the_digest_depends_on_the_state_and_not_on_the_threads() {
     let digest = |threads, frames| simulated(busy_room("sf->sph"), threads, frames).digest();
     let one = digest(1, 40);
     assert_eq!(one.len(), 64);

@@ -65,7 +65,7 @@ fn crowd() -> Vec<sandbox::engine::agents::NewAgent> {
 }
 
 #[test]
-fn density_and_every_force_are_those_between_walls_of_any_thickness() {
+fn density_and_forces_do_not_depend_on_the_wall_thickness() {
     for method in [
         WallMethod::Representative,
         WallMethod::Exact,
@@ -86,7 +86,7 @@ fn density_and_every_force_are_those_between_walls_of_any_thickness() {
             assert!(count > 100, "{count}");
             for other in [thin, thick] {
                 for id in 0..count as u32 {
-                    let [own, its] = [enclosed, other].map(|s| common::laid_open(s, id));
+                    let [own, its] = [enclosed, other].map(|s| common::breakdown(s, id));
                     assert!(
                         (own.density - its.density).abs() <= 1e-12 * its.density,
                         "{name} {id}"
@@ -107,7 +107,7 @@ fn density_and_every_force_are_those_between_walls_of_any_thickness() {
 }
 
 #[test]
-fn a_crowd_that_presses_stays_in_and_a_crowd_that_may_leave_does() {
+fn a_pressing_crowd_stays_inside_and_agents_at_their_goal_are_removed() {
     let parameters = Parameters {
         goal_scale: Some(10.0),
         ..Parameters::default()
@@ -139,7 +139,7 @@ fn a_crowd_that_presses_stays_in_and_a_crowd_that_may_leave_does() {
 }
 
 #[test]
-fn who_starts_outside_is_put_at_the_nearest_point_of_the_floor() {
+fn agents_that_start_outside_are_moved_to_the_nearest_free_point() {
     let starts = [
         [-40.0, -30.0],
         [3.0, -0.5],
@@ -170,7 +170,7 @@ fn who_starts_outside_is_put_at_the_nearest_point_of_the_floor() {
 }
 
 #[test]
-fn two_rooms_have_a_wall_between_them_that_nothing_gets_through() {
+fn no_agent_passes_the_wall_between_two_rooms() {
     let room = |x: f64| Area {
         exterior: ring(&[[x, 0.0], [x + 3.0, 0.0], [x + 3.0, 3.0], [x, 3.0]]),
         holes: vec![],
@@ -193,7 +193,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(300) })]
 
     #[test]
-    fn nearest_free_points_are_free_and_as_near_as_the_walls(x in -9.0..15.0_f64, y in -9.0..15.0_f64) {
+    fn nearest_free_points_are_free_and_no_free_point_is_nearer(x in -9.0..15.0_f64, y in -9.0..15.0_f64) {
         let with_a_body_on_the_wall = [enclosed(), vec![rectangle([5.0, 7.0], [-1.0, 1.0])]].concat();
         for obstacles in [enclosed(), with_a_body_on_the_wall] {
             let walls = Walls::new(obstacles);

@@ -94,7 +94,7 @@ fn all_ways_of_writing_a_room_with_a_pillar_give_the_same_walls() {
 }
 
 #[test]
-fn obstacles_alone_stand_in_the_open() {
+fn obstacles_without_a_floor_stand_in_an_open_plane() {
     let plan = json(&feature(pillar(), "obstacle")).unwrap();
     assert!(plan.walkable.is_empty());
     assert!(solid(plan.clone(), 2.5, 2.5));
@@ -112,7 +112,7 @@ fn obstacles_alone_stand_in_the_open() {
 }
 
 #[test]
-fn several_areas_have_solid_between_them_and_one_may_lie_in_anothers_hole() {
+fn areas_have_solid_between_them_and_may_lie_in_holes_of_others() {
     let text = "MULTIPOLYGON (((0 0, 9 0, 9 9, 0 9), (1 1, 8 1, 8 8, 1 8)), ((3 3, 5 3, 5 5, 3 5)), \
                 ((20 0, 30 0, 30 9, 20 9)))";
     let plan = parse_wkt(text).unwrap();
@@ -152,7 +152,7 @@ fn holes_may_touch_the_outline_and_each_other() {
 }
 
 #[test]
-fn corners_keep_every_digit_far_from_the_origin_and_at_odd_angles() {
+fn corners_are_exact_far_from_the_origin_and_at_odd_angles() {
     let (sine, cosine) = 0.3_f64.sin_cos();
     let place = |x: f64, y: f64| {
         [
@@ -176,7 +176,7 @@ fn corners_keep_every_digit_far_from_the_origin_and_at_odd_angles() {
 }
 
 #[test]
-fn what_is_no_floor_plan_is_refused_with_the_place_and_the_fix() {
+fn invalid_floor_plans_are_refused_with_the_place_and_the_fix() {
     let crs = |name: &str| {
         json!({"type": "FeatureCollection", "features": [feature(room(), "floor")],
                "crs": {"type": "name", "properties": {"name": name}}})
@@ -279,7 +279,7 @@ fn what_is_no_floor_plan_is_refused_with_the_place_and_the_fix() {
 }
 
 #[test]
-fn plans_nested_deeper_than_any_is_are_refused_with_their_place_on_a_thread_with_little_stack() {
+fn deeply_nested_plans_are_refused_without_a_stack_overflow() {
     let wkt = |depth: usize| format!("\n{}", "GEOMETRYCOLLECTION (".repeat(depth));
     let json = |depth: usize| {
         let open = r#"{"type": "GeometryCollection", "geometries": ["#.repeat(depth);

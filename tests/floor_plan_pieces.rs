@@ -54,7 +54,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1500) })]
 
     #[test]
-    fn what_is_free_is_what_pieces_cover_and_obstacles_do_not(
+    fn a_point_is_free_if_a_piece_covers_it_and_no_obstacle_does(
         mut pieces in prop::collection::vec(piece(), 1..9),
         places in prop::collection::vec((-3.0..25.0_f64, -3.0..25.0_f64), 60),
         shift in prop::sample::select(vec![[0.0, 0.0], [432_100.3, -987_654.1]]),

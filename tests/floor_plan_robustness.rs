@@ -69,7 +69,7 @@ fn written(polygons: &[Vec<Ring>], how: u8) -> String {
 }
 
 #[test]
-fn any_polygons_are_read_or_refused_at_a_place_that_is_drawn() {
+fn any_polygons_are_read_or_refused_at_a_place_in_the_text() {
     let input = || (polygons(), 0..5_u8);
     cases(50_000, input, |(polygons, how)| {
         read(&written(&polygons, how))
@@ -88,7 +88,7 @@ fn valid() -> Vec<String> {
 }
 
 #[test]
-fn a_plan_with_bytes_changed_is_read_or_refused() {
+fn a_plan_with_changed_characters_is_read_or_refused() {
     let texts = valid();
     let parts = [
         "(",

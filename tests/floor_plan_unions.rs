@@ -65,7 +65,7 @@ fn check(random: &mut ChaCha8Rng, rooms: &[Ring], text: &str, reach: f64) {
 }
 
 #[test]
-fn rooms_that_touch_in_places_of_rounding_are_one_plan() {
+fn rooms_that_touch_up_to_rounding_are_read_as_one_plan() {
     let mut random = ChaCha8Rng::seed_from_u64(2);
     for (text, reach) in [(ON_A_DIAGONAL, 1.5), (ELEVEN, 9.0)] {
         check(&mut random, &rings(text), text, reach);
@@ -99,7 +99,7 @@ fn room(random: &mut ChaCha8Rng, unit: f64) -> Ring {
 }
 
 #[test]
-fn unions_of_rooms_on_a_coarse_grid_are_read_and_are_what_the_rooms_cover() {
+fn unions_of_rooms_on_a_coarse_grid_cover_exactly_the_rooms() {
     let mut random = ChaCha8Rng::seed_from_u64(9);
     for case in 0..2000 {
         let unit = [1.0, 0.5, 0.1][case % 3];
@@ -121,7 +121,7 @@ fn allocations(read: impl FnOnce()) -> u64 {
 }
 
 #[test]
-fn four_times_as_many_pieces_take_about_four_times_the_work() {
+fn work_is_not_quadratic_in_the_number_of_pieces() {
     let lines = |n: usize| {
         let squares = (0..n).map(|k| multipolygon(&[vec![square(k, 50)]]));
         let text = squares.collect::<Vec<_>>().join("\n");

@@ -1,7 +1,7 @@
 //! Symmetries and conservation laws of the forces, on evaluated frames.
 
 use crate::common::{
-    acceleration, blend, blend_with, evaluated, laid_open, person, polygon, room, scene, vector,
+    acceleration, blend, blend_with, breakdown, evaluated, person, polygon, room, scene, vector,
     walker,
 };
 use proptest::prelude::*;
@@ -75,7 +75,7 @@ fn crowd(count: u32, side: f64) -> Vec<NewAgent> {
 
 fn sum_of(simulation: &Simulation, term: impl Fn(&Terms) -> Option<Vector>) -> Vector {
     let ids = 0..simulation.frame().agents.len() as u32;
-    ids.map(|id| laid_open(simulation, id))
+    ids.map(|id| breakdown(simulation, id))
         .map(|agent| term(&agent.profiles[0].accelerations).unwrap() * agent.mass)
         .sum()
 }
@@ -103,14 +103,14 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn two_agents_that_press_change_no_momentum(
+    fn forces_between_two_agents_conserve_momentum(
         distance in 0.001..0.999_f64,
         angle in 0.0..6.3_f64,
         masses in [0.5..2.0_f64, 0.5..2.0_f64],
         means in [0.0..0.6_f64, 0.0..0.6_f64],
     ) {
         let simulation = evaluated(pressing_pair(distance, angle, masses, means));
-        let [first, second] = [0, 1].map(|id| laid_open(&simulation, id));
+        let [first, second] = [0, 1].map(|id| breakdown(&simulation, id));
         prop_assert!(first.pressure >= 0.0 && second.pressure >= 0.0);
         let terms: [fn(&Terms) -> Option<Vector>; 3] =
             [|t| t.pressure_agents, |t| t.viscosity, |t| t.contact_agents];
@@ -128,7 +128,7 @@ proptest! {
         let at_rest = pressing_crowd(Vector::zeros());
         let moving = pressing_crowd(vector(x, y));
         for id in 0..12 {
-            let [a, b] = [&at_rest, &moving].map(|s| laid_open(s, id).profiles[0].accelerations);
+            let [a, b] = [&at_rest, &moving].map(|s| breakdown(s, id).profiles[0].accelerations);
             prop_assert_eq!(a.pressure_agents, b.pressure_agents);
             prop_assert_eq!(a.contact_agents, b.contact_agents);
             let difference = a.viscosity.unwrap() - b.viscosity.unwrap();
@@ -137,7 +137,7 @@ proptest! {
     }
 
     #[test]
-    fn turning_mirroring_and_moving_everything_turns_the_accelerations(
+    fn accelerations_follow_rotations_reflections_and_translations(
         angle in 0.0..6.3_f64,
         mirrored: bool,
         x in -300.0..300.0_f64,
@@ -190,7 +190,7 @@ fn pressing_crowd(common: Vector) -> Simulation {
 }
 
 #[test]
-fn a_crowd_that_presses_changes_no_momentum() {
+fn forces_in_a_pressing_crowd_conserve_momentum() {
     let simulation = pressing_crowd(Vector::zeros());
     let fields = simulation.frame().fields;
     assert!(fields.pressure.iter().all(|&p| p > 0.0));
@@ -200,19 +200,19 @@ fn a_crowd_that_presses_changes_no_momentum() {
 }
 
 #[test]
-fn nobody_feels_pressure_below_the_own_rest_density_and_negative_neighbours_attract_less() {
+fn agents_below_their_rest_density_feel_no_pressure_and_press_less_on_others() {
     let pair = |means: [f64; 2]| evaluated(pressing_pair(0.6, 0.0, [1.0, 1.0], means));
     let pressed = |simulation: &Simulation, id| {
-        laid_open(simulation, id).profiles[0]
+        breakdown(simulation, id).profiles[0]
             .accelerations
             .pressure_agents
             .unwrap()
     };
     let lopsided = pair([0.0, 5.0]);
-    assert!(laid_open(&lopsided, 1).pressure < 0.0);
+    assert!(breakdown(&lopsided, 1).pressure < 0.0);
     assert_eq!(pressed(&lopsided, 1), Vector::zeros());
     // A negative pressure of a neighbor stays in the sum: −Σ m_j (p_i + p_j) / (2ρ_j) ∇W.
-    let [a, b] = [0, 1].map(|id| laid_open(&lopsided, id));
+    let [a, b] = [0, 1].map(|id| breakdown(&lopsided, id));
     let slope = -30.0 / std::f64::consts::PI * 0.16;
     let expected = slope * (a.pressure + b.pressure) / (2.0 * b.density) / a.density;
     assert!((pressed(&lopsided, 0).x - expected).abs() < 1e-11);
@@ -220,7 +220,7 @@ fn nobody_feels_pressure_below_the_own_rest_density_and_negative_neighbours_attr
 }
 
 #[test]
-fn a_lone_agent_feels_its_goal_force_alone() {
+fn a_lone_agent_feels_only_its_goal_force() {
     for name in NAMES.iter().filter(|name| !name.contains("rvo")) {
         let mut scene = scene(vec![room(40.0, 0.8)], blend(name));
         scene.agents = vec![NewAgent {
@@ -241,7 +241,7 @@ fn a_lone_agent_feels_its_goal_force_alone() {
 }
 
 #[test]
-fn coincident_agents_get_no_direction_and_no_nan() {
+fn coincident_agents_have_finite_accelerations() {
     for name in NAMES {
         let mut scene = scene(Vec::new(), blend(name));
         scene.agents = vec![person(vector(1.0, 2.0), vector(9.0, 2.0)); 3];
@@ -255,10 +255,10 @@ fn coincident_agents_get_no_direction_and_no_nan() {
 }
 
 #[test]
-fn pressure_viscosity_and_contact_end_strictly_at_their_ranges() {
+fn pressure_viscosity_and_contact_are_zero_at_their_ranges() {
     let at = |distance: f64| {
         let simulation = evaluated(pressing_pair(distance, 0.0, [1.0, 1.0], [0.0, 0.0]));
-        laid_open(&simulation, 0).profiles[0].accelerations
+        breakdown(&simulation, 0).profiles[0].accelerations
     };
     let [inside, outside] = [at(0.999_999), at(1.0)];
     assert!(inside.viscosity.unwrap().norm() > 0.0 && inside.pressure_agents.unwrap().norm() > 0.0);
@@ -275,7 +275,7 @@ fn a_corner_counts_twice_in_contact_and_once_in_the_social_force() {
     let away = vector(0.6, 0.8) * 0.2;
     let mut scene = scene(vec![obstacle], blend("sf"));
     scene.agents = vec![person(corner + away, vector(9.0, 9.0))];
-    let terms = laid_open(&evaluated(scene), 0).profiles[0].accelerations;
+    let terms = breakdown(&evaluated(scene), 0).profiles[0].accelerations;
     let social = vector(0.6, 0.8) * (2.1 / 0.1 * (-2.0_f64).exp());
     assert!((terms.social_walls.unwrap() - social).norm() < 1e-11);
     let contact = vector(0.6, 0.8) * (2.0 * 1000.0 * 0.04);
@@ -283,11 +283,11 @@ fn a_corner_counts_twice_in_contact_and_once_in_the_social_force() {
 }
 
 #[test]
-fn contact_pushes_from_both_faces_and_social_force_from_the_free_one() {
+fn contact_acts_from_both_faces_of_a_wall_and_the_social_force_from_one() {
     let thin = polygon(&[[-3.0, 0.0], [3.0, 0.0], [3.0, 0.01], [-3.0, 0.01]]);
     let mut scene = scene(vec![thin], blend("sf"));
     scene.agents = vec![person(vector(0.0, 0.11), vector(0.0, 9.0))];
-    let terms = laid_open(&evaluated(scene), 0).profiles[0].accelerations;
+    let terms = breakdown(&evaluated(scene), 0).profiles[0].accelerations;
     let expected = 1000.0 * ((0.24 - 0.1) + (0.24 - 0.11));
     assert!((terms.contact_walls.unwrap().y - expected).abs() < 1e-9);
     let social = 2.1 / 0.1 * (-1.0_f64).exp();
@@ -295,7 +295,7 @@ fn contact_pushes_from_both_faces_and_social_force_from_the_free_one() {
 }
 
 #[test]
-fn a_wall_pushes_a_centre_that_stands_on_it_along_its_outward_normal() {
+fn a_wall_pushes_an_agent_on_it_along_its_outward_normal() {
     for k in 0..400 {
         let (sine, cosine) = (0.0157 * f64::from(k)).sin_cos();
         let start = vector(0.3, 0.7);
@@ -309,7 +309,7 @@ fn a_wall_pushes_a_centre_that_stands_on_it_along_its_outward_normal() {
         let place = start + along * (1.0 + 0.005 * f64::from(k));
         let mut scene = scene(vec![Polygon::new(triangle).unwrap()], blend("sph"));
         scene.agents = vec![person(place, place)];
-        let terms = laid_open(&evaluated(scene), 0).profiles[0].accelerations;
+        let terms = breakdown(&evaluated(scene), 0).profiles[0].accelerations;
         let push = terms.contact_walls.unwrap();
         assert!(
             (push - outward * 200.0 * 0.24).norm() < 1e-3,

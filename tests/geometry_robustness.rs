@@ -56,7 +56,7 @@ fn vectors(points: Vec<[f64; 2]>) -> Vec<Vector> {
 }
 
 #[test]
-fn what_must_hold_of_walls_holds_of_any() {
+fn the_properties_of_walls_hold_for_any_obstacles() {
     let radius = || select(vec![0.01, 1.0, 5.0]);
     let asked = || prop::collection::vec((point(), point(), radius()), 1..4);
     cases(
@@ -127,7 +127,7 @@ fn any_people_among_any_obstacles_move_or_are_refused() {
 }
 
 #[test]
-fn on_the_corner_of_a_wall_no_more_than_its_quarter_is_hidden() {
+fn at_the_corner_of_a_wall_at_most_a_quarter_of_the_disc_is_hidden() {
     // Found by fuzzing: the distance of this corner from one of its walls is −0, and that wall hid 1.5 discs.
     let corner = Vector::new(-10.0, -6.875);
     let points = vec![
@@ -154,7 +154,7 @@ fn on_the_corner_of_a_wall_no_more_than_its_quarter_is_hidden() {
 }
 
 #[test]
-fn on_a_wall_that_another_crosses_no_more_than_a_disc_is_hidden() {
+fn on_a_wall_that_another_crosses_at_most_one_disc_is_hidden() {
     // Found by fuzzing: at distance 0, every part of the wall counted as the whole wall.
     let [wedge, bar] = [
         [

@@ -3,21 +3,21 @@
 
 use std::fs;
 
-use crate::common::program::{ended, text, under_way};
+use crate::common::program::{start_and_wait, stop_with, text};
 
 /// One person, for days.
 const LONG: &str = r#"{"duration_secs": 1e6, "agents": [{"position": [0, 0], "goal": [9, 0]}]}"#;
 
 #[test]
-fn an_interrupted_concert_is_whole_up_to_its_last_frame() {
+fn outputs_of_an_interrupted_run_are_complete_up_to_its_last_frame() {
     use std::collections::BTreeMap;
 
     let folder = tempfile::tempdir().unwrap();
     let [rrd, csv] = ["concert.rrd", "concert.csv"].map(|name| folder.path().join(name));
     let files = ["--save", text(&rrd), "--trajectory", text(&csv)];
     let run = [&["concert", "--json"][..], &files].concat();
-    let output = ended(
-        under_way(&run, &[(&rrd, 1_000), (&csv, 100_000)]),
+    let output = stop_with(
+        start_and_wait(&run, &[(&rrd, 1_000), (&csv, 100_000)]),
         "kill -INT $1",
     );
     let stderr = String::from_utf8(output.stderr).unwrap();
@@ -49,12 +49,12 @@ fn an_interrupted_concert_is_whole_up_to_its_last_frame() {
 }
 
 #[test]
-fn a_run_that_is_to_terminate_does_so_with_its_summary() {
+fn sigterm_ends_a_run_with_its_summary() {
     let folder = tempfile::tempdir().unwrap();
     let [file, sqlite] = ["long.json", "long.sqlite"].map(|name| folder.path().join(name));
     fs::write(&file, LONG).unwrap();
     let run = ["run", text(&file), "--trajectory", text(&sqlite)];
-    let output = ended(under_way(&run, &[(&sqlite, 0)]), "kill -TERM $1");
+    let output = stop_with(start_and_wait(&run, &[(&sqlite, 0)]), "kill -TERM $1");
     assert_eq!(output.status.code(), Some(143));
     let summary = String::from_utf8(output.stdout).unwrap();
     let frames = summary
@@ -71,12 +71,12 @@ fn a_run_that_is_to_terminate_does_so_with_its_summary() {
 }
 
 #[test]
-fn a_second_ctrl_c_ends_at_once() {
+fn a_second_ctrl_c_ends_the_run_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let txt = folder.path().join("plaza.txt");
     let run = ["plaza", "--trajectory", text(&txt)];
     let often = "for k in 1 2 3 4 5 6 7 8 9; do kill -INT $1; sleep 0.002; done";
-    let output = ended(under_way(&run, &[(&txt, 0)]), often);
+    let output = stop_with(start_and_wait(&run, &[(&txt, 0)]), often);
     assert_eq!(output.status.code(), Some(130));
     assert_eq!(String::from_utf8(output.stdout).unwrap(), "", "no summary");
 }

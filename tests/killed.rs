@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use crate::common::program::{text, under_way};
+use crate::common::program::{start_and_wait, text};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sandbox::output::recording::Recording;
@@ -50,7 +50,7 @@ fn kill_one(seed: u64) {
     run.extend(["--save", text(&rrd), "--checkpoint", text(&checkpoint)]);
     run.extend(["--trajectory", text(&csv), "--trajectory", text(&sqlite)]);
     run.extend(["--trajectory-fps", "1"]);
-    let mut child = under_way(&run, &[(&csv, 40_000), (&checkpoint, 0)]);
+    let mut child = start_and_wait(&run, &[(&csv, 40_000), (&checkpoint, 0)]);
     let pause = ChaCha8Rng::seed_from_u64(seed).random_range(0.0..1.0);
     std::thread::sleep(Duration::from_secs_f64(pause));
     let safe = last_frame(&csv);
@@ -90,7 +90,7 @@ fn kill_one(seed: u64) {
 }
 
 #[test]
-fn what_was_recorded_two_seconds_before_a_kill_is_readable() {
+fn data_recorded_two_seconds_before_a_kill_is_readable() {
     std::thread::scope(|scope| {
         let kill_some = |first| {
             for seed in (first..KILLED).step_by(AT_A_TIME as usize) {

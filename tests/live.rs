@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use crate::common;
-use crate::common::program::{PROGRAM, ended, text, under_way};
+use crate::common::program::{PROGRAM, start_and_wait, stop_with, text};
 use sandbox::output::recording::Recording;
 
 fn sandbox(arguments: &[&str]) -> Output {
@@ -37,7 +37,7 @@ fn without_a_viewer_nothing_is_computed() {
 }
 
 #[test]
-fn an_address_that_is_none_is_bad_input() {
+fn an_invalid_address_is_bad_input() {
     let output = sandbox(&["--connect", "ftp://here"]);
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(
@@ -48,7 +48,7 @@ fn an_address_that_is_none_is_bad_input() {
 }
 
 #[test]
-fn where_no_viewer_is_installed_its_source_is_named() {
+fn a_missing_viewer_is_reported_with_how_to_install_it() {
     let mut program = Command::new(PROGRAM);
     let output = program
         .args(["evacuation", "--spawn", "--until", "0.2"])
@@ -65,7 +65,7 @@ fn where_no_viewer_is_installed_its_source_is_named() {
 }
 
 #[test]
-fn a_viewer_that_goes_away_is_a_note_and_the_file_is_whole() {
+fn a_viewer_that_disconnects_gives_a_note_and_the_file_is_complete() {
     let viewer = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = viewer.local_addr().unwrap().to_string();
     // Accepts every connection and closes it.
@@ -127,7 +127,7 @@ fn crowd(path: &Path) -> impl PartialEq + use<> {
 }
 
 #[test]
-fn a_viewer_that_takes_nothing_holds_up_neither_the_run_nor_the_file() {
+fn an_unresponsive_viewer_blocks_neither_the_run_nor_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let run = |name: &str, more: &[&str]| {
         let file = folder.path().join(name);
@@ -168,10 +168,10 @@ fn a_run_that_waits_for_a_viewer_can_be_interrupted() {
         let address = viewer(silent);
         let run = ["concert", "--json", "--record-every", "1"];
         let more = ["--connect", &address, "--save", text(&file)];
-        let child = under_way(&[&run[..], &more].concat(), &[(&file, 1_000)]);
+        let child = start_and_wait(&[&run[..], &more].concat(), &[(&file, 1_000)]);
         // Kill the run if it has not ended after a minute.
         let guard = "for k in $(seq 300); do sleep 0.2; kill -0 $1 || exit; done; kill -KILL $1";
-        let output = ended(child, &format!("kill -{signal} $1; {guard}"));
+        let output = stop_with(child, &format!("kill -{signal} $1; {guard}"));
         let said = said(&output);
         assert_eq!(output.status.code(), Some(code), "{said}");
         assert_eq!(said.matches(&note(&address)).count(), 1, "{said}");

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::process::Command;
 
-fn said(arguments: &[&str]) -> String {
+fn stdout(arguments: &[&str]) -> String {
     let program = env!("CARGO_BIN_EXE_sandbox");
     let output = Command::new(program).args(arguments).output().unwrap();
     assert!(output.status.success(), "{arguments:?}");
@@ -13,7 +13,7 @@ fn said(arguments: &[&str]) -> String {
 
 /// The subcommands, as `--help` lists them.
 fn subcommands() -> Vec<String> {
-    let help = said(&["--help"]);
+    let help = stdout(&["--help"]);
     let list = help.split("Commands:\n").nth(1).unwrap();
     let lines = list.lines().take_while(|line| line.starts_with("  "));
     let names = lines.filter_map(|line| Some(line.split_whitespace().next()?.to_owned()));
@@ -21,11 +21,11 @@ fn subcommands() -> Vec<String> {
 }
 
 #[test]
-fn every_shell_learns_every_command_and_option() {
+fn completions_of_every_shell_have_all_commands_and_some_options() {
     let names = subcommands();
     assert!(names.len() > 12, "{names:?}");
     for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
-        let script = said(&["completions", shell]);
+        let script = stdout(&["completions", shell]);
         for name in &names {
             assert!(script.contains(name.as_str()), "{shell}: {name}");
         }
@@ -40,7 +40,7 @@ fn every_shell_learns_every_command_and_option() {
 fn bash_completes_a_command_and_an_option() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("sandbox.bash");
-    fs::write(&file, said(&["completions", "bash"])).unwrap();
+    fs::write(&file, stdout(&["completions", "bash"])).unwrap();
     let completed = |words: &str, last: usize| {
         let ask = format!(
             r#"source "$1"; COMP_WORDS=(sandbox {words}); COMP_CWORD={last}
@@ -62,14 +62,14 @@ fn bash_completes_a_command_and_an_option() {
 #[test]
 fn the_program_and_every_command_have_a_man_page() {
     let names = subcommands();
-    let page = said(&["man"]);
+    let page = stdout(&["man"]);
     assert!(page.contains(".TH sandbox 1"), "{page}");
     for name in &names {
         assert!(page.contains(&format!("sandbox\\-{name}(1)")), "{name}");
     }
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("share/man1");
-    assert_eq!(said(&["man", "--out", out.to_str().unwrap()]), "");
+    assert_eq!(stdout(&["man", "--out", out.to_str().unwrap()]), "");
     let text = |file: &str| fs::read_to_string(out.join(file)).unwrap();
     assert_eq!(text("sandbox.1"), page);
     let mut expected = BTreeSet::from(["sandbox.1".to_owned()]);

@@ -175,7 +175,7 @@ fn the_recording_has_the_crowd_and_its_walls() {
 }
 
 #[test]
-fn what_is_typed_wrong_is_refused_with_the_fix() {
+fn invalid_arguments_are_refused_with_the_fix() {
     let (_folder, [trajectory, plan, out]) = walkers();
     for (arguments, words) in [
         (vec!["no.txt"], "no.txt: cannot be read"),

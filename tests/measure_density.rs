@@ -43,7 +43,7 @@ fn measured(tracks: &Tracks, site: &Site, options: &Options) -> (Measured, Vec<M
 /// Runs a crowd through a door, writes every frame, and measures the file with its walls and masses and with the
 /// engine's rest density.
 #[test]
-fn what_the_engine_computed_is_measured_again_in_what_it_wrote() {
+fn densities_measured_in_a_trajectory_are_those_of_the_engine() {
     for walls in [
         WallMethod::Representative,
         WallMethod::Exact,
@@ -112,7 +112,7 @@ fn lattice(spacing: f64, half: i32) -> Vec<(i64, i64, f64, f64)> {
 }
 
 #[test]
-fn a_lattice_has_the_density_of_its_kernel_sum_whatever_the_radius() {
+fn the_density_of_a_lattice_is_its_kernel_sum_for_any_radius() {
     for (spacing, h) in [(0.5, 1.0), (0.37, 1.3), (1.2, 1.0)] {
         let rows = lattice(spacing, 6);
         let sum: f64 = rows
@@ -162,7 +162,7 @@ fn a_uniform_crowd_is_as_dense_at_walls_and_in_corners_as_elsewhere() {
 }
 
 #[test]
-fn who_is_behind_a_thin_wall_does_not_count_but_in_the_engine() {
+fn people_behind_a_thin_wall_count_only_with_the_method_of_the_engine() {
     // Two rooms [0, 2] × [0, 4] m and [2.1, 4.1] × [0, 4] m, both full.
     let plan = "MULTIPOLYGON (((0 0, 2 0, 2 4, 0 4, 0 0)), ((2.1 0, 4.1 0, 4.1 4, 2.1 4, 2.1 0)))";
     let site = Site::new(parse_wkt(plan).unwrap().solids().unwrap());
@@ -200,7 +200,7 @@ fn mass(measured: &Measured) -> f64 {
 }
 
 #[test]
-fn the_field_holds_everybody() {
+fn the_field_integrates_to_the_number_of_people() {
     // People spread over several meters with all kernels inside the grid. Half of the people are present only half
     // of the time.
     let places = (0..60).map(|k| {
@@ -260,7 +260,7 @@ fn the_field_at_a_person_is_the_persons_density() {
 }
 
 #[test]
-fn who_leans_over_a_wall_is_counted_and_sees_it_as_from_its_face() {
+fn people_inside_a_wall_are_counted_and_measured_at_its_face() {
     let site = Site::new(vec![rectangle([-5.0, 5.0], [-3.0, 0.0])]);
     let (measured, moments) = measured(&tracks(10.0, &[(1, 0, 0.0, -0.05)]), &site, &options());
     let alone = kernel::density(0.0, 1.0);

@@ -89,7 +89,7 @@ fn a_column_has_the_flow_of_its_line_density_times_its_speed() {
 }
 
 #[test]
-fn velocities_of_even_motion_are_exact_and_one_sided_at_the_ends() {
+fn velocities_of_uniform_motion_are_exact_and_one_sided_at_the_ends() {
     let v = vector(0.8, -0.5);
     let rows: Vec<_> = (0..30)
         .map(|frame| {
@@ -129,7 +129,7 @@ fn accelerating_people_have_the_mean_velocity_of_the_window() {
 }
 
 #[test]
-fn nothing_moves_across_a_gap() {
+fn no_motion_is_measured_across_a_gap() {
     // The person is missing from frame 10 to 19, while crossing the line.
     let rows: Vec<_> = (0..30)
         .filter(|frame| !(10..20).contains(frame))
@@ -147,7 +147,7 @@ fn nothing_moves_across_a_gap() {
 }
 
 #[test]
-fn who_lingers_on_a_line_passes_it_once() {
+fn a_person_who_oscillates_across_a_line_passes_it_once() {
     let way = [-1.0, 0.1, -0.1, 0.0, 0.2, -0.2, 0.3, 1.0];
     let rows: Vec<_> = (0..8).map(|k| (1, k as i64, way[k], 0.0)).collect();
     let crossings = Crossings::of(&tracks(10.0, &rows), 1, gate(), ALWAYS);
@@ -165,7 +165,7 @@ fn who_lingers_on_a_line_passes_it_once() {
 }
 
 #[test]
-fn where_lines_join_nobody_crosses_both() {
+fn a_crossing_where_two_lines_join_counts_once() {
     let rows = [
         (1, 0, -1.0, 0.0),
         (1, 1, 1.0, 0.0),
@@ -182,7 +182,7 @@ fn where_lines_join_nobody_crosses_both() {
 }
 
 #[test]
-fn a_region_has_the_density_and_speed_of_who_is_in_it() {
+fn a_region_has_the_density_and_speed_of_the_people_in_it() {
     let rows: Vec<_> = (0..40)
         .flat_map(|frame| {
             let x = frame as f64 * 0.1;
@@ -204,10 +204,10 @@ fn a_region_has_the_density_and_speed_of_who_is_in_it() {
         region([90.0, 91.0]),
     ];
     let found = measured(&tracks, regions, Vec::new());
-    let [walking, standing, nobody] = found.diagrams.as_slice() else {
+    let [walking, standing, empty] = found.diagrams.as_slice() else {
         panic!("three regions");
     };
-    assert!(nobody.frames.is_empty() && nobody.of_persons.is_empty());
+    assert!(empty.frames.is_empty() && empty.of_persons.is_empty());
     for frame in &standing.frames {
         assert_eq!(
             (frame.people, frame.speed, frame.flow),
@@ -242,8 +242,8 @@ proptest! {
     fn counts_add_up(steps in prop::collection::vec((0_i64..6, -1.0..1.0_f64), 60)) {
         let mut x = [0.5; 6];
         let mut rows: Vec<_> = (0..6).map(|id| (id, 0, 0.5, 0.0)).collect();
-        for (frame, &(who, dx)) in steps.iter().enumerate() {
-            x[who as usize] += dx;
+        for (frame, &(walker, dx)) in steps.iter().enumerate() {
+            x[walker as usize] += dx;
             rows.extend((0..6).map(|id| (id, frame as i64 + 1, x[id as usize], 0.0)));
         }
         let crossings = Crossings::of(&tracks(10.0, &rows), 1, gate(), ALWAYS);

@@ -44,7 +44,7 @@ fn scenario() -> Value {
 }
 
 #[test]
-fn what_a_scenario_says_is_repeated_short_and_harmless() {
+fn text_from_a_scenario_is_shortened_and_escaped() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let long = hostile();
@@ -82,7 +82,7 @@ fn what_a_scenario_says_is_repeated_short_and_harmless() {
 }
 
 #[test]
-fn what_was_typed_is_repeated_short_and_harmless() {
+fn text_from_the_command_line_is_shortened_and_escaped() {
     let folder = tempfile::tempdir().unwrap();
     let long = hostile();
     for setting in [
@@ -104,7 +104,7 @@ fn what_was_typed_is_repeated_short_and_harmless() {
 }
 
 #[test]
-fn what_a_study_says_is_repeated_short_and_harmless() {
+fn text_from_a_study_is_shortened_and_escaped() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     fs::write(folder.join("walk.json"), scenario().to_string()).unwrap();
@@ -129,7 +129,7 @@ fn what_a_study_says_is_repeated_short_and_harmless() {
 }
 
 #[test]
-fn what_plans_and_trajectories_say_is_repeated_short_and_harmless() {
+fn text_from_plans_and_trajectories_is_shortened_and_escaped() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let long = hostile().replace(['\r', '\n'], "");
@@ -159,7 +159,7 @@ fn what_plans_and_trajectories_say_is_repeated_short_and_harmless() {
 }
 
 #[test]
-fn files_longer_than_what_is_read_whole_are_refused() {
+fn files_above_the_size_limit_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let long = folder.path().join("long.json");
     // A sparse file.

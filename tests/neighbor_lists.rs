@@ -28,7 +28,7 @@ fn streams(lists: ListPolicy, integrator: Integrator, time_step: f64) -> Simulat
 
 /// How often the density of an agent lacks neighbors, in all frames of three seconds, and the largest missing
 /// density, P/m².
-fn lacking(mut simulation: Simulation) -> (usize, f64) {
+fn missing_density(mut simulation: Simulation) -> (usize, f64) {
     let (mut count, mut most) = (0, 0.0_f64);
     while simulation.frame().clock.time() < 3.0 {
         simulation.evaluate().unwrap();
@@ -39,10 +39,10 @@ fn lacking(mut simulation: Simulation) -> (usize, f64) {
             let whole: f64 = bodies
                 .map(|(m, r)| m * kernel::density((place - r).norm_squared(), 1.0))
                 .sum();
-            let lacks = whole - found;
-            assert!(lacks > -1e-9, "somebody was counted twice");
-            count += usize::from(lacks > 1e-9);
-            most = most.max(lacks);
+            let missing = whole - found;
+            assert!(missing > -1e-9, "somebody was counted twice");
+            count += usize::from(missing > 1e-9);
+            most = most.max(missing);
         }
         simulation.integrate().unwrap();
     }
@@ -50,19 +50,20 @@ fn lacking(mut simulation: Simulation) -> (usize, f64) {
 }
 
 #[test]
-fn complete_lists_miss_nobody_in_any_frame() {
+fn complete_lists_have_all_neighbors_in_every_frame() {
     for integrator in Integrator::ALL {
         for time_step in [0.02, 0.08] {
-            let (count, most) = lacking(streams(ListPolicy::Complete, integrator, time_step));
+            let (count, most) =
+                missing_density(streams(ListPolicy::Complete, integrator, time_step));
             assert_eq!(count, 0, "{integrator:?} {time_step}: {most}");
         }
     }
 }
 
 #[test]
-fn coarse_lists_miss_some_at_the_rim_of_their_circle() {
+fn coarse_lists_miss_some_neighbors_near_the_support_radius() {
     let streams = streams(ListPolicy::Coarse, Integrator::SemiImplicit, 0.02);
-    let (count, most) = lacking(streams);
+    let (count, most) = missing_density(streams);
     // Few agents, because all agents of a cluster share their neighbors. In four frames, two people approach by
     // 0.29 m.
     let nearest = kernel::density(0.71 * 0.71, 1.0);
@@ -70,7 +71,7 @@ fn coarse_lists_miss_some_at_the_rim_of_their_circle() {
 }
 
 #[test]
-fn coarse_lists_miss_no_wall_however_rarely_they_are_made() {
+fn coarse_lists_miss_no_wall_however_rarely_they_are_rebuilt() {
     let mut scene = Scene {
         neighbor_lists: ListPolicy::Coarse,
         clock: Clock::new(0.02, 100),
@@ -85,7 +86,7 @@ fn coarse_lists_miss_no_wall_however_rarely_they_are_made() {
 
 /// The second evaluation of the midpoint method is half a step ahead of the positions for which lists were checked.
 #[test]
-fn the_midpoint_method_sees_everybody_half_a_frame_ahead() {
+fn lists_for_the_midpoint_method_cover_half_a_step_ahead() {
     let finest = streams(ListPolicy::Complete, Integrator::Midpoint, 0.08);
     let ranges = finest.scene().ranges(finest.needs());
     let half_a_move = 0.5 * finest.scene().max_speed * 0.08;
@@ -111,7 +112,7 @@ fn pillars() -> String {
 }
 
 #[test]
-fn the_estimate_of_memory_covers_lists_of_walls() {
+fn the_memory_estimate_covers_lists_of_walls() {
     let text = pillars();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let (held, need) = pool.unwrap().install(|| {

@@ -15,7 +15,7 @@ use crate::common::outputs::{SCENARIO, contents, folder, refused, run, said};
 use crate::common::program::PROGRAM;
 
 #[test]
-fn two_outputs_of_one_file_are_refused_whatever_they_are_called() {
+fn two_outputs_to_one_file_are_refused_under_any_names() {
     let folder = folder();
     for (files, names) in [
         (
@@ -110,7 +110,7 @@ fn an_input_is_never_replaced() {
 }
 
 #[test]
-fn a_recording_replaces_no_scenario_and_has_its_extension() {
+fn a_recording_never_replaces_a_scenario_and_must_end_in_rrd() {
     let folder = folder();
     let inspect = "inspect s.json --agent 0 --force --save";
     for run in ["run s.json --force --save", inspect] {
@@ -139,7 +139,7 @@ fn a_recording_replaces_no_scenario_and_has_its_extension() {
 }
 
 #[test]
-fn a_resumed_run_goes_on_writing_into_its_own_checkpoint() {
+fn a_resumed_run_may_replace_its_own_checkpoint() {
     let folder = folder();
     let first = fs::read(folder.path().join("c")).unwrap();
     let goes_on = run(folder.path(), "resume c --checkpoint ./c --until 2");
@@ -158,7 +158,7 @@ fn a_resumed_run_goes_on_writing_into_its_own_checkpoint() {
 }
 
 #[test]
-fn a_path_that_cannot_be_written_is_refused_in_plain_words() {
+fn an_unwritable_path_is_refused_with_the_reason() {
     let folder = folder();
     for (typed, words) in [
         (
@@ -241,7 +241,7 @@ fn a_checkpoint_is_written_through_links_and_replaces_no_device() {
 }
 
 #[test]
-fn the_umask_decides_who_may_read_a_checkpoint() {
+fn the_permissions_of_a_checkpoint_follow_the_umask() {
     let folder = folder();
     for (umask, mode) in [("022", 0o644), ("027", 0o640), ("077", 0o600)] {
         let file = folder.path().join(umask);
@@ -258,7 +258,7 @@ fn the_umask_decides_who_may_read_a_checkpoint() {
 }
 
 #[test]
-fn a_run_outlives_a_checkpoint_that_cannot_be_written() {
+fn a_run_continues_after_a_checkpoint_that_cannot_be_written() {
     let folder = folder();
     // 400 people enter after a second, and their checkpoint exceeds the file size limit.
     let text = r#"{"goal": [99, 0], "duration_secs": 1.9, "agents": [{"position": [0, 0]}], "sources": [
@@ -309,7 +309,7 @@ fn a_run_outlives_a_checkpoint_that_cannot_be_written() {
 }
 
 #[test]
-fn a_recording_from_beyond_the_end_is_refused_or_told() {
+fn recording_from_beyond_the_end_is_refused_or_noted() {
     let folder = folder();
     let typed = "run s.json --save a.rrd --record-from 30";
     refused(
@@ -331,7 +331,7 @@ fn a_recording_from_beyond_the_end_is_refused_or_told() {
 }
 
 #[test]
-fn a_file_that_is_updated_lies_outside_of_the_results() {
+fn the_updated_file_must_lie_outside_of_the_results() {
     let folder = folder();
     fs::write(folder.path().join("report.md"), "mine").unwrap();
     for command in ["stress --quick", "accuracy --quick", "reproduce table1"] {

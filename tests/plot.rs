@@ -88,7 +88,7 @@ fn attribute(svg: &str, name: &str) -> u32 {
 }
 
 #[test]
-fn an_svg_has_every_word_and_both_formats_the_same_size() {
+fn an_svg_has_all_texts_and_both_formats_have_the_same_size() {
     let (svg, png) = saved(&sheet(100));
     for word in [
         "All marks",
@@ -105,7 +105,7 @@ fn an_svg_has_every_word_and_both_formats_the_same_size() {
 }
 
 #[test]
-fn a_few_people_are_circles_and_a_crowd_is_a_picture_in_the_picture() {
+fn few_people_are_drawn_as_circles_and_a_crowd_as_an_image() {
     let (few, _) = saved(&sheet(1000));
     assert!(few.matches("<circle").count() >= 1000 && !few.contains("<image"));
     let (crowd, _) = saved(&sheet(2500));

@@ -63,7 +63,7 @@ fn magnitude(simulation: &Simulation, i: usize) -> f64 {
         let contact = (direction(r_ij) * overlap).norm() * 50.0 / agents.mass[i];
         (pressure + viscosity) / fields.density[i] + contact
     });
-    let share = common::laid_open(simulation, agents.id[i]).profiles[0].accelerations;
+    let share = common::breakdown(simulation, agents.id[i]).profiles[0].accelerations;
     let others = [share.goal, share.pressure_walls, share.contact_walls];
     let others = others.map(|term| term.map_or(0.0, |term| term.norm()));
     pairs.sum::<f64>() + others.iter().sum::<f64>()
@@ -93,7 +93,7 @@ proptest! {
     }
 
     #[test]
-    fn the_bound_holds_far_from_the_origin_and_for_a_strewn_crowd(
+    fn the_bound_holds_far_from_the_origin_and_for_sparse_crowds(
         x in -1e6..1e6_f64,
         y in -1e6..1e6_f64,
         stretch in 0.3..1000.0_f64,
@@ -104,7 +104,7 @@ proptest! {
 }
 
 #[test]
-fn mixed_precision_is_not_double() {
+fn mixed_precision_differs_from_double() {
     let error = largest_error(&crowd(Vector::zeros(), 1.0, 3));
     assert!(error > 1e-9, "{error:e}");
 }

@@ -29,7 +29,7 @@ fn rows(tracks: &Tracks) -> Vec<(i64, i64, f64, f64)> {
 }
 
 #[test]
-fn text_is_read_with_every_header_that_is_about() {
+fn text_files_are_read_with_all_common_headers() {
     let expected = [(3, 1, 1.5, -2.0), (3, 2, 0.25, 4.0), (4, 1, 1.75, -2.0)];
     let lines = |separator: &str, factor: f64, rest: &str| {
         let line = |id: i64, frame: i64, x: f64, y: f64| {
@@ -85,14 +85,14 @@ fn text_is_read_with_every_header_that_is_about() {
 }
 
 #[test]
-fn columns_are_taken_in_the_order_that_the_header_names() {
+fn columns_follow_the_order_in_the_header() {
     let tracks = read_text("# framerate: 5\n# frame y/m x/m id\n7 2 1 30\n8.0 3 1 30.0\n");
     assert_eq!(rows(&tracks), [(7, 30, 1.0, 2.0), (8, 30, 1.0, 3.0)]);
     assert_eq!(tracks.time(8), 1.6);
 }
 
 #[test]
-fn what_is_typed_wins_over_what_the_file_says_and_that_is_noted() {
+fn options_override_the_file_and_a_note_says_so() {
     let options = ReadOptions {
         unit: Some(Unit::Centimetre),
         fps: Some(20.0),
@@ -110,7 +110,7 @@ fn what_is_typed_wins_over_what_the_file_says_and_that_is_noted() {
 }
 
 #[test]
-fn mistakes_are_named_with_their_line_and_the_fix() {
+fn mistakes_are_reported_with_the_line_and_the_fix() {
     let head = "# framerate: 10\n# id frame x/m y/m\n";
     for (name, text, expected) in [
         ("a.txt", String::new(), "a.txt: there is nobody in it"),
@@ -179,7 +179,7 @@ fn mistakes_are_named_with_their_line_and_the_fix() {
 }
 
 #[test]
-fn numbers_beyond_what_can_be_computed_with_are_refused_with_their_line() {
+fn numbers_out_of_range_are_refused_with_their_line() {
     let frames = "out of range: at most 2^53 = 9007199254740992 before or after 0";
     let place = "m is out of range: x and y must be at least -1e9 and at most 1e9 m";
     for (rows, expected) in [
@@ -210,7 +210,7 @@ fn numbers_beyond_what_can_be_computed_with_are_refused_with_their_line() {
 }
 
 #[test]
-fn frame_rates_that_no_film_has_are_refused_with_their_line() {
+fn frame_rates_out_of_range_are_refused_with_their_line() {
     let words = |fps: &str| {
         format!("the frame rate \"{fps}\" is not a number between 1e-6 and 1e6; give --fps")
     };
@@ -255,7 +255,7 @@ fn frame_rates_that_no_film_has_are_refused_with_their_line() {
 }
 
 #[test]
-fn gaps_and_empty_frames_and_odd_steps_are_noted() {
+fn gaps_empty_frames_and_unusual_steps_are_noted() {
     let tracks =
         read_text("# framerate: 10\n# in m\n1 0 0 0\n1 1 0 0\n1 4 0 0\n1 5 0 0\n2 1 5 5\n");
     assert_eq!(tracks.step, 1);
@@ -272,7 +272,7 @@ fn gaps_and_empty_frames_and_odd_steps_are_noted() {
 }
 
 #[test]
-fn centimetres_without_a_unit_are_warned_of() {
+fn centimeters_without_a_unit_give_a_warning() {
     let walk = |step: f64| -> String {
         let lines = (0..20).map(|frame| format!("1 {frame} {} 0\n", step * f64::from(frame)));
         "# framerate: 10\n".to_owned() + &lines.collect::<String>()
@@ -289,7 +289,7 @@ fn centimetres_without_a_unit_are_warned_of() {
 }
 
 #[test]
-fn csv_is_read_by_the_names_of_its_columns() {
+fn csv_columns_are_found_by_name() {
     let text = "frame,time,id,group,pos_x,pos_y,mass\n0,0,4,all,1,2,0.9\n1,0.04,4,all,1.5,2,0.9\n";
     let tracks = read_as("run.csv", text, &PLAIN).unwrap();
     assert_eq!(rows(&tracks), [(0, 4, 1.0, 2.0), (1, 4, 1.5, 2.0)]);
@@ -321,7 +321,7 @@ fn both_versions_of_jupedsims_format_are_read() {
 }
 
 #[test]
-fn a_database_without_trajectories_is_none() {
+fn a_database_without_trajectories_is_refused() {
     for (tables, expected) in [
         (
             "CREATE TABLE a (b)",

@@ -89,7 +89,7 @@ fn record(
 }
 
 #[test]
-fn positions_and_densities_read_back_are_the_simulations() {
+fn recorded_positions_and_densities_are_those_of_the_simulation() {
     let (recording, truth) = record("sf->sph", DebugAgents::None, true, 60);
     let positions = recording.pairs(CROWD, "Points2D:positions");
     let densities = recording.numbers(CROWD, "agent:density");
@@ -129,7 +129,7 @@ fn ids_and_radii_are_logged_whenever_the_crowd_changes() {
 }
 
 #[test]
-fn the_arrows_of_every_agent_laid_open_sum_to_their_total() {
+fn the_force_arrows_of_every_debug_agent_sum_to_the_total() {
     for profile in ["sf->sph", "rvo+sph"] {
         let (recording, _) = record(profile, DebugAgents::All, true, 20);
         let unit = METRES_PER_ACCELERATION;
@@ -167,7 +167,7 @@ fn the_arrows_of_every_agent_laid_open_sum_to_their_total() {
 }
 
 #[test]
-fn only_layers_that_can_fill_are_there_and_nothing_but_our_two_timelines() {
+fn a_recording_has_two_timelines_and_only_layers_that_can_have_data() {
     let (recording, _) = record("sph", DebugAgents::Ids(vec![0, 7, 9999]), true, 10);
     let timelines: Vec<String> = recording.timelines().into_iter().collect();
     assert_eq!(timelines, ["frame", "sim_time"]);

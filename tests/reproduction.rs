@@ -13,14 +13,14 @@ use tempfile::TempDir;
 
 /// Records the progress of a run.
 #[derive(Default)]
-struct Ear {
+struct Log {
     begun: Mutex<Vec<[usize; 2]>>,
     finished: Mutex<Vec<String>>,
     notes: Mutex<Vec<String>>,
     seconds: Mutex<[f64; 2]>,
 }
 
-impl Listener for Ear {
+impl Listener for Log {
     fn begins(&self, cases: usize, kept: usize, seconds: f64) {
         self.begun.lock().unwrap().push([cases, kept]);
         self.seconds.lock().unwrap()[0] += seconds;
@@ -59,16 +59,16 @@ fn kept_files(store: &Store) -> Vec<PathBuf> {
 
 /// Runs cases; returns how many were computed and how many were kept, and the notes.
 fn computed(store: &Store, cases: &[Case]) -> ([usize; 2], Vec<String>) {
-    let ear = Ear::default();
-    let results = run(store, cases, &ear).unwrap();
+    let log = Log::default();
+    let results = run(store, cases, &log).unwrap();
     for case in cases {
         results.of(case).unwrap();
     }
-    let begun = ear.begun.lock().unwrap()[0];
-    assert_eq!(ear.finished.lock().unwrap().len(), begun[0]);
-    let [expected, told] = *ear.seconds.lock().unwrap();
+    let begun = log.begun.lock().unwrap()[0];
+    assert_eq!(log.finished.lock().unwrap().len(), begun[0]);
+    let [expected, told] = *log.seconds.lock().unwrap();
     assert!((expected - told).abs() < 1e-9, "{told} of {expected}");
-    (begun, ear.notes.into_inner().unwrap())
+    (begun, log.notes.into_inner().unwrap())
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn finished_cases_are_not_run_again_and_new_ones_are() {
 }
 
 #[test]
-fn what_is_kept_is_what_was_computed() {
+fn kept_results_equal_computed_results() {
     let (_folder, store) = store();
     let case = short(4).snapshot(0.2);
     let first = run(&store, slice::from_ref(&case), &()).unwrap();
@@ -114,7 +114,7 @@ fn what_is_kept_is_what_was_computed() {
 }
 
 #[test]
-fn a_damaged_file_is_noted_and_computed_again() {
+fn a_damaged_result_is_noted_and_computed_again() {
     let (_folder, store) = store();
     computed(&store, &[short(1)]);
     let file = kept_files(&store).remove(0);
@@ -128,7 +128,7 @@ fn a_damaged_file_is_noted_and_computed_again() {
 }
 
 #[test]
-fn a_file_of_another_case_is_not_believed() {
+fn a_result_of_another_case_is_not_used() {
     let (_folder, store) = store();
     computed(&store, &[short(1), short(2)]);
     let files = kept_files(&store);
@@ -139,7 +139,7 @@ fn a_file_of_another_case_is_not_believed() {
 }
 
 #[test]
-fn the_same_run_is_run_once_and_keeps_all_that_is_asked_of_it() {
+fn equal_runs_are_run_once_and_keep_all_requested_snapshots() {
     let (_folder, store) = store();
     let (early, late) = (short(1).snapshot(0.1), short(1).snapshot(0.4));
     assert_eq!(computed(&store, &[early.clone(), late.clone()]).0, [1, 0]);
@@ -155,7 +155,7 @@ fn key(case: &Case) -> Key {
 }
 
 #[test]
-fn a_key_tells_settings_seeds_and_company_apart_and_is_readable() {
+fn keys_are_readable_and_distinguish_settings_seeds_and_runs_alone() {
     let case = || short(1).set("profile", "rvo->sph").set("gas_constant", 100);
     let others = [
         short(1),
@@ -174,7 +174,7 @@ fn a_key_tells_settings_seeds_and_company_apart_and_is_readable() {
 }
 
 #[test]
-fn a_case_that_makes_no_sense_is_refused_before_anything_runs() {
+fn an_invalid_case_is_refused_before_anything_runs() {
     let (_folder, store) = store();
     let wrong = [short(1), short(1).set("gas_constant", -1)];
     let error = run(&store, &wrong, &()).err().unwrap();
@@ -184,7 +184,7 @@ fn a_case_that_makes_no_sense_is_refused_before_anything_runs() {
 }
 
 #[test]
-fn a_result_that_cannot_be_kept_is_named_and_those_before_it_are_kept() {
+fn an_unwritable_result_is_named_and_earlier_results_are_kept() {
     let (_folder, store) = store();
     // The longest cases begin first, so that `first` is finished by then.
     let (first, last) = (short(1).taking(1.0), short(2));
@@ -203,7 +203,7 @@ fn a_result_that_cannot_be_kept_is_named_and_those_before_it_are_kept() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_made_is_named() {
+fn a_folder_that_cannot_be_created_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
@@ -214,7 +214,7 @@ fn a_folder_that_cannot_be_made_is_named() {
 }
 
 #[test]
-fn every_product_has_a_name_of_its_own_and_only_cases_that_make_sense() {
+fn every_product_has_a_unique_name_and_valid_cases() {
     let mut names: Vec<&str> = PRODUCTS.iter().map(|product| product.name).collect();
     names.sort_unstable();
     let count = names.len();
@@ -260,7 +260,7 @@ fn four_rows_of_table_1_stay_inside_their_bands() {
 }
 
 #[test]
-fn tables_are_written_in_three_forms_from_what_is_kept() {
+fn tables_are_written_in_three_formats_from_kept_results() {
     let (folder, store) = store();
     let table2 = PRODUCTS.iter().find(|p| p.name == "table2").unwrap();
     let plan = Plan { seeds: 1 };

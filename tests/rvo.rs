@@ -2,7 +2,7 @@
 
 use crate::common;
 use crate::common::{
-    acceleration, blend, block, evaluated, laid_open, person, rectangle, run, scene, vector, walker,
+    acceleration, blend, block, breakdown, evaluated, person, rectangle, run, scene, vector, walker,
 };
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -169,7 +169,7 @@ fn open_field() -> Situation {
 }
 
 #[test]
-fn of_equal_costs_the_first_is_chosen() {
+fn the_first_of_equal_costs_is_chosen() {
     let quarter = |number: u32| Candidate {
         length: 1.0,
         turn: number << 30,
@@ -182,7 +182,7 @@ fn of_equal_costs_the_first_is_chosen() {
 }
 
 #[test]
-fn the_order_of_neighbours_does_not_change_the_choice() {
+fn the_order_of_neighbors_does_not_change_the_choice() {
     let mut rng = ChaCha8Rng::seed_from_u64(2);
     for _ in 0..500 {
         let situation = random_situation(&mut rng);
@@ -217,7 +217,7 @@ fn among(profile: &str, others: &[NewAgent], obstacles: Vec<Polygon>) -> Vector 
 }
 
 #[test]
-fn neighbours_count_just_inside_five_metres_and_not_outside() {
+fn neighbors_count_only_within_five_meters() {
     for profile in ["rvo", "sf"] {
         let alone = among(profile, &[], Vec::new());
         let with = |distance: f64, angle: f64| {
@@ -237,7 +237,7 @@ fn neighbours_count_just_inside_five_metres_and_not_outside() {
 }
 
 #[test]
-fn walls_count_just_inside_five_metres_and_not_outside() {
+fn walls_count_only_within_five_meters() {
     let facing = |profile: &str, x: f64, seed: u64| {
         let mut scene = scene(vec![rectangle([x, x + 1.0], [-9.0, 9.0])], blend(profile));
         scene.seed = seed;
@@ -263,7 +263,7 @@ fn walls_count_just_inside_five_metres_and_not_outside() {
 }
 
 #[test]
-fn those_who_touch_already_are_ignored() {
+fn agents_that_already_touch_are_ignored() {
     let alone = among("rvo+sph", &[], Vec::new());
     let with = |distance: f64| {
         let other = person(vector(distance, 0.0), vector(0.0, 9.0));
@@ -272,7 +272,7 @@ fn those_who_touch_already_are_ignored() {
             walker(Vector::zeros(), vector(1.4, 0.0), vector(90.0, 0.0)),
             other,
         ];
-        laid_open(&evaluated(scene), 0).profiles[0]
+        breakdown(&evaluated(scene), 0).profiles[0]
             .accelerations
             .rvo
             .unwrap()
@@ -282,11 +282,11 @@ fn those_who_touch_already_are_ignored() {
 }
 
 #[test]
-fn a_wall_that_touches_already_is_ignored() {
+fn a_wall_that_already_touches_is_ignored() {
     let rvo = |x: f64| {
         let mut scene = scene(vec![rectangle([x, x + 1.0], [-9.0, 9.0])], blend("rvo"));
         scene.agents = vec![walker(Vector::zeros(), vector(1.4, 0.0), vector(90.0, 0.0))];
-        laid_open(&evaluated(scene), 0).profiles[0]
+        breakdown(&evaluated(scene), 0).profiles[0]
             .accelerations
             .rvo
             .unwrap()
@@ -296,7 +296,7 @@ fn a_wall_that_touches_already_is_ignored() {
     assert_ne!(rvo(0.241), alone);
 }
 
-fn held(simulation: &Simulation, id: u32) -> Option<Vector> {
+fn current_choice(simulation: &Simulation, id: u32) -> Option<Vector> {
     let agents = simulation.frame().agents;
     agents.avoidance[agents.index_of(id).unwrap()]
 }
@@ -309,7 +309,7 @@ fn a_choice_is_held_for_five_frames() {
     let mut before = None;
     for frame in 0..30 {
         simulation.evaluate().unwrap();
-        let now: Vec<Option<Vector>> = (0..9).map(|id| held(&simulation, id)).collect();
+        let now: Vec<Option<Vector>> = (0..9).map(|id| current_choice(&simulation, id)).collect();
         assert!(now.iter().all(Option::is_some));
         match before {
             Some(before) if frame % 5 != 0 => assert_eq!(now, before),
@@ -322,7 +322,7 @@ fn a_choice_is_held_for_five_frames() {
 }
 
 #[test]
-fn the_choice_comes_when_its_weight_becomes_positive_and_goes_when_it_is_zero() {
+fn a_choice_exists_only_while_its_weight_is_positive() {
     // A dense block with more than 4 P/m² that disperses.
     let mut scene = scene(Vec::new(), blend("rvo->sph"));
     let centre = vector(1.8, 1.8);
@@ -367,7 +367,7 @@ fn candidates_depend_on_the_coarse_frame() {
     for _ in 0..10 {
         simulation.evaluate().unwrap();
         let (_, velocity) = common::state(&simulation, 0);
-        choices.push(held(&simulation, 0).unwrap() * 0.1 + velocity);
+        choices.push(current_choice(&simulation, 0).unwrap() * 0.1 + velocity);
         run(&mut simulation, 5);
     }
     // For a lone agent, the best of 250 candidates is close to the preferred velocity, but never equal.

@@ -160,14 +160,14 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
 ];
 
 #[test]
-fn a_setting_at_fault_is_named() {
+fn an_invalid_setting_is_named() {
     for [setting, expected] in BROKEN_SETTINGS {
         assert_eq!(message(WHOLE, &[setting]), *expected, "{setting}");
     }
 }
 
 #[test]
-fn a_fault_of_the_file_is_not_put_on_the_settings() {
+fn a_mistake_in_the_file_is_not_blamed_on_the_settings() {
     assert_eq!(
         message(&with("/max_speed", 0.into()), &["seed=7", "viscosity=5"]),
         "f.json: max_speed: must be above 0 and at most 100, not 0"
@@ -175,7 +175,7 @@ fn a_fault_of_the_file_is_not_put_on_the_settings() {
 }
 
 #[test]
-fn a_file_that_is_not_there_is_named() {
+fn a_missing_file_is_named() {
     let error = Scenario::load("no/such.json".as_ref(), &[]).unwrap_err();
     assert!(error.to_string().starts_with("no/such.json: No such file"));
     let error = Scenario::shipped("concerto", &[]).unwrap_err();

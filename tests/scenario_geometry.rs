@@ -45,7 +45,7 @@ fn state_after(scenario: &Scenario, frames: u64) -> String {
 }
 
 #[test]
-fn files_are_found_beside_the_scenario_and_written_out_in_its_document() {
+fn plans_are_found_next_to_the_scenario_and_inlined_in_its_document() {
     let document = json!({"walkable_area": "plans/room.wkt", "obstacles": "plans/kiosk.wkt",
                           "grids": people()});
     let (_folder, path) = folder(&document);
@@ -72,7 +72,7 @@ fn files_are_found_beside_the_scenario_and_written_out_in_its_document() {
 }
 
 #[test]
-fn what_is_wrong_with_a_plan_is_said_with_the_scenario_the_key_and_the_file() {
+fn mistakes_in_a_plan_are_reported_with_the_scenario_the_key_and_the_file() {
     for (changes, said) in [
         (
             json!({"walkable_area": "plans/line.wkt"}),
@@ -134,7 +134,7 @@ fn what_is_wrong_with_a_plan_is_said_with_the_scenario_the_key_and_the_file() {
 }
 
 #[test]
-fn a_plan_of_the_command_line_takes_the_place_of_the_scenarios_walls() {
+fn a_plan_on_the_command_line_replaces_the_walls_of_the_scenario() {
     let document = json!({"walkable_area": "plans/room.wkt", "obstacles": "plans/kiosk.wkt",
                           "grids": people()});
     let (folder, path) = folder(&document);
@@ -160,7 +160,7 @@ fn a_plan_of_the_command_line_takes_the_place_of_the_scenarios_walls() {
 }
 
 #[test]
-fn passengers_cross_the_station_and_a_checkpoint_of_it_needs_no_floor_plan() {
+fn passengers_cross_the_station_and_its_checkpoint_needs_no_floor_plan() {
     let scenario = Scenario::load(&station(), &[]).unwrap();
     let walls = &scenario.scene.walls;
     // The hall, the stairs and the exits form one area; the bakery at the wall is cut out.
@@ -207,7 +207,7 @@ fn passengers_cross_the_station_and_a_checkpoint_of_it_needs_no_floor_plan() {
 }
 
 #[test]
-fn the_walkable_area_of_a_trajectory_is_a_floor_plan_again() {
+fn the_walkable_area_of_a_trajectory_can_be_used_as_a_floor_plan() {
     let evacuation = Scenario::shipped("evacuation", &[]).unwrap();
     for scenario in [Scenario::load(&station(), &[]).unwrap(), evacuation] {
         let folder = tempfile::tempdir().unwrap();

@@ -35,7 +35,7 @@ const EXTREMES: [f64; 14] = [
 ];
 
 /// Values that are invalid in many places.
-fn nasty() -> impl Strategy<Value = Value> {
+fn invalid_value() -> impl Strategy<Value = Value> {
     prop_oneof![
         Just(Value::Null),
         any::<bool>().prop_map(Value::from),
@@ -85,7 +85,7 @@ fn any_json() -> impl Strategy<Value = Value> {
         "[a-z_]{0,5}",
         select(known.to_vec()).prop_map(str::to_owned),
     ];
-    nasty().prop_recursive(5, 40, 6, move |inner| {
+    invalid_value().prop_recursive(5, 40, 6, move |inner| {
         prop_oneof![
             prop::collection::vec(inner.clone(), 0..6).prop_map(Value::from),
             prop::collection::btree_map(key.clone(), inner, 0..6)
@@ -192,9 +192,9 @@ fn any_json_is_read_or_refused() {
 }
 
 #[test]
-fn a_scenario_with_values_changed_is_read_or_refused() {
+fn a_scenario_with_changed_values_is_read_or_refused() {
     let documents = small_scenarios();
-    let changes = || prop::collection::vec((any::<Index>(), 0..12_u8, nasty()), 1..4);
+    let changes = || prop::collection::vec((any::<Index>(), 0..12_u8, invalid_value()), 1..4);
     cases(
         26_000,
         || (0..documents.len(), changes()),
@@ -231,7 +231,7 @@ fn a_text_that_is_cut_doubled_or_nested_is_read_or_refused() {
 }
 
 #[test]
-fn any_setting_is_taken_or_refused() {
+fn any_setting_is_accepted_or_refused() {
     let known = [
         "profile",
         "sources.0.rows",
@@ -249,7 +249,7 @@ fn any_setting_is_taken_or_refused() {
     let text = small_scenarios().pop().unwrap().to_string();
     cases(
         12_000,
-        || (key(), nasty()),
+        || (key(), invalid_value()),
         |(key, value)| {
             let setting = format!("{key}={value}").parse::<Setting>();
             setting.map_or(1 << 20, |setting| read(&text, &[setting]))

@@ -150,7 +150,7 @@ fn the_documented_defaults_of_scenarios_are_those_of_the_engine() {
 }
 
 #[test]
-fn a_smaller_step_keeps_the_coarse_step_unless_told_otherwise() {
+fn a_smaller_time_step_keeps_the_coarse_step_unless_it_is_set() {
     assert_eq!(
         parse(&["time_step_secs=0.01"]).scene.clock.coarse_every(),
         10
@@ -160,7 +160,7 @@ fn a_smaller_step_keeps_the_coarse_step_unless_told_otherwise() {
 }
 
 #[test]
-fn a_scenario_that_names_nobody_to_lay_open_gets_a_dozen_from_first_to_last() {
+fn a_scenario_without_debug_agents_gets_twelve_from_first_to_last() {
     let sources = r#"sources=[{"min": [0, 0], "max": [0, 9], "columns": 1, "rows": 10,
         "every_secs": 1, "times": 12}]"#;
     let chosen = parse(&["goal=[9, 5]", sources]).debug_agents;
@@ -175,7 +175,7 @@ fn a_scenario_that_names_nobody_to_lay_open_gets_a_dozen_from_first_to_last() {
 }
 
 #[test]
-fn a_preset_fills_in_what_is_not_said_otherwise() {
+fn a_preset_fills_in_values_that_are_not_given() {
     let paper = parse(&["preset=paper"]).scene;
     let bare = parse(&[]).scene;
     assert_eq!(

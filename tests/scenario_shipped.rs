@@ -33,7 +33,7 @@ fn every_shipped_scenario_describes_itself_and_shows_a_dozen_agents() {
 }
 
 #[test]
-fn the_evacuation_is_400_people_and_one_door() {
+fn the_evacuation_has_400_people_and_one_door() {
     let scenario = shipped("evacuation", &[]);
     assert_eq!(scenario.profile_name, "sph");
     assert_eq!(scenario.scene.agents.len(), 400);
@@ -68,7 +68,7 @@ fn the_evacuation_is_400_people_and_one_door() {
 }
 
 #[test]
-fn the_crossing_is_mirrored_and_open_where_people_walk() {
+fn the_crossing_is_symmetric_and_free_where_people_walk() {
     let scenario = shipped("crossing", &[]);
     assert_eq!(scenario.profile_name, "rvo->sph");
     assert_eq!(scenario.scene.agents.len(), 224);
@@ -110,7 +110,7 @@ fn the_crossing_is_mirrored_and_open_where_people_walk() {
 }
 
 #[test]
-fn the_concert_is_a_hundred_rows_of_a_hundred_and_a_push() {
+fn the_concert_has_a_hundred_rows_of_a_hundred_people_and_a_push() {
     let scenario = shipped("concert", &[]);
     assert!(scenario.scene.agents.is_empty());
     let rows = &scenario.scene.sources[0];
@@ -136,7 +136,7 @@ fn the_concert_is_a_hundred_rows_of_a_hundred_and_a_push() {
 }
 
 #[test]
-fn the_plaza_is_50_000_people_in_queues_and_in_streams() {
+fn the_plaza_has_50_000_people_in_queues_and_in_streams() {
     let scenario = shipped("plaza", &[]);
     assert_eq!(scenario.profile_name, "rvo->sph");
     let agents = &scenario.scene.agents;
@@ -158,7 +158,7 @@ fn the_plaza_is_50_000_people_in_queues_and_in_streams() {
 }
 
 #[test]
-fn settings_reach_every_profile_and_any_place() {
+fn settings_apply_to_every_profile_and_to_nested_values() {
     let scenario = shipped(
         "concert",
         &[
@@ -201,7 +201,7 @@ fn profiles_of_a_blend_have_their_own_tolerances() {
 }
 
 #[test]
-fn a_blend_in_full_is_the_papers_blend() {
+fn a_blend_written_in_full_equals_the_named_blend() {
     let scenario = parse(
         r#"{"profile": {"name": "sf->sph", "blend": [
             {"at_density": 2, "profile": "sf"},
@@ -218,7 +218,7 @@ fn a_blend_in_full_is_the_papers_blend() {
 }
 
 #[test]
-fn scenario_wide_parameters_go_before_those_of_profiles() {
+fn scenario_wide_parameters_override_those_of_profiles() {
     let scenario = parse(
         r#"{"profile": {"base": "sph", "parameters": {"viscosity": 1, "goal_scale": 3}},
             "parameters": {"viscosity": 2},
@@ -234,7 +234,7 @@ fn scenario_wide_parameters_go_before_those_of_profiles() {
 }
 
 #[test]
-fn agents_of_one_behaviour_share_a_group_and_keep_what_they_are_given() {
+fn agents_with_equal_behavior_share_a_group_and_keep_their_own_values() {
     let scenario = parse(
         r#"{"goal": [9, 9], "agents": [
             {"position": [0, 0]},

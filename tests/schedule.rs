@@ -1,6 +1,6 @@
 //! When agents enter, push and leave.
 
-use crate::common::{acceleration, blend, block, laid_open, run, scene, state, vector, walker};
+use crate::common::{acceleration, blend, block, breakdown, run, scene, state, vector, walker};
 use sandbox::engine::math::Vector;
 use sandbox::engine::placement::Grid;
 use sandbox::engine::profile::Override;
@@ -8,7 +8,7 @@ use sandbox::engine::scene::{Goal, Push, Region, Scene, Source};
 use sandbox::engine::simulation::{EventKind, Simulation};
 
 #[test]
-fn arrivals_are_timed_after_moving_and_leave_in_the_same_frame() {
+fn agents_arrive_after_moving_and_leave_in_the_same_frame() {
     let mut scene = scene(Vec::new(), blend("sph"));
     scene.groups[0].removal_radius = Some(0.5);
     // 1.4 m/s, 0.028 m per frame: within 0.5 m of the goal after 18 moves (0.504 m), not 17.
@@ -48,7 +48,7 @@ fn row(start: f64, every: f64, times: Option<u32>) -> Source {
 }
 
 #[test]
-fn a_source_lets_its_rows_in_on_time_and_then_no_more() {
+fn a_source_adds_its_rows_on_time_and_then_stops() {
     let mut scene = scene(Vec::new(), blend("sph"));
     scene.sources = vec![row(0.25, 1.0, Some(3))];
     let mut simulation = Simulation::new(scene).unwrap();
@@ -106,7 +106,7 @@ fn push_scene(change: Override) -> Scene {
 }
 
 #[test]
-fn a_push_changes_those_in_its_region_for_its_time_and_the_others_still_feel_them() {
+fn a_push_changes_agents_in_its_region_and_others_still_feel_them() {
     let change = Override {
         goal_scale: Some(2.5),
         ignore_contact: true,
@@ -124,7 +124,7 @@ fn a_push_changes_those_in_its_region_for_its_time_and_the_others_still_feel_the
             assert!(!pushing.is_empty() && pushing.len() < 24);
         }
         for id in 0..24 {
-            let agent = laid_open(&simulation, id);
+            let agent = breakdown(&simulation, id);
             let terms = agent.profiles[0].accelerations;
             let active = (10..25).contains(&frame) && pushing.contains(&id);
             assert_eq!(
@@ -147,7 +147,7 @@ fn a_push_changes_those_in_its_region_for_its_time_and_the_others_still_feel_the
             let agents = simulation.frame().agents;
             let others = (0..24).filter(|id| !pushing.contains(id));
             let feels = others.filter(|&id| {
-                let near = laid_open(&simulation, id).neighbors;
+                let near = breakdown(&simulation, id).neighbors;
                 near.iter().any(|neighbor| pushing.contains(&neighbor.id))
             });
             assert!(feels.count() > 0 && agents.len() == 24);
@@ -169,18 +169,19 @@ fn a_push_changes_those_in_its_region_for_its_time_and_the_others_still_feel_the
 }
 
 #[test]
-fn pushing_does_not_change_the_forces_on_the_others() {
+fn a_push_does_not_change_the_forces_on_other_agents() {
     let nothing = Override {
         goal_scale: None,
         ignore_contact: false,
         ignore_sph: false,
     };
-    let deaf = Override {
+    let ignoring = Override {
         goal_scale: Some(9.0),
         ignore_contact: true,
         ignore_sph: true,
     };
-    let [mut calm, mut pushed] = [nothing, deaf].map(|c| Simulation::new(push_scene(c)).unwrap());
+    let [mut calm, mut pushed] =
+        [nothing, ignoring].map(|c| Simulation::new(push_scene(c)).unwrap());
     for simulation in [&mut calm, &mut pushed] {
         run(simulation, 10);
         simulation.evaluate().unwrap();

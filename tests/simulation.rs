@@ -1,7 +1,7 @@
 //! Time stepping, entries, pushes, arrivals and faults, through the public API.
 
 use crate::common::{
-    blend, blend_with, block, laid_open, person, rectangle, room, run, scene, state, vector,
+    blend, blend_with, block, breakdown, person, rectangle, room, run, scene, state, vector,
 };
 use proptest::prelude::*;
 use sandbox::engine::agents::NewAgent;
@@ -43,7 +43,7 @@ proptest! {
 }
 
 #[test]
-fn nobody_is_faster_than_the_maximum_speed_whatever_pushes() {
+fn no_agent_exceeds_the_maximum_speed() {
     let mut scene = scene(Vec::new(), blend("sf"));
     scene.agents = block(Vector::zeros(), 10, 10, 0.15, vector(50.0, 0.0));
     let mut simulation = Simulation::new(scene).unwrap();
@@ -62,7 +62,7 @@ fn nobody_is_faster_than_the_maximum_speed_whatever_pushes() {
 }
 
 #[test]
-fn whoever_starts_in_an_obstacle_is_put_out_and_reported() {
+fn agents_that_start_in_an_obstacle_are_moved_out_and_reported() {
     let obstacles = vec![
         rectangle([0.0, 4.0], [0.0, 4.0]),
         rectangle([4.0, 8.0], [1.0, 3.0]),
@@ -82,7 +82,7 @@ fn whoever_starts_in_an_obstacle_is_put_out_and_reported() {
 }
 
 #[test]
-fn the_moving_average_starts_with_the_agents_alone() {
+fn the_moving_average_starts_without_the_density_from_walls() {
     let mut scene = scene(vec![rectangle([-9.0, 9.0], [-1.0, 0.0])], blend("sph"));
     scene.agents = vec![
         person(vector(0.0, 0.4), vector(9.0, 9.0)),
@@ -95,7 +95,7 @@ fn the_moving_average_starts_with_the_agents_alone() {
     let mut simulation = Simulation::new(scene).unwrap();
     simulation.evaluate().unwrap();
     for id in 0..3 {
-        let agent = laid_open(&simulation, id);
+        let agent = breakdown(&simulation, id);
         let before = if id == 2 {
             2.0
         } else {
@@ -107,16 +107,16 @@ fn the_moving_average_starts_with_the_agents_alone() {
         assert!((agent.mean_density - (0.8 * before + 0.2 * agent.density)).abs() < 1e-12);
         assert_eq!(agent.rest_density, agent.mean_density.min(5.0));
     }
-    let first = laid_open(&simulation, 0);
+    let first = breakdown(&simulation, 0);
     simulation.integrate().unwrap();
     simulation.evaluate().unwrap();
-    let second = laid_open(&simulation, 0);
+    let second = breakdown(&simulation, 0);
     let expected = 0.8 * first.mean_density + 0.2 * second.density;
     assert!((second.mean_density - expected).abs() < 1e-12);
 }
 
 #[test]
-fn a_state_that_is_not_finite_is_reported_with_frame_agent_and_quantity() {
+fn a_non_finite_state_is_reported_with_frame_agent_and_quantity() {
     let broken = |name: &str, agent: NewAgent| {
         let mut scene = scene(vec![room(9.0, 1.0)], blend(name));
         scene.agents = vec![person(vector(3.0, 3.0), vector(10.0, 4.5)), agent];
@@ -159,7 +159,7 @@ fn a_state_that_is_not_finite_is_reported_with_frame_agent_and_quantity() {
 }
 
 #[test]
-fn a_run_that_blows_up_stops_before_anybody_has_moved() {
+fn a_run_that_blows_up_stops_before_any_agent_moves() {
     let parameters = Parameters {
         gas_constant: Some(1e308),
         ..Parameters::default()
@@ -187,7 +187,7 @@ fn a_run_that_blows_up_stops_before_anybody_has_moved() {
 }
 
 #[test]
-fn a_room_of_a_hundred_empties_and_every_density_is_positive() {
+fn a_hundred_people_leave_a_room_and_every_density_is_positive() {
     let mut scene = scene(vec![room(10.0, 0.8)], blend("sph"));
     scene.groups[0].removal_radius = Some(0.5);
     scene.agents = block(vector(0.5, 0.5), 10, 10, 1.0, vector(12.0, 5.0));

@@ -109,7 +109,7 @@ fn switched_off_terms_need_nothing() {
 }
 
 #[test]
-fn looking_for_arrivals_is_a_stage_that_scenes_without_removal_skip() {
+fn scenes_without_removal_skip_the_search_for_arrivals() {
     let mut simulation = crowd(blend("sph"));
     common::run(&mut simulation, 3);
     assert!(!stages(&simulation).contains(&Stage::Removal));
@@ -123,7 +123,7 @@ fn looking_for_arrivals_is_a_stage_that_scenes_without_removal_skip() {
 }
 
 #[test]
-fn who_feels_nobody_still_walks() {
+fn agents_without_forces_still_walk() {
     let none = Parameters {
         gas_constant: Some(0.0),
         agent_stiffness: Some(0.0),
@@ -139,7 +139,7 @@ fn who_feels_nobody_still_walks() {
 }
 
 #[test]
-fn without_avoidance_nobody_looks_five_metres_far() {
+fn without_avoidance_no_neighbors_within_five_meters_are_searched() {
     let scene = crowd(blend("sph")).scene().clone();
     assert_eq!(scene.ranges(&scene.needs()).avoidance, None);
     let scene = crowd(blend("sf")).scene().clone();
@@ -147,7 +147,7 @@ fn without_avoidance_nobody_looks_five_metres_far() {
 }
 
 #[test]
-fn the_density_is_there_as_long_as_it_was_asked_for() {
+fn densities_exist_as_long_as_they_are_requested() {
     for name in ["sf", "rvo"] {
         let mut simulation = crowd(blend(name));
         simulation.request_density_until(7);
@@ -169,7 +169,7 @@ fn the_density_is_there_as_long_as_it_was_asked_for() {
 }
 
 #[test]
-fn agents_far_from_walls_have_no_walls_to_work_on() {
+fn agents_far_from_walls_have_empty_lists_of_walls() {
     let mut scene = scene(vec![room(60.0, 1.0)], blend("sph"));
     scene.wall_method = WallMethod::Union;
     scene.agents = block(vector(25.0, 25.0), 5, 5, 0.5, vector(61.0, 30.0));
@@ -188,7 +188,7 @@ fn agents_far_from_walls_have_no_walls_to_work_on() {
 }
 
 #[test]
-fn a_moving_average_that_was_interrupted_starts_anew() {
+fn an_interrupted_moving_average_restarts() {
     // Two agents meet after the last requested density, so that the old average is out of date.
     let mut scene = scene(Vec::new(), blend("sf"));
     scene.agents = vec![
@@ -201,7 +201,7 @@ fn a_moving_average_that_was_interrupted_starts_anew() {
     simulation.request_density_until(121);
     simulation.evaluate().unwrap();
     for id in 0..2 {
-        let agent = common::laid_open(&simulation, id);
+        let agent = common::breakdown(&simulation, id);
         assert!(
             agent.neighbors.len() == 1 && agent.density > 1.28,
             "{agent:?}"
@@ -211,7 +211,7 @@ fn a_moving_average_that_was_interrupted_starts_anew() {
 }
 
 #[test]
-fn who_walks_away_from_a_wall_feels_no_more_of_it_than_who_has_always_stood_there() {
+fn agents_that_leave_a_wall_feel_nothing_of_it() {
     let obstacle = || vec![rectangle([-1.0, 0.0], [-20.0, 20.0])];
     let crowd = |x: f64| block(vector(x, 0.0), 6, 6, 0.6, vector(30.0, 1.5));
     let mut walking = scene(obstacle(), blend("sph"));

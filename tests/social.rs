@@ -23,12 +23,12 @@ fn random(seed: u64) -> impl FnMut() -> f64 {
 }
 
 /// Eq. 18 for agent `i` of an evaluated frame, pair by pair: accelerations and their rounding errors.
-fn felt(simulation: &Simulation, i: usize) -> Vec<(Vector, f64)> {
-    felt_by(&SocialForce::default(), simulation, i)
+fn pair_forces(simulation: &Simulation, i: usize) -> Vec<(Vector, f64)> {
+    pair_forces_with(&SocialForce::default(), simulation, i)
 }
 
 /// The same with other parameters.
-fn felt_by(social: &SocialForce, simulation: &Simulation, i: usize) -> Vec<(Vector, f64)> {
+fn pair_forces_with(social: &SocialForce, simulation: &Simulation, i: usize) -> Vec<(Vector, f64)> {
     let agents = simulation.frame().agents;
     let others = (0..agents.len()).filter(|&j| j != i);
     let pairs = others.filter_map(|j| {
@@ -50,10 +50,10 @@ fn felt_by(social: &SocialForce, simulation: &Simulation, i: usize) -> Vec<(Vect
 }
 
 /// The sum as computed by the engine.
-fn summed(simulation: &Simulation, i: usize) -> Vector {
+fn engine_sum(simulation: &Simulation, i: usize) -> Vector {
     let frame = simulation.frame();
-    let laid_open = common::laid_open(simulation, frame.agents.id[i]);
-    let terms = laid_open.profiles[0].accelerations;
+    let breakdown = common::breakdown(simulation, frame.agents.id[i]);
+    let terms = breakdown.profiles[0].accelerations;
     terms.social_agents.unwrap()
 }
 
@@ -76,11 +76,11 @@ fn crowd(corner: Vector, side: f64, seed: u64, parameters: &Parameters) -> Scene
 fn largest_error(scene: Scene) -> f64 {
     let simulation = common::evaluated(scene);
     let error = |i: usize| {
-        let pairs = felt(&simulation, i);
+        let pairs = pair_forces(&simulation, i);
         let magnitude: f64 = pairs.iter().map(|(pair, _)| pair.norm()).sum();
         let noise: f64 = pairs.iter().map(|(_, noise)| noise).sum();
         let sum: Vector = pairs.iter().map(|(pair, _)| pair).sum();
-        let difference = (summed(&simulation, i) - sum).norm() - noise;
+        let difference = (engine_sum(&simulation, i) - sum).norm() - noise;
         if difference > 0.0 {
             difference / magnitude
         } else {
@@ -115,7 +115,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn sums_over_crowds_are_those_of_the_equation(
+    fn sums_over_crowds_agree_with_the_equation(
         seed in 0_u64..1_000_000,
         side in 3.0..60.0_f64,
         x in -1e4..1e4_f64,
@@ -152,20 +152,20 @@ proptest! {
         let simulation = common::evaluated(scene);
         for i in 0..300 {
             let mass = simulation.frame().agents.mass[i];
-            let pairs = felt(&simulation, i);
+            let pairs = pair_forces(&simulation, i);
             let sum: Vector = pairs.iter().map(|(pair, _)| pair).sum();
             let noise: f64 = pairs.iter().map(|(_, noise)| noise).sum();
             let sizes = pairs.iter().map(|(pair, _)| pair.norm());
             let small: f64 = sizes.filter(|a| a * mass < tolerance).sum();
             let allowed = small + noise + 1e-12 * sum.norm();
-            let left_out = (summed(&simulation, i) - sum).norm();
+            let left_out = (engine_sum(&simulation, i) - sum).norm();
             prop_assert!(left_out <= allowed, "{left_out:e} of {allowed:e}");
         }
     }
 }
 
 #[test]
-fn who_looks_far_ahead_feels_what_the_equation_says() {
+fn long_anticipation_times_agree_with_the_equation() {
     for anticipation_time in [20.0, 100.0, 1000.0] {
         let parameters = Parameters {
             anticipation_time: Some(anticipation_time),
@@ -180,11 +180,11 @@ fn who_looks_far_ahead_feels_what_the_equation_says() {
             scene.precision = precision;
             let simulation = common::evaluated(scene);
             for i in 0..300 {
-                let pairs = felt_by(&social, &simulation, i);
+                let pairs = pair_forces_with(&social, &simulation, i);
                 let sum: Vector = pairs.iter().map(|(pair, _)| pair).sum();
                 let magnitude: f64 = pairs.iter().map(|(pair, _)| pair.norm()).sum();
                 let noise: f64 = pairs.iter().map(|(_, noise)| noise).sum();
-                let error = (summed(&simulation, i) - sum).norm();
+                let error = (engine_sum(&simulation, i) - sum).norm();
                 assert!(
                     error <= 1e-4 * magnitude + noise,
                     "{error:e} of {magnitude:e}"
@@ -195,7 +195,7 @@ fn who_looks_far_ahead_feels_what_the_equation_says() {
 }
 
 #[test]
-fn a_tolerance_leaves_somebody_out_and_mixed_precision_is_not_double() {
+fn a_tolerance_omits_forces_and_mixed_precision_differs_from_double() {
     let still = |tolerance| {
         let parameters = Parameters {
             avoidance_tolerance: Some(tolerance),
@@ -215,7 +215,7 @@ fn a_tolerance_leaves_somebody_out_and_mixed_precision_is_not_double() {
 }
 
 #[test]
-fn nobody_beyond_the_reach_of_a_tolerance_exerts_more_than_it() {
+fn forces_beyond_the_reach_are_within_the_tolerance() {
     let social = SocialForce {
         avoidance_radius: 50.0,
         avoidance_tolerance: 1e-3,
@@ -235,14 +235,14 @@ fn nobody_beyond_the_reach_of_a_tolerance_exerts_more_than_it() {
 }
 
 #[test]
-fn two_who_meet_head_on_feel_nothing_and_nearly_so_nearly_all() {
+fn an_exact_head_on_course_gives_no_force_and_a_nearly_exact_one_gives_the_limit() {
     let pair = |aside: f64| {
         let mut scene = scene(vec![], blend("sf"));
         scene.agents = vec![
             walker(vector(0.0, 0.0), vector(1.0, 0.0), vector(9.0, 0.0)),
             walker(vector(2.0, aside), vector(-1.0, 0.0), vector(-9.0, 0.0)),
         ];
-        summed(&common::evaluated(scene), 0)
+        engine_sum(&common::evaluated(scene), 0)
     };
     // r_ij and r_ij + s are opposite: b = 0, where the potential has an edge and no gradient.
     assert_eq!(pair(0.0), Vector::zeros());
@@ -255,19 +255,19 @@ fn two_who_meet_head_on_feel_nothing_and_nearly_so_nearly_all() {
 }
 
 #[test]
-fn who_stands_in_the_same_place_gives_no_force() {
+fn coincident_agents_exert_no_force() {
     for velocity in [vector(0.0, 0.0), vector(1.0, 0.0)] {
         let mut scene = scene(vec![], blend("sf"));
         scene.agents = vec![
             walker(vector(0.0, 0.0), vector(0.0, 0.0), vector(9.0, 0.0)),
             walker(vector(0.0, 0.0), velocity, vector(9.0, 0.0)),
         ];
-        assert_eq!(summed(&common::evaluated(scene), 0), Vector::zeros());
+        assert_eq!(engine_sum(&common::evaluated(scene), 0), Vector::zeros());
     }
 }
 
 #[test]
-fn groups_follow_their_own_laws_side_by_side() {
+fn each_group_uses_its_own_parameters() {
     let strong = Parameters {
         agent_strength: Some(4.2),
         ..Parameters::default()
@@ -288,6 +288,6 @@ fn groups_follow_their_own_laws_side_by_side() {
     ];
     let simulation = common::evaluated(scene);
     let agents = simulation.frame().agents;
-    let [plain, strong] = [0, 1].map(|id| summed(&simulation, agents.index_of(id).unwrap()));
+    let [plain, strong] = [0, 1].map(|id| engine_sum(&simulation, agents.index_of(id).unwrap()));
     assert!(plain.norm() > 0.1 && (strong + plain * 2.0).norm() < 1e-12);
 }

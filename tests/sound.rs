@@ -61,7 +61,7 @@ fn frequency_squared(lattice: &Lattice, q: f64) -> f64 {
 }
 
 #[test]
-fn the_lattice_sums_are_the_engine_linearised() {
+fn the_lattice_sums_agree_with_the_linearized_engine() {
     for (gas_constant, agent_stiffness) in [(50.0, 0.0), (200.0, 50.0), (800.0, 1000.0)] {
         let lattice = lattice(0.465, gas_constant, agent_stiffness);
         for q in [0.3, 1.0, 3.0] {
@@ -75,7 +75,7 @@ fn the_lattice_sums_are_the_engine_linearised() {
 }
 
 #[test]
-fn long_waves_run_at_the_root_of_half_k_plus_contacts() {
+fn long_waves_have_the_theoretical_speed_with_and_without_contacts() {
     let (apart, touching) = (lattice(0.465, 200.0, 0.0), lattice(0.465, 200.0, 50.0));
     let q = 0.3;
     let engine = frequency_squared(&apart, q).sqrt() / q;
@@ -93,7 +93,7 @@ fn long_waves_run_at_the_root_of_half_k_plus_contacts() {
 }
 
 #[test]
-fn the_modulus_of_a_lattice_is_measured_as_computed() {
+fn the_measured_modulus_of_a_lattice_agrees_with_the_theory() {
     let lattice = lattice(0.4799, 200.0, 50.0);
     let mut scene = scene(Vec::new(), blend_with("sph", &Parameters::default()));
     scene.agents = displaced(&lattice, 0.0, 0.0);
@@ -108,7 +108,7 @@ fn the_modulus_of_a_lattice_is_measured_as_computed() {
 }
 
 #[test]
-fn contacts_of_wide_discs_count_too() {
+fn contacts_of_large_discs_count_too() {
     let mut scene = scene(Vec::new(), blend_with("sph", &Parameters::default()));
     let wide = |x: f64| NewAgent {
         radius: Some(3.0),

@@ -44,44 +44,44 @@ fn sixty_people_on_one_point_come_apart() {
 }
 
 #[test]
-fn two_who_are_the_same_in_everything_stay_one_and_harm_nobody() {
+fn two_identical_agents_stay_together_and_cause_no_fault() {
     let found = survives("two_as_one", &[]);
     assert_eq!((found.entered, found.closest), (3, 0.0));
 }
 
 #[test]
-fn whoever_starts_inside_walls_is_put_out_and_counted() {
+fn agents_that_start_inside_walls_are_moved_out_and_counted() {
     let found = survives("inside_walls", &[]);
     assert_eq!((found.entered, found.displaced), (11, 10));
 }
 
 #[test]
-fn nobody_gets_through_a_corridor_that_is_narrower_than_a_person_by_a_wall() {
+fn no_agent_passes_the_walls_of_a_corridor_narrower_than_a_person() {
     survives("narrow_corridor", &[]);
 }
 
 #[test]
-fn a_thousand_people_press_through_a_doorway_of_thirty_centimetres_one_by_one() {
+fn a_thousand_people_pass_a_doorway_of_thirty_centimeters_slowly() {
     let found = survives("narrow_door", &[]);
     assert_eq!(found.entered, 1000);
     assert!(found.arrived < 50);
 }
 
 #[test]
-fn nobody_is_pressed_through_the_tip_of_a_corner_of_five_degrees() {
+fn no_agent_is_pressed_through_a_corner_of_five_degrees() {
     survives("wedge", &[]);
     survives("wedge", &["goal_scale=100"]);
 }
 
 #[test]
-fn a_wall_of_ten_thousand_edges_is_a_wall() {
+fn a_wall_of_ten_thousand_edges_holds() {
     survives("many_edges", &[]);
     let file = HARD.iter().find(|hard| hard.name == "many_edges").unwrap();
     assert!(file.scenario(&[]).unwrap().scene.walls.len() > 9_900);
 }
 
 #[test]
-fn a_wall_of_one_centimetre_holds_whatever_presses_against_it() {
+fn a_wall_of_one_centimeter_holds_a_pressing_crowd() {
     survives("thin_wall", &[]);
     // Without contact and SPH, only containment holds the agents.
     let bare = ["gas_constant=0", "wall_stiffness=0", "duration_secs=5"];
@@ -89,13 +89,13 @@ fn a_wall_of_one_centimetre_holds_whatever_presses_against_it() {
 }
 
 #[test]
-fn children_and_giants_stand_side_by_side() {
+fn very_small_and_very_large_agents_can_stand_together() {
     survives("radii", &[]);
     survives("radii", &["profile=sf"]);
 }
 
 #[test]
-fn a_crowd_a_million_metres_away_is_as_dense_as_one_at_home() {
+fn the_density_a_million_meters_away_is_that_at_the_origin() {
     let far = survives("far_away", &[]);
     assert_eq!(far.contained_moves, 0);
     let scenario = HARD.iter().find(|hard| hard.name == "far_away").unwrap();
@@ -122,14 +122,14 @@ fn a_crowd_a_million_metres_away_is_as_dense_as_one_at_home() {
 }
 
 #[test]
-fn stiff_gas_and_stiff_contact_shake_but_hold() {
+fn a_stiff_gas_and_stiff_contacts_oscillate_but_pass() {
     for name in ["stiff_gas", "stiff_contact"] {
         assert!(survives(name, &[]).clamped_speeds > 1000, "{name}");
     }
 }
 
 #[test]
-fn frames_of_half_a_second_take_nobody_through_a_wall_of_one_centimetre() {
+fn time_steps_of_half_a_second_take_no_agent_through_a_thin_wall() {
     let found = survives("long_step", &[]);
     assert!(found.contained_moves > 100);
     let fast = ["time_step_secs=1", "max_speed=100", "preferred_speed=100"];
@@ -137,13 +137,13 @@ fn frames_of_half_a_second_take_nobody_through_a_wall_of_one_centimetre() {
 }
 
 #[test]
-fn a_full_room_takes_in_everybody_who_comes() {
+fn a_full_room_admits_all_agents_of_its_sources() {
     let found = survives("full_room", &[]);
     assert_eq!(found.entered, 144 + 13 * 25);
 }
 
 #[test]
-fn goals_inside_an_obstacle_are_pressed_against_but_never_reached() {
+fn goals_inside_an_obstacle_are_rarely_reached() {
     let found = survives("goals_inside", &[]);
     assert!(found.entered == 260 && found.arrived <= 20, "{found:?}");
 }
@@ -157,7 +157,7 @@ fn a_crowd_at_rest_stays_at_rest_for_a_hundred_thousand_frames() {
 }
 
 #[test]
-fn every_hard_case_is_survived_by_every_profile_wall_method_and_integrator() {
+fn every_hard_case_passes_with_every_profile_wall_method_and_integrator() {
     for hard in HARD {
         for profile in NAMES {
             let profile = format!("profile={profile}");
@@ -180,7 +180,7 @@ fn every_hard_case_is_survived_by_every_profile_wall_method_and_integrator() {
 }
 
 #[test]
-fn the_bystander_sees_who_goes_through_a_wall() {
+fn the_watch_finds_agents_that_pass_through_a_wall() {
     let wall = rectangle([1.0, 1.01], [-9.0, 9.0]);
     let walled = Simulation::new(scene(vec![wall], blend("sph"))).unwrap();
     let mut free = scene(Vec::new(), blend("sph"));
@@ -196,7 +196,7 @@ fn the_bystander_sees_who_goes_through_a_wall() {
 }
 
 #[test]
-fn a_run_that_cannot_go_on_lays_open_whom_it_happened_to() {
+fn a_fault_gives_the_breakdown_of_its_agent() {
     for profile in ["sph", "sf", "rvo->sph"] {
         let huge = Parameters {
             gas_constant: Some(1e308),
@@ -230,7 +230,7 @@ fn a_run_that_cannot_go_on_lays_open_whom_it_happened_to() {
 }
 
 #[test]
-fn an_automatic_step_is_stable_and_no_less_than_seven_tenths_of_the_largest() {
+fn the_automatic_step_is_stable_and_at_least_70_percent_of_the_largest() {
     let paper = Rest::default();
     for crowd in [
         paper,
@@ -256,7 +256,7 @@ fn an_automatic_step_is_stable_and_no_less_than_seven_tenths_of_the_largest() {
 }
 
 #[test]
-fn a_step_of_twice_the_largest_shakes_a_crowd_at_rest() {
+fn a_crowd_at_rest_oscillates_with_twice_the_automatic_step() {
     let crowd = Rest {
         agent_stiffness: 1000.0,
         ..Rest::default()
@@ -276,7 +276,7 @@ fn a_step_of_twice_the_largest_shakes_a_crowd_at_rest() {
 }
 
 #[test]
-fn a_crowd_that_the_model_keeps_moving_goes_on_from_frame_to_frame_unless_the_step_is_too_long() {
+fn sustained_motion_is_persistent_unless_the_step_is_too_long() {
     let crowd = Rest {
         gas_constant: 3200.0,
         ..Rest::default()
@@ -296,7 +296,7 @@ fn a_crowd_that_the_model_keeps_moving_goes_on_from_frame_to_frame_unless_the_st
 }
 
 #[test]
-fn a_scenario_takes_the_automatic_step_and_says_where_it_is_unknown() {
+fn a_scenario_uses_the_automatic_step_and_refuses_it_where_it_is_unknown() {
     let parse = |text: &str| Scenario::parse(text, "f.json", &[]);
     let step = |text: &str| parse(text).unwrap().scene.clock.time_step();
     let soft =
@@ -334,7 +334,7 @@ fn a_scenario_takes_the_automatic_step_and_says_where_it_is_unknown() {
 }
 
 #[test]
-fn a_step_that_is_too_long_is_warned_of_with_its_number() {
+fn a_time_step_that_is_too_long_gives_a_warning() {
     let stderr = |step: &str, settings: &[&str]| {
         let arguments = ["evacuation", "--until", "1", "--time-step", step];
         let settings = settings.iter().flat_map(|setting| ["--set", setting]);

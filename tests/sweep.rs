@@ -11,7 +11,7 @@ use sandbox::lab::sweep::{Cell, Gathered, Listener, Shard, Shelf, State, Study, 
 
 /// Records the progress of a run.
 #[derive(Default)]
-struct Ear {
+struct Log {
     begun: Mutex<Vec<[usize; 2]>>,
     finished: Mutex<Vec<usize>>,
     failed: Mutex<Vec<usize>>,
@@ -19,7 +19,7 @@ struct Ear {
     seconds: Mutex<[f64; 2]>,
 }
 
-impl Listener for Ear {
+impl Listener for Log {
     fn begins(&self, cells: usize, kept: usize, seconds: f64) {
         self.begun.lock().unwrap().push([cells, kept]);
         self.seconds.lock().unwrap()[0] += seconds;
@@ -42,11 +42,11 @@ impl Listener for Ear {
 const GRID: &str = r#"{"scenario": "room.json", "seeds": 3,
     "grid": {"gas_constant": [100, 200], "profile": ["sph", "sf->sph"]}}"#;
 
-fn run_in(study: &Study, out: &Path, shard: Shard) -> (Tally, Ear) {
-    let ear = Ear::default();
+fn run_in(study: &Study, out: &Path, shard: Shard) -> (Tally, Log) {
+    let log = Log::default();
     let shelf = Shelf::open(out).unwrap();
-    let tally = run(study, shard, &shelf, &ear).unwrap();
-    (tally, ear)
+    let tally = run(study, shard, &shelf, &log).unwrap();
+    (tally, log)
 }
 
 fn write(study: &Study, out: &Path) {
@@ -55,13 +55,13 @@ fn write(study: &Study, out: &Path) {
 }
 
 #[test]
-fn shards_put_together_are_the_whole_study() {
+fn merged_shards_equal_the_whole_study() {
     let (folder, path) = folder(GRID);
     let study = Study::read(&path).unwrap();
     let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
-    let (tally, ear) = run_in(&study, &whole, Shard::WHOLE);
+    let (tally, log) = run_in(&study, &whole, Shard::WHOLE);
     assert_eq!([tally.cells, tally.finished, tally.kept], [12, 12, 0]);
-    let [expected, advanced] = *ear.seconds.lock().unwrap();
+    let [expected, advanced] = *log.seconds.lock().unwrap();
     assert!(
         (expected - advanced).abs() < 1e-9 * expected,
         "the bar comes to its end"
@@ -94,18 +94,18 @@ fn shards_put_together_are_the_whole_study() {
 }
 
 #[test]
-fn nothing_is_run_twice_and_a_changed_setting_runs_only_what_is_new() {
+fn finished_cells_are_not_run_again_and_a_changed_study_runs_only_new_cells() {
     let (folder, path) = folder(GRID);
     let out = folder.path().join("out");
     run_in(&Study::read(&path).unwrap(), &out, Shard::WHOLE);
-    let (tally, ear) = run_in(&Study::read(&path).unwrap(), &out, Shard::WHOLE);
+    let (tally, log) = run_in(&Study::read(&path).unwrap(), &out, Shard::WHOLE);
     assert_eq!([tally.finished, tally.kept], [0, 12]);
-    assert!(ear.finished.lock().unwrap().is_empty());
+    assert!(log.finished.lock().unwrap().is_empty());
     let wider = GRID
         .replace("[100, 200]", "[300, 200, 100]")
         .replace("3,\n", "4,\n");
     let study = Study::read(&put(folder.path(), &wider)).unwrap();
-    let (tally, ear) = run_in(&study, &out, Shard::WHOLE);
+    let (tally, log) = run_in(&study, &out, Shard::WHOLE);
     assert_eq!([tally.cells, tally.kept, tally.finished], [24, 12, 12]);
     let is_new = |cell: &&Cell| cell.values[0].1 == 300 || cell.seed == 4;
     let new: BTreeSet<usize> = study
@@ -114,17 +114,17 @@ fn nothing_is_run_twice_and_a_changed_setting_runs_only_what_is_new() {
         .filter(is_new)
         .map(|c| c.number)
         .collect();
-    let ran: BTreeSet<usize> = ear.finished.lock().unwrap().iter().copied().collect();
+    let ran: BTreeSet<usize> = log.finished.lock().unwrap().iter().copied().collect();
     assert_eq!(ran, new);
 }
 
 #[test]
-fn two_at_once_on_one_folder_share_the_work() {
+fn two_runs_at_once_in_one_folder_share_the_work() {
     let (folder, path) = folder(&GRID.replace("\"seeds\": 3", "\"seeds\": 12"));
     let study = Study::read(&path).unwrap();
     let out = folder.path().join("out");
     Shelf::open(&out).unwrap();
-    let [(one, heard), (other, overheard)] = std::thread::scope(|scope| {
+    let [(one, log_of_one), (other, log_of_other)] = std::thread::scope(|scope| {
         let begin = || scope.spawn(|| run_in(&study, &out, Shard::WHOLE));
         [begin(), begin()].map(|thread| thread.join().unwrap())
     });
@@ -132,7 +132,7 @@ fn two_at_once_on_one_folder_share_the_work() {
         assert!(tally.failed.is_empty());
         assert_eq!(tally.finished + tally.kept + tally.by_others, 48);
     }
-    let finished = [heard, overheard].map(|ear| ear.finished.into_inner().unwrap());
+    let finished = [log_of_one, log_of_other].map(|log| log.finished.into_inner().unwrap());
     let mut finished = finished.concat();
     finished.sort_unstable();
     assert_eq!(finished, (1..=48).collect::<Vec<_>>(), "each once");
@@ -140,7 +140,7 @@ fn two_at_once_on_one_folder_share_the_work() {
 }
 
 #[test]
-fn what_a_killed_process_had_claimed_is_free() {
+fn a_lock_left_by_a_killed_process_is_ignored() {
     let (folder, path) = folder(r#"{"scenario": "room.json"}"#);
     let study = Study::read(&path).unwrap();
     let out = folder.path().join("out");
@@ -152,19 +152,19 @@ fn what_a_killed_process_had_claimed_is_free() {
 }
 
 #[test]
-fn a_cell_that_fails_is_written_down_and_the_others_finish() {
+fn a_failed_cell_is_recorded_and_the_others_finish() {
     let (folder, path) = folder(
         r#"{"scenario": "crack.json", "seeds": 2,
             "grid": {"sources.0.jitter": [1, 0, 1e-8]}}"#,
     );
     let study = Study::read(&path).unwrap();
     let out = folder.path().join("out");
-    let (tally, ear) = run_in(&study, &out, Shard::WHOLE);
+    let (tally, log) = run_in(&study, &out, Shard::WHOLE);
     assert_eq!([tally.finished, tally.failed.len()], [4, 2]);
     let (cell, message) = &tally.failed[0];
     assert_eq!(cell, "cell 1: sources.0.jitter=1 seed=1");
     assert!(message.contains("no free point"), "{message}");
-    let mut failed = ear.failed.into_inner().unwrap();
+    let mut failed = log.failed.into_inner().unwrap();
     failed.sort_unstable();
     assert_eq!(failed, [1, 2]);
     write(&study, &out);
@@ -190,7 +190,7 @@ fn a_cell_that_fails_is_written_down_and_the_others_finish() {
 }
 
 #[test]
-fn a_failure_is_forgotten_when_the_cell_finishes() {
+fn the_failure_of_a_cell_is_removed_when_the_cell_finishes() {
     let (folder, path) = folder(r#"{"scenario": "room.json", "seeds": 2}"#);
     let study = Study::read(&path).unwrap();
     let out = folder.path().join("out");
@@ -218,9 +218,9 @@ fn a_damaged_result_is_computed_again() {
     let before = Gathered::of(&study, &Shelf::at(&out));
     let file = out.join(format!("cases/{}.json", study.cells[1].key()));
     fs::write(&file, "{\"key\"").unwrap();
-    let (tally, ear) = run_in(&study, &out, Shard::WHOLE);
+    let (tally, log) = run_in(&study, &out, Shard::WHOLE);
     assert_eq!([tally.kept, tally.finished], [1, 1]);
-    assert!(ear.notes.into_inner().unwrap()[0].contains(file.to_str().unwrap()));
+    assert!(log.notes.into_inner().unwrap()[0].contains(file.to_str().unwrap()));
     let hash = |gathered: &Gathered| {
         let State::Finished(result) = &gathered.states[1] else {
             panic!("not finished");
@@ -231,7 +231,7 @@ fn a_damaged_result_is_computed_again() {
 }
 
 #[test]
-fn cells_that_say_the_same_are_computed_once_and_counted_as_repeated() {
+fn equal_cells_are_computed_once_and_counted_as_repeated() {
     let (folder, path) = folder(
         r#"{"scenario": "room.json", "list": [{"seed": 1}, {"seed": 2}, {"seed": 1, "profile": "sph"}]}"#,
     );
@@ -243,7 +243,7 @@ fn cells_that_say_the_same_are_computed_once_and_counted_as_repeated() {
 }
 
 #[test]
-fn the_summary_has_means_over_seeds_with_their_intervals() {
+fn the_summary_has_means_over_seeds_with_confidence_intervals() {
     let (folder, path) = folder(GRID);
     let study = Study::read(&path).unwrap();
     let out = folder.path().join("out");
@@ -272,7 +272,7 @@ fn the_summary_has_means_over_seeds_with_their_intervals() {
 }
 
 #[test]
-fn what_is_missing_has_a_row_as_well() {
+fn missing_cells_have_a_row_too() {
     let (folder, path) = folder(GRID);
     let study = Study::read(&path).unwrap();
     let out = folder.path().join("out");
@@ -294,7 +294,7 @@ fn what_is_missing_has_a_row_as_well() {
 }
 
 #[test]
-fn a_study_with_memory_for_one_cell_at_a_time_gives_the_same() {
+fn a_study_with_memory_for_one_cell_at_a_time_gives_the_same_results() {
     let (folder, path) = folder(GRID);
     let study = Study::read(&path).unwrap();
     let bytes = study.cells.iter().map(|cell| cell.need.bytes()).max();

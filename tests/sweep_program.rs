@@ -33,7 +33,7 @@ fn json(folder: &Path, arguments: &[&str]) -> Value {
 }
 
 #[test]
-fn a_cell_is_the_run_that_its_settings_make() {
+fn a_cell_equals_a_run_with_its_settings() {
     let (folder, _) = folder(
         r#"{"scenario": "room.json", "seeds": [5, 6], "settings": {"duration_secs": 0.3},
             "grid": {"gas_constant": [300, 400], "grids.0.columns": [4]}}"#,
@@ -73,7 +73,7 @@ fn a_cell_is_the_run_that_its_settings_make() {
 }
 
 #[test]
-fn a_failed_cell_is_told_at_the_end_and_the_exit_code_is_1() {
+fn a_failed_cell_is_reported_at_the_end_with_exit_code_1() {
     let (folder, _) =
         folder(r#"{"scenario": "crack.json", "grid": {"sources.0.jitter": [1, 0, 1e-8]}}"#);
     let (code, stdout, stderr) = run(folder.path(), &["sweep", "study.json", "--out", "out"]);
@@ -136,7 +136,7 @@ fn two_processes_at_once_run_every_cell_once() {
 }
 
 #[test]
-fn what_was_finished_before_a_process_is_killed_is_kept() {
+fn cells_finished_before_a_kill_are_kept() {
     let (folder, _) =
         folder(r#"{"scenario": "room.json", "grid": {"duration_secs": [0.1, 10000000]}}"#);
     let arguments = ["sweep", "study.json", "--threads", "2"];
@@ -169,7 +169,7 @@ fn what_was_finished_before_a_process_is_killed_is_kept() {
 }
 
 #[test]
-fn a_list_runs_and_writes_nothing() {
+fn listing_runs_and_writes_nothing() {
     let (folder, _) =
         folder(r#"{"scenario": "room.json", "grid": {"viscosity": [0, 2.5]}, "seeds": 2}"#);
     let (code, stdout, _) = run(folder.path(), &["sweep", "study.json", "--list"]);
@@ -190,7 +190,7 @@ fn a_list_runs_and_writes_nothing() {
 }
 
 #[test]
-fn merging_writes_what_there_is_and_says_what_is_missing() {
+fn merging_writes_finished_cells_and_names_missing_ones() {
     let (folder, _) = folder(r#"{"scenario": "room.json", "seeds": 5}"#);
     let merge = ["sweep", "study.json", "--merge"];
     let (code, _, stderr) = run(folder.path(), &merge);

@@ -40,7 +40,7 @@ fn row(cell: &Cell) -> (usize, Vec<Value>, u64) {
 }
 
 #[test]
-fn the_first_axis_changes_slowest_and_seeds_change_first() {
+fn the_first_axis_changes_slowest_and_seeds_change_fastest() {
     let folder = tempfile::tempdir().unwrap();
     let text = r#"{"scenario": "walk.json", "seeds": [7, 3],
         "grid": {"viscosity": [1, 0], "profile": ["sf", "sf->sph"]}}"#;
@@ -97,7 +97,7 @@ fn a_list_a_grid_and_seeds_multiply() {
 }
 
 #[test]
-fn without_anything_varied_there_is_one_cell_with_the_scenarios_own_seed() {
+fn a_study_without_variations_is_one_cell_with_the_seed_of_the_scenario() {
     let (study, _folder) = study(&json!({"scenario": "walk.json", "settings": {"seed": 9}}));
     assert_eq!(study.cells.len(), 1);
     assert_eq!(study.cells[0].seed, 9);
@@ -105,7 +105,7 @@ fn without_anything_varied_there_is_one_cell_with_the_scenarios_own_seed() {
 }
 
 #[test]
-fn a_cell_is_the_scenario_with_the_settings_that_set_would_make() {
+fn a_cell_equals_the_scenario_with_the_same_set_options() {
     let folder = tempfile::tempdir().unwrap();
     let text = r#"{"scenario": "walk.json", "seeds": [4],
         "grid": {"profile": ["rvo"], "grids.0.columns": [5], "population_seed": [8]}}"#;
@@ -135,7 +135,7 @@ fn the_scenario_may_be_varied_too() {
 }
 
 #[test]
-fn the_key_of_a_cell_depends_on_its_scenario_alone() {
+fn the_key_of_a_cell_depends_only_on_its_scenario() {
     let (varied, _folder) =
         study(&json!({"scenario": "walk.json", "grid": {"viscosity": [1, 2]}, "seeds": 2}));
     let (fixed, _other) = study(&json!({
@@ -148,14 +148,14 @@ fn the_key_of_a_cell_depends_on_its_scenario_alone() {
 
 proptest! {
     #[test]
-    fn shards_share_out_every_cell_once(of in 1_usize..40, cell in 1_usize..1000) {
+    fn every_cell_is_in_exactly_one_shard(of in 1_usize..40, cell in 1_usize..1000) {
         let having = (1..=of).filter(|&number| Shard::new(number, of).unwrap().has(cell));
         prop_assert_eq!(having.count(), 1);
     }
 }
 
 #[test]
-fn shards_are_even_and_begin_with_the_cell_of_their_own_number() {
+fn shards_have_similar_sizes_and_begin_with_the_cell_of_their_number() {
     for of in 1..=12 {
         let sizes = (1..=of).map(|number| {
             let shard: Shard = format!("{number}/{of}").parse().unwrap();
@@ -193,7 +193,7 @@ fn every_broken_study_is_reported_with_its_place_and_reason() {
 }
 
 #[test]
-fn what_is_no_json_is_reported_with_line_and_column() {
+fn invalid_json_is_reported_with_line_and_column() {
     let folder = tempfile::tempdir().unwrap();
     let said = |text: &str| read(folder.path(), text).err().unwrap();
     assert_eq!(

@@ -105,7 +105,7 @@ fn one_count(path: &Path, query: &str) -> u64 {
 }
 
 #[test]
-fn sqlite_holds_the_simulation_bit_by_bit() {
+fn sqlite_holds_the_simulation_bit_for_bit() {
     let (_folder, paths) = files(["crowd.sqlite"]);
     written(small_crowd(), 101, &paths, 10.0);
     let connection = Connection::open(&paths[0]).unwrap();
@@ -149,7 +149,7 @@ fn sqlite_holds_the_simulation_bit_by_bit() {
 }
 
 #[test]
-fn text_and_csv_hold_the_simulation_bit_by_bit() {
+fn text_and_csv_hold_the_simulation_bit_for_bit() {
     let (_folder, paths) = files(["crowd.txt", "crowd.csv"]);
     written(small_crowd(), 101, &paths, 25.0);
     let truth = truth(small_crowd(), 101, 2);
@@ -189,7 +189,7 @@ fn text_and_csv_hold_the_simulation_bit_by_bit() {
 }
 
 #[test]
-fn nobody_moves_otherwise_because_somebody_writes() {
+fn writing_trajectories_does_not_change_the_motion() {
     for profile in ["sf", "sf->sph"] {
         let (_folder, paths) = files(["crowd.db", "crowd.txt", "crowd.csv"]);
         let mut scene = small_crowd();
@@ -206,7 +206,7 @@ fn nobody_moves_otherwise_because_somebody_writes() {
 }
 
 #[test]
-fn a_rate_without_end_is_written_in_full() {
+fn a_frame_rate_with_many_digits_is_written_in_full() {
     let (_folder, paths) = files(["crowd.txt", "crowd.sqlite"]);
     let mut scene = small_crowd();
     scene.clock = Clock::new(0.03, 3);
@@ -225,7 +225,7 @@ fn a_rate_without_end_is_written_in_full() {
 }
 
 #[test]
-fn a_run_that_is_cut_short_leaves_whole_frames() {
+fn an_aborted_run_leaves_whole_frames() {
     let (_folder, paths) = files(["crowd.txt", "crowd.db"]);
     let mut scene = small_crowd();
     scene.groups[0].removal_radius = None;
@@ -281,7 +281,7 @@ fn area(scene: Scene, frames: u64) -> String {
 }
 
 #[test]
-fn everybody_walks_in_the_walkable_area_of_every_shipped_scenario() {
+fn all_agents_stay_in_the_walkable_area_of_every_shipped_scenario() {
     for shipped in SHIPPED {
         let (_folder, [path]) = files(["run.sqlite"]);
         let scenario = Scenario::shipped(shipped.name, &[]).unwrap();
@@ -320,7 +320,7 @@ fn everybody_walks_in_the_walkable_area_of_every_shipped_scenario() {
 }
 
 #[test]
-fn of_closed_rooms_only_those_count_that_somebody_is_in() {
+fn closed_rooms_are_walkable_only_if_an_agent_is_inside() {
     let ring = |x: f64| {
         let side = |dx: [f64; 2], y: [f64; 2]| rectangle([x + dx[0], x + dx[1]], y);
         // Some sides overlap at the corners, others only touch.
@@ -357,7 +357,7 @@ fn rotated(polygon: &Polygon, other: &Polygon) -> Polygon {
 }
 
 #[test]
-fn the_area_grows_with_who_walks_out_of_it() {
+fn the_area_grows_with_agents_that_walk_out_of_it() {
     let mut open = scene(Vec::new(), blend("sph"));
     open.agents = vec![person(vector(0.0, 0.0), vector(0.0, 0.0))];
     let start = rings(&area(open.clone(), 1));

@@ -49,7 +49,7 @@ fn plan(random: &mut ChaCha8Rng, k: usize) -> Vec<Ring> {
 }
 
 #[test]
-fn what_is_written_is_where_people_can_walk() {
+fn the_written_area_is_where_people_can_walk() {
     let mut random = ChaCha8Rng::seed_from_u64(5);
     let folder = tempfile::tempdir().unwrap();
     for scene in 0..2000 / PLANS {

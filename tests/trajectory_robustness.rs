@@ -18,7 +18,7 @@ use proptest::sample::{Index, select};
 use rusqlite::Connection;
 use sandbox::output::trajectory::read::{ReadOptions, read as read_file, read_text};
 
-fn most(bytes: usize) -> u64 {
+fn memory_limit(bytes: usize) -> u64 {
     (4 << 20) + 300 * bytes as u64
 }
 
@@ -29,7 +29,7 @@ fn assert_some(rows_read: AtomicU64) {
 }
 
 /// Cells that are invalid in many places.
-const NASTY: [&str; 26] = [
+const INVALID: [&str; 26] = [
     "",
     "0",
     "-0",
@@ -62,7 +62,7 @@ const NASTY: [&str; 26] = [
 fn whole() -> impl Strategy<Value = String> {
     prop_oneof![
         20 => (-3..9_i64).prop_map(|n| n.to_string()),
-        1 => select(NASTY.to_vec()).prop_map(str::to_owned),
+        1 => select(INVALID.to_vec()).prop_map(str::to_owned),
         1 => any::<i64>().prop_map(|n| n.to_string()),
     ]
 }
@@ -70,7 +70,7 @@ fn whole() -> impl Strategy<Value = String> {
 fn coordinate() -> impl Strategy<Value = String> {
     prop_oneof![
         20 => (-5.0..5.0_f64).prop_map(|x| x.to_string()),
-        1 => select(NASTY.to_vec()).prop_map(str::to_owned),
+        1 => select(INVALID.to_vec()).prop_map(str::to_owned),
         1 => any::<f64>().prop_map(|x| format!("{x:e}")),
     ]
 }
@@ -112,13 +112,13 @@ fn any_bytes_are_read_or_refused() {
         || (bytes(), name()),
         |(bytes, name)| {
             read(name, &bytes);
-            most(bytes.len())
+            memory_limit(bytes.len())
         },
     );
 }
 
 #[test]
-fn texts_with_values_changed_are_read_or_refused() {
+fn texts_with_changed_values_are_read_or_refused() {
     let rows_read = AtomicU64::new(0);
     let rate = || {
         let comments = ["# framerate: ", "#frame rate=", "# Framerate [1/s] "];
@@ -147,14 +147,14 @@ fn texts_with_values_changed_are_read_or_refused() {
             let text = format!("{comment}{rate}\n{head}{}", rows.collect::<String>());
             let bytes = damaged(text.into_bytes(), damage);
             rows_read.fetch_add(read("a.txt", &bytes), Relaxed);
-            most(bytes.len())
+            memory_limit(bytes.len())
         },
     );
     assert_some(rows_read);
 }
 
 #[test]
-fn tables_with_values_changed_are_read_or_refused() {
+fn tables_with_changed_values_are_read_or_refused() {
     let rows_read = AtomicU64::new(0);
     let heads = [
         "id,frame,pos_x,pos_y,time",
@@ -174,7 +174,7 @@ fn tables_with_values_changed_are_read_or_refused() {
             let text = format!("{head}\n{}", rows.collect::<String>());
             let bytes = damaged(text.into_bytes(), damage);
             rows_read.fetch_add(read("a.csv", &bytes), Relaxed);
-            most(bytes.len())
+            memory_limit(bytes.len())
         },
     );
     assert_some(rows_read);
@@ -199,7 +199,7 @@ fn database(path: &Path) {
 /// Only 5,000 cases, because SQLite opens, locks and reads a file in each. One small file is damaged and restored
 /// each time.
 #[test]
-fn databases_with_bytes_changed_are_read_or_refused() {
+fn databases_with_changed_bytes_are_read_or_refused() {
     let rows_read = AtomicU64::new(0);
     let (_folder, path) = file("a.sqlite", "");
     database(&path);
@@ -225,7 +225,7 @@ fn databases_with_bytes_changed_are_read_or_refused() {
             );
             disk.write_all_at(&whole, 0).unwrap();
             disk.set_len(whole.len() as u64).unwrap();
-            2 * most(whole.len())
+            2 * memory_limit(whole.len())
         },
     );
     assert_eq!(read_file(&path, &ReadOptions::default()).unwrap().len(), 3);
@@ -234,7 +234,7 @@ fn databases_with_bytes_changed_are_read_or_refused() {
 
 /// Only 1,500 cases, because each takes a transaction.
 #[test]
-fn databases_with_values_changed_are_read_or_refused() {
+fn databases_with_changed_values_are_read_or_refused() {
     let rows_read = AtomicU64::new(0);
     let values = [
         "0",
@@ -281,14 +281,14 @@ fn databases_with_values_changed_are_read_or_refused() {
                 judge(&name, read_file(&path, &ReadOptions::default())),
                 Relaxed,
             );
-            2 * most(4096)
+            2 * memory_limit(4096)
         },
     );
     assert_some(rows_read);
 }
 
 #[test]
-fn a_line_that_does_not_end_is_refused_in_little_memory() {
+fn an_endless_line_is_refused_in_little_memory() {
     for (name, byte) in [
         ("a.txt", b'1'),
         ("a.txt", b' '),
@@ -318,7 +318,7 @@ fn a_line_that_does_not_end_is_refused_in_little_memory() {
 }
 
 #[test]
-fn a_table_that_is_a_view_without_end_is_refused() {
+fn a_table_that_is_an_endless_view_is_refused() {
     let (_folder, path) = file("a.sqlite", "");
     let connection = Connection::open(&path).unwrap();
     let view = "CREATE VIEW trajectory_data AS WITH RECURSIVE n(k) AS (SELECT 0 UNION ALL SELECT k + 1 FROM n)

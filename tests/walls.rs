@@ -88,7 +88,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn the_exact_integrals_are_those_of_quadrature_for_every_wall(
+    fn the_exact_integrals_agree_with_quadrature_for_every_wall(
         angle in 0.0..TAU,
         d in 0.003..1.1_f64,
         foot in -1.2..2.2_f64,
@@ -108,7 +108,7 @@ proptest! {
     }
 
     #[test]
-    fn turning_and_moving_everything_far_away_turns_the_integrals(
+    fn the_integrals_follow_rotations_and_large_translations(
         angle in 0.0..TAU,
         x in -1e6..1e6_f64,
         y in -1e6..1e6_f64,
@@ -230,7 +230,7 @@ fn tight_places() -> Vec<(&'static str, Vec<Polygon>, [f64; 4])> {
 }
 
 #[test]
-fn the_union_of_shadows_is_what_quadrature_of_the_visible_walls_gives() {
+fn the_union_of_shadows_agrees_with_quadrature_over_visible_walls() {
     for (name, obstacles, [x0, x1, y0, y1]) in tight_places() {
         let walls = Walls::new(obstacles);
         for k in 1..150 {

@@ -22,11 +22,11 @@ pub fn cases<S: Strategy>(
         TestRunner::new(config)
             .run(&input(), |value| {
                 // A panic must not unwind through `measure`, or the counter would keep counting.
-                let mut ended = Ok(0);
-                let counted = || ended = catch_unwind(AssertUnwindSafe(|| case(value)));
+                let mut result = Ok(0);
+                let counted = || result = catch_unwind(AssertUnwindSafe(|| case(value)));
                 let held = allocation_counter::measure(counted).bytes_max;
-                let most = ended.unwrap_or_else(|panic| resume_unwind(panic));
-                prop_assert!(held <= most, "{held} bytes held at once, {most} at most");
+                let limit = result.unwrap_or_else(|panic| resume_unwind(panic));
+                prop_assert!(held <= limit, "{held} bytes held at once, {limit} at most");
                 Ok(())
             })
             .unwrap();

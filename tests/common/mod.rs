@@ -130,7 +130,7 @@ pub fn run(simulation: &mut Simulation, frames: u64) {
 }
 
 /// The breakdown of agent `id` in an evaluated frame.
-pub fn laid_open(simulation: &Simulation, id: u32) -> Breakdown {
+pub fn breakdown(simulation: &Simulation, id: u32) -> Breakdown {
     let i = simulation.frame().agents.index_of(id).unwrap();
     Breakdown::of(simulation, i).unwrap()
 }

@@ -6,11 +6,11 @@ use sandbox::scenario::metrics::Metrics;
 use sandbox::scenario::{Need, Scenario, Setting};
 
 /// Scenarios with more agents are not run.
-const FEW: u64 = 500;
+const MAX_AGENTS: u64 = 500;
 /// The number of frames to compute.
 const FRAMES: u64 = 3;
 /// Scenarios with more RVO candidates of all agents are not run.
-const CANDIDATES: u64 = 20_000;
+const MAX_CANDIDATES: u64 = 20_000;
 
 /// Runs the first frames of a valid scenario, or checks that the error names the file or setting. Returns the
 /// number of agents that took memory.
@@ -37,7 +37,8 @@ pub fn read(text: &str, settings: &[Setting]) -> u64 {
     // Writing and reading the scenario gives the same document.
     let again = Scenario::parse(&scenario.to_text(), "f.json", &[]).unwrap();
     assert_eq!(again.document, scenario.document);
-    if scenario.entering > FEW || scenario.entering * candidates(&scenario) > CANDIDATES {
+    if scenario.entering > MAX_AGENTS || scenario.entering * candidates(&scenario) > MAX_CANDIDATES
+    {
         return need.initial;
     }
     let measurements = scenario.measurements.clone();

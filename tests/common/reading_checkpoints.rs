@@ -8,13 +8,13 @@ use sha2::{Digest, Sha256};
 /// The number of frames to compute.
 const FRAMES: u64 = 2;
 /// Error messages must be shorter, bytes.
-const SHORT: usize = 1000;
+const MAX_MESSAGE: usize = 1000;
 
 /// Checks that the resumed run has finite numbers, or that the error is short and without control characters.
 /// Returns whether the run could be resumed without a fault.
 pub fn read(bytes: &[u8]) -> bool {
     let harmless = |said: String| {
-        let is_harmless = said.len() < SHORT && !said.contains(char::is_control);
+        let is_harmless = said.len() < MAX_MESSAGE && !said.contains(char::is_control);
         assert!(is_harmless, "{said:?}");
         false
     };

@@ -10,9 +10,9 @@ use sandbox::engine::math::Vector;
 use sandbox::output::trajectory::read::{FRAME_RATES, ReadError, ReadOptions, Tracks, read_text};
 
 /// Trajectories with more rows are not measured.
-const FEW: usize = 60;
+const MAX_ROWS: usize = 60;
 /// The largest number of field cells along each side.
-const CELLS: f64 = 10.0;
+const MAX_CELLS: f64 = 10.0;
 
 /// Reads the contents of a text file called `name`; returns the number of rows.
 pub fn read(name: &str, bytes: &[u8]) -> u64 {
@@ -35,7 +35,7 @@ pub fn judge(name: &str, read: Result<Tracks, ReadError>) -> u64 {
         }
         Ok(tracks) => {
             check(&tracks);
-            if tracks.len() <= FEW {
+            if tracks.len() <= MAX_ROWS {
                 check_measured(&tracks);
             }
             tracks.len() as u64
@@ -87,7 +87,7 @@ fn check_measured(tracks: &Tracks) {
         behind: Behind::Rest(5.0),
         speed_reach: speed::FRAMES,
         times: [f64::NEG_INFINITY, f64::INFINITY],
-        cell: ((high - low).amax() / CELLS).max(1.0),
+        cell: ((high - low).amax() / MAX_CELLS).max(1.0),
         regions: Vec::new(),
         lines: vec![line],
     };

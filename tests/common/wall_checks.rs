@@ -9,7 +9,7 @@ use sandbox::engine::math::Vector;
 /// The rounding error of lengths computed from coordinates up to 10⁶ m, meters.
 const ROUNDING: f64 = 1e-8;
 /// The distance from a wall at which an agent is put, with some rounding, meters.
-const HAIR: f64 = 2e-6;
+const CLEARANCE: f64 = 2e-6;
 
 /// The lists of points that are valid polygons.
 pub fn obstacles(lists: Vec<Vec<Vector>>) -> Vec<Polygon> {
@@ -38,8 +38,8 @@ pub fn check(walls: &Walls, p: Vector, goal: Vector, radius: f64) {
     if nearest > ROUNDING {
         assert_eq!(walls.obstacle_at(p), inside);
     }
-    way_out(walls, p);
-    stopped(walls, p, goal, &all);
+    check_free_point(walls, p);
+    check_stopped_move(walls, p, goal, &all);
 }
 
 /// Checks that the index finds the same walls as brute force, and returns them.
@@ -85,7 +85,7 @@ fn shares(walls: &Walls, near: &[u32], p: Vector, h: f64) {
 }
 
 /// Checks that the nearest free point is free, and that no point on a wall is nearer and free.
-fn way_out(walls: &Walls, p: Vector) {
+fn check_free_point(walls: &Walls, p: Vector) {
     let Some(exit) = walls.free_point_near(p) else {
         return;
     };
@@ -105,11 +105,11 @@ fn way_out(walls: &Walls, p: Vector) {
     let distance =
         |wall: &sandbox::engine::geometry::Wall| (wall.nearest_point(p).point - p).norm();
     let least = walls.iter().map(distance).fold(f64::INFINITY, f64::min);
-    assert!((exit - p).norm() >= least - HAIR);
+    assert!((exit - p).norm() >= least - CLEARANCE);
 }
 
 /// Checks that a stopped move ends on its path, on the free side of the wall that stopped it.
-fn stopped(walls: &Walls, from: Vector, to: Vector, all: &[u32]) {
+fn check_stopped_move(walls: &Walls, from: Vector, to: Vector, all: &[u32]) {
     let Some((end, k)) = walls.stop(from, to, all) else {
         return;
     };
