@@ -1,6 +1,7 @@
 //! Work and precision: scenes and knobs are valid, errors decrease with the time step, and the command writes its
 //! tables and pictures.
 
+use crate::common::program;
 use sandbox::engine::boundary::WallMethod;
 use sandbox::lab::accuracy::{Detail, KNOBS, Kind, Knob, Lyapunov, Motion, SCENES, Scene, sample};
 use sandbox::scenario::{Scenario, Setting};
@@ -137,19 +138,14 @@ fn the_command_writes_tables_and_pictures_and_keeps_finished_cases() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let run = |arguments: &[&str]| {
-        std::process::Command::new(env!("CARGO_BIN_EXE_sandbox"))
-            .arg("accuracy")
-            .args(arguments)
-            .arg("--out")
-            .arg(&out)
-            .output()
-            .unwrap()
+        let out = ["--out", program::text(&out)];
+        program::run(&[&["accuracy"], arguments, &out].concat())
     };
     let arguments = ["wall", "--knob", "precision", "--quick", "--json"];
     let first = run(&arguments);
     assert_eq!(first.status.code(), Some(0));
-    let said: Value = serde_json::from_slice(&first.stdout).unwrap();
-    let points = said["scenes"][0]["points"].as_array().unwrap();
+    let report = program::json(&first);
+    let points = report["scenes"][0]["points"].as_array().unwrap();
     assert_eq!(points.len(), 2);
     for point in points {
         assert!(point["ms_per_s"]["median"].as_f64().unwrap() > 0.0);
@@ -159,14 +155,10 @@ fn the_command_writes_tables_and_pictures_and_keeps_finished_cases() {
         assert!(out.join(file).metadata().unwrap().len() > 0, "{file}");
     }
     assert!(out.join("accuracy-wall.png").exists());
-    let again = String::from_utf8(run(&arguments).stderr).unwrap();
+    let again = program::stderr(&run(&arguments));
     assert!(again.contains("0 case(s) to run, 1 kept"), "{again}");
 
     let unknown = run(&["wall", "--knob", "taste"]);
     assert_eq!(unknown.status.code(), Some(2));
-    assert!(
-        String::from_utf8(unknown.stderr)
-            .unwrap()
-            .contains("time-step")
-    );
+    assert!(program::stderr(&unknown).contains("time-step"));
 }

@@ -7,12 +7,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::common::program::{PROGRAM, start_and_wait, stop_with, text};
-use serde_json::Value;
-
-fn sandbox(arguments: &[&str]) -> Output {
-    Command::new(PROGRAM).args(arguments).output().unwrap()
-}
+use crate::common::program::{self, PROGRAM, json, start_and_wait, stderr, stop_with, text};
 
 /// Runs the program with files limited to `blocks` KiB, as on a disk that fills up.
 fn with_file_limit(blocks: u32, arguments: &[&str]) -> Output {
@@ -24,7 +19,7 @@ fn with_file_limit(blocks: u32, arguments: &[&str]) -> Output {
 
 /// Expects exit code 1, and returns the only error line on stderr, which must be the last line.
 fn only_error(arguments: &[&str], output: &Output) -> String {
-    let stderr = String::from_utf8_lossy(&output.stderr);
+    let stderr = stderr(output);
     assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
     let mut lines = stderr.lines().filter(|line| !line.starts_with("note: "));
     let errors: Vec<&str> = lines
@@ -85,7 +80,7 @@ fn an_unwritable_path_is_named_before_anything_is_computed() {
         // A missing output folder is created, so that only a file in its place is an error.
         for path in [&below, if is_folder { &file } else { &missing }] {
             let arguments = [arguments, &[text(path)]].concat();
-            let output = sandbox(&arguments);
+            let output = program::run(&arguments);
             let said = only_error(&arguments, &output);
             assert!(said.contains(text(path)), "{said}");
             assert!(output.stdout.is_empty(), "{arguments:?}");
@@ -101,7 +96,7 @@ fn every_writer_names_its_path_on_a_full_disk() {
         let path = folder.path().join("full").with_extension(extension);
         symlink("/dev/full", &path).ok();
         let arguments = [arguments, &[text(&path)]].concat();
-        let said = only_error(&arguments, &sandbox(&arguments));
+        let said = only_error(&arguments, &program::run(&arguments));
         assert!(said.contains(text(&path)), "{said}");
         assert!(said.ends_with("; nothing is in it"), "{said}");
     }
@@ -121,19 +116,15 @@ fn unprintable_results_are_an_error_and_unprintable_notes_are_not() {
     for arguments in [&["list"][..], &["completions", "zsh"], &["man"], &run] {
         let mut program = Command::new(PROGRAM);
         let output = program.args(arguments).stdout(full()).output().unwrap();
-        let stderr = String::from_utf8_lossy(&output.stderr);
+        let stderr = stderr(&output);
         assert_eq!(output.status.code(), Some(1), "{arguments:?}");
         assert!(stderr.contains("error: stdout: No space"), "{stderr}");
     }
-    assert!(!sandbox(&run).stderr.is_empty(), "a warning");
+    assert!(!program::run(&run).stderr.is_empty(), "a warning");
     let mut program = Command::new(PROGRAM);
     let output = program.args(run).stderr(full()).output().unwrap();
     assert_eq!(output.status.code(), Some(0));
     assert_eq!(json(&output)["frames"], 2);
-}
-
-fn json(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).unwrap()
 }
 
 /// The number of frames in a trajectory file, all of which must be complete.
@@ -265,7 +256,7 @@ fn finished_cases_are_kept_and_counted_when_a_result_cannot_be_written() {
     ];
     let place = folder.path().join("accuracy.md");
     fs::create_dir(&place).unwrap();
-    let said = only_error(&run, &sandbox(&run));
+    let said = only_error(&run, &program::run(&run));
     assert!(said.contains(text(&place)), "{said}");
     let cases = folder.path().join("cases");
     let count = fs::read_dir(&cases).unwrap().count();
@@ -273,8 +264,8 @@ fn finished_cases_are_kept_and_counted_when_a_result_cannot_be_written() {
     let kept = format!("; {count} finished case(s) are kept in {}", text(&cases));
     assert!(said.ends_with(&kept), "{said}");
     fs::remove_dir(&place).unwrap();
-    let again = sandbox(&run);
-    let stderr = String::from_utf8_lossy(&again.stderr);
+    let again = program::run(&run);
+    let stderr = stderr(&again);
     assert_eq!(again.status.code(), Some(0), "{stderr}");
     assert!(
         stderr.contains(&format!("0 case(s) to run, {count} kept")),

@@ -5,6 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::common;
+use crate::common::program;
 use crate::common::{blend, block, room, scene, vector};
 use sandbox::engine::simulation::{Simulation, Stage};
 use sandbox::lab::bench::{BENCHMARKS, Plan, Report, SKIPS, everything};
@@ -292,15 +293,12 @@ fn results_are_replaced_only_with_force() {
     let out = folder.path().join("results");
     let out = out.to_str().unwrap();
     let run = |more: &[&str]| {
-        std::process::Command::new(env!("CARGO_BIN_EXE_sandbox"))
-            .args(["bench", "threads", "--quick", "--json", "--out", out])
-            .args(more)
-            .output()
-            .unwrap()
+        let arguments = ["bench", "threads", "--quick", "--json", "--out", out];
+        program::run(&[&arguments[..], more].concat())
     };
     let first = run(&[]);
     assert_eq!(first.status.code(), Some(0));
-    let printed: Value = serde_json::from_slice(&first.stdout).unwrap();
+    let printed = program::json(&first);
     let file = Path::new(out).join("threads.json");
     let read = || serde_json::from_slice::<Value>(&std::fs::read(&file).unwrap()).unwrap();
     assert_eq!(read(), printed);
@@ -310,7 +308,7 @@ fn results_are_replaced_only_with_force() {
     }
     let second = run(&[]);
     assert_eq!(second.status.code(), Some(2));
-    let said = String::from_utf8_lossy(&second.stderr).into_owned();
+    let said = program::stderr(&second);
     assert!(
         said.contains("threads.json") && said.contains("--force"),
         "{said}"

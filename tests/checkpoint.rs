@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use crate::common::program;
 use crate::common::{blend, block, room, scene, vector};
 use sandbox::engine::neighbors::ListPolicy;
 use sandbox::engine::pairs::Precision;
@@ -281,15 +282,8 @@ fn digests_and_resumed_trajectories_do_not_depend_on_the_outputs() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let digest = |arguments: &[&str]| {
-        let output = std::process::Command::new(env!("CARGO_BIN_EXE_sandbox"))
-            .args(arguments)
-            .arg("--json")
-            .output()
-            .unwrap();
-        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(0), "{stderr}");
-        let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-        result["state_sha256"].as_str().unwrap().to_owned()
+        let report = program::run_json(&[arguments, &["--json"]].concat());
+        report["state_sha256"].as_str().unwrap().to_owned()
     };
     let (checkpoint, resumed, whole) = (file("c"), file("resumed.csv"), file("whole.csv"));
     // The scenario measures the density at 15 s. Here it does so at 2 s, before the checkpoint.
@@ -347,20 +341,8 @@ fn the_program_resumes_from_a_checkpoint() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("c");
     let path = file.to_str().unwrap();
-    let run = |arguments: &[&str]| {
-        std::process::Command::new(env!("CARGO_BIN_EXE_sandbox"))
-            .args(arguments)
-            .output()
-            .unwrap()
-    };
-    let result = |arguments: &[&str]| -> serde_json::Value {
-        let output = run(arguments);
-        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(0), "{stderr}");
-        serde_json::from_slice(&output.stdout).unwrap()
-    };
     let profile = "rvo->sph";
-    let whole = result(&["evacuation", "--profile", profile, "--until", "8", "--json"]);
+    let whole = program::run_json(&["evacuation", "--profile", profile, "--until", "8", "--json"]);
     let first = [
         "evacuation",
         "--profile",
@@ -373,8 +355,11 @@ fn the_program_resumes_from_a_checkpoint() {
         "--checkpoint-every",
         "2",
     ];
-    assert_ne!(result(&first)["state_sha256"], whole["state_sha256"]);
-    let rest = result(&["resume", path, "--until", "8", "--json", "--threads", "1"]);
+    assert_ne!(
+        program::run_json(&first)["state_sha256"],
+        whole["state_sha256"]
+    );
+    let rest = program::run_json(&["resume", path, "--until", "8", "--json", "--threads", "1"]);
     for key in [
         "state_sha256",
         "metrics",
@@ -385,11 +370,11 @@ fn the_program_resumes_from_a_checkpoint() {
         assert_eq!(rest[key], whole[key], "{key}");
     }
     // Without `--until` it goes to the scenario's own end, past the end of the first run.
-    let to_the_end = result(&["resume", path, "--json"]);
+    let to_the_end = program::run_json(&["resume", path, "--json"]);
     assert!(to_the_end["time_secs"].as_f64().unwrap() > 20.0);
-    let taken = run(&first);
+    let taken = program::run(&first);
     assert_eq!(taken.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&taken.stderr).contains("already exists; use --force"));
-    let nothing = run(&["resume", "/nowhere"]);
+    assert!(program::stderr(&taken).contains("already exists; use --force"));
+    let nothing = program::run(&["resume", "/nowhere"]);
     assert_eq!(nothing.status.code(), Some(2));
 }

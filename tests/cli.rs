@@ -1,37 +1,9 @@
 //! The command line: exit codes, contents of stdout and stderr, and the shape of the JSON.
 
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
 
-use serde_json::Value;
-
-fn sandbox(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_sandbox"))
-        .args(arguments)
-        .output()
-        .unwrap()
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = sandbox(arguments);
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {stderr}");
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-/// Fails with `code`, says something about `words` on stderr and nothing on stdout.
-fn refused(arguments: &[&str], code: i32, words: &[&str]) {
-    let output = sandbox(arguments);
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
-    for word in words {
-        assert!(
-            stderr.contains(word),
-            "{arguments:?}: no {word:?} in {stderr}"
-        );
-    }
-    assert!(output.stdout.is_empty());
-}
+use crate::common::program::{self, PROGRAM, refused, run_json, stderr};
 
 fn scenario_file(folder: &Path) -> String {
     let path = folder.join("three.json");
@@ -45,7 +17,7 @@ fn scenario_file(folder: &Path) -> String {
 
 #[test]
 fn a_run_reports_its_metrics_and_only_the_stages_it_needed() {
-    let report = json(&[
+    let report = run_json(&[
         "evacuation",
         "--until",
         "1",
@@ -71,11 +43,11 @@ fn a_run_reports_its_metrics_and_only_the_stages_it_needed() {
 
 #[test]
 fn a_crowd_without_sph_has_a_density_only_while_a_metric_reads_it() {
-    let measured = json(&["evacuation", "--profile", "sf", "--until", "0.2", "--json"]);
+    let measured = run_json(&["evacuation", "--profile", "sf", "--until", "0.2", "--json"]);
     assert!(measured["stages_ms"]["density_and_pressure"].is_number());
     let folder = tempfile::tempdir().unwrap();
     let file = scenario_file(folder.path());
-    let unmeasured = json(&["run", &file, "--profile", "sf", "--until", "0.2", "--json"]);
+    let unmeasured = run_json(&["run", &file, "--profile", "sf", "--until", "0.2", "--json"]);
     assert!(
         unmeasured["stages_ms"]
             .get("density_and_pressure")
@@ -87,7 +59,7 @@ fn a_crowd_without_sph_has_a_density_only_while_a_metric_reads_it() {
 fn an_inspection_at_zero_shows_the_initial_state() {
     let folder = tempfile::tempdir().unwrap();
     let file = scenario_file(folder.path());
-    let moment = json(&["inspect", &file, "--all", "--at", "0", "--json"]);
+    let moment = run_json(&["inspect", &file, "--all", "--at", "0", "--json"]);
     assert_eq!(moment["frame"], 0);
     let agents = moment["agents"].as_array().unwrap();
     assert_eq!(agents.len(), 3);
@@ -118,15 +90,15 @@ fn an_inspection_may_go_beyond_the_end_of_the_scenario() {
     let text = r#"{"goal": [10, 0], "stop": {"idle_secs": 0.5}, "agents": [{"position": [0, 0]}]}"#;
     std::fs::write(&path, text).unwrap();
     let file = path.to_str().unwrap();
-    assert_eq!(json(&["run", file, "--json"])["frames"], 26);
-    let moment = json(&["inspect", file, "--agent", "0", "--at", "2", "--json"]);
+    assert_eq!(run_json(&["run", file, "--json"])["frames"], 26);
+    let moment = run_json(&["inspect", file, "--agent", "0", "--at", "2", "--json"]);
     assert_eq!(moment["time_secs"], 2.0);
     assert_eq!(moment["frame"], 100);
 }
 
 #[test]
 fn help_and_lists_name_commands_profiles_and_settings() {
-    let text = |arguments: &[&str]| String::from_utf8(sandbox(arguments).stdout).unwrap();
+    let text = |arguments: &[&str]| String::from_utf8(program::run(arguments).stdout).unwrap();
     for command in [
         "evacuation",
         "crossing",
@@ -186,7 +158,7 @@ fn a_recording_has_all_agents_and_the_details_of_twelve() {
     let file = folder.path().join("run.rrd");
     let path = file.to_str().unwrap();
     let run = ["evacuation", "--until", "0.2", "--save", path, "--json"];
-    assert_eq!(json(&run)["frames"], 10);
+    assert_eq!(run_json(&run)["frames"], 10);
     let recording = sandbox::output::recording::Recording::read(&file).unwrap();
     let crowd = recording.pairs("/world/agents", "Points2D:positions");
     let frames: Vec<_> = crowd
@@ -220,7 +192,7 @@ fn an_existing_file_is_replaced_only_with_force() {
         &[path, "--force"],
     );
     assert_eq!(std::fs::read(&file).unwrap(), b"precious");
-    json(&[
+    run_json(&[
         "evacuation",
         "--until",
         "0.1",
@@ -250,19 +222,19 @@ fn several_trajectories_are_written_without_changing_the_results() {
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let files = ["a.sqlite", "b.txt", "c.csv"].map(path);
     let mut run = vec!["evacuation", "--profile", "sf", "--until", "1", "--json"];
-    let alone = json(&run);
+    let alone = run_json(&run);
     run.extend(
         files
             .iter()
             .flat_map(|file| ["--trajectory", file.as_str()]),
     );
-    assert_eq!(json(&run)["metrics"], alone["metrics"]);
+    assert_eq!(run_json(&run)["metrics"], alone["metrics"]);
     let lines = |file: &str| std::fs::read_to_string(file).unwrap().lines().count();
     assert_eq!(lines(&files[1]), 2 + 11 * 400);
     assert_eq!(lines(&files[2]), 1 + 11 * 400);
     refused(&run, 2, &["--trajectory", "a.sqlite", "--force"]);
     run.extend(["--force", "--trajectory-fps", "2"]);
-    json(&run);
+    run_json(&run);
     assert_eq!(lines(&files[1]), 2 + 3 * 400);
 }
 
@@ -330,7 +302,7 @@ fn invalid_reproduce_commands_are_refused() {
 #[test]
 fn thread_counts_in_the_environment_have_the_bounds_of_the_option() {
     let run = |name: &str, text: &str, more: &[&str]| {
-        let mut program = Command::new(env!("CARGO_BIN_EXE_sandbox"));
+        let mut program = Command::new(PROGRAM);
         let program = program.args(["evacuation", "--until", "0", "--json"]);
         program.args(more).env(name, text).output().unwrap()
     };
@@ -339,7 +311,7 @@ fn thread_counts_in_the_environment_have_the_bounds_of_the_option() {
             let output = run(name, text, &[]);
             assert_eq!(output.status.code(), Some(2), "{name}={text}");
             assert_eq!(
-                String::from_utf8_lossy(&output.stderr),
+                stderr(&output),
                 format!(
                     "error: {name}={text} in the environment: not a number of threads between 1 and 1024\n"
                 )
@@ -348,7 +320,7 @@ fn thread_counts_in_the_environment_have_the_bounds_of_the_option() {
         }
         for (text, more, threads) in [("3", &[][..], 3), ("100000", &["--threads", "2"], 2)] {
             let output = run(name, text, more);
-            let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+            let report = program::json(&output);
             assert_eq!(report["threads"], threads, "{name}={text}");
         }
     }

@@ -1,19 +1,6 @@
 //! `--geometry` and `sandbox schema` on the command line.
 
-use std::process::{Command, Output};
-
-use serde_json::Value;
-
-fn sandbox(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_sandbox"))
-        .args(arguments)
-        .output()
-        .unwrap()
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
+use crate::common::program::{run, run_json, stderr};
 
 #[test]
 fn a_floor_plan_replaces_the_walls_of_a_shipped_scenario() {
@@ -22,22 +9,16 @@ fn a_floor_plan_replaces_the_walls_of_a_shipped_scenario() {
     // Without a doorway no agent gets near the goal, which is 2 m outside.
     std::fs::write(&plan, "POLYGON ((0 0, 20 0, 20 20, 0 20, 0 0))").unwrap();
     let plan = plan.to_str().unwrap();
-    let output = sandbox(&["evacuation", "--geometry", plan, "--until", "20", "--json"]);
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let report = run_json(&["evacuation", "--geometry", plan, "--until", "20", "--json"]);
     assert_eq!(report["metrics"]["evacuated"], 0);
     let inspect = ["inspect", "evacuation", "--agent", "0", "--json"];
-    let open = sandbox(&[&inspect[..], &["--set", "obstacles=[]"]].concat());
-    let walled = sandbox(&[&inspect[..], &["--geometry", plan]].concat());
-    let walls = |output: Output| {
-        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let walls = |more: &[&str]| {
+        let report = run_json(&[&inspect[..], more].concat());
         report["agents"][0]["walls"].as_array().unwrap().len()
     };
-    assert_eq!(
-        (walls(open), walls(walled)),
-        (0, 2),
-        "in the corner of the hall"
-    );
+    let open = walls(&["--set", "obstacles=[]"]);
+    let walled = walls(&["--geometry", plan]);
+    assert_eq!((open, walled), (0, 2), "in the corner of the hall");
 }
 
 #[test]
@@ -46,14 +27,14 @@ fn an_invalid_floor_plan_is_refused_with_its_name_and_exit_code_2() {
     let plan = folder.path().join("hall.wkt");
     std::fs::write(&plan, "POLYGON ((8.41 49.01, 8.42 49.01, 8.42 49.02))").unwrap();
     let plan = plan.to_str().unwrap();
-    let output = sandbox(&["evacuation", "--geometry", plan]);
+    let output = run(&["evacuation", "--geometry", plan]);
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
     let start = format!("error: --geometry {plan}: too small for a person");
-    assert!(said(&output).starts_with(&start), "{}", said(&output));
-    let missing = sandbox(&["evacuation", "--geometry", "no/such.geojson"]);
+    assert!(stderr(&output).starts_with(&start), "{}", stderr(&output));
+    let missing = run(&["evacuation", "--geometry", "no/such.geojson"]);
     assert_eq!(missing.status.code(), Some(2));
-    assert!(said(&missing).contains("--geometry no/such.geojson: cannot be read"));
+    assert!(stderr(&missing).contains("--geometry no/such.geojson: cannot be read"));
 }
 
 /// A trajectory of two people with this geometry.
@@ -86,12 +67,12 @@ fn an_invalid_geometry_in_a_trajectory_is_refused() {
         ),
     ] {
         let file = trajectory(folder.path(), wkt);
-        let output = sandbox(&["measure", &file, "--out", out]);
+        let output = run(&["measure", &file, "--out", out]);
         let fix = "give another one with --geometry, or use --geometry none";
         let expected = format!("error: {file}: its geometry: {reason}; {fix}\n");
-        assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-        assert!(said(&output).ends_with(&expected), "{}", said(&output));
-        let without = sandbox(&[
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        assert!(stderr(&output).ends_with(&expected), "{}", stderr(&output));
+        let without = run(&[
             "measure",
             &file,
             "--out",
@@ -100,16 +81,14 @@ fn an_invalid_geometry_in_a_trajectory_is_refused() {
             "none",
             "--force",
         ]);
-        assert_eq!(without.status.code(), Some(0), "{}", said(&without));
+        assert_eq!(without.status.code(), Some(0), "{}", stderr(&without));
         std::fs::remove_dir_all(out).unwrap();
     }
 }
 
 #[test]
 fn the_schema_is_one_json_object_on_stdout() {
-    let output = sandbox(&["schema"]);
-    assert_eq!(output.status.code(), Some(0));
-    let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let printed = run_json(&["schema"]);
     assert_eq!(printed, sandbox::scenario::schema());
     assert_eq!(
         printed["$schema"],

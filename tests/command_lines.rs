@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::process::Command;
 
+use crate::common::program::{run, stderr};
 use serde::Deserialize;
 
 /// Input files, and command lines in which `{}` stands for the folder of these files.
@@ -37,11 +37,10 @@ fn every_broken_command_line_is_refused_with_its_exact_message() {
             continue;
         }
         let arguments = typed.iter().map(|argument| argument.replace("{}", place));
-        let mut program = Command::new(env!("CARGO_BIN_EXE_sandbox"));
-        let output = program.args(arguments).output().unwrap();
-        let stderr = String::from_utf8(output.stderr)
-            .unwrap()
-            .replace(place, "{}");
+        let arguments: Vec<String> = arguments.collect();
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let output = run(&arguments);
+        let stderr = stderr(&output).replace(place, "{}");
         assert_eq!(stderr.trim_end(), said.join("\n"), "{typed:?}");
         assert_eq!(output.status.code(), Some(2), "{typed:?}");
         assert!(output.stdout.is_empty(), "{typed:?}");
@@ -67,11 +66,8 @@ fn a_debug_agent_that_never_enters_is_named_at_the_end() {
     fs::write(path("late.json"), text).unwrap();
     let (file, save) = (path("late.json"), path("late.rrd"));
     let typed = ["run", &file, "--save", &save, "--debug-agents", "0,1"];
-    let output = Command::new(env!("CARGO_BIN_EXE_sandbox"))
-        .args(typed)
-        .output()
-        .unwrap();
-    let stderr = String::from_utf8(output.stderr).unwrap();
+    let output = run(&typed);
+    let stderr = stderr(&output);
     assert_eq!(output.status.code(), Some(0), "{stderr}");
     let note = "note: --debug-agents: 1 never entered: only 1 agents entered, with ids from 0";
     assert!(stderr.contains(note), "{stderr}");

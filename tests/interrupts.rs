@@ -3,7 +3,7 @@
 
 use std::fs;
 
-use crate::common::program::{start_and_wait, stop_with, text};
+use crate::common::program::{json, start_and_wait, stderr, stop_with, text};
 
 /// One person, for days.
 const LONG: &str = r#"{"duration_secs": 1e6, "agents": [{"position": [0, 0], "goal": [9, 0]}]}"#;
@@ -20,11 +20,11 @@ fn outputs_of_an_interrupted_run_are_complete_up_to_its_last_frame() {
         start_and_wait(&run, &[(&rrd, 1_000), (&csv, 100_000)]),
         "kill -INT $1",
     );
-    let stderr = String::from_utf8(output.stderr).unwrap();
+    let stderr = stderr(&output);
     assert_eq!(output.status.code(), Some(130), "{stderr}");
     assert!(stderr.contains("interrupted at "), "{stderr}");
 
-    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let report = json(&output);
     assert_eq!(report["interrupted"], true);
     let last = report["frames"].as_u64().unwrap() / 5;
     assert!(last < 1800, "it had ended by itself");

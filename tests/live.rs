@@ -5,18 +5,11 @@ use std::net::{TcpListener, TcpStream};
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::common;
-use crate::common::program::{PROGRAM, start_and_wait, stop_with, text};
+use crate::common::program::{self, PROGRAM, json, start_and_wait, stderr, stop_with, text};
 use sandbox::output::recording::Recording;
 
-fn sandbox(arguments: &[&str]) -> Output {
-    let run = ["evacuation", "--until", "0.2"];
-    let mut program = Command::new(PROGRAM);
-    program.args(run).args(arguments).output().unwrap()
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
+fn evacuation(arguments: &[&str]) -> Output {
+    program::run(&[&["evacuation", "--until", "0.2"], arguments].concat())
 }
 
 #[test]
@@ -24,10 +17,10 @@ fn without_a_viewer_nothing_is_computed() {
     let free = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = free.local_addr().unwrap().to_string();
     drop(free);
-    let output = sandbox(&["--connect", &address]);
+    let output = evacuation(&["--connect", &address]);
     assert_eq!(output.status.code(), Some(1));
     assert_eq!(
-        said(&output),
+        stderr(&output),
         format!(
             "error: no viewer answers at rerun+http://{address}/proxy (Connection refused (os error 111)); \
              start one with `rerun`, or let --spawn do it\n"
@@ -38,10 +31,10 @@ fn without_a_viewer_nothing_is_computed() {
 
 #[test]
 fn an_invalid_address_is_bad_input() {
-    let output = sandbox(&["--connect", "ftp://here"]);
+    let output = evacuation(&["--connect", "ftp://here"]);
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(
-        said(&output),
+        stderr(&output),
         "error: --connect ftp://here: no address of a viewer: rerun+http://HOST:PORT/proxy or HOST:PORT is \
          needed\n"
     );
@@ -58,7 +51,7 @@ fn a_missing_viewer_is_reported_with_how_to_install_it() {
     // A viewer that happens to be open on this machine is used.
     if output.status.code() != Some(0) {
         assert_eq!(output.status.code(), Some(1));
-        let said = said(&output);
+        let said = stderr(&output);
         assert!(said.contains("`pip install rerun-sdk==0.36.3`"), "{said}");
         assert_eq!(said.lines().count(), 1, "{said}");
     }
@@ -72,9 +65,9 @@ fn a_viewer_that_disconnects_gives_a_note_and_the_file_is_complete() {
     std::thread::spawn(move || viewer.incoming().for_each(drop));
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.rrd");
-    let file = common::program::text(&path);
-    let output = sandbox(&["--connect", &address, "--save", file]);
-    let said = said(&output);
+    let file = text(&path);
+    let output = evacuation(&["--connect", &address, "--save", file]);
+    let said = stderr(&output);
     assert_eq!(output.status.code(), Some(0), "{said}");
     assert_eq!(said.matches(&note(&address)).count(), 1, "{said}");
     let recording = Recording::read(&path).unwrap();
@@ -138,9 +131,13 @@ fn an_unresponsive_viewer_blocks_neither_the_run_nor_the_file() {
             .args(more)
             .output()
             .unwrap();
-        assert_eq!(output.status.code(), Some(0), "{name}: {}", said(&output));
-        let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-        (said(&output), report["state_sha256"].clone(), crowd(&file))
+        assert_eq!(output.status.code(), Some(0), "{name}: {}", stderr(&output));
+        let report = json(&output);
+        (
+            stderr(&output),
+            report["state_sha256"].clone(),
+            crowd(&file),
+        )
     };
     let (_, state, alone) = run("alone.rrd", &[]);
     type Behavior = fn(TcpStream);
@@ -172,10 +169,10 @@ fn a_run_that_waits_for_a_viewer_can_be_interrupted() {
         // Kill the run if it has not ended after a minute.
         let guard = "for k in $(seq 300); do sleep 0.2; kill -0 $1 || exit; done; kill -KILL $1";
         let output = stop_with(child, &format!("kill -{signal} $1; {guard}"));
-        let said = said(&output);
+        let said = stderr(&output);
         assert_eq!(output.status.code(), Some(code), "{said}");
         assert_eq!(said.matches(&note(&address)).count(), 1, "{said}");
-        let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let report = json(&output);
         assert_eq!(report["interrupted"], true);
         let _ = crowd(&file);
     }
@@ -207,7 +204,7 @@ fn rerun_off_in_the_environment_is_refused_before_anything_is_computed() {
             let output = run(command, value);
             assert_eq!(output.status.code(), Some(2), "{command:?}");
             assert_eq!(
-                said(&output),
+                stderr(&output),
                 format!(
                     "error: RERUN={value} in the environment switches recordings off: unset it, or set it to on\n"
                 )
@@ -220,6 +217,6 @@ fn rerun_off_in_the_environment_is_refused_before_anything_is_computed() {
     // Without a recording, `RERUN` has no effect; and rerun ignores other values.
     assert_eq!(run(&commands[0][..3], "off").status.code(), Some(0));
     let output = run(commands[0], "no");
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let _ = crowd(&folder.path().join(rrd));
 }

@@ -4,9 +4,10 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::process::Command;
 
+use crate::common::program::run;
+
 fn stdout(arguments: &[&str]) -> String {
-    let program = env!("CARGO_BIN_EXE_sandbox");
-    let output = Command::new(program).args(arguments).output().unwrap();
+    let output = run(arguments);
     assert!(output.status.success(), "{arguments:?}");
     String::from_utf8(output.stdout).unwrap()
 }

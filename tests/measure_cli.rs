@@ -3,28 +3,18 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
+use crate::common::program;
 use crate::common::tracks::file;
 use serde_json::Value;
 
 fn measure(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_sandbox"))
-        .arg("measure")
-        .args(arguments)
-        .output()
-        .unwrap()
+    program::run(&[&["measure"], arguments].concat())
 }
 
 fn refused(arguments: &[&str], words: &str) {
-    let output = measure(arguments);
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
-    assert!(
-        stderr.contains(words),
-        "{arguments:?}: no {words:?} in {stderr}"
-    );
-    assert!(output.stdout.is_empty());
+    program::refused(&[&["measure"], arguments].concat(), 2, &[words]);
 }
 
 /// Five people walk to the right at 1 m/s for 4 s, between two walls.
@@ -77,10 +67,10 @@ fn a_corridor_is_measured_into_a_folder() {
         "--json",
     ];
     let output = measure(&arguments);
-    let stderr = String::from_utf8_lossy(&output.stderr);
+    let stderr = program::stderr(&output);
     assert_eq!(output.status.code(), Some(0), "{stderr}");
     assert_eq!(stderr, format!("note: results are in {out}\n"));
-    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let report = program::json(&output);
     assert_eq!(
         (&report["people"], &report["rows"]),
         (&5.into(), &200.into())

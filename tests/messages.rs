@@ -1,10 +1,9 @@
 //! Messages and results quote files shortened and without control characters.
 
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
-use crate::common::program::PROGRAM;
+use crate::common::program::run_in;
 use serde_json::{Value, json};
 
 /// Terminal escape sequences, then 100,000 letters.
@@ -13,15 +12,6 @@ fn hostile() -> String {
         "\u{1b}[31m\u{1b}]0;title\u{7}\u{9b}2J\r\n\u{202e}{}",
         "x".repeat(100_000)
     )
-}
-
-fn sandbox(folder: &Path, arguments: &[&str]) -> Output {
-    let mut program = Command::new(PROGRAM);
-    program
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap()
 }
 
 /// Checks that all output is short and without control characters, and contains `words`.
@@ -74,11 +64,11 @@ fn text_from_a_scenario_is_shortened_and_escaped() {
         let mut document = scenario();
         document[key] = value;
         fs::write(folder.join("s.json"), document.to_string()).unwrap();
-        assert_harmless(&sandbox(folder, &["run", "s.json"]), code, shown);
+        assert_harmless(&run_in(folder, &["run", "s.json"]), code, shown);
     }
     let twice = format!("{{{0}: 1, {0}: 2}}", json!(long));
     fs::write(folder.join("s.json"), twice).unwrap();
-    assert_harmless(&sandbox(folder, &["run", "s.json"]), 2, shown);
+    assert_harmless(&run_in(folder, &["run", "s.json"]), 2, shown);
 }
 
 #[test]
@@ -93,14 +83,14 @@ fn text_from_the_command_line_is_shortened_and_escaped() {
         long.clone(),
     ] {
         let typed = ["evacuation", "--until", "0.1", "--set", &setting];
-        assert_harmless(&sandbox(folder.path(), &typed), 2, "--set ");
+        assert_harmless(&run_in(folder.path(), &typed), 2, "--set ");
     }
     let typed = ["evacuation", "--profile", &long];
-    assert_harmless(&sandbox(folder.path(), &typed), 2, "--profile \\u{1b}[31m");
+    assert_harmless(&run_in(folder.path(), &typed), 2, "--profile \\u{1b}[31m");
     let name = "\u{1b}[31m.json";
     fs::write(folder.path().join(name), "[]").unwrap();
     let said = "\\u{1b}[31m.json: invalid type";
-    assert_harmless(&sandbox(folder.path(), &["run", name]), 2, said);
+    assert_harmless(&run_in(folder.path(), &["run", name]), 2, said);
 }
 
 #[test]
@@ -123,7 +113,7 @@ fn text_from_a_study_is_shortened_and_escaped() {
         let mut document = json!({"scenario": "walk.json"});
         document[key] = value;
         fs::write(folder.join("study.json"), document.to_string()).unwrap();
-        let output = sandbox(folder, &["sweep", "study.json", "--list"]);
+        let output = run_in(folder, &["sweep", "study.json", "--list"]);
         assert_harmless(&output, code, shown);
     }
 }
@@ -142,7 +132,7 @@ fn text_from_plans_and_trajectories_is_shortened_and_escaped() {
     fs::write(folder.join("degrees.geojson"), degrees.to_string()).unwrap();
     for plan in ["plan.geojson", "degrees.geojson"] {
         let typed = ["evacuation", "--geometry", plan];
-        assert_harmless(&sandbox(folder, &typed), 2, "\\u{1b}[31m");
+        assert_harmless(&run_in(folder, &typed), 2, "\\u{1b}[31m");
     }
     let word = long.replace(' ', "");
     for (name, contents) in [
@@ -153,7 +143,7 @@ fn text_from_plans_and_trajectories_is_shortened_and_escaped() {
     ] {
         fs::write(folder.join(name), contents).unwrap();
         let place = format!("{name}:");
-        assert_harmless(&sandbox(folder, &["measure", name]), 2, &place);
+        assert_harmless(&run_in(folder, &["measure", name]), 2, &place);
         assert!(!folder.join("a-measured").exists());
     }
 }
@@ -176,6 +166,6 @@ fn files_above_the_size_limit_are_refused() {
         } else {
             reason
         };
-        assert_harmless(&sandbox(folder.path(), typed), 2, reason);
+        assert_harmless(&run_in(folder.path(), typed), 2, reason);
     }
 }

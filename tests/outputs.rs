@@ -11,8 +11,8 @@ use std::process::Command;
 use sandbox::runs::checkpoint::Checkpoint;
 use sandbox::runs::outputs::{Manner, Outputs, OutputsError, write_whole};
 
-use crate::common::outputs::{SCENARIO, contents, folder, refused, run, said};
-use crate::common::program::PROGRAM;
+use crate::common::outputs::{SCENARIO, contents, folder, refused, run};
+use crate::common::program::{PROGRAM, json, stderr};
 
 #[test]
 fn two_outputs_to_one_file_are_refused_under_any_names() {
@@ -143,7 +143,7 @@ fn a_resumed_run_may_replace_its_own_checkpoint() {
     let folder = folder();
     let first = fs::read(folder.path().join("c")).unwrap();
     let goes_on = run(folder.path(), "resume c --checkpoint ./c --until 2");
-    assert_eq!(goes_on.status.code(), Some(0), "{}", said(&goes_on));
+    assert_eq!(goes_on.status.code(), Some(0), "{}", stderr(&goes_on));
     assert_ne!(fs::read(folder.path().join("c")).unwrap(), first);
     let words = ["--until 1:", "the checkpoint c was written at 2.00 s"];
     refused(folder.path(), "resume c --until 1", 2, &words);
@@ -208,7 +208,7 @@ fn an_unwritable_path_is_refused_with_the_reason() {
         let typed = ["run", "s.json", "--force", option, "theirs.csv"];
         let output = program.args(typed).current_dir(&folder).output().unwrap();
         let words = format!("{option} theirs.csv: cannot be written: Permission denied");
-        assert!(said(&output).contains(&words), "{}", said(&output));
+        assert!(stderr(&output).contains(&words), "{}", stderr(&output));
         assert_eq!(output.status.code(), Some(1));
         assert_eq!(fs::read(&file).unwrap(), b"theirs");
     }
@@ -223,7 +223,7 @@ fn a_checkpoint_is_written_through_links_and_replaces_no_device() {
             folder.path(),
             &format!("run s.json --checkpoint link{force}"),
         );
-        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         assert!(folder.path().join("link").is_symlink());
         assert!(Checkpoint::read(&folder.path().join("dir/c")).is_ok());
     }
@@ -277,9 +277,9 @@ fn a_run_continues_after_a_checkpoint_that_cannot_be_written() {
     let mut bash = Command::new("bash");
     let bash = bash.args(["-c", command, PROGRAM]).args(more);
     let output = bash.current_dir(&folder).output().unwrap();
-    let stderr = said(&output);
+    let stderr = stderr(&output);
     assert_eq!(output.status.code(), Some(1), "{stderr}");
-    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let report = json(&output);
     assert_eq!(
         [&report["frames"], &report["agents"]],
         [95, 401],
@@ -324,9 +324,9 @@ fn recording_from_beyond_the_end_is_refused_or_noted() {
     let output = run(folder.path(), typed);
     assert_eq!(output.status.code(), Some(0));
     assert!(
-        said(&output).contains("note: no frame was recorded"),
+        stderr(&output).contains("note: no frame was recorded"),
         "{}",
-        said(&output)
+        stderr(&output)
     );
 }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::common;
+use crate::common::program;
 use crate::common::{blend, blend_with, block, person, rectangle, scene, vector};
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::breakdown::Breakdown;
@@ -336,16 +337,11 @@ fn a_scenario_uses_the_automatic_step_and_refuses_it_where_it_is_unknown() {
 #[test]
 fn a_time_step_that_is_too_long_gives_a_warning() {
     let stderr = |step: &str, settings: &[&str]| {
-        let arguments = ["evacuation", "--until", "1", "--time-step", step];
-        let settings = settings.iter().flat_map(|setting| ["--set", setting]);
-        let program = env!("CARGO_BIN_EXE_sandbox");
-        let output = std::process::Command::new(program)
-            .args(arguments)
-            .args(settings)
-            .output()
-            .unwrap();
+        let mut arguments = vec!["evacuation", "--until", "1", "--time-step", step];
+        arguments.extend(settings.iter().flat_map(|setting| ["--set", setting]));
+        let output = program::run(&arguments);
         assert_eq!(output.status.code(), Some(0));
-        String::from_utf8(output.stderr).unwrap()
+        program::stderr(&output)
     };
     assert!(stderr("0.25", &[]).contains("warning: time_step_secs 0.25 is "));
     assert!(!stderr("auto", &[]).contains("warning"));

@@ -3,17 +3,18 @@
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+use crate::common::program::{PROGRAM, run_in};
 use crate::common::sweep::{cases, column, folder, number, rows};
 use serde_json::Value;
 
-fn sandbox(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_sandbox"));
+fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(PROGRAM);
     command.args(arguments).current_dir(folder);
     command
 }
 
 /// Exit code, stdout and stderr.
-fn said(output: Output) -> (Option<i32>, String, String) {
+fn parts(output: Output) -> (Option<i32>, String, String) {
     let text = |bytes| String::from_utf8(bytes).unwrap();
     (
         output.status.code(),
@@ -23,7 +24,7 @@ fn said(output: Output) -> (Option<i32>, String, String) {
 }
 
 fn run(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
-    said(sandbox(folder, arguments).output().unwrap())
+    parts(run_in(folder, arguments))
 }
 
 fn json(folder: &Path, arguments: &[&str]) -> Value {
@@ -111,12 +112,12 @@ fn two_processes_at_once_run_every_cell_once() {
     let (folder, _) = folder(r#"{"scenario": "room.json", "seeds": 40}"#);
     let begin = || {
         let arguments = ["sweep", "study.json", "--shard", "1/1", "--json"];
-        let mut command = sandbox(folder.path(), &arguments);
+        let mut command = command(folder.path(), &arguments);
         let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
         command.spawn().unwrap()
     };
     let both = [begin(), begin()].map(|child| {
-        let (code, stdout, stderr) = said(child.wait_with_output().unwrap());
+        let (code, stdout, stderr) = parts(child.wait_with_output().unwrap());
         assert_eq!(code, Some(0), "{stderr}");
         serde_json::from_str::<Value>(&stdout).unwrap()
     });
@@ -140,7 +141,7 @@ fn cells_finished_before_a_kill_are_kept() {
     let (folder, _) =
         folder(r#"{"scenario": "room.json", "grid": {"duration_secs": [0.1, 10000000]}}"#);
     let arguments = ["sweep", "study.json", "--threads", "2"];
-    let mut child = sandbox(folder.path(), &arguments)
+    let mut child = command(folder.path(), &arguments)
         .stderr(Stdio::null())
         .spawn()
         .unwrap();

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use tempfile::TempDir;
 
-use super::program::PROGRAM;
+use super::program::{run_in, stderr};
 
 pub const SCENARIO: &str =
     r#"{"goal": [9, 0], "duration_secs": 1, "agents": [{"position": [0, 0]}]}"#;
@@ -29,18 +29,13 @@ pub fn folder() -> TempDir {
     fs::hard_link(at("s.json"), at("hard.csv")).unwrap();
     fs::write(at("tracks.txt"), "# framerate: 10\n1 0 0 0\n1 1 1 0\n").unwrap();
     let written = run(folder.path(), "run s.json --checkpoint c");
-    assert_eq!(written.status.code(), Some(0), "{}", said(&written));
+    assert_eq!(written.status.code(), Some(0), "{}", stderr(&written));
     folder
 }
 
+/// Runs the program in `folder` with the arguments in `typed`, separated by spaces.
 pub fn run(folder: &Path, typed: &str) -> Output {
-    let mut program = Command::new(PROGRAM);
-    program.args(typed.split(' ')).current_dir(folder);
-    program.output().unwrap()
-}
-
-pub fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
+    run_in(folder, &typed.split(' ').collect::<Vec<_>>())
 }
 
 /// The names in a folder, with the contents of regular files.
@@ -59,7 +54,7 @@ pub fn contents(folder: &Path) -> BTreeMap<String, Option<Vec<u8>>> {
 pub fn refused(folder: &Path, typed: &str, code: i32, words: &[&str]) {
     let before = contents(folder);
     let output = run(folder, typed);
-    let stderr = said(&output);
+    let stderr = stderr(&output);
     assert_eq!(output.status.code(), Some(code), "{typed}: {stderr}");
     for word in words {
         assert!(stderr.contains(word), "{typed}: no {word:?} in {stderr}");

@@ -1,6 +1,5 @@
 //! Runs the program as a user does.
 
-use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
@@ -11,7 +10,7 @@ use serde_json::Value;
 pub const PROGRAM: &str = env!("CARGO_BIN_EXE_sandbox");
 
 /// Runs the program and returns its output.
-pub fn run(arguments: &[impl AsRef<OsStr>]) -> Output {
+pub fn run(arguments: &[&str]) -> Output {
     Command::new(PROGRAM).args(arguments).output().unwrap()
 }
 
