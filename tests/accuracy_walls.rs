@@ -177,8 +177,8 @@ fn orders(case: &Case, coarse: f64, method: impl Fn(f64) -> Method) -> [f64; 2] 
     [(a / b).log2(), (b / c).log2()]
 }
 
-/// The paths that stay at least a body radius away from all walls. Nearer, the cusp of the force kernel reaches the
-/// solid.
+/// The paths that stay at least a body radius away from all walls. Closer to a wall, the cusp of the force kernel
+/// reaches the solid.
 fn off_the_walls() -> impl Iterator<Item = Case> {
     let cases = cases(PLACES).into_iter();
     cases.filter(|case| case.tangent.is_none())

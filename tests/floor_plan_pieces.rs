@@ -78,7 +78,7 @@ proptest! {
         for (x, y) in places {
             let p = Vector::new(x, y) + shift;
             let within = |obstacle| rings.iter().any(|(ring, is)| *is == obstacle && ring.contains(p));
-            // Within rounding error of an edge, both answers are right.
+            // Within rounding error of an edge, a point may count as free or not.
             let nearest = edges
                 .iter()
                 .map(|edge| (edge.nearest_point(p).point - p).norm())

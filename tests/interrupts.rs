@@ -5,7 +5,7 @@ use std::fs;
 
 use crate::common::program::{json, start_and_wait, stderr, stop_with, text};
 
-/// One person, for days.
+/// A run of one person that lasts for days.
 const LONG: &str = r#"{"duration_secs": 1e6, "agents": [{"position": [0, 0], "goal": [9, 0]}]}"#;
 
 #[test]

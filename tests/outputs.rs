@@ -147,7 +147,7 @@ fn a_resumed_run_may_replace_its_own_checkpoint() {
     assert_ne!(fs::read(folder.path().join("c")).unwrap(), first);
     let words = ["--until 1:", "the checkpoint c was written at 2.00 s"];
     refused(folder.path(), "resume c --until 1", 2, &words);
-    // A run may not replace another checkpoint than its own.
+    // A resumed run may not replace any other checkpoint.
     fs::copy(folder.path().join("c"), folder.path().join("d")).unwrap();
     refused(
         folder.path(),

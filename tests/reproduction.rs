@@ -241,7 +241,7 @@ fn row(profile: &str, value: f64) -> EvacuationRow {
 #[test]
 fn four_rows_of_table_1_stay_inside_their_bands() {
     let (_folder, store) = store();
-    // RVO has random candidates: one seed differs from another by more than the width of a band.
+    // RVO chooses among random candidates, so that results vary between seeds by more than the width of a band.
     let rows = [
         (row("sph", 3.0), 1),
         (row("sph", 5.0), 1),

@@ -241,8 +241,8 @@ fn walls_count_only_within_five_meters() {
     let facing = |profile: &str, x: f64, seed: u64| {
         let mut scene = scene(vec![rectangle([x, x + 1.0], [-9.0, 9.0])], blend(profile));
         scene.seed = seed;
-        // With RVO, a fast agent is near the wall in time. A social force of e^(−50) shows only without a goal
-        // force, at the preferred speed.
+        // For RVO the agent is fast, so that it would meet the wall soon. For the social force it walks at its
+        // preferred speed: next to a goal force, e^(−50) would be lost in rounding.
         let speed = if profile == "rvo" { 1.8 } else { 1.4 };
         scene.agents = vec![walker(
             Vector::zeros(),

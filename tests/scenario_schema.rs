@@ -138,7 +138,7 @@ fn every_object_has_the_keys_that_the_parser_knows() {
         let mut expected = known(pointer);
         expected.sort();
         assert_eq!(keys, expected, "{place}");
-        // The parser refuses an object without a key only if the key is required.
+        // The parser refuses an object without a key if and only if the key is required.
         let required = object
             .get("required")
             .map_or(vec![], |keys| keys.as_array().unwrap().clone());

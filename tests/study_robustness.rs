@@ -14,7 +14,7 @@ fn memory_limit(text: &str, cells: u64) -> u64 {
     (1 << 20) + 200 * text.len() as u64 + 100_000 * cells
 }
 
-/// Valid studies of two or more cells, with every key.
+/// Valid studies of several cells, which together have every key.
 fn studies() -> [Value; 3] {
     let few = json!({"grids.0.columns": 2, "grids.0.rows": 2});
     [

@@ -1,4 +1,4 @@
-//! Trajectories are written, read back and compared with the simulation, bit by bit.
+//! Trajectories are written, read back and compared with the simulation, bit for bit.
 
 use std::collections::BTreeMap;
 use std::fs;

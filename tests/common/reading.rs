@@ -5,15 +5,15 @@ use sandbox::runs::drive::{Then, drive};
 use sandbox::scenario::metrics::Metrics;
 use sandbox::scenario::{Need, Scenario, Setting};
 
-/// Scenarios with more agents are not run.
+/// Scenarios with more agents than this are not run.
 const MAX_AGENTS: u64 = 500;
 /// The number of frames to compute.
 const FRAMES: u64 = 3;
-/// Scenarios with more RVO candidates of all agents are not run.
+/// Scenarios with more RVO candidates than this, summed over all agents, are not run.
 const MAX_CANDIDATES: u64 = 20_000;
 
 /// Runs the first frames of a valid scenario, or checks that the error names the file or setting. Returns the
-/// number of agents that took memory.
+/// number of agents that may have been created.
 pub fn read(text: &str, settings: &[Setting]) -> u64 {
     let need = Need::parse(text, "f.json", settings);
     let scenario = match Scenario::parse(text, "f.json", settings) {
@@ -27,7 +27,7 @@ pub fn read(text: &str, settings: &[Setting]) -> u64 {
             return 0;
         }
     };
-    // A valid scenario has an estimate of its needs, which is an upper bound.
+    // Every valid scenario has an estimate of its needs, which is an upper bound.
     let need = need.unwrap();
     assert_eq!(need.initial, scenario.scene.agents.len() as u64);
     // Repeated corners are dropped. Walkable areas that overlap have additional corners.

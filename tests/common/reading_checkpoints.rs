@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 
 /// The number of frames to compute.
 const FRAMES: u64 = 2;
-/// Error messages must be shorter, bytes.
+/// Error messages must be shorter than this, bytes.
 const MAX_MESSAGE: usize = 1000;
 
 /// Checks that the resumed run has finite numbers, or that the error is short and without control characters.
@@ -46,7 +46,7 @@ pub fn read(bytes: &[u8]) -> bool {
     true
 }
 
-/// The checkpoint with this payload: its header is valid.
+/// A checkpoint with this payload and a valid header.
 pub fn sealed(payload: &[u8]) -> Vec<u8> {
     let mut bytes = b"sandbox checkpoint\n".to_vec();
     bytes.extend(2_u32.to_le_bytes());

@@ -9,7 +9,7 @@ use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::math::Vector;
 use sandbox::output::trajectory::read::{FRAME_RATES, ReadError, ReadOptions, Tracks, read_text};
 
-/// Trajectories with more rows are not measured.
+/// Trajectories with more rows than this are not measured.
 const MAX_ROWS: usize = 60;
 /// The largest number of field cells along each side.
 const MAX_CELLS: f64 = 10.0;

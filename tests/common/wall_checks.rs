@@ -8,10 +8,10 @@ use sandbox::engine::math::Vector;
 
 /// The rounding error of lengths computed from coordinates up to 10⁶ m, meters.
 const ROUNDING: f64 = 1e-8;
-/// The distance from a wall at which an agent is put, with some rounding, meters.
+/// The distance at which an agent is placed in front of a wall, with some rounding, meters.
 const CLEARANCE: f64 = 2e-6;
 
-/// The lists of points that are valid polygons.
+/// The polygons of the lists of points, without invalid ones.
 pub fn obstacles(lists: Vec<Vec<Vector>>) -> Vec<Polygon> {
     let made = lists.into_iter().map(|points| {
         let count = points.len();
@@ -34,7 +34,7 @@ pub fn check(walls: &Walls, p: Vector, goal: Vector, radius: f64) {
         .position(|polygon| polygon.contains(p));
     let distance = |k: &u32| (walls.wall(*k).nearest_point(p).point - p).norm();
     let nearest = all.iter().map(distance).fold(f64::INFINITY, f64::min);
-    // Within rounding error of a wall, both answers are right.
+    // Within rounding error of a wall, a point may count as inside or outside.
     if nearest > ROUNDING {
         assert_eq!(walls.obstacle_at(p), inside);
     }
@@ -84,7 +84,7 @@ fn shares(walls: &Walls, near: &[u32], p: Vector, h: f64) {
     }
 }
 
-/// Checks that the nearest free point is free, and that no point on a wall is nearer and free.
+/// Checks that the nearest free point is free, and that no wall has a nearer free point.
 fn check_free_point(walls: &Walls, p: Vector) {
     let Some(exit) = walls.free_point_near(p) else {
         return;
@@ -101,7 +101,7 @@ fn check_free_point(walls: &Walls, p: Vector) {
         (exit - p).norm() <= nearest + ROUNDING,
         "{exit} is farther than {nearest} m"
     );
-    // It is not nearer than the nearest wall, either.
+    // The free point is not nearer than the nearest wall.
     let distance =
         |wall: &sandbox::engine::geometry::Wall| (wall.nearest_point(p).point - p).norm();
     let least = walls.iter().map(distance).fold(f64::INFINITY, f64::min);

@@ -1,4 +1,4 @@
-//! Any payload with a valid checksum is resumed or gives an error, without a panic.
+//! Any payload with a valid checksum either is resumed or gives an error, without a panic.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! Any text is a floor plan or gives an error at a place in the text, without a panic.
+//! Any text either is a valid floor plan or gives an error at a place in the text, without a panic.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! Any text is a scenario that runs or gives an error, without a panic.
+//! Any text either runs as a scenario or gives an error, without a panic.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! Any text is a study with valid cells or gives an error, without a panic.
+//! Any text either is a study with valid cells or gives an error, without a panic.
 
 #![no_main]
 

@@ -1,4 +1,5 @@
-//! Any bytes, read as text and as CSV, are trajectories with finite numbers or give an error, without a panic.
+//! Any bytes, read as text and as CSV, either are trajectories with finite numbers or give an error, without a
+//! panic.
 
 #![no_main]
 
