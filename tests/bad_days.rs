@@ -59,21 +59,13 @@ const WRITERS: [(&[&str], &str); 9] = [
     (&["accuracy", "--quick", "--out"], ""),
 ];
 
-/// Those of them that this program has.
-fn writers() -> impl Iterator<Item = (&'static [&'static str], &'static str)> {
-    let has = |extension: &str| extension != "rrd";
-    WRITERS
-        .into_iter()
-        .filter(move |(_, extension)| has(extension))
-}
-
 #[test]
 fn an_unwritable_path_is_named_before_anything_is_computed() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "precious").unwrap();
     let man: (&[&str], _) = (&["man", "--out"], "");
-    for (arguments, extension) in writers().chain([man]) {
+    for (arguments, extension) in WRITERS.into_iter().chain([man]) {
         let below = file.join("x").with_extension(extension);
         let missing = folder.path().join("no").join("x").with_extension(extension);
         let is_folder = extension.is_empty();
@@ -92,7 +84,10 @@ fn an_unwritable_path_is_named_before_anything_is_computed() {
 #[test]
 fn every_writer_names_its_path_on_a_full_disk() {
     let folder = tempfile::tempdir().unwrap();
-    for (arguments, extension) in writers().filter(|(_, extension)| !extension.is_empty()) {
+    for (arguments, extension) in WRITERS
+        .into_iter()
+        .filter(|(_, extension)| !extension.is_empty())
+    {
         let path = folder.path().join("full").with_extension(extension);
         symlink("/dev/full", &path).ok();
         let arguments = [arguments, &[text(&path)]].concat();
