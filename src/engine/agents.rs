@@ -1,4 +1,4 @@
-//! The state of the crowd: one array per quantity, in the order of the neighbour grid's cells.
+//! The state of the crowd: one array per quantity, sorted by cell of the neighbor grid.
 
 use rand::Rng;
 use rayon::prelude::*;
@@ -9,30 +9,30 @@ use crate::engine::random::{self, Purpose};
 
 /// D_i ∈ U[0.215, 0.265] m (§5.6).
 pub const RADIUS_RANGE: [f64; 2] = [0.215, 0.265];
-/// The radius of an agent of mass 1, metres (§5.6).
+/// The radius of an agent of mass 1, meters (§5.6).
 pub const REFERENCE_RADIUS: f64 = 0.24;
 
-/// An agent about to enter; what is `None` is drawn or derived.
+/// An agent about to enter. Values that are `None` are drawn or derived.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NewAgent {
-    /// Position, metres.
+    /// Position, meters.
     pub position: Vector,
     /// Velocity, m/s.
     pub velocity: Vector,
-    /// Goal, metres.
+    /// Goal, meters.
     pub goal: Vector,
-    /// Radius D_i in metres; drawn from [`RADIUS_RANGE`] if `None`.
+    /// Radius D_i in meters; drawn from [`RADIUS_RANGE`] if `None`.
     pub radius: Option<f64>,
     /// Mass, 1 = an average person; (D_i / 0.24)² if `None`.
     pub mass: Option<f64>,
-    /// ρ̂ of the frame before, P/m²; the agent-only density of its first frame if `None`.
+    /// ρ̂ of the previous frame, P/m²; if `None`, the density from agents alone in its first frame.
     pub mean_density: Option<f64>,
     /// Its [`Group`](crate::engine::scene::Group).
     pub group: u16,
 }
 
 impl NewAgent {
-    /// Somebody standing at `position`, on the way to `goal`.
+    /// An agent at rest at `position`, on the way to `goal`.
     pub fn at(position: Vector, goal: Vector, group: u16) -> Self {
         Self {
             position,
@@ -46,61 +46,61 @@ impl NewAgent {
     }
 }
 
-/// Everybody's state. All arrays but the last two have the same length; index i is an agent until the next
-/// frame in which the neighbour lists are rebuilt, `id` is one for ever.
+/// The state of all agents. All arrays but the last two have the same length. An index is valid until agents are
+/// next sorted or removed; an `id` never changes.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Agents {
     /// Unique number, in the order of entry from 0.
     pub id: Vec<u32>,
-    /// r_i, metres.
+    /// r_i, meters.
     #[serde(with = "pairs_of::many")]
     pub position: Vec<Vector>,
     /// v_i, m/s.
     #[serde(with = "pairs_of::many")]
     pub velocity: Vec<Vector>,
-    /// g_i, metres.
+    /// g_i, meters.
     #[serde(with = "pairs_of::many")]
     pub goal: Vec<Vector>,
-    /// D_i, metres.
+    /// D_i, meters.
     pub radius: Vec<f64>,
     /// m_i, 1 = an average person.
     pub mass: Vec<f64>,
-    /// ρ̂_i of the frame before, P/m², unclamped (§4.2).
+    /// ρ̂_i of the previous frame, P/m², unclamped (§4.2).
     pub mean_density: Vec<f64>,
-    /// Has ρ̂_i not been set yet? Then the next frame starts it.
+    /// Is ρ̂_i still unset? The next frame with a density sets it.
     pub newcomer: Vec<bool>,
     /// Index of the agent's group in the scene.
     pub group: Vec<u16>,
-    /// The push that the agent takes part in now, as its index in the scene.
+    /// Index in the scene of the push that the agent currently takes part in.
     pub push: Vec<Option<u16>>,
-    /// The RVO acceleration held since the last coarse frame, m/s²; `None` where none is due. Empty
-    /// where nobody avoids by RVO.
+    /// The RVO acceleration held until the next coarse frame, m/s²; `None` where RVO does not act. Empty if no
+    /// profile uses RVO.
     #[serde(with = "pairs_of::some")]
     pub avoidance: Vec<Option<Vector>>,
-    /// The acceleration of the frame before, m/s²; `None` for who was not there. Empty but for velocity
-    /// Verlet.
+    /// The acceleration of the previous frame, m/s²; `None` for agents that entered since. Used by velocity Verlet
+    /// only, otherwise empty.
     #[serde(with = "pairs_of::some")]
     pub acceleration_before: Vec<Option<Vector>>,
     next_id: u32,
 }
 
 impl Agents {
-    /// How many there are now.
+    /// The current number of agents.
     pub fn len(&self) -> usize {
         self.id.len()
     }
 
-    /// Is nobody there?
+    /// Are there no agents?
     pub fn is_empty(&self) -> bool {
         self.id.is_empty()
     }
 
-    /// How many ever entered.
+    /// The number of agents that have entered so far.
     pub fn entered(&self) -> u32 {
         self.next_id
     }
 
-    /// Have all quantities as many values as there are agents?
+    /// Do the lengths of all arrays agree with the number of agents?
     pub fn is_whole(&self) -> bool {
         let count = self.len();
         let sometimes = [self.avoidance.len(), self.acceleration_before.len()];
@@ -118,12 +118,12 @@ impl Agents {
         always.iter().all(|&len| len == count) && sometimes.iter().all(|&len| len <= count)
     }
 
-    /// The current index of agent `id`, if it is still there.
+    /// The current index of agent `id`; `None` if it has left.
     pub fn index_of(&self, id: u32) -> Option<usize> {
         self.id.iter().position(|&other| other == id)
     }
 
-    /// Lets somebody in and returns the new id.
+    /// Adds an agent and returns its id.
     pub fn enter(&mut self, new: NewAgent, seed: u64) -> u32 {
         let id = self.next_id;
         self.next_id += 1;
@@ -145,15 +145,15 @@ impl Agents {
         id
     }
 
-    /// From now on every agent has a place for an RVO acceleration.
+    /// Extends `avoidance` to all agents.
     pub fn make_room_for_avoidance(&mut self) {
         self.avoidance.resize(self.len(), None);
     }
 
-    /// Puts agent `order[k]` at place k; agents that `order` does not name are gone.
+    /// Moves agent `order[k]` to index k. Agents that are not in `order` are removed.
     pub fn arrange(&mut self, order: &[u32]) {
         if !self.avoidance.is_empty() {
-            self.make_room_for_avoidance(); // for who entered since
+            self.make_room_for_avoidance(); // for agents that entered since
             arrange(&mut self.avoidance, order);
         }
         if !self.acceleration_before.is_empty() {
@@ -173,7 +173,7 @@ impl Agents {
     }
 }
 
-/// Values that are worth another thread.
+/// Least number of values per parallel task.
 const SOME: usize = 4096;
 
 fn arrange<T: Copy + Send + Sync>(values: &mut Vec<T>, order: &[u32]) {

@@ -1,4 +1,4 @@
-//! Walls in SPH (§4.3): what the hidden regions P_k add to density and pressure.
+//! Walls in SPH (§4.3): contributions of the hidden regions P_k to density and pressure.
 
 use std::f64::consts::PI;
 
@@ -6,36 +6,37 @@ use crate::engine::geometry::{HiddenRegion, Walls, visible_parts};
 use crate::engine::kernel;
 use crate::engine::math::{Vector, direction};
 
-/// How the integrals of the kernels over the hidden regions are taken.
+/// How kernels are integrated over the hidden regions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WallMethod {
-    /// The paper's: the area of P_k times the kernel at one representative point (Eq. 10, 12).
+    /// The paper's method: the area of P_k times the kernel at one representative point (Eqs. 10 and 12).
     #[default]
     Representative,
-    /// Exact integrals over each P_k; shadows of several walls add.
+    /// Exact integrals over each P_k. Areas hidden by several walls count several times.
     Exact,
-    /// Exact integrals over what each wall alone hides, so that nothing counts twice.
+    /// Exact integrals over the union of all P_k. Each part is assigned to the nearest wall that hides it, so that
+    /// no area counts twice.
     Union,
 }
 
-/// One wall's share for one agent.
+/// The contribution of one wall to one agent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WallShare {
     /// The wall.
     pub wall: u32,
     /// a(P_k) in m².
     pub hidden_area: f64,
-    /// r_k^o, metres; `None` where the integrals are exact.
+    /// r_k^o, meters; `None` for exact integrals.
     pub representative_point: Option<Vector>,
-    /// ∫ W over P_k, dimensionless: times ρ_i⁰ it is the wall's density (Eq. 10).
+    /// ∫ W over P_k, dimensionless. Times ρ_i⁰ it is the density from the wall (Eq. 10).
     pub kernel: f64,
-    /// ∫ ∇W over P_k in 1/m: times −p_i it is the wall's force (Eq. 12).
+    /// ∫ ∇W over P_k in 1/m. Times −p_i it is the pressure force of the wall (Eq. 12).
     pub gradient: Vector,
 }
 
 impl WallShare {
-    /// Two parts of the same wall together.
+    /// The sum over two parts of the same wall.
     fn with(self, other: &Self) -> Self {
         Self {
             hidden_area: self.hidden_area + other.hidden_area,
@@ -47,8 +48,8 @@ impl WallShare {
 }
 
 impl WallMethod {
-    /// The shares of those of `candidates` that hide something from an agent at `r_i`, in rising
-    /// order of the walls.
+    /// Passes `take` the shares of all `candidates` that hide part of the kernel of an agent at `r_i`, in the order
+    /// of `candidates`.
     pub fn shares(
         self,
         walls: &Walls,
@@ -79,7 +80,7 @@ impl WallMethod {
     }
 }
 
-/// Eq. 10 and 12: P_k condensed into the point half way between r_k* and the rim of the kernel.
+/// Eqs. 10 and 12: P_k is replaced by the point halfway between r_k* and the rim of the kernel.
 fn representative(k: u32, region: &HiddenRegion, r_i: Vector) -> WallShare {
     let h = region.support_radius;
     let to_nearest = region.to_nearest();
@@ -114,10 +115,11 @@ fn exact(k: u32, region: &HiddenRegion) -> WallShare {
     }
 }
 
-/// The integrals over the angle in closed form, at one end of the wall.
+/// Antiderivatives over the angle t in closed form, at one end of the wall.
 ///
-/// Radially ∫ W r dr and ∫ |∇W| r dr from the wall to the rim are polynomials in R = |wall point|;
-/// with R = q / cos t they integrate to these, q = d/h, s along the wall over h, A = asinh(s/q).
+/// The radial integrals ∫ W r dr and ∫ |∇W| r dr from the wall to the rim are polynomials in the distance R of
+/// the wall point, in units of h. With R = q / cos t, q = d/h, s the position along the wall over h, and
+/// A = asinh(s/q), their integrals over t are the expressions below.
 struct Antiderivatives {
     kernel: f64,
     towards: f64,
@@ -134,7 +136,7 @@ impl Antiderivatives {
         let t = s.atan2(q);
         // q² A and q⁴ A vanish with q.
         let q2a = if q2 > 0.0 { q2 * (s / q).asinh() } else { 0.0 };
-        // cos t and sin t; at the wall's own end (q = s = 0) any direction will do, with weight 0.
+        // cos t and sin t. At q = s = 0 the direction is arbitrary: its weight is 0.
         let (cosine, sine) = if r > 0.0 { (q / r, s / r) } else { (1.0, 0.0) };
         Self {
             kernel: t - 4.0 * q * s + 6.0 * q * s * (q2 + s2 / 3.0)

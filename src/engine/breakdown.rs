@@ -1,4 +1,4 @@
-//! One agent, term by term: the engine's own force functions on the frozen frame, laid open.
+//! The acceleration of one agent, term by term, computed with the engine's force functions on the frozen frame.
 
 mod text;
 
@@ -10,27 +10,27 @@ use crate::engine::math::Vector;
 use crate::engine::profile::Terms;
 use crate::engine::simulation::{Fault, Simulation};
 
-/// Everything that acts on one agent in one frame. Accelerations in m/s², each term's own share
-/// (already divided by mass or density, not yet weighted).
+/// Everything that acts on one agent in one frame. Accelerations are in m/s², divided by mass or density; the
+/// terms of a profile are not weighted.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Breakdown {
     /// The agent.
     pub id: u32,
-    /// r_i, metres.
+    /// r_i, meters.
     pub position: [f64; 2],
     /// v_i, m/s.
     pub velocity: [f64; 2],
-    /// D_i, metres.
+    /// D_i, meters.
     pub radius: f64,
     /// m_i.
     pub mass: f64,
-    /// g_i, metres.
+    /// g_i, meters.
     pub goal: [f64; 2],
     /// ρ_i, P/m².
     pub density: f64,
-    /// The agents' part of ρ_i, P/m².
+    /// The part of ρ_i from agents, P/m².
     pub density_from_agents: f64,
-    /// The walls' part of ρ_i, P/m².
+    /// The part of ρ_i from walls, P/m².
     pub density_from_walls: f64,
     /// ρ̂_i, P/m².
     pub mean_density: f64,
@@ -38,56 +38,56 @@ pub struct Breakdown {
     pub rest_density: f64,
     /// p_i.
     pub pressure: f64,
-    /// a_i: the weighted sum of the profiles' terms.
+    /// a_i, the weighted sum of the terms of all profiles.
     pub acceleration: [f64; 2],
-    /// The profiles that act, with their weights.
+    /// The active profiles with their weights.
     pub profiles: Vec<ProfileShare>,
-    /// Agents within the support radius, the nearest first.
+    /// Agents within the support radius, nearest first.
     pub neighbors: Vec<Neighbor>,
     /// Walls that hide a part of the kernel.
     pub walls: Vec<WallTerm>,
 }
 
-/// One profile's part.
+/// The contribution of one profile.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ProfileShare {
-    /// The profile.
+    /// Name of the profile.
     pub name: String,
-    /// Its weight in the blend; all weights sum to 1.
+    /// Weight in the blend. All weights sum to 1.
     pub weight: f64,
-    /// Its terms.
+    /// Its terms, not weighted.
     #[serde(serialize_with = "serialize_terms")]
     pub accelerations: Terms,
 }
 
-/// A neighbour in SPH.
+/// An SPH neighbor.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Neighbor {
     /// Its id.
     pub id: u32,
-    /// |r_ij|, metres.
+    /// |r_ij|, meters.
     pub distance: f64,
 }
 
-/// A wall in SPH.
+/// A wall that contributes to SPH.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct WallTerm {
-    /// The wall's number.
+    /// Index of the wall.
     pub wall: u32,
-    /// r_k*, metres.
+    /// r_k*, meters.
     pub nearest_point: [f64; 2],
-    /// r_k^o, metres; `None` for the exact wall methods.
+    /// r_k^o, meters; `None` for the exact wall methods.
     pub representative_point: Option<[f64; 2]>,
     /// a(P_k), m².
     pub hidden_area: f64,
     /// ρ_k^wall, P/m².
     pub density: f64,
-    /// Its part of the pressure acceleration, m/s².
+    /// Pressure acceleration by the wall, m/s².
     pub pressure_acceleration: [f64; 2],
 }
 
 impl Breakdown {
-    /// Lays open agent `i` of an evaluated frame; `None` if the frame has no density (see
+    /// The breakdown of agent `i` of an evaluated frame; `None` if the frame has no density (see
     /// [`Simulation::request_density_until`]).
     pub fn of(simulation: &Simulation, i: usize) -> Option<Self> {
         let frame = simulation.frame();
@@ -131,8 +131,8 @@ impl Breakdown {
         })
     }
 
-    /// Lays open the agent that a fault names, in the frame that cannot be left; `None` if the fault names
-    /// nobody who is there.
+    /// The breakdown of the agent that a fault names, in the frame of the fault; `None` if the fault names no agent
+    /// of that frame.
     pub fn of_fault(simulation: &mut Simulation, fault: &Fault) -> Option<Self> {
         let &Fault::NotFinite { agent, .. } = fault else {
             return None;
@@ -142,7 +142,7 @@ impl Breakdown {
         Self::of(simulation, i)
     }
 
-    /// Σ weight × term over all profiles: [`acceleration`](Self::acceleration) to rounding.
+    /// Σ weight × term over all profiles; equals [`acceleration`](Self::acceleration) up to rounding.
     pub fn weighted_sum(&self) -> Vector {
         self.profiles
             .iter()

@@ -1,4 +1,4 @@
-//! Time counted in whole frames (§5.1): Δt_fine for most steps, Δt_coarse for a few.
+//! Time, counted in whole frames (§5.1): most steps run every Δt_fine, a few every Δt_coarse.
 
 /// Δt_fine of the paper, seconds.
 pub const PAPER_TIME_STEP: f64 = 0.02;
@@ -8,7 +8,7 @@ pub const PAPER_COARSE_STEP: f64 = 0.1;
 /// The shortest Δt_fine that a scenario may have, seconds.
 pub const SHORTEST_TIME_STEP: f64 = 1e-6;
 
-/// Counts fine frames; every time is derived from the count.
+/// Counts fine frames. Times are derived from the count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clock {
     frame: u64,
@@ -26,7 +26,7 @@ impl Clock {
         }
     }
 
-    /// The number of frames that stays nearest to the paper's Δt_coarse when Δt_fine changes.
+    /// The number of frames of `time_step` seconds that comes nearest to the paper's Δt_coarse.
     pub fn nearest_coarse_every(time_step: f64) -> u32 {
         (PAPER_COARSE_STEP / time_step).round().max(1.0) as u32
     }
@@ -51,9 +51,9 @@ impl Clock {
         (time / self.time_step).round() as u64
     }
 
-    /// The first coarse frame that is not before a time in seconds.
+    /// The first coarse frame at or after a time in seconds.
     pub fn coarse_frame_at(&self, time: f64) -> u64 {
-        // Decimal times are hardly ever whole multiples of the time step to the last bit.
+        // Tolerates rounding: decimal times are rarely exact multiples of the time step.
         let frame = (time / self.time_step - 1e-6).ceil() as u64;
         frame.next_multiple_of(u64::from(self.coarse_every))
     }
@@ -83,12 +83,12 @@ impl Clock {
         self.frame / u64::from(self.coarse_every)
     }
 
-    /// To any frame.
+    /// Jumps to any frame.
     pub fn go_to(&mut self, frame: u64) {
         self.frame = frame;
     }
 
-    /// On to the next frame.
+    /// Advances to the next frame.
     pub fn advance(&mut self) {
         self.frame += 1;
     }

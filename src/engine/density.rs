@@ -1,13 +1,13 @@
-//! Step 1B: density, personal rest density and pressure of one agent (§4.2, §4.3).
+//! Step 1B: density, personal rest density and pressure (§4.2, §4.3).
 
 use crate::engine::boundary::WallMethod;
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 
-/// What an agent's SPH density and pressure depend on; one set for all profiles of a blend.
+/// Parameters of SPH density and pressure, shared by all profiles of a blend.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SphParameters {
-    /// h, metres (§5.2).
+    /// h, meters (§5.2).
     pub support_radius: f64,
     /// k (§5.5).
     pub gas_constant: f64,
@@ -32,13 +32,13 @@ impl Default for SphParameters {
 }
 
 impl SphParameters {
-    /// Eq. 8: the moving average ρ̂, one step on.
+    /// Eq. 8: the moving average ρ̂ after one step.
     pub fn averaged(&self, mean_density: f64, density: f64, time_step: f64) -> f64 {
         let alpha = (time_step / self.averaging_time).min(1.0);
         (1.0 - alpha) * mean_density + alpha * density
     }
 
-    /// ρ⁰: the moving average ρ̂ in its allowed range (§4.2).
+    /// ρ⁰: the moving average ρ̂, clamped to its allowed range (§4.2).
     pub fn rest_density(&self, mean_density: f64) -> f64 {
         mean_density.clamp(self.rest_density_min, self.rest_density_max)
     }
@@ -49,24 +49,24 @@ impl SphParameters {
     }
 }
 
-/// What step 1B finds out of some agents in order; units as in [`Fields`](crate::engine::frame::Fields).
+/// Results of step 1B for consecutive agents; units as in [`Fields`](crate::engine::frame::Fields).
 pub struct SphStates<'a> {
-    /// In: Eq. 9 without walls. Out: ρ_i.
+    /// Input: Eq. 9 without walls. Output: ρ_i.
     pub density: &'a mut [f64],
-    /// The walls' part of it; zero before the first frame after a sort, and left so where no walls are near
+    /// The part of ρ_i from walls. Sorting resets it to zero, and it stays zero if no walls are near these agents
     /// (see [`Fields::forget_walls`](crate::engine::frame::Fields::forget_walls)).
     pub density_from_walls: &'a mut [f64],
-    /// ρ̂_i, one step on.
+    /// ρ̂_i after this step.
     pub mean_density: &'a mut [f64],
     /// ρ_i⁰.
     pub rest_density: &'a mut [f64],
     /// p_i.
     pub pressure: &'a mut [f64],
-    /// Σ_k ∫ ∇W over P_k; as the walls' part.
+    /// Σ_k ∫ ∇W over P_k; reset to zero like `density_from_walls`.
     pub wall_gradient: &'a mut [Vector],
 }
 
-/// ρ̂ of the frame before, P/m²; of a newcomer, the sum `from_agents` of Eq. 9.
+/// ρ̂ of the previous frame, P/m²; for a newcomer, the sum `from_agents` of Eq. 9.
 pub fn mean_density_before(frame: &Frame, i: usize, from_agents: f64) -> f64 {
     if frame.agents.newcomer[i] {
         from_agents
@@ -76,9 +76,9 @@ pub fn mean_density_before(frame: &Frame, i: usize, from_agents: f64) -> f64 {
 }
 
 impl SphStates<'_> {
-    /// Eqs. 9, 10, 8 and 5, in this order, for agents `from` and up, `dt` seconds after the moving average
-    /// was last kept; the walls use the rest density of
-    /// the frame before. `sph` is their parameters where all have the same, `sph_of` those of one.
+    /// Eqs. 9, 10, 8 and 5, in this order, for agents `from` and up, `dt` seconds after the moving average was last
+    /// stored. Walls use the rest density of the previous frame. `sph` holds the parameters if all these agents
+    /// share them, and `sph_of` returns those of one agent.
     pub fn update<'s>(
         &mut self,
         frame: &Frame,
@@ -113,8 +113,8 @@ impl SphStates<'_> {
         }
     }
 
-    /// Leaves Σ_k ∫ W over P_k in place of the walls' part of the density; does nothing, and says so,
-    /// where there are no walls near.
+    /// Stores Σ_k ∫ W over P_k in `density_from_walls` and Σ_k ∫ ∇W in `wall_gradient`. Does nothing and returns
+    /// `false` if no walls are near.
     fn see_walls<'s>(
         &mut self,
         frame: &Frame,

@@ -1,4 +1,4 @@
-//! The frozen frame: what every force reads and no force writes.
+//! The frozen frame: read by every force, written by none.
 
 use std::ops::Range;
 
@@ -9,32 +9,32 @@ use crate::engine::math::Vector;
 use crate::engine::neighbors::{BLOCK, CLUSTER, Neighbors};
 use crate::engine::pairs::{Packed, PairCoefficients, Wanted};
 
-/// What a frame derives from the state, one array per quantity; the step that writes it in brackets.
+/// Quantities derived from the state, one array each, with the step that writes it in parentheses.
 #[derive(Debug, Clone, Default)]
 pub struct Fields {
     /// ρ_i, P/m² (1B).
     pub density: Vec<f64>,
-    /// The walls' part of ρ_i, P/m² (1B).
+    /// The part of ρ_i from walls, P/m² (1B).
     pub density_from_walls: Vec<f64>,
-    /// ρ̂_i, P/m², before it is clamped (1B).
+    /// ρ̂_i, P/m², unclamped (1B).
     pub mean_density: Vec<f64>,
     /// ρ_i⁰, P/m² (1B).
     pub rest_density: Vec<f64>,
     /// p_i (1B).
     pub pressure: Vec<f64>,
-    /// Σ_k ∫ ∇W over P_k, 1/m (1B): times −p_i it is the walls' pressure force.
+    /// Σ_k ∫ ∇W over P_k, 1/m (1B). Times −p_i it is the pressure force of all walls.
     pub wall_gradient: Vec<Vector>,
     /// v_i^pref, m/s (2).
     pub preferred_velocity: Vec<Vector>,
-    /// The lowest and highest components of the velocities of every [`CLUSTER`] consecutive agents, m/s
-    /// (3); empty where no social force has a tolerance.
+    /// Component-wise minimum and maximum of the velocities of each [`CLUSTER`] consecutive agents, m/s (3). Empty if
+    /// no social force has a tolerance.
     pub velocity_ranges: Vec<[Vector; 2]>,
     /// a_i, m/s² (3, 3B, 4).
     pub acceleration: Vec<Vector>,
 }
 
 impl Fields {
-    /// No field of any agent.
+    /// All arrays empty.
     pub const NONE: Self = Self {
         density: Vec::new(),
         density_from_walls: Vec::new(),
@@ -47,14 +47,14 @@ impl Fields {
         acceleration: Vec::new(),
     };
 
-    /// Nobody has been near a wall yet: what walls give to an agent is zero until a frame says otherwise.
+    /// Discards all wall contributions; [`resize`](Self::resize) sets them to zero.
     pub fn forget_walls(&mut self) {
         self.density_from_walls.clear();
         self.wall_gradient.clear();
     }
 
-    /// Makes room for `count` agents; where `density` is not computed in this frame its arrays are
-    /// empty, so that nobody can read an old one.
+    /// Resizes all arrays for `count` agents. Without `density` the SPH arrays are emptied, so that stale values
+    /// cannot be read.
     pub fn resize(&mut self, count: usize, density: bool) {
         let sph = if density { count } else { 0 };
         self.density.resize(sph, 0.0);
@@ -68,37 +68,36 @@ impl Fields {
     }
 }
 
-/// The smallest and largest components of some lowest and highest ones; zero of none.
+/// The component-wise union of velocity ranges; zero if there are none.
 pub fn velocity_range(of: impl Iterator<Item = [Vector; 2]>) -> [Vector; 2] {
     of.reduce(|[low, high], [lower, higher]| [low.inf(&lower), high.sup(&higher)])
         .unwrap_or([Vector::zeros(); 2])
 }
 
 /// One frame, frozen between [`evaluate`](crate::engine::simulation::Simulation::evaluate) and
-/// [`integrate`](crate::engine::simulation::Simulation::integrate): positions and everything computed from
-/// them agree.
+/// [`integrate`](crate::engine::simulation::Simulation::integrate): all fields match the positions.
 #[derive(Clone, Copy)]
 pub struct Frame<'a> {
-    /// Which frame it is.
+    /// The number and time of the frame.
     pub clock: &'a Clock,
-    /// The obstacles.
+    /// Walls of the obstacles.
     pub walls: &'a Walls,
-    /// The crowd's state.
+    /// The state of the crowd.
     pub agents: &'a Agents,
-    /// What was derived from it.
+    /// Quantities derived from the state.
     pub fields: &'a Fields,
-    /// Who is near whom.
+    /// Neighbor lists.
     pub neighbors: &'a Neighbors,
-    /// Bodies and fields as sums over pairs read them.
+    /// Agents and fields, packed for sums over pairs.
     pub packed: &'a Packed,
-    /// Which of them some profile reads.
+    /// The sums over pairs that some profile reads.
     pub wanted: Wanted,
-    /// Seed of what people choose.
+    /// Seed of the agents' random choices.
     pub seed: u64,
 }
 
 impl Frame<'_> {
-    /// The near neighbours j of agent `i` strictly within `radius` metres, with r_ij = r_i − r_j.
+    /// The near neighbors j of agent `i` at less than `radius` meters, with r_ij = r_i − r_j.
     pub fn near(&self, i: usize, radius: f64) -> impl Iterator<Item = (usize, Vector)> + '_ {
         let position = &self.agents.position;
         let candidates = self.neighbors.near().near(i).filter(move |&j| j != i);
@@ -107,8 +106,8 @@ impl Frame<'_> {
             .filter(move |(_, r_ij)| r_ij.norm_squared() < radius * radius)
     }
 
-    /// No two velocities of `agents` and of `others` differ by more than this, m/s; in scenes where some
-    /// social force has a tolerance.
+    /// Upper bound on the relative speed between any of `agents` and any of `others`, m/s. Requires
+    /// [`velocity_ranges`](Fields::velocity_ranges).
     pub(crate) fn relative_speed(&self, agents: Range<usize>, others: &[Range<u32>]) -> f64 {
         let velocities = &self.agents.velocity[agents];
         let [low, high] = velocity_range(velocities.iter().map(|&v| [v, v]));
@@ -120,7 +119,7 @@ impl Frame<'_> {
         (high - lowest).sup(&(highest - low)).norm()
     }
 
-    /// What the agents near agent `i` do to it, m/s².
+    /// The acceleration of agent `i` by the agents near it, m/s².
     pub fn from_near_agents(&self, i: usize, coefficients: &PairCoefficients) -> Vector {
         let mut accelerations = [Vector::zeros(); BLOCK];
         let block = self.neighbors.near().block(i / BLOCK);

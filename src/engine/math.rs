@@ -1,4 +1,4 @@
-//! The scalar is `f64` and the vector nalgebra's; lengths in metres, y up.
+//! The scalar is `f64` and the vector nalgebra's; lengths in meters, y up.
 
 /// A position, velocity or force in the plane.
 pub type Vector = nalgebra::Vector2<f64>;

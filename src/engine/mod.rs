@@ -1,8 +1,8 @@
-//! The engine: geometry, kernels, the state of the crowd, forces, and the loop of §4.1. It knows no files, no
-//! names of scenarios and no output. A [`Scene`](scene::Scene) goes in, a
-//! [`Simulation`](simulation::Simulation) advances it frame by frame, and everything that a frame computes can
-//! be read from its [`Frame`](frame::Frame). Linear theory ([`sound`], [`stability`]) and the term-by-term
-//! [`breakdown`] of one agent belong here, because they use nothing else.
+//! The engine: geometry, kernels, the state of the crowd, forces, and the loop of §4.1. It does not depend on
+//! files, scenario names or output. A [`Simulation`](simulation::Simulation) is built from a
+//! [`Scene`](scene::Scene) and advances it frame by frame; everything that a frame computes can be read from its
+//! [`Frame`](frame::Frame). Linear theory ([`sound`], [`stability`]) and the term-by-term [`breakdown`] of one
+//! agent are here because they use only the engine.
 
 pub mod math;
 

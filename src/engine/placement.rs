@@ -1,24 +1,24 @@
-//! Where agents enter: the cell centres of a rectangle, with jitter.
+//! Where agents enter: the cell centers of a rectangle, with jitter.
 
 use rand::Rng;
 
 use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
 
-/// Columns × rows of equal cells over a rectangle; one agent at the centre of each.
+/// Columns × rows of equal cells over a rectangle; one agent at the center of each.
 ///
 /// A row or column of agents is a grid with one row or column; the rectangle may then be a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
-    /// Lower left corner, metres.
+    /// Lower left corner, meters.
     pub min: Vector,
-    /// Upper right corner, metres.
+    /// Upper right corner, meters.
     pub max: Vector,
     /// Cells along x.
     pub columns: u32,
     /// Cells along y.
     pub rows: u32,
-    /// Each coordinate is moved by up to ± this, metres.
+    /// Each coordinate is moved by up to ± this, meters.
     pub jitter: f64,
 }
 

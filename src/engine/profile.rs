@@ -52,7 +52,7 @@ impl Navigation {
         }
     }
 
-    /// How far this way of avoiding others looks, metres.
+    /// How far this way of avoiding others looks, meters.
     pub fn avoidance_radius(&self) -> Option<f64> {
         match self {
             Self::Goal(_) => None,

@@ -38,14 +38,14 @@ impl Integrator {
     ];
 }
 
-/// Agents that share their behaviour and their fate.
+/// Agents that share their behavior and their fate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group {
     /// What it is called in reports.
     pub name: String,
     /// How its agents behave.
     pub blend: Blend,
-    /// Within this distance of the goal an agent leaves, metres; `None`: never.
+    /// Within this distance of the goal an agent leaves, meters; `None`: never.
     pub removal_radius: Option<f64>,
     /// Do its arrivals count as evacuated?
     pub counted: bool,
@@ -54,9 +54,9 @@ pub struct Group {
 /// Where the agents of a grid or source go.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Goal {
-    /// All to one point, metres.
+    /// All to one point, meters.
     Point(Vector),
-    /// Each to its own start plus this, metres.
+    /// Each to its own start plus this, meters.
     Offset(Vector),
 }
 
@@ -89,7 +89,7 @@ pub struct Push {
     pub at: f64,
     /// For how long, seconds.
     pub lasting: f64,
-    /// Lower left and upper right corner, metres; who stands here at the start takes part.
+    /// Lower left and upper right corner, meters; who stands here at the start takes part.
     pub region: Region,
     /// What changes for them.
     pub change: Override,
@@ -98,9 +98,9 @@ pub struct Push {
 /// An axis-parallel rectangle, borders included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Region {
-    /// Lower left corner, metres.
+    /// Lower left corner, meters.
     pub min: Vector,
-    /// Upper right corner, metres.
+    /// Upper right corner, meters.
     pub max: Vector,
 }
 
@@ -126,7 +126,7 @@ pub struct Scene {
     pub wall_method: WallMethod,
     /// The numbers for sums over pairs.
     pub precision: Precision,
-    /// When neighbours are listed anew.
+    /// When neighbors are listed anew.
     pub neighbor_lists: ListPolicy,
     /// s_pref, m/s (§5.6).
     pub preferred_speed: f64,
@@ -225,7 +225,7 @@ impl Scene {
         different
     }
 
-    /// How far neighbours must be looked for.
+    /// How far neighbors must be looked for.
     pub fn ranges(&self, needs: &Needs) -> Ranges {
         let support = self
             .groups
@@ -265,13 +265,13 @@ impl Scene {
 pub struct Needs {
     /// SPH forces or blending read the density in every frame.
     pub density: bool,
-    /// Sums over near neighbours that some profile reads.
+    /// Sums over near neighbors that some profile reads.
     pub pairs: Wanted,
     /// Some profile avoids by RVO.
     pub rvo: bool,
     /// Some profile avoids by social forces.
     pub social: bool,
-    /// The widest avoidance radius, metres.
+    /// The widest avoidance radius, meters.
     pub avoidance: Option<f64>,
     /// Some agents leave at their goal.
     pub removal: bool,

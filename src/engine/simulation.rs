@@ -69,7 +69,7 @@ pub struct Arrival {
     pub id: u32,
     /// When, seconds: after the move that led there.
     pub time: f64,
-    /// Where that move ended, metres.
+    /// Where that move ended, meters.
     #[serde(with = "pairs_of::one")]
     pub position: Vector,
     /// Does it count as evacuated?
@@ -92,7 +92,7 @@ pub enum Fault {
         time: f64,
         /// The agent's id.
         agent: u32,
-        /// Where it stands, metres.
+        /// Where it stands, meters.
         position: Vector,
         /// Which number.
         quantity: &'static str,

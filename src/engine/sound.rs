@@ -33,7 +33,7 @@ pub fn speed_with_contacts(gas_constant: f64, agent_stiffness: f64, modulus: f64
     (gas_constant / 2.0 + agent_stiffness * modulus).sqrt()
 }
 
-/// M in m² of a hexagonal lattice whose discs, of mass 1, just touch at `distance` metres.
+/// M in m² of a hexagonal lattice whose discs, of mass 1, just touch at `distance` meters.
 pub fn touching_modulus(distance: f64) -> f64 {
     9.0 / 8.0 * distance * distance
 }
@@ -87,9 +87,9 @@ fn stiffness(r: Vector, reach: f64) -> f64 {
 /// A uniform crowd of mass 1 on a hexagonal lattice, rows along the x axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lattice {
-    /// Distance of nearest neighbours, metres.
+    /// Distance of nearest neighbors, meters.
     pub spacing: f64,
-    /// D_i + D_j, metres.
+    /// D_i + D_j, meters.
     pub reach: f64,
     /// k, ρ⁰max, h.
     pub sph: SphParameters,
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn long_waves_in_a_fine_lattice_run_at_the_root_of_half_k() {
-        // Many neighbours: the sums are integrals, and the base pressure cancels.
+        // Many neighbors: the sums are integrals, and the base pressure cancels.
         let fine = lattice(0.1, 0.0);
         assert!((fine.speed(0.01) / speed_of_fluid(200.0) - 1.0).abs() < 0.003);
     }

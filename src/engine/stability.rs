@@ -16,7 +16,7 @@
 //! - people pressed together: ω² = (C₁ c/h)² + C₂ K/m, c = √(k/2) the speed of sound
 //!   ([`crate::engine::sound`]), K/m the stiffest contact of the lightest person: the Courant condition of
 //!   SPH, and that of springs;
-//! - people who drag each other along: γ = C₃ μ. A person's drag is μ ∇²W/ρ² for every neighbour; it is
+//! - people who drag each other along: γ = C₃ μ. A person's drag is μ ∇²W/ρ² for every neighbor; it is
 //!   largest in a loose crowd, where the density is hardly more than the own ~ 1/h², and h drops out. In a
 //!   uniform one it goes with 1/ρ; to the friction of those pressed together it adds a quarter, C₃ μ/4.
 //!

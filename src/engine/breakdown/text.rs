@@ -1,4 +1,4 @@
-//! A breakdown to be read by people.
+//! Text output of a breakdown.
 
 use std::fmt::{self, Display, Formatter};
 

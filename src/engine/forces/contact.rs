@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 
-/// A centre this near to a wall stands on it, metres: the rounding of coordinates up to 10⁶ m, which
+/// A center this near to a wall stands on it, meters: the rounding of coordinates up to 10⁶ m, which
 /// would otherwise decide where the wall pushes.
 const ON_THE_WALL: f64 = 1e-9;
 
@@ -32,7 +32,7 @@ pub fn add_coefficients(
 }
 
 /// Eq. 23 over every edge of `walls` that overlaps the disc, both faces, a corner once for each of its
-/// edges, over the mass; a centre on a wall is pushed along the outward normal.
+/// edges, over the mass; a center on a wall is pushed along the outward normal.
 pub fn from_walls(frame: &Frame, i: usize, walls: &[u32], stiffness: f64) -> Vector {
     let agents = frame.agents;
     let (r_i, radius) = (agents.position[i], agents.radius[i]);

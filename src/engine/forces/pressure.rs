@@ -6,7 +6,7 @@ use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 
 /// Adds what each of `agents` multiplies the sum over agents of Eq. 11 with, times `weight`: 1/ρ_i, and
-/// zero where it feels no pressure, below its rest density (§5.2). A neighbour's negative pressure
+/// zero where it feels no pressure, below its rest density (§5.2). A neighbor's negative pressure
 /// stays in the sum.
 pub fn add_coefficients(
     frame: &Frame,

@@ -19,7 +19,7 @@ pub struct Rvo {
     pub collision_weight: f64,
     /// How many candidate velocities are drawn per coarse frame.
     pub candidates: u32,
-    /// Nobody farther away counts, metres.
+    /// Nobody farther away counts, meters.
     pub avoidance_radius: f64,
 }
 
@@ -36,13 +36,13 @@ impl Default for Rvo {
 /// Everything that the choice of a velocity depends on.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Situation {
-    /// r_i, metres.
+    /// r_i, meters.
     pub position: Vector,
     /// v_i, m/s.
     pub velocity: Vector,
     /// v_i^pref, m/s.
     pub preferred_velocity: Vector,
-    /// D_i, metres.
+    /// D_i, meters.
     pub radius: f64,
     /// s_max, m/s.
     pub max_speed: f64,
@@ -122,7 +122,7 @@ fn draw(count: u32, situation: &Situation, mut rng: impl Rng, candidates: &mut V
 }
 
 impl Situation {
-    /// Becomes what agent `i` of a frozen frame sees within `radius` metres.
+    /// Becomes what agent `i` of a frozen frame sees within `radius` meters.
     pub fn see(&mut self, frame: &Frame, i: usize, radius: f64, max_speed: f64) {
         let agents = frame.agents;
         self.position = agents.position[i];
@@ -175,7 +175,7 @@ impl Situation {
 }
 
 /// When a point moving at `velocity` (m/s) first comes within `reach` of the point at `offset`
-/// (metres), seconds; infinite if never, or if it is there already.
+/// (meters), seconds; infinite if never, or if it is there already.
 pub fn time_to_contact(offset: Vector, velocity: Vector, reach: f64) -> f64 {
     let gap = offset.norm_squared() - reach * reach;
     let approach = offset.dot(&velocity);

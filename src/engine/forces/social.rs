@@ -11,15 +11,15 @@ use crate::engine::pairs::SocialLaw;
 pub struct SocialForce {
     /// V₀.
     pub agent_strength: f64,
-    /// σ, metres.
+    /// σ, meters.
     pub agent_range: f64,
     /// T, seconds.
     pub anticipation_time: f64,
     /// U₀.
     pub wall_strength: f64,
-    /// R, metres.
+    /// R, meters.
     pub wall_range: f64,
-    /// Nobody farther away counts, metres.
+    /// Nobody farther away counts, meters.
     pub avoidance_radius: f64,
     /// Nobody counts who is so far away that his force on a person of mass 1 is certainly below this,
     /// m/s²; at 0 everybody does.
@@ -40,9 +40,9 @@ impl Default for SocialForce {
     }
 }
 
-/// Half the field of view: within this angle of the walking direction a neighbour counts fully.
+/// Half the field of view: within this angle of the walking direction a neighbor counts fully.
 const FIELD_OF_VIEW: f64 = 100.0 / 180.0 * std::f64::consts::PI;
-/// What a neighbour outside the field of view counts.
+/// What a neighbor outside the field of view counts.
 const UNSEEN_WEIGHT: f64 = 0.5;
 
 impl SocialForce {
@@ -90,7 +90,7 @@ impl SocialForce {
         }
     }
 
-    /// How far away somebody can be, metres, whose force need not be below the tolerance, when nobody
+    /// How far away somebody can be, meters, whose force need not be below the tolerance, when nobody
     /// moves faster relative to the observer than `relative_speed`, m/s.
     ///
     /// With S = T times that speed and r = |r_ij|, |r_ij + s| is within S of r. So b² ≥ r (r − S), and the

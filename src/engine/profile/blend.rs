@@ -98,7 +98,7 @@ impl Blend {
         &self.steps
     }
 
-    /// Does the behaviour depend on the density?
+    /// Does the behavior depend on the density?
     pub fn depends_on_density(&self) -> bool {
         self.steps.len() > 1
     }

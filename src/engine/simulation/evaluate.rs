@@ -289,7 +289,7 @@ impl Simulation {
         same.then(|| &self.scene.groups[usize::from(first)].blend)
     }
 
-    /// Cuts a block of agents where their behaviour changes.
+    /// Cuts a block of agents where their behavior changes.
     #[inline]
     fn each_span(
         &self,

@@ -238,7 +238,7 @@ struct Moves {
     contained: u64,
     /// How many were too fast.
     clamped: u64,
-    /// The squared distance from where they were sorted, of who is farthest from there, metres².
+    /// The squared distance from where they were sorted, of who is farthest from there, meters².
     farthest: f64,
 }
 

@@ -16,7 +16,7 @@ use crate::engine::scene::Scene;
 pub struct State {
     frame: u64,
     agents: Agents,
-    /// Where everybody was when neighbours were last listed, metres.
+    /// Where everybody was when neighbors were last listed, meters.
     #[serde(with = "pairs_of::many")]
     sorted_at: Vec<Vector>,
     /// Has somebody come or gone since?
@@ -100,7 +100,7 @@ impl Simulation {
             .ok_or(StateError)
     }
 
-    /// Lists neighbours as they were listed when everybody was at `sorted_at`.
+    /// Lists neighbors as they were listed when everybody was at `sorted_at`.
     fn list_again(&mut self, sorted_at: Vec<Vector>) -> Result<(), StateError> {
         let positions = std::mem::replace(&mut self.agents.position, sorted_at);
         let ids = self.agents.id.clone();
