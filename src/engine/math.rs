@@ -1,4 +1,4 @@
-//! The scalar is `f64` and the vector nalgebra's; lengths in meters, y up.
+//! The scalar type is `f64`, the vector type is nalgebra's. Lengths are in meters, and y points up.
 
 /// A position, velocity or force in the plane.
 pub type Vector = nalgebra::Vector2<f64>;
@@ -8,7 +8,7 @@ pub fn perpendicular(v: Vector) -> Vector {
     Vector::new(-v.y, v.x)
 }
 
-/// `v / |v|`, and zero for the zero vector: coincident points give no direction.
+/// `v / |v|`, or zero for the zero vector.
 pub fn direction(v: Vector) -> Vector {
     let length = v.norm();
     if length > 0.0 {
@@ -18,7 +18,7 @@ pub fn direction(v: Vector) -> Vector {
     }
 }
 
-/// 1/(2k)! and 1/(2k + 1)!; what follows is below 2⁻⁵³ of the first up to an eighth of a turn.
+/// 1/(2k)! and 1/(2k + 1)!. Up to an eighth of a turn, the omitted terms are below 2⁻⁵³ of the first.
 const SERIES: [[f64; 2]; 9] = {
     let mut series = [[1.0; 2]; 9];
     let mut k = 1;
@@ -31,12 +31,12 @@ const SERIES: [[f64; 2]; 9] = {
     series
 };
 
-/// The unit vector at an angle of so many 2³²ths of a full turn.
+/// The unit vector at an angle of `turn` / 2³² of a full turn.
 ///
-/// Sine and cosine by their Taylor series up to an eighth of a turn, the rest by symmetry: the same bits
-/// everywhere, as those of no library are.
+/// Computes sine and cosine by Taylor series up to an eighth of a turn, and by symmetry beyond. Unlike library
+/// functions, this gives the same bits on all platforms.
 pub fn unit_vector(turn: u32) -> Vector {
-    // The nearest quarter, and how far from there, radians.
+    // The nearest quarter turn, and the angle from there in radians.
     let quarter = turn.wrapping_add(1 << 29) >> 30;
     let rest = turn.wrapping_sub(quarter << 30) as i32;
     let x =
@@ -55,10 +55,10 @@ pub fn unit_vector(turn: u32) -> Vector {
     )
 }
 
-/// Cosines and sines of the quarters of a turn.
+/// Cosines and sines of 0 to 3 quarter turns.
 const QUARTERS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
 
-/// `v`, shortened to length `limit` if it is longer.
+/// `v`, clamped to length `limit`.
 pub fn clamp_length(v: Vector, limit: f64) -> Vector {
     let squared = v.norm_squared();
     if squared > limit * limit {
@@ -75,7 +75,7 @@ pub fn is_finite(v: Vector) -> bool {
 
 /// Are all coordinates finite?
 pub fn are_finite(vectors: &[Vector]) -> bool {
-    // Zero times anything else is no number, and stays it: one comparison for all.
+    // Zero times an infinity or a NaN is NaN, and NaN propagates through the sum: one comparison is enough.
     let zero: Vector = vectors.iter().map(|v| v * 0.0).sum();
     zero == Vector::zeros()
 }
@@ -85,8 +85,8 @@ pub fn numbers_are_finite(numbers: &[f64]) -> bool {
     numbers.iter().map(|number| number * 0.0).sum::<f64>() == 0.0
 }
 
-/// Vectors in files, as pairs of coordinates: for serde's `with`, of one vector, of many, and of many that
-/// may be missing. (nalgebra's own feature for it would have half of the dependencies compiled anew.)
+/// Serializes vectors as pairs of coordinates, for serde's `with` attribute. (Enabling nalgebra's own serde
+/// feature would recompile half of the dependencies.)
 pub mod pairs_of {
     /// One vector.
     pub mod one {
@@ -138,7 +138,7 @@ pub mod pairs_of {
         }
     }
 
-    /// Many vectors, some of which are missing.
+    /// Many optional vectors.
     pub mod some {
         use crate::engine::math::Vector;
         use serde::{Deserialize, Deserializer, Serializer};

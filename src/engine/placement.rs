@@ -1,39 +1,39 @@
-//! Where agents enter: the cell centers of a rectangle, with jitter.
+//! Where agents enter: at the cell centers of a rectangle, with jitter.
 
 use rand::Rng;
 
 use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
 
-/// Columns × rows of equal cells over a rectangle; one agent at the center of each.
+/// A rectangle divided into columns × rows of equal cells, with one agent at the center of each.
 ///
-/// A row or column of agents is a grid with one row or column; the rectangle may then be a line.
+/// With a single row or column, the rectangle may be a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
     /// Lower left corner, meters.
     pub min: Vector,
     /// Upper right corner, meters.
     pub max: Vector,
-    /// Cells along x.
+    /// Number of cells along x.
     pub columns: u32,
-    /// Cells along y.
+    /// Number of cells along y.
     pub rows: u32,
-    /// Each coordinate is moved by up to ± this, meters.
+    /// Largest random shift of each coordinate, in either direction, meters.
     pub jitter: f64,
 }
 
 impl Grid {
-    /// How many agents stand on it.
+    /// The number of agents.
     pub fn len(&self) -> u64 {
         u64::from(self.columns) * u64::from(self.rows)
     }
 
-    /// Has it no cells?
+    /// Does the grid have no cells?
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The positions row by row from the lower left, for agents with ids from `first_id` on.
+    /// The positions, row by row from the lower left, for agents with ids from `first_id` on.
     pub fn positions(&self, seed: u64, first_id: u32) -> impl Iterator<Item = Vector> + '_ {
         let cell = (self.max - self.min).component_div(&Vector::new(
             f64::from(self.columns.max(1)),

@@ -5,11 +5,11 @@ use std::ops::Range;
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 
-/// A center this near to a wall stands on it, meters: the rounding of coordinates up to 10⁶ m, which
-/// would otherwise decide where the wall pushes.
+/// Distance in meters below which a center is taken to lie on a wall. Coordinates up to 10⁶ m round by less;
+/// without it, rounding would decide the direction of the push.
 const ON_THE_WALL: f64 = 1e-9;
 
-/// Stiffnesses of one profile; `None` where that contact is switched off.
+/// Stiffnesses of one profile; `None` disables that contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
     /// K^ag.
@@ -18,8 +18,7 @@ pub struct Contact {
     pub wall_stiffness: Option<f64>,
 }
 
-/// Adds what each of `agents` multiplies the sum of Eq. 22 over all agents in contact with: `stiffness`
-/// over the mass.
+/// Adds the factor of the sum in Eq. 22, `stiffness` divided by the mass, for each of `agents`.
 pub fn add_coefficients(
     frame: &Frame,
     agents: Range<usize>,
@@ -31,8 +30,9 @@ pub fn add_coefficients(
     }
 }
 
-/// Eq. 23 over every edge of `walls` that overlaps the disc, both faces, a corner once for each of its
-/// edges, over the mass; a center on a wall is pushed along the outward normal.
+/// Eq. 23, summed over all of `walls` that overlap the disc and divided by the mass. Both faces of a wall push,
+/// and a corner counts once for each of its edges. An agent whose center is on a wall is pushed along the
+/// outward normal.
 pub fn from_walls(frame: &Frame, i: usize, walls: &[u32], stiffness: f64) -> Vector {
     let agents = frame.agents;
     let (r_i, radius) = (agents.position[i], agents.radius[i]);

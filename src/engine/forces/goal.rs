@@ -24,7 +24,7 @@ impl Default for GoalForce {
 }
 
 impl GoalForce {
-    /// Eq. 17 over the mass for each of `agents`.
+    /// Eq. 17, divided by the mass, for each of `agents`.
     #[inline]
     pub fn accelerations(
         &self,
@@ -42,7 +42,7 @@ impl GoalForce {
     }
 }
 
-/// v^pref: `preferred_speed` (m/s) straight towards the goal, zero at the goal.
+/// v^pref: `preferred_speed` (m/s) straight toward the goal, zero at the goal.
 pub fn preferred_velocity(position: Vector, goal: Vector, preferred_speed: f64) -> Vector {
     direction(goal - position) * preferred_speed
 }

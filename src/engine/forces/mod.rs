@@ -1,7 +1,7 @@
 //! Steps 3, 3B and 4: one file per force, one pure function per equation.
 //!
-//! Every function reads the frozen [`Frame`](crate::engine::frame::Frame) and returns its own share of the
-//! acceleration of one agent in m/s², already divided by mass or density.
+//! Every function reads the frozen [`Frame`](crate::engine::frame::Frame) and returns, or adds, its contribution
+//! to accelerations in m/s², divided by mass or density.
 
 pub mod contact;
 pub mod goal;

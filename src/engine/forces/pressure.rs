@@ -5,9 +5,8 @@ use std::ops::Range;
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 
-/// Adds what each of `agents` multiplies the sum over agents of Eq. 11 with, times `weight`: 1/ρ_i, and
-/// zero where it feels no pressure, below its rest density (§5.2). A neighbor's negative pressure
-/// stays in the sum.
+/// Adds the factor of the sum over agents in Eq. 11, times `weight`, for each of `agents`: 1/ρ_i, or zero below
+/// its rest density, where an agent feels no pressure (§5.2). Negative pressures of neighbors stay in the sum.
 pub fn add_coefficients(
     frame: &Frame,
     agents: Range<usize>,
@@ -26,7 +25,7 @@ fn coefficient(density: f64, rest_density: f64) -> f64 {
     felt / density
 }
 
-/// Eq. 12 over all walls in reach, over ρ_i.
+/// Eq. 12, summed over all walls in reach and divided by ρ_i.
 pub fn from_walls(frame: &Frame, i: usize) -> Vector {
     let fields = frame.fields;
     let coefficient = coefficient(fields.density[i], fields.rest_density[i]);

@@ -17,9 +17,9 @@ use crate::engine::random::{self, Purpose};
 pub struct Rvo {
     /// w, m: the weight of the time to collision.
     pub collision_weight: f64,
-    /// How many candidate velocities are drawn per coarse frame.
+    /// Number of candidate velocities per coarse frame.
     pub candidates: u32,
-    /// Nobody farther away counts, meters.
+    /// Agents and walls farther away are ignored, meters.
     pub avoidance_radius: f64,
 }
 
@@ -33,7 +33,7 @@ impl Default for Rvo {
     }
 }
 
-/// Everything that the choice of a velocity depends on.
+/// Everything that an agent's choice of velocity depends on.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Situation {
     /// r_i, meters.
@@ -46,14 +46,14 @@ pub struct Situation {
     pub radius: f64,
     /// s_max, m/s.
     pub max_speed: f64,
-    /// Agents in range, not touching.
+    /// Agents in range and not in contact.
     pub discs: Vec<MovingDisc>,
-    /// Walls in range, on their free side, not touching.
+    /// Walls in range and not in contact, whose free side the agent is on.
     pub walls: Vec<Wall>,
 }
 
 impl Rvo {
-    /// Eq. 21: the acceleration to hold until the next coarse frame.
+    /// Eq. 21: the acceleration, held until the next coarse frame.
     pub fn acceleration(
         &self,
         frame: &Frame,
@@ -79,7 +79,7 @@ impl Rvo {
     }
 }
 
-/// Memory for choices one after the other.
+/// Buffers, reused from agent to agent.
 #[derive(Debug, Default)]
 pub struct Scratch {
     situation: Situation,
@@ -87,24 +87,24 @@ pub struct Scratch {
     search: Search,
 }
 
-/// A candidate velocity, as seen from the current one.
+/// A candidate velocity, relative to the current one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
-    /// How far away, m/s.
+    /// Distance from the current velocity, m/s.
     pub length: f64,
-    /// In which direction, 2³²ths of a turn.
+    /// Direction, in units of 2⁻³² turns.
     pub turn: u32,
 }
 
 impl Candidate {
-    /// The velocity itself, m/s, when the current one is `from`.
+    /// The velocity in m/s, if the current one is `from`.
     pub fn velocity(self, from: Vector) -> Vector {
         from + unit_vector(self.turn) * self.length
     }
 }
 
-/// Replaces `candidates` by `count` velocities, in all directions and as far as 2 s_max from the current
-/// one alike, without those that no direction could make slow enough.
+/// Replaces `candidates` with `count` draws: direction and distance from the current velocity are uniform, the
+/// distance up to 2 s_max. Leaves out draws that exceed s_max in every direction.
 fn draw(count: u32, situation: &Situation, mut rng: impl Rng, candidates: &mut Vec<Candidate>) {
     let farthest = situation.velocity.norm() + situation.max_speed;
     let per_step = 2.0 * situation.max_speed / f64::from(u32::MAX);
@@ -116,13 +116,13 @@ fn draw(count: u32, situation: &Situation, mut rng: impl Rng, candidates: &mut V
         let length = per_step * f64::from((bits >> 32) as u32);
         let turn = bits as u32;
         candidates[kept] = Candidate { length, turn };
-        kept += usize::from(length <= farthest); // nobody could foresee a branch
+        kept += usize::from(length <= farthest); // branchless: a branch would be unpredictable
     }
     candidates.truncate(kept);
 }
 
 impl Situation {
-    /// Becomes what agent `i` of a frozen frame sees within `radius` meters.
+    /// Sets this to the surroundings of agent `i` of a frozen frame within `radius` meters.
     pub fn see(&mut self, frame: &Frame, i: usize, radius: f64, max_speed: f64) {
         let agents = frame.agents;
         self.position = agents.position[i];
@@ -136,7 +136,7 @@ impl Situation {
                 let offset = agents.position[j] - self.position;
                 let reach = self.radius + agents.radius[j];
                 let squared = offset.norm_squared();
-                // Whoever touches is ignored; the agent itself does.
+                // Ignores agents in contact, and with them agent i itself.
                 if squared < radius * radius && squared > reach * reach {
                     self.discs.push(MovingDisc {
                         offset,
@@ -156,7 +156,8 @@ impl Situation {
         }
     }
 
-    /// When the disc, moving at `velocity`, first touches a wall: its offset edge or an end point.
+    /// The time in seconds until the disc, moving at `velocity`, first touches `wall`: its edge or an end point.
+    /// Infinite if never.
     fn time_to_wall(&self, wall: &Wall, velocity: Vector) -> f64 {
         let ends = [wall.start, wall.end]
             .map(|end| time_to_contact(end - self.position, velocity, self.radius));
@@ -174,8 +175,8 @@ impl Situation {
     }
 }
 
-/// When a point moving at `velocity` (m/s) first comes within `reach` of the point at `offset`
-/// (meters), seconds; infinite if never, or if it is there already.
+/// The time in seconds until a point moving at `velocity` (m/s) first comes within `reach` of the point at
+/// `offset` (meters). Infinite if never, or if it is within `reach` already.
 pub fn time_to_contact(offset: Vector, velocity: Vector, reach: f64) -> f64 {
     let gap = offset.norm_squared() - reach * reach;
     let approach = offset.dot(&velocity);
@@ -186,7 +187,7 @@ pub fn time_to_contact(offset: Vector, velocity: Vector, reach: f64) -> f64 {
     if discriminant < 0.0 {
         return f64::INFINITY;
     }
-    // The smaller root of |velocity|² t² − 2 approach t + gap = 0, without cancellation.
+    // The smaller root of |velocity|² t² − 2 approach t + gap = 0, in a form without cancellation.
     gap / (approach + discriminant.sqrt())
 }
 
@@ -195,13 +196,13 @@ mod tests {
     use super::*;
     use crate::engine::math::perpendicular;
 
-    /// Numbers in [−1, 1) without pattern.
+    /// Random numbers in [−1, 1).
     fn numbers(seed: u32) -> impl FnMut() -> f64 {
         let mut rng = random::stream(9, Purpose::Candidates, seed, 0);
         move || rng.random_range(-1.0..1.0)
     }
 
-    /// The first time in small steps at which `distance` has come down to `reach`.
+    /// The first time, in small steps, at which `distance` is at most `reach`.
     fn stepped(reach: f64, distance: impl Fn(f64) -> f64) -> f64 {
         (0..20_000)
             .map(|step| f64::from(step) * 1e-3)
@@ -209,7 +210,7 @@ mod tests {
             .unwrap_or(f64::INFINITY)
     }
 
-    /// Do both agree that it touches, and when? In steps a graze may go unseen.
+    /// Asserts that both methods find the same contact time. The stepped search may miss a grazing contact.
     fn assert_agree(exact: f64, stepped: f64, reach: f64, distance: impl Fn(f64) -> f64) {
         let grazing = exact.is_finite() && distance(exact + 1e-3) > reach - 1e-5;
         let late = exact > 19.99 && stepped.is_infinite();

@@ -19,10 +19,10 @@ pub struct SocialForce {
     pub wall_strength: f64,
     /// R, meters.
     pub wall_range: f64,
-    /// Nobody farther away counts, meters.
+    /// Agents and walls farther away are ignored, meters.
     pub avoidance_radius: f64,
-    /// Nobody counts who is so far away that his force on a person of mass 1 is certainly below this,
-    /// m/s²; at 0 everybody does.
+    /// Agents are ignored beyond the distance at which their force on an agent of mass 1 is certainly below this,
+    /// m/s². 0 disables this cutoff.
     pub avoidance_tolerance: f64,
 }
 
@@ -40,13 +40,13 @@ impl Default for SocialForce {
     }
 }
 
-/// Half the field of view: within this angle of the walking direction a neighbor counts fully.
+/// Half the field of view: neighbors within this angle of the walking direction have full weight.
 const FIELD_OF_VIEW: f64 = 100.0 / 180.0 * std::f64::consts::PI;
-/// What a neighbor outside the field of view counts.
+/// Weight of a neighbor outside the field of view.
 const UNSEEN_WEIGHT: f64 = 0.5;
 
 impl SocialForce {
-    /// Eq. 18 over all agents in range, over the mass.
+    /// Eq. 18, summed over all agents in range and divided by the mass.
     pub fn from_agents(&self, frame: &Frame, i: usize) -> Vector {
         let mut coefficients = [0.0; BLOCK];
         coefficients[i % BLOCK] = 1.0 / frame.agents.mass[i];
@@ -55,8 +55,8 @@ impl SocialForce {
         accelerations[i % BLOCK]
     }
 
-    /// Adds Eq. 18 over all agents in range, times their coefficients, to the accelerations of the agents
-    /// of block `b`.
+    /// Adds Eq. 18, summed over all agents in range, times `coefficients`, to the accelerations of the agents of
+    /// block `b`.
     pub fn add_from_agents(
         &self,
         frame: &Frame,
@@ -90,12 +90,11 @@ impl SocialForce {
         }
     }
 
-    /// How far away somebody can be, meters, whose force need not be below the tolerance, when nobody
-    /// moves faster relative to the observer than `relative_speed`, m/s.
+    /// The distance in meters beyond which every force is below the tolerance, if no relative speed exceeds
+    /// `relative_speed`, m/s.
     ///
-    /// With S = T times that speed and r = |r_ij|, |r_ij + s| is within S of r. So b² ≥ r (r − S), and the
-    /// force, V₀/σ e^(−b/σ) (√q + 1/√q)/2 with q = |r_ij + s|/r, is at most 1.25 V₀/σ e^(−b/σ) where
-    /// S ≤ ¾ r.
+    /// With S = T `relative_speed` and r = |r_ij|, |r_ij + s| differs from r by at most S. So b² ≥ r (r − S), and
+    /// the force, V₀/σ e^(−b/σ) (√q + 1/√q)/2 with q = |r_ij + s|/r, is at most 1.25 V₀/σ e^(−b/σ) for S ≤ ¾ r.
     pub fn reach(&self, relative_speed: f64) -> f64 {
         let ratio = 1.25 * self.agent_strength / (self.agent_range * self.avoidance_tolerance);
         let b = self.agent_range * ratio.max(1.0).ln();
@@ -104,7 +103,7 @@ impl SocialForce {
         beyond.max(s / 0.75).min(self.avoidance_radius)
     }
 
-    /// Eq. 18 as sums over pairs take it.
+    /// Eq. 18 in the form used by sums over pairs.
     fn law(&self) -> SocialLaw {
         SocialLaw {
             strength: self.agent_strength / self.agent_range,
@@ -116,7 +115,7 @@ impl SocialForce {
         }
     }
 
-    /// Eq. 19 over the walls in range on whose free side the agent stands, over the mass.
+    /// Eq. 19, summed over the walls in range whose free side the agent is on, divided by the mass.
     pub fn from_walls(&self, frame: &Frame, i: usize) -> Vector {
         let r_i = frame.agents.position[i];
         let seen = FieldOfView::new(frame.agents.velocity[i]);
@@ -130,7 +129,7 @@ impl SocialForce {
                     return None;
                 }
                 let nearest = wall.nearest_point(r_i);
-                // A corner belongs to two walls and counts once: with the one that ends there.
+                // A corner belongs to two walls but counts once: for the wall that ends there.
                 let before = frame.walls.wall(wall.previous);
                 if nearest.part == WallPart::Start
                     && before.faces(r_i)
@@ -154,7 +153,7 @@ impl SocialForce {
     }
 }
 
-/// Full weight for what lies ahead; a standing agent sees all round.
+/// Full weight inside the field of view; an agent at rest sees in all directions.
 struct FieldOfView {
     heading: Vector,
 }

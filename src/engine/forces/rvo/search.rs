@@ -1,35 +1,36 @@
-//! The cheapest candidate by branch and bound, with the answer of an exhaustive search.
+//! Branch and bound for the cheapest candidate; gives the same result as an exhaustive search.
 
 use super::{Candidate, Situation, time_to_contact};
 use crate::engine::math::Vector;
 use crate::engine::pairs::Rings;
 
-/// Candidates whose least deviations differ by less than this are in no order, m/s.
+/// Width in m/s of the buckets by which candidates are sorted; candidates in a bucket are unordered.
 const WIDTH: f64 = 0.1;
 
-/// Far more than rounding makes of deviations and times: it must never leave anybody out.
+/// Safety margin far above the rounding errors of deviations and times, so that no bound excludes a candidate
+/// that could be best.
 const ROUNDING: f64 = 1e-9;
 
-/// Memory for searches one after the other.
+/// Buffers, reused from search to search.
 #[derive(Debug, Default)]
 pub struct Search {
-    /// Candidates with their numbers, by what they deviate from the preferred velocity at least.
+    /// Candidates with their numbers, sorted by a lower bound of their deviation from the preferred velocity.
     candidates: Buckets<(u32, Candidate)>,
-    /// Those of them that are looked at, with their numbers, m/s.
+    /// Velocities of the current bucket with their numbers, m/s.
     velocities: Vec<(u32, Vector)>,
     rings: Rings,
-    /// Numbers of discs.
+    /// Indices of discs.
     perhaps: Vec<u32>,
 }
 
 impl Search {
-    /// The cheapest of `candidates` (Eq. 20), the first of equals; zero if all are too fast.
+    /// The cheapest of `candidates` (Eq. 20), or the first of several with equal costs. Zero if all are too fast.
     ///
-    /// Candidates come in order of what they cost at least, until that is more than the best so far:
-    /// | |v′ − v| − |v^pref − v| |, for which nobody needs to know their directions. What is left of the
-    /// best cost is a time before which no contact may come: most candidates are out by a look at the
-    /// nearest discs, eight at a time. The others' first contacts are looked for from the inside out, until
-    /// no disc farther away could be met before the earliest found.
+    /// Candidates are visited in order of a lower bound of their cost, | |v′ − v| − |v^pref − v| |, until it exceeds
+    /// the best cost found. The bound does not depend on the direction of v′ − v. The best cost minus the deviation
+    /// gives a time before which a contact makes the candidate too expensive: this rejects most candidates after
+    /// testing the nearest discs, eight at a time. For the others the first contact is searched from the innermost
+    /// ring outward, until discs farther away cannot be met before the earliest contact found.
     pub fn best(
         &mut self,
         situation: &Situation,
@@ -57,7 +58,7 @@ impl Search {
             if least - ROUNDING > best_cost {
                 break;
             }
-            // All of them first: one direction need not wait for the verdict on another.
+            // Compute all velocities of the bucket first, so that none waits for the test of another.
             velocities.clear();
             velocities.extend(
                 candidates
@@ -74,7 +75,7 @@ impl Search {
                 }
                 // Agent i moves at 2v′ − v_i.
                 let velocity = candidate * 2.0 - situation.velocity;
-                // Costs this near to the best may be equal to it when rounded.
+                // After rounding, a cost this close to the best may be equal to it.
                 let left = best_cost - deviation + f64::EPSILON * best_cost;
                 let latest = collision_weight / left;
                 if rings.certainly_met(velocity, latest * (1.0 - ROUNDING)) {
@@ -95,8 +96,8 @@ impl Search {
     }
 }
 
-/// The earliest contact on the way at `velocity`, seconds, infinite if there is none; or `None` as soon as
-/// one is found that is too early. `rings` has the discs of the situation.
+/// The time in seconds of the earliest contact when moving at `velocity`, infinite if there is none. Returns
+/// `None` as soon as a contact is found that is too early. `rings` holds the discs of the situation.
 fn first_contact(
     situation: &Situation,
     rings: &Rings,
@@ -128,13 +129,13 @@ fn first_contact(
     Some(first)
 }
 
-/// Things sorted by a key, roughly: bucket by bucket, in no order within one.
+/// Items sorted by key into buckets, unordered within a bucket.
 #[derive(Debug)]
 struct Buckets<T> {
     width: f64,
     arrivals: Vec<(u32, T)>,
     items: Vec<T>,
-    /// Where each bucket ends in `items`.
+    /// The end of each bucket in `items`.
     ends: Vec<u32>,
 }
 
@@ -149,11 +150,11 @@ impl<T> Default for Buckets<T> {
     }
 }
 
-/// The last one holds everything beyond.
+/// Number of buckets. The last one also holds all larger keys.
 const BUCKETS: usize = 64;
 
 impl<T: Copy> Buckets<T> {
-    /// Sorts things with their keys into buckets of a `width`.
+    /// Sorts pairs of a key and an item into buckets of width `width`.
     fn sort(&mut self, width: f64, things: impl Iterator<Item = (f64, T)>) {
         self.width = width;
         let per_width = 1.0 / width;
@@ -181,7 +182,7 @@ impl<T: Copy> Buckets<T> {
         self.ends.extend(places);
     }
 
-    /// Every bucket that is not empty, with what its keys are at least.
+    /// The non-empty buckets, each with a lower bound of its keys.
     fn iter(&self) -> impl Iterator<Item = (f64, &[T])> {
         let mut start = 0;
         self.ends
