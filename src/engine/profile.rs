@@ -17,16 +17,16 @@ use crate::engine::math::Vector;
 use crate::engine::neighbors::BLOCK;
 use crate::engine::pairs::PairCoefficients;
 
-/// Steps 3, 3B and 4 for one agent: how it navigates, and which interactions it feels.
+/// Steps 3, 3B and 4 for one agent: how it navigates, and which forces act on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
-    /// What it is called in reports.
+    /// Name in reports.
     pub name: String,
     /// Step 3.
     pub navigation: Navigation,
-    /// Step 3B, pressure; switched off in a profile without SPH, and where k = 0.
+    /// Step 3B, pressure; `false` in a profile without SPH, and if k = 0.
     pub pressure: bool,
-    /// Step 3B, viscosity; `None` in a profile without SPH, and where μ = 0.
+    /// Step 3B, viscosity; `None` in a profile without SPH, and if μ = 0.
     pub viscosity: Option<Viscosity>,
     /// Step 4.
     pub contact: Contact,
@@ -39,12 +39,12 @@ pub enum Navigation {
     Goal(GoalForce),
     /// Goal force and social forces (§5.3.1).
     Social(GoalForce, SocialForce),
-    /// Velocity obstacles (§5.3.2); the preferred velocity is in the cost.
+    /// Velocity obstacles (§5.3.2); their cost includes the preferred velocity.
     Rvo(Rvo),
 }
 
 impl Navigation {
-    /// Its social force, if it is one that has one.
+    /// The social force, if there is one.
     pub fn social(&self) -> Option<SocialForce> {
         match *self {
             Self::Social(_, social) => Some(social),
@@ -52,7 +52,7 @@ impl Navigation {
         }
     }
 
-    /// How far this way of avoiding others looks, meters.
+    /// The avoidance radius, meters; `None` without avoidance.
     pub fn avoidance_radius(&self) -> Option<f64> {
         match self {
             Self::Goal(_) => None,
@@ -62,18 +62,18 @@ impl Navigation {
     }
 }
 
-/// What a push changes for the agents that take part (§6.3).
+/// Changes for the agents that take part in a push (§6.3).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Override {
     /// K^goal instead of the profile's.
     pub goal_scale: Option<f64>,
-    /// Feel no contact force.
+    /// Ignore contact forces.
     pub ignore_contact: bool,
-    /// Feel no SPH force.
+    /// Ignore SPH forces.
     pub ignore_sph: bool,
 }
 
-/// One profile's accelerations of one agent, term by term, m/s²; `None`: the profile has no such term.
+/// Accelerations of one agent by one profile, term by term, m/s²; `None` if the profile has no such term.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Terms {
     /// Eq. 17.
@@ -195,7 +195,7 @@ impl Terms {
 }
 
 impl Profile {
-    /// Does this profile have `term`, where there are agents and walls?
+    /// Does this profile have `term`, given agents and walls?
     pub fn has(&self, term: Term) -> bool {
         let social = matches!(self.navigation, Navigation::Social(..));
         let rvo = matches!(self.navigation, Navigation::Rvo(_));
@@ -251,8 +251,8 @@ impl Profile {
         terms
     }
 
-    /// Adds how much `agents` of one block of a frozen frame feel of the agents near them, times
-    /// `weight`.
+    /// Adds the factors of this profile for sums over near agents, times `weight`, for `agents` of one block of a
+    /// frozen frame.
     fn add_pair_coefficients(
         &self,
         frame: &Frame,
@@ -281,8 +281,8 @@ impl Profile {
         }
     }
 
-    /// All terms of `agents` but what other agents do: where each belongs, whose it is, and how
-    /// large, m/s²; no walls' terms of those without walls near.
+    /// Passes `take` all terms of `agents` that do not depend on other agents: the field of [`Terms`], the agent and
+    /// the acceleration, m/s². SPH and contact terms of walls only for agents near walls.
     #[inline]
     fn each_term(
         &self,
@@ -327,7 +327,7 @@ impl Profile {
     }
 }
 
-/// The goal force with the K^goal that a push gives.
+/// The goal force, with K^goal replaced if a push overrides it.
 fn changed_goal(goal: GoalForce, changed: Option<&Override>) -> GoalForce {
     let goal_scale = changed.and_then(|change| change.goal_scale);
     GoalForce {

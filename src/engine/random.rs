@@ -1,24 +1,24 @@
-//! Random numbers by counter: what an agent draws depends on the seed, its id, the purpose and the
-//! frame, and on nothing else; neither threads nor the order of agents can change it.
+//! Counter-based random numbers: the draws of an agent depend only on the seed, its id, the purpose and the frame,
+//! not on threads or on the order of agents.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// What a stream is for; streams of different purposes are independent.
+/// The purpose of a stream. Streams of different purposes are independent.
 #[derive(Debug, Clone, Copy)]
 pub enum Purpose {
-    /// Radius of an agent's disc.
+    /// Radius of an agent.
     Body = 0,
-    /// Jitter of an agent's first position.
+    /// Jitter of an agent's initial position.
     Placement = 1,
     /// Candidate velocities of RVO.
     Candidates = 2,
 }
 
-/// Words of a stream set aside for one frame: enough for eight million draws.
+/// Base-2 logarithm of the 32-bit words reserved per frame: enough for eight million draws of 64 bits.
 const WORDS_PER_FRAME_LOG2: u32 = 24;
 
-/// The stream of one agent for one purpose, wound to `frame`.
+/// The stream of one agent for one purpose, positioned at `frame`.
 pub fn stream(seed: u64, purpose: Purpose, agent: u32, frame: u64) -> ChaCha8Rng {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream((purpose as u64) << 32 | u64::from(agent));

@@ -1,4 +1,4 @@
-//! A scene: everything that is fixed before the first frame.
+//! A scene: everything that is known before the first frame.
 
 use crate::engine::agents::NewAgent;
 use crate::engine::boundary::WallMethod;
@@ -11,20 +11,20 @@ use crate::engine::pairs::{Precision, Wanted};
 use crate::engine::placement::Grid;
 use crate::engine::profile::{Blend, Override};
 
-/// How the state is moved on by one frame (§5).
+/// How the state is advanced by one frame (§5).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Integrator {
     /// v ← clamp(v + a Δt), then r ← r + v Δt with the new v.
     #[default]
     SemiImplicit,
-    /// r moves with the old v.
+    /// r ← r + v Δt with the old v, and v ← clamp(v + a Δt).
     ForwardEuler,
-    /// r ← r + v Δt + a Δt²/2, and v by the mean of the accelerations at both ends. Forces that depend on
-    /// the velocity see a predicted one, v + a Δt: the velocity of a frame, off by some Δt².
+    /// r ← r + v Δt + a Δt²/2, and v with the mean of the accelerations at both ends of the step. Forces that depend
+    /// on velocity see the prediction v + a Δt, which is also the velocity of a frame; its error is O(Δt²).
     VelocityVerlet,
-    /// The second-order Runge-Kutta method that evaluates all forces but RVO a second time, half a frame
-    /// on, and takes the whole step with what it finds there.
+    /// The midpoint method (second-order Runge-Kutta): evaluates all forces but RVO again half a frame later, and
+    /// takes the whole step with the velocity and acceleration found there.
     Midpoint,
 }
 
@@ -38,64 +38,64 @@ impl Integrator {
     ];
 }
 
-/// Agents that share their behavior and their fate.
+/// Agents that share a blend and the rules for leaving.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group {
     /// What it is called in reports.
     pub name: String,
-    /// How its agents behave.
+    /// The profiles of its agents.
     pub blend: Blend,
-    /// Within this distance of the goal an agent leaves, meters; `None`: never.
+    /// Agents leave within this distance of their goal, meters; `None`: they never leave.
     pub removal_radius: Option<f64>,
-    /// Do its arrivals count as evacuated?
+    /// Do arrivals count as evacuated?
     pub counted: bool,
 }
 
-/// Where the agents of a grid or source go.
+/// Goals of the agents of a grid or source.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Goal {
-    /// All to one point, meters.
+    /// One point for all agents, meters.
     Point(Vector),
-    /// Each to its own start plus this, meters.
+    /// The initial position of each agent plus this offset, meters.
     Offset(Vector),
 }
 
-/// Agents that enter on a grid, once or again and again.
+/// Agents that enter on a grid, once or repeatedly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Source {
     /// What it is called in reports.
     pub name: String,
-    /// Where.
+    /// Where agents enter.
     pub grid: Grid,
-    /// Their group.
+    /// Index of their group.
     pub group: u16,
-    /// Where they go.
+    /// Their goals.
     pub goal: Goal,
-    /// First entry, seconds.
+    /// Time of the first entry, seconds.
     pub start: f64,
     /// Time between entries, seconds, above 0.
     pub every: f64,
-    /// How many entries; `None`: without end.
+    /// Number of entries; `None`: unlimited.
     pub times: Option<u32>,
 }
 
-/// For a while, everybody who is in a rectangle at one moment behaves differently. Whoever two pushes
-/// get hold of follows the later one.
+/// A temporary change of behavior of all agents that are in a rectangle when the push begins. An agent that takes
+/// part in two pushes follows the later one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Push {
     /// What it is called in reports.
     pub name: String,
-    /// When, seconds.
+    /// When it begins, seconds.
     pub at: f64,
-    /// For how long, seconds.
+    /// Duration, seconds.
     pub lasting: f64,
-    /// Lower left and upper right corner, meters; who stands here at the start takes part.
+    /// Agents that are here when the push begins take part.
     pub region: Region,
-    /// What changes for them.
+    /// What changes for these agents.
     pub change: Override,
 }
 
-/// An axis-parallel rectangle, borders included.
+/// An axis-aligned rectangle, borders included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Region {
     /// Lower left corner, meters.
@@ -111,22 +111,22 @@ impl Region {
     }
 }
 
-/// Everything that [`Simulation`](crate::engine::simulation::Simulation) needs to begin.
+/// Everything that a [`Simulation`](crate::engine::simulation::Simulation) is built from.
 #[derive(Debug, Clone)]
 pub struct Scene {
-    /// Seed of who enters: bodies, and jitter of where they stand.
+    /// Seed of radii and of jitter of initial positions.
     pub seed: u64,
-    /// Seed of what they do, RVO's candidates; `None`: the same.
+    /// Seed of RVO candidates; `None`: `seed`.
     pub behaviour_seed: Option<u64>,
     /// Δt_fine and Δt_coarse.
     pub clock: Clock,
-    /// How the state is moved on.
+    /// How the state is advanced.
     pub integrator: Integrator,
     /// How walls enter SPH.
     pub wall_method: WallMethod,
-    /// The numbers for sums over pairs.
+    /// Precision of sums over pairs.
     pub precision: Precision,
-    /// When neighbors are listed anew.
+    /// When neighbor lists are rebuilt.
     pub neighbor_lists: ListPolicy,
     /// s_pref, m/s (§5.6).
     pub preferred_speed: f64,
@@ -136,11 +136,11 @@ pub struct Scene {
     pub walls: Walls,
     /// Groups by index.
     pub groups: Vec<Group>,
-    /// Who is there at the start, in the order of their ids.
+    /// Initial agents, in the order of their ids.
     pub agents: Vec<NewAgent>,
-    /// Who enters later.
+    /// Agents that enter later.
     pub sources: Vec<Source>,
-    /// What happens later.
+    /// Temporary changes of behavior.
     pub pushes: Vec<Push>,
 }
 
@@ -167,7 +167,7 @@ impl Default for Scene {
 }
 
 impl Scene {
-    /// The paper's settings round some obstacles.
+    /// Obstacles with the paper's settings.
     pub fn with_obstacles(obstacles: Vec<Polygon>) -> Self {
         Self {
             walls: Walls::new(obstacles),
@@ -181,7 +181,7 @@ impl Scene {
         (self.groups.len() - 1) as u16
     }
 
-    /// What this scene needs, and so what it pays for.
+    /// The quantities that this scene needs; only these are computed.
     pub fn needs(&self) -> Needs {
         let profiles = || {
             self.groups
@@ -213,7 +213,7 @@ impl Scene {
         }
     }
 
-    /// The different social forces of all profiles.
+    /// The distinct social forces of all profiles.
     pub fn social_forces(&self) -> Vec<SocialForce> {
         let steps = self.groups.iter().flat_map(|group| group.blend.steps());
         let mut different = Vec::new();
@@ -225,7 +225,7 @@ impl Scene {
         different
     }
 
-    /// How far neighbors must be looked for.
+    /// The ranges of the neighbor search.
     pub fn ranges(&self, needs: &Needs) -> Ranges {
         let support = self
             .groups
@@ -234,7 +234,7 @@ impl Scene {
             .fold(0.0, f64::max);
         let longest_step = self.max_speed * self.clock.time_step();
         let ahead = match self.integrator {
-            Integrator::Midpoint => 0.5 * longest_step, // forces are evaluated there, too
+            Integrator::Midpoint => 0.5 * longest_step, // forces are also evaluated half a step ahead
             _ => 0.0,
         };
         let (drift, margin) = match self.neighbor_lists {
@@ -260,25 +260,25 @@ impl Scene {
     }
 }
 
-/// What the profiles of a scene ask for, decided once; the rest is never computed.
+/// What a scene needs, decided once. Everything else is never computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Needs {
-    /// SPH forces or blending read the density in every frame.
+    /// Density, read in every frame by SPH forces or blending.
     pub density: bool,
     /// Sums over near neighbors that some profile reads.
     pub pairs: Wanted,
-    /// Some profile avoids by RVO.
+    /// Some profile uses RVO.
     pub rvo: bool,
-    /// Some profile avoids by social forces.
+    /// Some profile uses social forces.
     pub social: bool,
-    /// The widest avoidance radius, meters.
+    /// The largest avoidance radius, meters.
     pub avoidance: Option<f64>,
     /// Some agents leave at their goal.
     pub removal: bool,
 }
 
 impl Needs {
-    /// What either asks for.
+    /// The union of two needs.
     pub fn with(&self, other: &Self) -> Self {
         let radii = self.avoidance.into_iter().chain(other.avoidance);
         Self {

@@ -23,16 +23,16 @@ use crate::engine::pairs::{Packed, Precision};
 use crate::engine::profile::{Blend, Override};
 use crate::engine::scene::{Needs, Scene};
 
-/// A crowd in a scene, one frame after the other.
+/// A crowd in a scene, simulated frame by frame.
 ///
-/// Each frame is [`evaluate`](Self::evaluate), then [`integrate`](Self::integrate); in between the
-/// frame is frozen, and positions agree with everything computed from them. The bits do not depend on
-/// the number of threads: every agent reads the frozen frame and writes its own slot.
+/// Each frame consists of [`evaluate`](Self::evaluate) and [`integrate`](Self::integrate). In between, the frame is
+/// frozen: everything computed matches the positions. Results are identical to the last bit for any number of
+/// threads, because every agent reads the frozen frame and writes only its own slot.
 #[derive(Clone)]
 pub struct Simulation {
     scene: Scene,
     needs: Needs,
-    /// The different ones of the scene.
+    /// The distinct social forces of the scene.
     social_forces: Vec<SocialForce>,
     density_until: u64,
     clock: Clock,
@@ -44,7 +44,7 @@ pub struct Simulation {
     outcome: Outcome,
     stages: StageTimes,
     evaluated: bool,
-    /// Is every number of the evaluated frame finite?
+    /// Are all numbers of the evaluated frame finite?
     finite: bool,
     crowd_changed: bool,
 }
@@ -52,34 +52,34 @@ pub struct Simulation {
 /// What has happened so far.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
-    /// Who reached the goal and left, in order.
+    /// Agents that reached their goal and left, in order.
     pub arrivals: Vec<Arrival>,
-    /// How many moves ended at a wall that they would have crossed.
+    /// Number of moves stopped at a wall that they would have crossed.
     pub contained_moves: u64,
-    /// How often a speed was cut to the highest allowed.
+    /// Number of times that a speed was clamped to s_max.
     pub clamped_speeds: u64,
-    /// Agents that were put out of an obstacle when they entered: id and obstacle.
+    /// Agents that entered inside an obstacle and were moved out of it: id and obstacle.
     pub displaced: Vec<(u32, usize)>,
 }
 
-/// Somebody who reached the goal.
+/// An agent that reached its goal.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Arrival {
     /// The agent's id.
     pub id: u32,
-    /// When, seconds: after the move that led there.
+    /// Time at the end of the move that reached the goal, seconds.
     pub time: f64,
-    /// Where that move ended, meters.
+    /// Position at the end of that move, meters.
     #[serde(with = "pairs_of::one")]
     pub position: Vector,
     /// Does it count as evacuated?
     pub counted: bool,
 }
 
-/// The simulation cannot go on.
+/// Why a simulation cannot continue.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Fault {
-    /// A number that is not one.
+    /// A quantity is infinite or NaN.
     #[error(
         "frame {frame} (t = {time:.2} s): the {quantity} of agent {agent} at ({:.3}, {:.3}) is not finite; \
          a smaller time_step_secs, gas_constant or stiffness may help",
@@ -92,12 +92,12 @@ pub enum Fault {
         time: f64,
         /// The agent's id.
         agent: u32,
-        /// Where it stands, meters.
+        /// Its position, meters.
         position: Vector,
-        /// Which number.
+        /// Name of the quantity.
         quantity: &'static str,
     },
-    /// Nowhere to put somebody.
+    /// An agent enters inside an obstacle, and no free point is near.
     #[error("agent {agent} enters inside obstacle {obstacle}, and no free point is near")]
     NoFreePoint {
         /// The agent's id.
@@ -108,10 +108,10 @@ pub enum Fault {
 }
 
 impl Simulation {
-    /// Lets the first agents in.
+    /// Builds a simulation and lets the initial agents in.
     ///
     /// # Errors
-    /// Somebody stands inside an obstacle that has no way out.
+    /// An agent is inside an obstacle, and no free point is near.
     pub fn new(scene: Scene) -> Result<Self, Fault> {
         let mut simulation = Self {
             needs: scene.needs(),
@@ -136,7 +136,7 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// One frame.
+    /// Simulates one frame.
     ///
     /// # Errors
     /// As [`evaluate`](Self::evaluate) and [`integrate`](Self::integrate).
@@ -145,11 +145,11 @@ impl Simulation {
         self.integrate()
     }
 
-    /// Steps 1–4 of §4.1: computes the current frame and returns it, frozen and complete. Moves no agent; an
-    /// evaluated frame is returned as it is.
+    /// Steps 1–4 of §4.1: computes the current frame and returns it, frozen and complete. Moves no agent. A frame
+    /// that is already evaluated is returned unchanged.
     ///
     /// # Errors
-    /// An agent enters inside an obstacle that has no way out.
+    /// An agent enters inside an obstacle, and no free point is near.
     pub fn evaluate(&mut self) -> Result<Frame<'_>, Fault> {
         if !self.evaluated {
             self.follow_schedule()?; // entries and pushes, coarse
@@ -168,14 +168,14 @@ impl Simulation {
         self.needs.density || self.clock.frame() < self.density_until
     }
 
-    /// Requests the density in every frame before `frame`, though no force reads it: for a metric, a
-    /// color, a breakdown, a checkpoint. A request from the first frame on gives all observers the same
-    /// densities; after a gap the mean density ρ̂ starts anew. It never changes the motion or the digest.
+    /// Requests the density in every frame before `frame`, even if no force reads it: for a metric, a color, a
+    /// breakdown or a checkpoint. If it is requested from the first frame on, all observers see the same densities;
+    /// after a gap the mean density ρ̂ restarts. A request never changes the motion or the digest.
     pub fn request_density_until(&mut self, frame: u64) {
         self.density_until = self.density_until.max(frame);
     }
 
-    /// Evaluates the frame once more, with the density in it, for a breakdown of what is wrong there.
+    /// Evaluates the current frame again, with the density, for a breakdown of a faulty frame.
     ///
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
@@ -185,19 +185,19 @@ impl Simulation {
         self.evaluate()
     }
 
-    /// Takes the sums over pairs of all later evaluations in another precision than the scene's.
+    /// Sets the precision of sums over pairs for all later evaluations, in place of the scene's.
     pub fn set_precision(&mut self, precision: Precision) {
         self.packed = Packed::new(precision);
     }
 
-    /// Computes from the next frame on also what `more` asks for, though nothing reads it: to measure
-    /// what is saved by not computing it. The crowd is sorted anew, and else moves as before, bit by bit.
+    /// From the next evaluation on, also computes the quantities in `more`, though nothing reads them: to measure
+    /// the time saved by not computing them. Agents are sorted again; their motion stays identical to the last bit.
     pub fn pay_for(&mut self, more: &Needs) {
         self.needs = self.needs.with(more);
-        self.crowd_changed = true; // lists as far as is now asked for
+        self.crowd_changed = true; // rebuild neighbor lists with the new ranges
     }
 
-    /// The current frame. Its fields are those of [`evaluate`](Self::evaluate); after
+    /// The current frame. Its fields are those computed by [`evaluate`](Self::evaluate). After
     /// [`integrate`](Self::integrate), which moves the agents, they are empty until the next evaluation.
     pub fn frame(&self) -> Frame<'_> {
         let frame = self.frozen();
@@ -211,7 +211,7 @@ impl Simulation {
         }
     }
 
-    /// The frame while it is being evaluated, with the fields computed so far.
+    /// The frame during its evaluation, with the fields computed so far.
     fn frozen(&self) -> Frame<'_> {
         Frame {
             clock: &self.clock,
@@ -225,22 +225,22 @@ impl Simulation {
         }
     }
 
-    /// What the simulation was made from, but for its first agents, who have entered.
+    /// The scene of this simulation, without the initial agents, which have already entered.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// Which parts of the model this scene pays for.
+    /// The quantities that are computed.
     pub fn needs(&self) -> &Needs {
         &self.needs
     }
 
-    /// How agent `i` behaves.
+    /// The blend of agent `i`.
     pub fn blend(&self, i: usize) -> &Blend {
         blend_of(&self.scene, &self.agents, i)
     }
 
-    /// What a push changes for agent `i` now.
+    /// The change by a current push for agent `i`, if any.
     pub fn change(&self, i: usize) -> Option<&Override> {
         change_of(&self.scene, &self.agents, i)
     }
@@ -250,12 +250,12 @@ impl Simulation {
         &self.outcome
     }
 
-    /// Will anybody enter later?
+    /// Will more agents enter?
     pub fn expects_agents(&self) -> bool {
         self.schedule.expects_agents(&self.scene)
     }
 
-    /// Entries and pushes so far.
+    /// Entries, and beginnings and ends of pushes, so far.
     pub fn events(&self) -> &[Event] {
         self.schedule.events()
     }
@@ -265,7 +265,7 @@ impl Simulation {
         &self.stages
     }
 
-    /// Starts measuring anew.
+    /// Resets the times per stage.
     pub fn reset_stages(&mut self) {
         self.stages = StageTimes::default();
     }

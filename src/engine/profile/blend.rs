@@ -11,15 +11,15 @@ use crate::engine::math::Vector;
 use crate::engine::neighbors::BLOCK;
 use crate::engine::pairs::PairCoefficients;
 
-/// So many profiles in a blend: every group of agents has its own copy.
+/// Largest number of profiles in a blend. Every group of agents has its own copy of them.
 const MOST_STEPS: usize = 16;
 
 /// A sequence {(Π^j, ρ^j)} of profiles in rising order of density, and the SPH parameters they share.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blend {
-    /// What the whole is called.
+    /// Name in reports.
     pub name: String,
-    /// Density and pressure of an agent with this blend.
+    /// SPH parameters of all agents with this blend.
     pub sph: SphParameters,
     steps: Vec<BlendStep>,
 }
@@ -33,7 +33,7 @@ pub struct BlendStep {
     pub profile: Profile,
 }
 
-/// Why a sequence of profiles is not a blend.
+/// Why a sequence of profiles is not a valid blend.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BlendError {
     /// There is no profile.
@@ -42,16 +42,16 @@ pub enum BlendError {
     /// Too many profiles.
     #[error("{0} profiles in one blend; at most {MOST_STEPS} may be")]
     TooMany(usize),
-    /// Two densities in the wrong order.
+    /// The second density is not greater than the first.
     #[error("densities must rise: {1} P/m² follows {0} P/m²")]
     NotRising(f64, f64),
-    /// Two profiles avoid by RVO, each in its own way.
+    /// Two profiles have different RVO parameters.
     #[error("profiles of one blend share one velocity of RVO: give them the same RVO parameters")]
     DifferentRvo,
 }
 
 impl Blend {
-    /// Puts profiles together.
+    /// Combines profiles into a blend.
     ///
     /// # Errors
     /// No profile or too many, densities that do not rise, or profiles with different RVO parameters.
@@ -103,7 +103,7 @@ impl Blend {
         self.steps.len() > 1
     }
 
-    /// The RVO parameters of this blend, if any of its profiles avoids by RVO.
+    /// The RVO parameters of this blend, if any of its profiles uses RVO.
     pub fn rvo(&self) -> Option<Rvo> {
         self.steps.iter().find_map(|step| rvo_of(&step.profile))
     }
@@ -127,7 +127,7 @@ impl Blend {
         let high = self.steps.iter().position(above).unwrap_or(last);
         let low = high.saturating_sub(1);
         let (from, to) = (self.steps[low].at_density, self.steps[high].at_density);
-        // Alone at its own density, and at the ends beyond it.
+        // A profile acts alone at its own density; the first and the last also act alone beyond the ends.
         let kappa = if low < high {
             ((density - from) / (to - from)).min(1.0)
         } else {
@@ -145,8 +145,8 @@ impl Blend {
             .any(|(profile, _)| rvo_of(profile).is_some())
     }
 
-    /// Adds how much `agents` of one block of a frozen frame, all with this blend, feel of the agents
-    /// near them.
+    /// Adds the weighted factors of all profiles for sums over near agents, for `agents` of one block of a frozen
+    /// frame, all with this blend.
     pub fn add_pair_coefficients(
         &self,
         frame: &Frame,
@@ -159,8 +159,8 @@ impl Blend {
         });
     }
 
-    /// Adds how much `agents` of one block of a frozen frame, all with this blend, feel of a social force:
-    /// their weights of it over their masses.
+    /// Adds the factors of a social force, its weight divided by the mass, for `agents` of one block of a frozen
+    /// frame, all with this blend.
     pub fn add_social_coefficients(
         &self,
         frame: &Frame,
@@ -177,8 +177,8 @@ impl Blend {
         });
     }
 
-    /// Adds the accelerations of `agents` of a frozen frame, all with this blend, by all but other
-    /// agents, m/s².
+    /// Adds the accelerations that do not depend on other agents, m/s², for `agents` of a frozen frame, all with
+    /// this blend.
     pub fn add_accelerations(
         &self,
         frame: &Frame,
@@ -194,7 +194,7 @@ impl Blend {
         });
     }
 
-    /// Who of `agents` behaves like which profile, and how much.
+    /// Passes `take` each active profile with the agents on which it acts and its weight.
     #[inline]
     fn each_share(
         &self,

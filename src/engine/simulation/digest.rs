@@ -1,4 +1,4 @@
-//! The state in one number, to tell whether two runs are the same to the last bit.
+//! A hash of the state, to test whether two runs are identical to the last bit.
 
 use sha2::{Digest, Sha256};
 
@@ -7,9 +7,9 @@ use crate::engine::math::Vector;
 
 impl Simulation {
     /// SHA-256, as 64 hexadecimal digits, of the frame number, of the id, position, velocity and mean density of
-    /// all agents in the order of their ids, and of all arrivals. It is independent of the order in memory, of the
-    /// number of threads, and of what is observed: the mean density ρ̂ is part of the state only where a
-    /// force reads it ([`Needs::density`](crate::engine::scene::Needs::density)), and is left out elsewhere.
+    /// all agents in the order of their ids, and of all arrivals. It does not depend on the order in memory, on the
+    /// number of threads, or on requests by observers: the mean density ρ̂ is included only if the scene needs it
+    /// ([`Needs::density`](crate::engine::scene::Needs::density)).
     pub fn digest(&self) -> String {
         let has_mean_density = self.scene.needs().density;
         let mut hasher = Sha256::new();

@@ -1,4 +1,4 @@
-//! Sources and pushes: what happens to the crowd from outside, on coarse frames only.
+//! Sources and pushes: scheduled changes of the crowd, on coarse frames only.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,36 +9,36 @@ use crate::engine::scene::{Goal, Scene, Source};
 
 use super::{Fault, Simulation, Stage};
 
-/// Something that happened to the crowd.
+/// A scheduled event.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// In which frame.
+    /// The frame.
     pub frame: u64,
-    /// The source or push, by its name in the scene.
+    /// Name of the source or push in the scene.
     pub name: String,
-    /// What.
+    /// What happened.
     pub kind: EventKind,
 }
 
-/// What happened, and to how many agents.
+/// The kind of an event, with the number of agents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EventKind {
-    /// So many entered.
+    /// This many agents entered.
     Entered(usize),
-    /// So many began to push.
+    /// A push began with this many agents.
     PushBegan(usize),
-    /// The push is over.
+    /// A push ended.
     PushEnded,
 }
 
-/// How far the scene's sources and pushes have come.
+/// Progress of the sources and pushes of a scene.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Schedule {
-    /// How often each source has let agents in.
+    /// Number of entries so far, per source.
     entries: Vec<u32>,
-    /// Who takes part in pushes that go on: push and frame of its end.
+    /// Active pushes: index of the push and frame of its end.
     pushing: Vec<(u16, u64)>,
-    /// How many pushes (in order of the scene) have begun: one flag each.
+    /// Has each push of the scene begun?
     begun: Vec<bool>,
     events: Vec<Event>,
 }
@@ -55,7 +55,7 @@ impl Schedule {
         })
     }
 
-    /// Can a scene have come so far?
+    /// Does this progress fit `scene`?
     pub(super) fn fits(&self, scene: &Scene) -> bool {
         let (sources, pushes) = (scene.sources.len(), scene.pushes.len());
         let known = |&(push, _): &(u16, u64)| usize::from(push) < pushes;
@@ -82,7 +82,7 @@ impl Source {
 }
 
 impl Simulation {
-    /// Lets agents in and begins and ends pushes that are due, on coarse frames.
+    /// On coarse frames, lets agents in, and begins and ends pushes that are due.
     pub(super) fn follow_schedule(&mut self) -> Result<(), Fault> {
         let nothing = self.scene.sources.is_empty() && self.scene.pushes.is_empty();
         if nothing || !self.clock.is_coarse() {
@@ -132,7 +132,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Lets one agent in, out of any obstacle.
+    /// Lets one agent in. An agent inside an obstacle is moved to a free point nearby.
     pub(super) fn enter(&mut self, mut agent: NewAgent) -> Result<(), Fault> {
         let id = self.agents.entered();
         if let Some(obstacle) = self.scene.walls.obstacle_at(agent.position) {

@@ -1,4 +1,4 @@
-//! Everything that a simulation remembers from one frame to the next, to be written down and gone on from.
+//! Everything that a simulation keeps from one frame to the next, for saving and resuming.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,32 +8,32 @@ use crate::engine::agents::Agents;
 use crate::engine::math::{Vector, pairs_of};
 use crate::engine::scene::Scene;
 
-/// The state: what the future of a run depends on, beside its scene. Fields such as densities, pressures and
-/// forces are computed from it. Where no force reads the density, the mean density ρ̂ belongs to the observers
-/// ([`Simulation::request_density_until`]): it is in the state while it is requested, so that a resumed run
-/// observes the same densities.
+/// The state: together with the scene, it determines the rest of a run. Densities, pressures, forces and other
+/// fields are computed from it. If no force reads the density, the mean density ρ̂ serves observers only
+/// ([`Simulation::request_density_until`]). The state then still contains it while it is requested, so that a
+/// resumed run observes the same densities.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct State {
     frame: u64,
     agents: Agents,
-    /// Where everybody was when neighbors were last listed, meters.
+    /// Positions of all agents when they were last sorted, meters.
     #[serde(with = "pairs_of::many")]
     sorted_at: Vec<Vector>,
-    /// Has somebody come or gone since?
+    /// Have agents entered or left since?
     crowd_changed: bool,
     schedule: Schedule,
     outcome: Outcome,
-    /// Was there a density in this frame?
+    /// Was the density computed in this frame?
     has_density: bool,
 }
 
-/// A state and a scene that do not belong together.
+/// The state does not fit the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the state does not belong to this scenario")]
 pub struct StateError;
 
 impl Simulation {
-    /// What is to be remembered of an evaluated frame.
+    /// The state of an evaluated frame.
     pub fn state(&self) -> State {
         State {
             frame: self.clock.frame(),
@@ -46,10 +46,10 @@ impl Simulation {
         }
     }
 
-    /// Goes on from `state`, which `scene` was in: as if it had never stopped, to the last bit.
+    /// Resumes a run of `scene` from `state`. The result is identical to an uninterrupted run, to the last bit.
     ///
     /// # Errors
-    /// The scene cannot have been in this state.
+    /// The state does not fit the scene.
     pub fn resumed(scene: Scene, state: State) -> Result<Self, StateError> {
         let empty = Scene {
             agents: Vec::new(),
@@ -100,14 +100,14 @@ impl Simulation {
             .ok_or(StateError)
     }
 
-    /// Lists neighbors as they were listed when everybody was at `sorted_at`.
+    /// Rebuilds the neighbor lists as they were when the agents were at `sorted_at`.
     fn list_again(&mut self, sorted_at: Vec<Vector>) -> Result<(), StateError> {
         let positions = std::mem::replace(&mut self.agents.position, sorted_at);
         let ids = self.agents.id.clone();
         self.sort_agents();
         self.list_walls();
         if self.agents.id != ids {
-            return Err(StateError); // they were not in the order of their cells
+            return Err(StateError); // the saved agents were not in the order of their cells
         }
         let ways = positions.iter().zip(self.neighbors.sorted_at());
         let squares = ways.map(|(now, then)| (now - then).norm_squared());
