@@ -1,21 +1,21 @@
-//! Linear theory: how fast a small disturbance runs through a uniform dense crowd.
+//! Linear theory: the speed of a small disturbance in a uniform dense crowd.
 //!
-//! Let everybody stand at density ρ₀ above ρ⁰max, so that ρ⁰ = ρ⁰max is constant, and be displaced by
-//! a little u(x, t). Eq. 11 over ρ_i is −1/ρ_i Σ_j m_j/ρ_j · ½(p_i + p_j) ∇W(r_ij). To first order:
+//! Let a crowd be at rest at a density ρ₀ above ρ⁰max, so that ρ⁰ = ρ⁰max is constant. A small displacement
+//! u(x, t) is applied. Eq. 11 divided by ρ_i is −1/ρ_i Σ_j m_j/ρ_j · ½(p_i + p_j) ∇W(r_ij). To first order:
 //!
-//! - δp_i multiplies Σ_j m_j/ρ_j ∇W, which is zero round every agent of a uniform interior: half of
-//!   the pressure is never felt.
-//! - δp_j gives −(1/2ρ₀) ∇δp for waves much longer than h, because the potential of Eq. 14 integrates
-//!   to 1; and δp = k δρ = −k ρ₀ ∇·u by Eqs. 5 and 9.
-//! - The base pressure p₀ enters twice, through δ(m_j/ρ_j) and through δ∇W, with opposite signs: for
-//!   long waves it cancels.
+//! - δp_i multiplies Σ_j m_j/ρ_j ∇W, which is zero around every agent inside a uniform crowd: half of the pressure
+//!   has no effect.
+//! - δp_j gives −(1/2ρ₀) ∇δp for waves much longer than h, because the potential of Eq. 14 integrates to 1, and
+//!   δp = k δρ = −k ρ₀ ∇·u by Eqs. 5 and 9.
+//! - The base pressure p₀ enters through δ(m_j/ρ_j) and through δ∇W, with opposite signs. For long waves the two
+//!   cancel.
 //!
-//! So ü = (k/2) ∇(∇·u): c² = k/2, half of what ∂p/∂ρ suggests, whatever the density. Discs that touch
-//! are springs besides (Eq. 22): c² = k/2 + K^ag M with the contact modulus M = ½ Σ_j r_ij² cos⁴θ_ij/m_i
-//! over the discs in contact, less a little for their overlap; M = (9/8) d² on a hexagonal lattice whose
-//! discs just touch at distance d, (3/16) z d² for z contacts a person in all directions.
+//! So ü = (k/2) ∇(∇·u): c² = k/2 at any density, half of ∂p/∂ρ. Discs in contact add springs (Eq. 22):
+//! c² = k/2 + K^ag M, with the contact modulus M = ½ Σ_j r_ij² cos⁴θ_ij/m_i over the discs in contact, minus a small
+//! correction for their overlap. M = (9/8) d² on a hexagonal lattice whose discs just touch at distance d, and
+//! M = (3/16) z d² for z isotropic contacts per agent.
 //!
-//! [`Lattice`] has the same without the long-wave limit: every sum is taken over a hexagonal lattice.
+//! [`Lattice`] computes the same without the long-wave limit: it takes every sum over a hexagonal lattice.
 
 use crate::engine::density::SphParameters;
 use crate::engine::frame::Frame;
@@ -23,12 +23,12 @@ use crate::engine::kernel;
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
 
-/// c in m/s for waves much longer than h, without touching discs.
+/// c in m/s for waves much longer than h, without contacts.
 pub fn speed_of_fluid(gas_constant: f64) -> f64 {
     (gas_constant / 2.0).sqrt()
 }
 
-/// c in m/s with discs that touch: `modulus` is M in m².
+/// c in m/s with contacts; `modulus` is M in m².
 pub fn speed_with_contacts(gas_constant: f64, agent_stiffness: f64, modulus: f64) -> f64 {
     (gas_constant / 2.0 + agent_stiffness * modulus).sqrt()
 }
@@ -38,19 +38,19 @@ pub fn touching_modulus(distance: f64) -> f64 {
     9.0 / 8.0 * distance * distance
 }
 
-/// Contacts of a crowd as it stands.
+/// Contacts in the current frame of a crowd.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Contacts {
-    /// M in m² along the x axis, the mean over everybody.
+    /// M in m² along the x axis, averaged over all agents.
     pub modulus: f64,
-    /// How many others a person touches.
+    /// Mean number of contacts per agent.
     pub per_agent: f64,
     /// The mean SPH density, P/m²; `None` in a frame without densities.
     pub density: Option<f64>,
 }
 
-/// The contacts of all agents in a region; `None` if the region is empty. The frame's neighbor lists must
-/// reach as far as contacts do.
+/// The contacts of all agents in a region; `None` if the region is empty. The neighbor lists of the frame must
+/// extend to the largest contact distance.
 pub fn contacts(frame: &Frame, region: &Region) -> Option<Contacts> {
     let agents = frame.agents;
     let inside: Vec<usize> = (0..agents.len())
@@ -77,17 +77,17 @@ pub fn contacts(frame: &Frame, region: &Region) -> Option<Contacts> {
     })
 }
 
-/// −∂f_x/∂x of Eq. 22 over K^ag for touching discs: cos²θ − (overlap/r) sin²θ.
+/// −∂f_x/∂x of Eq. 22, divided by K^ag, for discs in contact: cos²θ − (overlap/r) sin²θ.
 fn stiffness(r: Vector, reach: f64) -> f64 {
     let distance = r.norm();
     let along = (r.x / distance).powi(2);
     along - (reach / distance - 1.0) * (1.0 - along)
 }
 
-/// A uniform crowd of mass 1 on a hexagonal lattice, rows along the x axis.
+/// A uniform crowd of agents of mass 1 on a hexagonal lattice, with rows along the x axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lattice {
-    /// Distance of nearest neighbors, meters.
+    /// Distance between nearest neighbors, meters.
     pub spacing: f64,
     /// D_i + D_j, meters.
     pub reach: f64,
@@ -98,7 +98,7 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// Everybody within h of one agent, as r_ij.
+    /// r_ij of all neighbors within h of an agent.
     pub fn neighbors(&self) -> Vec<Vector> {
         let h = self.sph.support_radius;
         let most = (2.0 * h / self.spacing).ceil() as i32;
@@ -116,7 +116,7 @@ impl Lattice {
         found
     }
 
-    /// The SPH density of everybody (Eq. 9), P/m².
+    /// The SPH density at every agent (Eq. 9), P/m².
     pub fn density(&self) -> f64 {
         let h = self.sph.support_radius;
         let others = self.neighbors().into_iter();
@@ -124,8 +124,8 @@ impl Lattice {
         kernel::density(0.0, h) + others.sum::<f64>()
     }
 
-    /// ω² in 1/s² of a longitudinal wave along the x axis with wavenumber q in 1/m, where the density
-    /// is above ρ⁰max.
+    /// ω² in 1/s² of a longitudinal wave along the x axis with wavenumber q in 1/m. Valid if the density is above
+    /// ρ⁰max.
     pub fn frequency_squared(&self, q: f64) -> f64 {
         let (h, k) = (self.sph.support_radius, self.sph.gas_constant);
         let density = self.density();
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn long_waves_in_a_fine_lattice_run_at_the_root_of_half_k() {
-        // Many neighbors: the sums are integrals, and the base pressure cancels.
+        // With many neighbors the sums approach integrals, and the base pressure cancels.
         let fine = lattice(0.1, 0.0);
         assert!((fine.speed(0.01) / speed_of_fluid(200.0) - 1.0).abs() < 0.003);
     }

@@ -1,27 +1,28 @@
-//! How long a frame may be: a formula for the largest stable time step, with constants from maps of where
-//! crowds at rest begin to shake (`sandbox stress`, `docs/stability.md`).
+//! A formula for the largest stable time step. Its constants are fitted to maps of the largest step at which
+//! crowds come to rest (`sandbox stress`, `docs/stability.md`).
 //!
-//! Near rest every mode of a crowd is an oscillator, ẍ = −ω² x − γ ẋ. Moved on by semi-implicit Euler it
-//! decays as long as ω² Δt² + 2γ Δt < 4, so up to
+//! Near rest every mode of a crowd is an oscillator, ẍ = −ω² x − γ ẋ. With semi-implicit Euler it decays if
+//! ω² Δt² + 2γ Δt < 4, that is, for steps up to
 //!
 //! Δt = 4 / (γ + √(γ² + 4ω²)),
 //!
-//! which is 2/ω without friction and 2/γ without springs; there a factor of its frames passes −1.
-//! Velocity Verlet counts friction twice, because it takes it at the predicted velocity ẋ + ẍ Δt: with factor
-//! −1 a frame begins and ends in a turning point, v = 0, so that x = −ẍ Δt²/4 and the predicted velocity is
-//! −ẍ Δt, and ẍ = −ω² x − γ ẋ becomes ω² Δt² + 4γ Δt = 4, at 2/ω or 1/γ. ([`Scheme`])
+//! which is 2/ω without friction and 2/γ without springs. At this step an eigenvalue of the frame map passes −1.
+//! In velocity Verlet friction counts twice, because it acts on the predicted velocity, ẋ + ẍ Δt. At eigenvalue −1
+//! every frame begins and ends at a turning point, v = 0, so that x = −ẍ Δt²/4 and the predicted velocity is −ẍ Δt.
+//! Then ẍ = −ω² x − γ ẋ becomes ω² Δt² + 4γ Δt = 4, with the limits 2/ω and 1/γ (see [`Scheme`]).
 //!
-//! Two modes of a crowd are fast, and the faster decides:
+//! Two modes of a crowd are fast; the faster one limits the step:
 //!
-//! - people pressed together: ω² = (C₁ c/h)² + C₂ K/m, c = √(k/2) the speed of sound
-//!   ([`crate::engine::sound`]), K/m the stiffest contact of the lightest person: the Courant condition of
-//!   SPH, and that of springs;
-//! - people who drag each other along: γ = C₃ μ. A person's drag is μ ∇²W/ρ² for every neighbor; it is
-//!   largest in a loose crowd, where the density is hardly more than the own ~ 1/h², and h drops out. In a
-//!   uniform one it goes with 1/ρ; to the friction of those pressed together it adds a quarter, C₃ μ/4.
+//! - Compression of a pressed crowd: ω² = (C₁ c/h)² + C₂ K/m, with the speed of sound c = √(k/2)
+//!   ([`crate::engine::sound`]) and the largest contact stiffness over the smallest mass, K/m. This combines the
+//!   Courant condition of SPH with that of springs.
+//! - Viscous drag in a loose crowd: γ = C₃ μ. Every neighbor contributes μ ∇²W/ρ² to the drag on an agent. The drag
+//!   is largest in a loose crowd, where the density is little more than the agent's own contribution ~ 1/h², so
+//!   that h drops out. In a uniform crowd it is proportional to 1/ρ; in a pressed crowd the friction is C₃ μ/4.
 //!
-//! A corner, both of whose edges push, counts with 2 K^obs/m by itself, and a wall with K^obs/m where that
-//! is more than the contacts. To all friction the goal force adds K^goal/(τ m). No step is longer than the paper's Δt_coarse.
+//! A corner has its own limit with ω² = 2 K^obs/m, because both of its edges push. Springs of walls and social
+//! forces replace C₂ K/m if they are stiffer. All friction includes K^goal/(τ m) of the goal force, or 1/Δt_coarse
+//! for RVO. No step is longer than the paper's Δt_coarse.
 
 use crate::engine::agents::{RADIUS_RANGE, REFERENCE_RADIUS};
 use crate::engine::clock::PAPER_COARSE_STEP;
@@ -29,18 +30,18 @@ use crate::engine::profile::{Navigation, Profile};
 use crate::engine::scene::{Integrator, Scene};
 use crate::engine::sound;
 
-/// C₁ to C₃, and what is left as a margin.
+/// C₁ to C₃, and the safety margins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Constants {
-    /// C₁: the pressure's fastest mode in c/h.
+    /// C₁: frequency of the fastest pressure mode, in units of c/h.
     pub pressure: f64,
-    /// C₂: the fastest mode of contacts, squared, in K/m.
+    /// C₂: squared frequency of the fastest contact mode, in units of K/m.
     pub contact: f64,
-    /// C₃: drag over μ, 1/s.
+    /// C₃: drag in 1/s, divided by μ.
     pub drag: f64,
-    /// The part of the formula's step that semi-implicit Euler takes.
+    /// The fraction of the formula's step that `auto` takes with semi-implicit Euler.
     pub margin: f64,
-    /// The part of it that velocity Verlet takes, whose limits are nearer to the formula.
+    /// The fraction that `auto` takes with velocity Verlet, whose limits are closer to the formula.
     pub verlet_margin: f64,
 }
 
@@ -53,8 +54,8 @@ impl Constants {
     }
 }
 
-/// What least squares give for the maps' places (`stress/fit.rs`), rounded; velocity Verlet's margin is chosen by its
-/// limits.
+/// Rounded least-squares fit to the points of the maps (`lab/stress/fit.rs`). The margin of velocity Verlet is chosen
+/// from its limits.
 pub const FITTED: Constants = Constants {
     pressure: 2.25,
     contact: 4.0,
@@ -63,7 +64,7 @@ pub const FITTED: Constants = Constants {
     verlet_margin: 0.88,
 };
 
-/// An integrator whose largest stable step is known.
+/// An integrator with a formula for its largest stable step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scheme {
     /// Semi-implicit Euler.
@@ -73,7 +74,7 @@ pub enum Scheme {
 }
 
 impl Scheme {
-    /// `None` if the integrator's largest step is not known.
+    /// The scheme of an integrator; `None` if there is no formula for it.
     pub fn of(integrator: Integrator) -> Option<Self> {
         match integrator {
             Integrator::SemiImplicit => Some(Self::SemiImplicit),
@@ -82,7 +83,7 @@ impl Scheme {
         }
     }
 
-    /// What a scene calls it.
+    /// The corresponding integrator of a scene.
     pub fn integrator(self) -> Integrator {
         match self {
             Self::SemiImplicit => Integrator::SemiImplicit,
@@ -90,7 +91,7 @@ impl Scheme {
         }
     }
 
-    /// Up to where ẍ = −ω² x − γ ẋ decays, seconds.
+    /// The largest step for which ẍ = −ω² x − γ ẋ decays, seconds.
     fn largest_step(self, omega_squared: f64, gamma: f64) -> f64 {
         let gamma = match self {
             Self::SemiImplicit => gamma,
@@ -100,30 +101,30 @@ impl Scheme {
     }
 }
 
-/// Drag in a pressed crowd, in parts of that in a loose one, which is four times less dense.
+/// Drag in a pressed crowd relative to a loose crowd, which has a quarter of its density.
 const PRESSED_DRAG: f64 = 0.25;
-/// Both edges of a corner push the same way whoever stands before it.
+/// Both edges of a corner push an agent in front of it in the same direction.
 const EDGES_AT_A_CORNER: f64 = 2.0;
 
-/// The fastest mode of a crowd.
+/// The rates that determine the fastest modes of a crowd.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mode {
     /// c/h of the pressure, 1/s.
     pub pressure: f64,
     /// K/m of contact between people, 1/s².
     pub contact: f64,
-    /// K/m of a wall, and of the social forces, 1/s².
+    /// Stiffness over mass of a wall and of social forces, 1/s².
     pub other_springs: f64,
-    /// K/m of a corner, 1/s².
+    /// Stiffness over mass of a corner, 1/s².
     pub corner: f64,
     /// μ.
     pub viscosity: f64,
-    /// K^goal/(τ m), or what RVO corrects, 1/s.
+    /// K^goal/(τ m), or 1/Δt_coarse for RVO, 1/s.
     pub correction: f64,
 }
 
 impl Mode {
-    /// The fastest that the profiles of a scene and its lightest person allow.
+    /// The largest rates over all profiles of a scene, for its smallest mass.
     pub fn of(scene: &Scene) -> Self {
         let mass = lightest(scene);
         let mut mode = Self {
@@ -145,7 +146,7 @@ impl Mode {
                 mode.take(profile, mass);
             }
         }
-        // Whoever pushes has the goal force of a whole push.
+        // A push can override K^goal of any agent.
         let pushes = scene.pushes.iter();
         let strongest = pushes
             .filter_map(|push| push.change.goal_scale)
@@ -178,7 +179,7 @@ impl Mode {
         self.correction = self.correction.max(correction);
     }
 
-    /// The formula's step, seconds, margin not included.
+    /// The step by the formula, without margin, seconds.
     pub fn largest_step(&self, scheme: Scheme, constants: &Constants) -> f64 {
         let springs = (constants.contact * self.contact).max(self.other_springs);
         let pressed = (constants.pressure * self.pressure).powi(2) + springs;
@@ -192,27 +193,27 @@ impl Mode {
         steps.into_iter().fold(f64::INFINITY, f64::min)
     }
 
-    /// What `auto` takes, seconds: three digits of the formula's step and its margin.
+    /// The step that `auto` takes, seconds: the formula's step times the margin, rounded down to three digits.
     pub fn time_step(&self, scheme: Scheme) -> f64 {
         three_digits(FITTED.margin(scheme) * self.largest_step(scheme, &FITTED))
     }
 }
 
-/// The step that `auto` stands for, seconds; `None` if the scene's integrator has none.
+/// The step that `auto` takes, seconds; `None` if there is no formula for the scene's integrator.
 pub fn time_step(scene: &Scene) -> Option<f64> {
     let scheme = Scheme::of(scene.integrator)?;
     Some(Mode::of(scene).time_step(scheme))
 }
 
-/// Rounded down.
+/// `value`, rounded down to three significant digits.
 fn three_digits(value: f64) -> f64 {
     let digit = 10_f64.powf(value.log10().floor() - 2.0);
-    // Through text: the nearest number to so many digits, whatever the division says.
+    // Formatting and parsing gives the number nearest to three decimal digits, without rounding errors.
     let rounded = (value / digit + 1e-9).floor() * digit;
     format!("{rounded:.2e}").parse().unwrap_or(rounded)
 }
 
-/// The least mass that anybody in the scene has or may be given.
+/// The smallest mass that an agent of the scene has or may be assigned.
 fn lightest(scene: &Scene) -> f64 {
     let of_radius = |radius: f64| (radius / REFERENCE_RADIUS).powi(2);
     let drawn = of_radius(RADIUS_RANGE[0]);
@@ -224,7 +225,7 @@ fn lightest(scene: &Scene) -> f64 {
     given.chain(entering).reduce(f64::min).unwrap_or(drawn)
 }
 
-/// The least τ of any goal force, seconds; the paper's if there is none.
+/// The smallest τ of all goal forces, seconds; the paper's τ if there is none.
 fn shortest_relaxation(scene: &Scene) -> f64 {
     let profiles = scene.groups.iter().flat_map(|group| group.blend.steps());
     let times = profiles.filter_map(|step| match step.profile.navigation {
@@ -241,7 +242,7 @@ mod tests {
 
     use super::*;
 
-    /// What one frame makes of x, the velocity that forces see and the acceleration of the frame before.
+    /// The linear map of one frame, acting on x, the velocity that forces see and the previous acceleration.
     fn frame(scheme: Scheme, omega_squared: f64, gamma: f64, dt: f64) -> Matrix3<f64> {
         let moved = |x: f64, seen: f64, before: f64| {
             let a = -omega_squared * x - gamma * seen;
@@ -262,7 +263,7 @@ mod tests {
         Matrix3::from_columns(&columns)
     }
 
-    /// The spectral radius of one frame, as the growth of 2⁴⁰ frames.
+    /// The spectral radius of the map of one frame, from the growth over 2⁴⁰ frames.
     fn growth(mut frames: Matrix3<f64>) -> f64 {
         let (mut logarithm, mut count) = (0.0, 1.0);
         for _ in 0..40 {

@@ -1,4 +1,4 @@
-//! Steps 1–4: from the state to the accelerations, moving nobody.
+//! Steps 1–4: from the state to the accelerations, without moving agents.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -61,7 +61,7 @@ impl Simulation {
     /// Packs the positions and velocities that the sums over pairs read.
     pub(super) fn pack(&mut self) {
         if self.packed.is_empty() {
-            return; // nothing is summed
+            return; // no sums over pairs
         }
         let (agents, packed) = (&self.agents, &mut self.packed);
         self.stages.time(Stage::Packing, || {
@@ -101,11 +101,11 @@ impl Simulation {
         });
     }
 
-    /// Step 1B, `dt` seconds after the moving average was last kept.
+    /// Step 1B, `dt` seconds after the moving average was last stored.
     pub(super) fn update_density_and_pressure(&mut self, dt: f64) {
         let due = self.density_is_due();
         if !due && !self.fields.density.is_empty() {
-            self.agents.newcomer.fill(true); // when asked for again, ρ̂ starts anew
+            self.agents.newcomer.fill(true); // ρ̂ restarts when the density is requested again
         }
         self.fields.resize(self.agents.len(), due);
         if !due {
@@ -170,7 +170,7 @@ impl Simulation {
         self.stages = stages;
     }
 
-    /// Step 3, the coarse part: RVO where it acts and no earlier choice is held.
+    /// Step 3, RVO: chooses new accelerations in coarse frames, and in any frame for agents that hold none.
     pub(super) fn update_rvo(&mut self) {
         if !self.needs.rvo {
             return;
@@ -206,7 +206,7 @@ impl Simulation {
         let mut stages = std::mem::take(&mut self.stages);
         let mut acceleration = std::mem::take(&mut fields.acceleration);
         let task = if self.needs.avoidance.is_some() {
-            1 // looking 5 m around is work enough
+            1 // searching the avoidance radius is enough work for a task
         } else {
             TASK
         };
@@ -234,7 +234,7 @@ impl Simulation {
         self.stages = stages;
     }
 
-    /// How different velocities are nearby, where some social force has a tolerance.
+    /// Updates the velocity ranges; leaves them empty if no social force has a tolerance.
     fn update_velocity_ranges(&self, ranges: &mut Vec<[Vector; 2]>) {
         ranges.clear();
         let tolerant = |social: &SocialForce| social.avoidance_tolerance > 0.0;
@@ -245,7 +245,7 @@ impl Simulation {
         }
     }
 
-    /// The accelerations of the agents of block `b`.
+    /// Computes the accelerations of the agents of block `b`.
     fn accelerate(&self, frame: &Frame, b: usize, acceleration: &mut [Vector]) {
         let from = b * BLOCK;
         let to = from + acceleration.len();
@@ -281,7 +281,7 @@ impl Simulation {
         vectors.into_iter().all(are_finite) && numbers_are_finite(density)
     }
 
-    /// The blend of `agents` if all have the same.
+    /// The blend of `agents`, if all are in the same group.
     fn same_group(&self, agents: Range<usize>) -> Option<&Blend> {
         let groups = &self.agents.group[agents];
         let first = *groups.first()?;
@@ -289,7 +289,7 @@ impl Simulation {
         same.then(|| &self.scene.groups[usize::from(first)].blend)
     }
 
-    /// Cuts a block of agents where their behavior changes.
+    /// Splits a range of agents wherever group or push changes.
     #[inline]
     fn each_span(
         &self,

@@ -1,4 +1,4 @@
-//! Step 5: moving, stopping at walls, leaving at the goal.
+//! Step 5: moves agents, stops them at walls, and removes those that reach their goal.
 
 use rayon::prelude::*;
 
@@ -8,11 +8,11 @@ use crate::engine::neighbors::{BLOCK, TASK};
 use crate::engine::scene::{Integrator, Scene};
 
 impl Simulation {
-    /// Step 5: moves everybody by one frame and removes who has arrived.
+    /// Step 5: moves all agents by one frame and removes those that have reached their goal.
     ///
     /// # Errors
-    /// A position, velocity, density or acceleration is not finite: which, of whom, in which frame. Nobody has
-    /// been moved then.
+    /// A position, velocity, density or acceleration is not finite; the fault tells which, of which agent and in
+    /// which frame. No agent has moved then.
     pub fn integrate(&mut self) -> Result<(), Fault> {
         self.evaluate()?;
         self.check()?;
@@ -48,13 +48,13 @@ impl Simulation {
         });
     }
 
-    /// The velocity of the frame was predicted with the acceleration of the frame before; what is better
-    /// known now is mended first.
+    /// The velocities of the frame were predicted with the accelerations of the previous frame. Corrects them first
+    /// with the accelerations of this frame.
     fn move_by_verlet(&mut self) {
         self.keep_mean_density();
         let dt = self.clock.time_step();
         let mut before = std::mem::take(&mut self.agents.acceleration_before);
-        before.resize(self.agents.len(), None); // for who entered since
+        before.resize(self.agents.len(), None); // for agents that entered since
         self.move_all(|i, v, a| {
             let v = v + before[i].map_or(Vector::zeros(), |before| (a - before) * (0.5 * dt));
             Motion {
@@ -90,7 +90,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// The moving average of the evaluated frame becomes that of the frame before.
+    /// Stores the moving averages of the evaluated frame for the next one.
     fn keep_mean_density(&mut self) {
         if !self.fields.density.is_empty() {
             std::mem::swap(&mut self.agents.mean_density, &mut self.fields.mean_density);
@@ -98,14 +98,14 @@ impl Simulation {
         }
     }
 
-    /// Moves everybody by a whole frame and counts what walls and the highest speed have changed.
+    /// Moves all agents by a whole frame; counts moves stopped by walls and clamped speeds.
     fn move_all(&mut self, motion: impl Fn(usize, Vector, Vector) -> Motion + Sync) {
         let moves = self.move_agents(self.clock.time_step(), motion);
         self.outcome.contained_moves += moves.contained;
         self.outcome.clamped_speeds += moves.clamped;
     }
 
-    /// Moves everybody by `dt` seconds, each as `motion` says of its index, velocity and acceleration.
+    /// Moves all agents by `dt` seconds. `motion` maps index, velocity and acceleration to the motion of an agent.
     fn move_agents(
         &mut self,
         dt: f64,
@@ -158,7 +158,7 @@ impl Simulation {
         fault.map_or(Ok(()), Err)
     }
 
-    /// The first quantity that is no number, and whose it is.
+    /// The first quantity that is not finite, and its agent.
     fn find_fault(&self) -> Option<Fault> {
         let (agents, fields) = (&self.agents, &self.fields);
         let fault = |i: usize, quantity| Fault::NotFinite {
@@ -170,7 +170,7 @@ impl Simulation {
         };
         let not_finite = |values: &[Vector]| values.iter().position(|&v| !is_finite(v));
         let density = || fields.density.iter().position(|d| !d.is_finite());
-        // Causes before effects: a position that is no number makes all forces on it so, or none.
+        // Causes before effects: a position that is not finite can make all forces on its agent not finite.
         None.or_else(|| Some((not_finite(&agents.position)?, "position")))
             .or_else(|| Some((not_finite(&agents.velocity)?, "velocity")))
             .or_else(|| Some((density()?, "density")))
@@ -187,7 +187,7 @@ impl Simulation {
                 .is_some_and(|radius| distance <= radius)
         };
         let agents = (0..self.agents.len()).into_par_iter();
-        // Hardly any frame has an arrival: nothing is allocated in the others.
+        // Most frames have no arrival: return before anything is allocated.
         if !agents.with_min_len(TASK * BLOCK).any(has_arrived) {
             return;
         }
@@ -213,16 +213,16 @@ impl Simulation {
     }
 }
 
-/// How somebody moves; both are cut to the highest speed.
+/// The motion of an agent. Both velocities are clamped to s_max.
 struct Motion {
-    /// The velocity of the move, m/s.
+    /// The velocity during the move, m/s.
     way: Vector,
     /// The velocity after it, m/s.
     velocity: Vector,
 }
 
 impl Motion {
-    /// With one velocity.
+    /// A motion with the same velocity during and after the move.
     fn along(velocity: Vector) -> Self {
         Self {
             way: velocity,
@@ -231,14 +231,14 @@ impl Motion {
     }
 }
 
-/// What happened in the moves of some agents.
+/// Statistics of moves.
 #[derive(Default)]
 struct Moves {
-    /// How many ended at a wall.
+    /// Number of moves stopped at a wall.
     contained: u64,
-    /// How many were too fast.
+    /// Number of clamped speeds.
     clamped: u64,
-    /// The squared distance from where they were sorted, of who is farthest from there, meters².
+    /// Largest squared distance of any agent from its position at the last sort, m².
     farthest: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Where the time goes: the tasks of Fig. 11.
+//! Wall-clock time per stage of the loop: the tasks of Fig. 11.
 
 use std::time::{Duration, Instant};
 
@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 pub enum Stage {
     /// Entries and pushes, coarse.
     Schedule,
-    /// Sorting agents into cells (the paper's kd-tree), coarse.
+    /// Sorting agents into cells (the paper builds a kd-tree), when neighbor lists are rebuilt.
     Sort,
-    /// Listing near agents and walls, coarse.
+    /// Listing near agents and walls, when neighbor lists are rebuilt.
     Neighbors,
     /// Packing the positions and velocities that the sums over pairs read.
     Packing,
@@ -42,7 +42,7 @@ impl Stage {
         Self::Removal,
     ];
 
-    /// Its name in reports.
+    /// Name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Schedule => "schedule",
