@@ -251,7 +251,7 @@ impl Profile {
         terms
     }
 
-    /// Adds the factors of this profile for sums over near agents, times `weight`, for `agents` of one block of a
+    /// Adds the coefficients of this profile for sums over near agents, times `weight`, for `agents` of one block of a
     /// frozen frame.
     fn add_pair_coefficients(
         &self,

@@ -41,7 +41,7 @@ impl Integrator {
 /// Agents that share a blend and the rules for leaving.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group {
-    /// What it is called in reports.
+    /// Name in reports.
     pub name: String,
     /// The profiles of its agents.
     pub blend: Blend,
@@ -63,7 +63,7 @@ pub enum Goal {
 /// Agents that enter on a grid, once or repeatedly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Source {
-    /// What it is called in reports.
+    /// Name in reports.
     pub name: String,
     /// Where agents enter.
     pub grid: Grid,
@@ -83,7 +83,7 @@ pub struct Source {
 /// part in two pushes follows the later one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Push {
-    /// What it is called in reports.
+    /// Name in reports.
     pub name: String,
     /// When it begins, seconds.
     pub at: f64,

@@ -111,7 +111,7 @@ const EDGES_AT_A_CORNER: f64 = 2.0;
 pub struct Mode {
     /// c/h of the pressure, 1/s.
     pub pressure: f64,
-    /// K/m of contact between people, 1/s².
+    /// K/m of contact between agents, 1/s².
     pub contact: f64,
     /// Stiffness over mass of a wall and of social forces, 1/s².
     pub other_springs: f64,
@@ -208,7 +208,7 @@ pub fn time_step(scene: &Scene) -> Option<f64> {
 /// `value`, rounded down to three significant digits.
 fn three_digits(value: f64) -> f64 {
     let digit = 10_f64.powf(value.log10().floor() - 2.0);
-    // Formatting and parsing gives the number nearest to three decimal digits, without rounding errors.
+    // Formatting to three digits and parsing removes the rounding error of the division.
     let rounded = (value / digit + 1e-9).floor() * digit;
     format!("{rounded:.2e}").parse().unwrap_or(rounded)
 }

@@ -18,7 +18,7 @@ pub struct Contact {
     pub wall_stiffness: Option<f64>,
 }
 
-/// Adds the factor of the sum in Eq. 22, `stiffness` divided by the mass, for each of `agents`.
+/// Adds the coefficient of the sum in Eq. 22, `stiffness` divided by the mass, for each of `agents`.
 pub fn add_coefficients(
     frame: &Frame,
     agents: Range<usize>,

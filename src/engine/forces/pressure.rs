@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 
-/// Adds the factor of the sum over agents in Eq. 11, times `weight`, for each of `agents`: 1/ρ_i, or zero below
+/// Adds the coefficient of the sum over agents in Eq. 11, times `weight`, for each of `agents`: 1/ρ_i, or zero below
 /// its rest density, where an agent feels no pressure (§5.2). Negative pressures of neighbors stay in the sum.
 pub fn add_coefficients(
     frame: &Frame,

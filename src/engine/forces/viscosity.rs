@@ -12,7 +12,7 @@ pub struct Viscosity {
 }
 
 impl Viscosity {
-    /// Adds the factor μ/ρ_i of the sum in Eq. 7, times `weight`, for each of `agents`.
+    /// Adds the coefficient μ/ρ_i of the sum in Eq. 7, times `weight`, for each of `agents`.
     pub fn add_coefficients(
         &self,
         frame: &Frame,

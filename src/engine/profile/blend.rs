@@ -145,7 +145,7 @@ impl Blend {
             .any(|(profile, _)| rvo_of(profile).is_some())
     }
 
-    /// Adds the weighted factors of all profiles for sums over near agents, for `agents` of one block of a frozen
+    /// Adds the weighted coefficients of all profiles for sums over near agents, for `agents` of one block of a frozen
     /// frame, all with this blend.
     pub fn add_pair_coefficients(
         &self,
@@ -159,7 +159,7 @@ impl Blend {
         });
     }
 
-    /// Adds the factors of a social force, its weight divided by the mass, for `agents` of one block of a frozen
+    /// Adds the coefficients of a social force, its weight divided by the mass, for `agents` of one block of a frozen
     /// frame, all with this blend.
     pub fn add_social_coefficients(
         &self,
