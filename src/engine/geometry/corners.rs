@@ -1,21 +1,22 @@
-//! Numbers for points, the same number for points that are nearer than a tolerance.
+//! Numbers for points: points closer together than a tolerance get the same number.
 
 use std::collections::HashMap;
 
 use crate::engine::math::Vector;
 
-/// Different points, each in the cell of a grid of one tolerance; cells are looked up, never listed.
+/// Distinct points, hashed by the cells of a grid whose cell size is the tolerance. Cells are only looked up,
+/// never iterated, so that the result does not depend on hash order.
 pub(super) struct Corners {
     tolerance: f64,
     points: Vec<Vector>,
-    /// The last point of each cell.
+    /// The point added last to each cell.
     cells: HashMap<[i64; 2], u32>,
-    /// The one before in its cell.
+    /// For each point, the point added before it to the same cell.
     previous: Vec<Option<u32>>,
 }
 
 impl Corners {
-    /// No points yet; `tolerance` in metres.
+    /// No points yet; `tolerance` in meters.
     pub fn new(tolerance: f64) -> Self {
         Self {
             tolerance,
@@ -25,17 +26,17 @@ impl Corners {
         }
     }
 
-    /// Where point `k` is.
+    /// The position of point `k`, meters.
     pub fn at(&self, k: u32) -> Vector {
         self.points[k as usize]
     }
 
-    /// How many points there are.
+    /// The number of points.
     pub fn len(&self) -> usize {
         self.points.len()
     }
 
-    /// The number of the nearest point within the tolerance of `p`, else a new number for `p`.
+    /// The number of the nearest point within the tolerance of `p`; if there is none, adds `p` under a new number.
     pub fn number(&mut self, p: Vector) -> u32 {
         let cell = [p.x, p.y].map(|x| (x / self.tolerance).floor() as i64);
         let mut nearest: Option<(f64, u32)> = None;

@@ -3,36 +3,37 @@
 use super::Wall;
 use crate::engine::math::{Vector, perpendicular};
 
-/// Angles that have been through a full turn and back agree to this, radians; within it a part ends
-/// where the whole region ends, whose ends are known exactly (tan is steep close to a wall).
+/// Rounding error of an angle after a full turn and back, radians. A part that ends within this of the whole
+/// region's end takes that end, which is known exactly (tan is steep close to a wall).
 const ANGLE_ROUNDING: f64 = 1e-12;
 
-/// Who stands on a wall is taken to be so far before it, metres: at 0 all directions lead to one point of it,
-/// so that nothing tells its parts apart, and at −0 they are turned round.
+/// Smallest distance between an agent and a wall, meters; smaller distances are clamped to it. At 0 all
+/// directions meet the wall at one point, so its parts cannot be told apart; at −0 the directions are reversed.
 const LEAST_DISTANCE: f64 = 1e-9;
 
-/// The points of the disc of radius h round an agent that one wall, or a part of it, hides.
+/// The part of the disc of radius h around an agent that one wall, or a part of it, hides.
 ///
-/// In the agent's frame the wall is the line at `distance` along `towards`; the region lies behind
-/// its stretch `from..to`, measured along `along` from the foot of the perpendicular.
+/// In the agent's frame the wall lies on the line at `distance` along `towards`. The region lies behind the
+/// stretch `from..to` of this line, measured along `along` from the foot of the perpendicular.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HiddenRegion {
-    /// Unit normal from the agent towards the wall.
+    /// Unit normal from the agent toward the wall.
     pub towards: Vector,
-    /// Unit vector along the wall, `towards` turned counter-clockwise.
+    /// Unit vector along the wall: `towards` turned counterclockwise by a right angle.
     pub along: Vector,
     /// Distance d from the agent to the wall's line, 0 < d < h.
     pub distance: f64,
-    /// Where the stretch begins, metres along `along`.
+    /// Start of the stretch, meters along `along`.
     pub from: f64,
-    /// Where the stretch ends, metres, `from` < `to`.
+    /// End of the stretch, meters along `along`; `from` < `to`.
     pub to: f64,
-    /// Support radius h of the kernel, metres.
+    /// Support radius h of the kernel, meters.
     pub support_radius: f64,
 }
 
 impl HiddenRegion {
-    /// What `wall` hides from an agent at `r_i`: `None` behind the wall or out of reach.
+    /// The region that `wall` hides from an agent at `r_i`; `None` if the agent is behind the wall or out of
+    /// reach.
     pub fn behind(wall: &Wall, r_i: Vector, support_radius: f64) -> Option<Self> {
         let distance = wall.signed_distance(r_i);
         if !(0.0..support_radius).contains(&distance) {
@@ -55,13 +56,13 @@ impl HiddenRegion {
         (from < to && region.angle() > 0.0).then_some(region)
     }
 
-    /// The angles [t1, t2] of the stretch, from `towards`, counter-clockwise, radians.
+    /// The angles [t1, t2] of the stretch, counterclockwise from `towards`, radians.
     pub fn angles(&self) -> [f64; 2] {
         [self.from, self.to].map(|s| s.atan2(self.distance))
     }
 
-    /// r_k* − r_i, metres. Not the difference of two points, whose rounding would decide where it
-    /// points when the agent stands on the wall.
+    /// r_k* − r_i, meters. Not computed as the difference of two points: when the agent stands on the wall,
+    /// rounding would decide its direction.
     pub fn to_nearest(&self) -> Vector {
         self.towards * self.distance + self.along * 0.0_f64.clamp(self.from, self.to)
     }
@@ -84,13 +85,13 @@ impl HiddenRegion {
         part
     }
 
-    /// a(P_k) = ½ [h²(t2 − t1) − d²(tan t2 − tan t1)] in m²: sector less triangle.
+    /// a(P_k) = ½ [h²(t2 − t1) − d²(tan t2 − tan t1)] in m²: sector minus triangle.
     pub fn area(&self) -> f64 {
         let h = self.support_radius;
         0.5 * (h * h * self.angle() - self.distance * (self.to - self.from))
     }
 
-    /// The region's outline round an agent at `r_i`: along the wall, then back along the arc.
+    /// The region's outline, closed, for an agent at `r_i`: along the wall, then back along the arc.
     pub fn outline(&self, r_i: Vector, arc_steps: usize) -> Vec<Vector> {
         let [t1, t2] = self.angles();
         let wall = [self.from, self.to].map(|s| self.towards * self.distance + self.along * s);

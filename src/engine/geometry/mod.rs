@@ -1,8 +1,9 @@
-//! Obstacles and what can be asked about them. The only place that names parry2d.
+//! Obstacles and geometric queries on them. The only module that names parry2d.
 //!
-//! An obstacle is a [`Polygon`]: a body, solid inside but for its holes, or everything round the [`Area`]s
-//! that people walk in. Each boundary edge is a [`Wall`] with a free side. [`Walls`] holds them all in parry's bounding volume hierarchy; a [`HiddenRegion`] is the
-//! part of an agent's kernel behind one wall (P_k in §4.3), in closed form.
+//! An obstacle is a [`Polygon`]: a solid body, possibly with holes, or everything outside the [`Area`]s that
+//! people walk in. Each boundary edge is a [`Wall`] with one free side. [`Walls`] holds all walls in parry's
+//! bounding volume hierarchy. A [`HiddenRegion`] is the part of an agent's kernel behind one wall (P_k in
+//! §4.3), in closed form.
 
 mod assemble;
 mod corners;
@@ -25,12 +26,12 @@ pub use walls::Walls;
 
 use crate::engine::math::Vector;
 
-/// The project's vector as parry's.
+/// Converts a vector to parry's type.
 fn to_parry(v: Vector) -> parry2d::math::Vector {
     parry2d::math::Vector::new(v.x, v.y)
 }
 
-/// Parry's vector as the project's.
+/// Converts a vector from parry's type.
 fn from_parry(v: parry2d::math::Vector) -> Vector {
     Vector::new(v.x, v.y)
 }

@@ -1,4 +1,4 @@
-//! Solid bodies with straight sides: what people cannot walk through.
+//! Obstacles: solid bodies with straight sides.
 
 use parry2d::bounding_volume::Aabb;
 use parry2d::partitioning::{Bvh, BvhBuildStrategy};
@@ -8,57 +8,57 @@ use super::ring_index::{AreaIndex, RingIndex};
 use super::to_parry;
 use crate::engine::math::Vector;
 
-/// Edges of different rings may cross by so much, metres, or by so much of the whole extent: floor plans have
-/// corners that touch an edge but for their rounding.
+/// Edges of different rings may cross by this many meters, or by this fraction of the whole extent, whichever
+/// is larger: in floor plans rounding moves corners across the edges that they touch.
 const TOUCHING: f64 = 1e-6;
 const TOUCHING_PART: f64 = 1e-8;
 
-/// Why points or rings are not an obstacle.
+/// Why points or rings do not form an obstacle.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PolygonError {
-    /// That many points.
+    /// Fewer than three points: the number given.
     #[error("a polygon needs at least 3 points, this one has {0}")]
     TooFewPoints(usize),
-    /// The index of the point.
+    /// The index of the non-finite point.
     #[error("point {0} is not finite")]
     NotFinite(usize),
-    /// The indices of both points.
+    /// The indices of the equal points.
     #[error("points {0} and {1} are the same; remove one")]
     RepeatedPoint(usize, usize),
-    /// All points on one line.
+    /// All points lie on one line.
     #[error("the polygon encloses no area; its points lie on one line")]
     NoArea,
-    /// The indices of the points where the two edges begin.
+    /// The indices of the first points of the two edges that meet.
     #[error(
         "the polygon crosses or touches itself: the edge from point {0} meets the edge from point {1}; \
          move a point, or make two obstacles of it"
     )]
     SelfIntersection(usize, usize),
-    /// The first points of the two edges, metres.
+    /// The first points of the two edges that cross, meters.
     #[error(
         "two rings cross: the edge from ({}, {}) and the edge from ({}, {})", .0.x, .0.y, .1.x, .1.y
     )]
     Crossing(Vector, Vector),
-    /// The hole's first point, metres.
+    /// The hole's first point, meters.
     #[error(
         "the hole that begins at ({}, {}) does not lie in its outline, or lies in another hole", .0.x, .0.y
     )]
     StrayHole(Vector),
-    /// The first point of one of them, metres.
+    /// The first point of one of the overlapping areas, meters.
     #[error("the area that begins at ({}, {}) overlaps another; unite them", .0.x, .0.y)]
     Overlap(Vector),
-    /// Nobody could be anywhere.
+    /// No areas to walk in.
     #[error("there is no area to walk in")]
     NoFloor,
 }
 
-/// A part of the plane: inside of its outline and outside of its holes, which lie in the outline and may
-/// touch it and each other.
+/// A part of the plane, inside its outline and outside its holes. The holes lie in the outline and may touch it
+/// and each other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Area {
     /// The outline.
     pub exterior: Ring,
-    /// What is cut out of it.
+    /// The holes cut out of it.
     pub holes: Vec<Ring>,
 }
 
@@ -68,30 +68,30 @@ impl Area {
         std::iter::once(&self.exterior).chain(&self.holes)
     }
 
-    /// In m².
+    /// The area in m², without the holes.
     pub fn area(&self) -> f64 {
         self.exterior.area() - self.holes.iter().map(Ring::area).sum::<f64>()
     }
 
-    /// Does `p` lie in it? Undecided within rounding of the boundary.
+    /// Whether `p` lies in the area. Within rounding of the boundary either answer is possible.
     pub fn contains(&self, p: Vector) -> bool {
         self.exterior.contains(p) && !self.holes.iter().any(|hole| hole.contains(p))
     }
 }
 
-/// An obstacle: a body with straight sides, or everything round the floor that people walk on.
+/// An obstacle: a body with straight sides, or everything around the floor that people walk on.
 ///
-/// Its boundary is one or more closed rings of edges, each with the solid on its left.
+/// Its boundary is one or more closed rings. Every edge has the solid on its left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polygon {
     points: Vec<Vector>,
-    /// Where each ring ends in `points`.
+    /// The end of each ring in `points`.
     ends: Vec<usize>,
     unbounded: bool,
 }
 
 impl Polygon {
-    /// A body without holes. Checks `points` (metres, either orientation, the last not repeating the first).
+    /// A body without holes. Checks `points` (meters, either orientation; the last must not repeat the first).
     ///
     /// # Errors
     /// As [`Ring::new`].
@@ -99,10 +99,10 @@ impl Polygon {
         Ok(Self::of_rings([Ring::new(points)?.into_points()], false))
     }
 
-    /// A body with holes, in which people may be.
+    /// A body with holes; people may stand in the holes.
     ///
     /// # Errors
-    /// A hole that is not in the outline, or rings that cross.
+    /// A hole that is not in the outline or lies in another hole, or rings that cross.
     pub fn filling(area: Area) -> Result<Self, PolygonError> {
         check(std::slice::from_ref(&area))?;
         let holes = area.holes.into_iter().map(Ring::into_clockwise);
@@ -110,11 +110,12 @@ impl Polygon {
         Ok(Self::of_rings(rings, false))
     }
 
-    /// Everything outside of `areas`, without end: the walls round a floor. The areas may touch, and one
-    /// may lie in another's hole.
+    /// Everything outside `areas`, unbounded: the walls around a floor. Areas may touch, and an area may lie in
+    /// a hole of another.
     ///
     /// # Errors
-    /// No areas, areas that overlap, a hole that is not in its outline, or rings that cross.
+    /// No areas, areas that overlap, a hole that is not in its outline or lies in another hole, or rings that
+    /// cross.
     pub fn enclosing(areas: Vec<Area>) -> Result<Self, PolygonError> {
         if areas.is_empty() {
             return Err(PolygonError::NoFloor);
@@ -145,7 +146,7 @@ impl Polygon {
         &self.points
     }
 
-    /// The corners of each ring in turn, in the order in which the solid is on the left of every edge.
+    /// The corners of each ring, ordered so that the solid is on the left of every edge.
     pub fn rings(&self) -> impl Iterator<Item = &[Vector]> {
         let starts = std::iter::once(0).chain(self.ends.iter().copied());
         starts
@@ -153,12 +154,12 @@ impl Polygon {
             .map(|(start, &end)| &self.points[start..end])
     }
 
-    /// Is it solid without end, everywhere but in its rings?
+    /// Whether everything outside the rings is solid, without bound.
     pub fn is_unbounded(&self) -> bool {
         self.unbounded
     }
 
-    /// The area of the solid in m²; infinite if it is without end.
+    /// The area of the solid in m²; infinite if unbounded.
     pub fn area(&self) -> f64 {
         if self.unbounded {
             return f64::INFINITY;
@@ -174,14 +175,15 @@ impl Polygon {
         })
     }
 
-    /// Is `p` in the solid? Undecided within rounding of the boundary.
+    /// Whether `p` is in the solid. Within rounding of the boundary either answer is possible.
     pub fn contains(&self, p: Vector) -> bool {
         let inside = self.rings().filter(|ring| encloses(ring, p)).count();
         (inside % 2 == 1) != self.unbounded
     }
 }
 
-/// Do the rings bound what they should?
+/// Checks that no rings cross, that holes lie in their outlines and not in each other, and that no areas
+/// overlap.
 fn check(areas: &[Area]) -> Result<(), PolygonError> {
     let all: Vec<&Ring> = areas.iter().flat_map(Area::rings).collect();
     if all.len() == 1 {
@@ -190,7 +192,7 @@ fn check(areas: &[Area]) -> Result<(), PolygonError> {
     if let Some((a, b)) = first_crossing(&all) {
         return Err(PolygonError::Crossing(a, b));
     }
-    // Rings that do not cross are inside each other or not, wholly.
+    // Of two rings that do not cross, each lies entirely inside or entirely outside the other: one point decides.
     for area in areas {
         let holes = RingIndex::new(area.holes.iter().collect());
         let outline = RingIndex::new(vec![&area.exterior]);
@@ -205,7 +207,7 @@ fn check(areas: &[Area]) -> Result<(), PolygonError> {
     let index = AreaIndex::new(areas);
     let sizes: Vec<f64> = areas.iter().map(|area| area.exterior.area()).collect();
     for (k, area) in areas.iter().enumerate() {
-        // What lies in its outline lies in holes of it, as the other areas find.
+        // Only areas of at least this size matter here: a smaller area in this outline is checked in its own turn.
         let around = index.around(area.exterior.inner_point());
         if around.into_iter().any(|j| j != k && sizes[j] >= sizes[k]) {
             return Err(PolygonError::Overlap(area.exterior.points()[0]));
@@ -214,7 +216,7 @@ fn check(areas: &[Area]) -> Result<(), PolygonError> {
     Ok(())
 }
 
-/// The first points of two edges of different rings that cross.
+/// The first points of two crossing edges of different rings.
 fn first_crossing(rings: &[&Ring]) -> Option<(Vector, Vector)> {
     let mut edges = Vec::new();
     for (r, ring) in rings.iter().enumerate() {
@@ -239,8 +241,8 @@ fn first_crossing(rings: &[&Ring]) -> Option<(Vector, Vector)> {
     })
 }
 
-/// How far the ends of an edge lie on either side of the line through `a` and `b`, metres; negative if both
-/// lie on one.
+/// How far the edge from `c` to `d` crosses the line through `a` and `b`: the distance of the nearer end from the
+/// line, meters; negative if both ends lie on the same side.
 fn depth((a, b): (Vector, Vector), (c, d): (Vector, Vector)) -> f64 {
     let along = (b - a) / (b - a).norm();
     let [c, d] = [c, d].map(|end| along.perp(&(end - a)));

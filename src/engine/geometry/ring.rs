@@ -1,4 +1,4 @@
-//! Closed outlines: validated once, counter-clockwise from then on.
+//! Closed outlines: validated once, always counterclockwise.
 
 use parry2d::bounding_volume::Aabb;
 use parry2d::partitioning::{Bvh, BvhBuildStrategy};
@@ -7,22 +7,22 @@ use parry2d::utils::{point_in_poly2d, segments_intersection2d};
 use super::{PolygonError, to_parry};
 use crate::engine::math::{Vector, is_finite, perpendicular};
 
-/// A part of a length, near to its middle; on the middle lie corners of other rings.
+/// A fraction of a length, not ½: corners of other rings often lie exactly in the middle of an edge.
 const UNEVEN: f64 = 0.414;
 
-/// A closed outline that neither crosses nor touches itself, counter-clockwise. Its first point is the first
-/// one given.
+/// A closed counterclockwise outline that neither crosses nor touches itself. Its first point is the first point
+/// given.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ring {
     points: Vec<Vector>,
 }
 
 impl Ring {
-    /// Checks `points` (metres, either orientation, the last not repeating the first) and orients them.
+    /// Checks `points` (meters, either orientation; the last must not repeat the first) and orients them.
     ///
     /// # Errors
-    /// Fewer than three points, a non-finite or repeated point, no area but rounding, or edges that meet anywhere
-    /// but at the corner they share. Indices count from 0 in the order given.
+    /// Fewer than three points, a non-finite or repeated point, an area below rounding error, or edges that meet
+    /// anywhere but at a shared corner. Indices count from 0 in the order given.
     pub fn new(mut points: Vec<Vector>) -> Result<Self, PolygonError> {
         let count = points.len();
         if count < 3 {
@@ -31,7 +31,7 @@ impl Ring {
         if let Some(i) = points.iter().position(|&p| !is_finite(p)) {
             return Err(PolygonError::NotFinite(i));
         }
-        // Nor may an edge be so short that the square of its length is nothing: it has no direction.
+        // Also rejects edges so short that their squared length underflows: they have no direction.
         let edge = |i: usize| points[(i + 1) % count] - points[i];
         if let Some(i) = (0..count).find(|&i| edge(i).norm_squared() < f64::MIN_POSITIVE) {
             return Err(PolygonError::RepeatedPoint(i, (i + 1) % count));
@@ -41,7 +41,7 @@ impl Ring {
         }
         let area = signed_area(&points);
         let reach = points.iter().map(|p| (p - points[0]).norm_squared());
-        // What is less than rounding may have either sign.
+        // An area below rounding error may have either sign.
         if area.abs() <= f64::EPSILON * reach.fold(0.0, f64::max) {
             return Err(PolygonError::NoArea);
         }
@@ -51,23 +51,23 @@ impl Ring {
         Ok(Self { points })
     }
 
-    /// The corners, counter-clockwise.
+    /// The corners, counterclockwise.
     pub fn points(&self) -> &[Vector] {
         &self.points
     }
 
-    /// The enclosed area in m², always positive.
+    /// The enclosed area in m²; always positive.
     pub fn area(&self) -> f64 {
         signed_area(&self.points)
     }
 
-    /// Does `p` lie inside? Undecided within rounding of the boundary.
+    /// Whether `p` lies inside. Within rounding of the boundary either answer is possible.
     pub fn contains(&self, p: Vector) -> bool {
         encloses(&self.points, p)
     }
 
-    /// A point inside, between the longest edge and the edge across: rings that touch this one, or cross it by
-    /// rounding, do not reach it.
+    /// A point inside the ring, between its longest edge and the nearest edge across from it. The point is clear
+    /// of the boundary, so that rings that touch this ring, or cross it by rounding, do not reach the point.
     pub(super) fn inner_point(&self) -> Vector {
         let edge = |k: usize| (self.points[k], self.points[(k + 1) % self.points.len()]);
         let length = |k: &usize| (edge(*k).1 - edge(*k).0).norm_squared();
@@ -87,27 +87,28 @@ impl Ring {
         start + perpendicular(along) * (UNEVEN * depth)
     }
 
-    /// The corners with what is enclosed on the right.
+    /// The corners in clockwise order: the enclosed area is on the right.
     pub(super) fn into_clockwise(mut self) -> Vec<Vector> {
         self.points[1..].reverse();
         self.points
     }
 
-    /// The corners with what is enclosed on the left.
+    /// The corners in counterclockwise order: the enclosed area is on the left.
     pub(super) fn into_points(self) -> Vec<Vector> {
         self.points
     }
 }
 
-/// Does `p` lie inside the outline `points`, whichever way round it goes?
+/// Whether `p` lies inside the outline `points`, of either orientation.
 pub(super) fn encloses(points: &[Vector], p: Vector) -> bool {
     let points: Vec<_> = points.iter().map(|&p| to_parry(p)).collect();
     let p = to_parry(p);
-    // Beside an edge that rises by less than rounding parry takes points before its start for inside.
+    // Check the bounds first: for an edge that rises by less than rounding, parry takes points before the start of
+    // the edge to be inside.
     Aabb::from_points(points.iter().copied()).contains_local_point(p) && point_in_poly2d(p, &points)
 }
 
-/// The shoelace formula, relative to the first point so that far-away polygons keep their digits.
+/// The shoelace formula, relative to the first point so that polygons far from the origin keep their precision.
 pub(super) fn signed_area(points: &[Vector]) -> f64 {
     let origin = points[0];
     let twice: f64 = points[1..]
@@ -117,7 +118,7 @@ pub(super) fn signed_area(points: &[Vector]) -> f64 {
     twice / 2.0
 }
 
-/// The first two edges, by their start points, that share more than a common corner.
+/// The first two edges that share more than a common corner, by the indices of their first points.
 fn first_crossing(points: &[Vector]) -> Option<(usize, usize)> {
     let count = points.len();
     let corner = |i: usize| to_parry(points[i % count]);
