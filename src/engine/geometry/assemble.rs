@@ -1,8 +1,10 @@
-//! Areas from a boundary that touches itself: what a boolean operation leaves, on a grid of its own.
+//! Builds areas from boundaries that touch themselves, such as the results of boolean operations, whose points
+//! are rounded to a grid.
 //!
-//! Points within a tolerance become one, corners on another edge split it, and edges that run both ways
-//! vanish. What is left is walked with the area on the left, and cut at every corner that is met twice: so
-//! every ring is simple, outlines run counter-clockwise and holes clockwise, and rings touch at points only.
+//! Points within a tolerance are merged, a corner on another edge splits that edge, and pairs of opposite edges
+//! cancel. The remaining edges are walked with the area on the left, and each path is cut at every corner that
+//! it meets twice. So every ring is simple, outlines run counterclockwise and holes clockwise, and rings touch
+//! only at points.
 
 use parry2d::bounding_volume::{Aabb, BoundingVolume};
 use parry2d::partitioning::{Bvh, BvhBuildStrategy};
@@ -13,17 +15,17 @@ use super::ring_index::RingIndex;
 use super::{Area, PolygonError, Ring, to_parry};
 use crate::engine::math::Vector;
 
-/// A piece of an edge, by the numbers of its ends.
+/// A piece of an edge, by the numbers of its end points.
 #[derive(Clone, Copy)]
 struct Piece {
     from: u32,
     to: u32,
-    /// The edge that it is a piece of.
+    /// The number of the edge to which it belongs.
     edge: u32,
 }
 
-/// The areas on the left of `rings`, in the order of their outlines, with every corner that is within
-/// `tolerance` metres of one `given` exactly there.
+/// The areas on the left of `rings`, in the order of their outlines. Every corner within `tolerance` meters of a
+/// `given` point is moved to that point.
 ///
 /// # Errors
 /// Rings that cross each other by more than the tolerance, with the points of one of them.
@@ -43,7 +45,7 @@ pub fn assemble(
         let ends = points.iter().cycle().skip(1);
         let around: f64 = points.iter().zip(ends).map(|(a, b)| (b - a).norm()).sum();
         let area = signed_area(&points);
-        // What is narrower than this on the average is nothing but rounding.
+        // Rings narrower than this on average come from rounding.
         if area.abs() <= tolerance * around {
             continue;
         }
@@ -70,7 +72,7 @@ fn edges(rings: &[Vec<Vector>], corners: &mut Corners) -> Vec<Piece> {
     edges
 }
 
-/// The edges, cut at all corners that lie on them.
+/// Splits the edges at all corners that lie on them.
 fn split(edges: &[Piece], corners: &Corners, tolerance: f64) -> Vec<Piece> {
     let ends = |piece: &Piece| [corners.at(piece.from), corners.at(piece.to)];
     let bounds = edges.iter().map(|edge| {
@@ -79,7 +81,7 @@ fn split(edges: &[Piece], corners: &Corners, tolerance: f64) -> Vec<Piece> {
     });
     let index = Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds.collect::<Vec<_>>());
     let mut seen = vec![false; corners.len()];
-    // Edge, place along it, corner.
+    // Edge, position along it (0 to 1), corner.
     let mut cuts: Vec<(u32, f64, u32)> = Vec::new();
     for &Piece { from: corner, .. } in edges {
         if std::mem::replace(&mut seen[corner as usize], true) {
@@ -115,7 +117,7 @@ fn split(edges: &[Piece], corners: &Corners, tolerance: f64) -> Vec<Piece> {
     pieces
 }
 
-/// Without pairs of pieces of which one runs back where the other came.
+/// Removes pairs of pieces that run between the same corners in opposite directions.
 fn without_opposites(pieces: Vec<Piece>) -> Vec<Piece> {
     let ends = |k: &usize| {
         let Piece { from, to, .. } = pieces[*k];
@@ -135,10 +137,10 @@ fn without_opposites(pieces: Vec<Piece>) -> Vec<Piece> {
     kept.map(|(piece, _)| *piece).collect()
 }
 
-/// No place on a path.
+/// Marks a corner that is not on the path.
 const NOWHERE: usize = usize::MAX;
 
-/// Closed paths that meet no corner twice, each with the area on its left.
+/// Closed paths that visit no corner twice, each with the area on its left.
 fn loops(pieces: &[Piece], corners: &Corners) -> Vec<Vec<Vector>> {
     let leaving = Leaving::new(pieces, corners);
     let mut walked = vec![false; pieces.len()];
@@ -171,7 +173,7 @@ fn loops(pieces: &[Piece], corners: &Corners) -> Vec<Vec<Vector>> {
     found.into_iter().map(|(_, points)| points).collect()
 }
 
-/// The corners of a closed path, without those in the middle of an edge.
+/// The corners of a closed path, without those between two pieces of the same edge.
 fn outline(pieces: &[Piece], closed: &[usize], corners: &Corners) -> Vec<Vector> {
     let before = closed.iter().cycle().skip(closed.len() - 1);
     let turns = closed.iter().zip(before);
@@ -183,9 +185,9 @@ fn outline(pieces: &[Piece], closed: &[usize], corners: &Corners) -> Vec<Vector>
 struct Leaving<'a> {
     pieces: &'a [Piece],
     corners: &'a Corners,
-    /// Pieces by the corner that they begin at.
+    /// Pieces, sorted by the corner at which they begin.
     order: Vec<usize>,
-    /// Where those of each corner begin in `order`, and the end.
+    /// The first position in `order` for each corner, and the end of `order`.
     starts: Vec<usize>,
 }
 
@@ -208,7 +210,7 @@ impl<'a> Leaving<'a> {
         }
     }
 
-    /// The piece that goes on from piece `k` along the same area: the next one clockwise.
+    /// The piece that continues piece `k` along the same area: the next one clockwise.
     fn after(&self, k: usize) -> Option<usize> {
         let Piece { from, to, .. } = self.pieces[k];
         let leaving = &self.order[self.starts[to as usize]..self.starts[to as usize + 1]];
@@ -234,7 +236,7 @@ impl<'a> Leaving<'a> {
     }
 }
 
-/// Each hole in the smallest outline that contains it.
+/// Assigns each hole to the smallest outline that contains it.
 fn nested(outlines: Vec<Ring>, holes: Vec<Ring>) -> Vec<Area> {
     let sizes: Vec<f64> = outlines.iter().map(Ring::area).collect();
     let parents: Vec<Option<usize>> = {
@@ -242,7 +244,7 @@ fn nested(outlines: Vec<Ring>, holes: Vec<Ring>) -> Vec<Area> {
         let parent = |hole: &Ring| {
             let around = index.around(hole.inner_point()).into_iter();
             let size = hole.area();
-            // Smaller ones lie in the hole.
+            // Smaller outlines lie in the hole.
             let larger = around.filter(|&k| sizes[k] > size);
             larger.min_by(|&a, &b| sizes[a].total_cmp(&sizes[b]))
         };
@@ -254,7 +256,7 @@ fn nested(outlines: Vec<Ring>, holes: Vec<Ring>) -> Vec<Area> {
     };
     let mut areas: Vec<Area> = outlines.into_iter().map(area).collect();
     for (hole, parent) in holes.into_iter().zip(parents) {
-        // Around a hole in no outline everything is solid as well.
+        // A hole outside all outlines changes nothing: everything around it is solid anyway.
         if let Some(parent) = parent {
             areas[parent].holes.push(hole);
         }

@@ -1,4 +1,4 @@
-//! Which of many rings or areas contain a point.
+//! Finds which of many rings or areas contain a point.
 
 use std::cell::OnceCell;
 
@@ -11,11 +11,11 @@ use crate::engine::math::Vector;
 /// Rings with more corners than this get an index of their edges.
 const FEW: usize = 32;
 
-/// Bounding volume hierarchies over rings and over the edges of those with many corners.
+/// Bounding volume hierarchies over rings, and over the edges of rings with many corners.
 pub struct RingIndex<'a> {
     rings: Vec<&'a Ring>,
     bounds: Bvh,
-    /// By ring, built when they are first needed.
+    /// One per ring, built when first needed.
     edges: Vec<OnceCell<Bvh>>,
 }
 
@@ -31,7 +31,8 @@ impl<'a> RingIndex<'a> {
         }
     }
 
-    /// The numbers of the rings that contain `p`, in no order. Undecided within rounding of an edge.
+    /// The numbers of the rings that contain `p`, in no particular order. Within rounding of an edge either answer
+    /// is possible.
     pub fn around(&self, p: Vector) -> Vec<usize> {
         let here = Aabb::from_points([to_parry(p)]);
         let near = self.bounds.intersect_aabb(&here).map(|k| k as usize);
@@ -58,10 +59,10 @@ impl<'a> RingIndex<'a> {
     }
 }
 
-/// Which of several areas contain a point.
+/// Finds which of several areas contain a point.
 pub struct AreaIndex<'a> {
     rings: RingIndex<'a>,
-    /// The area of each ring.
+    /// The number of the area to which each ring belongs.
     owner: Vec<usize>,
 }
 
@@ -75,12 +76,13 @@ impl<'a> AreaIndex<'a> {
         }
     }
 
-    /// The numbers of the areas that contain `p`, rising. Undecided within rounding of an edge.
+    /// The numbers of the areas that contain `p`, in ascending order. Within rounding of an edge either answer is
+    /// possible.
     pub fn around(&self, p: Vector) -> Vec<usize> {
         let rings = self.rings.around(p);
         let mut areas: Vec<usize> = rings.into_iter().map(|ring| self.owner[ring]).collect();
         areas.sort_unstable();
-        // What lies in an outline and in a hole of it is in two rings.
+        // A point in an outline and in one of its holes is in two rings of the area, and not in the area.
         let once = areas
             .chunk_by(|a, b| a == b)
             .filter(|rings| rings.len() == 1);
@@ -88,7 +90,7 @@ impl<'a> AreaIndex<'a> {
     }
 }
 
-/// Does the edge cross the ray from `p` towards positive x?
+/// Whether the edge crosses the ray from `p` in the direction of positive x.
 fn crosses((a, b): (Vector, Vector), p: Vector) -> bool {
     (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * ((p.y - a.y) / (b.y - a.y))
 }

@@ -1,12 +1,12 @@
-//! Several walls seen from one point: which of them hides what (the union of shadows).
+//! The union of the shadows of several walls, divided among the walls.
 
 use std::f64::consts::TAU;
 
 use super::HiddenRegion;
 
-/// Cuts `regions`, all seen by one agent, to what is hidden by the nearest wall alone: over the
-/// angles, the lower envelope. Returns (index into `regions`, part) by angle; a wall may appear in
-/// several parts. Walls at equal distance: the first counts.
+/// Cuts the `regions` of one agent to the parts that do not overlap: in each direction only the nearest wall
+/// counts (the lower envelope over the angles). Returns (index into `regions`, part), sorted by angle; a wall may
+/// have several parts. Of walls at equal distance the first counts.
 pub fn visible_parts(regions: &[HiddenRegion]) -> Vec<(usize, HiddenRegion)> {
     if let [region] = regions {
         return vec![(0, *region)];
@@ -45,31 +45,31 @@ pub fn visible_parts(regions: &[HiddenRegion]) -> Vec<(usize, HiddenRegion)> {
     parts
 }
 
-/// The direction of the region's perpendicular, radians in the plane.
+/// The direction of the region's perpendicular as an angle in the plane, radians.
 fn bearing(region: &HiddenRegion) -> f64 {
     region.towards.y.atan2(region.towards.x)
 }
 
-/// Both ends of the region's span, as angles in the plane in [0, 2π).
+/// Both ends of the region, as angles in the plane in [0, 2π).
 fn edges_of(region: &HiddenRegion) -> [f64; 2] {
     region
         .angles()
         .map(|t| (bearing(region) + t).rem_euclid(TAU))
 }
 
-/// An angle in the plane as an angle from the region's perpendicular, in [−π, π).
+/// Converts an angle in the plane to an angle from the region's perpendicular, in [−π, π).
 fn local(region: &HiddenRegion, angle: f64) -> f64 {
     (angle - bearing(region) + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0
 }
 
-/// How far the wall is along a ray at `angle`; `None` where the ray misses it.
+/// Distance to the wall along a ray at `angle`, meters; `None` if the ray misses it.
 fn ray_distance(region: &HiddenRegion, angle: f64) -> Option<f64> {
     let t = local(region, angle);
     let [t1, t2] = region.angles();
     (t1 <= t && t <= t2).then(|| region.distance / t.cos())
 }
 
-/// The angle at which two walls cross each other, where overlapping obstacles make them.
+/// The angle at which two walls cross each other, as walls of overlapping obstacles do.
 fn crossing(first: &HiddenRegion, second: &HiddenRegion) -> Option<f64> {
     let turn = first.towards.perp(&second.towards);
     if turn == 0.0 {

@@ -6,44 +6,44 @@ use parry2d::shape::{Segment, SegmentPointLocation};
 use super::{from_parry, to_parry};
 use crate::engine::math::{Vector, perpendicular};
 
-/// How far beyond its ends a wall still stops a move, metres: above the rounding of coordinates up to
-/// 10⁶ m, so that nobody slips between two walls at their corner.
+/// How far beyond its ends a wall still stops a move, meters: more than the rounding of coordinates up to
+/// 10⁶ m, so that no agent slips between two walls at their corner.
 const END_ROUNDING: f64 = 1e-9;
 
-/// A directed edge with the obstacle's inside on its left; the free side is on its right.
+/// A directed edge with the obstacle on its left and the free side on its right.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wall {
-    /// First end, metres.
+    /// First end point, meters.
     pub start: Vector,
-    /// Second end, metres.
+    /// Second end point, meters.
     pub end: Vector,
     /// Unit vector from `start` to `end`.
     pub tangent: Vector,
-    /// Unit normal, out of the obstacle, towards the free side.
+    /// Unit normal, pointing out of the obstacle to the free side.
     pub normal: Vector,
-    /// The obstacle that this edge bounds, in the order of the scene.
+    /// The index, in the order of the scene, of the obstacle that this edge bounds.
     pub obstacle: u32,
-    /// The wall of the same ring that ends where this one starts.
+    /// The index of the wall of the same ring that ends where this wall starts.
     pub previous: u32,
 }
 
-/// Where on a wall its nearest point lies.
+/// The part of a wall on which its nearest point lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WallPart {
-    /// Its first end.
+    /// The first end.
     Start,
     /// Between the ends.
     Interior,
-    /// Its second end.
+    /// The second end.
     End,
 }
 
-/// The point of a wall that is nearest to some other point (r_k* in the paper).
+/// The point of a wall nearest to a given point (r_k* in the paper).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearestPoint {
-    /// The point, metres.
+    /// The point, meters.
     pub point: Vector,
-    /// Where on the wall it lies.
+    /// The part of the wall on which it lies.
     pub part: WallPart,
 }
 
@@ -61,22 +61,22 @@ impl Wall {
         }
     }
 
-    /// Length in metres.
+    /// Length in meters.
     pub fn length(&self) -> f64 {
         (self.end - self.start).norm()
     }
 
-    /// Is there wall so many metres `along` it, but for rounding?
+    /// Whether the position `along` the wall's line, meters from `start`, lies on the wall, within rounding.
     fn reaches(&self, along: f64) -> bool {
         (-END_ROUNDING..=self.length() + END_ROUNDING).contains(&along)
     }
 
-    /// Distance of `p` from the wall's line in metres, negative behind it.
+    /// Distance of `p` from the wall's line in meters; negative behind the wall.
     pub fn signed_distance(&self, p: Vector) -> f64 {
         (p - self.start).dot(&self.normal)
     }
 
-    /// Does `p` stand on the free side (or on the wall's line)?
+    /// Whether `p` is on the free side or on the wall's line.
     pub fn faces(&self, p: Vector) -> bool {
         self.signed_distance(p) >= 0.0
     }
@@ -96,8 +96,9 @@ impl Wall {
         }
     }
 
-    /// The point `clearance` metres before both this wall and another at the place where they cross or meet;
-    /// `None` where they do not, and before the tip of a spike, which is farther from both.
+    /// The point `clearance` meters in front of the lines of both this wall and another, where they cross or meet.
+    /// `None` if they do not meet, and at the tip of a spike, where that point is more than twice as far from the
+    /// walls themselves.
     pub fn corner_with(&self, other: &Self, clearance: f64) -> Option<Vector> {
         let sine = self.tangent.perp(&other.tangent);
         let along = (other.start - self.start).perp(&other.tangent) / sine;
@@ -109,13 +110,13 @@ impl Wall {
         let corner = point + out;
         let is_before = |wall: &Self| {
             let gap = (wall.nearest_point(corner).point - corner).norm();
-            gap <= 2.0 * clearance // of rounding, too
+            gap <= 2.0 * clearance // leaves room for rounding
         };
         (crosses && is_before(self) && is_before(other)).then_some(corner)
     }
 
-    /// The fraction of the way from `from` (on the free side) to `to` at which this wall is crossed
-    /// inwards, its ends included; `None` for a move that stays free.
+    /// The fraction of the move from `from` (on the free side) to `to` at which it crosses this wall inward, ends
+    /// included; `None` if it does not.
     pub fn crossing(&self, from: Vector, to: Vector) -> Option<f64> {
         let before = self.signed_distance(from);
         let after = self.signed_distance(to);

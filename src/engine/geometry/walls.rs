@@ -1,4 +1,4 @@
-//! All obstacles of a scene and the spatial index of their walls.
+//! All obstacles of a scene, with a spatial index of their walls.
 
 use parry2d::bounding_volume::{Aabb, BoundingVolume};
 use parry2d::partitioning::{Bvh, BvhBuildStrategy};
@@ -6,11 +6,11 @@ use parry2d::partitioning::{Bvh, BvhBuildStrategy};
 use super::{Polygon, Wall, to_parry};
 use crate::engine::math::Vector;
 
-/// How far before a wall a stopped agent is left, metres: far above the rounding of coordinates up
-/// to 10⁶ m, far below anything that matters to a person.
+/// Distance in front of a wall at which a move stops, meters: far above the rounding of coordinates up to
+/// 10⁶ m, far below anything that matters to a person.
 const CLEARANCE: f64 = 1e-6;
 
-/// The first circle in which a way out of an obstacle is looked for, metres.
+/// Radius of the first circle in which a way out of an obstacle is searched, meters.
 const FIRST_REACH: f64 = 1.0;
 
 /// Obstacles, their walls in order, and parry's bounding volume hierarchies over both.
@@ -19,13 +19,13 @@ pub struct Walls {
     obstacles: Vec<Polygon>,
     walls: Vec<Wall>,
     obstacle_index: Bvh,
-    /// Obstacles without end, which are everywhere but in their bounds.
+    /// Indices of the unbounded obstacles, which are solid outside their bounding boxes, too.
     unbounded: Vec<usize>,
     index: Bvh,
 }
 
 impl Walls {
-    /// Numbers the edges in the order of the obstacles and of their points.
+    /// Numbers the edges of all obstacles in order, starting at 0.
     pub fn new(obstacles: Vec<Polygon>) -> Self {
         let mut walls = Vec::new();
         for (obstacle, polygon) in obstacles.iter().enumerate() {
@@ -54,7 +54,7 @@ impl Walls {
         }
     }
 
-    /// Are there no walls at all?
+    /// Whether there are no walls.
     pub fn is_empty(&self) -> bool {
         self.walls.is_empty()
     }
@@ -79,7 +79,7 @@ impl Walls {
         &self.obstacles
     }
 
-    /// Appends the walls with a point less than `radius` metres from `p`, in rising order.
+    /// Appends the walls with a point less than `radius` meters from `p`, in ascending order.
     pub fn near(&self, p: Vector, radius: f64, found: &mut Vec<u32>) {
         let first = found.len();
         let half = Vector::new(radius, radius);
@@ -91,8 +91,8 @@ impl Walls {
         found[first..].sort_unstable();
     }
 
-    /// The walls that may have a point less than `radius` metres from some of `points`, in rising order;
-    /// some have not.
+    /// All walls with a point less than `radius` meters from any of `points`, and possibly others, in ascending
+    /// order.
     pub fn near_any(&self, points: &[Vector], radius: f64) -> Vec<u32> {
         let points = points.iter().map(|&p| to_parry(p));
         let reach = Aabb::from_points(points).loosened(radius);
@@ -101,8 +101,8 @@ impl Walls {
         found
     }
 
-    /// The fraction of the move `from` → `to` at which it first meets one of `candidates` from its
-    /// free side; `None` where the way is free.
+    /// The fraction of the move `from` → `to` at which it first crosses one of the walls `candidates` from the
+    /// wall's free side, and that wall; `None` if the way is free.
     pub fn first_crossing(
         &self,
         from: Vector,
@@ -115,18 +115,18 @@ impl Walls {
             .min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// Where a move from `from` to `to` ends if the walls `candidates` stop it: on the way, a hair
-    /// before the first wall, which is returned with the point; `None` where the way is free.
+    /// The point at which the walls `candidates` stop a move from `from` to `to`, just in front of the first wall,
+    /// and that wall; `None` if the way is free.
     pub fn stop(&self, from: Vector, to: Vector, candidates: &[u32]) -> Option<(Vector, u32)> {
         let (_, k) = self.first_crossing(from, to, candidates)?;
         let [before, after] = [from, to].map(|p| self.wall(k).signed_distance(p));
-        // Who is nearer than a hair stays: rounding must never put anybody behind.
+        // An agent already closer than the clearance does not move: rounding must never put it behind the wall.
         let free = (before - CLEARANCE).max(0.0) / (before - after);
         Some((from + (to - from) * free, k))
     }
 
-    /// The nearest point to `p`, a hair outside of walls, that lies in no obstacle: on a wall, or where two
-    /// walls meet, at a corner of a room or where obstacles overlap.
+    /// The point nearest to `p`, just in front of a wall, that lies in no obstacle. Candidates are the walls' points
+    /// nearest to `p` and the points where two walls meet: corners of rooms and of overlapping obstacles.
     pub fn free_point_near(&self, p: Vector) -> Option<Vector> {
         let foot = self.free_foot(p);
         let reach = foot.map_or(f64::INFINITY, |(distance, _)| distance);
@@ -137,7 +137,8 @@ impl Walls {
             .map(|(_, exit)| exit)
     }
 
-    /// The nearest free one of all walls' points nearest to `p`, looked for in wider and wider circles.
+    /// Of all walls' points nearest to `p`, the nearest that is free, after its distance. Searches in growing
+    /// circles.
     fn free_foot(&self, p: Vector) -> Option<(f64, Vector)> {
         let mut reach = FIRST_REACH;
         let mut found = Vec::new();
@@ -150,7 +151,7 @@ impl Walls {
             });
             let foot = self.nearest_free(p, feet.collect());
             let complete = found.len() == self.walls.len() || reach == f64::INFINITY;
-            // A wall out of reach may have its foot that much nearer.
+            // Points lie `CLEARANCE` in front of their walls, so a wall out of reach may have one that much nearer.
             if complete || foot.is_some_and(|(distance, _)| distance < reach - CLEARANCE) {
                 return foot;
             }
@@ -158,7 +159,7 @@ impl Walls {
         }
     }
 
-    /// Where walls meet, of those with a point less than `reach` metres from `p`.
+    /// The points just in front of two walls, where they meet; both have a point less than `reach` meters from `p`.
     fn corners_near(&self, p: Vector, reach: f64) -> Vec<Vector> {
         let mut near = Vec::new();
         self.near(p, reach, &mut near);
@@ -177,7 +178,7 @@ impl Walls {
         corners
     }
 
-    /// The one of `exits` nearest to `p` that lies in no obstacle, after its distance in metres.
+    /// Of the `exits` outside all obstacles, the nearest to `p`, after its distance in meters.
     fn nearest_free(&self, p: Vector, exits: Vec<Vector>) -> Option<(f64, Vector)> {
         let distance = |exit: Vector| ((exit - p).norm(), exit);
         let mut exits: Vec<(f64, Vector)> = exits.into_iter().map(distance).collect();
@@ -187,7 +188,7 @@ impl Walls {
             .find(|&(_, exit)| self.obstacle_at(exit).is_none())
     }
 
-    /// The first obstacle that contains `p`.
+    /// The index of the first obstacle that contains `p`.
     pub fn obstacle_at(&self, p: Vector) -> Option<usize> {
         let here = Aabb::from_points([to_parry(p)]);
         let near = self.obstacle_index.intersect_aabb(&here);
@@ -257,8 +258,8 @@ mod tests {
 
     #[test]
     fn no_move_slips_between_two_walls_at_their_corner() {
-        // A solid corner and an inner corner, turned and moved; all moves aim at the corner itself,
-        // where rounding can place the crossing beyond the ends of both walls.
+        // A convex and a reentrant corner, rotated and translated. All moves aim at the corner itself, where
+        // rounding can place the crossing beyond the ends of both walls.
         let solid = vec![[-1.0, -1.0], [0.0, -1.0], [0.0, 0.0], [-1.0, 0.0]];
         let (long, short) = ([5.0, -1.0], [-1.0, 5.0]);
         let inner = vec![
@@ -310,8 +311,8 @@ mod tests {
 
     #[test]
     fn where_obstacles_overlap_the_nearest_free_point_may_be_a_corner_between_two() {
-        // A cross of two bars: every wall's nearest point to the middle lies in the other bar, but for
-        // the far ends. People were put out there, 10 m away, with a free corner at 1.41 m.
+        // A cross of two bars: on all walls but the far ends, the point nearest to the middle lies in the other
+        // bar. Agents used to be moved to a far end, 10 m away, although a free corner is 1.41 m away.
         let cross = Walls::new(vec![
             rectangle([-10.0, 10.0], [-1.0, 1.0]),
             rectangle([-1.0, 1.0], [-10.0, 10.0]),
