@@ -1,4 +1,4 @@
-//! Who is near whom, for a few agents at a time that stand together, in space and in memory.
+//! Neighbor lists shared by clusters of a few agents that are close together, in space and in memory.
 
 use std::ops::Range;
 
@@ -7,25 +7,25 @@ use rayon::prelude::*;
 use super::Grid;
 use crate::engine::math::Vector;
 
-/// Agents that are worked on in one go, and whose lists share memory.
+/// The number of agents that are processed together, and whose lists share memory.
 pub const BLOCK: usize = 128;
 
-/// Blocks that are worth another thread.
+/// The fewest blocks per parallel task.
 pub const TASK: usize = 8;
 
 /// The most agents in a cluster.
 pub const CLUSTER: usize = 8;
 
-/// The widest cluster, in radii of the lists: in a sparse crowd clusters have fewer agents.
+/// The greatest width of a cluster, in units of the lists' reach: in a sparse crowd clusters have fewer agents.
 const WIDEST: f64 = 2.0;
 
-/// Everybody in clusters of at most [`CLUSTER`] agents, in blocks of [`BLOCK`] agents.
+/// All agents in clusters of at most [`CLUSTER`] agents, in blocks of [`BLOCK`] agents.
 #[derive(Debug, Clone, Default)]
 pub struct Clusters {
     blocks: Vec<ClusterBlock>,
 }
 
-/// The clusters of some consecutive agents.
+/// The clusters of one block of consecutive agents.
 #[derive(Debug, Clone, Default)]
 pub struct ClusterBlock {
     clusters: Vec<Cluster>,
@@ -35,20 +35,20 @@ pub struct ClusterBlock {
 #[derive(Debug, Clone)]
 struct Cluster {
     agents: Range<u32>,
-    /// Where its runs end.
+    /// The end of its runs in the block's `runs`.
     runs_end: u32,
 }
 
 impl Clusters {
-    /// A length for coordinates that wrap at twice of it, metres, when lists reach `reach` metres: nobody
-    /// in a list is so far away, in either direction, that he would seem near. That is a cluster's width,
-    /// the reach, two cells, of `reach` at most, and two moves: 6 `reach`, of the 8 that are allowed.
+    /// Half the period of coordinates that may wrap, meters, for lists that reach `reach` meters: large enough that
+    /// wrapping makes no listed agent seem near. In x or y a listed agent is away by at most a cluster's width, the
+    /// reach, two cells of at most `reach` each, and two displacements since the sort: 6 `reach`, where 8 are allowed.
     pub fn extent(reach: f64) -> f64 {
         (WIDEST + 2.5) * reach
     }
 
-    /// Lists for everybody the runs of agents with all that are within `reach` metres of somebody in the
-    /// cluster, and some that are not; `grid` has been laid over `positions`.
+    /// Lists for each cluster, as runs of agents, all agents within `reach` meters of any of its members, and some
+    /// that are farther away. `grid` must have been laid over `positions`.
     pub fn rebuild(&mut self, grid: &Grid, positions: &[Vector], reach: f64) {
         let count = positions.len();
         self.blocks
@@ -69,17 +69,17 @@ impl Clusters {
             });
     }
 
-    /// Are there no lists?
+    /// Whether there are no lists.
     pub fn is_empty(&self) -> bool {
         self.blocks.is_empty()
     }
 
-    /// Forgets all lists.
+    /// Drops all lists.
     pub fn clear(&mut self) {
         self.blocks.clear();
     }
 
-    /// The clusters of agents `b` [`BLOCK`] and up; none after [`clear`](Self::clear).
+    /// The clusters of block `b`, which begins with agent `b` × [`BLOCK`]; none after [`clear`](Self::clear).
     pub fn block(&self, b: usize) -> &ClusterBlock {
         const NOBODY: &ClusterBlock = &ClusterBlock {
             clusters: Vec::new(),
@@ -88,7 +88,7 @@ impl Clusters {
         self.blocks.get(b).unwrap_or(NOBODY)
     }
 
-    /// Everybody in the list of agent `i`, itself among them, rising; some are out of reach.
+    /// All agents in the list of agent `i`, including itself, in ascending order; some are out of reach.
     pub fn near(&self, i: usize) -> impl Iterator<Item = usize> + '_ {
         let own = self.block(i / BLOCK).clusters();
         own.filter(move |(agents, _)| agents.contains(&i))
@@ -98,7 +98,7 @@ impl Clusters {
 }
 
 impl ClusterBlock {
-    /// Every cluster's agents, and the runs of their list.
+    /// The agents of each cluster, with the runs of their list.
     pub fn clusters(&self) -> impl Iterator<Item = (Range<usize>, &[Range<u32>])> {
         self.clusters.iter().scan(0, |start, cluster| {
             let runs = &self.runs[*start..cluster.runs_end as usize];
@@ -108,7 +108,7 @@ impl ClusterBlock {
         })
     }
 
-    /// Clusters of agents that stand in one row of the grid, in reach of its rows above and below.
+    /// Clusters of agents in one row of the grid, whose reach ends within the rows above and below.
     fn list_together(
         &mut self,
         grid: &Grid,
@@ -140,7 +140,7 @@ impl ClusterBlock {
         }
     }
 
-    /// One agent each, and only who is in reach: where cells had to be made larger than that.
+    /// Clusters of one agent, with only the agents in reach: for cells that had to be made larger than the reach.
     fn list_one_by_one(
         &mut self,
         grid: &Grid,
@@ -166,7 +166,7 @@ impl ClusterBlock {
     }
 }
 
-/// From where to where a cluster reaches in the row below its own, its own, and the one above, metres
+/// The intervals that a cluster reaches in the row below its own, in its own row, and in the row above, in meters
 /// from the left end of the rows.
 struct Extent {
     rows: [[f64; 2]; 3],
@@ -181,7 +181,8 @@ impl Default for Extent {
 }
 
 impl Extent {
-    /// A circle of `reach` metres round a place `x` along a row, `y` above its floor.
+    /// Extends the intervals by a circle of radius `reach` meters around a place `x` along the row and `y` above its
+    /// lower edge.
     fn include(&mut self, x: f64, y: f64, height: f64, reach: f64) {
         for (row, gap) in self.rows.iter_mut().zip([y, 0.0, height - y]) {
             // √(reach² − gap²) is at most this.

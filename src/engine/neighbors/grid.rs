@@ -1,5 +1,5 @@
-//! A uniform grid over the crowd; agents sorted by cell, row by row, so that a run of cells in a row
-//! is a run of agents in memory.
+//! A uniform grid over the crowd. Agents are sorted by cell, row by row, so that a run of cells in a row is a run
+//! of agents in memory.
 
 use std::ops::Range;
 
@@ -7,30 +7,29 @@ use rayon::prelude::*;
 
 use crate::engine::math::Vector;
 
-/// Agents whose cells are worth another thread.
+/// The fewest agents per parallel task.
 const SOME: usize = 4096;
 
-/// At most this many cells per agent (and this many for an empty crowd): a crowd strewn over a wide
-/// area gets larger cells instead of a larger grid.
+/// The most cells per agent, and the limit on cells for small crowds: a crowd scattered over a wide area gets
+/// larger cells instead of a larger grid.
 const CELLS_PER_AGENT: usize = 4;
 const FEWEST_CELLS: usize = 1024;
 
-/// Cells in a row are so much narrower than the row is high: runs then end near the circle they are
-/// to cover.
+/// Height of a row over the width of its cells: with narrow cells, runs end near the circle they must cover.
 const NARROWNESS: f64 = 8.0;
 
-/// A place in a grid.
+/// A position in a grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
     /// The row, neither the first nor the last.
     pub row: usize,
-    /// Metres from the left end of the row.
+    /// Distance from the left end of the row, meters.
     pub x: f64,
-    /// Metres above the floor of the row.
+    /// Distance from the lower edge of the row, meters.
     pub y: f64,
 }
 
-/// Cells of a bounding box, with an empty row below and above, and the range of agents in each.
+/// The cells of a bounding box, with an empty row below and above it, and the range of agents in each cell.
 #[derive(Debug, Clone)]
 pub struct Grid {
     origin: Vector,
@@ -38,7 +37,7 @@ pub struct Grid {
     width: f64,
     columns: usize,
     rows: usize,
-    /// First agent of every cell, row by row, and the number of agents at the end.
+    /// The first agent of each cell, row by row; the last entry is the number of agents.
     start: Vec<u32>,
 }
 
@@ -56,8 +55,8 @@ impl Default for Grid {
 }
 
 impl Grid {
-    /// Lays a grid with rows of at least `height` metres over `positions` and returns the order that
-    /// sorts them by cell; agents of one cell keep their order.
+    /// Lays a grid with rows of at least `height` meters over `positions` and returns the order that sorts them by
+    /// cell. The sort is stable.
     pub fn rebuild(&mut self, positions: &[Vector], height: f64) -> Vec<u32> {
         let [low, high] = bounds(positions);
         self.size_cells(high - low, positions.len(), height);
@@ -86,12 +85,12 @@ impl Grid {
         order
     }
 
-    /// Chooses the smallest cells that are not too many for so many agents.
+    /// Chooses the smallest cells, by doubling, whose number is within the limit.
     fn size_cells(&mut self, extent: Vector, agents: usize, height: f64) {
         let most = (agents * CELLS_PER_AGENT).max(FEWEST_CELLS) as f64;
         self.height = height.max(f64::MIN_POSITIVE); // so that doubling makes it grow
         self.width = (self.height / NARROWNESS).max(f64::MIN_POSITIVE);
-        // One cell for a crowd whose extent is no number: the fault is found later, and named.
+        // If the extent is NaN, `max` gives the fewest columns or rows; the NaN is found and reported later.
         let columns = |width: f64| ((extent.x / width).floor() + 1.0).max(1.0);
         let rows = |height: f64| ((extent.y / height).floor() + 3.0).max(3.0);
         while columns(self.width) * rows(self.height) > most {
@@ -111,7 +110,7 @@ impl Grid {
         self.columns * self.rows
     }
 
-    /// The height of the rows, metres.
+    /// The height of the rows, meters.
     pub fn height(&self) -> f64 {
         self.height
     }
@@ -123,7 +122,7 @@ impl Grid {
         row * self.columns + column
     }
 
-    /// Where `p` is, one of those that the grid was laid over.
+    /// The place of `p`, one of the positions over which the grid was laid.
     pub fn place(&self, p: Vector) -> Place {
         let offset = p - self.origin;
         let row = ((offset.y / self.height) as usize).clamp(1, self.rows - 2);
@@ -134,15 +133,15 @@ impl Grid {
         }
     }
 
-    /// The agents in the cells of a row between two places, metres from its left end.
+    /// The agents in the cells of a row from `from` to `to`, meters from the left end of the row.
     pub fn run(&self, row: usize, from: f64, to: f64) -> Range<u32> {
         let column = |x: f64| ((x / self.width) as usize).min(self.columns - 1);
         let first = row * self.columns;
         self.start[first + column(from)]..self.start[first + column(to) + 1]
     }
 
-    /// The agents in cells within `radius` of a box, from its lower left to its upper right corner, row by
-    /// row; some are out of reach.
+    /// The agents in all cells within `radius` meters of a box, given by its lower left and upper right corners, row
+    /// by row. Some agents are out of reach.
     pub fn rows(
         &self,
         [low, high]: [Vector; 2],
@@ -159,7 +158,7 @@ impl Grid {
     }
 }
 
-/// The corners of the bounding box; the origin twice for nobody.
+/// The lower left and upper right corners of the bounding box; the origin twice if there are no positions.
 pub fn bounds(positions: &[Vector]) -> [Vector; 2] {
     let Some(&first) = positions.first() else {
         return [Vector::zeros(); 2];

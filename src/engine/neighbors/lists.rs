@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 use super::{BLOCK, TASK};
 
-/// Lists in blocks of consecutive agents, so that blocks are filled side by side and nothing is
-/// copied together afterwards; memory is kept between rebuilds.
+/// Lists in blocks of consecutive agents. Blocks are filled in parallel and never merged; they keep their memory
+/// between rebuilds.
 #[derive(Debug, Clone, Default)]
 pub struct Lists {
     blocks: Vec<Block>,
@@ -15,14 +15,14 @@ pub struct Lists {
 
 #[derive(Debug, Clone, Default)]
 struct Block {
-    /// Where each agent's list ends in `indices`.
+    /// The end of each agent's list in `indices`.
     ends: Vec<u32>,
     indices: Vec<u32>,
 }
 
 impl Lists {
-    /// Fills the lists of agents 0..`count`: `among` finds what may belong to any of some agents, and
-    /// `find` appends what of that belongs to one.
+    /// Fills the lists of agents 0..`count`: `among` returns the candidates for a range of agents, and `find` appends
+    /// the candidates that belong to one agent.
     pub fn rebuild(
         &mut self,
         count: usize,
@@ -50,12 +50,12 @@ impl Lists {
             });
     }
 
-    /// Forgets all lists.
+    /// Drops all lists.
     pub fn clear(&mut self) {
         self.blocks.clear();
     }
 
-    /// Those of `agents`, all of one block, whose lists are not empty, with their lists.
+    /// The non-empty lists of `agents`, all of one block, each after its agent.
     pub fn listed(&self, agents: Range<usize>) -> impl Iterator<Item = (usize, &[u32])> {
         let block = self.blocks.get(agents.start / BLOCK);
         let any = block.is_some_and(|block| !block.indices.is_empty());

@@ -1,10 +1,9 @@
-//! Step 1: who is near whom, and which walls are near.
+//! Step 1: the neighbors of each agent, and the walls near it.
 //!
-//! Agents are sorted into the cells of a [`Grid`]; near neighbours (SPH, contact) are listed as
-//! runs of agents in memory, for [`Clusters`] of agents who stand together, with a margin, the *skin*,
-//! so that the lists hold until somebody is half of it away from where they were made: nobody is ever
-//! missed in between. The wide circle of the avoidance methods is read from the grid's rows, without
-//! lists.
+//! Agents are sorted into the cells of a [`Grid`]. Near neighbors (for SPH and contact) are listed as runs of
+//! agents in memory, for [`Clusters`] of agents that are close together. The lists have a margin, the *skin*:
+//! until an agent has moved by half of it since the sort, they miss no neighbor. Neighbors in the wide circle of
+//! the avoidance methods are read from the grid's rows, without lists.
 
 mod clusters;
 mod grid;
@@ -21,51 +20,51 @@ use crate::engine::agents::Agents;
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 
-/// Margin of all lists, metres: who is half of it away from where they were made has them made anew.
-/// More of it makes rarer but longer lists.
+/// Margin of all lists, meters: when an agent has moved by half of it since the sort, all lists are rebuilt. With a
+/// larger margin, lists are rebuilt less often but are longer.
 pub const SKIN: f64 = 0.14;
 
-/// When lists of near agents are made anew, and whether anybody can be missed in between.
+/// When the lists of near agents are rebuilt, and whether they can miss neighbors in between.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ListPolicy {
-    /// As often as needed, with a margin: nobody is ever missed.
+    /// As often as needed, with a margin: no neighbor is ever missed.
     #[default]
     Complete,
-    /// In every coarse frame, without a margin (§5.1): whoever comes near in between is missed.
+    /// In every coarse frame, without a margin (§5.1): agents that come near in between are missed.
     Coarse,
 }
 
-/// How far neighbours are looked for; avoidance that nobody needs is `None`, and costs nothing.
+/// How far neighbors are searched. Ranges that no profile needs are `None` and cost nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ranges {
-    /// Support radius h of SPH, metres.
+    /// Support radius h of SPH, meters.
     pub support: f64,
-    /// Radius of the avoidance methods, metres.
+    /// Radius of the avoidance methods, meters.
     pub avoidance: Option<f64>,
-    /// Radius of social forces, metres.
+    /// Radius of social forces, meters.
     pub social: Option<f64>,
-    /// The longest step that anybody makes in a frame, s_max Δt, metres.
+    /// The longest step of any agent in a frame, s_max Δt, meters.
     pub longest_step: f64,
-    /// How far anybody may be from where they were listed, metres; nobody misses a wall.
+    /// How far any agent may move between sorts, meters; within it no wall is missed.
     pub drift: f64,
-    /// How far, so that nobody misses anybody either, metres; at most `drift`.
+    /// How far any agent may move between sorts so that no neighbor is missed either, meters; at most `drift`.
     pub margin: f64,
 }
 
-/// Neighbours as of the last sort.
+/// Neighbors as of the last sort.
 #[derive(Debug, Clone, Default)]
 pub struct Neighbors {
     ranges: Ranges,
-    /// How far agents are listed as near, skin included, metres.
+    /// Radius within which agents are listed as near, including the skin, meters.
     reach: f64,
     grid: Grid,
     near: Clusters,
     near_walls: Lists,
     far_walls: Lists,
-    /// Where everybody was at the last sort, metres.
+    /// The agents' positions at the last sort, meters.
     sorted_at: Vec<Vector>,
-    /// The farthest that anybody is from there, metres.
+    /// The greatest distance of any agent from its position at the last sort, meters.
     travelled: f64,
 }
 
@@ -81,17 +80,16 @@ impl Neighbors {
         self.sorted_at.clone_from(&agents.position);
     }
 
-    /// Lists everybody's near neighbours, as far as SPH and contact reach.
+    /// Lists the near neighbors of all agents, as far as SPH and contact reach.
     ///
-    /// May come some frames after the sort, as long as the lists would not be stale. They do not
-    /// depend on whether a density is due: whoever asks for it must not change the order of any sum,
-    /// and so the motion, not even by rounding.
+    /// May be called some frames after the sort, as long as the lists would not be stale. The lists are built from
+    /// the positions at the sort, so that they do not depend on when they are first needed: asking for a density must
+    /// not change the order of any sum and so, by rounding, the motion.
     pub fn list_agents(&mut self) {
         self.near.rebuild(&self.grid, &self.sorted_at, self.reach);
     }
 
-    /// Lists the walls near everybody: near ones for SPH and contact and for stopping moves, far ones
-    /// for avoidance.
+    /// Lists the walls near each agent: near walls for SPH, contact and stopping moves, far walls for avoidance.
     pub fn list_walls(&mut self, agents: &Agents, walls: &Walls) {
         let margin = self.ranges.drift;
         let least = self.ranges.support.max(self.ranges.longest_step);
@@ -104,44 +102,44 @@ impl Neighbors {
         }
     }
 
-    /// Where everybody was at the last sort, metres.
+    /// The agents' positions at the last sort, meters.
     pub fn sorted_at(&self) -> &[Vector] {
         &self.sorted_at
     }
 
-    /// Notes how far, in metres, anybody is from there now.
+    /// Sets the greatest distance, in meters, of any agent from its position at the last sort.
     pub fn travelled(&mut self, farthest: f64) {
         self.travelled = farthest;
     }
 
-    /// Has somebody gone so far that lists with the [`SKIN`] could miss somebody?
+    /// Whether an agent has moved so far since the sort that lists with the [`SKIN`] could miss a neighbor.
     pub fn are_stale(&self) -> bool {
         self.travelled > 0.5 * SKIN
     }
 
-    /// All that are near, for SPH and contact, and some that are out of range.
+    /// The neighbors for SPH and contact, and some agents out of range.
     pub fn near(&self) -> &Clusters {
         &self.near
     }
 
-    /// Coordinates may wrap at twice this length, metres: nobody whom a cluster is given is so far away
-    /// that he would seem near. See [`Clusters::extent`]; in social forces that is a cluster's width, two
-    /// cells, the radius and two moves.
+    /// Coordinates may wrap with a period of twice this length, meters: wrapping makes no agent that a cluster reads
+    /// seem near. See [`Clusters::extent`]. For social forces an agent is away by at most a cluster's width, two
+    /// cells, the radius and two displacements since the sort.
     pub fn extent(&self) -> f64 {
         let far = |radius: f64| radius + 2.5 * self.reach + 2.0 * self.ranges.margin;
         let unlisted = 2.0 * (self.ranges.drift - self.ranges.margin);
         Clusters::extent(self.reach).max(self.ranges.social.map_or(0.0, far)) + unlisted
     }
 
-    /// Candidates for avoidance within `radius` metres of `p`, as ranges of agents, some out of range
-    /// and whoever stands at `p` among them.
+    /// All agents within `radius` meters of `p`, as ranges: candidates for avoidance. They include agents at `p`, and
+    /// some out of range.
     pub fn around(&self, p: Vector, radius: f64) -> impl Iterator<Item = Range<usize>> + '_ {
         let rows = self.grid.rows([p; 2], radius + self.ranges.margin);
         rows.map(|run| run.start as usize..run.end as usize)
     }
 
-    /// Replaces `found` by runs of agents with all that are within `radius` metres of any of `agents`, of
-    /// one cluster, and some that are not.
+    /// Replaces `found` by runs with all agents within `radius` meters of any of `agents`, which are one cluster, and
+    /// some that are farther away.
     pub fn around_cluster(
         &self,
         agents: Range<usize>,
@@ -155,7 +153,8 @@ impl Neighbors {
             found.extend(self.grid.rows(bounds(&positions[agents]), reach));
             return;
         }
-        // Cells had to be made larger than lists reach: one agent each, and only who is near.
+        // Cells had to be made larger than the reach of the lists, so clusters have one agent: list only its
+        // neighbors.
         for i in agents {
             let p = positions[i];
             let near = self.grid.rows([p; 2], reach).flatten();
@@ -164,27 +163,27 @@ impl Neighbors {
         }
     }
 
-    /// Walls that may be within reach of agent `i` for SPH and contact, rising.
+    /// Walls that may be within reach of agent `i` for SPH and contact, in ascending order.
     pub fn near_walls(&self, i: usize) -> &[u32] {
         self.near_walls.of(i)
     }
 
-    /// Those of `agents`, all of one block, that may have walls in reach for SPH and contact, with those
+    /// The agents among `agents`, all of one block, that may have walls in reach for SPH and contact, with these
     /// walls.
     pub fn agents_near_walls(&self, agents: Range<usize>) -> impl Iterator<Item = (usize, &[u32])> {
         self.near_walls.listed(agents)
     }
 
-    /// Walls that may be within reach of agent `i` for avoidance, rising.
+    /// Walls that may be within reach of agent `i` for avoidance, in ascending order.
     pub fn far_walls(&self, i: usize) -> &[u32] {
         self.far_walls.of(i)
     }
 }
 
-/// So many walls are looked at one by one rather than searched.
+/// Up to this many candidate walls are checked one by one instead of searching the index.
 const FEW_WALLS: usize = 16;
 
-/// Lists the walls within reach of everybody, by the radius of the body.
+/// Lists the walls within reach of each agent; `reach` is a function of the agent's radius.
 fn list_walls(
     lists: &mut Lists,
     agents: &Agents,
@@ -216,7 +215,7 @@ fn list_walls(
     );
 }
 
-/// How far agents act on each other by SPH and contact, and twice the margin.
+/// The range of SPH and contact forces between agents, plus twice the margin, meters.
 fn near_radius(agents: &Agents, ranges: &Ranges) -> f64 {
     let widest = agents.radius.iter().copied().fold(0.0, f64::max);
     ranges.support.max(2.0 * widest) + 2.0 * ranges.margin
@@ -280,7 +279,8 @@ mod tests {
         let neighbors = listed(&mut agents);
         let listed: usize = (0..8000).map(|i| near(&neighbors, i).len()).sum();
         let area = listed as f64 / 8000.0 / 5.0;
-        // Eight in a row 1.2 m high take 1.33 m; circles round them reach 13.3 m² at most.
+        // At 5 agents per m², eight agents in a row 1.14 m high take up 1.40 m. With 1.14 m added on all sides that
+        // is 12.6 m²; partly covered cells add 0.5 m² on average.
         assert!(area < 13.3, "{area} m²");
     }
 
@@ -324,7 +324,7 @@ mod tests {
                     assert!(distance >= 5.0 || runs.iter().any(|run| run.contains(&(j as u32))));
                 }
             }
-            // Lists made anew on the old cells hold as long.
+            // Lists rebuilt on the old cells are valid as long as before.
             neighbors.list_agents();
         }
         neighbors.travelled(0.1 + 1e-6);
@@ -350,7 +350,7 @@ mod tests {
                     {
                         let offset = agents.position[i] - agents.position[j];
                         assert!(offset.norm() >= radius || found.contains(&j));
-                        // Nor does somebody who is found seem near when coordinates wrap.
+                        // Agents that are found do not seem near when coordinates wrap.
                         let wrapped = 2.0 * neighbors.extent() - offset.amax() - SKIN;
                         assert!(!found.contains(&j) || wrapped > radius + SKIN, "{offset}");
                     }
