@@ -1,12 +1,11 @@
-//! What is worked out for eight pairs of agents at a time: density (Eq. 9), pressure (Eq. 11), viscosity
-//! (Eq. 7) and contact (Eq. 22) of near ones, social forces (Eq. 18) and whom RVO may meet of those
-//! farther away. The only place that names
-//! fearless_simd.
+//! Quantities computed for eight pairs of agents at a time: density (Eq. 9), pressure (Eq. 11), viscosity (Eq. 7)
+//! and contact (Eq. 22) between near agents; social forces (Eq. 18) and possible RVO collisions between agents
+//! farther apart. The only module that names fearless_simd.
 //!
-//! Nearly all of the time of a dense scene goes here. Agents who stand together (see
-//! [`Clusters`](crate::engine::neighbors::Clusters)) share their neighbours, so the sums of eight are taken at
-//! a time, in whatever vectors the processor has. An agent is in its own sums, where it adds what it
-//! should: its own density, and no force.
+//! A dense scene spends nearly all of its time here. Agents that are close together (see
+//! [`Clusters`](crate::engine::neighbors::Clusters)) share their neighbors, so the sums of eight agents are computed
+//! together, in the SIMD vectors that the processor has. Each agent is included in its own sums: it adds its own
+//! share to the density, and no force.
 
 mod columns;
 mod kernels;
@@ -27,29 +26,28 @@ use crate::engine::agents::Agents;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::{BLOCK, ClusterBlock};
 
-/// The numbers in which sums over pairs are taken; everything else is double.
+/// The precision of sums over pairs; everything else is in double precision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Precision {
-    /// All in double precision.
+    /// Double precision throughout.
     Double,
-    /// Distances from fixed-point coordinates, exact to some 10⁻⁹ m, products and sums in single
-    /// precision: an acceleration is off by at most 10⁻⁵ of the magnitudes that it is a sum of, as long
-    /// as agents are half a millimetre apart and, for social forces, nobody comes within 5 cm of the
-    /// other's place in T seconds.
+    /// Distances from fixed-point coordinates, exact to about 10⁻⁹ m; products and sums in single precision. The
+    /// error of an acceleration is at most 10⁻⁵ of the sum of the magnitudes of its terms, as long as agents are at
+    /// least half a millimeter apart. For social forces, also |r_ij + T v_ij| must be at least 5 cm.
     #[default]
     Mixed,
 }
 
-/// What the sums over the near neighbours of the agents of a block are multiplied with to make
-/// accelerations; 0 where an agent feels nothing of the kind.
+/// Factors that turn the sums over the near neighbors of a block's agents into accelerations; 0 for an agent that
+/// does not feel the force.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PairCoefficients {
-    /// Of −Σ_j m_j (p_i + p_j)/(2ρ_j) ∇W, Eq. 11: 1/ρ_i.
+    /// Factor of −Σ_j m_j (p_i + p_j)/(2ρ_j) ∇W, Eq. 11: 1/ρ_i.
     pub pressure: [f64; BLOCK],
-    /// Of Σ_j m_j (v_j − v_i)/ρ_j ∇²W, Eq. 7: μ/ρ_i.
+    /// Factor of Σ_j m_j (v_j − v_i)/ρ_j ∇²W, Eq. 7: μ/ρ_i.
     pub viscosity: [f64; BLOCK],
-    /// Of Σ_j max(0, D_i + D_j − |r_ij|) r̂_ij, Eq. 22: K^ag/m_i.
+    /// Factor of Σ_j max(0, D_i + D_j − |r_ij|) r̂_ij, Eq. 22: K^ag/m_i.
     pub contact: [f64; BLOCK],
 }
 
@@ -63,16 +61,16 @@ impl Default for PairCoefficients {
     }
 }
 
-/// The crowd as sums over pairs read it.
+/// The crowd, packed for sums over pairs.
 #[derive(Debug, Clone)]
 pub enum Packed {
-    /// [`Precision::Double`].
+    /// In [`Precision::Double`].
     Double(Columns<f64>),
-    /// [`Precision::Mixed`].
+    /// In [`Precision::Mixed`].
     Mixed(Columns<f32>),
 }
 
-/// Which sums some profile of a scene reads; the others are not taken.
+/// The sums that the profiles of a scene read; other sums are not computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Wanted {
     /// Eq. 11.
@@ -84,12 +82,12 @@ pub struct Wanted {
 }
 
 impl Wanted {
-    /// Is any?
+    /// Whether any sum is wanted.
     pub fn any(self) -> bool {
         self.pressure || self.viscosity || self.contact
     }
 
-    /// What either wants.
+    /// The sums that either wants.
     pub fn with(self, other: Self) -> Self {
         Self {
             pressure: self.pressure || other.pressure,
@@ -99,7 +97,7 @@ impl Wanted {
     }
 }
 
-/// `$columns => $body` for whichever columns there are.
+/// Evaluates `$body` with `$columns` bound to the columns of either precision.
 macro_rules! each {
     ($packed:expr, $columns:ident => $body:expr) => {
         match $packed {
@@ -118,7 +116,7 @@ impl Default for Packed {
 }
 
 impl Packed {
-    /// Nobody yet.
+    /// An empty crowd.
     pub fn new(precision: Precision) -> Self {
         match precision {
             Precision::Double => Self::Double(Columns::default()),
@@ -126,19 +124,19 @@ impl Packed {
         }
     }
 
-    /// Nobody has been packed.
+    /// Whether no agents are packed.
     pub fn is_empty(&self) -> bool {
         each!(self, columns => columns.is_empty())
     }
 
-    /// Forgets everybody.
+    /// Removes all agents.
     pub fn clear(&mut self) {
         each!(self, columns => *columns = Columns::default());
     }
 
-    /// Packs everybody's body; coordinates may wrap at twice `extent` metres (see
-    /// [`Clusters::extent`](crate::engine::neighbors::Clusters::extent)), and `support` is the h of an agent in
-    /// metres.
+    /// Packs the bodies of all agents. Coordinates may wrap with a period of twice `extent` meters (see
+    /// [`Clusters::extent`](crate::engine::neighbors::Clusters::extent)); `support` returns the h of an agent in
+    /// meters.
     pub fn take_bodies(&mut self, agents: &Agents, extent: f64, support: impl Fn(usize) -> f64) {
         match self {
             Self::Double(columns) => columns.take_bodies(agents, 1.0, support),
@@ -148,7 +146,7 @@ impl Packed {
         }
     }
 
-    /// What the agents near each agent of a block do to it, m/s².
+    /// The accelerations of a block's agents by their near neighbors, m/s².
     pub fn accelerations(
         &self,
         block: &ClusterBlock,
@@ -159,8 +157,8 @@ impl Packed {
         each!(self, columns => columns.accelerations(block, coefficients, wanted, out));
     }
 
-    /// Adds the social forces on `agents`, of one cluster, times their coefficients, m/s²; `runs` have
-    /// everybody in reach, and some who are not.
+    /// Adds the social forces on `agents`, which are one cluster, times their coefficients, m/s². `runs` contain all
+    /// agents in reach, and some out of reach.
     pub fn add_social(
         &self,
         law: &SocialLaw,

@@ -1,39 +1,40 @@
-//! The numbers that sums over pairs are taken in.
+//! Number types for sums over pairs.
 
 use fearless_simd::{Simd, f32x8, f64x8, i32x8, prelude::*};
 
-/// Agents whose sums are taken together: a cluster, on every processor.
+/// The number of agents whose sums are computed together: one cluster, on every processor.
 pub const LANES: usize = crate::engine::neighbors::CLUSTER;
 
-/// A number for sums over pairs, and how it holds coordinates.
+/// A number type for sums over pairs, with its representation of coordinates.
 pub trait Real: SimdFloatElement + Copy + Default + Send + Sync + 'static {
-    /// A coordinate; only differences of near ones mean anything.
+    /// A coordinate; only differences between near coordinates are meaningful.
     type Coordinate: Copy + Default + Send + Sync + 'static;
     /// [`LANES`] numbers.
     type Lanes<S: Simd>: SimdFloat<S, Element = Self>;
     /// [`LANES`] coordinates.
     type Places<S: Simd>: Copy;
 
-    /// A squared distance in units² that divides without overflow, far below all real ones.
+    /// Lower bound to which squared distances are clamped, in units²: far below real distances, but large enough to
+    /// divide by.
     const TINY: f64;
 
-    /// The nearest number.
+    /// The number nearest to `value`.
     fn of(value: f64) -> Self;
 
-    /// The number as it is.
+    /// The number in double precision, exactly.
     fn double(self) -> f64;
 
-    /// `metres` in units, of which there are `per_metre` in a metre.
+    /// `metres` in coordinate units, `per_metre` of which make a meter.
     fn coordinate(metres: f64, per_metre: f64) -> Self::Coordinate;
 
-    /// The first [`LANES`] of `places`.
+    /// Loads the first [`LANES`] coordinates of `places`.
     fn places<S: Simd>(simd: S, places: &[Self::Coordinate]) -> Self::Places<S>;
 
-    /// Each of `from`, minus `to`.
+    /// Each coordinate of `from` minus `to`.
     fn differences<S: Simd>(simd: S, from: Self::Places<S>, to: Self::Coordinate)
     -> Self::Lanes<S>;
 
-    /// 2ˣ of numbers that are not positive; where it is below 2⁻¹²⁶ it may be that.
+    /// 2ˣ for x ≤ 0; results below 2⁻¹²⁶ may be clamped to it.
     fn exp2<S: Simd>(simd: S, x: Self::Lanes<S>) -> Self::Lanes<S>;
 }
 
@@ -72,8 +73,8 @@ impl Real for f64 {
     }
 }
 
-/// Coordinates are whole numbers modulo 2³²: differences are exact wherever in the plane they are
-/// taken, as long as they are shorter than 2³¹ units, and longer ones wrap.
+/// Coordinates are integers modulo 2³². Differences shorter than 2³¹ units are exact anywhere in the plane; longer
+/// differences wrap.
 impl Real for f32 {
     type Coordinate = i32;
     type Lanes<S: Simd> = f32x8<S>;
@@ -103,7 +104,7 @@ impl Real for f32 {
         (from - i32x8::splat(simd, to)).to_float()
     }
 
-    /// 2ⁿ 2ʳ with |r| ≤ 1/2, and the Taylor series of 2ʳ = e^(r ln 2).
+    /// Computes 2ⁿ 2ʳ with |r| ≤ 1/2, where 2ʳ = e^(r ln 2) is a Taylor series.
     #[inline(always)]
     fn exp2<S: Simd>(simd: S, x: f32x8<S>) -> f32x8<S> {
         let mut c = [f32x8::splat(simd, 0.0); SERIES.len()];

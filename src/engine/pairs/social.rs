@@ -1,4 +1,4 @@
-//! Social forces (Eq. 18) on eight agents at a time.
+//! Social forces (Eq. 18), for eight agents at a time.
 
 use std::f64::consts::{LN_2, SQRT_2};
 use std::ops::Range;
@@ -10,48 +10,48 @@ use super::kernels::{load, splat, store};
 use super::real::Real;
 use crate::engine::math::Vector;
 
-/// The law that a sum of social forces follows.
+/// The parameters of a sum of social forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SocialLaw {
-    /// V₀/σ, 1/m of a force.
+    /// V₀/σ, in the unit of V₀ per meter.
     pub strength: f64,
-    /// σ, metres.
+    /// σ, meters.
     pub range: f64,
     /// T, seconds.
     pub anticipation_time: f64,
-    /// Nobody farther away counts, metres.
+    /// Agents farther away have no effect, meters.
     pub radius: f64,
     /// Cosine of half the field of view.
     pub field_of_view: f64,
-    /// What a neighbour outside the field of view counts.
+    /// Weight of a neighbor outside the field of view.
     pub unseen_weight: f64,
 }
 
-/// One agent's effect on eight, before the exponential.
+/// One agent's effect on eight agents, before the exponential.
 #[derive(Clone, Copy)]
 struct Effect<R: Real, S: Simd> {
-    /// √2 b, in units of the coordinates.
+    /// √2 b, in coordinate units.
     b: R::Lanes<S>,
-    /// (|d| + |a|)/(√2 h |d||a|), h² = (|d||a| + |d·a|)/2, weighted; zero where nothing is felt.
+    /// (|d| + |a|)/(√2 h |d||a|) with h² = (|d||a| + |d·a|)/2, weighted; zero if the agent has no effect.
     size: R::Lanes<S>,
-    /// Along the force, |d||a| times the sum or difference of the directions of d and a.
+    /// A vector along the force: |d||a| times the sum or difference of the directions of d and a.
     along_x: R::Lanes<S>,
     along_y: R::Lanes<S>,
 }
 
-/// The eight, and the law, in units of the coordinates.
+/// The eight agents and the parameters, in coordinate units.
 #[derive(Clone, Copy)]
 struct Observers<R: Real, S: Simd> {
     x: R::Places<S>,
     y: R::Places<S>,
     velocity_x: R::Lanes<S>,
     velocity_y: R::Lanes<S>,
-    /// Minus T, per unit.
+    /// −T, in coordinate units per (m/s).
     ahead: R::Lanes<S>,
-    /// T times the velocity.
+    /// T times the velocity, in coordinate units.
     ahead_x: R::Lanes<S>,
     ahead_y: R::Lanes<S>,
-    /// Minus the speed times the cosine of half the field of view.
+    /// Minus the speed, times the cosine of half the field of view.
     edge_of_view: R::Lanes<S>,
     unseen_weight: R::Lanes<S>,
     radius_squared: R::Lanes<S>,
@@ -79,12 +79,12 @@ impl<R: Real, S: Simd> Observers<R, S> {
         }
     }
 
-    /// What somebody at (`x`, `y`) with velocity (`vx`, `vy`) does to them.
+    /// The effect on them of an agent at (`x`, `y`) with velocity (`vx`, `vy`).
     ///
-    /// With d = r_ij and a = d + s, s = T v_ij, the force is along the bisector of d and a, and its size
-    /// is V₀/σ e^(−b/σ) (|d| + |a|)/(2√(|d||a|)). In the equation b, and the sum of two directions, come
-    /// from differences of nearly equal numbers when d and a are nearly opposite: agents on collision
-    /// course. Here they come from d × s then.
+    /// With d = r_ij, s = T v_ij and a = d + s, the force points along the bisector of d and a, and its magnitude is
+    /// V₀/σ e^(−b/σ) (|d| + |a|)/(2√(|d||a|)). If d and a are nearly opposite, as for agents on a collision course,
+    /// computing b and the sum of the two directions as in the equation cancels nearly equal numbers. In that case
+    /// both are computed from d × s instead.
     #[inline(always)]
     fn effect(
         &self,
@@ -110,7 +110,7 @@ impl<R: Real, S: Simd> Observers<R, S> {
         let facing = dot.simd_ge(zero);
         let b = facing.select(h, cross.abs() * (product * per_h_product));
 
-        // |a| d ± |d| a, turned by a right angle where they are nearly opposite.
+        // |a| d + |d| a, or, if d·a < 0, their difference turned by a right angle.
         let side = one.copysign(cross);
         let (px, py) = (dx * a, dy * a);
         let (qx, qy) = (ax * d, ay * d);
@@ -120,8 +120,8 @@ impl<R: Real, S: Simd> Observers<R, S> {
         let seen = dy.mul_add(self.velocity_y, dx * self.velocity_x);
         let seen = seen.simd_le(self.edge_of_view * d);
         let size = (d + a) * seen.select(one, self.unseen_weight) * per_h_product;
-        // Nothing of the agent itself, of who is too far away, and where the ellipse degenerates: there
-        // it may be no number.
+        // No effect from the agent itself, from agents out of range, or where the ellipse degenerates and values
+        // may be NaN.
         let counts = b.simd_gt(zero) & squared.simd_lt(self.radius_squared);
         Effect {
             b: counts.select(b, zero),
@@ -132,8 +132,8 @@ impl<R: Real, S: Simd> Observers<R, S> {
     }
 }
 
-/// Adds Σ_j of Eq. 18, times each agent's coefficient, to the accelerations of `agents`, of one
-/// cluster; `runs` have all agents in reach, and some that are not.
+/// Adds Σ_j of Eq. 18, times each agent's coefficient, to the accelerations of `agents`, which are one cluster.
+/// `runs` contain all agents in reach, and some out of reach.
 #[inline(always)]
 pub fn add_social<R: Real, S: Simd>(
     simd: S,
@@ -149,7 +149,8 @@ pub fn add_social<R: Real, S: Simd>(
     let falling = splat::<R, S>(simd, falling);
 
     let (mut sum_x, mut sum_y) = (zero, zero);
-    // One agent's exponential is taken beside the next one's roots: each waits for its own steps only.
+    // Software pipelining: the exponential for one agent is computed alongside the roots for the next agent, since
+    // neither depends on the other.
     let mut last: Effect<R, S> = Effect {
         b: zero,
         size: zero,

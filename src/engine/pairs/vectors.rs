@@ -1,4 +1,4 @@
-//! Which vectors the processor has.
+//! The SIMD vectors of the processor.
 
 use std::fmt;
 
@@ -6,20 +6,20 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::real::LANES;
 
-/// The vectors that sums over pairs are taken in, chosen when the program runs.
+/// The SIMD vectors used for sums over pairs, chosen at run time.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Vectors {
-    /// The instructions, for example AVX2.
+    /// The instruction set, for example AVX2.
     pub level: String,
-    /// Single-precision numbers in a vector; more than [`LANES`] are never used.
+    /// The single-precision numbers in a vector, at most [`LANES`].
     pub lanes: usize,
 }
 
 impl Vectors {
-    /// Those of this processor.
+    /// The vectors of this processor.
     pub fn here() -> Self {
         let level = Level::new();
-        // The name of the variant: Avx2(…), Sse4_2(…).
+        // Debug prints the variant: Avx2(…), Sse4_2(…).
         let name = format!("{level:?}");
         let name = name.split('(').next().unwrap_or_default();
         Self {
