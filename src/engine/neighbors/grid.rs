@@ -85,7 +85,7 @@ impl Grid {
         order
     }
 
-    /// Chooses the smallest cells, by doubling, whose number is within the limit.
+    /// Doubles the cell size, from the smallest, until the number of cells is within the limit.
     fn size_cells(&mut self, extent: Vector, agents: usize, height: f64) {
         let most = (agents * CELLS_PER_AGENT).max(FEWEST_CELLS) as f64;
         self.height = height.max(f64::MIN_POSITIVE); // so that doubling makes it grow

@@ -1,4 +1,4 @@
-//! What sums over pairs read, packed.
+//! The agents' data that sums over pairs read, packed in columns.
 
 use std::ops::Range;
 
@@ -11,19 +11,19 @@ use crate::engine::agents::Agents;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::{BLOCK, ClusterBlock};
 
-/// One array per quantity in the agents' order, longer by [`LANES`] so that the last agents can be
-/// read together with whom there is not.
+/// One array per quantity, in the agents' order, padded by [`LANES`] entries so that the last vector load stays in
+/// bounds.
 #[derive(Debug, Clone)]
 pub struct Columns<R: Real> {
-    /// Metres per unit of the coordinates.
+    /// Meters per coordinate unit.
     pub(super) unit: f64,
     pub(super) x: Vec<R::Coordinate>,
     pub(super) y: Vec<R::Coordinate>,
     /// m_j.
     pub(super) mass: Vec<R>,
-    /// D_j, metres.
+    /// D_j, meters.
     pub(super) radius: Vec<R>,
-    /// 1/h of the agent, 1/m.
+    /// 1/h of each agent, 1/m.
     pub(super) per_support: Vec<R>,
     /// v_j, m/s.
     pub(super) velocity_x: Vec<R>,
@@ -52,8 +52,8 @@ impl<R: Real> Default for Columns<R> {
 }
 
 impl<R: Real> Columns<R> {
-    /// Makes room for the crowd and packs its bodies; `unit` metres is one unit of the coordinates,
-    /// `support` the h of an agent in metres.
+    /// Allocates the columns and packs the bodies of all agents. A coordinate unit is `unit` meters; `support`
+    /// returns the h of an agent in meters.
     pub fn take_bodies(&mut self, agents: &Agents, unit: f64, support: impl Fn(usize) -> f64) {
         self.unit = unit;
         let padded = agents.len() + LANES;
@@ -78,12 +78,12 @@ impl<R: Real> Columns<R> {
         }
     }
 
-    /// Has nobody been packed?
+    /// Whether no agents are packed.
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
     }
 
-    /// A place to put the motion of each block of agents.
+    /// For each block of agents, the slices that take its positions and velocities.
     pub fn motions(&mut self) -> impl IndexedParallelIterator<Item = Motion<'_, R>> {
         let per_metre = 1.0 / self.unit;
         (
@@ -102,7 +102,7 @@ impl<R: Real> Columns<R> {
             })
     }
 
-    /// What the density is a sum of, and for each block of agents a place to put m/ρ in m² and p.
+    /// The bodies that the density sums read, and for each block of agents the slices that take m/ρ (m²) and p.
     pub fn pressures(
         &mut self,
     ) -> (
@@ -123,7 +123,7 @@ impl<R: Real> Columns<R> {
         (bodies, places.into_par_iter())
     }
 
-    /// What the agents near each agent of a block do to it, m/s².
+    /// The accelerations of a block's agents by their near neighbors, m/s².
     pub fn accelerations(
         &self,
         block: &ClusterBlock,
@@ -136,8 +136,8 @@ impl<R: Real> Columns<R> {
         });
     }
 
-    /// Adds the social forces on `agents`, of one cluster, times their coefficients, m/s²; `runs` have
-    /// everybody in reach, and some who are not.
+    /// Adds the social forces on `agents`, which are one cluster, times their coefficients, m/s². `runs` contain all
+    /// agents in reach, and some out of reach.
     pub fn add_social(
         &self,
         law: &SocialLaw,
@@ -151,7 +151,7 @@ impl<R: Real> Columns<R> {
     }
 }
 
-/// Where everybody is, and how heavy.
+/// Positions, masses and support radii of all agents.
 #[derive(Clone, Copy)]
 pub struct Bodies<'a, R: Real> {
     pub(super) unit: f64,
@@ -162,13 +162,13 @@ pub struct Bodies<'a, R: Real> {
 }
 
 impl<R: Real> Bodies<'_, R> {
-    /// Eq. 9 without walls: Σ_j m_j W(r_ij) with j = i, P/m², for each agent of a block.
+    /// Eq. 9 without walls: Σ_j m_j W(r_ij), including j = i, in P/m², for each agent of a block.
     pub fn densities(&self, block: &ClusterBlock, out: &mut [f64]) {
         dispatch!(Level::new(), simd => kernels::densities(simd, self, block, out));
     }
 }
 
-/// Positions and velocities of some agents.
+/// The slices that take the positions and velocities of a block of agents.
 pub struct Motion<'a, R: Real> {
     per_metre: f64,
     x: &'a mut [R::Coordinate],
@@ -178,7 +178,7 @@ pub struct Motion<'a, R: Real> {
 }
 
 impl<R: Real> Motion<'_, R> {
-    /// Packs the positions in metres and the velocities in m/s of these agents.
+    /// Packs the positions (meters) and velocities (m/s) of the block's agents.
     pub fn take(&mut self, positions: &[Vector], velocities: &[Vector]) {
         for (k, (r, v)) in positions.iter().zip(velocities).enumerate() {
             self.x[k] = R::coordinate(r.x, self.per_metre);

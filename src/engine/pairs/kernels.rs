@@ -1,8 +1,8 @@
-//! The sums themselves, for [`LANES`] agents at a time: a neighbour is read once for all of them.
+//! The sums over near neighbors, for [`LANES`] agents at a time: each neighbor is read once for all of them.
 //!
-//! Distances are in units of the coordinates. Who is out of reach adds zero.
+//! Distances are in coordinate units. Neighbors out of reach add zero.
 //!
-//! No closures here: they would not be compiled for the vectors that the function is.
+//! Closures do not inherit `#[target_feature]`: keep these loops closure-free.
 
 use std::f64::consts::PI;
 
@@ -31,7 +31,7 @@ pub(super) fn store<R: Real, S: Simd>(lanes: R::Lanes<S>) -> [R; LANES] {
     numbers
 }
 
-/// Eq. 9, the agents' part with the agent itself: Σ_j m_j W(r_ij), P/m², for the agents of a block.
+/// Eq. 9 without walls: Σ_j m_j W(r_ij), including j = i, in P/m², for each agent of a block.
 #[inline(always)]
 pub fn densities<R: Real, S: Simd>(
     simd: S,
@@ -44,7 +44,7 @@ pub fn densities<R: Real, S: Simd>(
     for (agents, runs) in block.clusters() {
         let per_h = load(simd, bodies.per_support, agents.start);
         let per_h_squared = per_h * per_h;
-        // Minus metres² per coordinate unit² over h².
+        // −(meters per coordinate unit)²/h².
         let scale = per_h_squared * splat::<R, S>(simd, -bodies.unit * bodies.unit);
         let x_i = R::places(simd, &bodies.x[agents.start..]);
         let y_i = R::places(simd, &bodies.y[agents.start..]);
@@ -72,8 +72,7 @@ pub fn densities<R: Real, S: Simd>(
     }
 }
 
-/// Eqs. 7, 11 and 22 for the agents of a block, times their coefficients and added up: of those that
-/// are wanted, and no others.
+/// The sum of the wanted forces of Eqs. 7, 11 and 22, times their coefficients, for each agent of a block.
 #[inline(always)]
 pub fn accelerations<R: Real, S: Simd>(
     simd: S,
@@ -102,7 +101,7 @@ pub fn accelerations<R: Real, S: Simd>(
     }
 }
 
-/// Numbers `from` and up of some that are not more than [`LANES`], and zeros.
+/// The first [`LANES`] of `numbers` at `from` and up, padded with zeros.
 #[inline(always)]
 fn lanes<R: Real, S: Simd>(simd: S, numbers: &[f64], from: usize) -> R::Lanes<S> {
     let mut padded = [R::default(); LANES];
@@ -138,7 +137,7 @@ fn each_cluster<
         let minus_unit_per_h = minus_unit * per_h;
 
         let per_h_3 = per_h * per_h * per_h;
-        // Eq. 14, halved and without its direction; minus the gradient.
+        // Half of Eq. 14, without the direction and with the opposite sign.
         let push = lanes::<R, S>(simd, &coefficients.pressure, own) * per_h_3;
         let push = push * splat::<R, S>(simd, 15.0 / PI);
         let push_p_i = push * load(simd, &columns.pressure, start);

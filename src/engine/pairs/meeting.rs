@@ -1,44 +1,44 @@
-//! Who is met, and when: discs as a moving agent sees them.
+//! Collision tests in single precision: the discs that a moving agent may meet before a given time.
 
 use fearless_simd::{Level, Simd, dispatch, f32x8, prelude::*};
 
 use super::real::LANES;
 use crate::engine::math::Vector;
 
-/// Another disc as agent i sees it.
+/// A moving disc, relative to agent i.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovingDisc {
-    /// r_j − r_i, metres.
+    /// r_j − r_i, meters.
     pub offset: Vector,
     /// v_j, m/s.
     pub velocity: Vector,
-    /// D_i + D_j, metres.
+    /// D_i + D_j, meters.
     pub reach: f64,
 }
 
-/// How many rings there are, and the area of each over π, m²; the last one has no end.
+/// The number of rings, and the area of each ring over π, m²; the last ring is unbounded.
 const RINGS: usize = 16;
 const RING_AREA: f64 = 1.5;
 
-/// Far more than single precision makes of lengths and of speeds, relative to the greatest.
+/// A generous bound on single-precision rounding errors of lengths and speeds, relative to the largest ones.
 const ROUNDING: f64 = 4e-6;
 
-/// Discs in rings round an agent, from the inside out, by the distances of their centres.
+/// Discs sorted into rings around an agent by the distances of their centers, innermost ring first.
 #[derive(Debug, Default)]
 pub struct Rings {
     rings: [Ring; RINGS],
     ring_of: Vec<u8>,
-    /// The numbers of the discs, ring by ring, and with each ring the last eights filled up with zeros.
+    /// The numbers of the discs, ring by ring; the last eight of each ring is padded with zeros.
     members: Vec<u32>,
     eights: Vec<Eight>,
-    /// The longest D_i + D_j, metres, and the highest speed, m/s.
+    /// The greatest D_i + D_j, meters, and the highest speed, m/s.
     longest_reach: f64,
     highest_speed: f64,
-    /// The farthest centre, metres.
+    /// The distance of the farthest center, meters.
     farthest: f64,
 }
 
-/// The greatest of some discs.
+/// The maxima over some discs.
 #[derive(Default)]
 struct Longest {
     reach: f64,
@@ -49,24 +49,24 @@ struct Longest {
 impl Longest {
     #[inline]
     fn take(&mut self, disc: &MovingDisc, offset_squared: f64) {
-        let greater = |a: f64, b: f64| if b > a { b } else { a }; // nothing here is no number
+        let greater = |a: f64, b: f64| if b > a { b } else { a }; // no NaNs here
         self.reach = greater(self.reach, disc.reach);
         self.speed_squared = greater(self.speed_squared, disc.velocity.norm_squared());
         self.offset_squared = greater(self.offset_squared, offset_squared);
     }
 }
 
-/// Where its discs are.
+/// The position of a ring's discs.
 #[derive(Debug, Default, Clone, Copy)]
 struct Ring {
-    /// The first of its eights.
+    /// The index of its first eight.
     start: usize,
-    /// How many discs.
+    /// The number of discs.
     len: usize,
 }
 
-/// Discs in single precision; in the places that are left, what is never certainly met. Where it is perhaps
-/// met it stands for the first disc, who is then looked at once more.
+/// Eight discs in single precision. Unused lanes hold a disc that is never certainly met. If it is perhaps met, it
+/// stands for disc 0, which is then checked once more.
 #[derive(Debug, Clone, Copy)]
 struct Eight {
     x: [f32; LANES],
@@ -85,7 +85,7 @@ const NOBODY: Eight = Eight {
     gap: [1.0; LANES],
 };
 
-/// Does a ring begin farther away than `seen` metres?
+/// Whether a ring begins farther away than `seen` meters.
 fn is_beyond(ring: usize, seen: f64) -> bool {
     ring as f64 * RING_AREA * (1.0 - ROUNDING) > seen * seen
 }
@@ -96,7 +96,7 @@ fn splat<S: Simd>(simd: S, value: f64) -> f32x8<S> {
 }
 
 impl Rings {
-    /// Sorts discs into rings.
+    /// Sorts `discs` into rings.
     pub fn sort(&mut self, discs: &[MovingDisc]) {
         let mut counts = [0; RINGS];
         let mut longest = Longest::default();
@@ -119,7 +119,7 @@ impl Rings {
         self.place(discs, end);
     }
 
-    /// Puts every disc into its ring, `eights` in all.
+    /// Puts every disc into its ring; `eights` is the number of eights in all rings.
     fn place(&mut self, discs: &[MovingDisc], eights: usize) {
         self.eights.clear();
         self.eights.resize(eights, NOBODY);
@@ -139,7 +139,7 @@ impl Rings {
         }
     }
 
-    /// Is one of the discs certainly met, on the way at `velocity` m/s, before the time `before`, s?
+    /// Whether a disc is certainly met at `velocity` (m/s) before the time `before` (seconds).
     pub fn certainly_met(&self, velocity: Vector, before: f64) -> bool {
         dispatch!(Level::new(), simd => self.certainly_met_by(simd, velocity, before))
     }
@@ -160,7 +160,8 @@ impl Rings {
         false
     }
 
-    /// How many rings there are whose discs may be met before a time in seconds.
+    /// The number of rings, from the innermost, whose discs may be met at `velocity` (m/s) before the time `before`
+    /// (seconds).
     pub fn within(&self, velocity: Vector, before: f64) -> usize {
         let seen = self.seen(velocity, before);
         (0..RINGS)
@@ -168,8 +169,8 @@ impl Rings {
             .count()
     }
 
-    /// Replaces `found` by the numbers of all discs of a ring that are met before the time `before`, s, on
-    /// the way at `velocity`, m/s, and perhaps some others.
+    /// Replaces `found` by the numbers of all discs of a ring that are met at `velocity` (m/s) before the time
+    /// `before` (seconds), and possibly others.
     pub fn perhaps_met(&self, ring: usize, velocity: Vector, before: f64, found: &mut Vec<u32>) {
         found.clear();
         let ring = &self.rings[ring];
@@ -188,7 +189,7 @@ impl Rings {
         let way = Way::new(simd, self, velocity, before, -ROUNDING);
         let members = &self.members[ring.start * LANES..];
         for (eight, members) in self.eights(ring).iter().zip(members.chunks(LANES)) {
-            // Not "below": what is no number is perhaps met.
+            // Not `simd_lt`: a NaN counts as perhaps met.
             let apart = way.lowest(simd, eight).simd_gt(splat(simd, 0.0));
             let mut met = !apart.to_bitmask() & ((1 << LANES) - 1);
             while met != 0 {
@@ -202,29 +203,29 @@ impl Rings {
         &self.eights[ring.start..ring.start + ring.len.div_ceil(LANES)]
     }
 
-    /// Nobody whose centre is farther away is met before, metres.
+    /// The distance of centers, in meters, beyond which no disc is met before the time `before` (seconds).
     fn seen(&self, velocity: Vector, before: f64) -> f64 {
         (velocity.norm() + self.highest_speed) * before + self.longest_reach
     }
 }
 
-/// A way of the agent's own, with what rounding may do.
+/// The agent's motion at a given velocity, with allowances for rounding.
 #[derive(Clone, Copy)]
 struct Way<S: Simd> {
     x: f32x8<S>,
     y: f32x8<S>,
     before: f32x8<S>,
-    /// To be added to |offset|² − reach², offset · w and |w|² at relative velocity w, m², m²/s, m²/s².
+    /// Allowances added to |offset|² − reach² (m²), offset · w (m²/s) and |w|² (m²/s²), at relative velocity w.
     gap: f32x8<S>,
     approach: f32x8<S>,
     squared: f32x8<S>,
-    /// Nobody whose centre is farther away is met, metres.
+    /// The distance of centers, in meters, beyond which no disc is met.
     seen: f64,
 }
 
 impl<S: Simd> Way<S> {
-    /// `rounding`, relative to the largest lengths and speeds, makes contacts later, or, if it is
-    /// negative, earlier than they are.
+    /// `rounding` is relative to the largest lengths and speeds. If positive it makes contacts appear later, if
+    /// negative earlier.
     #[inline(always)]
     fn new(simd: S, rings: &Rings, velocity: Vector, before: f64, rounding: f64) -> Self {
         let fastest = velocity.norm() + rings.highest_speed;
@@ -240,8 +241,7 @@ impl<S: Simd> Way<S> {
         }
     }
 
-    /// The lowest value of F(t) = |offset − w t|² − reach² up to `before`: below zero where there is a
-    /// contact.
+    /// The minimum of F(t) = |offset − w t|² − reach² for 0 ≤ t ≤ `before`: negative if there is a contact.
     #[inline(always)]
     fn lowest(&self, simd: S, eight: &Eight) -> f32x8<S> {
         let wx = self.x - f32x8::from_slice(simd, &eight.velocity_x);

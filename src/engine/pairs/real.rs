@@ -73,8 +73,8 @@ impl Real for f64 {
     }
 }
 
-/// Coordinates are integers modulo 2³². Differences shorter than 2³¹ units are exact anywhere in the plane; longer
-/// differences wrap.
+/// Coordinates are integers modulo 2³². Anywhere in the plane, differences shorter than 2³¹ units are exact before
+/// they are rounded to single precision; longer differences wrap.
 impl Real for f32 {
     type Coordinate = i32;
     type Lanes<S: Simd> = f32x8<S>;
