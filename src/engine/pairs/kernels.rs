@@ -72,7 +72,8 @@ pub fn densities<R: Real, S: Simd>(
     }
 }
 
-/// The sum of the wanted forces of Eqs. 7, 11 and 22, times their coefficients, for each agent of a block.
+/// The forces of Eqs. 7, 11 and 22, times their coefficients, summed for each agent of a block. Forces that are not
+/// wanted must have coefficient 0: they may be skipped.
 #[inline(always)]
 pub fn accelerations<R: Real, S: Simd>(
     simd: S,

@@ -70,7 +70,7 @@ pub enum Packed {
     Mixed(Columns<f32>),
 }
 
-/// The sums that the profiles of a scene read; other sums are not computed.
+/// The sums that the profiles of a scene read; other sums may be skipped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Wanted {
     /// Eq. 11.
