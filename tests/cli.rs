@@ -325,3 +325,23 @@ fn thread_counts_in_the_environment_have_the_bounds_of_the_option() {
         }
     }
 }
+
+/// Breakdowns of 10,000 packed agents, all held at once, would take 350 MB.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_inspection_of_all_agents_holds_one_breakdown_at_a_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("packed.json");
+    let text = r#"{"goal": [50, 50], "grids": [{"min": [0, 0], "max": [29, 29], "columns": 100, "rows": 100}]}"#;
+    std::fs::write(&file, text).unwrap();
+    let within = "ulimit -v 300000; exec \"$0\" inspect \"$1\" --all --json --threads 1";
+    let output = Command::new("sh")
+        .args(["-c", within, PROGRAM, file.to_str().unwrap()])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(
+        program::json(&output)["agents"].as_array().unwrap().len(),
+        10_000
+    );
+}

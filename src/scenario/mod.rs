@@ -52,8 +52,10 @@ mod settings;
 mod shipped;
 mod wall_lists;
 
+#[cfg(feature = "program")]
 pub(crate) use document::read as read_document;
 pub use error::{Problem, ScenarioError};
+#[cfg(feature = "program")]
 pub(crate) use error::{in_plain_words, suggestion};
 pub use need::{Need, TooLarge, in_units};
 pub use nested::NESTED;
