@@ -1,5 +1,7 @@
 //! Symmetries and conservation laws of the forces, on evaluated frames.
 
+use std::sync::Arc;
+
 use crate::common::{
     acceleration, blend, blend_with, breakdown, evaluated, person, polygon, room, scene, vector,
     walker,
@@ -7,6 +9,8 @@ use crate::common::{
 use proptest::prelude::*;
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::forces::own::Force;
+use sandbox::engine::frame::Frame;
 use sandbox::engine::geometry::Polygon;
 use sandbox::engine::math::Vector;
 use sandbox::engine::profile::Terms;
@@ -315,5 +319,63 @@ fn a_wall_pushes_an_agent_on_it_along_its_outward_normal() {
             (push - outward * 200.0 * 0.24).norm() < 1e-3,
             "{k}: {push:?}"
         );
+    }
+}
+
+/// A wind along y that grows with the density, if asked.
+#[derive(Debug)]
+struct Wind {
+    reads_density: bool,
+}
+
+impl Force for Wind {
+    fn name(&self) -> &str {
+        "wind"
+    }
+
+    fn needs_density(&self) -> bool {
+        self.reads_density
+    }
+
+    fn acceleration(&self, frame: &Frame, i: usize) -> Vector {
+        let density = if self.reads_density {
+            frame.fields.density[i]
+        } else {
+            1.0
+        };
+        vector(0.0, 0.25 * density)
+    }
+}
+
+#[test]
+fn a_force_from_outside_the_crate_adds_its_acceleration_in_every_profile() {
+    for name in NAMES {
+        for reads_density in [false, true] {
+            let mut still = scene(vec![room(8.0, 1.0)], blend(name));
+            still.agents = vec![
+                person(vector(3.0, 3.0), vector(9.0, 4.0)),
+                person(vector(3.4, 3.0), vector(9.0, 4.0)),
+            ];
+            let mut windy = still.clone();
+            windy.own_forces.push(Arc::new(Wind { reads_density }));
+            assert!(windy.needs().density || !reads_density);
+            let (still, windy) = (evaluated(still), evaluated(windy));
+            for id in 0..2 {
+                let wind = breakdown(&windy, id).own_forces[0].acceleration;
+                assert_eq!(wind[0], 0.0);
+                assert!(wind[1] > 0.2, "{name}: {wind:?}");
+                let added = acceleration(&windy, id) - acceleration(&still, id);
+                assert!(
+                    (added - Vector::from(wind)).norm() < 1e-12,
+                    "{name}: {added}"
+                );
+                let breakdown = breakdown(&windy, id);
+                let sum = breakdown.weighted_sum();
+                assert!(
+                    (sum - Vector::from(breakdown.acceleration)).norm() < 1e-9,
+                    "{name}"
+                );
+            }
+        }
     }
 }

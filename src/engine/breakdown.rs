@@ -42,6 +42,9 @@ pub struct Breakdown {
     pub acceleration: [f64; 2],
     /// The active profiles with their weights.
     pub profiles: Vec<ProfileShare>,
+    /// The forces from outside this crate.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub own_forces: Vec<OwnForce>,
     /// Agents within the support radius, nearest first.
     pub neighbors: Vec<Neighbor>,
     /// Walls that hide a part of the kernel.
@@ -58,6 +61,15 @@ pub struct ProfileShare {
     /// Its terms, not weighted.
     #[serde(serialize_with = "serialize_terms")]
     pub accelerations: Terms,
+}
+
+/// A force from outside this crate.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OwnForce {
+    /// Its name.
+    pub name: String,
+    /// Its acceleration, m/s².
+    pub acceleration: [f64; 2],
 }
 
 /// An SPH neighbor.
@@ -103,6 +115,11 @@ impl Breakdown {
                 weight,
                 accelerations: profile.terms(&frame, i, changed),
             });
+        let own_forces = simulation.scene().own_forces.iter();
+        let own_forces = own_forces.map(|force| OwnForce {
+            name: force.name().to_owned(),
+            acceleration: force.acceleration(&frame, i).into(),
+        });
         let mut neighbors: Vec<Neighbor> = frame
             .near(i, h)
             .map(|(j, r_ij)| Neighbor {
@@ -126,6 +143,7 @@ impl Breakdown {
             pressure: fields.pressure[i],
             acceleration: fields.acceleration[i].into(),
             profiles: profiles.collect(),
+            own_forces: own_forces.collect(),
             neighbors,
             walls: wall_terms(simulation, i),
         })
@@ -142,12 +160,15 @@ impl Breakdown {
         Self::of(simulation, i)
     }
 
-    /// Σ weight × term over all profiles; equals [`acceleration`](Self::acceleration) up to rounding.
+    /// Σ weight × term over all profiles, and the forces from outside this crate; equals [`acceleration`](Self::acceleration) up to rounding.
     pub fn weighted_sum(&self) -> Vector {
-        self.profiles
-            .iter()
-            .map(|share| share.accelerations.sum() * share.weight)
-            .sum()
+        let own_forces = self.own_forces.iter();
+        let profiles = self.profiles.iter();
+        let profiles = profiles.map(|share| share.accelerations.sum() * share.weight);
+        profiles.sum::<Vector>()
+            + own_forces
+                .map(|force| Vector::from(force.acceleration))
+                .sum::<Vector>()
     }
 }
 

@@ -1,8 +1,11 @@
 //! A scene: everything that is known before the first frame.
 
+use std::sync::Arc;
+
 use crate::engine::agents::NewAgent;
 use crate::engine::boundary::WallMethod;
 use crate::engine::clock::Clock;
+use crate::engine::forces::own::Force;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::geometry::{Polygon, Walls};
 use crate::engine::math::Vector;
@@ -142,6 +145,8 @@ pub struct Scene {
     pub sources: Vec<Source>,
     /// Temporary changes of behavior.
     pub pushes: Vec<Push>,
+    /// Forces from outside this crate.
+    pub own_forces: Vec<Arc<dyn Force>>,
 }
 
 impl Default for Scene {
@@ -162,6 +167,7 @@ impl Default for Scene {
             agents: Vec::new(),
             sources: Vec::new(),
             pushes: Vec::new(),
+            own_forces: Vec::new(),
         }
     }
 }
@@ -198,8 +204,9 @@ impl Scene {
             .groups
             .iter()
             .any(|group| group.blend.depends_on_density());
+        let own = self.own_forces.iter().any(|force| force.needs_density());
         Needs {
-            density: pairs.pressure || pairs.viscosity || blending,
+            density: pairs.pressure || pairs.viscosity || blending || own,
             pairs,
             rvo: self.groups.iter().any(|group| group.blend.rvo().is_some()),
             social: !self.social_forces().is_empty(),
@@ -263,7 +270,7 @@ impl Scene {
 /// What a scene needs, decided once. Everything else is never computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Needs {
-    /// Density, read in every frame by SPH forces or blending.
+    /// Density, read in every frame by SPH forces, blending or forces from outside this crate.
     pub density: bool,
     /// Sums over near neighbors that some profile reads.
     pub pairs: Wanted,

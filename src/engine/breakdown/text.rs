@@ -58,6 +58,9 @@ impl Breakdown {
                 }
             }
         }
+        for force in &self.own_forces {
+            writeln!(f, "  {:<20} {}", force.name, vector(force.acceleration))?;
+        }
         let total = vector(self.acceleration);
         writeln!(f, "    {:<18} {total}", "total (weighted)")
     }

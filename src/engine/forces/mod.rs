@@ -5,6 +5,7 @@
 
 pub mod contact;
 pub mod goal;
+pub mod own;
 pub mod pressure;
 pub mod rvo;
 pub mod social;

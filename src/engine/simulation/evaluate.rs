@@ -268,6 +268,11 @@ impl Simulation {
             let acceleration = &mut acceleration[span.start - from..span.end - from];
             blend.add_accelerations(frame, span, changed, acceleration);
         });
+        for force in &self.scene.own_forces {
+            for (k, acceleration) in acceleration.iter_mut().enumerate() {
+                *acceleration += force.acceleration(frame, from + k);
+            }
+        }
     }
 
     fn block_is_finite(&self, frame: &Frame, b: usize, acceleration: &[Vector]) -> bool {

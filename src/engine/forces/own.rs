@@ -1,0 +1,27 @@
+//! Forces from outside this crate.
+
+use std::fmt::Debug;
+
+use crate::engine::frame::Frame;
+use crate::engine::math::Vector;
+
+/// A force on single agents, in addition to those of their profiles: a slope, a moving walkway, a wind. Add it to
+/// [`Scene::own_forces`](crate::engine::scene::Scene::own_forces); `examples/own_force.rs` shows one.
+///
+/// The force acts on all agents in every frame, whatever their profile or push. It is not part of a checkpoint: add
+/// it again to the scene that a run resumes with.
+pub trait Force: Debug + Send + Sync {
+    /// The name in breakdowns.
+    fn name(&self) -> &str;
+
+    /// Does [`acceleration`](Self::acceleration) read densities or pressures? If so, they are computed in every
+    /// frame.
+    fn needs_density(&self) -> bool {
+        false
+    }
+
+    /// The acceleration of agent `i` of a frozen frame, m/s²: a finite number that depends only on the frame, so
+    /// that the results do not depend on the number of threads. [`Frame::near`] lists neighbors within the radii
+    /// that the scene's profiles search. Accelerations of the frame are not computed yet.
+    fn acceleration(&self, frame: &Frame, i: usize) -> Vector;
+}
