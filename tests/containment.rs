@@ -130,9 +130,9 @@ proptest! {
         // One agent starts on the diagonal to the corner, the other at a random place. Their goals lie far beyond
         // the corner.
         let (sine, cosine) = angle.sin_cos();
-        let centre = middle + vector(cosine - sine, sine + cosine);
+        let center = middle + vector(cosine - sine, sine + cosine);
         let starts = [
-            centre + (target - centre) * (start / 2.0),
+            center + (target - center) * (start / 2.0),
             middle + vector(cosine * start - sine * 0.7, sine * start + cosine * 0.7),
         ];
         let mut scene = scene(vec![ring], blend_with("sf", &none));

@@ -164,10 +164,10 @@ fn densities_requested_between_coarse_frames_include_all_neighbors() {
 
 #[test]
 fn population_and_behavior_have_separate_seeds() {
-    let run = |population: u64, behaviour: u64, frames: u32| {
+    let run = |population: u64, behavior: u64, frames: u32| {
         let mut scene = busy_room("rvo->sph");
         scene.seed = population;
-        scene.behaviour_seed = Some(behaviour);
+        scene.behaviour_seed = Some(behavior);
         simulated(scene, 2, frames)
     };
     let bodies = |simulation: &Simulation| {

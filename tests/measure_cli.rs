@@ -183,7 +183,7 @@ fn invalid_arguments_are_refused_with_the_fix() {
         ),
         (
             vec![&*trajectory, "--from", "99"],
-            "nobody is there from 99 s to inf s; there is somebody from 0 s",
+            "no agents from 99 s to inf s; there are agents from 0 s",
         ),
         (
             vec![&*trajectory, "--cell", "0.001"],

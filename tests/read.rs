@@ -94,7 +94,7 @@ fn columns_follow_the_order_in_the_header() {
 #[test]
 fn options_override_the_file_and_a_note_says_so() {
     let options = ReadOptions {
-        unit: Some(Unit::Centimetre),
+        unit: Some(Unit::Centimeter),
         fps: Some(20.0),
     };
     let text = "# framerate: 10\n# id frame x/m y/m\n1 0 100 50\n";
@@ -113,8 +113,8 @@ fn options_override_the_file_and_a_note_says_so() {
 fn mistakes_are_reported_with_the_line_and_the_fix() {
     let head = "# framerate: 10\n# id frame x/m y/m\n";
     for (name, text, expected) in [
-        ("a.txt", String::new(), "a.txt: there is nobody in it"),
-        ("a.txt", head.to_owned(), "a.txt: there is nobody in it"),
+        ("a.txt", String::new(), "a.txt: it contains no persons"),
+        ("a.txt", head.to_owned(), "a.txt: it contains no persons"),
         (
             "a.txt",
             "1 0 0 0\n".to_owned(),
@@ -263,7 +263,7 @@ fn gaps_empty_frames_and_unusual_steps_are_noted() {
         tracks.notes,
         [
             "1 gap(s) in which a person is missing, the longest 0.30 s; no motion is measured across",
-            "2 frame(s) have nobody in them; they count as empty"
+            "2 frame(s) contain no persons; they count as empty"
         ]
     );
     let tenth = read_text("# framerate: 50\n# in m\n1 10 0 0\n1 15 0 0\n1 20 0 0\n");
@@ -277,13 +277,13 @@ fn centimeters_without_a_unit_give_a_warning() {
         let lines = (0..20).map(|frame| format!("1 {frame} {} 0\n", step * f64::from(frame)));
         "# framerate: 10\n".to_owned() + &lines.collect::<String>()
     };
-    let metres = "no unit is given in the file (x/m or x/cm) or by --unit: metres are taken";
-    assert_eq!(read_text(&walk(0.13)).notes, [metres]);
+    let meters = "no unit is given in the file (x/m or x/cm) or by --unit: meters are taken";
+    assert_eq!(read_text(&walk(0.13)).notes, [meters]);
     assert_eq!(
         read_text(&walk(13.0)).notes,
         [
-            metres,
-            "half of all steps are faster than 10 m/s; are these centimetres? then give --unit cm"
+            meters,
+            "half of all steps are faster than 10 m/s; are these centimeters? then give --unit cm"
         ]
     );
 }

@@ -8,7 +8,7 @@ use sandbox::engine::math::Vector;
 use sandbox::engine::scene::{Group, Region, Scene};
 use sandbox::engine::simulation::Simulation;
 use sandbox::output::recording::{
-    DebugAgents, METRES_PER_ACCELERATION, Recorder, Recording, RecordingError, RecordingOptions,
+    DebugAgents, METERS_PER_ACCELERATION, Recorder, Recording, RecordingError, RecordingOptions,
 };
 use sandbox::scenario::catalog::{self, Parameters};
 
@@ -132,7 +132,7 @@ fn ids_and_radii_are_logged_whenever_the_crowd_changes() {
 fn the_force_arrows_of_every_debug_agent_sum_to_the_total() {
     for profile in ["sf->sph", "rvo+sph"] {
         let (recording, _) = record(profile, DebugAgents::All, true, 20);
-        let unit = METRES_PER_ACCELERATION;
+        let unit = METERS_PER_ACCELERATION;
         let folder = "/world/debug/forces/";
         let mut sums: BTreeMap<(i64, [u64; 2]), Vector> = BTreeMap::new();
         let mut totals = sums.clone();

@@ -325,11 +325,11 @@ fn a_choice_is_held_for_five_frames() {
 fn a_choice_exists_only_while_its_weight_is_positive() {
     // A dense block with more than 4 P/m² that disperses.
     let mut scene = scene(Vec::new(), blend("rvo->sph"));
-    let centre = vector(1.8, 1.8);
-    scene.agents = block(Vector::zeros(), 10, 10, 0.4, centre);
+    let center = vector(1.8, 1.8);
+    scene.agents = block(Vector::zeros(), 10, 10, 0.4, center);
     for agent in &mut scene.agents {
-        agent.velocity = (agent.position - centre) * 0.6;
-        agent.goal = centre + (agent.position - centre) * 40.0;
+        agent.velocity = (agent.position - center) * 0.6;
+        agent.goal = center + (agent.position - center) * 40.0;
     }
     let mut simulation = Simulation::new(scene).unwrap();
     let (mut in_between, mut before) = (0, vec![None; 100]);

@@ -43,13 +43,13 @@ impl Grid {
             (0..self.rows).flat_map(|row| (0..self.columns).map(move |column| (column, row)));
         cells.zip(first_id..).map(move |((column, row), id)| {
             let step = Vector::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
-            let centre = self.min + cell.component_mul(&step);
+            let center = self.min + cell.component_mul(&step);
             if self.jitter == 0.0 {
-                return centre;
+                return center;
             }
             let mut rng = random::stream(seed, Purpose::Placement, id, 0);
             let mut shift = || rng.random_range(-self.jitter..=self.jitter);
-            centre + Vector::new(shift(), shift())
+            center + Vector::new(shift(), shift())
         })
     }
 }

@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_beyond_the_range_have_the_colours_of_its_ends() {
+    fn values_beyond_the_range_have_the_colors_of_its_ends() {
         assert_eq!(DENSITY.color(-1.0), DENSITY.color(0.0));
         assert_eq!(DENSITY.color(1e9), DENSITY.color(8.0));
         assert_eq!(SPEED.color(f32::NAN), SPEED.color(0.0));

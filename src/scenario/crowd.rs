@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::error::{Problem, Under};
-use super::file::{self, Behaviour, File, Object, ProfileChoice};
+use super::file::{self, Behavior, File, Object, ProfileChoice};
 use super::parameters::DENSITY;
 use super::profiles;
 use super::range::{self, COORDINATE, Range, point};
@@ -89,7 +89,7 @@ impl<'a> Crowd<'a> {
             Some(goal) => point("goal", goal)?,
             None => self.default_goal()?,
         };
-        let group = self.shared_group(&agent.behaviour())?;
+        let group = self.shared_group(&agent.behavior())?;
         self.scene.agents.push(NewAgent {
             velocity: [x, y].into(),
             radius: RADIUS.check_given("radius", agent.radius)?,
@@ -103,7 +103,7 @@ impl<'a> Crowd<'a> {
     fn grid(&mut self, given: &file::Grid, place: &str) -> Result<(), Problem> {
         let (grid, goal) = self.placed(given)?;
         let name = given.name.as_deref().unwrap_or(place);
-        let group = self.group(name, &given.behaviour())?;
+        let group = self.group(name, &given.behavior())?;
         let first_id = self.scene.agents.len() as u32;
         let agents = grid.positions(self.scene.seed, first_id).map(|position| {
             let goal = match goal {
@@ -122,7 +122,7 @@ impl<'a> Crowd<'a> {
         let source = Source {
             name: name.to_owned(),
             grid,
-            group: self.group(name, &given.grid().behaviour())?,
+            group: self.group(name, &given.grid().behavior())?,
             goal,
             start: given.start_secs,
             every: given.every_secs,
@@ -185,22 +185,18 @@ impl<'a> Crowd<'a> {
     }
 
     /// The group of single agents with this behavior; creates it if needed.
-    fn shared_group(&mut self, behaviour: &Behaviour) -> Result<u16, Problem> {
-        let key = serde_json::json!([
-            behaviour.profile,
-            behaviour.remove_within,
-            behaviour.counted,
-        ])
-        .to_string();
+    fn shared_group(&mut self, behavior: &Behavior) -> Result<u16, Problem> {
+        let key = serde_json::json!([behavior.profile, behavior.remove_within, behavior.counted,])
+            .to_string();
         if let Some(&group) = self.shared.get(&key) {
             return Ok(group);
         }
-        let group = self.group("agents", behaviour)?;
+        let group = self.group("agents", behavior)?;
         self.shared.insert(key, group);
         Ok(group)
     }
 
-    fn group(&mut self, name: &str, behaviour: &Behaviour) -> Result<u16, Problem> {
+    fn group(&mut self, name: &str, behavior: &Behavior) -> Result<u16, Problem> {
         if name.is_empty() {
             return Err(Problem::new("name", "must not be empty"));
         }
@@ -211,7 +207,7 @@ impl<'a> Crowd<'a> {
             );
             return Err(Problem::new("", reason));
         }
-        let choice: Option<&ProfileChoice> = behaviour.profile.as_ref();
+        let choice: Option<&ProfileChoice> = behavior.profile.as_ref();
         if let Some(ProfileChoice::Custom(_)) = choice {
             self.custom.insert(serde_json::json!(choice).to_string());
             if self.custom.len() > MOST_CUSTOM {
@@ -225,12 +221,12 @@ impl<'a> Crowd<'a> {
             None => self.default.clone(),
             Some(choice) => profiles::blend(choice, &self.file.parameters.0).under("profile")?,
         };
-        let removal_radius = DISTANCE.check_given("remove_within", behaviour.remove_within)?;
+        let removal_radius = DISTANCE.check_given("remove_within", behavior.remove_within)?;
         Ok(self.scene.add_group(Group {
             name: name.to_owned(),
             blend,
             removal_radius,
-            counted: behaviour.counted.unwrap_or(true),
+            counted: behavior.counted.unwrap_or(true),
         }))
     }
 }

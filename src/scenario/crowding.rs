@@ -48,8 +48,8 @@ pub(super) fn check(file: &File, scene: &Scene, duration_secs: f64) -> Result<()
             jitter: 0.0,
             ..source.grid
         };
-        let centres: Vec<Vector> = grid.positions(scene.seed, 0).collect();
-        if let Some((_, reason)) = locked(&scene.walls, &centres) {
+        let centers: Vec<Vector> = grid.positions(scene.seed, 0).collect();
+        if let Some((_, reason)) = locked(&scene.walls, &centers) {
             return Err(Problem::new(format!("sources[{k}]"), reason));
         }
     }

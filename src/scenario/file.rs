@@ -127,7 +127,7 @@ impl Visitor<'_> for TimeStepVisitor {
 
 /// The keys about behavior and removal that agents, grids and sources share.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Behaviour {
+pub(super) struct Behavior {
     pub profile: Option<ProfileChoice>,
     pub remove_within: Option<f64>,
     pub counted: Option<bool>,
@@ -189,8 +189,8 @@ pub(super) struct Source {
 }
 
 impl Agent {
-    pub(super) fn behaviour(&self) -> Behaviour {
-        Behaviour {
+    pub(super) fn behavior(&self) -> Behavior {
+        Behavior {
             profile: self.profile.clone(),
             remove_within: self.remove_within,
             counted: self.counted,
@@ -199,8 +199,8 @@ impl Agent {
 }
 
 impl Grid {
-    pub(super) fn behaviour(&self) -> Behaviour {
-        Behaviour {
+    pub(super) fn behavior(&self) -> Behavior {
+        Behavior {
             profile: self.profile.clone(),
             remove_within: self.remove_within,
             counted: self.counted,

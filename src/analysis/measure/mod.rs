@@ -139,7 +139,7 @@ pub struct Measured {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeasureError {
     /// No frame is in the requested time.
-    #[error("nobody is there from {0} s to {1} s; there is somebody from {2} s to {3} s")]
+    #[error("no agents from {0} s to {1} s; there are agents from {2} s to {3} s")]
     Nobody(f64, f64, f64, f64),
     /// Too many cells.
     #[error("fields would have more than {MOST_CELLS} cells of {0} m; give a larger --cell")]

@@ -43,7 +43,7 @@ impl Display for Breakdown {
         let near = self.neighbors.iter();
         let near = near.map(|neighbor| format!("{} ({:.3} m)", neighbor.id, neighbor.distance));
         let near: Vec<String> = near.collect();
-        writeln!(f, "  {} neighbours: {}", near.len(), near.join(", "))
+        writeln!(f, "  {} neighbors: {}", near.len(), near.join(", "))
     }
 }
 

@@ -85,7 +85,7 @@ impl<R: Real> Columns<R> {
 
     /// For each block of agents, the slices that take its positions and velocities.
     pub fn motions(&mut self) -> impl IndexedParallelIterator<Item = Motion<'_, R>> {
-        let per_metre = 1.0 / self.unit;
+        let per_meter = 1.0 / self.unit;
         (
             self.x.par_chunks_mut(BLOCK),
             self.y.par_chunks_mut(BLOCK),
@@ -94,7 +94,7 @@ impl<R: Real> Columns<R> {
         )
             .into_par_iter()
             .map(move |(x, y, velocity_x, velocity_y)| Motion {
-                per_metre,
+                per_meter,
                 x,
                 y,
                 velocity_x,
@@ -170,7 +170,7 @@ impl<R: Real> Bodies<'_, R> {
 
 /// The slices that take the positions and velocities of a block of agents.
 pub struct Motion<'a, R: Real> {
-    per_metre: f64,
+    per_meter: f64,
     x: &'a mut [R::Coordinate],
     y: &'a mut [R::Coordinate],
     velocity_x: &'a mut [R],
@@ -181,8 +181,8 @@ impl<R: Real> Motion<'_, R> {
     /// Packs the positions (meters) and velocities (m/s) of the block's agents.
     pub fn take(&mut self, positions: &[Vector], velocities: &[Vector]) {
         for (k, (r, v)) in positions.iter().zip(velocities).enumerate() {
-            self.x[k] = R::coordinate(r.x, self.per_metre);
-            self.y[k] = R::coordinate(r.y, self.per_metre);
+            self.x[k] = R::coordinate(r.x, self.per_meter);
+            self.y[k] = R::coordinate(r.y, self.per_meter);
             self.velocity_x[k] = R::of(v.x);
             self.velocity_y[k] = R::of(v.y);
         }

@@ -24,8 +24,8 @@ pub trait Real: SimdFloatElement + Copy + Default + Send + Sync + 'static {
     /// The number in double precision, exactly.
     fn double(self) -> f64;
 
-    /// `metres` in coordinate units, `per_metre` of which make a meter.
-    fn coordinate(metres: f64, per_metre: f64) -> Self::Coordinate;
+    /// `meters` in coordinate units, `per_meter` of which make a meter.
+    fn coordinate(meters: f64, per_meter: f64) -> Self::Coordinate;
 
     /// Loads the first [`LANES`] coordinates of `places`.
     fn places<S: Simd>(simd: S, places: &[Self::Coordinate]) -> Self::Places<S>;
@@ -53,8 +53,8 @@ impl Real for f64 {
         self
     }
 
-    fn coordinate(metres: f64, per_metre: f64) -> f64 {
-        metres * per_metre
+    fn coordinate(meters: f64, per_meter: f64) -> f64 {
+        meters * per_meter
     }
 
     #[inline(always)]
@@ -90,8 +90,8 @@ impl Real for f32 {
         f64::from(self)
     }
 
-    fn coordinate(metres: f64, per_metre: f64) -> i32 {
-        (metres * per_metre) as i64 as i32
+    fn coordinate(meters: f64, per_meter: f64) -> i32 {
+        (meters * per_meter) as i64 as i32
     }
 
     #[inline(always)]

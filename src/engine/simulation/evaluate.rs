@@ -301,10 +301,10 @@ impl Simulation {
         agents: Range<usize>,
         mut take: impl FnMut(Range<usize>, &Blend, Option<&Override>),
     ) {
-        let behaviour = |i: usize| (self.agents.group[i], self.agents.push[i]);
+        let behavior = |i: usize| (self.agents.group[i], self.agents.push[i]);
         let mut start = agents.start;
         while start < agents.end {
-            let same = |&i: &usize| behaviour(i) == behaviour(start);
+            let same = |&i: &usize| behavior(i) == behavior(start);
             let end = (start + 1..agents.end)
                 .find(|i| !same(i))
                 .unwrap_or(agents.end);

@@ -23,7 +23,7 @@ use crate::output::table::Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "skips",
-    about: "what not computing what nobody needs saves, at the busiest stretch of each shipped scenario",
+    about: "what each skipped computation saves, at the busiest stretch of each shipped scenario",
     run,
 };
 
@@ -81,7 +81,7 @@ const LISTING: &[Stage] = &[Stage::Sort, Stage::Neighbors];
 pub const SKIPS: [Skip; 8] = [
     Skip {
         name: "density",
-        about: "density and pressure where nobody reads them",
+        about: "density and pressure where nothing reads them",
         undone: Undone::Needs(Needs {
             density: true,
             ..NOTHING
@@ -97,7 +97,7 @@ pub const SKIPS: [Skip; 8] = [
     },
     Skip {
         name: "far walls",
-        about: "lists of the walls within 5 m where nobody avoids",
+        about: "lists of the walls within 5 m where no agent avoids",
         undone: Undone::Needs(Needs {
             avoidance: Some(AVOIDANCE),
             ..NOTHING
@@ -105,7 +105,7 @@ pub const SKIPS: [Skip; 8] = [
     },
     Skip {
         name: "arrivals",
-        about: "looking who has arrived where nobody leaves",
+        about: "the search for arrivals where no agent leaves",
         undone: Undone::Needs(Needs {
             removal: true,
             ..NOTHING
@@ -121,7 +121,7 @@ pub const SKIPS: [Skip; 8] = [
     },
     Skip {
         name: "lists kept",
-        about: "sorting and listing in every frame, rather than when somebody moved half the skin",
+        about: "sorting and listing in every frame, rather than when an agent has moved half the skin",
         undone: Undone::Work {
             instead_of: LISTING,
             begin: || Box::new(KeptLists::every_frame()),

@@ -190,7 +190,7 @@ fn table(rows: &[Row]) -> Table {
     ];
     head.extend([
         "sort",
-        "neighbours",
+        "neighbors",
         "density",
         "preferred",
         "rvo",

@@ -159,7 +159,7 @@ fn map_table(cells: &[Cell]) -> String {
 
 fn hard_table(hard: &[(&str, Survival)]) -> String {
     let mut text = "| case | what it is | passed | agents | frames | through a wall | stopped at a wall | speeds cut | \
-                    put out of obstacles | nearest centres [D_i + D_j] |\n|---|---|---|---|---|---|---|---|---|---|\n"
+                    put out of obstacles | nearest centers [D_i + D_j] |\n|---|---|---|---|---|---|---|---|---|---|\n"
         .to_owned();
     for (name, survival) in hard {
         let found = &survival.found;
@@ -187,7 +187,7 @@ fn hard_table(hard: &[(&str, Survival)]) -> String {
 fn jitter_table(jitter: &[(Variant, Jitter)]) -> String {
     let mut text =
         "| crowd | energy before the push [m²/s²] | after it | inside | rim | density [P/m²] | \
-                    nearest centres [D_i + D_j] |\n|---|---|---|---|---|---|---|\n"
+                    nearest centers [D_i + D_j] |\n|---|---|---|---|---|---|---|\n"
             .to_owned();
     for (variant, jitter) in jitter {
         let _ = writeln!(

@@ -190,10 +190,10 @@ fn goals(scene: &Scene, agents: &Agents) -> Vec<(Vector, BTreeSet<u16>)> {
         };
         goals.into_iter().map(|goal| (goal, source.group))
     });
-    let millimetres = |x: f64| (x * 1000.0).round() as i64;
+    let millimeters = |x: f64| (x * 1000.0).round() as i64;
     let mut different = BTreeMap::new();
     for (goal, group) in own.chain(entering) {
-        let place = (millimetres(goal.x), millimetres(goal.y));
+        let place = (millimeters(goal.x), millimeters(goal.y));
         let (_, groups) = different.entry(place).or_insert((goal, BTreeSet::new()));
         groups.insert(group);
     }

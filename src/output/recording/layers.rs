@@ -16,7 +16,7 @@ use crate::engine::scene::Scene;
 const MOST_LABELS: usize = 40;
 
 /// Length of an arrow in meters per m/s² of acceleration: 0.5 m for the goal force of an average person at rest.
-pub const METRES_PER_ACCELERATION: f64 = 0.2;
+pub const METERS_PER_ACCELERATION: f64 = 0.2;
 
 /// One entity under `world/debug`.
 struct Layer {
@@ -97,7 +97,7 @@ impl Layers {
     /// Logs one frame. A layer that has just become empty is logged as empty, so that it disappears from view.
     pub fn log(&mut self, stream: &RecordingStream, open: &[Open]) -> Result<(), Cause> {
         for layer in &mut self.layers {
-            let (data, count) = layer.kind.data(open, METRES_PER_ACCELERATION);
+            let (data, count) = layer.kind.data(open, METERS_PER_ACCELERATION);
             if count > 0 || layer.shown {
                 stream.log(layer.entity.as_str(), data.as_ref())?;
             }

@@ -32,7 +32,7 @@ mod writer;
 
 pub use debug::DebugAgents;
 pub use error::RecordingError;
-pub use layers::METRES_PER_ACCELERATION;
+pub use layers::METERS_PER_ACCELERATION;
 pub use measured::{MeasuredPerson, MeasuredRecorder};
 pub use output::{Destination, check_enabled};
 pub use read::Recording;

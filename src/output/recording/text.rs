@@ -6,7 +6,7 @@ use rerun::external::arrow::array::{ArrayRef, Float64Array, StringArray, UInt64A
 use rerun::{AnyValues, RecordingStream, TextDocument};
 
 use super::error::Cause;
-use super::layers::{METRES_PER_ACCELERATION, force_colors};
+use super::layers::{METERS_PER_ACCELERATION, force_colors};
 use super::{DebugAgents, RecordingOptions};
 use crate::engine::scene::Scene;
 use crate::output::colors::{DENSITY_RANGE, SPEED_RANGE};
@@ -18,8 +18,8 @@ pub fn log_measurement(stream: &RecordingStream, options: &RecordingOptions) -> 
     let text = format!(
         "# {}\n\n{}\n\n\
          ## Legend\n\
-         * Metres, seconds, y up. (The viewer's own *hover position* counts y down.)\n{}\
-         * Click somebody: `agent:id`, `agent:density` in P/m² (three digits).\n\n{}\n",
+         * Meters, seconds, y up. (The viewer's own *hover position* counts y down.)\n{}\
+         * Click an agent: `agent:id`, `agent:density` in P/m² (three digits).\n\n{}\n",
         options.title,
         options.description,
         color_legend(),
@@ -34,8 +34,8 @@ pub fn log_measurement(stream: &RecordingStream, options: &RecordingOptions) -> 
 /// The legend of the density and speed colors.
 fn color_legend() -> String {
     format!(
-        "* Density colours (viridis): dark purple 0, green {:.0}, yellow {DENSITY_RANGE} P/m² and more.\n\
-         * Speed colours (inferno): black 0, red {:.1}, pale yellow {SPEED_RANGE} m/s and more.\n",
+        "* Density colors (viridis): dark purple 0, green {:.0}, yellow {DENSITY_RANGE} P/m² and more.\n\
+         * Speed colors (inferno): black 0, red {:.1}, pale yellow {SPEED_RANGE} m/s and more.\n",
         0.6 * DENSITY_RANGE,
         0.5 * SPEED_RANGE,
     )
@@ -75,7 +75,7 @@ pub fn log_document(
 fn legend(options: &RecordingOptions) -> String {
     let mut legend = format!(
         "## Legend\n\
-         * Metres, seconds, y up; mass 1 = an average person. (The viewer's own *hover position* counts \
+         * Meters, seconds, y up; mass 1 = an average person. (The viewer's own *hover position* counts \
          y down.)\n{}\
          * Click an agent: `agent:id`, `agent:density` ρ and `agent:rest_density` ρ⁰ in P/m² (three \
          digits), `agent:pressure` p = k (ρ − ρ⁰).\n\
@@ -87,7 +87,7 @@ fn legend(options: &RecordingOptions) -> String {
         legend += &format!(
             "* Agents laid open (`world/debug`): circle = kernel of radius h; tinted outline = hidden \
              region P_k behind a wall; dots at walls = nearest point r*, between = representative point \
-             r°. Arrows: each force's weighted acceleration, {METRES_PER_ACCELERATION} m long per m/s²; \
+             r°. Arrows: each force's weighted acceleration, {METERS_PER_ACCELERATION} m long per m/s²; \
              white = their sum.\n"
         );
         for (name, color) in force_colors() {

@@ -64,7 +64,7 @@ fn sheet(scene: &Scene, snapshots: &[(&str, Snapshot)]) -> Sheet {
         panel
     };
     Sheet {
-        title: format!("Fig. 6: crossing and bottleneck after {AT_SECS} s, coloured by speed"),
+        title: format!("Fig. 6: crossing and bottleneck after {AT_SECS} s, colored by speed"),
         columns: 2,
         panel_size: stage.panel_size(330.0),
         shared_axes: true,

@@ -96,7 +96,7 @@ fn sheet(scene: &Scene, snapshots: &[(Panel, Snapshot)]) -> Sheet {
         stage.panel(&title, snapshot, Coloring::Density)
     };
     Sheet {
-        title: format!("Fig. 5: evacuation after {AT_SECS} s, coloured by density"),
+        title: format!("Fig. 5: evacuation after {AT_SECS} s, colored by density"),
         columns: 6,
         panel_size: stage.panel_size(132.0),
         shared_axes: true,

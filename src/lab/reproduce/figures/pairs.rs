@@ -19,7 +19,7 @@ pub const FIG8_PRODUCT: Product = Product {
     in_all: true,
     cases: |_| Ok(FIG8.iter().map(case).collect()),
     write: |_, results, store| {
-        let title = "Fig. 8: static and dynamic rest density at t = 150 s, coloured by speed";
+        let title = "Fig. 8: static and dynamic rest density at t = 150 s, colored by speed";
         write(FIG8, title, "fig8", results, store)
     },
 };
@@ -31,7 +31,7 @@ pub const FIG10_PRODUCT: Product = Product {
     in_all: true,
     cases: |_| Ok(FIG10.iter().map(case).collect()),
     write: |_, results, store| {
-        let title = "Fig. 10: without and with contact at t = 150 s, coloured by speed";
+        let title = "Fig. 10: without and with contact at t = 150 s, colored by speed";
         write(FIG10, title, "fig10", results, store)
     },
 };

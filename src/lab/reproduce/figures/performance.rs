@@ -31,7 +31,7 @@ const PAPER: [[f64; 2]; 2] = [[10_000.0, 4.94], [30_000.0, 18.57]];
 fn task(stage: Stage) -> &'static str {
     match stage {
         Stage::Sort => "1 sorting (paper: kd-tree)",
-        Stage::Neighbors => "2 neighbours",
+        Stage::Neighbors => "2 neighbors",
         Stage::PreferredVelocity => "3 preferred velocity",
         Stage::DensityAndPressure => "4 density and pressure",
         Stage::Acceleration => "5 acceleration",

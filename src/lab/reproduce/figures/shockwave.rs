@@ -19,7 +19,7 @@ pub const FIG7_PRODUCT: Product = Product {
     in_all: true,
     cases: |_| Ok(FIG7.iter().map(case).collect()),
     write: |_, results, store| {
-        let title = "Fig. 7: the shockwave, coloured by speed";
+        let title = "Fig. 7: the shockwave, colored by speed";
         write(&FIG7, title, "fig7", results, store)
     },
 };
@@ -31,7 +31,7 @@ pub const FIG9_PRODUCT: Product = Product {
     in_all: true,
     cases: |_| Ok(FIG9.iter().map(case).collect()),
     write: |_, results, store| {
-        let title = "Fig. 9: the shockwave without SPH, coloured by speed";
+        let title = "Fig. 9: the shockwave without SPH, colored by speed";
         write(&FIG9, title, "fig9", results, store)
     },
 };

@@ -87,7 +87,7 @@ pub const AVOIDING: [Variant; 9] = [
     set("1000 candidates", &[("candidates", "1000")]),
     set("50 candidates", &[("candidates", "50")]),
     set("w = 0.5", &[("collision_weight", "0.5")]),
-    set("neighbours within 2.5 m", &[("avoidance_radius", "2.5")]),
+    set("neighbors within 2.5 m", &[("avoidance_radius", "2.5")]),
     set("RVO in every fine frame", &[("coarse_every", "1")]),
     EULER,
     WALLS[0],

@@ -183,12 +183,12 @@ mod tests {
         let (columns, unit) = Columns::named(&names).unwrap().unwrap();
         assert_eq!(
             (columns, unit),
-            (Columns::default(), Some(Unit::Centimetre))
+            (Columns::default(), Some(Unit::Centimeter))
         );
         let (turned, unit) = Columns::named(&["y[m]", "x[m]", "frame", "id"])
             .unwrap()
             .unwrap();
-        assert_eq!(unit, Some(Unit::Metre));
+        assert_eq!(unit, Some(Unit::Meter));
         let entry = turned.entry(&["2", "1", "7.0", "3"], 1).unwrap();
         assert_eq!((entry.id, entry.frame), (3, 7));
         assert_eq!(entry.position, Vector::new(1.0, 2.0));

@@ -31,25 +31,25 @@ pub const FRAME_RATES: RangeInclusive<f64> = 1e-6..=1e6;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
     /// Meters.
-    Metre,
+    Meter,
     /// Centimeters.
-    Centimetre,
+    Centimeter,
 }
 
 impl Unit {
     /// Its length in meters.
-    pub fn metres(self) -> f64 {
+    pub fn meters(self) -> f64 {
         match self {
-            Self::Metre => 1.0,
-            Self::Centimetre => 0.01,
+            Self::Meter => 1.0,
+            Self::Centimeter => 0.01,
         }
     }
 
     /// The unit called `name`.
     pub fn named(name: &str) -> Option<Self> {
         match name {
-            "m" => Some(Self::Metre),
-            "cm" => Some(Self::Centimetre),
+            "m" => Some(Self::Meter),
+            "cm" => Some(Self::Centimeter),
             _ => None,
         }
     }

@@ -33,7 +33,7 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
     }
     let has_mass = columns.iter().any(|name| name == "mass");
     let mut contents = Contents {
-        unit: Some(Unit::Metre),
+        unit: Some(Unit::Meter),
         has_mass,
         fps: frames_per_second(&connection, options).map_err(|what| ReadError::file(path, what))?,
         walkable: walkable(&connection).map_err(failed)?,

@@ -76,8 +76,8 @@ fn heed(
     let unit = words
         .windows(2)
         .find_map(|pair| match (pair[0].as_str(), pair[1].as_str()) {
-            ("in", "cm" | "centimeters" | "centimetres") => Some(Unit::Centimetre),
-            ("in", "m" | "meters" | "metres") => Some(Unit::Metre),
+            ("in", "cm" | "centimeters" | "centimetres") => Some(Unit::Centimeter),
+            ("in", "m" | "meters" | "metres") => Some(Unit::Meter),
             _ => None,
         });
     contents.unit = contents.unit.or(unit);
@@ -121,7 +121,7 @@ pub fn read_csv(path: &Path, file: impl Read, options: &ReadOptions) -> Result<T
     let (columns, unit) = found.map_err(head)?;
     let mut contents = Contents {
         // The sandbox's own columns are in meters.
-        unit: unit.or(names.contains(&"pos_x").then_some(Unit::Metre)),
+        unit: unit.or(names.contains(&"pos_x").then_some(Unit::Meter)),
         has_mass: columns.mass.is_some(),
         place: "line",
         ..Contents::default()

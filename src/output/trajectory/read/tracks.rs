@@ -106,7 +106,7 @@ impl Tracks {
     ) -> Result<Self, ReadError> {
         let mut notes = std::mem::take(&mut contents.notes);
         if contents.entries.is_empty() {
-            return Err(ReadError::file(path, "there is nobody in it"));
+            return Err(ReadError::file(path, "it contains no persons"));
         }
         if u32::try_from(contents.entries.len()).is_err() {
             return Err(ReadError::file(
@@ -116,8 +116,8 @@ impl Tracks {
         }
         let fps = frame_rate(path, &contents, options, &mut notes)?;
         let unit = unit(&contents, options, &mut notes);
-        let metres = unit.unwrap_or(Unit::Metre).metres();
-        let in_metres = |v: Vector| if metres == 1.0 { v } else { v * metres };
+        let meters = unit.unwrap_or(Unit::Meter).meters();
+        let in_meters = |v: Vector| if meters == 1.0 { v } else { v * meters };
         let place = contents.place;
         let refused = |line: u64, problem: String| match place {
             "line" => ReadError::line(path, line, problem),
@@ -125,7 +125,7 @@ impl Tracks {
         };
         let mut entries = std::mem::take(&mut contents.entries);
         for entry in &entries {
-            let checked = entry.check(in_metres(entry.position));
+            let checked = entry.check(in_meters(entry.position));
             checked.map_err(|problem| refused(entry.line, problem))?;
         }
         entries.par_sort_unstable_by_key(|entry| (entry.frame, entry.id, entry.line));
@@ -152,7 +152,7 @@ impl Tracks {
             person,
             position: entries
                 .iter()
-                .map(|entry| in_metres(entry.position))
+                .map(|entry| in_meters(entry.position))
                 .collect(),
             mass: masses.unwrap_or_default(),
             walkable: contents.walkable,
@@ -181,12 +181,12 @@ impl Tracks {
         let empty = tracks.span() - tracks.frames.len() as u64;
         if empty > 0 {
             notes.push(format!(
-                "{empty} frame(s) have nobody in them; they count as empty"
+                "{empty} frame(s) contain no persons; they count as empty"
             ));
         }
         if contents.unit.is_none() && options.unit.is_none() && tracks.median_speed() > TOO_FAST {
             notes.push(format!(
-                "half of all steps are faster than {TOO_FAST} m/s; are these centimetres? then give --unit cm"
+                "half of all steps are faster than {TOO_FAST} m/s; are these centimeters? then give --unit cm"
             ));
         }
         tracks.notes = notes;
@@ -343,7 +343,7 @@ fn frame_rate(
 fn unit(contents: &Contents, options: &ReadOptions, notes: &mut Vec<String>) -> Option<Unit> {
     match (options.unit, contents.unit) {
         (Some(given), Some(own)) if given != own => {
-            let name = |unit| if unit == Unit::Metre { "m" } else { "cm" };
+            let name = |unit| if unit == Unit::Meter { "m" } else { "cm" };
             let (given_name, own_name) = (name(given), name(own));
             notes.push(format!(
                 "--unit {given_name} is taken, not the file's own {own_name}"
@@ -353,7 +353,7 @@ fn unit(contents: &Contents, options: &ReadOptions, notes: &mut Vec<String>) -> 
         (Some(unit), _) | (None, Some(unit)) => Some(unit),
         (None, None) => {
             notes.push(
-                "no unit is given in the file (x/m or x/cm) or by --unit: metres are taken"
+                "no unit is given in the file (x/m or x/cm) or by --unit: meters are taken"
                     .to_owned(),
             );
             None
