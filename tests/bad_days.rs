@@ -6,6 +6,7 @@ use std::fs::{self, File};
 use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Output};
+use std::time::Duration;
 
 use crate::common::program::{self, PROGRAM, json, start_and_wait, stderr, stop_with, text};
 
@@ -250,11 +251,24 @@ fn finished_cases_are_kept_and_counted_when_a_result_cannot_be_written() {
         out,
     ];
     let place = folder.path().join("accuracy.md");
+    let cases = folder.path().join("cases");
+    let finished = || fs::read_dir(&cases).map_or(0, Iterator::count);
+    // In the way from the start: refused before anything is computed.
     fs::create_dir(&place).unwrap();
     let said = only_error(&run, &program::run(&run));
     assert!(said.contains(text(&place)), "{said}");
-    let cases = folder.path().join("cases");
-    let count = fs::read_dir(&cases).unwrap().count();
+    assert_eq!(finished(), 0);
+    fs::remove_dir(&place).unwrap();
+    // In the way from the first finished case on: named at the end.
+    let mut child = start_and_wait(&run, &[]);
+    while finished() == 0 {
+        assert_eq!(child.try_wait().unwrap(), None, "the run has ended");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    fs::create_dir(&place).unwrap();
+    let said = only_error(&run, &child.wait_with_output().unwrap());
+    assert!(said.contains(text(&place)), "{said}");
+    let count = finished();
     assert!(count > 0, "{said}");
     let kept = format!("; {count} finished case(s) are kept in {}", text(&cases));
     assert!(said.ends_with(&kept), "{said}");

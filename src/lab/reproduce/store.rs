@@ -12,6 +12,9 @@ use crate::runs::outputs::{try_folder, write_whole};
 use crate::scenario::input::{self, LONGEST_TEXT};
 use crate::scenario::quote::shown_message;
 
+/// The extensions of results.
+const RESULTS: [&str; 5] = ["md", "csv", "json", "svg", "png"];
+
 /// A folder with the finished cases in `cases/`, and the products made from them beside it.
 #[derive(Debug, Clone)]
 pub struct Store {
@@ -43,13 +46,22 @@ impl Store {
     /// Opens `folder`; creates it if it does not exist.
     ///
     /// # Errors
-    /// It cannot be created or written to.
+    /// It cannot be created or written to, or a folder in it has the name of a result.
     pub fn open(folder: &Path) -> Result<Self, ReproduceError> {
         let store = Self::at(folder);
         let cases = store.cases();
         // Check this now rather than when the first case is finished.
-        let writable = fs::create_dir_all(&cases).and_then(|()| try_folder(&cases));
+        let writable = fs::create_dir_all(&cases)
+            .and_then(|()| try_folder(folder))
+            .and_then(|()| try_folder(&cases));
         writable.map_err(|error| store.unwritable(folder, &error))?;
+        for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+            let path = entry.path();
+            let extension = path.extension().and_then(|extension| extension.to_str());
+            if extension.is_some_and(|extension| RESULTS.contains(&extension)) && path.is_dir() {
+                return Err(store.unwritable(&path, &io::Error::other("it is a folder")));
+            }
+        }
         Ok(store)
     }
 
