@@ -40,7 +40,7 @@ fn missing_density(mut simulation: Simulation) -> (usize, f64) {
                 .map(|(m, r)| m * kernel::density((place - r).norm_squared(), 1.0))
                 .sum();
             let missing = whole - found;
-            assert!(missing > -1e-9, "somebody was counted twice");
+            assert!(missing > -1e-9, "an agent was counted twice");
             count += usize::from(missing > 1e-9);
             most = most.max(missing);
         }

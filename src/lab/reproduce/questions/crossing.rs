@@ -80,8 +80,8 @@ pub(super) fn answer(plan: &Plan, results: &Results) -> Result<Answer, Reproduce
     }
     Ok(Answer {
         title: "How does the crossing behave, and which rankings of Table 2 hold under other guesses of its geometry?",
-        text: "Rankings of rows that differ by more than 10 % in the paper; of the 240 who enter the crossing stream \
-               in 60 s, some 170 could be through.",
+        text: "Rankings compare rows that differ by more than 10 % in the paper. In 60 s, 240 agents enter the crossing \
+               stream; about 170 of them have enough time to cross.",
         table: format!("{}\n{}", rankings.markdown(), rows.markdown()),
         data: json!(data),
     })

@@ -10,7 +10,7 @@ pub enum ReadError {
     File {
         /// The file.
         path: PathBuf,
-        /// What is wrong, and how to fix it.
+        /// The problem and its fix.
         problem: String,
     },
     /// A line of a text file is invalid.
@@ -20,7 +20,7 @@ pub enum ReadError {
         path: PathBuf,
         /// The line number, from 1.
         line: u64,
-        /// What is wrong, and how to fix it.
+        /// The problem and its fix.
         problem: String,
     },
 }
