@@ -224,6 +224,10 @@ fn a_flow_until_a_time_has_a_value_at_any_time_step() {
         run(&mut simulation, 1);
         let flow = metrics.results(&simulation)[0].value.unwrap();
         assert!((flow - 0.5).abs() < 0.01, "{time_step} s: {flow}");
+        // A time shorter than half a step is due in the first frame.
+        let until = vec![Measurement::FlowUntil { until: 1e-3 }];
+        let metrics = Metrics::new(until, &mut simulation);
+        assert_eq!(metrics.results(&simulation)[0].value, Some(0.0));
     }
 }
 

@@ -134,7 +134,7 @@ impl Metrics {
             }
             Measurement::FlowOfFirst { arrivals } => vec![flow_of_first(&times, *arrivals)],
             Measurement::FlowUntil { until } => {
-                let due = clock.frame_at(*until);
+                let due = clock.frame_at(*until).max(1);
                 let end = clock.time_at(due);
                 let count = times.iter().filter(|&&time| time <= end).count();
                 vec![(clock.frame() >= due).then(|| count as f64 / end)]
