@@ -171,7 +171,8 @@ fn a_run_that_waits_for_a_viewer_can_be_interrupted() {
         let output = stop_with(child, &format!("kill -{signal} $1; {guard}"));
         let said = stderr(&output);
         assert_eq!(output.status.code(), Some(code), "{said}");
-        assert_eq!(said.matches(&note(&address)).count(), 1, "{said}");
+        let at_once = format!("{}it took no data for 0.2 s", note(&address));
+        assert_eq!(said.matches(&at_once).count(), 1, "{said}");
         let report = json(&output);
         assert_eq!(report["interrupted"], true);
         let _ = crowd(&file);

@@ -139,7 +139,7 @@ impl Run {
         let interrupt = Interrupt::listen().map_err(|error| Failure::Output(error.to_string()))?;
         let resumable = resumable.as_ref().unwrap_or(scenario);
         let mut checkpoints = Checkpoints::create(&options.checkpoint, &mut simulation);
-        let mut output = Output::create(&options.record, scenario, &mut simulation)?;
+        let mut output = Output::create(&options.record, scenario, &mut simulation, &interrupt)?;
         let mut trajectories =
             Trajectories::create(&options.trajectory, scenario, &mut simulation)?;
         let mut interrupted = None;

@@ -9,6 +9,7 @@ use signal_hook::flag;
 
 /// Tells whether a signal has asked the run to end.
 pub struct Interrupt {
+    asked: Arc<AtomicBool>,
     exit_code: Arc<AtomicUsize>,
 }
 
@@ -27,7 +28,12 @@ impl Interrupt {
             flag::register(signal, Arc::clone(&asked))?;
             flag::register_usize(signal, Arc::clone(&exit_code), code.unsigned_abs() as usize)?;
         }
-        Ok(Self { exit_code })
+        Ok(Self { asked, exit_code })
+    }
+
+    /// Set as soon as a signal arrives.
+    pub fn flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.asked)
     }
 
     /// The exit code of the interrupted run, if a signal arrived.

@@ -7,6 +7,7 @@ use crate::output::recording::{
 use std::path::Path;
 
 use super::arguments::{OutputOptions, RecordOptions};
+use super::interrupt::Interrupt;
 use super::{Failure, talk, trajectory};
 use crate::engine::simulation::Simulation;
 use crate::runs::outputs::{Manner, Outputs};
@@ -66,9 +67,10 @@ impl Output {
         record: &RecordOptions,
         scenario: &Scenario,
         simulation: &mut Simulation,
+        interrupt: &Interrupt,
     ) -> Result<Self, Failure> {
         let debug = debug_agents(record, scenario)?;
-        let recorder = match destination(record)? {
+        let recorder = match destination(record, interrupt)? {
             None => None,
             Some(to) => {
                 simulation.request_density_until(u64::MAX);
@@ -117,7 +119,10 @@ impl Output {
 }
 
 /// Where the recording goes, if one is requested.
-fn destination(record: &RecordOptions) -> Result<Option<Destination>, Failure> {
+fn destination(
+    record: &RecordOptions,
+    interrupt: &Interrupt,
+) -> Result<Option<Destination>, Failure> {
     let address = |text: &String| {
         let address = text.parse().map(Viewer::At);
         address.map_err(|error| Failure::Input(format!("--connect {text}: {error}")))
@@ -128,7 +133,11 @@ fn destination(record: &RecordOptions) -> Result<Option<Destination>, Failure> {
     };
     let file = record.save.clone();
     let asked = file.is_some() || viewer.is_some();
-    Ok(asked.then_some(Destination { file, viewer }))
+    Ok(asked.then_some(Destination {
+        file,
+        viewer,
+        interrupted: interrupt.flag(),
+    }))
 }
 
 /// Fails if the environment disables recordings.

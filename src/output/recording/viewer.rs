@@ -15,7 +15,7 @@ use rerun::{DEFAULT_SERVER_PORT, SpawnError, SpawnOptions};
 
 use super::error::RecordingError;
 use super::file::Failure;
-use super::relay::Relay;
+use super::relay::{GivenUp, Relay};
 
 /// Timeout for connecting to a viewer.
 const CONNECTING: Duration = Duration::from_secs(3);
@@ -63,7 +63,10 @@ impl fmt::Display for Address {
 
 impl Viewer {
     /// Connects to the viewer, once it answers.
-    pub(super) fn connect(&self) -> Result<ViewerSink, RecordingError> {
+    pub(super) fn connect(
+        &self,
+        interrupted: &Arc<AtomicBool>,
+    ) -> Result<ViewerSink, RecordingError> {
         let address = match self {
             Self::Spawned => spawn()?,
             Self::At(address) => address.clone(),
@@ -85,7 +88,8 @@ impl Viewer {
         if !answers {
             return Err(no_viewer(refusal));
         }
-        ViewerSink::open(address.clone()).map_err(|error| no_viewer(error.to_string()))
+        let opened = ViewerSink::open(address.clone(), Arc::clone(interrupted));
+        opened.map_err(|error| no_viewer(error.to_string()))
     }
 }
 
@@ -129,8 +133,8 @@ pub struct ViewerSink {
 }
 
 impl ViewerSink {
-    fn open(address: Address) -> std::io::Result<Self> {
-        let relay = Arc::new(Relay::new(PATIENCE));
+    fn open(address: Address, interrupted: Arc<AtomicBool>) -> std::io::Result<Self> {
+        let relay = Arc::new(Relay::new(PATIENCE, interrupted));
         let (queue, uri) = (Arc::clone(&relay), address.0.clone());
         let failure = Failure::default();
         let seen = failure.clone();
@@ -156,8 +160,8 @@ impl ViewerSink {
         &self.address
     }
 
-    fn give_up(&self) {
-        let secs = PATIENCE.as_secs();
+    fn give_up(&self, GivenUp(after): &GivenUp) {
+        let secs = after.as_secs_f64();
         self.failure.is(&format!("it took no data for {secs} s"));
     }
 }
@@ -185,8 +189,8 @@ impl LogSink for ViewerSink {
         if matches!(message, LogMsg::BlueprintActivationCommand(_)) {
             self.has_layout.store(true, Ordering::Relaxed);
         }
-        if self.relay.send(message).is_err() {
-            self.give_up();
+        if let Err(given_up) = self.relay.send(message) {
+            self.give_up(&given_up);
         }
     }
 
@@ -199,8 +203,8 @@ impl LogSink for ViewerSink {
 impl Drop for ViewerSink {
     /// Waits for the viewer as long as it takes data.
     fn drop(&mut self) {
-        if self.relay.close().is_err() {
-            self.give_up();
+        if let Err(given_up) = self.relay.close() {
+            self.give_up(&given_up);
         }
     }
 }
