@@ -8,7 +8,7 @@ use std::{env, fs, io};
 use sha2::{Digest, Sha256};
 
 /// The wings on which the result of a run depends.
-const WINGS: [&str; 3] = ["src/engine", "src/scenario", "src/runs"];
+const WINGS: [&str; 4] = ["src/engine", "src/analysis", "src/scenario", "src/runs"];
 
 /// The versions of all dependencies.
 const LOCK: &str = "Cargo.lock";

@@ -25,15 +25,14 @@
 
 pub mod engine;
 
+pub mod analysis;
+
 pub mod scenario;
 
 pub mod runs;
 
 #[cfg(feature = "program")]
 pub mod output;
-
-#[cfg(feature = "program")]
-pub mod analysis;
 
 #[cfg(feature = "program")]
 pub mod lab;

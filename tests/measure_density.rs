@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::common::tracks::tracks;
 use crate::common::{blend, block, rectangle, room, scene, vector};
 use rusqlite::Connection;
-use sandbox::analysis::measure::{
+use sandbox::lab::measure::{
     Behind, Kernel, MeasureError, Measured, Moment, Options, Site, measure,
 };
 use sandbox::engine::boundary::WallMethod;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::common::tracks::tracks;
 use crate::common::vector;
 use proptest::prelude::*;
-use sandbox::analysis::measure::{
+use sandbox::lab::measure::{
     Behind, CLASS, Class, Crossings, Kernel, Line, MeasureError, Measured, Options, Site, measure,
     speed,
 };

@@ -5,7 +5,7 @@ use crate::common::{acceleration, blend_with, evaluated, person, scene, vector};
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::density::SphParameters;
 use sandbox::engine::scene::Region;
-use sandbox::engine::sound::{self, Lattice};
+use sandbox::analysis::sound::{self, Lattice};
 use sandbox::scenario::catalog::Parameters;
 
 /// The radius of the patch, meters. It includes the neighbors of the middle agent and their neighbors.

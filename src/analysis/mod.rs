@@ -1,8 +1,10 @@
-//! Analysis of finished frames and trajectories: statistics over runs, space-time diagrams and wave speeds, and
-//! densities, fields, fundamental diagrams and flows of any trajectory (§8).
+//! Analysis: statistics over values, space-time diagrams and the speed of waves in them, and linear theory: the speed
+//! of sound in a crowd and the largest stable time step. It uses only the engine.
 
 pub mod statistics;
 
 pub mod wave;
 
-pub mod measure;
+pub mod sound;
+
+pub mod stability;

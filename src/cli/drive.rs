@@ -16,7 +16,7 @@ use super::{Failure, memory, say, scenario, setting, talk, use_threads};
 use crate::engine::clock::{Clock, SHORTEST_TIME_STEP};
 use crate::engine::scene::Scene;
 use crate::engine::simulation::{EventKind, Simulation};
-use crate::engine::stability::{FITTED, Mode, Scheme};
+use crate::analysis::stability::{FITTED, Mode, Scheme};
 use crate::lab::bench::main_memory;
 use crate::runs::checkpoint::Checkpoint;
 use crate::runs::drive::{Then, drive, unless_over};

@@ -1,8 +1,8 @@
 //! The engine: geometry, kernels, the state of the crowd, forces, and the loop of §4.1. It does not depend on
 //! files, scenario names or output. A [`Simulation`](simulation::Simulation) is built from a
 //! [`Scene`](scene::Scene) and advances it frame by frame; everything that a frame computes can be read from its
-//! [`Frame`](frame::Frame). Linear theory ([`sound`], [`stability`]) and the term-by-term [`breakdown`] of one
-//! agent are here because they use only the engine.
+//! [`Frame`](frame::Frame). [`breakdown`] says what acts on one agent,
+//! term by term.
 
 pub mod math;
 
@@ -33,10 +33,6 @@ pub mod profile;
 pub mod placement;
 
 pub mod scene;
-
-pub mod sound;
-
-pub mod stability;
 
 pub mod simulation;
 

@@ -1,6 +1,8 @@
 //! The lab: experiments of many runs. The paper's tables and figures ([`reproduce`]), studies over settings and seeds
 //! ([`sweep`]), run time ([`mod@bench`]), hard cases and the largest stable time step ([`stress`]), and run time
-//! against error ([`accuracy`]).
+//! against error ([`accuracy`]). [`measure`] finds densities, fields, fundamental diagrams and flows of any trajectory.
+
+pub mod measure;
 
 pub mod reproduce;
 

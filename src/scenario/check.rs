@@ -17,7 +17,7 @@ use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_T
 use crate::engine::math::Vector;
 use crate::engine::profile::Override;
 use crate::engine::scene::{Push, Region, Scene};
-use crate::engine::stability;
+use crate::analysis::stability;
 use crate::scenario::metrics::Measurement;
 
 /// Default duration, seconds.

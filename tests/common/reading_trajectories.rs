@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sandbox::analysis::measure::{
+use sandbox::lab::measure::{
     Behind, Kernel, Line, MeasureError, Options, Site, measure, speed,
 };
 use sandbox::engine::boundary::WallMethod;

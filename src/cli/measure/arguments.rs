@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use crate::analysis::measure::Line;
+use crate::lab::measure::Line;
 use crate::engine::scene::Region;
 
 use super::super::arguments::ProgramOptions;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::analysis::measure::{Measured, Moment, MomentRecorder, Options, Site, pictures};
+use crate::lab::measure::{Measured, Moment, MomentRecorder, Options, Site, pictures};
 use crate::cli::{Failure, talk};
 use crate::output::trajectory::read::Tracks;
 

@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::output::check_enabled;
 use super::{Failure, say, talk, use_threads};
-use crate::analysis::measure::{
+use crate::lab::measure::{
     Behind, Kernel, MOST_HIDDEN, MeasureError, Measured, Options, OutputError, Report, Results,
     Site, check, measure, speed,
 };

@@ -7,7 +7,7 @@ use super::map::Detail;
 use super::rest::{Remains, Rest, Surroundings};
 use crate::engine::clock::PAPER_COARSE_STEP;
 use crate::engine::simulation::Fault;
-use crate::engine::stability::{FITTED, Mode};
+use crate::analysis::stability::{FITTED, Mode};
 use crate::lab::job::Job;
 use crate::lab::reproduce::ReproduceError;
 

@@ -4,7 +4,7 @@ use super::cell::Cell;
 use super::map::Detail;
 use super::report::Report;
 use super::rest::Rest;
-use crate::engine::stability::{FITTED, Scheme};
+use crate::analysis::stability::{FITTED, Scheme};
 use crate::lab::reproduce::{ReproduceError, Store};
 use crate::output::colors::ColorMap;
 use crate::output::plot::{Axis, Cells, ColorBar, Corner, LINES, Mark, Panel, Point, Sheet, Style};

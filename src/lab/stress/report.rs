@@ -7,7 +7,7 @@ use super::condition::Condition;
 use super::fit::LEAST;
 use super::hard::Survival;
 use super::jitter::{Jitter, Variant};
-use crate::engine::stability::{Constants, FITTED};
+use crate::analysis::stability::{Constants, FITTED};
 use crate::lab::reproduce::{ReproduceError, Store};
 
 /// All results.

@@ -12,7 +12,7 @@ use crate::engine::placement::Grid;
 use crate::engine::profile::Blend;
 use crate::engine::scene::{Group, Scene};
 use crate::engine::simulation::{Fault, Simulation};
-use crate::engine::stability::Mode;
+use crate::analysis::stability::Mode;
 use crate::scenario::catalog::{NavigationKind, Parameters};
 
 /// Agents along each side of the room.

@@ -7,7 +7,7 @@ use crate::analysis::wave::{Run, SpaceTime, Strip};
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
-use crate::engine::sound::{self, Contacts};
+use crate::analysis::sound::{self, Contacts};
 use crate::lab::reproduce::case::{Case, CaseResult, Observer, Probe};
 use crate::lab::reproduce::error::ReproduceError;
 use crate::lab::reproduce::runner::Results;

@@ -3,7 +3,7 @@
 use super::concert::{RUN, SPEEDS, Seen, Variant};
 use super::save;
 use crate::analysis::wave::{self, SpaceTime, Wave};
-use crate::engine::sound;
+use crate::analysis::sound;
 use crate::lab::reproduce::error::ReproduceError;
 use crate::lab::reproduce::product::Product;
 use crate::output::colors::ColorMap;

@@ -14,7 +14,7 @@
 //! Two modes of a crowd are fast; the faster one limits the step:
 //!
 //! - Compression of a pressed crowd: ω² = (C₁ c/h)² + C₂ K/m, with the speed of sound c = √(k/2)
-//!   ([`crate::engine::sound`]) and the largest contact stiffness over the smallest mass, K/m. This combines the
+//!   ([`crate::analysis::sound`]) and the largest contact stiffness over the smallest mass, K/m. This combines the
 //!   Courant condition of SPH with that of springs.
 //! - Viscous drag in a loose crowd: γ = C₃ μ. Every neighbor contributes μ ∇²W/ρ² to the drag on an agent. The drag
 //!   is largest in a loose crowd, where the density is little more than the agent's own contribution ~ 1/h², so
@@ -28,7 +28,7 @@ use crate::engine::agents::{RADIUS_RANGE, REFERENCE_RADIUS};
 use crate::engine::clock::PAPER_COARSE_STEP;
 use crate::engine::profile::{Navigation, Profile};
 use crate::engine::scene::{Integrator, Scene};
-use crate::engine::sound;
+use crate::analysis::sound;
 
 /// C₁ to C₃, and the safety margins.
 #[derive(Debug, Clone, Copy, PartialEq)]
