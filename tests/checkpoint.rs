@@ -13,7 +13,7 @@ use sandbox::engine::scene::{Goal, Integrator, Push, Region, Scene, Source};
 use sandbox::engine::simulation::Simulation;
 use sandbox::runs::checkpoint::{Checkpoint, CheckpointError};
 use sandbox::scenario::catalog::NAMES;
-use sandbox::scenario::metrics::Metrics;
+use sandbox::scenario::measurements::Metrics;
 use sandbox::scenario::{Scenario, Setting};
 
 /// A crowd that leaves a room through a door, with a source and a push.
@@ -130,7 +130,7 @@ fn evacuation() -> (Scenario, Simulation, Metrics) {
     let settings: [Setting; 1] = ["duration_secs=16".parse().unwrap()];
     let scenario = Scenario::shipped("evacuation", &settings).unwrap();
     let mut simulation = Simulation::new(scenario.scene.clone()).unwrap();
-    let metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
+    let metrics = Metrics::new(&scenario.measurements, &mut simulation);
     (scenario, simulation, metrics)
 }
 

@@ -14,7 +14,7 @@ use proptest::sample::Index;
 use sandbox::engine::simulation::Simulation;
 use sandbox::runs::checkpoint::Checkpoint;
 use sandbox::scenario::Scenario;
-use sandbox::scenario::metrics::Metrics;
+use sandbox::scenario::measurements::Metrics;
 
 /// A few people, a source, a push and a wall.
 const SCENARIO: &str = r#"{
@@ -36,7 +36,7 @@ fn memory_limit(bytes: usize) -> u64 {
 fn whole() -> Vec<u8> {
     let scenario = Scenario::parse(SCENARIO, "f.json", &[]).unwrap();
     let mut simulation = Simulation::new(scenario.scene.clone()).unwrap();
-    let mut metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
+    let mut metrics = Metrics::new(&scenario.measurements, &mut simulation);
     for _ in 0..12 {
         simulation.step().unwrap();
         metrics.observe(&simulation);

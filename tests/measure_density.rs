@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use crate::common::tracks::tracks;
 use crate::common::{blend, block, rectangle, room, scene, vector};
 use rusqlite::Connection;
-use sandbox::lab::measure::{
-    Behind, Kernel, MeasureError, Measured, Moment, Options, Site, measure,
-};
 use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::kernel;
 use sandbox::engine::scene::Region;
 use sandbox::engine::simulation::Simulation;
+use sandbox::lab::measure::{
+    Behind, Kernel, MeasureError, Measured, Moment, Options, Site, measure,
+};
 use sandbox::output::trajectory::Trajectory;
 use sandbox::output::trajectory::read::{ReadOptions, Tracks, read};
 use sandbox::scenario::floor_plan::parse_wkt;

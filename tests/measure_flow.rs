@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use crate::common::tracks::tracks;
 use crate::common::vector;
 use proptest::prelude::*;
+use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::math::Vector;
+use sandbox::engine::scene::Region;
 use sandbox::lab::measure::{
     Behind, CLASS, Class, Crossings, Kernel, Line, MeasureError, Measured, Options, Site, measure,
     speed,
 };
-use sandbox::engine::boundary::WallMethod;
-use sandbox::engine::math::Vector;
-use sandbox::engine::scene::Region;
 use sandbox::output::trajectory::read::Tracks;
 
 const ALWAYS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];

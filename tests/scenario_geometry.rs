@@ -8,7 +8,7 @@ use sandbox::engine::simulation::Simulation;
 use sandbox::output::trajectory::Trajectory;
 use sandbox::runs::checkpoint::Checkpoint;
 use sandbox::scenario::floor_plan;
-use sandbox::scenario::metrics::Metrics;
+use sandbox::scenario::measurements::Metrics;
 use sandbox::scenario::{Scenario, Setting};
 use serde_json::{Value, json};
 
@@ -187,7 +187,7 @@ fn passengers_cross_the_station_and_its_checkpoint_needs_no_floor_plan() {
         .filter(|wall| wall.start.y == 0.0 && wall.end.y == 0.0);
     assert!(at_the_bakery.count() == 2, "no wall runs behind the bakery");
     let mut simulation = Simulation::new(scenario.scene.clone()).unwrap();
-    let metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
+    let metrics = Metrics::new(&scenario.measurements, &mut simulation);
     common::run(&mut simulation, 250);
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("station.checkpoint");

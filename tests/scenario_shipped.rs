@@ -3,7 +3,7 @@
 use sandbox::engine::math::Vector;
 use sandbox::engine::scene::{Goal, Region};
 use sandbox::scenario::catalog::{self, Parameters};
-use sandbox::scenario::metrics::Measurement;
+use sandbox::scenario::measurements::Measurement;
 use sandbox::scenario::{SHIPPED, Scenario, Setting};
 
 fn shipped(name: &str, settings: &[&str]) -> Scenario {

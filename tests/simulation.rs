@@ -10,7 +10,7 @@ use sandbox::engine::math::Vector;
 use sandbox::engine::scene::Integrator;
 use sandbox::engine::simulation::{Fault, Simulation};
 use sandbox::scenario::catalog::{NAMES, Parameters};
-use sandbox::scenario::metrics::{Measurement, Metrics};
+use sandbox::scenario::measurements::{Measurement, Metrics};
 
 /// One agent at rest, with a goal far to the right.
 fn alone(integrator: Integrator, time_step: f64) -> Simulation {
@@ -209,6 +209,12 @@ fn a_hundred_people_leave_a_room_and_every_density_is_positive() {
     assert_eq!(simulation.outcome().contained_moves, 0);
 }
 
+/// The measurement of a flow until a time in seconds.
+fn flow_until(secs: f64) -> Vec<Measurement> {
+    let measurement = serde_json::json!({ "flow_until": { "until_secs": secs } });
+    vec![serde_json::from_value(measurement).unwrap()]
+}
+
 #[test]
 fn a_flow_until_a_time_has_a_value_at_any_time_step() {
     for time_step in [0.02, 0.0169, 0.03, 0.007] {
@@ -217,7 +223,7 @@ fn a_flow_until_a_time_has_a_value_at_any_time_step() {
         scene.groups[0].removal_radius = Some(0.5);
         scene.groups[0].counted = true;
         let mut simulation = Simulation::new(scene).unwrap();
-        let metrics = Metrics::new(vec![Measurement::FlowUntil { until: 2.0 }], &mut simulation);
+        let metrics = Metrics::new(&flow_until(2.0), &mut simulation);
         let due = simulation.frame().clock.frame_at(2.0);
         run(&mut simulation, due - 1);
         assert_eq!(metrics.results(&simulation)[0].value, None);
@@ -225,8 +231,7 @@ fn a_flow_until_a_time_has_a_value_at_any_time_step() {
         let flow = metrics.results(&simulation)[0].value.unwrap();
         assert!((flow - 0.5).abs() < 0.01, "{time_step} s: {flow}");
         // A time shorter than half a step is due in the first frame.
-        let until = vec![Measurement::FlowUntil { until: 1e-3 }];
-        let metrics = Metrics::new(until, &mut simulation);
+        let metrics = Metrics::new(&flow_until(1e-3), &mut simulation);
         assert_eq!(metrics.results(&simulation)[0].value, Some(0.0));
     }
 }

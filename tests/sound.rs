@@ -2,10 +2,10 @@
 //! plane wave, which accelerates the agent in its middle.
 
 use crate::common::{acceleration, blend_with, evaluated, person, scene, vector};
+use sandbox::analysis::sound::{self, Lattice};
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::density::SphParameters;
 use sandbox::engine::scene::Region;
-use sandbox::analysis::sound::{self, Lattice};
 use sandbox::scenario::catalog::Parameters;
 
 /// The radius of the patch, meters. It includes the neighbors of the middle agent and their neighbors.

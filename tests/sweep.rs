@@ -7,7 +7,9 @@ use std::sync::Mutex;
 
 use crate::common::sweep::{ROOM, cases, column, folder, put, rows};
 use sandbox::analysis::statistics::student_95;
-use sandbox::lab::sweep::{Cell, Gathered, Listener, Shard, Shelf, State, Study, Tally, run};
+use sandbox::lab::sweep::{Cell, Gathered, Shard, State, Study, run};
+use sandbox::runs::job::{Listener, Tally};
+use sandbox::runs::store::Store;
 
 /// Records the progress of a run.
 #[derive(Default)]
@@ -27,15 +29,21 @@ impl Listener for Log {
     fn advances(&self, seconds: f64) {
         self.seconds.lock().unwrap()[1] += seconds;
     }
-    fn finishes(&self, cell: &Cell, _: f64) {
-        self.finished.lock().unwrap().push(cell.number);
+    fn finishes(&self, job: &str, _: f64) {
+        self.finished.lock().unwrap().push(number(job));
     }
-    fn fails(&self, cell: &Cell, _: &str) {
-        self.failed.lock().unwrap().push(cell.number);
+    fn fails(&self, job: &str, _: &str) {
+        self.failed.lock().unwrap().push(number(job));
     }
     fn notes(&self, text: &str) {
         self.notes.lock().unwrap().push(text.to_owned());
     }
+}
+
+/// The number in the name of a cell's job, such as `cell 3: seed=1`.
+fn number(job: &str) -> usize {
+    let number = job.strip_prefix("cell ").unwrap().split(':').next();
+    number.unwrap().parse().unwrap()
 }
 
 /// Two gas constants, two profiles, three seeds.
@@ -44,23 +52,23 @@ const GRID: &str = r#"{"scenario": "room.json", "seeds": 3,
 
 fn run_in(study: &Study, out: &Path, shard: Shard) -> (Tally, Log) {
     let log = Log::default();
-    let shelf = Shelf::open(out).unwrap();
-    let tally = run(study, shard, &shelf, &log).unwrap();
+    let store = Store::open(out).unwrap();
+    let tally = run(study, shard, &store, &log).unwrap();
     (tally, log)
 }
 
 fn write(study: &Study, out: &Path) {
-    let shelf = Shelf::at(out);
-    Gathered::of(study, &shelf).write(&shelf).unwrap();
+    let store = Store::at(out);
+    Gathered::of(study, &store).write(&store).unwrap();
 }
 
 #[test]
 fn merged_shards_equal_the_whole_study() {
     let (folder, path) = folder(GRID);
-    let study = Study::read(&path).unwrap();
+    let study = Study::read(&path, None).unwrap();
     let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
     let (tally, log) = run_in(&study, &whole, Shard::WHOLE);
-    assert_eq!([tally.cells, tally.finished, tally.kept], [12, 12, 0]);
+    assert_eq!([tally.jobs, tally.finished, tally.kept], [12, 12, 0]);
     let [expected, advanced] = *log.seconds.lock().unwrap();
     assert!(
         (expected - advanced).abs() < 1e-9 * expected,
@@ -70,10 +78,10 @@ fn merged_shards_equal_the_whole_study() {
         let shard = Shard::new(number, 5).unwrap();
         let (tally, _) = run_in(&study, &parts, shard);
         assert_eq!(
-            tally.cells,
+            tally.jobs,
             study.cells.iter().filter(|c| shard.has(c.number)).count()
         );
-        assert_eq!(tally.finished, tally.cells);
+        assert_eq!(tally.finished, tally.jobs);
     }
     write(&study, &whole);
     write(&study, &parts);
@@ -97,17 +105,17 @@ fn merged_shards_equal_the_whole_study() {
 fn finished_cells_are_not_run_again_and_a_changed_study_runs_only_new_cells() {
     let (folder, path) = folder(GRID);
     let out = folder.path().join("out");
-    run_in(&Study::read(&path).unwrap(), &out, Shard::WHOLE);
-    let (tally, log) = run_in(&Study::read(&path).unwrap(), &out, Shard::WHOLE);
+    run_in(&Study::read(&path, None).unwrap(), &out, Shard::WHOLE);
+    let (tally, log) = run_in(&Study::read(&path, None).unwrap(), &out, Shard::WHOLE);
     assert_eq!([tally.finished, tally.kept], [0, 12]);
     assert!(log.finished.lock().unwrap().is_empty());
     let wider = GRID
         .replace("[100, 200]", "[300, 200, 100]")
         .replace("3,\n", "4,\n");
-    let study = Study::read(&put(folder.path(), &wider)).unwrap();
+    let study = Study::read(&put(folder.path(), &wider), None).unwrap();
     let (tally, log) = run_in(&study, &out, Shard::WHOLE);
-    assert_eq!([tally.cells, tally.kept, tally.finished], [24, 12, 12]);
-    let is_new = |cell: &&Cell| cell.values[0].1 == 300 || cell.seed == 4;
+    assert_eq!([tally.jobs, tally.kept, tally.finished], [24, 12, 12]);
+    let is_new = |cell: &&Cell| cell.values[0].1 == 300 || cell.case.seed == 4;
     let new: BTreeSet<usize> = study
         .cells
         .iter()
@@ -121,9 +129,9 @@ fn finished_cells_are_not_run_again_and_a_changed_study_runs_only_new_cells() {
 #[test]
 fn two_runs_at_once_in_one_folder_share_the_work() {
     let (folder, path) = folder(&GRID.replace("\"seeds\": 3", "\"seeds\": 12"));
-    let study = Study::read(&path).unwrap();
+    let study = Study::read(&path, None).unwrap();
     let out = folder.path().join("out");
-    Shelf::open(&out).unwrap();
+    Store::open(&out).unwrap();
     let [(one, log_of_one), (other, log_of_other)] = std::thread::scope(|scope| {
         let begin = || scope.spawn(|| run_in(&study, &out, Shard::WHOLE));
         [begin(), begin()].map(|thread| thread.join().unwrap())
@@ -142,10 +150,10 @@ fn two_runs_at_once_in_one_folder_share_the_work() {
 #[test]
 fn a_lock_left_by_a_killed_process_is_ignored() {
     let (folder, path) = folder(r#"{"scenario": "room.json"}"#);
-    let study = Study::read(&path).unwrap();
+    let study = Study::read(&path, None).unwrap();
     let out = folder.path().join("out");
-    Shelf::open(&out).unwrap();
-    let left = out.join(format!("cases/{}.lock", study.cells[0].key()));
+    Store::open(&out).unwrap();
+    let left = out.join(format!("cases/{}.lock", study.cells[0].case.key));
     fs::write(&left, "").unwrap();
     assert_eq!(run_in(&study, &out, Shard::WHOLE).0.finished, 1);
     assert!(!left.exists());
@@ -157,7 +165,7 @@ fn a_failed_cell_is_recorded_and_the_others_finish() {
         r#"{"scenario": "crack.json", "seeds": 2,
             "grid": {"sources.0.jitter": [1, 0, 1e-8]}}"#,
     );
-    let study = Study::read(&path).unwrap();
+    let study = Study::read(&path, None).unwrap();
     let out = folder.path().join("out");
     let (tally, log) = run_in(&study, &out, Shard::WHOLE);
     assert_eq!([tally.finished, tally.failed.len()], [4, 2]);
@@ -185,14 +193,14 @@ fn a_failed_cell_is_recorded_and_the_others_finish() {
         [4, 0, 2],
         "only these again"
     );
-    let shelf = Shelf::at(&out);
-    assert_eq!(shelf.failure(&study.cells[0]).unwrap().attempts, 2);
+    let store = Store::at(&out);
+    assert_eq!(store.failure(&study.cells[0].case.key).unwrap().attempts, 2);
 }
 
 #[test]
 fn the_failure_of_a_cell_is_removed_when_the_cell_finishes() {
     let (folder, path) = folder(r#"{"scenario": "room.json", "seeds": 2}"#);
-    let study = Study::read(&path).unwrap();
+    let study = Study::read(&path, None).unwrap();
     let out = folder.path().join("out");
     let scenario = folder.path().join("room.json");
     fs::write(&scenario, ROOM.replace("0.4", "0.3")).unwrap();
@@ -205,18 +213,18 @@ fn the_failure_of_a_cell_is_removed_when_the_cell_finishes() {
     );
     fs::write(&scenario, ROOM).unwrap();
     assert_eq!(run_in(&study, &out, Shard::WHOLE).0.finished, 2);
-    assert_eq!(Gathered::of(&study, &Shelf::at(&out)).counts(), [2, 0, 0]);
+    assert_eq!(Gathered::of(&study, &Store::at(&out)).counts(), [2, 0, 0]);
     assert_eq!(cases(&out, ".json").len(), 2, "no failure is left");
 }
 
 #[test]
 fn a_damaged_result_is_computed_again() {
     let (folder, path) = folder(r#"{"scenario": "room.json", "seeds": 2}"#);
-    let study = Study::read(&path).unwrap();
+    let study = Study::read(&path, None).unwrap();
     let out = folder.path().join("out");
     run_in(&study, &out, Shard::WHOLE);
-    let before = Gathered::of(&study, &Shelf::at(&out));
-    let file = out.join(format!("cases/{}.json", study.cells[1].key()));
+    let before = Gathered::of(&study, &Store::at(&out));
+    let file = out.join(format!("cases/{}.json", study.cells[1].case.key));
     fs::write(&file, "{\"key\"").unwrap();
     let (tally, log) = run_in(&study, &out, Shard::WHOLE);
     assert_eq!([tally.kept, tally.finished], [1, 1]);
@@ -227,7 +235,7 @@ fn a_damaged_result_is_computed_again() {
         };
         result.summary.state_sha256.clone()
     };
-    assert_eq!(hash(&Gathered::of(&study, &Shelf::at(&out))), hash(&before));
+    assert_eq!(hash(&Gathered::of(&study, &Store::at(&out))), hash(&before));
 }
 
 #[test]
@@ -235,9 +243,9 @@ fn equal_cells_are_computed_once_and_counted_as_repeated() {
     let (folder, path) = folder(
         r#"{"scenario": "room.json", "list": [{"seed": 1}, {"seed": 2}, {"seed": 1, "profile": "sph"}]}"#,
     );
-    let study = Study::read(&path).unwrap();
+    let study = Study::read(&path, None).unwrap();
     let out = folder.path().join("out");
-    let counts = |tally: &Tally| [tally.cells, tally.finished, tally.kept, tally.repeated];
+    let counts = |tally: &Tally| [tally.jobs, tally.finished, tally.kept, tally.repeated];
     assert_eq!(counts(&run_in(&study, &out, Shard::WHOLE).0), [3, 2, 0, 1]);
     assert_eq!(counts(&run_in(&study, &out, Shard::WHOLE).0), [3, 0, 2, 1]);
 }
@@ -245,7 +253,7 @@ fn equal_cells_are_computed_once_and_counted_as_repeated() {
 #[test]
 fn the_summary_has_means_over_seeds_with_confidence_intervals() {
     let (folder, path) = folder(GRID);
-    let study = Study::read(&path).unwrap();
+    let study = Study::read(&path, None).unwrap();
     let out = folder.path().join("out");
     run_in(&study, &out, Shard::WHOLE);
     write(&study, &out);
@@ -274,7 +282,7 @@ fn the_summary_has_means_over_seeds_with_confidence_intervals() {
 #[test]
 fn missing_cells_have_a_row_too() {
     let (folder, path) = folder(GRID);
-    let study = Study::read(&path).unwrap();
+    let study = Study::read(&path, None).unwrap();
     let out = folder.path().join("out");
     run_in(&study, &out, Shard::new(2, 3).unwrap());
     write(&study, &out);
@@ -283,7 +291,7 @@ fn missing_cells_have_a_row_too() {
         column(&table, "status")[..4],
         ["missing", "finished", "missing", "missing"]
     );
-    assert_eq!(Gathered::of(&study, &Shelf::at(&out)).counts(), [4, 0, 8]);
+    assert_eq!(Gathered::of(&study, &Store::at(&out)).counts(), [4, 0, 8]);
     let summary = rows(&out.join("study-summary.csv"));
     assert_eq!(column(&summary, "runs"), ["1"; 4]);
     assert_eq!(
@@ -296,15 +304,15 @@ fn missing_cells_have_a_row_too() {
 #[test]
 fn a_study_with_memory_for_one_cell_at_a_time_gives_the_same_results() {
     let (folder, path) = folder(GRID);
-    let study = Study::read(&path).unwrap();
-    let bytes = study.cells.iter().map(|cell| cell.need.bytes()).max();
-    let tight = Study::read_within(&path, bytes).unwrap();
+    let study = Study::read(&path, None).unwrap();
+    let bytes = study.cells.iter().map(|cell| cell.case.need.bytes()).max();
+    let tight = Study::read(&path, bytes).unwrap();
     let cells = [(study, "free"), (tight, "tight")].map(|(study, name)| {
         let out = folder.path().join(name);
         let (tally, _) = run_in(&study, &out, Shard::WHOLE);
-        assert_eq!([tally.cells, tally.finished], [12, 12]);
-        let shelf = Shelf::at(&out);
-        let states = Gathered::of(&study, &shelf).states.into_iter();
+        assert_eq!([tally.jobs, tally.finished], [12, 12]);
+        let store = Store::at(&out);
+        let states = Gathered::of(&study, &store).states.into_iter();
         let summary = |state| match state {
             State::Finished(result) => result.summary,
             _ => panic!("not finished"),
@@ -312,4 +320,52 @@ fn a_study_with_memory_for_one_cell_at_a_time_gives_the_same_results() {
         states.map(summary).collect::<Vec<_>>()
     });
     assert!(cells[0] == cells[1]);
+}
+
+#[test]
+fn labels_name_cells_and_measurements_are_added_to_the_scenarios_own() {
+    let (folder, path) = folder(
+        r#"{"scenario": "room.json", "measurements": [{"closest": {}}], "seeds": 2,
+            "list": [{"label": "soft", "gas_constant": 100}, {"label": "stiff", "gas_constant": 400}]}"#,
+    );
+    let study = Study::read(&path, None).unwrap();
+    assert_eq!(study.axes, ["label", "gas_constant"]);
+    assert_eq!(study.cells[2].label(), Some("stiff"));
+    let (tally, log) = run_in(&study, folder.path(), Shard::WHOLE);
+    assert_eq!((tally.finished, log.failed.lock().unwrap().len()), (4, 0));
+    let store = Store::at(folder.path());
+    let gathered = Gathered::of(&study, &store);
+    for label in ["soft", "stiff"] {
+        let (cell, result) = gathered.labeled(label).unwrap();
+        let scenario = cell.case.scenario().unwrap();
+        let own = sandbox::scenario::Scenario::parse(ROOM, "room.json", &[]).unwrap();
+        assert_eq!(scenario.measurements.len(), own.measurements.len() + 1);
+        let closest = result.summary.metric("closest_centers").unwrap();
+        assert!((0.0..=1.0).contains(&closest), "{closest}");
+    }
+    assert!(gathered.labeled("softer").is_err());
+    // A terminal shows the labels, not the settings behind them.
+    let text = gathered.text();
+    assert!(
+        text.contains("stiff") && !text.contains("gas_constant"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_result_of_another_case_or_a_damaged_one_is_computed_again() {
+    let (folder, path) = folder(r#"{"scenario": "room.json", "seeds": 2}"#);
+    let study = Study::read(&path, None).unwrap();
+    let out = folder.path().join("out");
+    run_in(&study, &out, Shard::WHOLE);
+    let files = cases(&out, ".json");
+    for spoil in [0, 1] {
+        match spoil {
+            0 => _ = fs::copy(&files[0], &files[1]).unwrap(),
+            _ => fs::write(&files[1], "{").unwrap(),
+        }
+        let (tally, log) = run_in(&study, &out, Shard::WHOLE);
+        assert_eq!((tally.kept, tally.finished), (1, 1));
+        assert!(log.notes.lock().unwrap()[0].contains("computed again"));
+    }
 }

@@ -23,7 +23,7 @@ fn read(folder: &Path, text: &str) -> Result<Study, String> {
     let path = folder.join("study.json");
     fs::write(&path, text).unwrap();
     let place = format!("{}/", folder.display());
-    Study::read(&path).map_err(|error| error.to_string().replace(&place, ""))
+    Study::read(&path, None).map_err(|error| error.to_string().replace(&place, ""))
 }
 
 /// A study, and the folder of its scenario.
@@ -36,7 +36,7 @@ fn study(document: &Value) -> (Study, TempDir) {
 /// Number, values in the order of the axes, and seed.
 fn row(cell: &Cell) -> (usize, Vec<Value>, u64) {
     let values = cell.values.iter().map(|(_, value)| value.clone());
-    (cell.number, values.collect(), cell.seed)
+    (cell.number, values.collect(), cell.case.seed)
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn a_list_a_grid_and_seeds_multiply() {
     assert_eq!(study.cells.len(), 12);
     assert_eq!(study.axes, ["viscosity", "gas_constant", "preferred_speed"]);
     let of = |number: usize, key: &str| {
-        let document = study.cells[number - 1].scenario().unwrap().document;
+        let document = study.cells[number - 1].case.scenario().unwrap().document;
         document.pointer(&format!("/{key}")).cloned()
     };
     assert_eq!(of(1, "parameters/viscosity"), Some(json!(2)), "as for all");
@@ -92,7 +92,7 @@ fn a_list_a_grid_and_seeds_multiply() {
     assert_eq!(of(12, "parameters/gas_constant"), Some(json!(100)));
     assert_eq!(of(12, "preferred_speed"), Some(json!(1.5)));
     assert_eq!(of(12, "seed"), Some(json!(2)));
-    let keys: BTreeSet<&str> = study.cells.iter().map(Cell::key).collect();
+    let keys: BTreeSet<_> = study.cells.iter().map(|cell| &cell.case.key).collect();
     assert_eq!(keys.len(), 12, "all are different");
 }
 
@@ -100,7 +100,7 @@ fn a_list_a_grid_and_seeds_multiply() {
 fn a_study_without_variations_is_one_cell_with_the_seed_of_the_scenario() {
     let (study, _folder) = study(&json!({"scenario": "walk.json", "settings": {"seed": 9}}));
     assert_eq!(study.cells.len(), 1);
-    assert_eq!(study.cells[0].seed, 9);
+    assert_eq!(study.cells[0].case.seed, 9);
     assert_eq!(study.cells[0].to_string(), "cell 1: seed=9");
 }
 
@@ -119,7 +119,7 @@ fn a_cell_equals_the_scenario_with_the_same_set_options() {
     let settings: Vec<Setting> = settings.iter().map(|text| text.parse().unwrap()).collect();
     let scenario = Scenario::load(&folder.path().join("walk.json"), &settings).unwrap();
     assert_eq!(
-        study.cells[0].scenario().unwrap().document,
+        study.cells[0].case.scenario().unwrap().document,
         scenario.document
     );
 }
@@ -130,7 +130,10 @@ fn the_scenario_may_be_varied_too() {
         "grid": {"scenario": ["walk.json", "evacuation"]},
         "settings": {"duration_secs": 2}
     }));
-    let names = study.cells.iter().map(|cell| cell.scenario().unwrap().name);
+    let names = study
+        .cells
+        .iter()
+        .map(|cell| cell.case.scenario().unwrap().name);
     assert_eq!(names.collect::<Vec<_>>(), ["walk", "evacuation"]);
 }
 
@@ -142,8 +145,8 @@ fn the_key_of_a_cell_depends_only_on_its_scenario() {
         "scenario": "walk.json", "name": "other",
         "settings": {"viscosity": 2}, "seeds": [2]
     }));
-    assert_eq!(fixed.cells[0].key(), varied.cells[3].key());
-    assert_ne!(fixed.cells[0].key(), varied.cells[2].key());
+    assert_eq!(fixed.cells[0].case.key, varied.cells[3].case.key);
+    assert_ne!(fixed.cells[0].case.key, varied.cells[2].case.key);
 }
 
 proptest! {
@@ -204,7 +207,7 @@ fn invalid_json_is_reported_with_line_and_column() {
         said("{\"grid\": {\"seed\": [1],\n \"seed\": [2]}}"),
         "study.json: line 2, column 7: key `seed` is given twice; remove one"
     );
-    let missing = Study::read(&folder.path().join("no.json")).unwrap_err();
+    let missing = Study::read(&folder.path().join("no.json"), None).unwrap_err();
     assert!(missing.to_string().contains("no.json: No such file"));
 }
 
@@ -222,17 +225,15 @@ fn a_broken_scenario_is_named_with_its_file() {
 fn a_cell_that_does_not_fit_into_memory_is_refused_before_anything_is_computed() {
     let text = r#"{"scenario": "room.json", "grid": {"grids.0.columns": [3, 2000], "grids.0.max.0": [900]}}"#;
     let (_folder, path) = folder(text);
-    let all = Study::read_within(&path, Some(1 << 30)).unwrap();
-    let [small, large] = [0, 1].map(|cell| all.cells[cell].need.bytes());
+    let all = Study::read(&path, Some(1 << 30)).unwrap();
+    let [small, large] = [0, 1].map(|cell| all.cells[cell].case.need.bytes());
     assert!(large > small + 2_000_000, "{small} {large}");
-    let error = Study::read_within(&path, Some(large - 1))
-        .unwrap_err()
-        .to_string();
+    let error = Study::read(&path, Some(large - 1)).unwrap_err().to_string();
     assert!(error.contains(": cell 2: "), "{error}");
     assert!(
         error.contains("6000 agents and 4 walls would take "),
         "{error}"
     );
     assert!(error.contains(", and this machine has "), "{error}");
-    assert!(Study::read_within(&path, Some(large)).is_ok());
+    assert!(Study::read(&path, Some(large)).is_ok());
 }

@@ -24,11 +24,11 @@
 //! forces replace C₂ K/m if they are stiffer. All friction includes K^goal/(τ m) of the goal force, or 1/Δt_coarse
 //! for RVO. No step is longer than the paper's Δt_coarse.
 
+use crate::analysis::sound;
 use crate::engine::agents::{RADIUS_RANGE, REFERENCE_RADIUS};
 use crate::engine::clock::PAPER_COARSE_STEP;
 use crate::engine::profile::{Navigation, Profile};
 use crate::engine::scene::{Integrator, Scene};
-use crate::analysis::sound;
 
 /// C₁ to C₃, and the safety margins.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -33,9 +33,30 @@ fn expansion(degrees: f64) -> f64 {
     Z + nested
 }
 
+/// Mean and population standard deviation; `None` if there are no values.
+pub fn mean_and_deviation(values: &[f64]) -> Option<(f64, f64)> {
+    if values.is_empty() {
+        return None;
+    }
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let variance = values
+        .iter()
+        .map(|value| (value - mean).powi(2))
+        .sum::<f64>()
+        / count;
+    Some((mean, variance.sqrt()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_deviation_is_that_of_the_population() {
+        assert_eq!(mean_and_deviation(&[1.0, 3.0]), Some((2.0, 1.0)));
+        assert_eq!(mean_and_deviation(&[]), None);
+    }
 
     /// The probability of [−t, t] under Student's distribution with ν degrees of freedom, by Simpson's rule in
     /// t = √ν tan φ, where the density is proportional to cos^(ν − 1) φ.

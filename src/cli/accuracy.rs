@@ -10,7 +10,7 @@ use super::values::threads;
 use super::watch::Watch;
 use super::{Failure, say, use_threads};
 use crate::lab::accuracy::{KNOBS, Knob, Plan, SCENES, Scene, WALLS, accuracy};
-use crate::lab::reproduce::Store;
+use crate::runs::store::Store;
 
 #[derive(Args)]
 pub struct AccuracyOptions {

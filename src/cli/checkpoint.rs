@@ -7,7 +7,7 @@ use super::{Failure, talk};
 use crate::engine::simulation::Simulation;
 use crate::runs::checkpoint::{Checkpoint, CheckpointError};
 use crate::scenario::Scenario;
-use crate::scenario::metrics::Metrics;
+use crate::scenario::measurements::Metrics;
 
 /// The checkpoints of a run.
 pub struct Checkpoints {

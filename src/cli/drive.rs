@@ -13,15 +13,15 @@ use super::output::{Output, check, laid_open};
 use super::report::Report;
 use super::trajectory::Trajectories;
 use super::{Failure, memory, say, scenario, setting, talk, use_threads};
+use crate::analysis::stability::{FITTED, Mode, Scheme};
 use crate::engine::clock::{Clock, SHORTEST_TIME_STEP};
 use crate::engine::scene::Scene;
 use crate::engine::simulation::{EventKind, Simulation};
-use crate::analysis::stability::{FITTED, Mode, Scheme};
 use crate::lab::bench::main_memory;
 use crate::runs::checkpoint::Checkpoint;
 use crate::runs::drive::{Then, drive, unless_over};
 use crate::runs::outputs::Outputs;
-use crate::scenario::metrics::Metrics;
+use crate::scenario::measurements::Metrics;
 use crate::scenario::quote::shown;
 use crate::scenario::{Scenario, Setting, in_units};
 
@@ -35,7 +35,7 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     check(outputs, &options.output, &scenario)?;
     warn_of_the_step(&scenario.scene);
     let mut simulation = Simulation::new(scenario.scene.clone())?;
-    let metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
+    let metrics = Metrics::new(&scenario.measurements, &mut simulation);
     // A resumed run goes to the scenario's own end, if it can get there.
     let is_cut = until.is_some() && options.output.checkpoint.checkpoint.is_some();
     let resumable = is_cut.then(|| {

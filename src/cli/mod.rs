@@ -28,7 +28,8 @@ use clap::Parser;
 
 use crate::engine::breakdown::Breakdown;
 use crate::engine::simulation::{Fault, Simulation};
-use crate::lab::reproduce::ReproduceError;
+use crate::lab::error::LabError;
+use crate::runs::error::StoreError;
 use crate::runs::outputs::{Outputs, OutputsError};
 use crate::scenario::floor_plan;
 use crate::scenario::quote::{printable, shown};
@@ -60,7 +61,7 @@ enum Failure {
     Output(String),
     /// `reproduce`, `accuracy` or `stress` failed: exit code 1.
     #[error(transparent)]
-    Reproduce(#[from] ReproduceError),
+    Reproduce(#[from] LabError),
     /// A signal ended the run: exit code 130 or 143.
     #[error("interrupted at {time:.2} s; results and files end there")]
     Interrupted {
@@ -69,6 +70,12 @@ enum Failure {
         /// The exit code, 128 + the signal's number.
         exit_code: u8,
     },
+}
+
+impl From<StoreError> for Failure {
+    fn from(error: StoreError) -> Self {
+        LabError::from(error).into()
+    }
 }
 
 impl Failure {

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use crate::engine::simulation::Simulation;
 use crate::runs::summary::{Summary, value};
 use crate::scenario::Scenario;
-use crate::scenario::metrics::{Metric, Metrics};
+use crate::scenario::measurements::{Metric, Metrics};
 use crate::scenario::quote::shown;
 
 /// The results of one run.

@@ -9,7 +9,8 @@ use super::update::{check, update};
 use super::values::threads;
 use super::watch::Watch;
 use super::{Failure, say, use_threads};
-use crate::lab::reproduce::{PRODUCTS, Plan, Product, Store, reproduce};
+use crate::lab::reproduce::{PRODUCTS, Product, reproduce};
+use crate::runs::store::Store;
 
 #[derive(Args)]
 pub struct ReproduceOptions {
@@ -63,16 +64,13 @@ pub fn run(options: &ReproduceOptions) -> Result<(), Failure> {
         check(file, &options.out)?;
     }
     let store = Store::open(&options.out)?;
-    let plan = Plan {
-        seeds: options.seeds,
-    };
     let wanted = |product: &&Product| {
         let named = options.what.iter().any(|name| name == product.name);
         named || product.in_all && options.what.iter().any(|name| name == ALL)
     };
     let products: Vec<&Product> = PRODUCTS.iter().filter(wanted).collect();
     let watch = Watch::new();
-    let said = reproduce(&products, &plan, &store, &watch);
+    let said = reproduce(&products, options.seeds, &store, &watch);
     watch.ends();
     let said = said?;
     // Results are printed even if they cannot be saved.

@@ -8,8 +8,8 @@ use super::update::{check, update};
 use super::values::threads;
 use super::watch::Watch;
 use super::{Failure, say, use_threads};
-use crate::lab::reproduce::Store;
 use crate::lab::stress::{Detail, stress};
+use crate::runs::store::Store;
 
 #[derive(Args)]
 pub struct StressOptions {

@@ -8,10 +8,10 @@ use serde_json::{Value, json};
 use super::watch::Watch;
 use super::{Failure, say, talk, use_threads};
 use crate::lab::bench::main_memory;
-use crate::lab::sweep::{
-    Gathered, Shard, Shelf, State, Study, StudyError, Tally, run as run_shard,
-};
+use crate::lab::sweep::{Gathered, Shard, State, Study, StudyError, run as run_shard};
+use crate::runs::job::Tally;
 use crate::runs::outputs::{Manner, Outputs};
+use crate::runs::store::Store;
 
 /// An example of a study, and of commands.
 pub const EXAMPLE: &str = r#"A study, JSON:
@@ -30,7 +30,8 @@ Examples:
 
 #[derive(Args)]
 pub struct SweepOptions {
-    /// The study, a JSON file with a scenario, settings, a grid or list of settings, and seeds
+    /// The study: a JSON file with a scenario, settings, a grid or list of settings, and seeds; or the name of a
+    /// built-in one, such as table1
     pub file: PathBuf,
     /// Run only part I of N (1 ≤ I ≤ N): the cells I, I + N, I + 2N, …; combine the parts with --merge
     #[arg(long, value_name = "I/N", conflicts_with = "merge")]
@@ -60,33 +61,33 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     // For --list and --merge the cells may have been computed on a larger machine.
     let computes = !options.list && !options.merge;
     let memory = computes.then(main_memory).flatten();
-    let study = Study::read_within(&options.file, memory)?;
+    let study = Study::open(&options.file, memory)?;
     let folder = options
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from(&study.name));
-    let shelf = Shelf::at(&folder);
+    let store = Store::at(&folder);
     if options.list {
-        return list(&Gathered::of(&study, &shelf), options);
+        return list(&Gathered::of(&study, &store), options);
     }
     if options.merge {
-        if !shelf.is_begun() {
+        if !store.is_begun() {
             let folder = folder.display();
             let reason = format!("{folder}: contains no study; give its folder with --out");
             return Err(Failure::Input(reason));
         }
-        check_outputs(&study, &shelf, options)?;
-        return merge(&study, &shelf, options);
+        check_outputs(&study, &store, options)?;
+        return merge(&study, &store, options);
     }
-    check_outputs(&study, &shelf, options)?;
-    let shelf = Shelf::open(&folder)?;
+    check_outputs(&study, &store, options)?;
+    let store = Store::open(&folder)?;
     let watch = Watch::new();
     let shard = options.shard.unwrap_or(Shard::WHOLE);
-    let tally = run_shard(&study, shard, &shelf, &watch);
+    let tally = run_shard(&study, shard, &store, &watch);
     watch.ends();
     let tally = tally?;
     if options.shard.is_none() {
-        return merge(&study, &shelf, options);
+        return merge(&study, &store, options);
     }
     say(told(&tally, shard, options.json))?;
     let failed: Vec<String> = tally
@@ -97,21 +98,23 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     if failed.is_empty() {
         Ok(())
     } else {
-        Err(some_failed(&failed, tally.cells))
+        Err(some_failed(&failed, tally.jobs))
     }
 }
 
 /// Rejects results that cannot be written or would replace an input. In a folder that does not belong to a study,
 /// existing files with the results' names are replaced only with --force.
-fn check_outputs(study: &Study, shelf: &Shelf, options: &SweepOptions) -> Result<(), Failure> {
-    let mut outputs = Outputs::new(options.force || shelf.is_begun());
-    outputs.reads("the study", &options.file);
+fn check_outputs(study: &Study, store: &Store, options: &SweepOptions) -> Result<(), Failure> {
+    let mut outputs = Outputs::new(options.force || store.is_begun());
+    if options.file.exists() {
+        outputs.reads("the study", &options.file);
+    }
     for path in study.inputs() {
         outputs.reads("the study's", path);
     }
     for file in study.files() {
         // Another process may start the same study at the same time, so do not create trial files.
-        outputs.writes("--out", &shelf.folder().join(file), Manner::Beside);
+        outputs.writes("--out", &store.folder().join(file), Manner::Beside);
     }
     Ok(outputs.check()?)
 }
@@ -131,9 +134,9 @@ fn list(gathered: &Gathered, options: &SweepOptions) -> Result<(), Failure> {
 }
 
 /// Merges the finished cells.
-fn merge(study: &Study, shelf: &Shelf, options: &SweepOptions) -> Result<(), Failure> {
-    let gathered = Gathered::of(study, shelf);
-    for path in gathered.write(shelf)? {
+fn merge(study: &Study, store: &Store, options: &SweepOptions) -> Result<(), Failure> {
+    let gathered = Gathered::of(study, store);
+    for path in gathered.write(store)? {
         talk(&format!("note: {} written", path.display()));
     }
     if options.json {
@@ -188,7 +191,7 @@ fn some_failed(failed: &[String], of: usize) -> Failure {
 
 fn told(tally: &Tally, shard: Shard, as_json: bool) -> String {
     let Tally {
-        cells,
+        jobs: cells,
         kept,
         repeated,
         finished,

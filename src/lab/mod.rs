@@ -2,13 +2,15 @@
 //! ([`sweep`]), run time ([`mod@bench`]), hard cases and the largest stable time step ([`stress`]), and run time
 //! against error ([`accuracy`]). [`measure`] finds densities, fields, fundamental diagrams and flows of any trajectory.
 
+pub mod error;
+
+pub mod jobs;
+
 pub mod measure;
 
-pub mod reproduce;
-
-pub mod job;
-
 pub mod sweep;
+
+pub mod reproduce;
 
 pub mod bench;
 

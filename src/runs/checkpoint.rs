@@ -14,13 +14,13 @@ use sha2::{Digest, Sha256};
 use crate::engine::simulation::{Simulation, State, StateError};
 use crate::runs::outputs::write_whole;
 use crate::scenario::input;
-use crate::scenario::metrics::Metrics;
+use crate::scenario::measurements::Metrics;
 use crate::scenario::{Need, Scenario, ScenarioError, Setting};
 
 /// The first bytes of every file.
 const MAGIC: &[u8] = b"sandbox checkpoint\n";
 /// Format version: increase it with every change to the contents of a file.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Longest file that is read, bytes. Ten million agents, the most allowed, take 1 GB (99 bytes each, in the plaza),
 /// and the text of their scenario takes at most 256 MiB.
 const LONGEST: u64 = 1 << 32;
@@ -37,7 +37,8 @@ pub struct Checkpoint {
     /// The scenario as JSON, with all settings applied.
     document: String,
     state: State,
-    densities: Vec<Option<(f64, f64)>>,
+    /// What the measurements have seen.
+    seen: Vec<String>,
 }
 
 /// Why a checkpoint cannot be written or resumed.
@@ -94,7 +95,7 @@ impl Checkpoint {
             file: format!("{}.json", scenario.name),
             document: scenario.to_text(),
             state: simulation.state(),
-            densities: metrics.taken().to_vec(),
+            seen: metrics.seen(),
         }
     }
 
@@ -125,8 +126,8 @@ impl Checkpoint {
     /// The state does not match the scenario.
     pub fn resume(self, scenario: &Scenario) -> Result<(Simulation, Metrics), CheckpointError> {
         let mut simulation = Simulation::resumed(scenario.scene.clone(), self.state)?;
-        let mut metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
-        metrics.resume(&self.densities);
+        let mut metrics = Metrics::new(&scenario.measurements, &mut simulation);
+        metrics.resume(&self.seen);
         Ok((simulation, metrics))
     }
 

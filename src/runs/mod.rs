@@ -1,6 +1,7 @@
-//! Runs: a scenario from its first frame to its last. The drive loop shows every evaluated frame to its
-//! observers, a checkpoint holds a run that can be resumed to the same bits, and a summary holds what a run
-//! found.
+//! Runs of scenarios: the drive loop ([`drive()`](drive::drive)), the files that a run may write ([`outputs`]),
+//! checkpoints, and summaries of results; and many runs: a [`Case`](case::Case) is one run with its
+//! [`Identity`](identity::Identity), a [`Job`](job::Job) is a piece of work whose result a [`Store`](store::Store)
+//! keeps.
 
 pub mod drive;
 
@@ -9,3 +10,17 @@ pub mod outputs;
 pub mod checkpoint;
 
 pub mod summary;
+
+pub mod error;
+
+pub mod identity;
+
+pub mod memory;
+
+pub mod parallel;
+
+pub mod store;
+
+pub mod job;
+
+pub mod case;

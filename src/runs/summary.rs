@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::engine::simulation::Simulation;
 use crate::scenario::Scenario;
-use crate::scenario::metrics::{Metric, Metrics};
+use crate::scenario::measurements::{Metric, Metrics};
 
 /// The results of a run, part of what `--json` reports.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -30,6 +31,9 @@ pub struct Summary {
     pub agents: u32,
     /// The measurements by name; counts are integers, missing values are `null`.
     pub metrics: BTreeMap<String, Value>,
+    /// Data of measurements that have more than values, such as snapshots, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub data: BTreeMap<String, Value>,
     /// Moves that were stopped at a wall that they would have crossed.
     pub contained_moves: u64,
     /// How many times a speed was clamped to `max_speed`.
@@ -53,10 +57,23 @@ impl Summary {
             time_secs: frame.clock.time(),
             agents: frame.agents.entered(),
             metrics: measured.map(|m| (m.name.clone(), value(&m))).collect(),
+            data: metrics.data().collect(),
             contained_moves: outcome.contained_moves,
             clamped_speeds: outcome.clamped_speeds,
             displaced_agents: outcome.displaced.len(),
         }
+    }
+}
+
+impl Summary {
+    /// A metric by name; `None` if it is not measured or has no value.
+    pub fn metric(&self, name: &str) -> Option<f64> {
+        self.metrics.get(name)?.as_f64()
+    }
+
+    /// Data by name; `None` if they are not measured, have another form, or the run ended before them.
+    pub fn data<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
+        T::deserialize(self.data.get(name)?).ok()
     }
 }
 

@@ -13,12 +13,12 @@ use super::need::Need;
 use super::range::{COARSE_EVERY, MAX_SPEED, PREFERRED_SPEED, Range, TIME, TIME_STEP};
 use super::range::{point, region};
 use super::{PlanFile, Scenario, Stop, View, parameters, plan, preset, profiles};
+use crate::analysis::stability;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::engine::math::Vector;
 use crate::engine::profile::Override;
 use crate::engine::scene::{Push, Region, Scene};
-use crate::analysis::stability;
-use crate::scenario::metrics::Measurement;
+use crate::scenario::measurements;
 
 /// Default duration, seconds.
 const DEFAULT_DURATION: f64 = 60.0;
@@ -67,6 +67,7 @@ pub(super) fn scenario(document: &Value, path: &Path) -> Result<Scenario, Proble
     let need = Need::of(&file, &scene.clock, duration_secs)?;
     Crowd::new(&file, &blend, &mut scene).enter()?;
     crowding::check(&file, &scene, duration_secs)?;
+    measurements::check(&file.measurements)?;
     scene.pushes = pushes(&file.events)?;
     if file.time_step_secs == Some(TimeStep::Auto) {
         scene.clock = automatic_clock(&file, &scene)?;
@@ -76,7 +77,7 @@ pub(super) fn scenario(document: &Value, path: &Path) -> Result<Scenario, Proble
         description: file.description.clone().unwrap_or_default(),
         duration_secs,
         stop: stop(&file.stop.0).under("stop")?,
-        measurements: measurements(&file.measurements)?,
+        measurements: file.measurements,
         view: view(file.view.as_ref(), &scene).under("view")?,
         debug_agents: match &file.debug_agents {
             Some(ids) => without_repetition(ids)?,
@@ -210,50 +211,6 @@ fn push(event: &file::Event, place: &str) -> Result<Push, Problem> {
             ignore_contact: event.ignore_contact,
             ignore_sph: event.ignore_sph,
         },
-    })
-}
-
-fn measurements(given: &[file::Measurement]) -> Result<Vec<Measurement>, Problem> {
-    let mut names = BTreeSet::new();
-    let mut checked = Vec::with_capacity(given.len());
-    for (k, given) in given.iter().enumerate() {
-        let place = format!("measurements[{k}]");
-        let measurement = measurement(given).under(&place)?;
-        for name in measurement.names() {
-            if names.contains(&name) {
-                let reason = format!("`{name}` is already measured; remove one");
-                return Err(Problem::new(place, reason));
-            }
-            names.insert(name);
-        }
-        checked.push(measurement);
-    }
-    Ok(checked)
-}
-
-fn measurement(given: &file::Measurement) -> Result<Measurement, Problem> {
-    Ok(match given {
-        file::Measurement::Density(Object(density)) => {
-            let place = density.region.map(|r| region("density.region", r));
-            Measurement::Density {
-                at: TIME.check("density.at_secs", density.at_secs)?,
-                region: place.transpose()?,
-            }
-        }
-        file::Measurement::FlowOfFirst(Object(flow)) => {
-            let arrivals = flow.arrivals;
-            if arrivals < 2 {
-                let reason = format!("a flow needs at least 2 arrivals, not {arrivals}");
-                return Err(Problem::new("flow_of_first.arrivals", reason));
-            }
-            Measurement::FlowOfFirst {
-                arrivals: arrivals as usize,
-            }
-        }
-        file::Measurement::FlowUntil(Object(flow)) => Measurement::FlowUntil {
-            until: UNTIL.check("flow_until.until_secs", flow.until_secs)?,
-        },
-        file::Measurement::Evacuated(_) => Measurement::Evacuated,
     })
 }
 

@@ -14,14 +14,15 @@ use crate::engine::neighbors::ListPolicy;
 use crate::engine::pairs::Precision;
 use crate::engine::scene::Integrator;
 use crate::scenario::catalog::{NavigationKind, Parameters};
+use crate::scenario::measurements::Measurement;
 
 /// The lower left and the upper right corner.
-pub(super) type Corners = [[f64; 2]; 2];
+pub type Corners = [[f64; 2]; 2];
 
 /// A value that must be a JSON object. Without this wrapper serde would also accept a list of the fields.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[serde(transparent)]
-pub(super) struct Object<T>(pub T);
+pub struct Object<T>(pub T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -241,43 +242,6 @@ pub(super) struct Event {
     #[serde(default)]
     pub ignore_sph: bool,
 }
-
-/// Something to measure.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub(super) enum Measurement {
-    Density(Object<DensityAt>),
-    FlowOfFirst(Object<FlowOfFirst>),
-    FlowUntil(Object<FlowUntil>),
-    Evacuated(Object<Nothing>),
-}
-
-/// The density in a region at one moment.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct DensityAt {
-    pub at_secs: f64,
-    pub region: Option<Corners>,
-}
-
-/// The flow of the first n arrivals.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct FlowOfFirst {
-    pub arrivals: u32,
-}
-
-/// The flow of the arrivals until a time.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct FlowUntil {
-    pub until_secs: f64,
-}
-
-/// An object without keys.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Nothing {}
 
 /// When to stop early.
 #[derive(Debug, Clone, Default, Deserialize)]

@@ -30,7 +30,7 @@ pub mod floor_plan;
 
 pub mod catalog;
 
-pub mod metrics;
+pub mod measurements;
 
 mod check;
 mod crowd;
@@ -63,7 +63,7 @@ pub use preset::Preset;
 pub use schema::schema;
 pub use setting::{Setting, SettingError};
 pub use settings::{SettingDoc, settings};
-pub use shipped::{SHIPPED, Shipped};
+pub use shipped::{SHIPPED, Shipped, built_in};
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -71,7 +71,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use crate::engine::scene::{Region, Scene};
-use crate::scenario::metrics::Measurement;
+use crate::scenario::measurements::Measurement;
 
 /// The key that names a floor plan file, and the file.
 pub type PlanFile = (&'static str, PathBuf);

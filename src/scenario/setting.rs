@@ -117,11 +117,18 @@ impl Setting {
                 Some(Value::Null)
             } else {
                 let may_begin = depth == 0 && BEGUN.contains(&segment.as_str());
-                may_begin.then(|| Value::Object(Map::new()))
+                let is_list = self.path[depth + 1] == APPEND;
+                match (may_begin, is_list) {
+                    (_, true) => Some(Value::Array(Vec::new())),
+                    (true, false) => Some(Value::Object(Map::new())),
+                    (false, false) => None,
+                }
             };
+            let added = place.as_array().map_or(0, Vec::len);
             place = inner(place, segment, begun, &path)?;
             path = match segment.parse::<usize>() {
                 Ok(index) => format!("{path}[{index}]"),
+                Err(_) if segment == APPEND => format!("{path}[{added}]"),
                 Err(_) if path.is_empty() => segment.clone(),
                 Err(_) => format!("{path}.{segment}"),
             };
@@ -130,6 +137,9 @@ impl Setting {
         Ok(path)
     }
 }
+
+/// The segment of a path that adds an element to a list, as in `measurements.+`.
+const APPEND: &str = "+";
 
 /// Top-level objects that a setting creates if they are missing.
 const BEGUN: [&str; 2] = ["parameters", "stop"];
@@ -153,13 +163,17 @@ fn inner<'a>(
             )
         }
         Value::Array(list) => {
+            if segment == APPEND {
+                list.push(Value::Null);
+            }
+            let last = list.len().checked_sub(1).filter(|_| segment == APPEND);
             let reason = format!(
                 "{} has no element `{}`: there are {}, counted from 0",
                 shown(path),
                 shown(segment),
                 list.len()
             );
-            let index = segment.parse::<usize>().ok();
+            let index = last.or_else(|| segment.parse::<usize>().ok());
             (index.and_then(|index| list.get_mut(index)), reason)
         }
         _ => (

@@ -1,6 +1,24 @@
-//! The built-in scenarios.
+//! The files that are built into the program: scenarios and studies.
 
+use std::path::{Component, Path, PathBuf};
+
+use include_dir::{Dir, include_dir};
 use serde_json::Value;
+
+/// The folder `scenarios/`.
+static FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/scenarios");
+
+/// The text of a file under `scenarios/`, such as `stress/packed.json` or `studies/../stress/packed.json`.
+pub fn built_in(path: &Path) -> Option<&'static str> {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::ParentDir => _ = plain.pop(),
+            part => plain.push(part),
+        }
+    }
+    FILES.get_file(plain)?.contents_utf8()
+}
 
 /// A scenario file built into the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

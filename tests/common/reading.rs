@@ -2,7 +2,7 @@
 
 use sandbox::engine::simulation::{Fault, Simulation};
 use sandbox::runs::drive::{Then, drive};
-use sandbox::scenario::metrics::Metrics;
+use sandbox::scenario::measurements::Metrics;
 use sandbox::scenario::{Need, Scenario, Setting};
 
 /// Scenarios with more agents than this are not run.
@@ -46,7 +46,7 @@ pub fn read(text: &str, settings: &[Setting]) -> u64 {
     let Ok(mut simulation) = Simulation::new(scenario.scene) else {
         return need.initial;
     };
-    let mut metrics = Metrics::new(measurements, &mut simulation);
+    let mut metrics = Metrics::new(&measurements, &mut simulation);
     let driven = drive(&mut simulation, duration, |simulation, _| {
         metrics.observe(simulation);
         let frame = simulation.frame();

@@ -23,7 +23,7 @@ pub fn read(text: &str) -> u64 {
     assert_eq!(study.cells.len() % study.seeds, 0);
     for (k, cell) in study.cells.iter().enumerate() {
         assert_eq!(cell.number, k + 1);
-        assert!(cell.expected_secs.is_finite() && !cell.key().is_empty());
+        assert!(cell.case.expected_secs.is_finite());
         assert!(!cell.to_string().contains(char::is_control));
     }
     study.cells.len() as u64

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use crate::lab::measure::{Measured, Moment, MomentRecorder, Options, Site, pictures};
 use crate::cli::{Failure, talk};
+use crate::lab::measure::{Measured, Moment, MomentRecorder, Options, Site, pictures};
 use crate::output::trajectory::read::Tracks;
 
 const RECORDING: &str = "measured.rrd";

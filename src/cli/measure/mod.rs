@@ -11,11 +11,11 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::output::check_enabled;
 use super::{Failure, say, talk, use_threads};
+use crate::engine::boundary::WallMethod;
 use crate::lab::measure::{
     Behind, Kernel, MOST_HIDDEN, MeasureError, Measured, Options, OutputError, Report, Results,
     Site, check, measure, speed,
 };
-use crate::engine::boundary::WallMethod;
 use crate::output::trajectory::read::{ReadError, ReadOptions, Tracks, Unit, read};
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::floor_plan::{self, FloorPlan};

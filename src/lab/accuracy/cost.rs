@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::scenes::simulation;
 use crate::engine::simulation::Simulation;
 use crate::lab::bench::{BenchError, Contender, Spread, alternate, pool};
-use crate::lab::reproduce::ReproduceError;
+use crate::lab::error::LabError;
 
 /// Simulated time of one measurement, seconds.
 const SECONDS: f64 = 0.96;
@@ -35,8 +35,8 @@ pub fn measure(
     document: &Value,
     settings: &[Vec<String>],
     repeats: usize,
-) -> Result<Vec<Spread>, ReproduceError> {
-    let failed = |error: BenchError| ReproduceError::Data(error.to_string());
+) -> Result<Vec<Spread>, LabError> {
+    let failed = |error: BenchError| LabError::Data(error.to_string());
     let pool = pool(1).map_err(failed)?;
     let mut contenders: Vec<Box<dyn Contender>> = Vec::with_capacity(settings.len());
     for settings in settings {

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::scenes::simulation;
 use crate::analysis::wave::Line;
 use crate::engine::simulation::Simulation;
-use crate::lab::reproduce::ReproduceError;
+use crate::lab::error::LabError;
 
 /// The distance by which each agent is moved at the start, meters: far above rounding errors, far too small to change
 /// the forces.
@@ -43,7 +43,7 @@ impl Lyapunov {
     ///
     /// # Errors
     /// The run fails.
-    pub fn of(document: &Value) -> Result<Self, ReproduceError> {
+    pub fn of(document: &Value) -> Result<Self, LabError> {
         let (mut rates, mut growth) = (Vec::new(), 0.0_f64);
         for shift in 0..SHIFTS {
             let distances = distances(document, shift)?;
@@ -61,7 +61,7 @@ pub fn golden(k: u32) -> f64 {
 }
 
 /// Times, and root mean square distances between a crowd and a copy whose agents are moved by [`SHIFT`].
-fn distances(document: &Value, shift: u32) -> Result<Vec<(f64, f64)>, ReproduceError> {
+fn distances(document: &Value, shift: u32) -> Result<Vec<(f64, f64)>, LabError> {
     let settings = ["precision=double", "time_step_secs=0.005"].map(str::to_owned);
     let one = simulation(document, &settings)?;
     let start = super::scenes::continued(document, &one);
@@ -79,10 +79,9 @@ fn distances(document: &Value, shift: u32) -> Result<Vec<(f64, f64)>, ReproduceE
     let mut distances = Vec::new();
     while one.frame().clock.time() < DURATION {
         for simulation in [&mut one, &mut other] {
-            simulation.step().map_err(|fault| ReproduceError::Fault {
-                case: document["name"].to_string(),
-                fault,
-            })?;
+            simulation
+                .step()
+                .map_err(|fault| LabError::of(document["name"].to_string(), fault))?;
         }
         distances.push((one.frame().clock.time(), distance(&one, &other)));
     }

@@ -4,15 +4,16 @@ use super::found::{Found, Point as Setting};
 use super::knob::{Knob, are_default};
 use super::report::{Report, WALLS};
 use super::scenes::Kind;
-use crate::lab::reproduce::{ReproduceError, Store};
+use crate::lab::error::LabError;
 use crate::output::plot::{Axis, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::runs::store::Store;
 
 /// The quantities drawn for scenes of motion: positions at all samples, velocity and density at the middle one, and the
 /// position error by the knob alone.
 const MOTION: [usize; 6] = [0, 1, 2, 4, 7, 9];
 
 /// Draws `accuracy-SCENE.svg` and `.png`.
-pub fn save(report: &Report, store: &Store) -> Result<(), ReproduceError> {
+pub fn save(report: &Report, store: &Store) -> Result<(), LabError> {
     for found in &report.scenes {
         let stem = format!("accuracy-{}", found.scene.name);
         sheet(found).save(&store.path(&stem))?;

@@ -5,8 +5,9 @@ use std::fmt::Write;
 use super::found::Found;
 use super::knob::are_default;
 use super::walls::WallReport;
-use crate::lab::reproduce::{ReproduceError, Store};
+use crate::lab::error::LabError;
 use crate::output::table::Table;
+use crate::runs::store::Store;
 
 /// The name of the wall measurements in lists of scenes.
 pub const WALLS: &str = "wall-integrals";
@@ -72,7 +73,7 @@ impl Report {
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn write(&self, store: &Store) -> Result<(), ReproduceError> {
+    pub fn write(&self, store: &Store) -> Result<(), LabError> {
         let parts = self.parts().into_iter();
         let text: String = parts
             .map(|(name, text)| format!("## {name}\n\n{text}\n"))
@@ -88,7 +89,7 @@ impl Report {
     }
 
     /// One row for each error of each point.
-    fn csv(&self) -> Result<Vec<u8>, ReproduceError> {
+    fn csv(&self) -> Result<Vec<u8>, LabError> {
         let mut table = Table::new(
             0,
             &[
@@ -136,7 +137,7 @@ impl Report {
         }
         table
             .csv()
-            .map_err(|error| ReproduceError::Data(error.to_string()))
+            .map_err(|error| LabError::Data(error.to_string()))
     }
 
     /// All results as one object.

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::lyapunov::golden;
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
-use crate::lab::reproduce::ReproduceError;
+use crate::lab::error::LabError;
 use crate::scenario::{Scenario, Setting};
 
 /// How a scene is judged.
@@ -32,7 +32,7 @@ pub struct Scene {
     pub seeds: u64,
     /// Do quick plans skip it unless it is named?
     pub is_long: bool,
-    document: fn() -> Result<Value, ReproduceError>,
+    document: fn() -> Result<Value, LabError>,
 }
 
 /// All scenes.
@@ -116,7 +116,7 @@ impl Scene {
     ///
     /// # Errors
     /// The scene cannot be prepared.
-    pub fn document(&self) -> Result<Value, ReproduceError> {
+    pub fn document(&self) -> Result<Value, LabError> {
         (self.document)()
     }
 }
@@ -125,28 +125,21 @@ impl Scene {
 ///
 /// # Errors
 /// A setting is invalid.
-pub fn scenario(document: &Value, settings: &[String]) -> Result<Scenario, ReproduceError> {
+pub fn scenario(document: &Value, settings: &[String]) -> Result<Scenario, LabError> {
     let set: Result<Vec<Setting>, _> = settings.iter().map(|text| text.parse()).collect();
-    let set = set.map_err(|error| ReproduceError::Data(error.to_string()))?;
+    let set = set.map_err(|error| LabError::Data(error.to_string()))?;
     let name = document["name"].as_str().unwrap_or("scene").to_owned();
-    Scenario::parse(&document.to_string(), &format!("{name}.json"), &set).map_err(|error| {
-        ReproduceError::Scenario {
-            case: settings.join(" "),
-            error,
-        }
-    })
+    Scenario::parse(&document.to_string(), &format!("{name}.json"), &set)
+        .map_err(|error| LabError::of(settings.join(" "), error))
 }
 
 /// The first frame of a document under some settings.
 ///
 /// # Errors
 /// A setting is invalid, or an agent cannot be placed.
-pub fn simulation(document: &Value, settings: &[String]) -> Result<Simulation, ReproduceError> {
+pub fn simulation(document: &Value, settings: &[String]) -> Result<Simulation, LabError> {
     let scene = scenario(document, settings)?.scene;
-    Simulation::new(scene).map_err(|fault| ReproduceError::Fault {
-        case: settings.join(" "),
-        fault,
-    })
+    Simulation::new(scene).map_err(|fault| LabError::of(settings.join(" "), fault))
 }
 
 /// The document with the simulation's current agents in place of its own agents, grids and events.
@@ -179,13 +172,12 @@ fn relaxed_for(
     document: &Value,
     seconds: f64,
     push: impl Fn(Vector) -> Vector,
-) -> Result<Value, ReproduceError> {
+) -> Result<Value, LabError> {
     let mut simulation = simulation(document, &["precision=double".to_owned()])?;
     while simulation.frame().clock.time() < seconds {
-        simulation.step().map_err(|fault| ReproduceError::Fault {
-            case: document["name"].to_string(),
-            fault,
-        })?;
+        simulation
+            .step()
+            .map_err(|fault| LabError::of(document["name"].to_string(), fault))?;
     }
     let mut after = continued(document, &simulation);
     for agent in after["agents"].as_array_mut().into_iter().flatten() {
@@ -247,7 +239,7 @@ fn at_rest(name: &str, columns: u32, rows: u32) -> (Value, [f64; 2]) {
 /// Time in which the crowds come to rest, seconds.
 const REST: f64 = 10.0;
 
-fn relaxed() -> Result<Value, ReproduceError> {
+fn relaxed() -> Result<Value, LabError> {
     let (document, [width, height]) = at_rest("relaxed", 30, 30);
     let wave = |x: f64, length: f64| (std::f64::consts::TAU * x / length).sin();
     relaxed_for(&document, REST, |r| {
@@ -255,7 +247,7 @@ fn relaxed() -> Result<Value, ReproduceError> {
     })
 }
 
-fn pulse() -> Result<Value, ReproduceError> {
+fn pulse() -> Result<Value, LabError> {
     let (document, [width, _]) = at_rest("pulse", 75, 12);
     relaxed_for(&document, REST, |r| {
         let along = (r.x - 0.3 * width) / 1.5;
@@ -264,7 +256,7 @@ fn pulse() -> Result<Value, ReproduceError> {
 }
 
 /// Agents 5 m apart, each walking to a goal behind a wall along the x axis.
-fn wall() -> Result<Value, ReproduceError> {
+fn wall() -> Result<Value, LabError> {
     let people = (0..400).map(|k| {
         let (column, row) = (f64::from(k % 100), f64::from(k / 100));
         let (x, y) = (5.0 * column, 100.0 * row + 0.6 + 0.8 * golden(k));
@@ -297,15 +289,12 @@ fn streams(profile: &str) -> Value {
     })
 }
 
-fn evacuation(profile: &str) -> Result<Value, ReproduceError> {
+fn evacuation(profile: &str) -> Result<Value, LabError> {
     let profile = format!("profile={profile}").parse();
     let profile = profile
-        .map_err(|error: crate::scenario::SettingError| ReproduceError::Data(error.to_string()))?;
+        .map_err(|error: crate::scenario::SettingError| LabError::Data(error.to_string()))?;
     let scenario = Scenario::shipped("evacuation", &[profile]);
-    let scenario = scenario.map_err(|error| ReproduceError::Scenario {
-        case: "evacuation".to_owned(),
-        error,
-    })?;
+    let scenario = scenario.map_err(|error| LabError::of("evacuation".to_owned(), error))?;
     Ok(scenario.document)
 }
 

@@ -7,10 +7,10 @@ use super::scenes::{CORRIDOR, Kind, PUSH, scenario};
 use crate::analysis::statistics::student_95;
 use crate::analysis::wave::{self, Estimate, Run, SpaceTime, Strip};
 use crate::engine::simulation::{Fault, Simulation};
-use crate::lab::reproduce::ReproduceError;
+use crate::lab::error::LabError;
 use crate::runs::drive::{Then, drive, unless_over};
 use crate::scenario::Scenario;
-use crate::scenario::metrics::Metrics;
+use crate::scenario::measurements::Metrics;
 
 /// Speeds are averaged over agents of similar density. These are the lower ends of the bins, P/m²; each bin is 1 P/m²
 /// wide.
@@ -53,17 +53,14 @@ pub fn sample(
     document: &Value,
     settings: &[String],
     seed: u64,
-) -> Result<Sample, ReproduceError> {
+) -> Result<Sample, LabError> {
     let settings = [settings, &[format!("seed={seed}")]].concat();
     let scenario = scenario(document, &settings)?;
     let run = match kind {
         Kind::Wave => wave_speed,
         Kind::Evacuation | Kind::Motion => evacuation,
     };
-    run(&scenario).map_err(|fault| ReproduceError::Fault {
-        case: settings.join(" "),
-        fault,
-    })
+    run(&scenario).map_err(|fault| LabError::of(settings.join(" "), fault))
 }
 
 /// Table 1's three numbers, and the speeds by density.
@@ -71,7 +68,7 @@ fn evacuation(scenario: &Scenario) -> Result<Sample, Fault> {
     /// Table 1's flow is that of the first 350 arrivals.
     const ARRIVALS: usize = 350;
     let mut simulation = Simulation::new(scenario.scene.clone())?;
-    let mut metrics = Metrics::new(scenario.measurements.clone(), &mut simulation);
+    let mut metrics = Metrics::new(&scenario.measurements, &mut simulation);
     let [first, last] = FUNDAMENTAL.map(|time| simulation.frame().clock.frame_at(time));
     simulation.request_density_until(last + 1);
     let every = simulation.frame().clock.frame_at(EVERY).max(1);

@@ -11,8 +11,11 @@ use super::statistics::{self, Sample, deviations};
 use super::trajectory::{SAMPLES, Trajectories, trajectories};
 use super::walls;
 use crate::engine::simulation::Simulation;
-use crate::lab::job::{Job, Listener, read, run};
-use crate::lab::reproduce::{ReproduceError, Store};
+use crate::lab::error::LabError;
+use crate::lab::jobs::{read, results};
+use crate::runs::identity::Identity;
+use crate::runs::job::{Job, Listener, Progress};
+use crate::runs::store::Store;
 
 /// What to measure.
 #[derive(Clone)]
@@ -49,11 +52,7 @@ struct Task {
 ///
 /// # Errors
 /// A run or a file fails.
-pub fn accuracy(
-    plan: &Plan,
-    store: &Store,
-    listener: &dyn Listener,
-) -> Result<Report, ReproduceError> {
+pub fn accuracy(plan: &Plan, store: &Store, listener: &dyn Listener) -> Result<Report, LabError> {
     let mut tasks = Vec::new();
     let mut jobs = Vec::new();
     for &scene in &plan.scenes {
@@ -61,7 +60,7 @@ pub fn accuracy(
         jobs.extend(task.jobs(plan));
         tasks.push(task);
     }
-    let results = run(store, &jobs, listener)?;
+    let results = results(&jobs, store, listener)?;
     let mut results = results.iter();
     let mut found = Vec::new();
     for task in &tasks {
@@ -82,7 +81,7 @@ pub fn accuracy(
 }
 
 impl Task {
-    fn new(scene: Scene, plan: &Plan) -> Result<Self, ReproduceError> {
+    fn new(scene: Scene, plan: &Plan) -> Result<Self, LabError> {
         let document = scene.document()?;
         let first = simulation(&document, &[])?;
         let has_walls = !first.frame().walls.is_empty();
@@ -138,7 +137,7 @@ impl Task {
         FINE.map(str::to_owned).to_vec()
     }
 
-    fn jobs(&self, plan: &Plan) -> Vec<Job> {
+    fn jobs(&self, plan: &Plan) -> Vec<Job<'static>> {
         match self.scene.kind {
             Kind::Motion => vec![self.motion_job(plan.quick)],
             Kind::Evacuation | Kind::Wave => {
@@ -155,7 +154,7 @@ impl Task {
         }
     }
 
-    fn motion_job(&self, quick: bool) -> Job {
+    fn motion_job(&self, quick: bool) -> Job<'static> {
         let document = self.document.clone();
         let points: Vec<(Knob, Vec<String>)> = self
             .points()
@@ -163,16 +162,18 @@ impl Task {
             .collect();
         let name = format!("motion {}, {} points", self.scene.name, points.len());
         let input = format!("{document} {points:?} {quick}");
-        Job::new(name, 10.0, move || trajectories(&document, &points, quick)).depending_on(input)
+        Job::new(name.clone(), Identity::of(&name, input), 10.0, move |_| {
+            trajectories(&document, &points, quick)
+        })
     }
 
-    fn sample_job(&self, settings: Vec<String>, seed: u64) -> Job {
+    fn sample_job(&self, settings: Vec<String>, seed: u64) -> Job<'static> {
         let (kind, document) = (self.scene.kind, self.document.clone());
         let name = format!("{} {} seed {seed}", self.scene.name, settings.join(" "));
         let expected = self.expected_secs(&settings);
         let input = document.to_string();
-        let work = move || statistics::sample(kind, &document, &settings, seed);
-        Job::new(name, expected, work).depending_on(input)
+        let work = move |_: Progress| statistics::sample(kind, &document, &settings, seed);
+        Job::new(name.clone(), Identity::of(&name, input), expected, work)
     }
 
     /// Estimated time of one sample, seconds: for the progress bar, and to start the longest jobs first.
@@ -198,7 +199,7 @@ impl Task {
         plan: &Plan,
         results: &[&Value],
         listener: &dyn Listener,
-    ) -> Result<Found, ReproduceError> {
+    ) -> Result<Found, LabError> {
         let (quantities, errors, notes) = match self.scene.kind {
             Kind::Motion => self.motion_errors(results)?,
             Kind::Evacuation | Kind::Wave => self.statistics_errors(plan, results)?,
@@ -227,22 +228,20 @@ impl Task {
     }
 
     /// The document whose cost is measured. Unless a scene is judged by motion, its crowd is first made dense.
-    fn busy(&self) -> Result<Value, ReproduceError> {
+    fn busy(&self) -> Result<Value, LabError> {
         let until = match self.scene.kind {
             Kind::Motion => return Ok(self.document.clone()),
             Kind::Evacuation | Kind::Wave => DENSE_AT,
         };
         let mut crowd = simulation(&self.document, &[])?;
         while crowd.frame().clock.time() < until {
-            Simulation::step(&mut crowd).map_err(|fault| ReproduceError::Fault {
-                case: self.scene.name.to_owned(),
-                fault,
-            })?;
+            Simulation::step(&mut crowd)
+                .map_err(|fault| LabError::of(self.scene.name.to_owned(), fault))?;
         }
         Ok(continued(&self.document, &crowd))
     }
 
-    fn motion_errors(&self, results: &[&Value]) -> Result<Errored, ReproduceError> {
+    fn motion_errors(&self, results: &[&Value]) -> Result<Errored, LabError> {
         let found: Trajectories = read(results[0])?;
         let mut quantities = Vec::new();
         for (name, unit) in [("position", "m"), ("velocity", "m/s"), ("density", "P/m²")] {
@@ -274,11 +273,7 @@ impl Task {
         Ok((quantities, errors.collect(), notes))
     }
 
-    fn statistics_errors(
-        &self,
-        plan: &Plan,
-        results: &[&Value],
-    ) -> Result<Errored, ReproduceError> {
+    fn statistics_errors(&self, plan: &Plan, results: &[&Value]) -> Result<Errored, LabError> {
         let kind = self.scene.kind;
         let seeds = self.seeds(plan) as usize;
         let samples: Result<Vec<Sample>, _> = results.iter().map(|value| read(value)).collect();

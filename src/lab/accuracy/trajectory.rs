@@ -10,7 +10,7 @@ use crate::engine::boundary::WallMethod;
 use crate::engine::clock::PAPER_TIME_STEP;
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
-use crate::lab::reproduce::ReproduceError;
+use crate::lab::error::LabError;
 
 /// The sampled times, seconds: about 0.5, 1 and 2, moved to times that are frames of all time steps.
 pub const SAMPLES: [f64; 3] = [0.48, 0.96, 1.92];
@@ -46,19 +46,16 @@ impl Motion {
     ///
     /// # Errors
     /// A setting is invalid, the run fails, or the time step does not divide all of [`SAMPLES`].
-    pub fn of(document: &Value, settings: &[String]) -> Result<Self, ReproduceError> {
+    pub fn of(document: &Value, settings: &[String]) -> Result<Self, LabError> {
         let mut simulation = simulation(document, settings)?;
         simulation.request_density_until(u64::MAX);
         let step = simulation.frame().clock.time_step();
-        let fault = |fault| ReproduceError::Fault {
-            case: settings.join(" "),
-            fault,
-        };
+        let fault = |fault| LabError::of(settings.join(" "), fault);
         let mut at = |time: f64| {
             let frames = time / step;
             if (frames - frames.round()).abs() > 1e-6 {
                 let reason = format!("{time} s are no whole number of frames of {step} s");
-                return Err(ReproduceError::Data(reason));
+                return Err(LabError::Data(reason));
             }
             while simulation.frame().clock.frame() < frames.round() as u64 {
                 simulation.step().map_err(fault)?;
@@ -78,9 +75,9 @@ impl Motion {
         document: &Value,
         walls: WallMethod,
         quick: bool,
-    ) -> Result<(Self, Errors), ReproduceError> {
+    ) -> Result<(Self, Errors), LabError> {
         let walls =
-            serde_json::to_value(walls).map_err(|error| ReproduceError::Data(error.to_string()))?;
+            serde_json::to_value(walls).map_err(|error| LabError::Data(error.to_string()))?;
         let at = |step: f64| {
             let settings = [
                 format!("time_step_secs={step}"),
@@ -155,7 +152,7 @@ pub fn trajectories(
     document: &Value,
     points: &[(Knob, Vec<String>)],
     quick: bool,
-) -> Result<Trajectories, ReproduceError> {
+) -> Result<Trajectories, LabError> {
     let mut known = Known::default();
     let mut errors = Vec::new();
     for (knob, settings) in points {
@@ -190,7 +187,7 @@ impl Known {
         document: &Value,
         walls: WallMethod,
         quick: bool,
-    ) -> Result<&(Motion, Errors), ReproduceError> {
+    ) -> Result<&(Motion, Errors), LabError> {
         let found = self
             .references
             .iter()
@@ -206,7 +203,7 @@ impl Known {
         Ok(&self.references[k].1)
     }
 
-    fn best(&mut self, document: &Value, knob: Knob) -> Result<Option<&Motion>, ReproduceError> {
+    fn best(&mut self, document: &Value, knob: Knob) -> Result<Option<&Motion>, LabError> {
         let Some(settings) = knob.best() else {
             return Ok(None);
         };

@@ -2,6 +2,9 @@
 
 use serde::Serialize;
 
+use crate::lab::error::LabError;
+use crate::output::table::Table;
+
 /// The spread of values over seeds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spread {
@@ -115,6 +118,50 @@ impl Comparison {
         };
         text.unwrap_or_else(|| "–".to_owned())
     }
+}
+
+/// A compared quantity: its name, unit and comparison.
+pub(super) type Quantity<'a> = (&'a str, &'a str, &'a Comparison);
+
+/// One line per quantity of rows that are identified by profile and setting.
+pub(super) fn csv<'a>(
+    rows: impl Iterator<Item = (Vec<String>, Vec<Quantity<'a>>)>,
+) -> Result<Vec<u8>, LabError> {
+    let head = [
+        "profile",
+        "setting",
+        "quantity",
+        "unit",
+        "paper",
+        "ours_mean",
+        "ours_std",
+        "seeds_with_value",
+        "seeds",
+        "difference",
+        "relative_difference",
+        "kept",
+    ];
+    let mut table = Table::new(0, &head);
+    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+    for (names, quantities) in rows {
+        for (quantity, unit, c) in quantities {
+            let mut row = names.clone();
+            row.extend([
+                quantity.to_owned(),
+                unit.to_owned(),
+                c.paper.to_string(),
+                number(c.ours.map(|ours| ours.mean)),
+                number(c.ours.and_then(|ours| ours.deviation)),
+                c.ours.map_or(0, |ours| ours.count).to_string(),
+                c.seeds.to_string(),
+                number(c.difference()),
+                number(c.relative()),
+                c.is_kept().map_or(String::new(), |kept| kept.to_string()),
+            ]);
+            table.rows.push(row);
+        }
+    }
+    Ok(table.csv()?)
 }
 
 #[cfg(test)]

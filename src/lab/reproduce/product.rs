@@ -1,11 +1,11 @@
 //! The tables and figures that can be reproduced.
 
-use super::case::Case;
-use super::error::ReproduceError;
-use super::figures;
-use super::runner::{Listener, Results, run};
-use super::store::Store;
-use super::{questions, table1, table2};
+use super::{figures, questions, table1, table2};
+use crate::lab::error::LabError;
+use crate::lab::jobs::finished;
+use crate::lab::sweep::{Cell, Gathered, Study};
+use crate::runs::job::{self, Listener};
+use crate::runs::store::Store;
 
 /// A table or a figure.
 pub struct Product {
@@ -15,23 +15,33 @@ pub struct Product {
     pub about: &'static str,
     /// Is it part of `all`?
     pub in_all: bool,
-    /// The cases that it needs.
-    pub cases: fn(&Plan) -> Result<Vec<Case>, ReproduceError>,
+    /// Its studies: files under `scenarios/studies/`, without their extension.
+    pub studies: &'static [&'static str],
+    /// What it needs of them.
+    pub needs: Needs,
     /// Writes its files into the store's folder, and returns a text about them.
-    pub write: fn(&Plan, &Results, &Store) -> Result<String, ReproduceError>,
+    pub write: fn(&[Gathered], &Store) -> Result<String, LabError>,
 }
 
-/// How much to compute.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Plan {
-    /// Seeds per row of a table: 1, 2, …
-    pub seeds: u64,
+/// What a product needs of its studies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Needs {
+    /// All cells, with as many seeds as the user asks for.
+    Seeds,
+    /// All cells, with the seeds of the study.
+    All,
+    /// The cells with these labels.
+    Labeled(&'static [&'static str]),
+    /// All cells, each alone on all threads, because their computing time is measured.
+    Alone,
 }
 
-impl Plan {
-    /// The seeds.
-    pub fn seeds(&self) -> impl Iterator<Item = u64> + use<> {
-        1..=self.seeds
+impl Needs {
+    fn has(&self, cell: &Cell) -> bool {
+        match self {
+            Self::Labeled(labels) => cell.label().is_some_and(|own| labels.contains(&own)),
+            Self::Seeds | Self::All | Self::Alone => true,
+        }
     }
 }
 
@@ -51,23 +61,43 @@ pub const PRODUCTS: &[Product] = &[
     questions::PRODUCT,
 ];
 
-/// Computes the missing cases of `products` and writes the products. Returns the text about each.
+impl Product {
+    /// Its studies, with `seeds` seeds per row if it is a table.
+    ///
+    /// # Errors
+    /// A study is invalid.
+    pub fn studies(&self, seeds: u64) -> Result<Vec<Study>, LabError> {
+        let seeds = (self.needs == Needs::Seeds).then_some(seeds);
+        let study = |name: &&str| Ok(Study::built_in(name, seeds, None)?);
+        self.studies.iter().map(study).collect()
+    }
+}
+
+/// Computes the missing runs of `products` and writes the products. Returns the text about each.
 ///
 /// # Errors
-/// A case cannot be computed, or a file cannot be written.
+/// A run fails, or a file cannot be written.
 pub fn reproduce(
     products: &[&Product],
-    plan: &Plan,
+    seeds: u64,
     store: &Store,
     listener: &dyn Listener,
-) -> Result<Vec<String>, ReproduceError> {
-    let mut cases = Vec::new();
-    for product in products {
-        cases.append(&mut (product.cases)(plan)?);
+) -> Result<Vec<String>, LabError> {
+    let studies: Result<Vec<Vec<Study>>, _> = products.iter().map(|p| p.studies(seeds)).collect();
+    let studies = studies?;
+    let mut jobs = Vec::new();
+    for (product, studies) in products.iter().zip(&studies) {
+        for study in studies {
+            let mut own = study.jobs(|cell| product.needs.has(cell));
+            own.iter_mut()
+                .for_each(|job| job.alone = product.needs == Needs::Alone);
+            jobs.extend(own);
+        }
     }
-    let results = run(store, &cases, listener)?;
-    products
-        .iter()
-        .map(|product| (product.write)(plan, &results, store))
-        .collect()
+    finished(&job::run(&jobs, store, None, listener)?)?;
+    let write = |(product, studies): (&&Product, &Vec<Study>)| {
+        let gathered = studies.iter().map(|study| Gathered::of(study, store));
+        (product.write)(&gathered.collect::<Vec<_>>(), store)
+    };
+    products.iter().zip(&studies).map(write).collect()
 }

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::error::ReproduceError;
+use crate::lab::error::LabError;
 
 /// All values, with their source.
 #[derive(Debug, Clone, Deserialize)]
@@ -60,8 +60,8 @@ pub struct CrossingRow {
 ///
 /// # Errors
 /// The file is not JSON of this form.
-pub fn published() -> Result<Published, ReproduceError> {
-    let invalid = |error| ReproduceError::Data(format!("published.json: {error}"));
+pub fn published() -> Result<Published, LabError> {
+    let invalid = |error| LabError::Data(format!("published.json: {error}"));
     serde_json::from_str(include_str!("published.json")).map_err(invalid)
 }
 

@@ -3,22 +3,21 @@
 use serde::Serialize;
 use serde_json::json;
 
-use super::case::Case;
-use super::comparison::{Band, Comparison};
-use super::error::ReproduceError;
-use super::product::{Plan, Product};
+use super::comparison::{self, Band, Comparison, Quantity};
+use super::product::{Needs, Product};
 use super::published::{EvacuationRow, published, written};
-use super::runner::Results;
-use super::store::Store;
-use super::text::number;
+use crate::lab::error::LabError;
+use crate::lab::sweep::{Combination, Gathered};
 use crate::output::table;
+use crate::runs::store::Store;
 
 /// The table.
 pub const PRODUCT: Product = Product {
     name: "table1",
     about: "30 rows: density, its deviation and flow of the evacuation",
     in_all: true,
-    cases,
+    studies: &["table1"],
+    needs: Needs::Seeds,
     write,
 };
 
@@ -41,69 +40,45 @@ pub struct Row {
     pub flow: Comparison,
 }
 
-/// The run of a row with one seed.
-pub fn case(row: &EvacuationRow, seed: u64) -> Case {
-    Case::shipped("evacuation")
-        .set("profile", &row.profile)
-        .set(&row.setting, row.value)
-        .seed(seed)
-        .taking(expected_secs(&row.profile))
-}
-
-/// Estimated time on one core, seconds.
-fn expected_secs(profile: &str) -> f64 {
-    match profile {
-        "sph" => 0.7,
-        "sf->sph" => 2.0,
-        "rvo->sph" => 4.0,
-        "sf+sph" => 9.0,
-        "sf" => 15.0,
-        "rvo+sph" => 20.0,
-        _ => 30.0,
-    }
-}
-
-fn cases(plan: &Plan) -> Result<Vec<Case>, ReproduceError> {
-    let rows = published()?.table1.rows;
-    let all = rows
-        .iter()
-        .flat_map(|row| plan.seeds().map(|seed| case(row, seed)));
-    Ok(all.collect())
+/// The rows of the paper beside the results of the study `table1`.
+///
+/// # Errors
+/// The paper's values are not those of the study.
+pub fn rows(results: &Gathered) -> Result<Vec<Row>, LabError> {
+    let paper = published()?.table1.rows.into_iter();
+    let ours = results.combinations();
+    Ok(paper
+        .zip(&ours)
+        .map(|(row, ours)| Row::new(row, ours))
+        .collect())
 }
 
 impl Row {
-    /// Compares a row with its runs over some seeds.
-    ///
-    /// # Errors
-    /// A case was not run.
-    pub fn new(
-        row: &EvacuationRow,
-        seeds: impl Iterator<Item = u64>,
-        results: &Results,
-    ) -> Result<Self, ReproduceError> {
-        let seeds: Vec<Case> = seeds.map(|seed| case(row, seed)).collect();
-        let compare = |name: &str, paper: f64, band: Option<Band>| {
-            let values: Result<Vec<_>, ReproduceError> = seeds
-                .iter()
-                .map(|case| results.of(case)?.metric(name))
-                .collect();
-            Ok::<_, ReproduceError>(Comparison::new(paper, &values?, band))
-        };
+    /// Compares the results over seeds with a row of the paper.
+    fn new(row: EvacuationRow, ours: &Combination) -> Self {
+        let compare = |name: &str, paper, band| Comparison::new(paper, &ours.values(name), band);
         let plain = ["sf", "rvo"].contains(&row.profile.as_str());
         let (density, flow) = if plain { (0.04, 0.25) } else { (0.015, 0.10) };
-        Ok(Self {
-            profile: row.profile.clone(),
-            setting: row.setting.clone(),
+        let (density, flow) = (Band::Relative(density), Band::Relative(flow));
+        Self {
+            evacuated: compare("evacuated", row.evacuated, None),
+            density: compare("density_mean_15s", row.density, Some(density)),
+            deviation: compare("density_std_15s", row.deviation, Some(Band::Absolute(0.12))),
+            flow: compare("flow_per_s", row.flow, Some(flow)),
+            profile: row.profile,
+            setting: row.setting,
             value: row.value,
-            evacuated: compare("evacuated", row.evacuated, None)?,
-            density: compare(
-                "density_mean_15s",
-                row.density,
-                Some(Band::Relative(density)),
-            )?,
-            deviation: compare("density_std_15s", row.deviation, Some(Band::Absolute(0.12)))?,
-            flow: compare("flow_per_s", row.flow, Some(Band::Relative(flow)))?,
-        })
+        }
+    }
+
+    /// The compared quantities: name, unit and comparison.
+    fn quantities(&self) -> [Quantity<'_>; 4] {
+        [
+            ("evacuated", "agents", &self.evacuated),
+            ("density", "P/m²", &self.density),
+            ("deviation", "P/m²", &self.deviation),
+            ("flow", "P/s", &self.flow),
+        ]
     }
 
     /// The quantities outside of their bands.
@@ -138,31 +113,35 @@ pub fn setting_written(key: &str, value: f64) -> String {
     format!("{symbol} = {value}")
 }
 
-fn write(plan: &Plan, results: &Results, store: &Store) -> Result<String, ReproduceError> {
+fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
+    let [results] = studies else {
+        return Err(LabError::Data("Table 1 has one study".to_owned()));
+    };
     let published = published()?;
-    let rows: Result<Vec<Row>, _> = published
-        .table1
-        .rows
-        .iter()
-        .map(|row| Row::new(row, plan.seeds(), results))
-        .collect();
-    let rows = rows?;
+    let rows = rows(results)?;
+    let seeds = results.study.seeds;
     let kept = rows.iter().filter(|row| row.missed().is_empty()).count();
     let markdown = format!(
-        "{}\n{kept} of {} rows are inside their bands (means over {} seed(s)): density 1.5 %, 4 % for SF and RVO; \
+        "{}\n{kept} of {} rows are inside their bands (means over {seeds} seed(s)): density 1.5 %, 4 % for SF and RVO; \
          its deviation 0.12 P/m²; flow 10 %, 25 % for SF and RVO.\n",
         markdown(&rows),
         rows.len(),
-        plan.seeds
     );
     let json = json!({
         "source": published.source,
         "place": published.table1.place,
-        "seeds": plan.seeds,
+        "seeds": seeds,
         "rows": rows.iter().map(as_json).collect::<Vec<_>>(),
     });
+    let csv = comparison::csv(rows.iter().map(|row| {
+        let setting = format!("{}={}", row.setting, row.value);
+        (
+            vec![row.profile.clone(), setting],
+            row.quantities().to_vec(),
+        )
+    }))?;
     store.write("table1.md", markdown.as_bytes())?;
-    store.write("table1.csv", &csv(&rows)?)?;
+    store.write("table1.csv", &csv)?;
     store.write("table1.json", format!("{json:#}\n").as_bytes())?;
     Ok(markdown)
 }
@@ -213,51 +192,4 @@ fn markdown(rows: &[Row]) -> String {
         ]);
     }
     table.markdown()
-}
-
-fn csv(rows: &[Row]) -> Result<Vec<u8>, ReproduceError> {
-    let mut table = table::Table::new(
-        0,
-        &[
-            "profile",
-            "setting",
-            "value",
-            "quantity",
-            "unit",
-            "paper",
-            "ours_mean",
-            "ours_std",
-            "seeds_with_value",
-            "seeds",
-            "difference",
-            "relative_difference",
-            "kept",
-        ],
-    );
-    for row in rows {
-        for (name, unit, c) in [
-            ("evacuated", "agents", &row.evacuated),
-            ("density", "P/m²", &row.density),
-            ("deviation", "P/m²", &row.deviation),
-            ("flow", "P/s", &row.flow),
-        ] {
-            table.add([
-                row.profile.clone(),
-                row.setting.clone(),
-                row.value.to_string(),
-                name.to_owned(),
-                unit.to_owned(),
-                c.paper.to_string(),
-                number(c.ours.map(|ours| ours.mean)),
-                number(c.ours.and_then(|ours| ours.deviation)),
-                c.ours.map_or(0, |ours| ours.count).to_string(),
-                c.seeds.to_string(),
-                number(c.difference()),
-                number(c.relative()),
-                c.is_kept()
-                    .map_or_else(String::new, |kept| kept.to_string()),
-            ]);
-        }
-    }
-    Ok(table.csv()?)
 }

@@ -3,23 +3,22 @@
 use serde::Serialize;
 use serde_json::json;
 
-use super::case::Case;
-use super::comparison::Comparison;
-use super::error::ReproduceError;
-use super::product::{Plan, Product};
-use super::published::{CrossingRow, published, written};
+use super::comparison::{self, Comparison, Quantity};
+use super::product::{Needs, Product};
+use super::published::{published, written};
 use super::ranking::{LEAST_DIFFERENCE, Ranked, Ranking, rankings};
-use super::runner::Results;
-use super::store::Store;
-use super::text::number;
+use crate::lab::error::LabError;
+use crate::lab::sweep::{Combination, Gathered};
 use crate::output::table;
+use crate::runs::store::Store;
 
 /// The table.
 pub const PRODUCT: Product = Product {
     name: "table2",
     about: "7 rows: density and flow of the crossing, and their rankings",
     in_all: true,
-    cases,
+    studies: &["table2"],
+    needs: Needs::Seeds,
     write,
 };
 
@@ -52,58 +51,20 @@ pub struct Table {
     pub rankings: Vec<Ranking>,
 }
 
-/// The run of a row with one seed.
-pub fn case(profile: &str, seed: u64) -> Case {
-    Case::shipped("crossing")
-        .set("profile", profile)
-        .seed(seed)
-        .taking(expected_secs(profile))
-}
-
-/// Estimated time on one core, seconds.
-pub fn expected_secs(profile: &str) -> f64 {
-    match profile {
-        "sph" => 0.5,
-        "sf->sph" => 3.0,
-        "rvo->sph" => 5.0,
-        "sf" => 6.0,
-        "sf+sph" => 7.5,
-        "rvo" => 8.5,
-        _ => 11.0,
-    }
-}
-
-fn cases(plan: &Plan) -> Result<Vec<Case>, ReproduceError> {
-    let rows = published()?.table2.rows;
-    let all = rows
-        .iter()
-        .flat_map(|row| plan.seeds().map(|seed| case(&row.profile, seed)));
-    Ok(all.collect())
-}
-
 impl Table {
-    /// Compares the table with the runs that `case` returns for a profile and a seed.
+    /// Compares seven combinations, in the order of the paper's rows, with the paper.
     ///
     /// # Errors
-    /// A case was not run.
-    pub fn new(
-        plan: &Plan,
-        results: &Results,
-        case: impl Fn(&str, u64) -> Case,
-    ) -> Result<Self, ReproduceError> {
+    /// The paper's values cannot be read.
+    pub fn new(ours: &[Combination]) -> Result<Self, LabError> {
         let published = published()?.table2.rows;
-        let values = |row: &CrossingRow, name: &str| -> Result<Vec<_>, ReproduceError> {
-            plan.seeds()
-                .map(|seed| results.of(&case(&row.profile, seed))?.metric(name))
-                .collect()
-        };
         let (mut rows, mut densities, mut flows) = (Vec::new(), Vec::new(), Vec::new());
-        for row in &published {
-            let (density, flow) = (values(row, DENSITY)?, values(row, FLOW)?);
+        for (row, ours) in published.iter().zip(ours) {
+            let (density, flow) = (ours.values(DENSITY), ours.values(FLOW));
             rows.push(Row {
                 profile: row.profile.clone(),
                 density: Comparison::new(row.density, &density, None),
-                deviation: Comparison::new(row.deviation, &values(row, DEVIATION)?, None),
+                deviation: Comparison::new(row.deviation, &ours.values(DEVIATION), None),
                 flow: Comparison::new(row.flow, &flow, None),
             });
             let ranked = |paper, ours| Ranked {
@@ -206,48 +167,25 @@ impl Table {
             self.rankings_markdown()
         )
     }
+}
 
-    fn csv(&self) -> Result<Vec<u8>, ReproduceError> {
-        let mut table = table::Table::new(
-            0,
-            &[
-                "profile",
-                "quantity",
-                "unit",
-                "paper",
-                "ours_mean",
-                "ours_std",
-                "seeds",
-                "difference",
-                "relative_difference",
-            ],
-        );
-        for row in &self.rows {
-            for (name, unit, c) in [
-                ("density", "P/m²", &row.density),
-                ("deviation", "P/m²", &row.deviation),
-                ("flow", "P/s", &row.flow),
-            ] {
-                table.add([
-                    row.profile.clone(),
-                    name.to_owned(),
-                    unit.to_owned(),
-                    c.paper.to_string(),
-                    number(c.ours.map(|ours| ours.mean)),
-                    number(c.ours.and_then(|ours| ours.deviation)),
-                    c.seeds.to_string(),
-                    number(c.difference()),
-                    number(c.relative()),
-                ]);
-            }
-        }
-        Ok(table.csv()?)
+impl Row {
+    /// The compared quantities: name, unit and comparison.
+    fn quantities(&self) -> Vec<Quantity<'_>> {
+        vec![
+            ("density", "P/m²", &self.density),
+            ("deviation", "P/m²", &self.deviation),
+            ("flow", "P/s", &self.flow),
+        ]
     }
 }
 
-fn write(plan: &Plan, results: &Results, store: &Store) -> Result<String, ReproduceError> {
+fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
+    let [results] = studies else {
+        return Err(LabError::Data("Table 2 has one study".to_owned()));
+    };
     let published = published()?;
-    let table = Table::new(plan, results, case)?;
+    let table = Table::new(&results.combinations())?;
     let markdown = table.markdown();
     let rankings: Vec<_> = table
         .rankings
@@ -261,12 +199,16 @@ fn write(plan: &Plan, results: &Results, store: &Store) -> Result<String, Reprod
     let json = json!({
         "source": published.source,
         "place": published.table2.place,
-        "seeds": plan.seeds,
+        "seeds": results.study.seeds,
         "rows": table.rows,
         "rankings": rankings,
     });
     store.write("table2.md", markdown.as_bytes())?;
-    store.write("table2.csv", &table.csv()?)?;
+    let rows = table.rows.iter();
+    let csv = comparison::csv(
+        rows.map(|row| (vec![row.profile.clone(), String::new()], row.quantities())),
+    )?;
+    store.write("table2.csv", &csv)?;
     store.write("table2.json", format!("{json:#}\n").as_bytes())?;
     Ok(markdown)
 }

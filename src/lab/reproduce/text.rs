@@ -1,9 +1,4 @@
-//! Numbers in tables, and generated text in documents.
-
-/// A number with all its digits; empty for `None`.
-pub fn number(value: Option<f64>) -> String {
-    value.map_or_else(String::new, |value| value.to_string())
-}
+//! Generated text in documents.
 
 /// `document` with `text` between the lines `<!-- name -->` and `<!-- /name -->`; `None` if they are missing.
 pub fn put_between(document: &str, name: &str, text: &str) -> Option<String> {

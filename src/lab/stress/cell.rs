@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::condition::Condition;
 use super::map::Detail;
 use super::rest::{Remains, Rest, Surroundings};
+use crate::analysis::stability::{FITTED, Mode};
 use crate::engine::clock::PAPER_COARSE_STEP;
 use crate::engine::simulation::Fault;
-use crate::analysis::stability::{FITTED, Mode};
-use crate::lab::job::Job;
-use crate::lab::reproduce::ReproduceError;
+use crate::runs::identity::Identity;
+use crate::runs::job::Job;
 
 /// No time step is longer, seconds: Δt_fine never exceeds Δt_coarse.
 const LONGEST: f64 = PAPER_COARSE_STEP;
@@ -119,7 +119,7 @@ impl Cell {
     }
 
     /// The job that finds it.
-    pub fn job(crowd: Rest, detail: Detail, first_seed: u64) -> Job {
+    pub fn job(crowd: Rest, detail: Detail, first_seed: u64) -> Job<'static> {
         let steps = detail.bisections();
         let name = format!(
             "map k={} ρ⁰max={} K^ag={} μ={}, {steps} bisections, people after {first_seed}",
@@ -133,11 +133,8 @@ impl Cell {
             simulated / formula
         });
         let expected = 5e-5 * frames.iter().sum::<f64>();
-        Job::new(name, expected, move || {
-            Self::find(crowd, detail, first_seed).map_err(|fault| ReproduceError::Fault {
-                case: format!("{crowd:?}"),
-                fault,
-            })
+        Job::new(name.clone(), Identity::of(&name, ""), expected, move |_| {
+            Self::find(crowd, detail, first_seed)
         })
     }
 

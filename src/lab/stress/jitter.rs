@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::engine::simulation::{Fault, Simulation};
-use crate::lab::job::Job;
-use crate::lab::reproduce::ReproduceError;
+use crate::lab::error::LabError;
 use crate::runs::drive::{Then, drive};
+use crate::runs::identity::Identity;
+use crate::runs::job::Job;
 use crate::scenario::{Scenario, ScenarioError, Setting, SettingError};
 
 /// The crowd: `scenarios/stress/small_concert.json`.
@@ -85,38 +86,37 @@ impl Variant {
     ///
     /// # Errors
     /// A setting is invalid.
-    pub fn scenario(&self) -> Result<Scenario, ReproduceError> {
+    pub fn scenario(&self) -> Result<Scenario, LabError> {
         let settings: Result<Vec<Setting>, SettingError> =
             self.settings.iter().map(|text| text.parse()).collect();
-        let settings = settings.map_err(|error| ReproduceError::Data(error.to_string()))?;
+        let settings = settings.map_err(|error| LabError::Data(error.to_string()))?;
         let scenario = Scenario::parse(CONCERT, "small_concert.json", &settings);
-        scenario.map_err(|error: ScenarioError| ReproduceError::Scenario {
-            case: self.label.to_owned(),
-            error,
-        })
+        scenario.map_err(|error: ScenarioError| LabError::of(self.label.to_owned(), error))
     }
 
     /// The job that measures it.
-    pub fn job(self) -> Job {
+    pub fn job(self) -> Job<'static> {
         let expected = if self.settings.contains(&"time_step_secs=0.002") {
             15.0
         } else {
             1.5
         };
         let name = format!("jitter {}", self.label);
-        Job::new(name, expected, move || self.measure()).depending_on(CONCERT)
+        Job::new(
+            name.clone(),
+            Identity::of(&name, CONCERT),
+            expected,
+            move |_| self.measure(),
+        )
     }
 
     /// Runs and measures it.
     ///
     /// # Errors
     /// The run fails.
-    pub fn measure(&self) -> Result<Jitter, ReproduceError> {
+    pub fn measure(&self) -> Result<Jitter, LabError> {
         let scenario = self.scenario()?;
-        let failed = |fault| ReproduceError::Fault {
-            case: self.label.to_owned(),
-            fault,
-        };
+        let failed = |fault| LabError::of(self.label.to_owned(), fault);
         let mut simulation = Simulation::new(scenario.scene.clone()).map_err(failed)?;
         simulation.request_density_until(u64::MAX);
         let mut windows = [[Mean::default(); 3]; 2];

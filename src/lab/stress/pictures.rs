@@ -5,9 +5,10 @@ use super::map::Detail;
 use super::report::Report;
 use super::rest::Rest;
 use crate::analysis::stability::{FITTED, Scheme};
-use crate::lab::reproduce::{ReproduceError, Store};
+use crate::lab::error::LabError;
 use crate::output::colors::ColorMap;
 use crate::output::plot::{Axis, Cells, ColorBar, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::runs::store::Store;
 
 /// Range of the step axis of all curves, milliseconds.
 const STEPS: [f64; 2] = [2.0, 200.0];
@@ -15,7 +16,7 @@ const STEPS: [f64; 2] = [2.0, 200.0];
 const ZERO: f64 = 0.5;
 
 /// Draws `maps.svg` and `maps.png`.
-pub fn save(report: &Report, detail: Detail, store: &Store) -> Result<(), ReproduceError> {
+pub fn save(report: &Report, detail: Detail, store: &Store) -> Result<(), LabError> {
     let cells = &report.cells;
     let sheet = Sheet {
         title: "The largest time step at which a crowd comes to rest".to_owned(),

@@ -8,7 +8,8 @@ use super::fit::LEAST;
 use super::hard::Survival;
 use super::jitter::{Jitter, Variant};
 use crate::analysis::stability::{Constants, FITTED};
-use crate::lab::reproduce::{ReproduceError, Store};
+use crate::lab::error::LabError;
+use crate::runs::store::Store;
 
 /// All results.
 #[derive(Debug, Clone)]
@@ -58,7 +59,7 @@ impl Report {
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn write(&self, store: &Store) -> Result<(), ReproduceError> {
+    pub fn write(&self, store: &Store) -> Result<(), LabError> {
         let text: String = self.parts().map(|(_, text)| text + "\n").concat();
         store.write("report.md", text.as_bytes())?;
         store.write("maps.csv", csv(&self.cells).as_bytes())?;

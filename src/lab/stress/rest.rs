@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::condition::Condition;
 use super::watch::Watch;
+use crate::analysis::stability::Mode;
 use crate::engine::agents::{Agents, NewAgent};
 use crate::engine::clock::Clock;
 use crate::engine::geometry::Polygon;
@@ -12,7 +13,6 @@ use crate::engine::placement::Grid;
 use crate::engine::profile::Blend;
 use crate::engine::scene::{Group, Scene};
 use crate::engine::simulation::{Fault, Simulation};
-use crate::analysis::stability::Mode;
 use crate::scenario::catalog::{NavigationKind, Parameters};
 
 /// Agents along each side of the room.

@@ -6,8 +6,11 @@ use super::hard::{HARD, Hard, Survival};
 use super::jitter::{Jitter, VARIANTS};
 use super::map::Detail;
 use super::report::Report;
-use crate::lab::job::{Job, Listener, read, run};
-use crate::lab::reproduce::{ReproduceError, Store};
+use crate::lab::error::LabError;
+use crate::lab::jobs::{read, results};
+use crate::runs::identity::Identity;
+use crate::runs::job::{Job, Listener, Progress};
+use crate::runs::store::Store;
 
 /// Held-out crowds use the seeds after this one, which the maps do not use.
 const OTHER_PEOPLE: u64 = 100;
@@ -16,11 +19,7 @@ const OTHER_PEOPLE: u64 = 100;
 ///
 /// # Errors
 /// A run or a file fails.
-pub fn stress(
-    detail: Detail,
-    store: &Store,
-    listener: &dyn Listener,
-) -> Result<Report, ReproduceError> {
+pub fn stress(detail: Detail, store: &Store, listener: &dyn Listener) -> Result<Report, LabError> {
     let (crowds, held_out) = (detail.crowds(), detail.held_out());
     let mut jobs = Vec::new();
     for hard in HARD {
@@ -30,7 +29,7 @@ pub fn stress(
     let others = held_out.iter();
     jobs.extend(others.map(|&crowd| Cell::job(crowd, detail, OTHER_PEOPLE)));
     jobs.extend(VARIANTS.map(|variant| variant.job()));
-    let results = run(store, &jobs, listener)?;
+    let results = results(&jobs, store, listener)?;
     let (hard, rest) = results.split_at(HARD.len());
     let (cells, rest) = rest.split_at(crowds.len());
     let (held_out, jitter) = rest.split_at(held_out.len());
@@ -53,22 +52,20 @@ pub fn stress(
 
 impl Hard {
     /// The job that runs it.
-    fn job(&self, quick: bool) -> Result<Job, ReproduceError> {
-        let invalid = |error| ReproduceError::Scenario {
-            case: self.name.to_owned(),
-            error,
-        };
+    fn job(&self, quick: bool) -> Result<Job<'static>, LabError> {
+        let invalid = |error| LabError::of(self.name.to_owned(), error);
         let shortened = self.quick_secs.filter(|_| quick);
         let settings: Result<Vec<_>, _> = shortened
             .iter()
             .map(|secs| format!("duration_secs={secs}").parse())
             .collect();
         let settings =
-            settings.map_err(|error| ReproduceError::Data(format!("{}: {error}", self.name)))?;
+            settings.map_err(|error| LabError::Data(format!("{}: {error}", self.name)))?;
         let scenario = self.scenario(&settings).map_err(invalid)?;
         let frames = scenario.duration_secs / scenario.scene.clock.time_step();
         let name = format!("hard {}, {frames} frames", self.name);
-        let work = move || Ok(Self::survive(&scenario));
-        Ok(Job::new(name, 0.3 + 1.5e-5 * frames, work).depending_on(self.text))
+        let work = move |_: Progress| Ok::<Survival, LabError>(Self::survive(&scenario));
+        let key = Identity::of(&name, self.text);
+        Ok(Job::new(name, key, 0.3 + 1.5e-5 * frames, work))
     }
 }

@@ -5,15 +5,48 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::cell::{Source, short};
+use super::cell::short;
 use super::entries::Entries;
 use super::problem;
 use super::study::MOST_CELLS;
+use crate::runs::case::Source;
 use crate::scenario::quote::shown;
-use crate::scenario::{Problem, SHIPPED, Setting, suggestion};
+use crate::scenario::{Problem, SHIPPED, Setting, built_in, suggestion};
 
 /// The key of the scenario, which can be varied like a setting.
 pub(super) const SCENARIO: &str = "scenario";
+
+/// Where a study is read from, and with it the files that it refers to.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Root<'a> {
+    /// The study's file, relative to `scenarios/` if it is built in.
+    pub(super) path: &'a Path,
+    built_in: bool,
+}
+
+impl<'a> Root<'a> {
+    /// A file on disk.
+    pub(super) fn file(path: &'a Path) -> Self {
+        let built_in = false;
+        Self { path, built_in }
+    }
+
+    /// A file that is built into the program.
+    pub(super) fn built_in(path: &'a Path) -> Self {
+        let built_in = true;
+        Self { path, built_in }
+    }
+
+    /// The scenario in this file, if it exists.
+    fn scenario(&self, name: &str) -> Result<Source, PathBuf> {
+        let path = self.path.parent().unwrap_or(Path::new("")).join(name);
+        match self.built_in {
+            true if built_in(&path).is_some() => Ok(Source::BuiltIn(path)),
+            false if path.is_file() => Ok(Source::File(path)),
+            _ => Err(path),
+        }
+    }
+}
 
 /// A setting, and its place in the file.
 #[derive(Debug, Clone)]
@@ -60,15 +93,15 @@ pub(super) fn said(choices: &[Choice]) -> BTreeSet<(Option<&[String]>, String)> 
     said.collect()
 }
 
-/// The settings of an object at `place`. Given a folder, a scenario may be among them.
+/// The settings of an object at `place`. Given a root, a scenario may be among them.
 pub(super) fn choices(
     entries: &Entries,
     place: &str,
-    folder: Option<&Path>,
+    root: Option<Root>,
 ) -> Result<Vec<Choice>, Problem> {
     let mut choices: Vec<Choice> = Vec::new();
     for (key, value) in &entries.0 {
-        let choice = choice(key, value, [place, &format!("{place}.{key}")], folder)?;
+        let choice = choice(key, value, [place, &format!("{place}.{key}")], root)?;
         if let Some(other) = choices.iter().find(|other| other.is_as(&choice)) {
             return Err(problem(
                 choice.place,
@@ -81,7 +114,7 @@ pub(super) fn choices(
 }
 
 /// A key of the grid with its values.
-pub(super) fn axis(key: &str, values: &Value, folder: &Path) -> Result<Vec<Choice>, Problem> {
+pub(super) fn axis(key: &str, values: &Value, root: Root) -> Result<Vec<Choice>, Problem> {
     let place = format!("grid.{key}");
     let values = match values.as_array() {
         None => return Err(problem(place, "must be a list of values")),
@@ -103,7 +136,7 @@ pub(super) fn axis(key: &str, values: &Value, folder: &Path) -> Result<Vec<Choic
         let reason = format!("{} is given twice", short(&values[k]));
         return Err(problem(format!("{place}[{k}]"), reason));
     }
-    let value = |(k, value)| choice(key, value, ["grid", &format!("{place}[{k}]")], Some(folder));
+    let value = |(k, value)| choice(key, value, ["grid", &format!("{place}[{k}]")], Some(root));
     values.iter().enumerate().map(value).collect()
 }
 
@@ -112,11 +145,11 @@ fn choice(
     key: &str,
     value: &Value,
     [inside, place]: [&str; 2],
-    folder: Option<&Path>,
+    root: Option<Root>,
 ) -> Result<Choice, Problem> {
-    let meaning = match (folder, value) {
-        (Some(folder), Value::String(name)) if key == SCENARIO => {
-            Meaning::Scenario(source(name, place, folder)?)
+    let meaning = match (root, value) {
+        (Some(root), Value::String(name)) if key == SCENARIO => {
+            Meaning::Scenario(source(name, place, root)?)
         }
         (Some(_), _) if key == SCENARIO => {
             return Err(problem(place, "must be the name of a scenario, or a file"));
@@ -139,14 +172,14 @@ fn choice(
 }
 
 /// A shipped scenario by its name, or a file.
-pub(super) fn source(name: &str, place: &str, folder: &Path) -> Result<Source, Problem> {
+pub(super) fn source(name: &str, place: &str, root: Root) -> Result<Source, Problem> {
     if let Some(shipped) = Source::shipped(name) {
         return Ok(shipped);
     }
-    let path: PathBuf = folder.join(name);
-    if path.is_file() {
-        return Ok(Source::File(path));
-    }
+    let path = match root.scenario(name) {
+        Ok(found) => return Ok(found),
+        Err(path) => path,
+    };
     let known = SHIPPED.map(|shipped| shipped.name);
     let reason = format!(
         "no scenario is called `{}` (there are {}), and there is no file {}{}",

@@ -5,9 +5,27 @@ use std::fmt;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::Value;
 
+use super::cell::LABEL;
+use super::problem;
+use crate::scenario::Problem;
+
 /// Keys and values as written.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Entries(pub Vec<(String, Value)>);
+
+impl Entries {
+    /// The label, and the other entries.
+    pub(super) fn split_label(&self, place: &str) -> Result<(Option<String>, Self), Problem> {
+        let is_label = |(key, _): &&(String, Value)| key == LABEL;
+        let others = self.0.iter().filter(|entry| !is_label(entry));
+        let others = Self(others.cloned().collect());
+        match self.0.iter().find(is_label) {
+            None => Ok((None, others)),
+            Some((_, Value::String(label))) => Ok((Some(label.clone()), others)),
+            Some(_) => Err(problem(format!("{place}.{LABEL}"), "must be text")),
+        }
+    }
+}
 
 impl<'de> Deserialize<'de> for Entries {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {

@@ -6,17 +6,18 @@ use std::path::PathBuf;
 use serde_json::{Map, Value, json};
 
 use super::cell::Cell;
-use super::kept::{CellResult, Shelf};
 use super::{Study, tables};
 use crate::analysis::statistics::student_95;
 use crate::analysis::wave::Estimate;
-use crate::lab::reproduce::ReproduceError;
+use crate::lab::error::LabError;
+use crate::runs::case::RunResult;
+use crate::runs::store::Store;
 
 /// The state of a cell.
 #[derive(Debug, Clone, PartialEq)]
 pub enum State {
     /// The cell has a result.
-    Finished(Box<CellResult>),
+    Finished(Box<RunResult>),
     /// The cell failed, with the reason.
     Failed(String),
     /// The cell has not run yet.
@@ -34,7 +35,7 @@ impl State {
     }
 
     /// The result, if there is one.
-    pub fn result(&self) -> Option<&CellResult> {
+    pub fn result(&self) -> Option<&RunResult> {
         match self {
             Self::Finished(result) => Some(result),
             Self::Failed(_) | Self::Missing => None,
@@ -53,7 +54,7 @@ pub struct Gathered<'a> {
 
 /// The mean of a number over the seeds of one combination of settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Mean {
+pub struct Mean {
     /// The mean.
     pub mean: f64,
     /// Half the width of its 95 % confidence interval (Student's t); `None` for a single value.
@@ -74,19 +75,20 @@ impl Mean {
 }
 
 /// One combination of settings, with all its seeds.
-pub(super) struct Combination<'a> {
+pub struct Combination<'a> {
     /// Its cells.
     pub cells: &'a [Cell],
-    /// Number of finished cells.
-    pub runs: usize,
+    /// The results of its finished cells.
+    pub results: Vec<&'a RunResult>,
     /// The means in the order of [`Gathered::numbers`]; `None` if no run gave a value.
     pub means: Vec<Option<Mean>>,
 }
 
 impl<'a> Gathered<'a> {
-    /// The state of a study according to `shelf`.
-    pub fn of(study: &'a Study, shelf: &Shelf) -> Self {
-        let state = |cell: &Cell| match (shelf.result(cell), shelf.failure(cell)) {
+    /// The state of a study according to `store`.
+    pub fn of(study: &'a Study, store: &Store) -> Self {
+        let found = |cell: &Cell| (store.result(&cell.case.key), store.failure(&cell.case.key));
+        let state = |cell: &Cell| match found(cell) {
             (Ok(Some(result)), _) => State::Finished(Box::new(result)),
             (_, Some(failure)) => State::Failed(failure.message),
             (_, None) => State::Missing,
@@ -108,17 +110,25 @@ impl<'a> Gathered<'a> {
         ["finished", "failed", "missing"].map(count)
     }
 
-    /// Writes `NAME.csv`, `NAME-summary.csv` and `NAME-results.json` into the shelf's folder.
+    /// Writes `NAME.csv`, `NAME-summary.csv` and `NAME-results.json` into the store's folder.
     ///
     /// # Errors
     /// They cannot be written.
-    pub fn write(&self, shelf: &Shelf) -> Result<Vec<PathBuf>, ReproduceError> {
+    pub fn write(&self, store: &Store) -> Result<Vec<PathBuf>, LabError> {
         let [csv, summary, json] = self.study.files();
         Ok(vec![
-            shelf.write(&csv, &tables::cells(self).csv()?)?,
-            shelf.write(&summary, &tables::summary(self).csv()?)?,
-            shelf.write(&json, format!("{:#}\n", self.json()).as_bytes())?,
+            store.write(&csv, &tables::cells(self).csv()?)?,
+            store.write(&summary, &self.summary_csv()?)?,
+            store.write(&json, format!("{:#}\n", self.json()).as_bytes())?,
         ])
+    }
+
+    /// The means over seeds as CSV, one row per combination of settings.
+    ///
+    /// # Errors
+    /// The table cannot be written.
+    pub fn summary_csv(&self) -> Result<Vec<u8>, LabError> {
+        Ok(tables::summary(self).csv()?)
     }
 
     /// The means over seeds as a table for a terminal.
@@ -134,7 +144,7 @@ impl<'a> Gathered<'a> {
             let mut entry = json!({
                 "cell": cell.number,
                 "settings": settings(cell),
-                "seed": cell.seed,
+                "seed": cell.case.seed,
                 "status": state.name(),
             });
             match state {
@@ -152,7 +162,7 @@ impl<'a> Gathered<'a> {
                 .collect();
             json!({
                 "settings": combination.cells.first().map(settings),
-                "runs": combination.runs,
+                "runs": combination.results.len(),
                 "means": metrics,
             })
         });
@@ -184,23 +194,48 @@ impl<'a> Gathered<'a> {
     }
 
     /// The combinations of settings in the order of their cells.
-    pub(super) fn combinations(&self) -> Vec<Combination<'a>> {
+    pub fn combinations(&'a self) -> Vec<Combination<'a>> {
         let names = self.numbers();
         let size = self.study.seeds;
         let groups = self.study.cells.chunks(size).zip(self.states.chunks(size));
-        let combination = |(cells, states): (&'a [Cell], &[State])| {
-            let results: Vec<&CellResult> = states.iter().filter_map(State::result).collect();
+        let combination = |(cells, states): (&'a [Cell], &'a [State])| {
+            let results: Vec<&RunResult> = states.iter().filter_map(State::result).collect();
             let mean = |name: &String| {
                 let values = results.iter().filter_map(|result| number(result, name));
                 Mean::of(&values.collect::<Vec<f64>>())
             };
             Combination {
                 cells,
-                runs: results.len(),
                 means: names.iter().map(mean).collect(),
+                results,
             }
         };
         groups.map(combination).collect()
+    }
+}
+
+impl Combination<'_> {
+    /// A metric of each finished cell, in the order of the seeds.
+    pub fn values(&self, metric: &str) -> Vec<Option<f64>> {
+        let results = self.results.iter();
+        results.map(|result| number(result, metric)).collect()
+    }
+}
+
+impl Gathered<'_> {
+    /// The first cell with this label, and its result.
+    ///
+    /// # Errors
+    /// There is no such cell, or it is not finished.
+    pub fn labeled(&self, label: &str) -> Result<(&Cell, &RunResult), LabError> {
+        let mut cells = self.study.cells.iter().zip(&self.states);
+        let found = cells.find(|(cell, _)| cell.label() == Some(label));
+        found
+            .and_then(|(cell, state)| Some((cell, state.result()?)))
+            .ok_or_else(|| LabError::Missing {
+                case: format!("{}, {label}", self.study.name),
+                what: "result".to_owned(),
+            })
     }
 }
 
@@ -215,7 +250,7 @@ fn settings(cell: &Cell) -> Value {
     Value::Object(cell.values.iter().cloned().collect())
 }
 
-fn number(result: &CellResult, name: &str) -> Option<f64> {
+fn number(result: &RunResult, name: &str) -> Option<f64> {
     match (result.summary.metrics.get(name), name) {
         (Some(value), _) => value.as_f64(),
         (None, "evacuated") => Some(result.evacuated as f64),

@@ -1,7 +1,7 @@
 //! Studies: a scenario with a grid or list of settings and with several seeds, from one file.
 //!
-//! A [`Study`] is a list of [`Cell`]s, numbered from 1. Each cell is one scenario with its settings and seed. [`run`]
-//! computes the cells of a [`Shard`] that are not on the [`Shelf`] yet, in parallel, each on a single thread.
+//! A [`Study`] is a list of [`Cell`]s, numbered from 1. Each cell is one run: a scenario with its settings and seed.
+//! [`run`] computes the cells of a [`Shard`] that are not in the store yet, in parallel, each on a single thread.
 //! [`Gathered`] is the state of all cells, as tables. A failed cell is recorded, and the others continue; the next call
 //! tries it again. Any number of processes may work on the same folder at the same time.
 //!
@@ -11,7 +11,8 @@
 //! |---|---|
 //! | `scenario` | the name of a shipped scenario, or the path of a file, relative to the study's folder |
 //! | `settings` | an object of settings for every cell: keys as for `--set`, values in JSON |
-//! | `list` | a list of such objects, one for each cell |
+//! | `measurements` | measurements in addition to those of the scenario |
+//! | `list` | a list of such objects, one for each cell; each may have a `label` for tables |
 //! | `grid` | an object of settings, each with a list of values; all combinations are run |
 //! | `seeds` | the number of seeds (1, 2, …), or a list of seeds |
 //! | `name` | the name of the results; by default the file's name |
@@ -24,23 +25,20 @@ mod cell;
 mod choice;
 mod entries;
 mod gathered;
-mod kept;
-mod memory;
-mod runner;
 mod seeds;
 mod shard;
 mod study;
 mod tables;
 
 pub use cell::Cell;
-pub use gathered::{Gathered, State};
-pub use kept::{CellResult, Failure, Shelf};
-pub use runner::{Listener, Tally, run};
+pub use gathered::{Combination, Gathered, State};
 pub use shard::Shard;
 pub use study::Study;
 
-use crate::lab::reproduce::ReproduceError;
-use crate::scenario::{Problem, ScenarioError, TooLarge};
+use crate::runs::error::{RunError, StoreError};
+use crate::runs::job::{self, Listener, Tally};
+use crate::runs::store::Store;
+use crate::scenario::{Problem, ScenarioError};
 
 /// Why a study is invalid.
 #[derive(Debug, thiserror::Error)]
@@ -56,22 +54,25 @@ pub enum StudyError {
         /// The cell's number.
         cell: usize,
         /// The reason.
-        error: CellError,
+        error: RunError,
     },
     /// The cells cannot be checked in parallel.
     #[error(transparent)]
-    Machine(#[from] ReproduceError),
+    Machine(#[from] StoreError),
 }
 
-/// Why a cell cannot be computed.
-#[derive(Debug, thiserror::Error)]
-pub enum CellError {
-    /// Its scenario or its settings are invalid.
-    #[error(transparent)]
-    Scenario(#[from] ScenarioError),
-    /// It needs more memory than there is.
-    #[error(transparent)]
-    TooLarge(#[from] TooLarge),
+/// Computes the cells of a shard that are not in `store`, as [`job::run`] does, within the study's memory.
+///
+/// # Errors
+/// Results cannot be stored. A failed cell is not an error: it is in the tally, and the next call tries it again.
+pub fn run(
+    study: &Study,
+    shard: Shard,
+    store: &Store,
+    listener: &dyn Listener,
+) -> Result<Tally, StoreError> {
+    let jobs = study.jobs(|cell| shard.has(cell.number));
+    job::run(&jobs, store, study.memory, listener)
 }
 
 /// A problem at a place of the study's file.

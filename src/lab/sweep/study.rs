@@ -1,22 +1,25 @@
 //! Turns a study's file into validated cells.
 
 use std::collections::{BTreeSet, HashMap};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::cell::{Cell, Source};
-use super::choice::{Choice, Meaning, SCENARIO, axis, choices, said, source};
+use super::cell::{Cell, LABEL};
+use super::choice::{Choice, Meaning, Root, SCENARIO, axis, choices, said, source};
 use super::entries::Entries;
-use super::memory::Memory;
 use super::seeds::Seeds;
-use super::{CellError, StudyError, problem};
-use crate::lab::job::side_by_side;
+use super::{StudyError, problem};
+use crate::runs::case::{Case, Source};
+use crate::runs::error::{RunError, StoreError};
+use crate::runs::job::Job;
+use crate::runs::memory::Memory;
+use crate::runs::parallel::side_by_side;
 use crate::scenario::input;
 use crate::scenario::quote::shown;
-use crate::scenario::{Problem, ScenarioError, Setting, in_plain_words, read_document};
+use crate::scenario::{Problem, ScenarioError, Setting, built_in, in_plain_words, read_document};
 
 /// Studies with more cells are rejected as mistakes.
 pub(super) const MOST_CELLS: usize = 100_000;
@@ -33,6 +36,7 @@ struct File {
     _description: Option<String>,
     scenario: Option<String>,
     settings: Entries,
+    measurements: Vec<Value>,
     list: Option<Vec<Entries>>,
     grid: Entries,
     seeds: Option<Seeds>,
@@ -47,6 +51,8 @@ pub struct Study {
     pub document: Value,
     /// The names of the varied settings, without the seeds: keys of the list, then of the grid, as written.
     pub axes: Vec<String>,
+    /// How many of them are keys of the grid.
+    grid_axes: usize,
     /// Number of seeds per combination.
     pub seeds: usize,
     /// The cells in the order of their numbers. The seed changes fastest, then the last key of the grid; the list
@@ -57,6 +63,15 @@ pub struct Study {
 }
 
 impl Study {
+    /// The axes that tell cells apart: with labels, the list's other keys need not be shown.
+    pub(super) fn short_axes(&self) -> Vec<String> {
+        let others = self.axes.len() - self.grid_axes;
+        match self.axes.split_at(others) {
+            ([label, ..], grid) if label == LABEL => [&[label.clone()], grid].concat(),
+            _ => self.axes.clone(),
+        }
+    }
+
     /// Is the seed among the varied settings?
     pub(super) fn varies_seed(&self) -> bool {
         self.axes.iter().any(|axis| axis == "seed")
@@ -64,28 +79,60 @@ impl Study {
 
     /// The files that its scenarios are read from, without duplicates.
     pub fn inputs(&self) -> BTreeSet<&Path> {
-        self.cells.iter().flat_map(Cell::files).collect()
+        self.cells
+            .iter()
+            .flat_map(|cell| cell.case.files())
+            .collect()
     }
 
-    /// Reads a study, and validates the scenario of every cell.
-    ///
-    /// # Errors
-    /// The first problem, with its place in the file or the number of the cell.
-    pub fn read(path: &Path) -> Result<Self, StudyError> {
-        Self::read_within(path, None)
+    /// The jobs of its wanted cells, in order.
+    pub fn jobs(&self, wanted: impl Fn(&Cell) -> bool) -> Vec<Job<'_>> {
+        let cells = self.cells.iter().filter(|cell| wanted(cell));
+        cells.map(|cell| cell.case.job(cell.to_string())).collect()
     }
 
-    /// As [`read`](Self::read), with `memory` bytes: only as many cells are validated and computed at the same time as
-    /// fit.
+    /// Reads a study, and validates the scenario of every cell. Only as many cells are validated and computed at the
+    /// same time as fit into `memory`, bytes.
     ///
     /// # Errors
-    /// As [`read`](Self::read), or a single cell needs more memory.
-    pub fn read_within(path: &Path, memory: Option<u64>) -> Result<Self, StudyError> {
+    /// The first problem, with its place in the file or the number of the cell; or a single cell needs more memory.
+    pub fn read(path: &Path, memory: Option<u64>) -> Result<Self, StudyError> {
         let text = input::text(path).map_err(|error| ScenarioError::Unreadable {
             file: path.display().to_string(),
             reason: error.to_string(),
         })?;
-        Self::parse_within(&text, path, memory)
+        Self::parse_within(&text, Root::file(path), None, memory)
+    }
+
+    /// Reads a study from a file, or the built-in one of this name if there is no such file.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn open(path: &Path, memory: Option<u64>) -> Result<Self, StudyError> {
+        match path.to_str().filter(|_| !path.exists()) {
+            Some(name) if built_in(&built_in_path(name)).is_some() => {
+                Self::built_in(name, None, memory)
+            }
+            _ => Self::read(path, memory),
+        }
+    }
+
+    /// A study that is built into the program: a file under `scenarios/studies/`, without its extension. `seeds`
+    /// replaces the file's number of seeds.
+    ///
+    /// # Errors
+    /// There is no such study, or an error of [`read`](Self::read).
+    pub fn built_in(
+        name: &str,
+        seeds: Option<u64>,
+        memory: Option<u64>,
+    ) -> Result<Self, StudyError> {
+        let path = built_in_path(name);
+        let text = built_in(&path).ok_or_else(|| ScenarioError::Unreadable {
+            file: path.display().to_string(),
+            reason: "no such study is built into the program".to_owned(),
+        })?;
+        Self::parse_within(text, Root::built_in(&path), seeds, memory)
     }
 
     /// Reads a study from JSON. `path` is its name in messages; files that it refers to are relative to the folder of
@@ -94,20 +141,25 @@ impl Study {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn parse(text: &str, path: &Path) -> Result<Self, StudyError> {
-        Self::parse_within(text, path, None)
+        Self::parse_within(text, Root::file(path), None, None)
     }
 
-    fn parse_within(text: &str, path: &Path, memory: Option<u64>) -> Result<Self, StudyError> {
-        let file = path.display().to_string();
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let folder = path.parent().unwrap_or(Path::new(""));
+    fn parse_within(
+        text: &str,
+        root: Root,
+        seeds: Option<u64>,
+        memory: Option<u64>,
+    ) -> Result<Self, StudyError> {
+        let file = root.path.display().to_string();
+        let stem = root.path.file_stem().unwrap_or_default().to_string_lossy();
         let invalid = |problem| ScenarioError::Invalid {
             file: file.clone(),
             problem,
         };
         let document = read_document(text, &file)?;
-        let written = parse(text).map_err(invalid)?;
-        let plan = Plan::new(&written, folder).map_err(invalid)?;
+        let mut written = parse(text).map_err(invalid)?;
+        written.seeds = seeds.map(Seeds::Count).or(written.seeds);
+        let plan = Plan::new(&written, root).map_err(invalid)?;
         let name = written.name.unwrap_or_else(|| stem.into_owned());
         check_name(&name).map_err(invalid)?;
         let shared = Memory::new(memory);
@@ -117,11 +169,11 @@ impl Study {
             let cell = plan.cell(index, &shared);
             let mut cells = cells.lock().unwrap_or_else(PoisonError::into_inner);
             cells.push((index, cell));
-            Ok(())
+            Ok::<(), StoreError>(())
         })?;
         let mut cells = cells.into_inner().unwrap_or_else(PoisonError::into_inner);
         cells.sort_by_key(|&(index, _)| index);
-        let failed = |(index, cell): (usize, Result<Cell, CellError>)| {
+        let failed = |(index, cell): (usize, Result<Cell, RunError>)| {
             cell.map_err(|error| StudyError::Cell {
                 file: file.clone(),
                 cell: index + 1,
@@ -133,10 +185,15 @@ impl Study {
             document,
             memory,
             seeds: plan.seeds.len(),
+            grid_axes: plan.grid.len(),
             cells: cells.into_iter().map(failed).collect::<Result<_, _>>()?,
             axes: plan.names,
         })
     }
+}
+
+fn built_in_path(name: &str) -> PathBuf {
+    Path::new("studies").join(format!("{name}.json"))
 }
 
 /// Is the name suitable for result files on every system?
@@ -182,8 +239,12 @@ struct Plan {
     /// The scenario of cells whose settings do not name one.
     scenario: Source,
     fixed: Vec<Choice>,
+    /// Measurements in addition to those of the scenario, as settings.
+    measurements: Vec<Setting>,
     /// The combinations of the list; a single empty one without a list.
     rows: Vec<Vec<Choice>>,
+    /// The labels of these combinations.
+    labels: Vec<Option<(String, Value)>>,
     /// The values of each axis of the grid.
     grid: Vec<Vec<Choice>>,
     /// The seeds as settings; a single `None` if the study gives no seeds.
@@ -192,8 +253,9 @@ struct Plan {
 }
 
 impl Plan {
-    fn new(file: &File, folder: &Path) -> Result<Self, Problem> {
+    fn new(file: &File, root: Root) -> Result<Self, Problem> {
         let fixed = choices(&file.settings, "settings", None)?;
+        let mut labels = vec![None];
         let rows: Vec<Vec<Choice>> = match &file.list {
             None => vec![Vec::new()],
             Some(list) if list.is_empty() => return Err(problem("list", "must not be empty")),
@@ -202,24 +264,33 @@ impl Plan {
                 return Err(problem("list", reason));
             }
             Some(list) => {
-                let row = |(k, row)| choices(row, &format!("list[{k}]"), Some(folder));
-                list.iter().enumerate().map(row).collect::<Result<_, _>>()?
+                labels.clear();
+                let mut rows = Vec::with_capacity(list.len());
+                for (k, entries) in list.iter().enumerate() {
+                    let place = format!("list[{k}]");
+                    let (label, entries) = entries.split_label(&place)?;
+                    rows.push(choices(&entries, &place, Some(root))?);
+                    labels.push(label.map(|label| (LABEL.to_owned(), label.into())));
+                }
+                rows
             }
         };
         let grid = file
             .grid
             .0
             .iter()
-            .map(|(key, values)| axis(key, values, folder));
+            .map(|(key, values)| axis(key, values, root));
         let grid = grid.collect::<Result<Vec<_>, _>>()?;
         let mut plan = Self {
             names: Vec::new(),
             scenario: match &file.scenario {
-                Some(name) => source(name, SCENARIO, folder)?,
+                Some(name) => source(name, SCENARIO, root)?,
                 None => varied_scenario(&rows, &grid)?,
             },
             fixed,
+            measurements: measurements(&file.measurements)?,
             rows,
+            labels,
             grid,
             seeds: seeds(file.seeds.as_ref())?,
             count: 0,
@@ -230,6 +301,9 @@ impl Plan {
             if !plan.names.contains(&choice.key) {
                 plan.names.push(choice.key.clone());
             }
+        }
+        if plan.labels.iter().any(Option::is_some) {
+            plan.names.insert(0, LABEL.to_owned());
         }
         plan.count = plan.cells()?;
         Ok(plan)
@@ -292,7 +366,7 @@ impl Plan {
     }
 
     /// The cell at `index`, counted from 0.
-    fn cell(&self, index: usize, memory: &Memory) -> Result<Cell, CellError> {
+    fn cell(&self, index: usize, memory: &Memory) -> Result<Cell, RunError> {
         let mut rest = index;
         let mut digit = |size: usize| {
             let digit = rest % size;
@@ -306,7 +380,8 @@ impl Plan {
             .rev()
             .map(|axis| &axis[digit(axis.len())])
             .collect();
-        let row = &self.rows[digit(self.rows.len())];
+        let row = digit(self.rows.len());
+        let (row, label) = (&self.rows[row], &self.labels[row]);
         let varied: Vec<&Choice> = row.iter().chain(grid.into_iter().rev()).collect();
         let mut scenario = self.scenario.clone();
         let mut settings = Vec::new();
@@ -316,11 +391,16 @@ impl Plan {
                 Meaning::Setting(setting) => settings.push(setting.clone()),
             }
         }
+        settings.extend(self.measurements.iter().cloned());
         settings.extend(seed);
         let values = varied
             .iter()
             .map(|choice| (choice.key.clone(), choice.value.clone()));
-        Cell::new(index + 1, values.collect(), scenario, settings, memory)
+        Ok(Cell {
+            number: index + 1,
+            values: label.iter().cloned().chain(values).collect(),
+            case: Case::new(scenario, settings, memory)?,
+        })
     }
 }
 
@@ -340,6 +420,16 @@ fn varied_scenario(rows: &[Vec<Choice>], grid: &[Vec<Choice>]) -> Result<Source,
             let reason = "is missing: the name of a scenario (see `sandbox list`), or a file";
             problem(SCENARIO, reason)
         })
+}
+
+/// The settings that add these measurements to those of a scenario.
+fn measurements(given: &[Value]) -> Result<Vec<Setting>, Problem> {
+    let setting = |(k, value): (usize, &Value)| {
+        let place = format!("measurements[{k}]");
+        Setting::new("measurements.+", value.clone(), place.clone())
+            .map_err(|error| problem(place, error.to_string()))
+    };
+    given.iter().enumerate().map(setting).collect()
 }
 
 fn seeds(given: Option<&Seeds>) -> Result<Vec<Option<Setting>>, Problem> {

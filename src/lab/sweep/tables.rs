@@ -4,8 +4,9 @@ use serde_json::Value;
 
 use super::cell::{Cell, plain, short};
 use super::gathered::{Gathered, Mean, State};
-use super::{CellResult, Shard, Study};
+use super::{Shard, Study};
 use crate::output::table::Table;
+use crate::runs::case::RunResult;
 use crate::scenario::quote::shown;
 
 /// Columns about the run itself, between the metrics and the computing time.
@@ -25,7 +26,7 @@ pub(super) fn cells(gathered: &Gathered) -> Table {
     let metrics = gathered.metrics();
     let evacuated = "evacuated".to_owned();
     let is_measured = metrics.contains(&evacuated);
-    let mut head = columns(gathered.study);
+    let mut head = columns(gathered.study, &gathered.study.axes);
     head.push("status".to_owned());
     head.extend(metrics.iter().cloned());
     head.extend((!is_measured).then_some(evacuated));
@@ -33,7 +34,7 @@ pub(super) fn cells(gathered: &Gathered) -> Table {
     head.extend(["wall_secs", "error"].map(str::to_owned));
     let rows = gathered.study.cells.iter().zip(&gathered.states);
     let rows = rows.map(|(cell, state)| {
-        let mut row = values(gathered.study, cell, plain);
+        let mut row = values(gathered.study, &gathered.study.axes, cell, plain);
         row.push(state.name().to_owned());
         match state {
             State::Finished(result) => {
@@ -73,8 +74,8 @@ pub(super) fn summary(gathered: &Gathered) -> Table {
         head.extend(["mean", "ci95", "n"].map(|what| format!("{name}_{what}")));
     }
     let rows = gathered.combinations().into_iter().map(|combination| {
-        let mut row = axes(gathered.study, combination.cells.first(), plain);
-        row.push(combination.runs.to_string());
+        let mut row = axes(&gathered.study.axes, combination.cells.first(), plain);
+        row.push(combination.results.len().to_string());
         for mean in combination.means {
             row.push(mean.map_or(String::new(), |m| m.mean.to_string()));
             row.push(
@@ -94,18 +95,18 @@ pub(super) fn summary(gathered: &Gathered) -> Table {
 
 /// The same for a terminal: mean ± half the confidence interval.
 pub(super) fn text(gathered: &Gathered) -> Table {
-    let study = gathered.study;
-    let mut head: Vec<String> = study.axes.iter().map(|axis| shown(axis)).collect();
+    let names = gathered.study.short_axes();
+    let mut head: Vec<String> = names.iter().map(|axis| shown(axis)).collect();
     head.push("runs".to_owned());
     head.extend(gathered.numbers());
     let rows = gathered.combinations().into_iter().map(|combination| {
-        let mut row = axes(study, combination.cells.first(), short);
-        row.push(combination.runs.to_string());
+        let mut row = axes(&names, combination.cells.first(), short);
+        row.push(combination.results.len().to_string());
         row.extend(combination.means.into_iter().map(readable));
         row
     });
     Table {
-        words: study.axes.len(),
+        words: names.len(),
         rows: rows.collect(),
         head,
     }
@@ -126,15 +127,16 @@ impl Study {
 impl Gathered<'_> {
     /// The cells of a shard with their states, for a terminal.
     pub fn list(&self, shard: Shard) -> String {
+        let axes = self.study.short_axes();
         let cells = self.study.cells.iter().zip(&self.states);
         let rows = cells
             .filter(|(cell, _)| shard.has(cell.number))
             .map(|(cell, state)| {
-                let mut row = values(self.study, cell, short);
+                let mut row = values(self.study, &axes, cell, short);
                 row.push(state.name().to_owned());
                 row
             });
-        let names = columns(self.study);
+        let names = columns(self.study, &axes);
         let mut head: Vec<String> = names.iter().map(|name| shown(name)).collect();
         head.push("status".to_owned());
         let table = Table {
@@ -147,32 +149,36 @@ impl Gathered<'_> {
 }
 
 /// The names of the first columns: the number, the varied settings, and the seed.
-fn columns(study: &Study) -> Vec<String> {
+fn columns(study: &Study, axes: &[String]) -> Vec<String> {
     let mut names = vec!["cell".to_owned()];
-    names.extend(study.axes.iter().cloned());
+    names.extend(axes.iter().cloned());
     names.extend((!study.varies_seed()).then(|| "seed".to_owned()));
     names
 }
 
 /// The values of these columns.
-fn values(study: &Study, cell: &Cell, write: fn(&Value) -> String) -> Vec<String> {
+fn values(
+    study: &Study,
+    names: &[String],
+    cell: &Cell,
+    write: fn(&Value) -> String,
+) -> Vec<String> {
     let mut row = vec![cell.number.to_string()];
-    row.extend(axes(study, Some(cell), write));
-    row.extend((!study.varies_seed()).then(|| cell.seed.to_string()));
+    row.extend(axes(names, Some(cell), write));
+    row.extend((!study.varies_seed()).then(|| cell.case.seed.to_string()));
     row
 }
 
 /// The values of the varied settings; empty if a cell does not have the setting.
-fn axes(study: &Study, cell: Option<&Cell>, write: fn(&Value) -> String) -> Vec<String> {
-    let value = |axis: &String| {
-        let mut values = cell.iter().flat_map(|cell| &cell.values);
-        let found = values.find(|(name, _)| name == axis);
-        found.map_or(String::new(), |(_, value)| write(value))
+fn axes(names: &[String], cell: Option<&Cell>, write: fn(&Value) -> String) -> Vec<String> {
+    let value = |name: &String| {
+        cell.and_then(|cell| cell.value(name))
+            .map_or(String::new(), write)
     };
-    study.axes.iter().map(value).collect()
+    names.iter().map(value).collect()
 }
 
-fn counts(result: &CellResult) -> [String; COUNTS.len()] {
+fn counts(result: &RunResult) -> [String; COUNTS.len()] {
     let summary = &result.summary;
     [
         summary.agents.to_string(),

@@ -1,211 +1,168 @@
-//! The parameter study of the concert that the paper leaves to future work: speed, amplitude and reflection of the wave
-//! against k, ρ⁰max, μ and K^ag.
+//! Heat maps of the study of waves: a column for each quantity, a row for each pair of μ and K^ag.
 
-use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
-use super::concert::{self, RUN};
-use crate::analysis::wave::{self, Estimate, SpaceTime};
-use crate::lab::reproduce::case::Case;
+use super::super::product::{Needs, Product};
+use super::save;
+use crate::analysis::wave::Estimate;
+use crate::lab::error::LabError;
+use crate::lab::sweep::{Combination, Gathered};
+use crate::output::colors::{ColorMap, Rgb};
+use crate::output::plot::{Axis, BLACK, Cells, ColorBar, Mark, Panel, Sheet};
 
-/// The seeds of every cell.
-pub const SEEDS: [u64; 3] = [1, 2, 3];
+const WHITE: Rgb = [255; 3];
 
-/// k, ρ⁰max in P/m², μ and K^ag of one cell.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Cell {
-    /// k.
-    pub gas_constant: f64,
-    /// ρ⁰max, P/m².
-    pub rest_density_max: f64,
-    /// μ.
-    pub viscosity: f64,
-    /// K^ag.
-    pub agent_stiffness: f64,
+/// The study; not part of `all`.
+pub const PRODUCT: Product = Product {
+    name: "study",
+    about: "the shockwave against k, ρ⁰max, μ and K^ag, three seeds a cell",
+    in_all: false,
+    studies: &["wave_grid"],
+    needs: Needs::All,
+    write: |studies, store| {
+        let [study] = studies else {
+            return Err(LabError::Data("there is one study of waves".to_owned()));
+        };
+        store.write("study.csv", &study.summary_csv()?)?;
+        save(&sheet(study), store, "study")
+    },
+};
+
+/// A quantity of waves.
+struct Quantity {
+    metric: &'static str,
+    label: &'static str,
+    /// Limits of the color range are multiples of this.
+    step: f64,
+    digits: usize,
 }
 
-/// The values on each axis.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Grid {
-    /// k.
-    pub gas_constant: Vec<f64>,
-    /// ρ⁰max, P/m².
-    pub rest_density_max: Vec<f64>,
-    /// μ.
-    pub viscosity: Vec<f64>,
-    /// K^ag.
-    pub agent_stiffness: Vec<f64>,
-}
-
-impl Default for Grid {
-    fn default() -> Self {
-        Self {
-            gas_constant: vec![100.0, 200.0, 400.0],
-            rest_density_max: vec![4.0, 5.0, 6.0],
-            viscosity: vec![0.0, 5.0],
-            agent_stiffness: vec![50.0, 250.0],
-        }
-    }
-}
-
-impl Grid {
-    /// All cells; k changes fastest, then ρ⁰max, μ and K^ag.
-    pub fn cells(&self) -> Vec<Cell> {
-        let mut cells = Vec::new();
-        for &agent_stiffness in &self.agent_stiffness {
-            for &viscosity in &self.viscosity {
-                for &rest_density_max in &self.rest_density_max {
-                    cells.extend(self.gas_constant.iter().map(|&gas_constant| Cell {
-                        gas_constant,
-                        rest_density_max,
-                        viscosity,
-                        agent_stiffness,
-                    }));
-                }
-            }
-        }
-        cells
-    }
-}
-
-impl Cell {
-    /// The run with one seed.
-    pub fn case(&self, seed: u64) -> Case {
-        concert::case()
-            .set("gas_constant", self.gas_constant)
-            .set("rest_density_max", self.rest_density_max)
-            .set("viscosity", self.viscosity)
-            .set("agent_stiffness", self.agent_stiffness)
-            .seed(seed)
-    }
-}
-
-/// A quantity that is measured in every cell.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
-    /// Speed of the arriving wave, m/s.
-    Speed,
-    /// Amplitude of the arriving wave in front of the stage, m/s.
-    Amplitude,
-    /// Amplitude of the returning wave over that of the arriving one, in front of the stage.
-    Reflection,
-}
+const QUANTITIES: [Quantity; 3] = [
+    Quantity {
+        metric: "wave_speed_m_per_s",
+        label: "wave speed [m/s]",
+        step: 5.0,
+        digits: 1,
+    },
+    Quantity {
+        metric: "wave_amplitude_m_per_s",
+        label: "amplitude [m/s]",
+        step: 0.1,
+        digits: 2,
+    },
+    Quantity {
+        metric: "wave_reflection",
+        label: "reflected / arriving",
+        step: 0.1,
+        digits: 2,
+    },
+];
 
 impl Quantity {
-    /// All quantities.
-    pub const ALL: [Self; 3] = [Self::Speed, Self::Amplitude, Self::Reflection];
-
-    /// Its name and unit.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Speed => "wave speed [m/s]",
-            Self::Amplitude => "amplitude [m/s]",
-            Self::Reflection => "reflected / arriving",
-        }
+    /// The mean over seeds; `None` if fewer than two runs have a value.
+    fn estimate(&self, row: &Combination) -> Option<Estimate> {
+        let values: Vec<f64> = row.values(self.metric).into_iter().flatten().collect();
+        (values.len() > 1).then(|| Estimate::of_mean(&values))?
     }
 
-    fn name(self) -> &'static str {
-        match self {
-            Self::Speed => "speed_m_per_s",
-            Self::Amplitude => "amplitude_m_per_s",
-            Self::Reflection => "reflection",
+    /// Round limits for the color range.
+    fn range(&self, rows: &[Combination]) -> [f32; 2] {
+        let values = rows
+            .iter()
+            .filter_map(|row| self.estimate(row))
+            .map(|e| e.value);
+        let limits = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
+            (a.min(v), b.max(v))
+        });
+        let (least, most) = limits;
+        if least > most {
+            return [0.0, 1.0];
         }
+        let lower = (least / self.step).floor();
+        let upper = (most / self.step).ceil().max(lower + 1.0);
+        [(self.step * lower) as f32, (self.step * upper) as f32]
     }
 }
 
-/// The result of one cell over its seeds.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Result {
-    /// The cell.
-    pub cell: Cell,
-    /// Number of runs with a wave.
-    pub waves: usize,
-    /// Number of runs.
-    pub runs: usize,
-    /// Mean and standard error over seeds; `None` with fewer than two waves.
-    pub speed: Option<Estimate>,
-    /// The same for the amplitude.
-    pub amplitude: Option<Estimate>,
-    /// The same for the reflection; `None` with fewer than two reflections.
-    pub reflection: Option<Estimate>,
+/// The values of a key in these rows, without repetitions.
+fn values(rows: &[Combination], key: &str) -> Vec<String> {
+    let mut values: Vec<String> = Vec::new();
+    for cell in rows.iter().filter_map(|row| row.cells.first()) {
+        let value = cell.value(key).map(Value::to_string).unwrap_or_default();
+        if !values.contains(&value) {
+            values.push(value);
+        }
+    }
+    values
 }
 
-impl Result {
-    /// The result of a cell from the diagrams of its runs.
-    pub fn of<'a>(cell: Cell, diagrams: impl IntoIterator<Item = &'a SpaceTime>) -> Self {
-        let waves: Vec<_> = diagrams
+fn sheet(study: &Gathered) -> Sheet {
+    let rows = study.combinations();
+    let columns = values(&rows, "gas_constant");
+    let per_panel = columns.len() * values(&rows, "rest_density_max").len();
+    let blocks = rows.chunks(per_panel.max(1));
+    let panels = blocks.flat_map(|block| {
+        let panel = |quantity| panel(block, &columns, quantity, quantity.range(&rows));
+        QUANTITIES.iter().map(panel).collect::<Vec<_>>()
+    });
+    Sheet {
+        title: "The shockwave against k, ρ⁰max, μ and Kᵃᵍ: mean ± standard error over seeds"
+            .to_owned(),
+        columns: QUANTITIES.len(),
+        panel_size: [170.0, 105.0],
+        shared_axes: false,
+        row_titles: Vec::new(),
+        bar: None,
+        panels: panels.collect(),
+    }
+}
+
+/// One quantity for one pair of μ and K^ag.
+fn panel(
+    block: &[Combination],
+    gas_constants: &[String],
+    quantity: &Quantity,
+    range: [f32; 2],
+) -> Panel {
+    let map = ColorMap::viridis(range);
+    let columns = gas_constants.len();
+    let rest_densities = values(block, "rest_density_max");
+    let estimates: Vec<_> = block.iter().map(|row| quantity.estimate(row)).collect();
+    let mut marks = vec![Mark::Cells(Cells {
+        extent: [[0.0, 0.0], [columns as f64, rest_densities.len() as f64]],
+        columns,
+        values: estimates.iter().map(|e| e.map(|e| e.value)).collect(),
+        map: map.clone(),
+    })];
+    let digits = quantity.digits;
+    for (k, (row, estimate)) in block.iter().zip(&estimates).enumerate() {
+        let at = [(k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5];
+        let waves = row
+            .values(QUANTITIES[0].metric)
             .into_iter()
-            .map(|diagram| wave::measure(diagram, &RUN))
-            .collect();
-        let over_seeds = |value: &dyn Fn(&wave::Wave) -> Option<f64>| {
-            let values: Vec<f64> = waves.iter().flatten().filter_map(value).collect();
-            // A single value has no standard error.
-            (values.len() > 1).then(|| Estimate::of_mean(&values))?
+            .flatten()
+            .count();
+        let (text, color) = match estimate {
+            None if waves > 1 => ("not clear".to_owned(), BLACK),
+            None => ("no wave".to_owned(), BLACK),
+            Some(e) => {
+                let part = (e.value as f32 - range[0]) / (range[1] - range[0]);
+                let text = format!("{:.digits$} ± {:.digits$}", e.value, e.error);
+                (text, if part > 0.6 { BLACK } else { WHITE })
+            }
         };
-        Self {
-            cell,
-            waves: waves.iter().flatten().count(),
-            runs: waves.len(),
-            speed: over_seeds(&|wave| Some(wave.arriving.speed.value)),
-            amplitude: over_seeds(&|wave| Some(wave.amplitude.value)),
-            reflection: over_seeds(&|wave| wave.reflection.map(|r| r.value)),
-        }
+        marks.push(Mark::Text(at, text, color));
     }
-
-    /// The estimate of one quantity.
-    pub fn get(&self, quantity: Quantity) -> Option<Estimate> {
-        match quantity {
-            Quantity::Speed => self.speed,
-            Quantity::Amplitude => self.amplitude,
-            Quantity::Reflection => self.reflection,
-        }
-    }
-}
-
-/// All cells as CSV; values that do not exist are empty.
-pub fn csv(results: &[Result]) -> String {
-    let mut text = "gas_constant,rest_density_max,viscosity,agent_stiffness,runs,waves".to_owned();
-    for quantity in Quantity::ALL {
-        text += &format!(",{0},{0}_error", quantity.name());
-    }
-    text.push('\n');
-    for result in results {
-        let cell = result.cell;
-        text += &format!(
-            "{},{},{},{},{},{}",
-            cell.gas_constant,
-            cell.rest_density_max,
-            cell.viscosity,
-            cell.agent_stiffness,
-            result.runs,
-            result.waves
-        );
-        for quantity in Quantity::ALL {
-            text += &result.get(quantity).map_or(",,".to_owned(), |estimate| {
-                format!(",{:.4},{:.4}", estimate.value, estimate.error)
-            });
-        }
-        text.push('\n');
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_combination_is_one_cell() {
-        let cells = Grid::default().cells();
-        assert_eq!(cells.len(), 36);
-        for (k, cell) in cells.iter().enumerate() {
-            assert!(cells[..k].iter().all(|other| other != cell));
-        }
-    }
-
-    #[test]
-    fn a_cell_without_waves_is_empty_in_the_table() {
-        let cell = Grid::default().cells()[0];
-        let text = csv(&[Result::of(cell, [])]);
-        assert!(text.ends_with("100,4,0,50,0,0,,,,,,\n"), "{text}");
+    let [mu, stiffness] = ["viscosity", "agent_stiffness"].map(|key| values(block, key).concat());
+    Panel {
+        title: format!("μ = {mu}, Kᵃᵍ = {stiffness}"),
+        x: Axis::names("k", gas_constants.to_vec()),
+        y: Axis::names("ρ⁰max [P/m²]", rest_densities),
+        marks,
+        bar: Some(ColorBar {
+            label: quantity.label.to_owned(),
+            map,
+        }),
+        legend: None,
     }
 }

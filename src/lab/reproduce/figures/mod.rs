@@ -1,132 +1,162 @@
-//! The figures of the paper, drawn from the results of runs.
+//! The figures of the paper, drawn from the results of studies.
 
-mod concert;
-mod crossing;
-mod evacuation;
-mod frame_time;
 mod grid;
-mod pairs;
 mod performance;
-mod shockwave;
-mod speeds;
-mod study;
+mod snapshots;
+mod waves;
 
-use std::sync::LazyLock;
+use super::product::{Needs, Product};
+use crate::lab::error::LabError;
+use crate::output::plot::Sheet;
+use crate::runs::store::Store;
+use snapshots::{Coloring, Snapshots};
 
-use super::case::Case;
-use super::error::ReproduceError;
-use super::snapshot::Snapshot;
-use super::store::Store;
-use crate::engine::scene::{Region, Scene};
-use crate::output::colors::{self, ColorMap};
-use crate::output::plot::{Axis, ColorBar, Disc, GRAY, Mark, Panel, Sheet};
-
-pub use crossing::PRODUCT as FIG6;
-pub use evacuation::PRODUCT as FIG5;
-pub use pairs::{FIG8_PRODUCT as FIG8, FIG10_PRODUCT as FIG10};
+pub use grid::PRODUCT as STUDY;
 pub use performance::PRODUCT as FIG11;
-pub use shockwave::{FIG7_PRODUCT as FIG7, FIG9_PRODUCT as FIG9};
-pub use speeds::PRODUCT as WAVES;
-pub use study::PRODUCT as STUDY;
+pub use waves::PRODUCT as WAVES;
+
+/// Fig. 5.
+pub const FIG5: Product = Product {
+    name: "fig5",
+    about: "the evacuation after 15 s, by density, 24 profiles",
+    in_all: true,
+    studies: &["fig5"],
+    needs: Needs::All,
+    write: |studies, store| {
+        let picture = Snapshots {
+            name: "fig5",
+            title: "Fig. 5: evacuation after 15 s, colored by density",
+            times: &[15.0],
+            region: [[8.0, -1.0], [23.0, 21.0]],
+            coloring: Coloring::Density,
+            columns: 6,
+            width: 132.0,
+            measured: None,
+        };
+        picture.write_all(studies, store)
+    },
+};
+
+/// Fig. 6, with the region that Table 2 measures.
+pub const FIG6: Product = Product {
+    name: "fig6",
+    about: "the crossing after 45 s, by speed, six profiles",
+    in_all: true,
+    studies: &["fig6"],
+    needs: Needs::All,
+    write: |studies, store| {
+        let picture = Snapshots {
+            name: "fig6",
+            title: "Fig. 6: crossing and bottleneck after 45 s, colored by speed",
+            times: &[45.0],
+            region: [[-21.0, -5.0], [18.0, 21.0]],
+            coloring: Coloring::Speed,
+            columns: 2,
+            width: 330.0,
+            measured: Some([[8.0, 4.0], [14.0, 12.0]]),
+        };
+        picture.write_all(studies, store)
+    },
+};
+
+/// The moments of Figs. 7 and 9, seconds.
+const TIMES: [f64; 6] = [150.3, 151.0, 152.0, 153.0, 154.0, 156.0];
+/// When the push begins, seconds.
+const PUSH: [f64; 1] = [150.0];
+
+/// The shockwave at six times.
+const SHOCKWAVE: Snapshots = Snapshots {
+    name: "fig7",
+    title: "Fig. 7: the shockwave, colored by speed",
+    times: &TIMES,
+    region: [[44.0, -31.0], [92.0, 31.0]],
+    coloring: Coloring::CrowdSpeed,
+    columns: TIMES.len(),
+    width: 108.0,
+    measured: None,
+};
+
+/// Two crowds before the push.
+const PAIR: Snapshots = Snapshots {
+    name: "fig8",
+    title: "Fig. 8: static and dynamic rest density at t = 150 s, colored by speed",
+    times: &PUSH,
+    region: [[44.0, -32.0], [110.0, 32.0]],
+    columns: 2,
+    width: 320.0,
+    ..SHOCKWAVE
+};
+
+const FIG7_LABELS: &[&str] = &[
+    "baseline",
+    "k = 100",
+    "k = 400",
+    "ρ⁰max = 4",
+    "ρ⁰max = 6",
+    "μ = 0",
+];
+const FIG8_LABELS: &[&str] = &["static ρ⁰ = 4", "ρ⁰max = 4"];
+const FIG9_LABELS: &[&str] = &["no SPH, Kᵃᵍ = 50", "no SPH, Kᵃᵍ = 1000"];
+const FIG10_LABELS: &[&str] = &["Kᵃᵍ = 0", "baseline"];
+
+/// Fig. 7.
+pub const FIG7: Product = Product {
+    name: "fig7",
+    about: "the shockwave at six times, by speed, six variants of SPH",
+    in_all: true,
+    studies: &["shockwave"],
+    needs: Needs::Labeled(FIG7_LABELS),
+    write: |studies, store| SHOCKWAVE.write(studies, FIG7_LABELS, FIG7_LABELS, store),
+};
+
+/// Fig. 8.
+pub const FIG8: Product = Product {
+    name: "fig8",
+    about: "the crowd before the push with a static and a dynamic rest density",
+    needs: Needs::Labeled(FIG8_LABELS),
+    write: |studies, store| {
+        let titles = [FIG8_LABELS[0], "dynamic ρ⁰, 0 to 4"];
+        PAIR.write(studies, FIG8_LABELS, &titles, store)
+    },
+    ..FIG7
+};
+
+/// Fig. 9.
+pub const FIG9: Product = Product {
+    name: "fig9",
+    about: "the same without SPH, two strengths of contact",
+    needs: Needs::Labeled(FIG9_LABELS),
+    write: |studies, store| {
+        let picture = Snapshots {
+            name: "fig9",
+            title: "Fig. 9: the shockwave without SPH, colored by speed",
+            ..SHOCKWAVE
+        };
+        picture.write(studies, FIG9_LABELS, FIG9_LABELS, store)
+    },
+    ..FIG7
+};
+
+/// Fig. 10.
+pub const FIG10: Product = Product {
+    name: "fig10",
+    about: "the crowd before the push without contact between agents, and with",
+    needs: Needs::Labeled(FIG10_LABELS),
+    write: |studies, store| {
+        let picture = Snapshots {
+            name: "fig10",
+            title: "Fig. 10: without and with contact at t = 150 s, colored by speed",
+            ..PAIR
+        };
+        let titles = [FIG10_LABELS[0], "Kᵃᵍ = 50 (baseline)"];
+        picture.write(studies, FIG10_LABELS, &titles, store)
+    },
+    ..FIG7
+};
 
 /// Writes a picture into the store's folder, and returns a line with the file names.
-fn save(sheet: &Sheet, store: &Store, name: &str) -> Result<String, ReproduceError> {
+fn save(sheet: &Sheet, store: &Store, name: &str) -> Result<String, LabError> {
     let stem = store.path(name);
     sheet.save(&stem)?;
     Ok(format!("{0}.svg, {0}.png\n", stem.display()))
-}
-
-/// The scene of a case.
-fn scene(case: &Case) -> Result<Scene, ReproduceError> {
-    Ok(case.scenario()?.scene)
-}
-
-/// Inferno up to 1 m/s: the push itself reaches 0.9 m/s.
-static CROWD_SPEED: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::inferno([0.0, 1.0]));
-
-/// The meaning of the discs' colors (Fig. 3).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Coloring {
-    /// |v_i|.
-    Speed,
-    /// |v_i| in a crowd that hardly moves: the color range ends at the speed of its waves.
-    CrowdSpeed,
-    /// ρ_i.
-    Density,
-}
-
-impl Coloring {
-    fn map(self) -> &'static ColorMap {
-        match self {
-            Self::Speed => &colors::SPEED,
-            Self::CrowdSpeed => &CROWD_SPEED,
-            Self::Density => &colors::DENSITY,
-        }
-    }
-
-    /// Its color bar.
-    pub fn bar(self) -> ColorBar {
-        let label = match self {
-            Self::Speed | Self::CrowdSpeed => "speed [m/s]",
-            Self::Density => "density [P/m²]",
-        };
-        ColorBar {
-            label: label.to_owned(),
-            map: self.map().clone(),
-        }
-    }
-}
-
-/// A part of a scene with its obstacles, on which snapshots are drawn.
-#[derive(Debug, Clone)]
-pub struct Stage {
-    obstacles: Vec<Vec<[f64; 2]>>,
-    region: Region,
-}
-
-impl Stage {
-    /// The part of `scene` inside `region`.
-    pub fn new(scene: &Scene, region: Region) -> Self {
-        let corners =
-            |p: &crate::engine::geometry::Polygon| p.points().iter().map(|c| [c.x, c.y]).collect();
-        Self {
-            obstacles: scene.walls.obstacles().iter().map(corners).collect(),
-            region,
-        }
-    }
-
-    /// Width and height of a panel that is `width` points wide, with equal scales on both axes.
-    pub fn panel_size(&self, width: f64) -> [f64; 2] {
-        let size = self.region.max - self.region.min;
-        [width, width * size.y / size.x]
-    }
-
-    /// A snapshot as a panel.
-    pub fn panel(&self, title: &str, snapshot: &Snapshot, coloring: Coloring) -> Panel {
-        let values = match coloring {
-            Coloring::Speed | Coloring::CrowdSpeed => &snapshot.speed,
-            Coloring::Density => &snapshot.density,
-        };
-        let discs = values.iter().enumerate().map(|(i, &value)| Disc {
-            center: [snapshot.x[i], snapshot.y[i]],
-            radius: snapshot.radius[i],
-            color: coloring.map().color(value as f32),
-        });
-        let mut marks = vec![Mark::Discs(discs.collect())];
-        marks.extend(self.obstacles.iter().map(|c| Mark::Area(c.clone(), GRAY)));
-        let (min, max) = (self.region.min, self.region.max);
-        Panel {
-            title: title.to_owned(),
-            x: Axis::linear("x [m]", [min.x, max.x]),
-            y: Axis::linear("y [m]", [min.y, max.y]),
-            marks,
-            bar: None,
-            legend: None,
-        }
-    }
-}
-
-/// (a), (b), …
-fn letter(k: usize) -> char {
-    char::from(b'a' + (k % 26) as u8)
 }

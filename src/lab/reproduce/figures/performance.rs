@@ -1,23 +1,30 @@
 //! Fig. 11: frame time per task against the number of agents.
 
-use super::frame_time::{self, FrameTime, SIZES};
+use std::fmt::Write;
+
+use super::super::product::{Needs, Product};
 use super::save;
 use crate::engine::simulation::Stage;
-use crate::lab::reproduce::error::ReproduceError;
-use crate::lab::reproduce::product::Product;
+use crate::lab::error::LabError;
 use crate::output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::scenario::measurements::{FrameTime, StageTimes};
 
 /// The figure.
 pub const PRODUCT: Product = Product {
     name: "fig11",
     about: "frame time per task against the number of agents; measured alone, on all threads",
     in_all: true,
-    cases: |_| Ok(SIZES.into_iter().map(frame_time::case).collect()),
-    write: |_, results, store| {
-        let of = |agents| FrameTime::of(results.of(&frame_time::case(agents))?);
-        let times: Result<Vec<_>, ReproduceError> = SIZES.into_iter().map(of).collect();
-        let times = times?;
-        store.write("fig11.csv", frame_time::csv(&times).as_bytes())?;
+    studies: &["fig11"],
+    needs: Needs::Alone,
+    write: |studies, store| {
+        let cells = studies.iter().flat_map(|study| &study.states);
+        let times = cells.map(|state| state.result()?.summary.data(FrameTime::NAME));
+        let times: Option<Vec<StageTimes>> = times.collect();
+        let times = times.ok_or_else(|| LabError::Missing {
+            case: "fig11".to_owned(),
+            what: FrameTime::NAME.to_owned(),
+        })?;
+        store.write("fig11.csv", csv(&times).as_bytes())?;
         let threads = times.first().map_or(0, |time| time.threads);
         let machine = format!("{threads} threads of this machine");
         save(&sheet(&times, &machine), store, "fig11")
@@ -44,7 +51,7 @@ fn task(stage: Stage) -> &'static str {
 }
 
 /// The sheet from measurements in order of the number of agents; `machine` names the machine.
-fn sheet(times: &[FrameTime], machine: &str) -> Sheet {
+fn sheet(times: &[StageTimes], machine: &str) -> Sheet {
     let order = [
         Stage::Sort,
         Stage::Neighbors,
@@ -58,9 +65,9 @@ fn sheet(times: &[FrameTime], machine: &str) -> Sheet {
         Stage::Removal,
     ];
     let mut marks = Vec::new();
-    let agents = |time: &FrameTime| time.agents as f64;
+    let agents = |time: &StageTimes| time.agents as f64;
     for (stage, color) in order.into_iter().zip(LINES.into_iter().cycle()) {
-        let point = |time: &FrameTime| Some([agents(time), time.of_stage(stage)?]);
+        let point = |time: &StageTimes| Some([agents(time), time.of_stage(stage)?]);
         let points: Vec<[f64; 2]> = times.iter().filter_map(point).collect();
         if !points.is_empty() {
             let dots = points.iter().map(|&[x, y]| Point { x, y, error: 0.0 });
@@ -99,4 +106,21 @@ fn sheet(times: &[FrameTime], machine: &str) -> Sheet {
         bar: None,
         panels: vec![panel],
     }
+}
+
+/// All sizes as CSV.
+fn csv(times: &[StageTimes]) -> String {
+    let mut text = "agents,threads,total_ms".to_owned();
+    for stage in Stage::ALL {
+        let _ = write!(text, ",{}_ms", stage.name());
+    }
+    text.push('\n');
+    for time in times {
+        let _ = write!(text, "{},{},{:.4}", time.agents, time.threads, time.total());
+        for stage in Stage::ALL {
+            let _ = write!(text, ",{:.4}", time.of_stage(stage).unwrap_or(0.0));
+        }
+        text.push('\n');
+    }
+    text
 }

@@ -1,23 +1,24 @@
-//! Main memory that cells share.
+//! Main memory that runs share.
 
 use std::sync::{Condvar, Mutex, PoisonError};
 
-/// Lends memory to as many cells at a time as fit.
-pub(super) struct Memory {
+/// Lends memory to as many runs at a time as fit.
+pub struct Memory {
     /// Bytes; `None` without a limit.
     limit: Option<u64>,
     lent: Mutex<u64>,
     returned: Condvar,
 }
 
-/// Memory lent to a cell, until it is dropped.
-pub(super) struct Lent<'a> {
+/// Memory lent to a run, until it is dropped.
+pub struct Lent<'a> {
     memory: &'a Memory,
     bytes: u64,
 }
 
 impl Memory {
-    pub(super) fn new(limit: Option<u64>) -> Self {
+    /// Memory of `limit` bytes; `None` without a limit.
+    pub fn new(limit: Option<u64>) -> Self {
         Self {
             limit,
             lent: Mutex::new(0),
@@ -25,8 +26,8 @@ impl Memory {
         }
     }
 
-    /// Waits until `bytes` bytes are free. A cell that needs more than the limit waits until no other cell has memory.
-    pub(super) fn lend(&self, bytes: u64) -> Lent<'_> {
+    /// Waits until `bytes` bytes are free. A run that needs more than the limit waits until no other run has memory.
+    pub fn lend(&self, bytes: u64) -> Lent<'_> {
         let limit = self.limit.unwrap_or(u64::MAX);
         let full = |lent: &mut u64| *lent > 0 && lent.saturating_add(bytes) > limit;
         let lent = self.lent.lock().unwrap_or_else(PoisonError::into_inner);
@@ -40,7 +41,8 @@ impl Memory {
         }
     }
 
-    pub(super) fn limit(&self) -> Option<u64> {
+    /// The limit, bytes.
+    pub fn limit(&self) -> Option<u64> {
         self.limit
     }
 }
@@ -85,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cell_that_is_alone_gets_more() {
+    fn a_run_that_is_alone_gets_more() {
         assert_eq!(most(Some(100), 300), 300);
         let memory = Memory::new(None);
         let _both = [memory.lend(u64::MAX), memory.lend(1)];

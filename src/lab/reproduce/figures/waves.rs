@@ -1,13 +1,14 @@
 //! An addition to Fig. 7: the wave over space and time for several k, and its speed against linear theory.
 
-use super::concert::{RUN, SPEEDS, Seen, Variant};
+use super::super::product::{Needs, Product};
 use super::save;
-use crate::analysis::wave::{self, SpaceTime, Wave};
 use crate::analysis::sound;
-use crate::lab::reproduce::error::ReproduceError;
-use crate::lab::reproduce::product::Product;
+use crate::analysis::wave::{self, SpaceTime, Wave};
+use crate::lab::error::LabError;
+use crate::lab::sweep::Gathered;
 use crate::output::colors::ColorMap;
 use crate::output::plot::{Axis, Cells, ColorBar, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::scenario::measurements::WaveData;
 
 /// K^ag of the baseline (§5.5).
 const AGENT_STIFFNESS: f64 = 50.0;
@@ -21,27 +22,36 @@ pub const PRODUCT: Product = Product {
     name: "waves",
     about: "space-time diagrams of the shockwave for five k, and its speed against linear theory",
     in_all: true,
-    cases: |_| Ok(SPEEDS.iter().map(|(_, variant)| variant.case()).collect()),
-    write: |_, results, store| {
-        let of = |(k, variant): (f64, Variant)| Ok((k, variant, variant.seen(results)?));
-        let runs: Result<Vec<_>, ReproduceError> = SPEEDS.into_iter().map(of).collect();
-        let runs = runs?;
-        let speeds: Vec<Speed> = runs
-            .iter()
-            .map(|(k, _, seen)| Speed::of(*k, seen))
-            .collect();
-        store.write("waves.csv", csv(&speeds).as_bytes())?;
-        save(&sheet(&runs, &speeds), store, "waves")
+    studies: &["shockwave"],
+    needs: Needs::Labeled(&LABELS),
+    write: |studies, store| {
+        let [study] = studies else {
+            return Err(LabError::Data(
+                "there is one study of the shockwave".to_owned(),
+            ));
+        };
+        let runs = LABELS
+            .into_iter()
+            .zip(GAS_CONSTANTS)
+            .map(|(label, k)| Speed::of(study, label, k));
+        let runs: Vec<Speed> = runs.collect::<Result<_, _>>()?;
+        store.write("waves.csv", csv(&runs).as_bytes())?;
+        save(&sheet(&runs), store, "waves")
     },
 };
+
+/// The runs, by increasing k.
+const LABELS: [&str; 5] = ["k = 50", "k = 100", "baseline", "k = 400", "k = 800"];
+/// Their k.
+const GAS_CONSTANTS: [f64; 5] = [50.0, 100.0, 200.0, 400.0, 800.0];
 
 /// The wave of one concert, and the speeds of linear theory.
 #[derive(Debug, Clone)]
 struct Speed {
     /// k.
     gas_constant: f64,
-    /// The measured wave; `None` if no wave stands out.
-    wave: Option<Wave>,
+    /// The space-time diagram, the places of push and obstacle, and the wave; no wave if none stands out.
+    seen: WaveData,
     /// √(k/2), m/s.
     fluid: f64,
     /// Mean number of contacts of an agent before the push.
@@ -53,28 +63,35 @@ struct Speed {
 }
 
 impl Speed {
-    /// Measures one run.
-    fn of(gas_constant: f64, seen: &Seen) -> Self {
+    /// The results of one run.
+    fn of(study: &Gathered, label: &str, gas_constant: f64) -> Result<Self, LabError> {
+        let (_, result) = study.labeled(label)?;
         let with = |modulus| sound::speed_with_contacts(gas_constant, AGENT_STIFFNESS, modulus);
-        Self {
+        let seen = result
+            .summary
+            .data(WaveData::NAME)
+            .ok_or_else(|| LabError::Missing {
+                case: label.to_owned(),
+                what: "wave".to_owned(),
+            })?;
+        Ok(Self {
             gas_constant,
-            wave: wave::measure(&seen.diagram, &RUN),
+            seen,
             fluid: sound::speed_of_fluid(gas_constant),
-            contacts: seen.contacts.map(|contacts| contacts.per_agent),
-            with_contacts: seen.contacts.map(|contacts| with(contacts.modulus)),
+            contacts: result.summary.metric("contacts_per_agent"),
+            with_contacts: result.summary.metric("contact_modulus_m2").map(with),
             all_touching: with(sound::touching_modulus(REACH)),
-        }
+        })
     }
 }
 
 /// The diagrams, and the speed against k as the last panel.
-fn sheet(runs: &[(f64, Variant, Seen)], speeds: &[Speed]) -> Sheet {
+fn sheet(speeds: &[Speed]) -> Sheet {
     let map = ColorMap::inferno([0.0, FASTEST]);
-    let mut panels: Vec<Panel> = runs
+    let diagrams = speeds
         .iter()
-        .zip(speeds)
-        .map(|((_, _, seen), speed)| diagram(&seen.diagram, speed, &map))
-        .collect();
+        .map(|speed| diagram(&speed.seen.diagram, speed, &map));
+    let mut panels: Vec<Panel> = diagrams.collect();
     panels.push(against_gas_constant(speeds));
     Sheet {
         title: "The shockwave over place and time, and its speed against linear theory".to_owned(),
@@ -104,7 +121,7 @@ fn diagram(seen: &SpaceTime, speed: &Speed, map: &ColorMap) -> Panel {
         map: map.clone(),
     })];
     let mut title = format!("k = {}: no wave", speed.gas_constant);
-    if let Some(wave) = &speed.wave {
+    if let Some(wave) = &speed.seen.wave {
         title = format!("k = {}: {}", speed.gas_constant, summary(wave));
         marks.extend(crests(wave, speed));
     }
@@ -129,7 +146,8 @@ fn summary(wave: &Wave) -> String {
 
 /// Lines along the crests, and those of linear theory with the same start.
 fn crests(wave: &Wave, speed: &Speed) -> Vec<Mark> {
-    let ends = [RUN.source, RUN.obstacle];
+    let run = speed.seen.run;
+    let ends = [run.source, run.obstacle];
     let line = |ridge: &wave::Ridge| ends.map(|x| [x, ridge.time_at(x)]).to_vec();
     let fitted = Style::full(LINES[5], 1.0, "fitted");
     let mut marks = vec![Mark::Line(line(&wave.arriving), fitted.clone())];
@@ -141,10 +159,10 @@ fn crests(wave: &Wave, speed: &Speed) -> Vec<Mark> {
         marks.push(Mark::Line(line(returning), style));
     }
     if let Some(theory) = speed.with_contacts {
-        let begin = wave.arriving.time_at(RUN.source);
-        let crossing = (RUN.obstacle - RUN.source) / theory;
-        let there = [[RUN.source, begin], [RUN.obstacle, begin + crossing]];
-        let back = [there[1], [RUN.source, begin + 2.0 * crossing]];
+        let begin = wave.arriving.time_at(run.source);
+        let crossing = (run.obstacle - run.source) / theory;
+        let there = [[run.source, begin], [run.obstacle, begin + crossing]];
+        let back = [there[1], [run.source, begin + 2.0 * crossing]];
         let style = Style::broken(LINES[2], 1.0, "theory, discs in contact");
         marks.push(Mark::Line(vec![there[0], there[1], back[1]], style));
     }
@@ -160,7 +178,7 @@ fn csv(speeds: &[Speed]) -> String {
             .to_owned();
     let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:.4}"));
     for speed in speeds {
-        let wave = speed.wave.as_ref();
+        let wave = speed.seen.wave.as_ref();
         let estimates = [
             wave.map(|w| w.arriving.speed),
             wave.and_then(|w| w.returning.as_ref()).map(|r| r.speed),
@@ -192,7 +210,7 @@ fn against_gas_constant(speeds: &[Speed]) -> Panel {
     };
     let points = |estimate: &dyn Fn(&Wave) -> Option<wave::Estimate>| -> Vec<Point> {
         let point = |speed: &Speed| {
-            let estimate = estimate(speed.wave.as_ref()?)?;
+            let estimate = estimate(speed.seen.wave.as_ref()?)?;
             Some(Point {
                 x: speed.gas_constant,
                 y: estimate.value,

@@ -1,0 +1,56 @@
+//! Errors of experiments.
+
+use crate::output::plot::PlotError;
+use crate::runs::error::{RunError, StoreError};
+
+/// Why an experiment cannot be finished.
+#[derive(Debug, thiserror::Error)]
+pub enum LabError {
+    /// A run failed.
+    #[error("{case}: {error}")]
+    Run {
+        /// The run.
+        case: String,
+        /// The reason.
+        error: RunError,
+    },
+    /// Some jobs failed: their names and error messages, one line each.
+    #[error("{0}")]
+    Failed(String),
+    /// Results cannot be stored.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// A study is invalid.
+    #[error(transparent)]
+    Study(#[from] super::sweep::StudyError),
+    /// A requested result is missing, or has another form.
+    #[error("{case}: there is no {what}")]
+    Missing {
+        /// The run.
+        case: String,
+        /// The requested result.
+        what: String,
+    },
+    /// A picture cannot be made.
+    #[error(transparent)]
+    Picture(#[from] PlotError),
+    /// Data that ship with the program are invalid, or a table cannot be written.
+    #[error("{0}")]
+    Data(String),
+}
+
+impl LabError {
+    /// The error of the run `case`.
+    pub fn of(case: impl Into<String>, error: impl Into<RunError>) -> Self {
+        Self::Run {
+            case: case.into(),
+            error: error.into(),
+        }
+    }
+}
+
+impl From<csv::Error> for LabError {
+    fn from(error: csv::Error) -> Self {
+        Self::Data(format!("CSV: {error}"))
+    }
+}

@@ -1,0 +1,53 @@
+//! Jobs of which an experiment needs every result.
+
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use crate::lab::error::LabError;
+use crate::runs::job::{self, Job, Listener};
+use crate::runs::store::Store;
+
+/// Computes the jobs that are not in `store`, and returns all results in the order of the jobs.
+///
+/// # Errors
+/// Some jobs failed, or their results cannot be stored. Finished jobs stay stored.
+pub fn results(
+    jobs: &[Job],
+    store: &Store,
+    listener: &dyn Listener,
+) -> Result<Vec<Value>, LabError> {
+    finished(&job::run(jobs, store, None, listener)?)?;
+    let result = |job: &Job| {
+        store
+            .result(&job.key)
+            .unwrap_or_default()
+            .ok_or_else(|| LabError::Missing {
+                case: job.name.clone(),
+                what: "result".to_owned(),
+            })
+    };
+    jobs.iter().map(result).collect()
+}
+
+/// Did all jobs finish?
+///
+/// # Errors
+/// Some failed.
+pub fn finished(tally: &job::Tally) -> Result<(), LabError> {
+    let failed = tally.failed.iter();
+    let lines: Vec<String> = failed
+        .map(|(job, message)| format!("{job}: {message}"))
+        .collect();
+    match lines.is_empty() {
+        true => Ok(()),
+        false => Err(LabError::Failed(lines.join("\n"))),
+    }
+}
+
+/// Reads the result of a job.
+///
+/// # Errors
+/// The result has another type.
+pub fn read<T: DeserializeOwned>(result: &Value) -> Result<T, LabError> {
+    T::deserialize(result).map_err(|error| LabError::Data(error.to_string()))
+}

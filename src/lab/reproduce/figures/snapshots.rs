@@ -1,0 +1,181 @@
+//! Snapshots of crowds side by side (Figs. 5 to 10).
+
+use std::sync::LazyLock;
+
+use crate::lab::error::LabError;
+use crate::lab::sweep::Gathered;
+use crate::output::colors::{self, ColorMap};
+use crate::output::plot::{Axis, ColorBar, Disc, GRAY, Mark, Panel, Sheet, Style};
+use crate::runs::store::Store;
+use crate::scenario::measurements::Snapshot;
+
+/// Inferno up to 1 m/s: the push itself reaches 0.9 m/s.
+static CROWD_SPEED: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::inferno([0.0, 1.0]));
+/// The color of the measured region's outline.
+const GREEN: [u8; 3] = [0, 158, 115];
+
+/// The meaning of the discs' colors (Fig. 3).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Coloring {
+    /// |v_i|.
+    Speed,
+    /// |v_i| in a crowd that hardly moves: the color range ends at the speed of its waves.
+    CrowdSpeed,
+    /// ρ_i.
+    Density,
+}
+
+impl Coloring {
+    fn map(self) -> &'static ColorMap {
+        match self {
+            Self::Speed => &colors::SPEED,
+            Self::CrowdSpeed => &CROWD_SPEED,
+            Self::Density => &colors::DENSITY,
+        }
+    }
+
+    fn bar(self) -> ColorBar {
+        let label = match self {
+            Self::Speed | Self::CrowdSpeed => "speed [m/s]",
+            Self::Density => "density [P/m²]",
+        };
+        ColorBar {
+            label: label.to_owned(),
+            map: self.map().clone(),
+        }
+    }
+
+    fn values(self, snapshot: &Snapshot) -> &[f64] {
+        match self {
+            Self::Speed | Self::CrowdSpeed => &snapshot.speed,
+            Self::Density => &snapshot.density,
+        }
+    }
+}
+
+/// A picture with a panel for each run, or with a row for each run and a panel for each time.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Snapshots {
+    /// The name of its files.
+    pub name: &'static str,
+    /// Its title.
+    pub title: &'static str,
+    /// The times of the snapshots, seconds.
+    pub times: &'static [f64],
+    /// The part of the plane that is shown: lower left and upper right corner, meters.
+    pub region: [[f64; 2]; 2],
+    /// The meaning of the colors.
+    pub coloring: Coloring,
+    /// Panels side by side.
+    pub columns: usize,
+    /// Width of a panel, points.
+    pub width: f64,
+    /// A region whose outline is drawn.
+    pub measured: Option<[[f64; 2]; 2]>,
+}
+
+impl Snapshots {
+    /// Draws all runs of the study, with their labels as titles.
+    pub fn write_all(&self, studies: &[Gathered], store: &Store) -> Result<String, LabError> {
+        let cells = studies.iter().flat_map(|study| &study.study.cells);
+        let labels: Vec<&str> = cells.filter_map(|cell| cell.label()).collect();
+        self.write(studies, &labels, &labels, store)
+    }
+
+    /// Draws the runs with these labels under these titles.
+    pub fn write(
+        &self,
+        studies: &[Gathered],
+        labels: &[&str],
+        titles: &[&str],
+        store: &Store,
+    ) -> Result<String, LabError> {
+        let [study] = studies else {
+            return Err(LabError::Data(format!("{} has one study", self.name)));
+        };
+        let [min, max] = self.region;
+        let (mut panels, mut row_titles) = (Vec::new(), Vec::new());
+        for (k, (label, title)) in labels.iter().zip(titles).enumerate() {
+            let (cell, result) = study.labeled(label)?;
+            let walls = cell
+                .case
+                .scenario()
+                .map_err(|error| LabError::of(*label, error))?;
+            let corners = |r: &crate::engine::math::Vector| [r.x, r.y];
+            let walls = walls.scene.walls.obstacles().iter();
+            let walls = walls.map(|wall| wall.points().iter().map(corners).collect());
+            let walls: Vec<Vec<[f64; 2]>> = walls.collect();
+            // (a), (b), …
+            let letter = char::from(b'a' + (k % 26) as u8);
+            for &time in self.times {
+                let title = match (self.times.len() > 1, k) {
+                    (false, _) => format!("({letter}) {title}"),
+                    (true, 0) => format!("t = {time} s"),
+                    (true, _) => String::new(),
+                };
+                let name = Snapshot::name(time);
+                let snapshot = result
+                    .summary
+                    .data(&name)
+                    .ok_or_else(|| LabError::Missing {
+                        case: (*label).to_owned(),
+                        what: name,
+                    })?;
+                panels.push(self.panel(title, &snapshot, &walls));
+            }
+            row_titles.push(format!("({letter}) {title}"));
+        }
+        let sheet = Sheet {
+            title: self.title.to_owned(),
+            columns: self.columns,
+            panel_size: [
+                self.width,
+                self.width * (max[1] - min[1]) / (max[0] - min[0]),
+            ],
+            shared_axes: true,
+            row_titles: if self.times.len() > 1 {
+                row_titles
+            } else {
+                Vec::new()
+            },
+            bar: Some(self.coloring.bar()),
+            panels,
+        };
+        super::save(&sheet, store, self.name)
+    }
+
+    fn panel(&self, title: String, snapshot: &Snapshot, walls: &[Vec<[f64; 2]>]) -> Panel {
+        let map = self.coloring.map();
+        let values = self.coloring.values(snapshot).iter().enumerate();
+        let discs = values.map(|(i, &value)| Disc {
+            center: [snapshot.x[i], snapshot.y[i]],
+            radius: snapshot.radius[i],
+            color: map.color(value as f32),
+        });
+        let mut marks = vec![Mark::Discs(discs.collect())];
+        marks.extend(
+            walls
+                .iter()
+                .map(|corners| Mark::Area(corners.clone(), GRAY)),
+        );
+        if let Some([[left, low], [right, high]]) = self.measured {
+            let outline = vec![
+                [left, low],
+                [right, low],
+                [right, high],
+                [left, high],
+                [left, low],
+            ];
+            marks.push(Mark::Line(outline, Style::full(GREEN, 0.8, "")));
+        }
+        let [min, max] = self.region;
+        Panel {
+            title,
+            x: Axis::linear("x [m]", [min[0], max[0]]),
+            y: Axis::linear("y [m]", [min[1], max[1]]),
+            marks,
+            bar: None,
+            legend: None,
+        }
+    }
+}

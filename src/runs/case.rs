@@ -1,0 +1,188 @@
+//! A case: one run of a scenario with settings, and its result.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::drive::{Then, drive, unless_over};
+use super::error::RunError;
+use super::identity::Identity;
+use super::job::{Job, Progress};
+use super::memory::Memory;
+use super::summary::Summary;
+use crate::engine::simulation::{Fault, Simulation};
+use crate::scenario::measurements::Metrics;
+use crate::scenario::quote::shown;
+use crate::scenario::{
+    Need, SHIPPED, Scenario, ScenarioError, Setting, built_in, read_text, shipped_text,
+};
+
+/// Where a scenario comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Source {
+    /// A scenario that ships with the program.
+    Shipped(&'static str),
+    /// A file that is built into the program, relative to `scenarios/`.
+    BuiltIn(PathBuf),
+    /// A scenario from a file.
+    File(PathBuf),
+}
+
+impl Source {
+    /// The scenario of this name that ships with the program.
+    pub fn shipped(name: &str) -> Option<Self> {
+        let found = SHIPPED.iter().find(|shipped| shipped.name == name)?;
+        Some(Self::Shipped(found.name))
+    }
+
+    /// The scenario's text, and the name of its file for messages.
+    fn text(&self) -> Result<(String, String), ScenarioError> {
+        match self {
+            Self::Shipped(name) => Ok((shipped_text(name)?.to_owned(), format!("{name}.json"))),
+            Self::BuiltIn(path) => match built_in(path) {
+                Some(text) => Ok((text.to_owned(), path.display().to_string())),
+                None => read_text(path).map(|text| (text, path.display().to_string())),
+            },
+            Self::File(path) => Ok((read_text(path)?, path.display().to_string())),
+        }
+    }
+}
+
+/// One run, after validation. The scenario is read again when it runs.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// The scenario's seed.
+    pub seed: u64,
+    /// Estimated time on one core, seconds.
+    pub expected_secs: f64,
+    /// The memory that it needs.
+    pub need: Need,
+    /// The identity of its result: the engine and the whole scenario with its settings.
+    pub key: Identity,
+    source: Source,
+    settings: Vec<Setting>,
+    /// The floor plans that its scenario refers to.
+    plans: Vec<PathBuf>,
+}
+
+/// The result of a case.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunResult {
+    /// As `sandbox run --json` reports it.
+    #[serde(flatten)]
+    pub summary: Summary,
+    /// Number of counted arrivals.
+    pub evacuated: usize,
+    /// Number of agents at the end.
+    pub remaining: usize,
+    /// Computing time, seconds.
+    pub wall_secs: f64,
+}
+
+impl Case {
+    /// A run of this scenario with these settings. At most as many cases are validated at a time as fit into
+    /// `memory`.
+    ///
+    /// # Errors
+    /// The scenario or a setting is invalid, or the case needs more memory than there is.
+    pub fn new(source: Source, settings: Vec<Setting>, memory: &Memory) -> Result<Self, RunError> {
+        let (text, file) = source.text()?;
+        let check = |need: &Need| need.check(&file, 0, memory.limit().unwrap_or(u64::MAX));
+        let need = Need::parse(&text, &file, &settings)?;
+        check(&need)?;
+        let _lent = memory.lend(need.bytes());
+        let scenario = Scenario::parse(&text, &file, &settings)?;
+        let need = need.with_lists(&scenario.scene);
+        check(&need)?;
+        let given = scenario.document.get("seed").and_then(Value::as_u64);
+        Ok(Self {
+            seed: given.unwrap_or(scenario.scene.seed),
+            expected_secs: expected_secs(&scenario),
+            need,
+            key: key(&scenario),
+            source,
+            settings,
+            plans: scenario.files.into_iter().map(|(_, path)| path).collect(),
+        })
+    }
+
+    /// The files that it is read from.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        let own = match &self.source {
+            Source::File(path) => Some(path),
+            Source::Shipped(_) | Source::BuiltIn(_) => None,
+        };
+        own.into_iter().chain(&self.plans).map(PathBuf::as_path)
+    }
+
+    /// The scenario with the settings applied.
+    ///
+    /// # Errors
+    /// It has become invalid since [`new`](Self::new).
+    pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
+        let (text, file) = self.source.text()?;
+        Scenario::parse(&text, &file, &self.settings)
+    }
+
+    /// The job that computes its [`RunResult`]; messages call it `name`.
+    pub fn job(&self, name: String) -> Job<'_> {
+        let work = |progress: Progress| self.compute(progress);
+        let mut job = Job::new(name, self.key.clone(), self.expected_secs, work);
+        job.bytes = self.need.bytes();
+        job
+    }
+
+    /// Runs it on rayon's current threads.
+    fn compute(&self, progress: Progress) -> Result<RunResult, RunError> {
+        let scenario = self.scenario()?;
+        if key(&scenario) != self.key {
+            return Err(RunError::Changed(shown(&scenario.name)));
+        }
+        let start = Instant::now();
+        let mut simulation = Simulation::new(scenario.scene.clone())?;
+        let mut metrics = Metrics::new(&scenario.measurements, &mut simulation);
+        let duration = scenario.duration_secs;
+        drive(&mut simulation, duration, |simulation, _| {
+            metrics.observe(simulation);
+            progress(simulation.frame().clock.time() / duration.max(f64::MIN_POSITIVE));
+            Ok::<Then, Fault>(unless_over(simulation, &scenario))
+        })?;
+        let arrivals = &simulation.outcome().arrivals;
+        Ok(RunResult {
+            summary: Summary::of(&scenario, &simulation, &metrics),
+            evacuated: arrivals.iter().filter(|arrival| arrival.counted).count(),
+            remaining: simulation.frame().agents.len(),
+            wall_secs: start.elapsed().as_secs_f64(),
+        })
+    }
+}
+
+fn key(scenario: &Scenario) -> Identity {
+    Identity::of("run", &scenario.document)
+}
+
+/// Estimates the time from the number of agents and frames, and from their forces; used to sort jobs.
+fn expected_secs(scenario: &Scenario) -> f64 {
+    /// Seconds per agent and frame with SPH alone, with social forces, and with RVO.
+    const SECONDS: [f64; 3] = [0.8e-6, 3.5e-6, 8e-6];
+    let scene = &scenario.scene;
+    let frames = scenario.duration_secs / scene.clock.time_step();
+    let entering = scene.sources.iter().map(|source| {
+        let times = (scenario.duration_secs - source.start).max(0.0) / source.every;
+        source.grid.len() as f64
+            * source
+                .times
+                .map_or(times, |most| times.min(f64::from(most)))
+    });
+    // Agents that enter during the run are present for half of it on average.
+    let agents = scene.agents.len() as f64 + 0.5 * entering.sum::<f64>();
+    let needs = scene.needs();
+    let seconds = match (needs.rvo, needs.social) {
+        (true, _) => SECONDS[2],
+        (false, true) => SECONDS[1],
+        (false, false) => SECONDS[0],
+    };
+    1e-3 + agents * frames * seconds
+}

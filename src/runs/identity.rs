@@ -1,0 +1,31 @@
+//! The identity of a result: everything that it depends on.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+/// A hash of the sources of everything that a run depends on (engine, analysis, scenarios with their measurements,
+/// runs), of all dependencies' versions and of the compiler: see `build.rs`.
+pub const ENGINE: &str = env!("SANDBOX_ENGINE");
+
+/// A SHA-256 of the engine and of a job's input, 32 hexadecimal digits. Results with another identity are never
+/// reused.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Identity(String);
+
+impl Identity {
+    /// The identity of the result of a job of this kind for this input.
+    pub fn of(kind: &str, input: impl fmt::Display) -> Self {
+        let digest = Sha256::digest(format!("{ENGINE} {kind} {input}"));
+        let digits = digest[..16].iter().map(|byte| format!("{byte:02x}"));
+        Self(digits.collect())
+    }
+}
+
+impl fmt::Display for Identity {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}

@@ -1,0 +1,225 @@
+//! Measurements of arrivals: their number, flows (Tables 1 and 2), pauses.
+
+use serde::Deserialize;
+
+use super::Measure;
+use crate::engine::simulation::Simulation;
+use crate::scenario::check::UNTIL;
+use crate::scenario::error::Problem;
+
+/// (n − 1) / (time of the n-th counted arrival − time of the first), P/s.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FlowOfFirst {
+    /// n, at least 2.
+    arrivals: u32,
+}
+
+/// Counted arrivals until the frame nearest to a given time, divided by the time of that frame, P/s.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FlowUntil {
+    /// The time, seconds.
+    until_secs: f64,
+}
+
+/// The number of counted arrivals.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Evacuated {}
+
+/// The number of arrivals that are not counted.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Uncounted {}
+
+/// The sum of all long gaps between the first n counted arrivals, seconds, and the flow of these arrivals without the
+/// gaps, P/s.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pauses {
+    /// n, at least 2.
+    arrivals: u32,
+    /// Gaps at least this long are pauses, seconds.
+    longer_than_secs: f64,
+}
+
+/// 1 if fewer than n counted agents have arrived at the end of the run, else 0; its mean over seeds is the share of
+/// runs that lock.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Locked {
+    /// n, at least 2.
+    arrivals: u32,
+}
+
+impl Measure for FlowOfFirst {
+    type Seen = ();
+
+    fn check(&self) -> Result<(), Problem> {
+        at_least_two("flow_of_first", self.arrivals)
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        vec![("flow_per_s".to_owned(), "P/s")]
+    }
+
+    fn values(&self, (): &(), simulation: &Simulation) -> Vec<Option<f64>> {
+        let times = first(simulation, self.arrivals);
+        vec![times.and_then(|times| flow(&times, 0.0))]
+    }
+}
+
+impl Measure for FlowUntil {
+    type Seen = ();
+
+    fn check(&self) -> Result<(), Problem> {
+        UNTIL
+            .check("flow_until.until_secs", self.until_secs)
+            .map(|_| ())
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        vec![(format!("flow_first_{}s_per_s", self.until_secs), "P/s")]
+    }
+
+    fn values(&self, (): &(), simulation: &Simulation) -> Vec<Option<f64>> {
+        let clock = simulation.frame().clock;
+        let due = clock.frame_at(self.until_secs).max(1);
+        let end = clock.time_at(due);
+        let count = counted(simulation)
+            .iter()
+            .filter(|&&time| time <= end)
+            .count();
+        vec![(clock.frame() >= due).then(|| count as f64 / end)]
+    }
+}
+
+impl Measure for Evacuated {
+    type Seen = ();
+
+    fn check(&self) -> Result<(), Problem> {
+        Ok(())
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        vec![("evacuated".to_owned(), "agents")]
+    }
+
+    fn values(&self, (): &(), simulation: &Simulation) -> Vec<Option<f64>> {
+        vec![Some(counted(simulation).len() as f64)]
+    }
+}
+
+impl Measure for Uncounted {
+    type Seen = ();
+
+    fn check(&self) -> Result<(), Problem> {
+        Ok(())
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        vec![("uncounted".to_owned(), "agents")]
+    }
+
+    fn values(&self, (): &(), simulation: &Simulation) -> Vec<Option<f64>> {
+        let all = simulation.outcome().arrivals.len();
+        vec![Some((all - counted(simulation).len()) as f64)]
+    }
+}
+
+impl Measure for Pauses {
+    type Seen = ();
+
+    fn check(&self) -> Result<(), Problem> {
+        UNTIL.check("pauses.longer_than_secs", self.longer_than_secs)?;
+        at_least_two("pauses", self.arrivals)
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        let between = "flow_between_pauses_per_s".to_owned();
+        vec![("pauses_secs".to_owned(), "s"), (between, "P/s")]
+    }
+
+    fn values(&self, (): &(), simulation: &Simulation) -> Vec<Option<f64>> {
+        let Some(times) = first(simulation, self.arrivals) else {
+            return vec![None, None];
+        };
+        let paused = paused(&times, self.longer_than_secs);
+        vec![Some(paused), flow(&times, paused)]
+    }
+}
+
+impl Measure for Locked {
+    type Seen = ();
+
+    fn check(&self) -> Result<(), Problem> {
+        at_least_two("locked", self.arrivals)
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        vec![("locked".to_owned(), "runs")]
+    }
+
+    fn values(&self, (): &(), simulation: &Simulation) -> Vec<Option<f64>> {
+        vec![Some(f64::from(u8::from(
+            first(simulation, self.arrivals).is_none(),
+        )))]
+    }
+}
+
+fn at_least_two(measurement: &str, arrivals: u32) -> Result<(), Problem> {
+    if arrivals >= 2 {
+        return Ok(());
+    }
+    let reason = format!("a flow needs at least 2 arrivals, not {arrivals}");
+    Err(Problem::new(format!("{measurement}.arrivals"), reason))
+}
+
+/// The times of all counted arrivals, seconds, ascending.
+fn counted(simulation: &Simulation) -> Vec<f64> {
+    let arrivals = simulation.outcome().arrivals.iter();
+    let counted = arrivals.filter(|arrival| arrival.counted);
+    counted.map(|arrival| arrival.time).collect()
+}
+
+/// The times of the first `count` counted arrivals, if there were as many.
+fn first(simulation: &Simulation, count: u32) -> Option<Vec<f64>> {
+    let mut times = counted(simulation);
+    let enough = times.len() >= count as usize;
+    times.truncate(count as usize);
+    enough.then_some(times)
+}
+
+/// (n − 1) / (t_n − t_1 − paused) for ascending times.
+fn flow(times: &[f64], paused: f64) -> Option<f64> {
+    let span = times.last()? - times.first()? - paused;
+    (span > 0.0).then(|| (times.len() - 1) as f64 / span)
+}
+
+/// The sum of all gaps of at least `longest` seconds between ascending times, seconds.
+fn paused(times: &[f64], longest: f64) -> f64 {
+    let gaps = times.windows(2).map(|pair| pair[1] - pair[0]);
+    gaps.filter(|&gap| gap >= longest)
+        .fold(0.0, |sum, gap| sum + gap)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flow_counts_the_gaps_between_arrivals() {
+        let times: Vec<f64> = (0..10).map(|k| 5.0 + 0.5 * f64::from(k)).collect();
+        assert_eq!(flow(&times, 0.0), Some(2.0));
+        assert_eq!(flow(&times[..1], 0.0), None);
+        assert_eq!(flow(&[], 0.0), None);
+    }
+
+    #[test]
+    fn pauses_are_left_out_of_the_flow_between_them() {
+        let times = [0.0, 1.0, 4.0, 5.0];
+        assert_eq!(paused(&times, 2.0), 3.0);
+        assert_eq!(flow(&times, paused(&times, 2.0)), Some(1.5));
+    }
+}

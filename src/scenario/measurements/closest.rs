@@ -1,0 +1,62 @@
+//! The smallest distance between the centers of two agents.
+
+use serde::Deserialize;
+
+use super::{Due, Measure};
+use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::range::TIME;
+
+/// Time between the frames that are looked at, seconds.
+const EVERY_SECS: f64 = 0.1;
+
+/// The smallest distance between the centers of two agents as a part of D_i + D_j, at most 1, from a given time on, in
+/// ten frames of each second.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Closest {
+    /// The time, seconds.
+    #[serde(default)]
+    from_secs: f64,
+}
+
+impl Measure for Closest {
+    type Seen = Option<f64>;
+
+    fn check(&self) -> Result<(), Problem> {
+        TIME.check("closest.from_secs", self.from_secs).map(|_| ())
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        vec![("closest_centers".to_owned(), "D_i + D_j")]
+    }
+
+    fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
+        if Due::new(simulation, self.from_secs, f64::MAX, EVERY_SECS).is_now(simulation) {
+            let now = closest(simulation);
+            *seen = Some(seen.map_or(now, |before| before.min(now)));
+        }
+    }
+
+    fn values(&self, seen: &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
+        vec![*seen]
+    }
+}
+
+/// The smallest distance between the centers of two agents of an evaluated frame as a part of D_i + D_j; 1 if no two
+/// touch or the frame has no lists of neighbors.
+pub fn closest(simulation: &Simulation) -> f64 {
+    let frame = simulation.frame();
+    let agents = frame.agents;
+    let widest = agents.radius.iter().copied().fold(0.0, f64::max);
+    let mut least: f64 = 1.0;
+    if frame.neighbors.near().is_empty() {
+        return least;
+    }
+    for i in 0..agents.len() {
+        for (j, r_ij) in frame.near(i, agents.radius[i] + widest) {
+            least = least.min(r_ij.norm() / (agents.radius[i] + agents.radius[j]));
+        }
+    }
+    least
+}

@@ -1,0 +1,53 @@
+//! Contacts between agents, for the speed of sound.
+
+use serde::Deserialize;
+
+use super::Measure;
+use crate::analysis::sound::{self, Contacts};
+use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::file::Corners;
+use crate::scenario::range::{TIME, region};
+
+/// The mean number of contacts per agent in a region at one time, and their modulus M along x, m²: with it linear
+/// theory gives the speed of sound (see [`crate::analysis::sound`]).
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ContactsAt {
+    /// The time, seconds.
+    at_secs: f64,
+    /// The region: lower left and upper right corner, meters.
+    region: Corners,
+}
+
+impl Measure for ContactsAt {
+    type Seen = Option<Contacts>;
+
+    fn check(&self) -> Result<(), Problem> {
+        TIME.check("contacts.at_secs", self.at_secs)?;
+        region("contacts.region", self.region).map(|_| ())
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        let modulus = "contact_modulus_m2".to_owned();
+        vec![
+            ("contacts_per_agent".to_owned(), "contacts"),
+            (modulus, "m²"),
+        ]
+    }
+
+    fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
+        let frame = simulation.frame();
+        if frame.clock.frame() == frame.clock.frame_at(self.at_secs) {
+            let region = region("", self.region).ok();
+            *seen = region.and_then(|region| sound::contacts(&frame, &region));
+        }
+    }
+
+    fn values(&self, seen: &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
+        vec![
+            seen.map(|found| found.per_agent),
+            seen.map(|found| found.modulus),
+        ]
+    }
+}

@@ -1,0 +1,63 @@
+//! Mean and standard deviation of ρ_i at one time (Tables 1 and 2).
+
+use serde::Deserialize;
+
+use super::Measure;
+use crate::analysis::statistics::mean_and_deviation;
+use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::file::Corners;
+use crate::scenario::range::{TIME, region};
+
+/// Mean and population standard deviation of ρ_i at one time, over all agents or those in a region, P/m².
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Density {
+    /// The time, seconds.
+    at_secs: f64,
+    /// The region: lower left and upper right corner, meters; everywhere if missing.
+    region: Option<Corners>,
+}
+
+impl Measure for Density {
+    type Seen = Option<(f64, f64)>;
+
+    fn check(&self) -> Result<(), Problem> {
+        TIME.check("density.at_secs", self.at_secs)?;
+        self.region
+            .map(|corners| region("density.region", corners))
+            .transpose()?;
+        Ok(())
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        let name = |what| (format!("density_{what}_{}s", self.at_secs), "P/m²");
+        ["mean", "std"].map(name).into()
+    }
+
+    fn begin(&self, simulation: &mut Simulation) {
+        let frame = simulation.frame().clock.frame_at(self.at_secs);
+        simulation.request_density_until(frame + 1);
+    }
+
+    fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
+        let frame = simulation.frame();
+        let densities = &frame.fields.density;
+        if frame.clock.frame() != frame.clock.frame_at(self.at_secs) || densities.is_empty() {
+            return;
+        }
+        let region = self.region.and_then(|corners| region("", corners).ok());
+        let positions = densities.iter().zip(&frame.agents.position);
+        let inside =
+            positions.filter(|(_, position)| region.is_none_or(|r| r.contains(**position)));
+        let densities: Vec<f64> = inside.map(|(density, _)| *density).collect();
+        *seen = mean_and_deviation(&densities);
+    }
+
+    fn values(&self, seen: &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
+        vec![
+            seen.map(|(mean, _)| mean),
+            seen.map(|(_, deviation)| deviation),
+        ]
+    }
+}

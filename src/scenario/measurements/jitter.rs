@@ -1,0 +1,85 @@
+//! Jitter: the kinetic energy of a crowd that should rest.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Due, Measure};
+use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::range::TIME;
+
+/// The share of the agents, the least dense ones, that count as the rim of a crowd.
+const RIM: f64 = 0.25;
+
+/// The mean kinetic energy ½ m v² per agent, m²/s², between two times: of all agents, of the denser three quarters of
+/// the crowd, and of its rim, the quarter with the lowest densities.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Jitter {
+    /// The start, seconds.
+    from_secs: f64,
+    /// The end, seconds.
+    to_secs: f64,
+}
+
+/// Sums over agents and frames: all, inside and rim.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+pub struct Energies([Sum; 3]);
+
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+struct Sum {
+    energy: f64,
+    count: f64,
+}
+
+impl Measure for Jitter {
+    type Seen = Energies;
+
+    fn check(&self) -> Result<(), Problem> {
+        TIME.check("jitter.from_secs", self.from_secs)?;
+        TIME.check("jitter.to_secs", self.to_secs)?;
+        if self.from_secs > self.to_secs {
+            return Err(Problem::new(
+                "jitter.to_secs",
+                "must not be before from_secs",
+            ));
+        }
+        Ok(())
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        let window = format!("{}_to_{}s", self.from_secs, self.to_secs);
+        let name = |part| (format!("jitter{part}_{window}"), "m²/s²");
+        ["", "_inside", "_rim"].map(name).into()
+    }
+
+    fn begin(&self, simulation: &mut Simulation) {
+        let last = simulation.frame().clock.frame_at(self.to_secs);
+        simulation.request_density_until(last + 1);
+    }
+
+    fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
+        let frame = simulation.frame();
+        let density = &frame.fields.density;
+        let mut sorted = density.clone();
+        if !Due::new(simulation, self.from_secs, self.to_secs, 0.0).is_now(simulation) {
+            return;
+        }
+        sorted.sort_by(f64::total_cmp);
+        let Some(&dense) = sorted.get((RIM * sorted.len() as f64) as usize) else {
+            return;
+        };
+        let bodies = frame.agents.mass.iter().zip(&frame.agents.velocity);
+        for ((mass, velocity), &density) in bodies.zip(density) {
+            let part = if density >= dense { 1 } else { 2 };
+            for k in [0, part] {
+                seen.0[k].energy += 0.5 * mass * velocity.norm_squared();
+                seen.0[k].count += 1.0;
+            }
+        }
+    }
+
+    fn values(&self, seen: &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
+        let mean = |sum: Sum| (sum.count > 0.0).then(|| sum.energy / sum.count);
+        seen.0.map(mean).into()
+    }
+}

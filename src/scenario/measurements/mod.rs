@@ -1,0 +1,311 @@
+//! Measurements of a run: what a scenario's `measurements` ask for.
+//!
+//! A measurement is one file: its keys, as a scenario gives them, and how it observes frames and finds its values
+//! ([`Measure`]). [`Measurement`] lists them all. Everything is due by frame, not by time, so that no time step
+//! misses it.
+
+mod arrivals;
+mod closest;
+mod contacts;
+mod density;
+mod frame_time;
+mod jitter;
+mod snapshot;
+mod speed_by_density;
+mod wave;
+
+use std::fmt;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+pub use arrivals::{Evacuated, FlowOfFirst, FlowUntil, Locked, Pauses, Uncounted};
+pub use closest::{Closest, closest};
+pub use contacts::ContactsAt;
+pub use density::Density;
+pub use frame_time::{FrameTime, StageTimes};
+pub use jitter::Jitter;
+pub use snapshot::{Snapshot, SnapshotAt};
+pub use speed_by_density::SpeedByDensity;
+pub use wave::{Wave, WaveData};
+
+use super::error::{Problem, Under};
+use super::file::Object;
+use crate::engine::simulation::Simulation;
+
+/// The keys of a measurement. They do not change during a run; what the measurement has seen is its `Seen`.
+pub trait Measure: fmt::Debug + Clone + Send + Sync + 'static {
+    /// What it has seen so far: the part of it that a checkpoint holds.
+    type Seen: Default + Serialize + DeserializeOwned + Send + Sync + 'static;
+
+    /// Checks its keys.
+    ///
+    /// # Errors
+    /// A value is out of range.
+    fn check(&self) -> Result<(), Problem>;
+
+    /// The names of its values and their units. They are unique in a scenario.
+    fn names(&self) -> Vec<(String, &'static str)>;
+
+    /// Requests what it needs before the first frame, such as densities.
+    fn begin(&self, _simulation: &mut Simulation) {}
+
+    /// Observes an evaluated frame; called in every frame.
+    fn observe(&self, _seen: &mut Self::Seen, _simulation: &Simulation) {}
+
+    /// The values in the order of their names; `None` without agents or arrivals enough, or if the run ended too early.
+    fn values(&self, seen: &Self::Seen, simulation: &Simulation) -> Vec<Option<f64>>;
+
+    /// Data beside the values, with a name that is unique in a scenario.
+    fn data(&self, _seen: &Self::Seen) -> Option<(String, Value)> {
+        None
+    }
+}
+
+/// A measurement of a scenario.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Measurement {
+    /// Mean and standard deviation of the density.
+    Density(Object<Density>),
+    /// Flow of the first arrivals.
+    FlowOfFirst(Object<FlowOfFirst>),
+    /// Flow of the arrivals until a given time.
+    FlowUntil(Object<FlowUntil>),
+    /// Number of counted arrivals.
+    Evacuated(Object<Evacuated>),
+    /// Number of arrivals that are not counted.
+    Uncounted(Object<Uncounted>),
+    /// Long gaps between arrivals, and the flow without them.
+    Pauses(Object<Pauses>),
+    /// Did the flow come to an end before enough agents arrived?
+    Locked(Object<Locked>),
+    /// All agents at one time.
+    Snapshot(Object<SnapshotAt>),
+    /// Speed, amplitude and reflection of a wave along x.
+    Wave(Object<Wave>),
+    /// Contacts between agents at one time.
+    Contacts(Object<ContactsAt>),
+    /// Kinetic energy of a crowd that should rest.
+    Jitter(Object<Jitter>),
+    /// The smallest distance between the centers of two agents.
+    Closest(Object<Closest>),
+    /// Mean speed by density.
+    SpeedByDensity(Object<SpeedByDensity>),
+    /// Computing time by stage.
+    FrameTime(Object<FrameTime>),
+}
+
+impl Measurement {
+    /// This measurement before the first frame.
+    fn started(&self) -> Box<dyn Running> {
+        match self {
+            Self::Density(Object(keys)) => Started::new(keys),
+            Self::FlowOfFirst(Object(keys)) => Started::new(keys),
+            Self::FlowUntil(Object(keys)) => Started::new(keys),
+            Self::Evacuated(Object(keys)) => Started::new(keys),
+            Self::Uncounted(Object(keys)) => Started::new(keys),
+            Self::Pauses(Object(keys)) => Started::new(keys),
+            Self::Locked(Object(keys)) => Started::new(keys),
+            Self::Snapshot(Object(keys)) => Started::new(keys),
+            Self::Wave(Object(keys)) => Started::new(keys),
+            Self::Contacts(Object(keys)) => Started::new(keys),
+            Self::Jitter(Object(keys)) => Started::new(keys),
+            Self::Closest(Object(keys)) => Started::new(keys),
+            Self::SpeedByDensity(Object(keys)) => Started::new(keys),
+            Self::FrameTime(Object(keys)) => Started::new(keys),
+        }
+    }
+
+    /// The names of its values.
+    pub fn names(&self) -> Vec<String> {
+        let names = self.started().names().into_iter();
+        names.map(|(name, _)| name).collect()
+    }
+
+    /// Checks its keys.
+    ///
+    /// # Errors
+    /// A value is out of range.
+    pub(super) fn check(&self) -> Result<(), Problem> {
+        self.started().check()
+    }
+}
+
+/// A measured value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Metric {
+    /// Its name in reports.
+    pub name: String,
+    /// The value; `None` if there were no agents or too few arrivals, or if the run ended too early.
+    pub value: Option<f64>,
+    /// The unit of the value.
+    pub unit: &'static str,
+}
+
+/// The measurements of one run.
+pub struct Metrics(Vec<Box<dyn Running>>);
+
+impl Metrics {
+    /// Prepares the measurements, and requests from `simulation` what they need.
+    pub fn new(measurements: &[Measurement], simulation: &mut Simulation) -> Self {
+        let started = measurements.iter().map(Measurement::started);
+        let running: Vec<_> = started.collect();
+        for measurement in &running {
+            measurement.begin(simulation);
+        }
+        Self(running)
+    }
+
+    /// Observes an evaluated frame; call it in every frame.
+    pub fn observe(&mut self, simulation: &Simulation) {
+        for measurement in &mut self.0 {
+            measurement.observe(simulation);
+        }
+    }
+
+    /// The values measured so far.
+    pub fn results(&self, simulation: &Simulation) -> Vec<Metric> {
+        let of = |measurement: &dyn Running| {
+            let named = measurement.names().into_iter();
+            let values = named.zip(measurement.values(simulation));
+            let metric = |((name, unit), value)| Metric { name, value, unit };
+            values.map(metric).collect::<Vec<_>>()
+        };
+        self.0
+            .iter()
+            .flat_map(|running| of(running.as_ref()))
+            .collect()
+    }
+
+    /// The data of measurements that have more than values, by name.
+    pub fn data(&self) -> impl Iterator<Item = (String, Value)> {
+        self.0.iter().filter_map(|measurement| measurement.data())
+    }
+
+    /// What each measurement has seen so far, as JSON.
+    pub fn seen(&self) -> Vec<String> {
+        self.0
+            .iter()
+            .map(|measurement| measurement.seen().to_string())
+            .collect()
+    }
+
+    /// Restores what was [`seen`](Self::seen) before; what does not match is ignored.
+    pub fn resume(&mut self, seen: &[String]) {
+        for (measurement, seen) in self.0.iter_mut().zip(seen) {
+            measurement.resume(seen);
+        }
+    }
+}
+
+/// A measurement during a run, whatever it measures: the methods of [`Measure`].
+trait Running: Send + Sync {
+    fn check(&self) -> Result<(), Problem>;
+    fn names(&self) -> Vec<(String, &'static str)>;
+    fn begin(&self, simulation: &mut Simulation);
+    fn observe(&mut self, simulation: &Simulation);
+    fn values(&self, simulation: &Simulation) -> Vec<Option<f64>>;
+    fn data(&self) -> Option<(String, Value)>;
+    fn seen(&self) -> Value;
+    fn resume(&mut self, seen: &str);
+}
+
+/// A measurement with what it has seen.
+struct Started<M: Measure> {
+    keys: M,
+    seen: M::Seen,
+}
+
+impl<M: Measure> Started<M> {
+    #[expect(clippy::new_ret_no_self, reason = "used as a trait object only")]
+    fn new(keys: &M) -> Box<dyn Running> {
+        Box::new(Self {
+            keys: keys.clone(),
+            seen: M::Seen::default(),
+        })
+    }
+}
+
+impl<M: Measure> Running for Started<M> {
+    fn check(&self) -> Result<(), Problem> {
+        self.keys.check()
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        self.keys.names()
+    }
+
+    fn begin(&self, simulation: &mut Simulation) {
+        self.keys.begin(simulation);
+    }
+
+    fn observe(&mut self, simulation: &Simulation) {
+        self.keys.observe(&mut self.seen, simulation);
+    }
+
+    fn values(&self, simulation: &Simulation) -> Vec<Option<f64>> {
+        self.keys.values(&self.seen, simulation)
+    }
+
+    fn data(&self) -> Option<(String, Value)> {
+        self.keys.data(&self.seen)
+    }
+
+    fn seen(&self) -> Value {
+        serde_json::to_value(&self.seen).unwrap_or_default()
+    }
+
+    fn resume(&mut self, seen: &str) {
+        if let Ok(seen) = serde_json::from_str(seen) {
+            self.seen = seen;
+        }
+    }
+}
+
+/// Frames that are due: from one time to another, at least this often.
+struct Due {
+    first: u64,
+    last: u64,
+    every: u64,
+}
+
+impl Due {
+    /// The frames from `from_secs` to `to_secs`, one each `every_secs` or each frame if that is longer.
+    fn new(simulation: &Simulation, from_secs: f64, to_secs: f64, every_secs: f64) -> Self {
+        let clock = simulation.frame().clock;
+        Self {
+            first: clock.frame_at(from_secs),
+            last: clock.frame_at(to_secs),
+            every: clock.frame_at(every_secs).max(1),
+        }
+    }
+
+    fn is_now(&self, simulation: &Simulation) -> bool {
+        let now = simulation.frame().clock.frame();
+        (self.first..=self.last).contains(&now) && (now - self.first).is_multiple_of(self.every)
+    }
+}
+
+/// Checks the keys of all measurements, and that no two have the same names.
+///
+/// # Errors
+/// The first problem, with its place.
+pub(super) fn check(given: &[Measurement]) -> Result<(), Problem> {
+    let mut names = std::collections::BTreeSet::new();
+    for (k, measurement) in given.iter().enumerate() {
+        let place = format!("measurements[{k}]");
+        measurement.check().under(&place)?;
+        let running = measurement.started();
+        let data = running.data().map(|(name, _)| name);
+        for name in measurement.names().into_iter().chain(data) {
+            if names.contains(&name) {
+                let reason = format!("`{name}` is already measured; remove one");
+                return Err(Problem::new(place, reason));
+            }
+            names.insert(name);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,91 @@
+//! All agents at one time, for pictures.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::Measure;
+use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::range::TIME;
+
+/// All agents at one time: positions, radii, speeds and densities.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SnapshotAt {
+    /// The time, seconds.
+    at_secs: f64,
+}
+
+/// All agents at one time, rounded to three decimals. The lists of all quantities have the same order.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    /// The time, seconds.
+    pub time_secs: f64,
+    /// x of the positions, meters.
+    pub x: Vec<f64>,
+    /// y of the positions, meters.
+    pub y: Vec<f64>,
+    /// D_i, meters.
+    pub radius: Vec<f64>,
+    /// |v_i|, m/s.
+    pub speed: Vec<f64>,
+    /// ρ_i, P/m².
+    pub density: Vec<f64>,
+}
+
+impl Snapshot {
+    /// The name of the data of a snapshot at this time, seconds.
+    pub fn name(at_secs: f64) -> String {
+        format!("snapshot_{at_secs}s")
+    }
+
+    /// A snapshot of an evaluated frame whose densities are known.
+    pub fn of(simulation: &Simulation) -> Self {
+        let frame = simulation.frame();
+        let agents = frame.agents;
+        // More digits would only make the files larger.
+        let rounded = |value: f64| (1e3 * value).round() / 1e3;
+        let all = |values: &[f64]| values.iter().map(|&v| rounded(v)).collect();
+        Self {
+            time_secs: frame.clock.time(),
+            x: agents.position.iter().map(|r| rounded(r.x)).collect(),
+            y: agents.position.iter().map(|r| rounded(r.y)).collect(),
+            radius: all(&agents.radius),
+            speed: agents.velocity.iter().map(|v| rounded(v.norm())).collect(),
+            density: all(&frame.fields.density),
+        }
+    }
+}
+
+impl Measure for SnapshotAt {
+    type Seen = Option<Snapshot>;
+
+    fn check(&self) -> Result<(), Problem> {
+        TIME.check("snapshot.at_secs", self.at_secs).map(|_| ())
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        Vec::new()
+    }
+
+    fn begin(&self, simulation: &mut Simulation) {
+        let frame = simulation.frame().clock.frame_at(self.at_secs);
+        simulation.request_density_until(frame + 1);
+    }
+
+    fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
+        let clock = simulation.frame().clock;
+        if clock.frame() == clock.frame_at(self.at_secs) {
+            *seen = Some(Snapshot::of(simulation));
+        }
+    }
+
+    fn values(&self, _: &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
+        Vec::new()
+    }
+
+    fn data(&self, seen: &Self::Seen) -> Option<(String, Value)> {
+        let snapshot = serde_json::to_value(seen).unwrap_or_default();
+        Some((Snapshot::name(self.at_secs), snapshot))
+    }
+}

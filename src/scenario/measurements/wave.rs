@@ -1,0 +1,151 @@
+//! The wave that a push sends along x through a crowd: its speed, amplitude and reflection.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::{Due, Measure};
+use crate::analysis::wave::{self, Run, SpaceTime, Strip};
+use crate::engine::simulation::Simulation;
+use crate::scenario::check::UNTIL;
+use crate::scenario::error::Problem;
+use crate::scenario::range::{COORDINATE, TIME};
+
+/// The speed at which a wave arrives at an obstacle, m/s, its amplitude, m/s, and how much of it is reflected, found in
+/// the space-time diagram of a strip along x (see [`crate::analysis::wave`]); the diagram itself is its data.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Wave {
+    /// When the push begins, seconds.
+    start_secs: f64,
+    /// x of the push, meters.
+    source: f64,
+    /// x of the obstacle, meters.
+    obstacle: f64,
+    /// Ends of the strip, meters.
+    x: [f64; 2],
+    /// Maximum |y| in the strip, meters.
+    half_width: f64,
+    /// Length of a bin along x, meters.
+    bin: f64,
+    /// Start of the diagram, before the push, seconds.
+    from_secs: f64,
+    /// End of the diagram, seconds.
+    to_secs: f64,
+    /// Time between the columns of the diagram, seconds.
+    #[serde(default = "often")]
+    every_secs: f64,
+}
+
+fn often() -> f64 {
+    0.04
+}
+
+impl Wave {
+    fn run(&self) -> Run {
+        Run {
+            start: self.start_secs,
+            source: self.source,
+            obstacle: self.obstacle,
+        }
+    }
+
+    fn strip(&self) -> Strip {
+        Strip {
+            x: self.x,
+            half_width: self.half_width,
+            bin: self.bin,
+        }
+    }
+}
+
+/// The data of a [`Wave`].
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct WaveData {
+    /// The push and the obstacle.
+    pub run: Run,
+    /// Mean speeds over x and t.
+    pub diagram: SpaceTime,
+    /// The wave; `None` if none stands out.
+    pub wave: Option<wave::Wave>,
+}
+
+impl WaveData {
+    /// The name of these data.
+    pub const NAME: &'static str = "wave";
+}
+
+impl Measure for Wave {
+    type Seen = Option<SpaceTime>;
+
+    fn check(&self) -> Result<(), Problem> {
+        for (key, at) in [("source", self.source), ("obstacle", self.obstacle)] {
+            COORDINATE.check(&format!("wave.{key}"), at)?;
+        }
+        for (k, &at) in self.x.iter().enumerate() {
+            COORDINATE.check(&format!("wave.x[{k}]"), at)?;
+        }
+        for (key, time) in [
+            ("start_secs", self.start_secs),
+            ("from_secs", self.from_secs),
+            ("to_secs", self.to_secs),
+        ] {
+            TIME.check(&format!("wave.{key}"), time)?;
+        }
+        for (key, size) in [
+            ("half_width", self.half_width),
+            ("bin", self.bin),
+            ("every_secs", self.every_secs),
+        ] {
+            UNTIL.check(&format!("wave.{key}"), size)?;
+        }
+        match self.strip().bins() {
+            2..=100_000 => Ok(()),
+            bins => Err(Problem::new(
+                "wave.bin",
+                format!("the strip must have from 2 to 100000 bins, not {bins}"),
+            )),
+        }
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        let name = |(name, unit): (&str, _)| (format!("wave_{name}"), unit);
+        [
+            ("speed_m_per_s", "m/s"),
+            ("amplitude_m_per_s", "m/s"),
+            ("reflection", ""),
+        ]
+        .map(name)
+        .into()
+    }
+
+    fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
+        if Due::new(simulation, self.from_secs, self.to_secs, self.every_secs).is_now(simulation) {
+            let diagram = seen.get_or_insert_with(|| SpaceTime::new(self.strip()));
+            diagram.observe(&simulation.frame());
+        }
+    }
+
+    fn values(&self, seen: &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
+        let wave = seen
+            .as_ref()
+            .and_then(|diagram| wave::measure(diagram, &self.run()));
+        vec![
+            wave.as_ref().map(|wave| wave.arriving.speed.value),
+            wave.as_ref().map(|wave| wave.amplitude.value),
+            wave.and_then(|wave| wave.reflection)
+                .map(|reflection| reflection.value),
+        ]
+    }
+
+    fn data(&self, seen: &Self::Seen) -> Option<(String, Value)> {
+        let data = seen.clone().map(|diagram| WaveData {
+            run: self.run(),
+            wave: wave::measure(&diagram, &self.run()),
+            diagram,
+        });
+        Some((
+            WaveData::NAME.to_owned(),
+            serde_json::to_value(data).unwrap_or_default(),
+        ))
+    }
+}
