@@ -189,7 +189,7 @@ fn damaged_and_foreign_checkpoints_are_refused_with_the_reason() {
     assert!(
         refused(&newer)
             .to_string()
-            .ends_with("is a checkpoint of version 99; this program reads version 2")
+            .ends_with("is a checkpoint of version 99; this program reads version 3")
     );
     assert!(matches!(
         refused(b"{\"name\": \"x\"}"),

@@ -166,7 +166,7 @@ fn cells_finished_before_a_kill_are_kept() {
     );
     let (code, _, stderr) = run(folder.path(), &["sweep", "study.json", "--shard", "1/2"]);
     assert_eq!(code, Some(0));
-    assert!(stderr.contains("0 cell(s) to run, 1 kept"), "{stderr}");
+    assert!(stderr.contains("0 case(s) to run, 1 kept"), "{stderr}");
 }
 
 #[test]
