@@ -220,12 +220,12 @@ fn a_region_has_the_density_and_speed_of_the_people_in_it() {
         assert!((speed - 1.0).abs() < 1e-12 && (flow - frame.density).abs() < 1e-12);
     }
     for diagram in &found.diagrams {
-        let count = |classes: &BTreeMap<usize, Class>| -> u64 {
+        let count = |classes: &BTreeMap<usize, Class>| -> usize {
             classes.values().map(|class| class.density.count).sum()
         };
         let people: usize = diagram.frames.iter().map(|frame| frame.people).sum();
-        assert_eq!(count(&diagram.of_persons), people as u64);
-        assert_eq!(count(&diagram.of_frames), diagram.frames.len() as u64);
+        assert_eq!(count(&diagram.of_persons), people);
+        assert_eq!(count(&diagram.of_frames), diagram.frames.len());
         for (&k, class) in &diagram.of_persons {
             let within = k as f64 * CLASS..(k + 1) as f64 * CLASS;
             assert!(class.density.count == 0 || within.contains(&class.density.mean));

@@ -1,62 +1,203 @@
-//! Confidence of a mean over seeds: Student's t.
+//! Statistics: mean and standard deviation, the standard error and the confidence interval of a mean, ranges of
+//! repeated measurements, straight lines, and the jackknife.
 
-/// Half-width of the 95 % confidence interval of a mean of `values` values, in standard errors of the mean: the 97.5 %
-/// quantile of Student's t with `values` − 1 degrees of freedom, accurate to 1e-5. `None` for fewer than two values,
-/// which have no sample standard deviation.
-pub fn student_95(values: usize) -> Option<f64> {
-    const TABLE: [f64; 10] = [
-        12.706_205, 4.302_653, 3.182_446, 2.776_445, 2.570_582, 2.446_912, 2.364_624, 2.306_004,
-        2.262_157, 2.228_139,
-    ];
-    let degrees = values.checked_sub(2)?;
-    Some(match TABLE.get(degrees) {
-        Some(&quantile) => quantile,
-        None => expansion((degrees + 1) as f64),
-    })
+use serde::{Deserialize, Serialize, Serializer};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::statistics::{Data, Max, Min, OrderStatistics};
+
+/// The mean and the standard deviation of some values.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct MeanStd {
+    /// Number of values.
+    pub count: usize,
+    /// The mean; 0 without values.
+    pub mean: f64,
+    /// Sum of the squared differences from the mean.
+    squares: f64,
 }
 
-/// The same quantile as a series in 1/ν for ν degrees of freedom (Abramowitz & Stegun 26.7.5).
-fn expansion(degrees: f64) -> f64 {
-    /// 97.5 % quantile of the normal distribution.
-    const Z: f64 = 1.959_963_984_540_054;
-    let z = |power: i32| Z.powi(power);
-    let terms = [
-        (z(3) + Z) / 4.0,
-        (5.0 * z(5) + 16.0 * z(3) + 3.0 * Z) / 96.0,
-        (3.0 * z(7) + 19.0 * z(5) + 17.0 * z(3) - 15.0 * Z) / 384.0,
-        (79.0 * z(9) + 776.0 * z(7) + 1482.0 * z(5) - 1920.0 * z(3) - 945.0 * Z) / 92_160.0,
-    ];
-    let nested = terms
-        .iter()
-        .rev()
-        .fold(0.0, |sum, term| (sum + term) / degrees);
-    Z + nested
-}
-
-/// Mean and population standard deviation; `None` if there are no values.
-pub fn mean_and_deviation(values: &[f64]) -> Option<(f64, f64)> {
-    if values.is_empty() {
-        return None;
+impl MeanStd {
+    /// The mean and the standard deviation of `values`, in two passes; `None` without values.
+    pub fn of(values: &[f64]) -> Option<Self> {
+        let count = values.len();
+        let mean = values.iter().sum::<f64>() / count as f64;
+        let squares = values.iter().map(|value| (value - mean).powi(2)).sum();
+        (count > 0).then_some(Self {
+            count,
+            mean,
+            squares,
+        })
     }
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let variance = values
-        .iter()
-        .map(|value| (value - mean).powi(2))
-        .sum::<f64>()
-        / count;
-    Some((mean, variance.sqrt()))
+
+    /// Adds a value to a running mean and standard deviation (Welford 1962).
+    pub fn add(&mut self, value: f64) {
+        self.count += 1;
+        let off = value - self.mean;
+        self.mean += off / self.count as f64;
+        self.squares += off * (value - self.mean);
+    }
+
+    /// The sample standard deviation (n − 1); `None` for fewer than two values.
+    pub fn std(&self) -> Option<f64> {
+        (self.count > 1).then(|| (self.squares / (self.count - 1) as f64).sqrt())
+    }
+
+    /// The population standard deviation (n); 0 for fewer than two values.
+    pub fn population_std(&self) -> f64 {
+        (self.squares / self.count.max(1) as f64).sqrt()
+    }
+
+    /// The standard error of the mean; 0 for fewer than two values.
+    pub fn error(&self) -> f64 {
+        let count = self.count.max(1) as f64;
+        (self.squares / (count - 1.0).max(1.0) / count).sqrt()
+    }
+
+    /// Half the width of the 95 % confidence interval of the mean (Student's t); `None` for fewer than two values.
+    pub fn interval_95(&self) -> Option<f64> {
+        student_95(self.count).map(|t| t * self.error())
+    }
+}
+
+/// As `mean`, `deviation` (of the sample) and `count`.
+impl Serialize for MeanStd {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Fields {
+            mean: f64,
+            deviation: Option<f64>,
+            count: usize,
+        }
+        let fields = Fields {
+            mean: self.mean,
+            deviation: self.std(),
+            count: self.count,
+        };
+        fields.serialize(serializer)
+    }
+}
+
+/// Half the width of the 95 % confidence interval of a mean of `count` values, in standard errors of the mean: the
+/// 97.5 % quantile of Student's t with `count` − 1 degrees of freedom. `None` for fewer than two values, which have no
+/// sample standard deviation.
+pub fn student_95(count: usize) -> Option<f64> {
+    let degrees = count.checked_sub(1)?;
+    let distribution = StudentsT::new(0.0, 1.0, degrees as f64).ok()?;
+    Some(distribution.inverse_cdf(0.975))
+}
+
+/// A value and its standard error.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// The value.
+    pub value: f64,
+    /// Its standard error.
+    pub error: f64,
+}
+
+impl Estimate {
+    /// Mean and standard error of the mean. `None` without values; the error of a single value is 0.
+    pub fn of_mean(values: &[f64]) -> Option<Self> {
+        MeanStd::of(values).map(|of| Self {
+            value: of.mean,
+            error: of.error(),
+        })
+    }
+}
+
+/// The minimum, median and maximum of repeated measurements.
+///
+/// Of times, the minimum is what the machine can do, the median what it usually does. If they are far apart, the machine
+/// was busy with other work.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Range {
+    /// The minimum.
+    pub minimum: f64,
+    /// The median: the middle value, or the mean of the two middle values.
+    pub median: f64,
+    /// The maximum.
+    pub maximum: f64,
+}
+
+impl Range {
+    /// The range of `values`; NaN without values.
+    pub fn of(values: &[f64]) -> Self {
+        let mut values = Data::new(values.to_vec());
+        Self {
+            minimum: values.min(),
+            median: values.median(),
+            maximum: values.max(),
+        }
+    }
+
+    /// The range of `values` divided by `base`, run by run: what affects both values of a pair cancels.
+    pub fn of_ratios(values: &[f64], base: &[f64]) -> Self {
+        let ratios: Vec<f64> = values.iter().zip(base).map(|(v, b)| v / b).collect();
+        Self::of(&ratios)
+    }
+
+    /// The same in another unit: all numbers times `factor`.
+    pub fn times(&self, factor: f64) -> Self {
+        Self {
+            minimum: self.minimum * factor,
+            median: self.median * factor,
+            maximum: self.maximum * factor,
+        }
+    }
+}
+
+/// y = slope · x + offset.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Line {
+    /// dy/dx.
+    pub slope: f64,
+    /// y at x = 0.
+    pub offset: f64,
+}
+
+impl Line {
+    /// y at `x`.
+    pub fn at(&self, x: f64) -> f64 {
+        self.slope * x + self.offset
+    }
+
+    /// Least-squares fit through (x, y); `None` for fewer than two different x.
+    pub fn through(points: &[(f64, f64)]) -> Option<Self> {
+        let count = points.len() as f64;
+        let mean_x = points.iter().map(|p| p.0).sum::<f64>() / count;
+        let mean_y = points.iter().map(|p| p.1).sum::<f64>() / count;
+        let (mut xx, mut xy) = (0.0, 0.0);
+        for (x, y) in points {
+            xx += (x - mean_x) * (x - mean_x);
+            xy += (x - mean_x) * (y - mean_y);
+        }
+        let slope = xy / xx;
+        (xx > 0.0 && slope.is_finite()).then_some(Self {
+            slope,
+            offset: mean_y - slope * mean_x,
+        })
+    }
+}
+
+/// A function of points, with its standard error from a jackknife over blocks of neighboring points: their errors are
+/// correlated, so whole blocks are left out. `None` if `value` is `None` for all points or without one of the blocks.
+pub fn jackknife<P: Copy>(points: &[P], value: impl Fn(&[P]) -> Option<f64>) -> Option<Estimate> {
+    const BLOCKS: usize = 6;
+    let all = value(points)?;
+    let blocks = BLOCKS.min(points.len());
+    let without = (0..blocks).map(|block| {
+        let [first, last] = [block, block + 1].map(|block| block * points.len() / blocks);
+        value(&[&points[..first], &points[last..]].concat())
+    });
+    let without = without.collect::<Option<Vec<f64>>>()?;
+    let count = blocks as f64;
+    let error = MeanStd::of(&without).map_or(0.0, |of| (of.squares * (count - 1.0) / count).sqrt());
+    Some(Estimate { value: all, error })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_deviation_is_that_of_the_population() {
-        assert_eq!(mean_and_deviation(&[1.0, 3.0]), Some((2.0, 1.0)));
-        assert_eq!(mean_and_deviation(&[]), None);
-    }
 
     /// The probability of [−t, t] under Student's distribution with ν degrees of freedom, by Simpson's rule in
     /// t = √ν tan φ, where the density is proportional to cos^(ν − 1) φ.
@@ -77,16 +218,74 @@ mod tests {
 
     #[test]
     fn ninety_five_per_cent_of_students_distribution_lie_within() {
-        for values in (2..40).chain([100, 1000]) {
-            let t = student_95(values).unwrap();
-            let covered = coverage(values as i32 - 1, t);
-            assert!((covered - 0.95).abs() < 1e-6, "{values}: {covered}");
+        for count in (2..40).chain([100, 1000]) {
+            let t = student_95(count).unwrap();
+            let covered = coverage(count as i32 - 1, t);
+            assert!((covered - 0.95).abs() < 1e-9, "{count}: {covered}");
         }
     }
 
     #[test]
+    fn the_deviation_of_a_sample_is_larger_than_that_of_the_population() {
+        let of = MeanStd::of(&[1.0, 2.0, 3.0]).unwrap();
+        assert_eq!((of.mean, of.std(), of.count), (2.0, Some(1.0), 3));
+        assert_eq!(of.population_std(), (2.0_f64 / 3.0).sqrt());
+        assert_eq!(MeanStd::of(&[]), None);
+    }
+
+    #[test]
     fn a_single_value_tells_nothing_about_its_spread() {
-        assert_eq!(student_95(0), None);
-        assert_eq!(student_95(1), None);
+        let single = MeanStd::of(&[4.0]).unwrap();
+        assert_eq!((single.std(), single.interval_95()), (None, None));
+        assert_eq!((single.error(), single.population_std()), (0.0, 0.0));
+        assert_eq!([student_95(0), student_95(1)], [None, None]);
+    }
+
+    #[test]
+    fn values_may_come_one_by_one() {
+        let values = [3.0, -1.0, 4.0, 1.5, 9.0];
+        let mut running = MeanStd::default();
+        values.iter().for_each(|&value| running.add(value));
+        let of = MeanStd::of(&values).unwrap();
+        assert!((running.mean - of.mean).abs() < 1e-14);
+        assert!((running.error() - of.error()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn the_median_of_an_even_number_lies_between_two() {
+        let range = Range::of(&[4.0, 1.0, 10.0, 2.0]);
+        assert_eq!(
+            (range.minimum, range.median, range.maximum),
+            (1.0, 3.0, 10.0)
+        );
+        assert_eq!(Range::of(&[7.0, 1.0, 2.0]).median, 2.0);
+        let none = Range::of(&[]);
+        assert!(none.minimum.is_nan() && none.median.is_nan() && none.maximum.is_nan());
+    }
+
+    #[test]
+    fn ratios_are_taken_run_by_run() {
+        // A machine that is half as fast in the second run changes no ratio.
+        let ratios = Range::of_ratios(&[3.0, 6.0], &[2.0, 4.0]);
+        assert_eq!((ratios.minimum, ratios.maximum), (1.5, 1.5));
+    }
+
+    #[test]
+    fn a_line_is_found_again() {
+        let points: Vec<(f64, f64)> = (0..9)
+            .map(|k| (f64::from(k), 3.0 - 0.5 * f64::from(k)))
+            .collect();
+        let line = Line::through(&points).unwrap();
+        assert!((line.slope + 0.5).abs() < 1e-12 && (line.at(4.0) - 1.0).abs() < 1e-12);
+        assert_eq!(Line::through(&[(1.0, 2.0), (1.0, 3.0)]), None);
+    }
+
+    #[test]
+    fn the_jackknife_of_a_mean_is_its_standard_error() {
+        let values = [1.0, 4.0, 2.0, 8.0, 5.0, 7.0];
+        let average = |v: &[f64]| Estimate::of_mean(v).map(|m| m.value);
+        let estimate = jackknife(&values, average).unwrap();
+        let expected = Estimate::of_mean(&values).unwrap();
+        assert!((estimate.error - expected.error).abs() < 1e-12);
     }
 }

@@ -98,7 +98,7 @@ fn check_measured(tracks: &Tracks) {
     .unwrap();
     assert_eq!(measured.overview.rows, tracks.len() as u64);
     for spread in [measured.overview.density, measured.overview.speed] {
-        assert!(spread.mean.is_finite() && spread.deviation().is_finite());
+        assert!(spread.mean.is_finite() && spread.population_std().is_finite());
     }
     let fields = measured.fields.means(measured.overview.frames);
     assert!(fields.flatten().all(|mean| mean.density.is_finite()));

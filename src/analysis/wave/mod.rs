@@ -5,10 +5,8 @@
 //! is not taken for a wave. A rigid front reverses velocities, so we search for the returning wave with the opposite
 //! sign.
 
-mod fit;
 mod ridge;
 mod space_time;
 
-pub use fit::{Estimate, Line};
 pub use ridge::{Ridge, RidgePoint, Run, Wave, measure};
 pub use space_time::{SpaceTime, Strip};

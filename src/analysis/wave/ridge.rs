@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::fit::{Estimate, Line, jackknife};
 use super::space_time::SpaceTime;
+use crate::analysis::statistics::{Estimate, Line, jackknife};
 
 /// Range of wave speeds that are tried, m/s.
 const SPEEDS: [f64; 2] = [2.0, 40.0];

@@ -4,7 +4,8 @@ use serde_json::Value;
 
 use super::scenes::simulation;
 use crate::engine::simulation::Simulation;
-use crate::lab::bench::{BenchError, Contender, Spread, alternate, pool};
+use crate::analysis::statistics::Range;
+use crate::lab::bench::{BenchError, Contender, alternate, pool};
 use crate::lab::error::LabError;
 
 /// Simulated time of one measurement, seconds.
@@ -35,7 +36,7 @@ pub fn measure(
     document: &Value,
     settings: &[Vec<String>],
     repeats: usize,
-) -> Result<Vec<Spread>, LabError> {
+) -> Result<Vec<Range>, LabError> {
     let failed = |error: BenchError| LabError::Data(error.to_string());
     let pool = pool(1).map_err(failed)?;
     let mut contenders: Vec<Box<dyn Contender>> = Vec::with_capacity(settings.len());
@@ -46,5 +47,5 @@ pub fn measure(
         }));
     }
     let times = alternate(&mut contenders, repeats, 1).map_err(failed)?;
-    Ok(times.iter().map(|times| Spread::of(times)).collect())
+    Ok(times.iter().map(|times| Range::of(times)).collect())
 }

@@ -6,8 +6,8 @@ use super::front::{Front, cheapest};
 use super::knob::{Knob, are_default};
 use super::scenes::{Kind, Scene};
 use super::statistics::Deviation;
-use crate::lab::bench::Spread;
-use crate::output::table::Table;
+use crate::analysis::statistics::Range;
+use crate::output::table::OldTable as Table;
 
 /// A quantity whose error is measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -74,7 +74,7 @@ pub struct Point {
     /// The settings, as `--set` takes them.
     pub settings: Vec<String>,
     /// Milliseconds per simulated second on one thread.
-    pub cost: Spread,
+    pub cost: Range,
     /// The errors in the order of [`Found::quantities`]; `None` if a quantity has no value.
     pub errors: Vec<Option<Measured>>,
 }

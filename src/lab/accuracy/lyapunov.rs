@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::scenes::simulation;
-use crate::analysis::wave::Line;
+use crate::analysis::statistics::Line;
 use crate::engine::simulation::Simulation;
 use crate::lab::error::LabError;
 

@@ -6,7 +6,7 @@ use super::found::Found;
 use super::knob::are_default;
 use super::walls::WallReport;
 use crate::lab::error::LabError;
-use crate::output::table::Table;
+use crate::output::table::OldTable as Table;
 use crate::runs::store::Store;
 
 /// The name of the wall measurements in lists of scenes.

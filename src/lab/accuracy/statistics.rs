@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::scenes::{CORRIDOR, Kind, PUSH, scenario};
-use crate::analysis::statistics::student_95;
-use crate::analysis::wave::{self, Estimate, Run, SpaceTime, Strip};
+use crate::analysis::statistics::MeanStd;
+use crate::analysis::wave::{self, Run, SpaceTime, Strip};
 use crate::engine::simulation::{Fault, Simulation};
 use crate::lab::error::LabError;
 use crate::runs::drive::{Then, drive, unless_over};
@@ -151,13 +151,12 @@ impl Deviation {
     }
 
     fn of(values: &[f64], reference: &[f64]) -> Option<Self> {
-        let (mean, other) = (Estimate::of_mean(values)?, Estimate::of_mean(reference)?);
-        let interval = mean.error * student_95(values.len()).unwrap_or(0.0);
-        let beside = other.error * student_95(reference.len()).unwrap_or(0.0);
+        let (ours, other) = (MeanStd::of(values)?, MeanStd::of(reference)?);
+        let [interval, beside] = [ours, other].map(|of| of.interval_95().unwrap_or(0.0));
         Some(Self {
-            mean: mean.value,
+            mean: ours.mean,
             interval,
-            error: (mean.value - other.value).abs(),
+            error: (ours.mean - other.mean).abs(),
             error_interval: interval.hypot(beside),
         })
     }
@@ -220,6 +219,6 @@ mod tests {
         let interval = Deviation::of(&[10.0, 10.2, 9.8, 10.1, 9.9], &[0.0])
             .unwrap()
             .interval;
-        assert!((interval - 2.776_445 * (0.025_f64 / 5.0).sqrt()).abs() < 1e-12);
+        assert!((interval - 2.776_445_105_197_8 * (0.025_f64 / 5.0).sqrt()).abs() < 1e-12);
     }
 }

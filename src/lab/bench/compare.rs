@@ -9,15 +9,15 @@ use serde_json::json;
 use super::crowd::Crowd;
 use super::error::BenchError;
 use super::machine::Machine;
-use super::report::Findings;
-use super::spread::{Spread, ratios};
+use super::report::{Findings, three};
 use super::timing::{Contender, GoingOn, alternate, pool};
 use super::{Benchmark, Plan};
+use crate::analysis::statistics::Range;
 use crate::engine::agents::Agents;
 use crate::engine::pairs::Precision;
 use crate::engine::scene::Scene;
 use crate::engine::simulation::Simulation;
-use crate::output::table::Table;
+use crate::output::table::OldTable as Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "compare",
@@ -62,9 +62,9 @@ struct Start<'a> {
 struct Row {
     #[serde(flatten)]
     description: Description,
-    ms_per_step: Spread,
+    ms_per_step: Range,
     /// Time relative to this engine with the same radius and number of threads.
-    ratio: Spread,
+    ratio: Range,
 }
 
 fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, BenchError> {
@@ -120,8 +120,8 @@ fn race(
         let base = descriptions[..own].iter().position(alike).unwrap_or(0);
         Row {
             description: description.clone(),
-            ms_per_step: Spread::of(ms),
-            ratio: Spread::of(&ratios(ms, &times[base])),
+            ms_per_step: Range::of(ms),
+            ratio: Range::of_ratios(ms, &times[base]),
         }
     };
     Ok(descriptions.iter().zip(&times).map(row).collect())
@@ -200,8 +200,8 @@ fn table(rows: &[Row]) -> Table {
             engine.time_step.to_string(),
             engine.threads.to_string(),
         ];
-        cells.extend(row.ms_per_step.cells(3));
-        cells.extend(row.ratio.cells(2));
+        cells.extend(three(&row.ms_per_step, 3));
+        cells.extend(three(&row.ratio, 2));
         table.rows.push(cells);
     }
     table

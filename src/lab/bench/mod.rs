@@ -12,7 +12,6 @@ mod pictures;
 mod report;
 mod scaling;
 mod skips;
-mod spread;
 mod stages;
 mod threads;
 mod timing;
@@ -22,7 +21,6 @@ pub use error::BenchError;
 pub use machine::{Machine, Memory, main_memory};
 pub use report::{Findings, Report, Setting, files};
 pub use skips::{SKIPS, Skip, everything};
-pub use spread::{Spread, ratios};
 pub use timing::{Contender, alternate};
 pub(crate) use timing::{ms_per_frame, pool};
 

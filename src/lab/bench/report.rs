@@ -10,9 +10,10 @@ use serde_json::{Value, json};
 use super::Plan;
 use super::error::BenchError;
 use super::machine::Machine;
+use crate::analysis::statistics::Range;
 use crate::engine::pairs::Vectors;
 use crate::output::plot::Sheet;
-use crate::output::table::Table;
+use crate::output::table::OldTable as Table;
 use crate::runs::outputs::write_whole;
 
 /// The circumstances of all measurements.
@@ -41,6 +42,11 @@ impl Setting {
             quick: plan.quick,
         }
     }
+}
+
+/// The three numbers with `digits` decimals.
+pub fn three(range: &Range, digits: usize) -> [String; 3] {
+    [range.minimum, range.median, range.maximum].map(|value| format!("{value:.digits$}"))
 }
 
 /// The results of a benchmark.

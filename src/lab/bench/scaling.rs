@@ -6,11 +6,11 @@ use serde_json::json;
 use super::crowd::Crowd;
 use super::error::BenchError;
 use super::machine::Memory;
-use super::report::Findings;
-use super::spread::Spread;
+use super::report::{Findings, three};
 use super::timing::ms_per_frame;
 use super::{Benchmark, Plan};
-use crate::output::table::Table;
+use crate::analysis::statistics::Range;
+use crate::output::table::OldTable as Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "scaling",
@@ -33,8 +33,8 @@ struct Row {
     agents: u32,
     /// Frames per repeat.
     frames: u64,
-    ns_per_agent_frame: Spread,
-    ms_per_frame: Spread,
+    ns_per_agent_frame: Range,
+    ms_per_frame: Range,
     /// Median time per agent relative to that of 10,000 agents.
     ratio_to_10000: Option<f64>,
     resident_bytes_per_agent: Option<f64>,
@@ -71,7 +71,7 @@ fn measure(agents: u32, plan: &Plan, before: Option<Memory>) -> Result<Row, Benc
     let times: Result<Vec<f64>, _> = (0..plan.repeats)
         .map(|_| ms_per_frame(&mut simulation, frames))
         .collect();
-    let ms_per_frame = Spread::of(&times?);
+    let ms_per_frame = Range::of(&times?);
     let now = Memory::now();
     let per_agent = |bytes: u64| bytes as f64 / f64::from(agents);
     let resident = before.zip(now);
@@ -110,8 +110,8 @@ fn table(rows: &[Row]) -> Table {
     };
     for row in rows {
         let mut cells = vec![row.agents.to_string(), row.frames.to_string()];
-        cells.extend(row.ns_per_agent_frame.cells(2));
-        cells.extend(row.ms_per_frame.cells(4));
+        cells.extend(three(&row.ns_per_agent_frame, 2));
+        cells.extend(three(&row.ms_per_frame, 4));
         cells.extend([
             or_dash(row.ratio_to_10000, 2),
             or_dash(row.resident_bytes_per_agent, 0),

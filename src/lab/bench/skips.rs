@@ -11,15 +11,15 @@ use serde_json::json;
 
 use self::work::{Course, KeptLists, RvoByBlend, WallsByBlocks, Work};
 use super::error::BenchError;
-use super::report::Findings;
-use super::spread::{Spread, ratios};
+use super::report::{Findings, three};
 use super::stages::{Started, Stretch, busiest};
 use super::timing::ms_of;
 use super::{Benchmark, Plan};
+use crate::analysis::statistics::Range;
 use crate::engine::pairs::Wanted;
 use crate::engine::scene::Needs;
 use crate::engine::simulation::{Simulation, Stage};
-use crate::output::table::Table;
+use crate::output::table::OldTable as Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "skips",
@@ -164,11 +164,11 @@ struct Row {
     profile: String,
     skip: &'static str,
     /// With the skip, as shipped.
-    with_skip_ms: Spread,
+    with_skip_ms: Range,
     /// With the skip undone; `None` if there is nothing to skip.
-    without_skip_ms: Option<Spread>,
+    without_skip_ms: Option<Range>,
     /// Frame time without the skip over frame time with it, turn by turn.
-    ratio: Option<Spread>,
+    ratio: Option<Range>,
     /// Why there is nothing to skip.
     nothing_to_skip: Option<&'static str>,
 }
@@ -242,9 +242,9 @@ fn measure(started: &Started, plan: &Plan) -> Result<Vec<Row>, BenchError> {
             scenario: started.name,
             profile: started.profile.clone(),
             skip: skip.name,
-            with_skip_ms: Spread::of(&with),
-            without_skip_ms: without.as_deref().map(Spread::of),
-            ratio: without.map(|without| Spread::of(&ratios(&without, &with))),
+            with_skip_ms: Range::of(&with),
+            without_skip_ms: without.as_deref().map(Range::of),
+            ratio: without.map(|without| Range::of_ratios(&without, &with)),
             nothing_to_skip,
         }
     };
@@ -306,7 +306,7 @@ fn table(rows: &[Row]) -> Table {
         match (row.without_skip_ms, row.ratio) {
             (Some(without), Some(ratio)) => {
                 cells.push(format!("{:.4}", without.median));
-                cells.extend(ratio.cells(2));
+                cells.extend(three(&ratio, 2));
             }
             _ => cells.extend(["–", "–", "–", "–"].map(str::to_owned)),
         }

@@ -4,12 +4,12 @@ use serde_json::{Map, Value, json};
 
 use super::crowd::Crowd;
 use super::error::BenchError;
-use super::report::Findings;
-use super::spread::Spread;
+use super::report::{Findings, three};
 use super::timing::{ms_of, replay};
 use super::{Benchmark, Plan};
+use crate::analysis::statistics::Range;
 use crate::engine::simulation::{Simulation, Stage, StageTimes};
-use crate::output::table::Table;
+use crate::output::table::OldTable as Table;
 use crate::scenario::{Scenario, Setting};
 
 pub const BENCHMARK: Benchmark = Benchmark {
@@ -96,9 +96,9 @@ struct Row {
     profile: String,
     agents: usize,
     frames: u64,
-    total: Spread,
+    total: Range,
     /// All stages in order; stages that never run are 0.
-    stages: Vec<Spread>,
+    stages: Vec<Range>,
 }
 
 fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, BenchError> {
@@ -133,7 +133,7 @@ fn measure(started: &Started, plan: &Plan) -> Result<Row, BenchError> {
     let times = times?;
     let spread = |ms: &dyn Fn(&StageTimes) -> f64| {
         let values: Vec<f64> = times.iter().map(ms).collect();
-        Spread::of(&values)
+        Range::of(&values)
     };
     let stage = |&stage: &Stage| spread(&|times| ms_of(times, stage));
     Ok(Row {
@@ -148,7 +148,7 @@ fn measure(started: &Started, plan: &Plan) -> Result<Row, BenchError> {
 
 impl Row {
     /// The stages that run.
-    fn running(&self) -> impl Iterator<Item = (Stage, &Spread)> {
+    fn running(&self) -> impl Iterator<Item = (Stage, &Range)> {
         let all = Stage::ALL.into_iter().zip(&self.stages);
         all.filter(|(_, spread)| spread.maximum > 0.0)
     }
@@ -204,7 +204,7 @@ fn table(rows: &[Row]) -> Table {
             row.profile.clone(),
             row.agents.to_string(),
         ];
-        cells.extend(row.total.cells(4));
+        cells.extend(three(&row.total, 4));
         cells.extend(row.stages.iter().map(|spread| {
             if spread.maximum > 0.0 {
                 format!("{:.4}", spread.median)

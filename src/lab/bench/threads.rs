@@ -6,11 +6,11 @@ use serde_json::json;
 use super::crowd::Crowd;
 use super::error::BenchError;
 use super::machine::Machine;
-use super::report::Findings;
-use super::spread::{Spread, ratios};
+use super::report::{Findings, three};
 use super::timing::{Contender, GoingOn, alternate, pool};
 use super::{Benchmark, Plan};
-use crate::output::table::Table;
+use crate::analysis::statistics::Range;
+use crate::output::table::OldTable as Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "threads",
@@ -32,9 +32,9 @@ struct Row {
     threads: usize,
     /// Frames per repeat.
     frames: u64,
-    ms_per_frame: Spread,
+    ms_per_frame: Range,
     /// Speed relative to one thread, turn by turn.
-    speed_up: Spread,
+    speed_up: Range,
     /// The median speed-up per thread.
     efficiency: f64,
 }
@@ -81,12 +81,12 @@ fn measure(agents: u32, counts: &[usize], plan: &Plan) -> Result<Vec<Row>, Bench
     alternate(&mut contenders, 1, frames)?; // warm-up: fills the caches
     let times = alternate(&mut contenders, plan.repeats, frames)?;
     let row = |(&threads, ms): (&usize, &Vec<f64>)| {
-        let speed_up = Spread::of(&ratios(&times[0], ms));
+        let speed_up = Range::of_ratios(&times[0], ms);
         Row {
             agents,
             threads,
             frames,
-            ms_per_frame: Spread::of(ms),
+            ms_per_frame: Range::of(ms),
             speed_up,
             efficiency: speed_up.median / threads as f64,
         }
@@ -109,8 +109,8 @@ fn table(rows: &[Row]) -> Table {
     let mut table = Table::new(0, &head);
     for row in rows {
         let mut cells = vec![row.agents.to_string(), row.threads.to_string()];
-        cells.extend(row.ms_per_frame.cells(4));
-        cells.extend(row.speed_up.cells(2));
+        cells.extend(three(&row.ms_per_frame, 4));
+        cells.extend(three(&row.speed_up, 2));
         cells.push(format!("{:.0} %", 100.0 * row.efficiency));
         table.rows.push(cells);
     }

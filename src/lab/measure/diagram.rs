@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::Moment;
+use crate::analysis::statistics::MeanStd;
 use crate::engine::scene::Region;
 
 /// Width of a density class, P/m².
@@ -29,39 +30,15 @@ pub struct FrameMean {
     pub flow: Option<f64>,
 }
 
-/// Running mean and standard deviation (Welford 1962).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Spread {
-    /// Number of values.
-    pub count: u64,
-    /// Their mean.
-    pub mean: f64,
-    squares: f64,
-}
-
-impl Spread {
-    pub(super) fn add(&mut self, value: f64) {
-        self.count += 1;
-        let off = value - self.mean;
-        self.mean += off / self.count as f64;
-        self.squares += off * (value - self.mean);
-    }
-
-    /// Population standard deviation.
-    pub fn deviation(&self) -> f64 {
-        (self.squares / self.count.max(1) as f64).sqrt()
-    }
-}
-
 /// Density, speed and flow of the people or frames in a density class.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Class {
     /// P/m².
-    pub density: Spread,
+    pub density: MeanStd,
     /// m/s.
-    pub speed: Spread,
+    pub speed: MeanStd,
     /// ρ v of each, P/(m s).
-    pub flow: Spread,
+    pub flow: MeanStd,
 }
 
 impl Class {
@@ -104,7 +81,7 @@ impl Diagram {
         if there.is_empty() {
             return;
         }
-        let (mut density, mut speed) = (Spread::default(), Spread::default());
+        let (mut density, mut speed) = (MeanStd::default(), MeanStd::default());
         for person in &there {
             density.add(person.density);
             if let Some(velocity) = person.velocity {

@@ -18,7 +18,7 @@ mod site;
 pub mod speed;
 
 pub use density::{Behind, MOST_HIDDEN, Parts, parts};
-pub use diagram::{CLASS, Class, Diagram, FrameMean, Spread};
+pub use diagram::{CLASS, Class, Diagram, FrameMean};
 pub use fields::{Fields, Grid, MOST_CELLS, Mean};
 pub use line::{Crossing, Crossings, Line};
 pub use output::{OutputError, Results};
@@ -28,6 +28,7 @@ pub use site::{Hidden, Kernel, Site};
 
 use rayon::prelude::*;
 
+use crate::analysis::statistics::MeanStd;
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
 use crate::output::trajectory::read::Tracks;
@@ -112,9 +113,9 @@ pub struct Overview {
     /// Times of the first and the last frame with people, seconds.
     pub times: [f64; 2],
     /// Over all rows, P/m².
-    pub density: Spread,
+    pub density: MeanStd,
     /// Over all rows with a known velocity, m/s.
-    pub speed: Spread,
+    pub speed: MeanStd,
     /// The highest density.
     pub densest: Option<Densest>,
     /// Number of rows inside an obstacle, and the greatest depth, meters.

@@ -69,7 +69,7 @@ struct ClassRow {
     of: &'static str,
     density_from: f64,
     density_to: f64,
-    count: u64,
+    count: usize,
     density_mean: f64,
     density_std: f64,
     speed_mean: f64,
@@ -234,10 +234,10 @@ fn class_row(region: usize, of: &'static str, number: usize, class: &Class) -> C
         density_to: (number as f64 + 1.0) * CLASS,
         count: class.density.count,
         density_mean: class.density.mean,
-        density_std: class.density.deviation(),
+        density_std: class.density.population_std(),
         speed_mean: class.speed.mean,
-        speed_std: class.speed.deviation(),
+        speed_std: class.speed.population_std(),
         flow_mean: class.flow.mean,
-        flow_std: class.flow.deviation(),
+        flow_std: class.flow.population_std(),
     }
 }

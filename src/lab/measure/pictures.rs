@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::{Class, Crossings, Diagram, Measured, Site, Spread};
+use super::{Class, Crossings, Diagram, Measured, Site};
+use crate::analysis::statistics::MeanStd;
 use crate::engine::geometry::Walls;
 use crate::output::colors::{ColorMap, DENSITY, SPEED};
 use crate::output::plot::{
@@ -97,15 +98,15 @@ fn diagrams(diagrams: &[Diagram]) -> Sheet {
             .iter()
             .flat_map(|diagram| diagram.of_persons.values())
     };
-    let top = |of: fn(&Class) -> &Spread| {
+    let top = |of: fn(&Class) -> &MeanStd| {
         let tops = classes().map(of).filter(|spread| spread.count > 0);
-        let classes = tops.map(|spread| spread.mean + spread.deviation());
+        let classes = tops.map(|spread| spread.mean + spread.population_std());
         let dots = diagrams.iter().flat_map(|diagram| dots(diagram, of));
         classes.chain(dots.map(|dot| dot.y)).fold(0.1, f64::max) * 1.1
     };
     let density = classes().filter(|class| class.density.count > 0);
     let density = density.map(|class| class.density.mean).fold(0.5, f64::max) * 1.1;
-    let panel = |title: &str, label: &str, of: fn(&Class) -> &Spread, legend: bool| {
+    let panel = |title: &str, label: &str, of: fn(&Class) -> &MeanStd, legend: bool| {
         let mut marks = Vec::new();
         for (k, diagram) in diagrams.iter().enumerate() {
             let color = LINES[k % LINES.len()];
@@ -121,7 +122,7 @@ fn diagrams(diagrams: &[Diagram]) -> Sheet {
                 .map(|class| Point {
                     x: class.density.mean,
                     y: of(class).mean,
-                    error: of(class).deviation(),
+                    error: of(class).population_std(),
                 })
                 .collect();
             let name = match diagram.region {
@@ -160,7 +161,7 @@ fn diagrams(diagrams: &[Diagram]) -> Sheet {
 }
 
 /// Means of frames as dots, thinned to at most [`MOST_DOTS`].
-fn dots(diagram: &Diagram, of: fn(&Class) -> &Spread) -> Vec<Point> {
+fn dots(diagram: &Diagram, of: fn(&Class) -> &MeanStd) -> Vec<Point> {
     let every = diagram.frames.len().div_ceil(MOST_DOTS).max(1);
     let frames = diagram.frames.iter().step_by(every);
     let dot = |frame: &super::FrameMean| {

@@ -4,8 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Value, json};
 
-use super::{CLASS, Class, Crossings, Diagram, Measured, Options, Spread};
-use crate::output::table::Table;
+use super::{CLASS, Class, Crossings, Diagram, Measured, Options};
+use crate::analysis::statistics::MeanStd;
+use crate::output::table::OldTable as Table;
 use crate::output::trajectory::read::Tracks;
 
 /// The summary of a measurement.
@@ -37,7 +38,7 @@ impl Report<'_> {
         text += &format!(
             "  density  {:.3} ± {:.3} P/m² over all rows, h = {} m\n",
             overview.density.mean,
-            overview.density.deviation(),
+            overview.density.population_std(),
             self.options.kernel.support_radius,
         );
         if let Some(densest) = overview.densest {
@@ -57,7 +58,7 @@ impl Report<'_> {
             _ => format!(
                 "  speed    {:.3} ± {:.3} m/s, from {:.2} s before to {:.2} s after\n",
                 overview.speed.mean,
-                overview.speed.deviation(),
+                overview.speed.population_std(),
                 self.reach(),
                 self.reach(),
             ),
@@ -181,12 +182,12 @@ fn classes(diagram: &Diagram) -> Table {
         let persons = diagram.of_persons.get(k).unwrap_or(&none);
         let frames = diagram.of_frames.get(k).unwrap_or(&none);
         let from = *k as f64 * CLASS;
-        let number = |spread: &Spread, value: f64| match spread.count {
+        let number = |spread: &MeanStd, value: f64| match spread.count {
             0 => "–".to_owned(),
             _ => format!("{value:.3}"),
         };
-        let mean = |spread: &Spread| number(spread, spread.mean);
-        let deviation = |spread: &Spread| number(spread, spread.deviation());
+        let mean = |spread: &MeanStd| number(spread, spread.mean);
+        let deviation = |spread: &MeanStd| number(spread, spread.population_std());
         table.add([
             format!("{from:.1}–{:.1}", from + CLASS),
             persons.density.count.to_string(),
@@ -202,10 +203,10 @@ fn classes(diagram: &Diagram) -> Table {
     table
 }
 
-fn spread(spread: &Spread) -> Value {
+fn spread(spread: &MeanStd) -> Value {
     match spread.count {
         0 => Value::Null,
-        _ => json!({"mean": spread.mean, "std": spread.deviation()}),
+        _ => json!({"mean": spread.mean, "std": spread.population_std()}),
     }
 }
 

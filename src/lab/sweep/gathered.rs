@@ -7,8 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::cell::Cell;
 use super::{Study, tables};
-use crate::analysis::statistics::student_95;
-use crate::analysis::wave::Estimate;
+use crate::analysis::statistics::{Estimate, student_95};
 use crate::lab::error::LabError;
 use crate::runs::case::RunResult;
 use crate::runs::store::Store;

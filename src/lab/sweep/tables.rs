@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::cell::{Cell, plain, short};
 use super::gathered::{Gathered, Mean, State};
 use super::{Shard, Study};
-use crate::output::table::Table;
+use crate::output::table::OldTable as Table;
 use crate::runs::case::RunResult;
 use crate::scenario::quote::shown;
 

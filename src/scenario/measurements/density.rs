@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use super::Measure;
-use crate::analysis::statistics::mean_and_deviation;
+use crate::analysis::statistics::MeanStd;
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::file::Corners;
@@ -51,7 +51,7 @@ impl Measure for Density {
         let inside =
             positions.filter(|(_, position)| region.is_none_or(|r| r.contains(**position)));
         let densities: Vec<f64> = inside.map(|(density, _)| *density).collect();
-        *seen = mean_and_deviation(&densities);
+        *seen = MeanStd::of(&densities).map(|of| (of.mean, of.population_std()));
     }
 
     fn values(&self, seen: &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::timing::{self, Effort};
 use super::{Case, Integrals, METHODS, Method, Prepared, Region, SUPPORT_RADIUS, cases};
+use crate::analysis::statistics::Range;
 use crate::engine::math::Vector;
-use crate::lab::bench::Spread;
 
 /// Tolerances of the exact integrals, and of those that they are checked against.
 const TOLERANCE: f64 = 1e-13;
@@ -51,7 +51,7 @@ pub struct MethodReport {
     /// Of the force along an endless straight wall, which should be 0: the roughness of the wall.
     pub roughness: Option<Error>,
     /// Nanoseconds per evaluation, including the search for walls.
-    pub ns: Spread,
+    pub ns: Range,
     /// Time before the first frame, milliseconds: the median of several measurements.
     pub preparation_ms: f64,
     /// Memory in addition to the polygons, bytes.
@@ -80,7 +80,7 @@ pub struct CaseReport {
     /// Largest change of all these integrals with a tolerance ten thousand times larger.
     pub quadrature: f64,
     /// Nanoseconds to find the walls within reach, which the polygons' times include.
-    pub search_ns: Spread,
+    pub search_ns: Range,
     /// The methods in the order of [`METHODS`].
     pub methods: Vec<MethodReport>,
 }
@@ -176,11 +176,11 @@ fn of_case(case: &Case, effort: Effort) -> CaseReport {
         solid_density,
         solid_force,
         quadrature: truth.difference(&Truth::to(COARSER_TOLERANCE, case)),
-        search_ns: Spread::of(&timing::searches(case, effort)),
+        search_ns: Range::of(&timing::searches(case, effort)),
         methods: methods
             .map(|(((method, prepared), preparation_ms), ns)| MethodReport {
                 preparation_ms,
-                ns: Spread::of(&ns),
+                ns: Range::of(&ns),
                 ..of_method(method, prepared, case, &truth)
             })
             .collect(),
@@ -203,7 +203,7 @@ fn of_method(method: &Method, prepared: &mut Prepared, case: &Case, truth: &Trut
         density,
         force,
         roughness: case.tangent.map(along),
-        ns: Spread::of(&[]),
+        ns: Range::of(&[]),
         preparation_ms: 0.0,
         bytes: prepared.bytes(),
         curve: curve(&found),

@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use super::{Case, Method, Prepared, SUPPORT_RADIUS};
-use crate::lab::bench::Spread;
+use crate::analysis::statistics::Range;
 
 /// The number of measurements.
 #[derive(Debug, Clone, Copy)]
@@ -23,7 +23,7 @@ pub fn prepared(method: Method, case: &Case, effort: Effort) -> (Prepared<'_>, f
         1e3 * start.elapsed().as_secs_f64()
     };
     let times: Vec<f64> = (0..effort.turns).map(|_| turn()).collect();
-    (method.prepare(case), Spread::of(&times).median)
+    (method.prepare(case), Range::of(&times).median)
 }
 
 /// Nanoseconds per place for each method and turn; the methods take turns.
