@@ -214,7 +214,8 @@ fn each_foreign_crate_is_used_in_one_place() {
         ("plotters", "output/plot"),
         ("colorgrad", "output/colors"),
         ("fearless_simd", "engine/pairs"),
-        ("sysinfo", "lab/bench"),
+        ("sysinfo", "lab/machine"),
+        ("statrs", "analysis/statistics"),
         ("rustsim_crowd", "lab/bench"),
     ] {
         assert_eq!(strays(krate, &[home]), Vec::<String>::new());

@@ -7,7 +7,7 @@ use clap::builder::PossibleValuesParser;
 
 use super::values::{repeats, threads};
 use super::{Failure, say, talk, use_threads};
-use crate::lab::bench::{BENCHMARKS, BenchError, Plan, Report, files};
+use crate::lab::bench::{BENCHMARKS, Plan, Report, files};
 use crate::runs::outputs::{Manner, Outputs};
 
 /// Examples of commands.
@@ -103,10 +103,4 @@ fn save(report: &Report, folder: &Path) -> Result<(), Failure> {
         talk(&format!("note: {} written", path.display()));
     }
     Ok(())
-}
-
-impl From<BenchError> for Failure {
-    fn from(error: BenchError) -> Self {
-        Self::Output(error.to_string())
-    }
 }

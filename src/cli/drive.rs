@@ -17,7 +17,7 @@ use crate::analysis::stability::{FITTED, Mode, Scheme};
 use crate::engine::clock::{Clock, SHORTEST_TIME_STEP};
 use crate::engine::scene::Scene;
 use crate::engine::simulation::{EventKind, Simulation};
-use crate::lab::bench::main_memory;
+use crate::lab::machine::main_memory;
 use crate::runs::checkpoint::Checkpoint;
 use crate::runs::drive::{Then, drive, unless_over};
 use crate::runs::outputs::Outputs;

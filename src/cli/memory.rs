@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::Failure;
 use super::arguments::OutputOptions;
-use crate::lab::bench::main_memory;
+use crate::lab::machine::main_memory;
 use crate::scenario::Need;
 
 // Memory that output files take per agent, bytes. Measured as peak memory with 100,000 agents, where a run without

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::watch::Watch;
 use super::{Failure, say, talk, use_threads};
-use crate::lab::bench::main_memory;
+use crate::lab::machine::main_memory;
 use crate::lab::sweep::{Gathered, Shard, State, Study, StudyError, run as run_shard};
 use crate::runs::job::Tally;
 use crate::runs::outputs::{Manner, Outputs};

@@ -1,10 +1,13 @@
 //! The lab: experiments of many runs. The paper's tables and figures ([`reproduce`]), studies over settings and seeds
-//! ([`sweep`]), run time ([`mod@bench`]), hard cases and the largest stable time step ([`stress`]), and run time
-//! against error ([`accuracy`]). [`measure`] finds densities, fields, fundamental diagrams and flows of any trajectory.
+//! ([`sweep`]), run time on this [`machine`] ([`mod@bench`]), hard cases and the largest stable time step ([`stress`]),
+//! and run time against error ([`accuracy`]). [`measure`] finds densities, fields, fundamental diagrams and flows of
+//! any trajectory.
 
 pub mod error;
 
 pub mod jobs;
+
+pub mod machine;
 
 pub mod measure;
 

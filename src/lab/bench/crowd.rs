@@ -1,26 +1,18 @@
 //! Crowds of any size and density, without walls.
 
-use super::error::BenchError;
+use super::timing::{failed, ms_per_frame};
 use crate::engine::agents::NewAgent;
 use crate::engine::math::Vector;
 use crate::engine::placement::Grid;
 use crate::engine::scene::{Group, Scene};
 use crate::engine::simulation::Simulation;
+use crate::lab::error::LabError;
 use crate::scenario::catalog::{self, Parameters};
 
 /// Distance to the goals of streams, meters: no agent arrives.
 const AHEAD: f64 = 100.0;
 /// Each coordinate is moved by up to ± this fraction of the distance between neighbors.
 const JITTER: f64 = 0.05;
-
-/// Where agents want to go.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Aim {
-    /// To their own positions.
-    Stay,
-    /// Every other agent 100 m to the right, the rest 100 m to the left: all of them have agents to avoid.
-    Streams,
-}
 
 /// A square block of agents on a hexagonal grid with jitter.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,8 +25,9 @@ pub struct Crowd {
     pub profile: &'static str,
     /// Changes to the profile's parameters.
     pub parameters: Parameters,
-    /// Where the agents want to go.
-    pub aim: Aim,
+    /// Do the agents walk, every other one to the right and the rest to the left? Otherwise their goals are their own
+    /// positions.
+    pub streams: bool,
 }
 
 impl Crowd {
@@ -51,7 +44,7 @@ impl Crowd {
                 goal_scale: Some(0.1),
                 ..Parameters::default()
             },
-            aim: Aim::Stay,
+            streams: false,
         }
     }
 
@@ -62,7 +55,7 @@ impl Crowd {
             density: 4.0,
             profile,
             parameters: Parameters::default(),
-            aim: Aim::Streams,
+            streams: true,
         }
     }
 
@@ -70,8 +63,8 @@ impl Crowd {
     ///
     /// # Errors
     /// The profile does not exist.
-    pub fn scene(&self) -> Result<Scene, BenchError> {
-        let unknown = || BenchError::Profile(self.profile.to_owned());
+    pub fn scene(&self) -> Result<Scene, LabError> {
+        let unknown = || LabError::Data(format!("there is no profile {}", self.profile));
         let blend = catalog::named(self.profile, &self.parameters).ok_or_else(unknown)?;
         let mut scene = Scene::default();
         let group = scene.add_group(Group {
@@ -80,20 +73,14 @@ impl Crowd {
             removal_radius: None,
             counted: false,
         });
+        let ahead = if self.streams { AHEAD } else { 0.0 };
+        let agent = |(k, place): (usize, Vector)| {
+            let way = if k.is_multiple_of(2) { ahead } else { -ahead };
+            NewAgent::at(place, place + Vector::new(way, 0.0), group)
+        };
         let places = self.places(scene.seed).into_iter().enumerate();
-        scene.agents = places
-            .map(|(k, place)| NewAgent::at(place, place + self.way(k), group))
-            .collect();
+        scene.agents = places.map(agent).collect();
         Ok(scene)
-    }
-
-    /// The vector from agent `k` to its goal, meters.
-    fn way(&self, k: usize) -> Vector {
-        match self.aim {
-            Aim::Stay => Vector::zeros(),
-            Aim::Streams if k.is_multiple_of(2) => Vector::new(AHEAD, 0.0),
-            Aim::Streams => Vector::new(-AHEAD, 0.0),
-        }
     }
 
     /// Row by row; every other row is shifted by half the distance between neighbors.
@@ -125,11 +112,9 @@ impl Crowd {
     ///
     /// # Errors
     /// As [`scene`](Self::scene), or the simulation fails.
-    pub fn settled(&self, frames: u64) -> Result<Simulation, BenchError> {
-        let mut simulation = Simulation::new(self.scene()?)?;
-        for _ in 0..frames {
-            simulation.step()?;
-        }
+    pub fn settled(&self, frames: u64) -> Result<Simulation, LabError> {
+        let mut simulation = Simulation::new(self.scene()?).map_err(failed)?;
+        ms_per_frame(&mut simulation, frames)?;
         Ok(simulation)
     }
 }

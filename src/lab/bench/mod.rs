@@ -6,8 +6,6 @@
 
 mod compare;
 mod crowd;
-mod error;
-mod machine;
 mod pictures;
 mod report;
 mod scaling;
@@ -16,15 +14,16 @@ mod stages;
 mod threads;
 mod timing;
 
-pub use crowd::{Aim, Crowd};
-pub use error::BenchError;
-pub use machine::{Machine, Memory, main_memory};
-pub use report::{Findings, Report, Setting, files};
+pub use crowd::Crowd;
+pub use report::{Report, files};
 pub use skips::{SKIPS, Skip, everything};
 pub use timing::{Contender, alternate};
 pub(crate) use timing::{ms_per_frame, pool};
 
 use std::path::PathBuf;
+
+use crate::lab::error::LabError;
+use report::Findings;
 
 /// How much to measure.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,10 +54,16 @@ impl Plan {
     fn choose<T>(&self, usual: T, few: T) -> T {
         if self.quick { few } else { usual }
     }
+
+    /// The number of frames in which `agents` agents take about `agent_frames` steps together, between two limits.
+    fn frames(&self, agents: u32, agent_frames: u64, [fewest, most]: [u64; 2]) -> u64 {
+        let usual = (agent_frames / u64::from(agents)).clamp(fewest, most);
+        self.choose(usual, 5)
+    }
 }
 
 /// Runs a benchmark, and reports its progress.
-type Measure = fn(&Plan, &dyn Fn(&str)) -> Result<Findings, BenchError>;
+type Measure = fn(&Plan, &dyn Fn(&str)) -> Result<Findings, LabError>;
 
 /// A benchmark.
 pub struct Benchmark {
@@ -74,13 +79,8 @@ impl Benchmark {
     ///
     /// # Errors
     /// A simulation fails, or another program stops.
-    pub fn measure(&self, plan: &Plan, say: &dyn Fn(&str)) -> Result<Report, BenchError> {
-        Ok(Report {
-            name: self.name,
-            about: self.about,
-            setting: Setting::of(plan),
-            findings: (self.run)(plan, say)?,
-        })
+    pub fn measure(&self, plan: &Plan, say: &dyn Fn(&str)) -> Result<Report, LabError> {
+        Ok(Report::of(self, plan, (self.run)(plan, say)?))
     }
 }
 

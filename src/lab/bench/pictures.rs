@@ -1,10 +1,11 @@
-//! Helpers for the benchmarks' pictures.
+//! The benchmarks' pictures: one panel with its legend beside it.
 
+use crate::analysis::statistics::Range;
 use crate::output::colors::Rgb;
 use crate::output::plot::{Axis, Corner, LINES, Mark, Panel, Point, Sheet, Style};
 
-/// A sheet with one panel and its legend beside it.
-pub fn sheet(title: String, x: Axis, y: Axis, marks: Vec<Mark>) -> Sheet {
+/// A sheet with one panel.
+pub fn sheet(title: &str, x: Axis, y: Axis, marks: Vec<Mark>) -> Sheet {
     let panel = Panel {
         title: String::new(),
         x,
@@ -14,7 +15,7 @@ pub fn sheet(title: String, x: Axis, y: Axis, marks: Vec<Mark>) -> Sheet {
         legend: Some(Corner::Beside),
     };
     Sheet {
-        title,
+        title: title.to_owned(),
         columns: 1,
         panel_size: [420.0, 280.0],
         shared_axes: false,
@@ -29,18 +30,29 @@ pub fn color(k: usize) -> Rgb {
     LINES[k % LINES.len()]
 }
 
-/// A line with a dot at every point.
-pub fn dotted(points: &[[f64; 2]], color: Rgb, label: &str) -> [Mark; 2] {
-    let dots = points.iter().map(|&[x, y]| Point { x, y, error: 0.0 });
-    [
-        Mark::Line(points.to_vec(), Style::full(color, 1.4, label)),
-        Mark::Points(dots.collect(), Style::full(color, 2.2, "")),
-    ]
+/// A dot at every median, and a vertical line from the minimum to the maximum.
+pub fn dots(points: &[(f64, Range)], color: Rgb, label: &str) -> Vec<Mark> {
+    let ends = |&(x, range): &(f64, Range)| {
+        let ends = vec![[x, range.minimum], [x, range.maximum]];
+        Mark::Line(ends, Style::full(color, 0.8, ""))
+    };
+    let dot = |&(x, range): &(f64, Range)| Point {
+        x,
+        y: range.median,
+        error: 0.0,
+    };
+    let dots = points.iter().map(dot).collect();
+    let dots = Mark::Points(dots, Style::full(color, 2.2, label));
+    points.iter().map(ends).chain([dots]).collect()
 }
 
-/// A vertical line from the minimum to the maximum.
-pub fn range(x: f64, [low, high]: [f64; 2], color: Rgb) -> Mark {
-    Mark::Line(vec![[x, low], [x, high]], Style::full(color, 0.8, ""))
+/// The same, with a line through the medians.
+pub fn curve(points: &[(f64, Range)], color: Rgb, label: &str) -> Vec<Mark> {
+    let line = points.iter().map(|&(x, range)| [x, range.median]);
+    let line = Mark::Line(line.collect(), Style::full(color, 1.4, label));
+    std::iter::once(line)
+        .chain(dots(points, color, ""))
+        .collect()
 }
 
 /// An upright bar.
@@ -56,12 +68,8 @@ pub fn key(color: Rgb, label: &str) -> Mark {
 
 /// The smallest and the largest value, moved outward by a factor, for a logarithmic axis.
 pub fn around(values: impl Iterator<Item = f64>, factor: f64) -> [f64; 2] {
-    let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
-    for value in values.filter(|value| *value > 0.0 && value.is_finite()) {
-        (low, high) = (low.min(value), high.max(value));
-    }
-    if low > high {
-        return [1.0, 10.0];
-    }
-    [low / factor, high * factor]
+    let values = values.filter(|value| *value > 0.0 && value.is_finite());
+    let ends = values.map(|value| [value; 2]);
+    let ends = ends.reduce(|[low, high], [a, b]| [low.min(a), high.max(b)]);
+    ends.map_or([1.0, 10.0], |[low, high]| [low / factor, high * factor])
 }

@@ -9,17 +9,18 @@ mod work;
 use serde::Serialize;
 use serde_json::json;
 
-use self::work::{Course, KeptLists, RvoByBlend, WallsByBlocks, Work};
-use super::error::BenchError;
-use super::report::{Findings, three};
+use self::work::{Course, Work};
+use super::pictures::{bar, color, key, sheet};
+use super::report::Findings;
 use super::stages::{Started, Stretch, busiest};
-use super::timing::ms_of;
 use super::{Benchmark, Plan};
 use crate::analysis::statistics::Range;
 use crate::engine::pairs::Wanted;
 use crate::engine::scene::Needs;
 use crate::engine::simulation::{Simulation, Stage};
-use crate::output::table::OldTable as Table;
+use crate::lab::error::LabError;
+use crate::output::plot::{Axis, BLACK, GRAY, Mark, Sheet, Style};
+use crate::output::table::Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "skips",
@@ -33,40 +34,17 @@ pub struct Skip {
     pub name: &'static str,
     /// What is skipped, in one line.
     pub about: &'static str,
-    undone: Undone,
+    /// How to do the skipped work in a scene, or why there is nothing to skip.
+    undo: fn(&Simulation) -> Result<Undone, &'static str>,
 }
 
 /// How to do the skipped work.
 enum Undone {
     /// The engine computes more than it needs.
     Needs(Needs),
-    /// Separate work replaces some stages.
-    Work {
-        instead_of: &'static [Stage],
-        begin: fn() -> Box<dyn Work>,
-    },
+    /// Separate work on every evaluated frame, which replaces some stages.
+    Work(Work, &'static [Stage]),
 }
-
-/// No needs at all.
-const NOTHING: Needs = Needs {
-    density: false,
-    pairs: Wanted {
-        pressure: false,
-        viscosity: false,
-        contact: false,
-    },
-    rvo: false,
-    social: false,
-    avoidance: None,
-    removal: false,
-};
-
-/// Every sum over pairs.
-const ALL_PAIRS: Wanted = Wanted {
-    pressure: true,
-    viscosity: true,
-    contact: true,
-};
 
 /// The radius of the paper's avoidance, meters (§5.5).
 const AVOIDANCE: f64 = 5.0;
@@ -82,74 +60,65 @@ pub const SKIPS: [Skip; 8] = [
     Skip {
         name: "density",
         about: "density and pressure where nothing reads them",
-        undone: Undone::Needs(Needs {
-            density: true,
-            ..NOTHING
-        }),
+        undo: |simulation| more(simulation, |needs| needs.density = true),
     },
     Skip {
         name: "pair sums",
-        about: "sums over pairs (pressure, viscosity, contact) that no profile wants",
-        undone: Undone::Needs(Needs {
-            pairs: ALL_PAIRS,
-            ..NOTHING
-        }),
+        about: "sums over pairs (pressure, viscosity, contact) that no profile reads",
+        undo: |simulation| more(simulation, |needs| needs.pairs = everything().pairs),
     },
     Skip {
         name: "far walls",
         about: "lists of the walls within 5 m where no agent avoids",
-        undone: Undone::Needs(Needs {
-            avoidance: Some(AVOIDANCE),
-            ..NOTHING
-        }),
+        undo: |simulation| more(simulation, |needs| needs.avoidance = Some(AVOIDANCE)),
     },
     Skip {
         name: "arrivals",
         about: "the search for arrivals where no agent leaves",
-        undone: Undone::Needs(Needs {
-            removal: true,
-            ..NOTHING
-        }),
+        undo: |simulation| more(simulation, |needs| needs.removal = true),
     },
     Skip {
         name: "RVO by blend",
-        about: "a choice of velocity for those whose density gives RVO no weight",
-        undone: Undone::Work {
-            instead_of: &[],
-            begin: || Box::new(RvoByBlend),
-        },
+        about: "a choice of velocity for agents whose density gives RVO no weight",
+        undo: |simulation| Ok(Undone::Work(work::rvo_by_blend(simulation)?, &[])),
     },
     Skip {
         name: "lists kept",
         about: "sorting and listing in every frame, rather than when an agent has moved half the skin",
-        undone: Undone::Work {
-            instead_of: LISTING,
-            begin: || Box::new(KeptLists::every_frame()),
-        },
+        undo: |_| Ok(Undone::Work(work::lists(false), LISTING)),
     },
     Skip {
         name: "lists kept (5)",
-        about: "sorting and listing in every coarse frame, as the paper does; then some may be missed",
-        undone: Undone::Work {
-            instead_of: LISTING,
-            begin: || Box::new(KeptLists::every_coarse_frame()),
-        },
+        about: "sorting and listing in every coarse frame, as the paper does; then some neighbors may be missed",
+        undo: |_| Ok(Undone::Work(work::lists(true), LISTING)),
     },
     Skip {
         name: "walls by blocks",
-        about: "looking for walls person by person, rather than by blocks of 128 first",
-        undone: Undone::Work {
-            instead_of: &[],
-            begin: || Box::new(WallsByBlocks::default()),
-        },
+        about: "looking for walls agent by agent, rather than by blocks of 128 agents first",
+        undo: |simulation| Ok(Undone::Work(work::walls_one_by_one(simulation)?, &[])),
     },
 ];
+
+/// More needs than a scene has.
+fn more(simulation: &Simulation, add: fn(&mut Needs)) -> Result<Undone, &'static str> {
+    let mut needs = *simulation.needs();
+    add(&mut needs);
+    let needs = simulation.needs().with(&needs);
+    match needs == *simulation.needs() {
+        true => Err("the scene needs it"),
+        false => Ok(Undone::Needs(needs)),
+    }
+}
 
 /// Everything that can be needed without changing the motion: all that [`Simulation::pay_for`] accepts.
 pub fn everything() -> Needs {
     Needs {
         density: true,
-        pairs: ALL_PAIRS,
+        pairs: Wanted {
+            pressure: true,
+            viscosity: true,
+            contact: true,
+        },
         rvo: true,
         social: true,
         avoidance: Some(AVOIDANCE),
@@ -158,7 +127,7 @@ pub fn everything() -> Needs {
 }
 
 /// The result of one skip in one scene.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Serialize)]
 struct Row {
     scenario: &'static str,
     profile: String,
@@ -173,7 +142,7 @@ struct Row {
     nothing_to_skip: Option<&'static str>,
 }
 
-fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, BenchError> {
+fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     let mut rows = Vec::new();
     for stretch in busiest(plan) {
         for profile in profiles(stretch) {
@@ -182,11 +151,18 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, BenchError> {
             rows.append(&mut measure(&started, plan)?);
         }
     }
+    let skips = SKIPS.map(|skip| format!("{}: {}", skip.name, skip.about));
     Ok(Findings {
         table: table(&rows),
+        sheet: picture(&rows),
         rows: json!(rows),
-        notes: notes(),
-        sheet: picture::sheet(&rows),
+        notes: vec![
+            skips.join("\n"),
+            "Both times are of the same frames with the same motion, bit by bit. The first four skips are undone by \
+             telling the engine that more is needed. For the others the skipped work is done beside the engine, on the \
+             same frames, in place of the engine's own work. – : the scene needs the work, or has none of it."
+                .to_owned(),
+        ],
     })
 }
 
@@ -199,164 +175,106 @@ fn profiles(stretch: &Stretch) -> &'static [Option<&'static str>] {
     }
 }
 
-fn notes() -> Vec<String> {
-    let skips = SKIPS.iter();
-    let skips: Vec<String> = skips
-        .map(|skip| format!("{}: {}", skip.name, skip.about))
-        .collect();
-    let how = "Both times are of the same frames with the same motion, bit by bit. The first four are undone by telling the \
-               engine that more is needed; of the others the work itself is done beside the engine, on the same frames, and \
-               takes the place of the engine's own. – : the scene needs it, or has none of it.";
-    vec![skips.join("\n"), how.to_owned()]
-}
-
-/// Why there is nothing to skip, or `None` if there is something.
-fn nothing_to_skip(skip: &Skip, simulation: &Simulation) -> Option<&'static str> {
-    match &skip.undone {
-        Undone::Needs(more) => {
-            let needs = simulation.needs();
-            (needs.with(more) == *needs).then_some("the scene needs it")
-        }
-        Undone::Work { begin, .. } => begin().nothing_to_do(simulation),
-    }
-}
-
-fn measure(started: &Started, plan: &Plan) -> Result<Vec<Row>, BenchError> {
-    let undone = |skip: &&Skip| nothing_to_skip(skip, &started.simulation).is_none();
-    let undone: Vec<&Skip> = SKIPS.iter().filter(undone).collect();
+fn measure(started: &Started, plan: &Plan) -> Result<Vec<Row>, LabError> {
     let mut with = Vec::new();
-    let mut without = vec![Vec::new(); undone.len()];
+    let mut without = [const { Vec::new() }; SKIPS.len()];
     for _ in 0..plan.repeats {
-        let (base, others) = repeat(started, &undone)?;
+        let (base, others) = repeat(started)?;
         with.push(base);
         for (times, ms) in without.iter_mut().zip(others) {
-            times.push(ms);
+            times.extend(ms);
         }
     }
-    let mut measured = without.into_iter();
-    let row = |skip: &Skip| {
-        let nothing_to_skip = nothing_to_skip(skip, &started.simulation);
+    let row = |(skip, without): (&Skip, &Vec<f64>)| {
+        let nothing_to_skip = (skip.undo)(&started.simulation).err();
         let known = nothing_to_skip.is_none();
-        let without = if known { measured.next() } else { None };
         Row {
             scenario: started.name,
             profile: started.profile.clone(),
             skip: skip.name,
             with_skip_ms: Range::of(&with),
-            without_skip_ms: without.as_deref().map(Range::of),
-            ratio: without.map(|without| Range::of_ratios(&without, &with)),
+            without_skip_ms: known.then(|| Range::of(without)),
+            ratio: known.then(|| Range::of_ratios(without, &with)),
             nothing_to_skip,
         }
     };
-    Ok(SKIPS.iter().map(row).collect())
+    Ok(SKIPS.iter().zip(&without).map(row).collect())
 }
 
-/// Milliseconds per frame as shipped, and with each skip undone. All of them take turns of a few frames.
-fn repeat(started: &Started, undone: &[&Skip]) -> Result<(f64, Vec<f64>), BenchError> {
-    let mut base = Course::new(&started.simulation, &NOTHING, None)?;
-    let mut others = Vec::new();
-    for skip in undone {
-        others.push(match &skip.undone {
-            Undone::Needs(more) => Course::new(&started.simulation, more, None)?,
-            Undone::Work { begin, .. } => {
-                Course::new(&started.simulation, &NOTHING, Some(begin()))?
-            }
-        });
+/// Milliseconds per frame as shipped, and with each skip undone, if there is something to skip. All of them take turns
+/// of a few frames.
+fn repeat(started: &Started) -> Result<(f64, Vec<Option<f64>>), LabError> {
+    let start = &started.simulation;
+    let mut base = Course::new(start, None)?;
+    let mut others: Vec<Option<Course>> = Vec::new();
+    for skip in &SKIPS {
+        let undone = (skip.undo)(start).ok();
+        others.push(
+            undone
+                .map(|undone| Course::new(start, Some(undone)))
+                .transpose()?,
+        );
     }
     let mut left = started.frames;
     while left > 0 {
         let some = left.min(TURN);
         left -= some;
         base.advance(some)?;
-        for course in &mut others {
+        for course in others.iter_mut().flatten() {
             course.advance(some)?;
         }
     }
     let times = base.times();
-    let total = times.total_ms_per_frame();
-    let without = |(skip, course): (&&Skip, &Course)| match &skip.undone {
-        Undone::Needs(_) => course.times().total_ms_per_frame(),
-        Undone::Work { instead_of, .. } => {
-            let saved: f64 = instead_of.iter().map(|&stage| ms_of(times, stage)).sum();
-            total - saved + course.work_ms_per_frame()
-        }
-    };
-    Ok((total, undone.iter().zip(&others).map(without).collect()))
+    let without = others
+        .iter()
+        .map(|course| Some(course.as_ref()?.ms_per_frame(times)));
+    Ok((times.total_ms_per_frame(), without.collect()))
 }
 
 fn table(rows: &[Row]) -> Table {
-    let head = [
-        "scenario",
-        "profile",
-        "skip",
-        "ms/frame with",
-        "without",
-        "ratio min",
-        "median",
-        "max",
-    ];
-    let mut table = Table::new(3, &head);
-    for row in rows {
-        let mut cells = vec![
-            row.scenario.to_owned(),
-            row.profile.clone(),
-            row.skip.to_owned(),
-            format!("{:.4}", row.with_skip_ms.median),
-        ];
-        match (row.without_skip_ms, row.ratio) {
-            (Some(without), Some(ratio)) => {
-                cells.push(format!("{:.4}", without.median));
-                cells.extend(three(&ratio, 2));
-            }
-            _ => cells.extend(["–", "–", "–", "–"].map(str::to_owned)),
-        }
-        table.rows.push(cells);
-    }
-    table
+    Table::of(rows)
+        .column("scenario", |row| row.scenario)
+        .column("profile", |row| row.profile.as_str())
+        .column("skip", |row| row.skip)
+        .fixed("ms/frame with", 4, |row| row.with_skip_ms.median)
+        .fixed("without", 4, |row| row.without_skip_ms.map(|ms| ms.median))
+        .range("ratio", 2, |row| row.ratio)
+        .table()
 }
 
-mod picture {
-    use super::{Row, SKIPS};
-    use crate::lab::bench::pictures::{self, bar, color, key};
-    use crate::output::plot::{Axis, BLACK, GRAY, Mark, Sheet, Style};
-
-    /// A group of bars for each scene: frame time without each skip over frame time with it.
-    pub fn sheet(rows: &[Row]) -> Sheet {
-        let scenes: Vec<&[Row]> = rows
-            .chunk_by(|a, b| (a.scenario, &a.profile) == (b.scenario, &b.profile))
-            .collect();
-        let width = 0.9 / SKIPS.len() as f64;
-        let ratio = |row: &Row| row.ratio.map(|ratio| ratio.median);
-        let most = rows.iter().filter_map(ratio).fold(2.0, f64::max);
-        let mut marks = Vec::new();
-        for (s, scene) in scenes.iter().enumerate() {
-            for (k, row) in scene.iter().enumerate() {
-                let left = s as f64 + 0.05 + width * k as f64;
-                let Some(ratio) = ratio(row) else {
-                    let below = [left + 0.5 * width, 1.0 - 0.03 * most];
-                    marks.push(Mark::Text(below, "–".to_owned(), GRAY));
-                    continue;
-                };
+/// A group of bars for each scene: frame time without each skip over frame time with it.
+fn picture(rows: &[Row]) -> Sheet {
+    let color = |k: usize| if k < 7 { color(k) } else { BLACK };
+    let scenes: Vec<&[Row]> = rows.chunks(SKIPS.len()).collect();
+    let width = 0.9 / SKIPS.len() as f64;
+    let ratio = |row: &Row| row.ratio.map(|ratio| ratio.median);
+    let most = rows.iter().filter_map(ratio).fold(2.0, f64::max);
+    let mut marks = Vec::new();
+    for (k, row) in rows.iter().enumerate() {
+        let (scene, skip) = (k / SKIPS.len(), k % SKIPS.len());
+        let left = scene as f64 + 0.05 + width * skip as f64;
+        marks.push(match ratio(row) {
+            Some(ratio) => {
                 let ends = [ratio.min(1.0), ratio.max(1.0)];
-                marks.push(bar([left, left + 0.9 * width], ends, skip_color(k)));
+                bar([left, left + 0.9 * width], ends, color(skip))
             }
-        }
-        let one = vec![[0.0, 1.0], [scenes.len() as f64, 1.0]];
-        marks.push(Mark::Line(one, Style::full(BLACK, 0.6, "")));
-        let skips = SKIPS.iter().enumerate();
-        marks.extend(skips.map(|(k, skip)| key(skip_color(k), skip.name)));
-        let names = scenes
-            .iter()
-            .map(|scene| format!("{} ({})", scene[0].scenario, scene[0].profile));
-        pictures::sheet(
-            "What each skip saves".to_owned(),
-            Axis::names("", names),
-            Axis::linear("time without the skip over time with it", [0.0, 1.1 * most]),
-            marks,
-        )
+            None => {
+                let below = [left + 0.5 * width, 1.0 - 0.03 * most];
+                Mark::Text(below, "–".to_owned(), GRAY)
+            }
+        });
     }
-
-    fn skip_color(k: usize) -> crate::output::colors::Rgb {
-        if k < 7 { color(k) } else { BLACK }
-    }
+    let one = vec![[0.0, 1.0], [scenes.len() as f64, 1.0]];
+    marks.push(Mark::Line(one, Style::full(BLACK, 0.6, "")));
+    let skips = SKIPS.iter().enumerate();
+    marks.extend(skips.map(|(k, skip)| key(color(k), skip.name)));
+    let names = scenes
+        .iter()
+        .map(|scene| format!("{} ({})", scene[0].scenario, scene[0].profile));
+    sheet(
+        "What each skip saves",
+        Axis::names("", names),
+        Axis::linear("time without the skip over time with it", [0.0, 1.1 * most]),
+        marks,
+    )
 }

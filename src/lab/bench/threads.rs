@@ -4,13 +4,15 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::crowd::Crowd;
-use super::error::BenchError;
-use super::machine::Machine;
-use super::report::{Findings, three};
-use super::timing::{Contender, GoingOn, alternate, pool};
+use super::pictures::{color, curve, sheet};
+use super::report::Findings;
+use super::timing::{alternate, going_on};
 use super::{Benchmark, Plan};
 use crate::analysis::statistics::Range;
-use crate::output::table::OldTable as Table;
+use crate::lab::error::LabError;
+use crate::lab::machine::Machine;
+use crate::output::plot::{Axis, GRAY, Mark, Sheet, Style};
+use crate::output::table::Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "threads",
@@ -26,7 +28,7 @@ const AGENT_FRAMES: u64 = 2_000_000;
 const FRAMES: [u64; 2] = [20, 2_000];
 
 /// The results for one crowd and number of threads.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Serialize)]
 struct Row {
     agents: u32,
     threads: usize,
@@ -47,37 +49,32 @@ fn counts(all: usize) -> Vec<usize> {
     counts
 }
 
-fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, BenchError> {
+fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     let counts = counts(Machine::here().hardware_threads);
     let mut rows = Vec::new();
-    for agents in plan.choose(&SIZES[..], &SIZES[..1]) {
+    for &agents in plan.choose(&SIZES[..], &SIZES[..1]) {
         say(&format!("{agents} agents"));
-        rows.append(&mut measure(*agents, &counts, plan)?);
+        rows.append(&mut measure(agents, &counts, plan)?);
     }
     Ok(Findings {
         table: table(&rows),
+        sheet: picture(&rows, &counts),
         rows: json!(rows),
         notes: vec![
-            "The crowd of `scaling`. Every number of threads moves its own copy, and they take turns; speed-ups are of each \
-             turn's times. Few agents are one piece of work, and no thread is woken for them."
+            "The crowd of `scaling`. Every number of threads moves its own copy, and the copies take turns; speed-ups are \
+             ratios of times in the same turn. A small crowd is a single task, for which no thread is woken."
                 .to_owned(),
         ],
-        sheet: picture::sheet(&rows),
     })
 }
 
-fn measure(agents: u32, counts: &[usize], plan: &Plan) -> Result<Vec<Row>, BenchError> {
+fn measure(agents: u32, counts: &[usize], plan: &Plan) -> Result<Vec<Row>, LabError> {
     let crowd = Crowd::concert(agents).settled(plan.choose(SETTLING, 5))?;
-    let [fewest, most] = FRAMES;
-    let usual = (AGENT_FRAMES / u64::from(agents)).clamp(fewest, most);
-    let frames = plan.choose(usual, 5);
-    let mut contenders: Vec<Box<dyn Contender>> = Vec::new();
-    for &threads in counts {
-        contenders.push(Box::new(GoingOn {
-            simulation: crowd.clone(),
-            pool: pool(threads)?,
-        }));
-    }
+    let frames = plan.frames(agents, AGENT_FRAMES, FRAMES);
+    let contenders = counts
+        .iter()
+        .map(|&threads| going_on(crowd.clone(), threads));
+    let mut contenders = contenders.collect::<Result<Vec<_>, _>>()?;
     alternate(&mut contenders, 1, frames)?; // warm-up: fills the caches
     let times = alternate(&mut contenders, plan.repeats, frames)?;
     let row = |(&threads, ms): (&usize, &Vec<f64>)| {
@@ -95,76 +92,37 @@ fn measure(agents: u32, counts: &[usize], plan: &Plan) -> Result<Vec<Row>, Bench
 }
 
 fn table(rows: &[Row]) -> Table {
-    let head = [
-        "agents",
-        "threads",
-        "ms/frame min",
-        "median",
-        "max",
-        "speed-up min",
-        "median",
-        "max",
-        "efficiency",
-    ];
-    let mut table = Table::new(0, &head);
-    for row in rows {
-        let mut cells = vec![row.agents.to_string(), row.threads.to_string()];
-        cells.extend(three(&row.ms_per_frame, 4));
-        cells.extend(three(&row.speed_up, 2));
-        cells.push(format!("{:.0} %", 100.0 * row.efficiency));
-        table.rows.push(cells);
-    }
-    table
+    Table::of(rows)
+        .column("agents", |row| row.agents)
+        .column("threads", |row| row.threads)
+        .range("ms/frame", 4, |row| row.ms_per_frame)
+        .range("speed-up", 2, |row| row.speed_up)
+        .fixed("efficiency [%]", 0, |row| 100.0 * row.efficiency)
+        .table()
 }
 
-mod picture {
-    use super::Row;
-    use crate::lab::bench::pictures::{self, color, dotted, range};
-    use crate::output::plot::{Axis, GRAY, Mark, Sheet, Style};
-
-    pub fn sheet(rows: &[Row]) -> Sheet {
-        let all = rows
-            .iter()
-            .map(|row| row.threads as f64)
-            .fold(1.0, f64::max);
-        let ideal = vec![[1.0, 1.0], [all, all]];
-        let mut marks = vec![Mark::Line(ideal, Style::broken(GRAY, 0.8, "ideal"))];
-        for (k, size) in rows.chunk_by(|a, b| a.agents == b.agents).enumerate() {
-            let points: Vec<[f64; 2]> = size
-                .iter()
-                .map(|row| [row.threads as f64, row.speed_up.median])
-                .collect();
-            let label = format!("{} agents", size[0].agents);
-            marks.extend(dotted(&points, color(k), &label));
-            marks.extend(size.iter().map(|row| {
-                let spread = row.speed_up;
-                range(
-                    row.threads as f64,
-                    [spread.minimum, spread.maximum],
-                    color(k),
-                )
-            }));
-        }
-        let most = rows
-            .iter()
-            .map(|row| row.speed_up.maximum)
-            .fold(all, f64::max);
-        let mut x = Axis::linear("threads", [0.8, all + 0.2]);
-        let mut counts: Vec<usize> = rows.iter().map(|row| row.threads).collect();
-        counts.dedup();
-        counts.sort_unstable();
-        counts.dedup();
-        x.ticks = counts
-            .into_iter()
-            .map(|count| (count as f64, count.to_string()))
-            .collect();
-        pictures::sheet(
-            "Speed-up over threads, a crowd at 5 P/m²".to_owned(),
-            x,
-            Axis::linear("times as fast as on one thread", [0.0, 1.1 * most]),
-            marks,
-        )
+fn picture(rows: &[Row], counts: &[usize]) -> Sheet {
+    let all = counts.last().map_or(1.0, |&count| count as f64);
+    let ideal = vec![[1.0, 1.0], [all, all]];
+    let mut marks = vec![Mark::Line(ideal, Style::broken(GRAY, 0.8, "ideal"))];
+    for (k, size) in rows.chunk_by(|a, b| a.agents == b.agents).enumerate() {
+        let points = size.iter().map(|row| (row.threads as f64, row.speed_up));
+        let label = format!("{} agents", size[0].agents);
+        marks.extend(curve(&points.collect::<Vec<_>>(), color(k), &label));
     }
+    let most = rows.iter().map(|row| row.speed_up.maximum);
+    let most = most.fold(all, f64::max);
+    let mut x = Axis::linear("threads", [0.8, all + 0.2]);
+    let ticks = counts
+        .iter()
+        .map(|&count| (count as f64, count.to_string()));
+    x.ticks = ticks.collect();
+    sheet(
+        "Speed-up over threads, a crowd at 5 P/m²",
+        x,
+        Axis::linear("times as fast as on one thread", [0.0, 1.1 * most]),
+        marks,
+    )
 }
 
 #[cfg(test)]

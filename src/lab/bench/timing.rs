@@ -4,20 +4,15 @@ use std::time::Instant;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use super::error::BenchError;
 use crate::engine::simulation::{Fault, Simulation, Stage, StageTimes};
+use crate::lab::error::LabError;
+use crate::runs::error::StoreError;
 
 /// Warm-up frames, which bring a copied crowd into the caches.
 const WARMING: u64 = 5;
 
-/// A simulation whose steps are timed.
-pub trait Contender {
-    /// Takes `steps` steps, and returns milliseconds per step.
-    ///
-    /// # Errors
-    /// The simulation fails.
-    fn ms_per_step(&mut self, steps: u64) -> Result<f64, BenchError>;
-}
+/// A simulation whose steps are timed: takes a number of steps, and returns milliseconds per step.
+pub type Contender<'a> = Box<dyn FnMut(u64) -> Result<f64, LabError> + 'a>;
 
 /// Lets all contenders take `steps` steps in turn, `repeats` times. Returns milliseconds per step for each contender
 /// and turn.
@@ -25,56 +20,48 @@ pub trait Contender {
 /// # Errors
 /// A contender fails.
 pub fn alternate(
-    contenders: &mut [Box<dyn Contender + '_>],
+    contenders: &mut [Contender],
     repeats: usize,
     steps: u64,
-) -> Result<Vec<Vec<f64>>, BenchError> {
+) -> Result<Vec<Vec<f64>>, LabError> {
     let mut times = vec![Vec::with_capacity(repeats); contenders.len()];
     for _ in 0..repeats {
         for (contender, times) in contenders.iter_mut().zip(&mut times) {
-            times.push(contender.ms_per_step(steps)?);
+            times.push(contender(steps)?);
         }
     }
     Ok(times)
 }
 
+/// The error of a timed simulation.
+pub(super) fn failed(fault: Fault) -> LabError {
+    LabError::of("timed run", fault)
+}
+
 /// Milliseconds per frame of the next `frames` frames.
-pub fn ms_per_frame(simulation: &mut Simulation, frames: u64) -> Result<f64, Fault> {
+pub fn ms_per_frame(simulation: &mut Simulation, frames: u64) -> Result<f64, LabError> {
     let start = Instant::now();
     for _ in 0..frames {
-        simulation.step()?;
+        simulation.step().map_err(failed)?;
     }
     Ok(1e3 * start.elapsed().as_secs_f64() / frames as f64)
 }
 
-/// A crowd that continues from one turn to the next.
-pub struct GoingOn {
-    pub simulation: Simulation,
-    pub pool: ThreadPool,
+/// A crowd that continues from one turn to the next, on `threads` threads.
+pub fn going_on(
+    mut simulation: Simulation,
+    threads: usize,
+) -> Result<Contender<'static>, LabError> {
+    let pool = pool(threads)?;
+    let turn = move |steps| pool.install(|| ms_per_frame(&mut simulation, steps));
+    Ok(Box::new(turn))
 }
 
-impl Contender for GoingOn {
-    fn ms_per_step(&mut self, steps: u64) -> Result<f64, BenchError> {
-        let Self { simulation, pool } = self;
-        Ok(pool.install(|| ms_per_frame(simulation, steps))?)
-    }
-}
-
-/// The stage times of the `frames` frames after a warm-up from `start`: the same frames in every call.
-pub fn replay(start: &Simulation, frames: u64) -> Result<StageTimes, Fault> {
-    let mut simulation = warmed(start.clone())?;
+/// A copy of a simulation after the warm-up, with its stage times set to 0.
+pub fn warmed(start: &Simulation) -> Result<Simulation, LabError> {
+    let mut simulation = start.clone();
+    ms_per_frame(&mut simulation, WARMING)?;
     simulation.reset_stages();
-    for _ in 0..frames {
-        simulation.step()?;
-    }
-    Ok(simulation.stages().clone())
-}
-
-/// The simulation after the warm-up.
-pub fn warmed(mut simulation: Simulation) -> Result<Simulation, Fault> {
-    for _ in 0..WARMING {
-        simulation.step()?;
-    }
     Ok(simulation)
 }
 
@@ -87,10 +74,7 @@ pub fn ms_of(times: &StageTimes, wanted: Stage) -> f64 {
 }
 
 /// A pool of `threads` threads.
-pub fn pool(threads: usize) -> Result<ThreadPool, BenchError> {
+pub fn pool(threads: usize) -> Result<ThreadPool, LabError> {
     let built = ThreadPoolBuilder::new().num_threads(threads).build();
-    built.map_err(|error| BenchError::Threads {
-        threads,
-        reason: error.to_string(),
-    })
+    built.map_err(|error| StoreError::Threads(format!("{threads}: {error}")).into())
 }

@@ -7,8 +7,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use tempfile::NamedTempFile;
 
 use super::{Description, Entry, Start};
-use crate::lab::bench::error::BenchError;
-use crate::lab::bench::timing::Contender;
+use crate::lab::error::LabError;
 
 const SCRIPT: &str = include_str!("jupedsim.py");
 const ENGINE: &str = "JuPedSim";
@@ -32,18 +31,18 @@ pub fn entries(start: &Start, python: &Path) -> Result<Vec<Entry>, String> {
         let said = String::from_utf8_lossy(&asked.stderr);
         return Err(how(said.lines().last().unwrap_or("no reason given")));
     }
-    let (walking, version, time_step) = Walking::begin(start, python).map_err(|e| e.to_string())?;
-    Ok(vec![Entry {
-        description: Description {
-            engine: format!("{ENGINE} {version}"),
-            model: "social force, circular, with body force and friction",
-            radius: RADIUS,
-            precision: "f64",
-            time_step,
-            threads: 1,
-        },
-        contender: Box::new(walking),
-    }])
+    let (mut walking, version, time_step) =
+        Walking::begin(start, python).map_err(|error| error.to_string())?;
+    let description = Description {
+        engine: format!("{ENGINE} {version}"),
+        model: "social force, circular, with body force and friction",
+        radius: RADIUS,
+        precision: "f64",
+        time_step,
+        threads: 1,
+    };
+    let contender = Box::new(move |steps| walking.ms_per_step(steps));
+    Ok(vec![(description, contender)])
 }
 
 /// A Python process that takes steps on request.
@@ -54,16 +53,13 @@ struct Walking {
     _people: NamedTempFile,
 }
 
-fn stopped(reason: impl ToString) -> BenchError {
-    BenchError::Stopped {
-        engine: ENGINE,
-        reason: reason.to_string(),
-    }
+fn stopped(reason: impl ToString) -> LabError {
+    LabError::Data(format!("{ENGINE} stopped: {}", reason.to_string()))
 }
 
 impl Walking {
     /// Starts the process with all agents, and returns its version and its time step in seconds.
-    fn begin(start: &Start, python: &Path) -> Result<(Self, String, f64), BenchError> {
+    fn begin(start: &Start, python: &Path) -> Result<(Self, String, f64), LabError> {
         let people = people(start).map_err(stopped)?;
         let mut child = Command::new(python)
             .args(["-c", SCRIPT])
@@ -89,7 +85,7 @@ impl Walking {
         Ok((walking, version, time_step))
     }
 
-    fn answer(&mut self) -> Result<String, BenchError> {
+    fn answer(&mut self) -> Result<String, LabError> {
         let mut line = String::new();
         match self.answers.read_line(&mut line) {
             Ok(0) => Err(stopped("see its message above")),
@@ -99,8 +95,8 @@ impl Walking {
     }
 }
 
-impl Contender for Walking {
-    fn ms_per_step(&mut self, steps: u64) -> Result<f64, BenchError> {
+impl Walking {
+    fn ms_per_step(&mut self, steps: u64) -> Result<f64, LabError> {
         writeln!(self.orders, "{steps}").map_err(stopped)?;
         let answer = self.answer()?;
         let seconds: f64 = answer

@@ -12,7 +12,6 @@ mod present {
     use rustsim_crowd::{Pedestrian, Scratch, WallSegment, recommended_cell_size};
 
     use crate::lab::bench::compare::{Description, Entry, Start, WIDE};
-    use crate::lab::bench::error::BenchError;
     use crate::lab::bench::timing::{Contender, pool};
 
     /// The time step of this engine, seconds.
@@ -48,65 +47,42 @@ mod present {
             for (name, step, parallel) in STEPS {
                 let threads = if parallel { start.threads } else { 1 };
                 let pool = pool(threads).map_err(|error| error.to_string())?;
-                entries.push(Entry {
-                    description: Description {
-                        engine: name.to_owned(),
-                        model: "social force, circular, no contact",
-                        radius: social_force::neighbor_cutoff(&params),
-                        precision: "f64",
-                        time_step: TIME_STEP,
-                        threads,
-                    },
-                    contender: Box::new(Walking::new(start, params, step, pool)),
-                });
+                let description = Description {
+                    engine: name.to_owned(),
+                    model: "social force, circular, no contact",
+                    radius: social_force::neighbor_cutoff(&params),
+                    precision: "f64",
+                    time_step: TIME_STEP,
+                    threads,
+                };
+                entries.push((description, walking(start, params, step, pool)));
             }
         }
         Ok(entries)
     }
 
-    struct Walking {
-        people: Vec<Pedestrian>,
-        params: Params,
-        scratch: Scratch,
-        step: Step,
-        pool: ThreadPool,
-    }
-
-    impl Walking {
-        fn new(start: &Start, params: Params, step: Step, pool: ThreadPool) -> Self {
-            let agents = start.agents;
-            let person = |i: usize| {
-                let (r, v, goal) = (agents.position[i], agents.velocity[i], agents.goal[i]);
-                let speed = start.scene.preferred_speed;
-                Pedestrian::new(r.into(), v.into(), agents.radius[i], speed, goal.into())
-            };
-            let cell = recommended_cell_size(social_force::neighbor_cutoff(&params));
-            Self {
-                people: (0..agents.len()).map(person).collect(),
-                params: Params {
-                    max_speed: start.scene.max_speed,
-                    ..params
-                },
-                scratch: Scratch::with_capacity(agents.len(), cell),
-                step,
-                pool,
-            }
-        }
-    }
-
-    impl Contender for Walking {
-        fn ms_per_step(&mut self, steps: u64) -> Result<f64, BenchError> {
-            let Self {
-                people,
-                params,
-                scratch,
-                step,
-                pool,
-            } = self;
-            let start = Instant::now();
-            pool.install(|| (0..steps).for_each(|_| step(people, &[], params, TIME_STEP, scratch)));
-            Ok(1e3 * start.elapsed().as_secs_f64() / steps as f64)
-        }
+    /// The crowd of `start`, which takes steps on request.
+    fn walking(start: &Start, params: Params, step: Step, pool: ThreadPool) -> Contender<'static> {
+        let agents = start.agents;
+        let person = |i: usize| {
+            let (r, v, goal) = (agents.position[i], agents.velocity[i], agents.goal[i]);
+            let speed = start.scene.preferred_speed;
+            Pedestrian::new(r.into(), v.into(), agents.radius[i], speed, goal.into())
+        };
+        let cell = recommended_cell_size(social_force::neighbor_cutoff(&params));
+        let mut people: Vec<Pedestrian> = (0..agents.len()).map(person).collect();
+        let mut scratch = Scratch::with_capacity(agents.len(), cell);
+        let params = Params {
+            max_speed: start.scene.max_speed,
+            ..params
+        };
+        Box::new(move |steps| {
+            let begin = Instant::now();
+            pool.install(|| {
+                (0..steps).for_each(|_| step(&mut people, &[], &params, TIME_STEP, &mut scratch))
+            });
+            Ok(1e3 * begin.elapsed().as_secs_f64() / steps as f64)
+        })
     }
 }
 

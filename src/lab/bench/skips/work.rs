@@ -5,62 +5,50 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::engine::agents::Agents;
+use super::Undone;
 use crate::engine::forces::rvo::Scratch;
 use crate::engine::neighbors::{Lists, Neighbors};
 use crate::engine::pairs::Packed;
-use crate::engine::scene::Needs;
-use crate::engine::simulation::{Fault, Simulation, StageTimes};
-use crate::lab::bench::timing::warmed;
+use crate::engine::simulation::{Simulation, StageTimes};
+use crate::lab::bench::timing::{failed, ms_of, warmed};
+use crate::lab::error::LabError;
 
-/// Work for every evaluated frame.
-pub trait Work {
-    /// Does the work, and returns the seconds that it took.
-    fn seconds(&mut self, simulation: &Simulation) -> f64;
+/// Does the work for an evaluated frame, and returns the seconds that it took.
+pub type Work = Box<dyn FnMut(&Simulation) -> f64>;
 
-    /// Why there is nothing to do in this scene, or `None` if there is something.
-    fn nothing_to_do(&self, simulation: &Simulation) -> Option<&'static str> {
-        let _ = simulation;
-        None
-    }
-}
-
-/// A crowd that moves on, optionally with work beside it.
+/// A crowd that moves on, optionally with a skip undone.
 pub struct Course {
     simulation: Simulation,
-    work: Option<Box<dyn Work>>,
-    /// Time that the work took.
+    undone: Option<Undone>,
+    /// Time that separate work took.
     seconds: f64,
     frames: u64,
 }
 
 impl Course {
-    /// A copy that also computes `more`, after the warm-up. All copies are sorted in the same frame.
-    pub fn new(
-        start: &Simulation,
-        more: &Needs,
-        work: Option<Box<dyn Work>>,
-    ) -> Result<Self, Fault> {
+    /// A copy of `start` after the warm-up. All copies are sorted in the same frame.
+    pub fn new(start: &Simulation, undone: Option<Undone>) -> Result<Self, LabError> {
         let mut simulation = start.clone();
-        simulation.pay_for(more);
-        let mut simulation = warmed(simulation)?;
-        simulation.reset_stages();
+        match &undone {
+            Some(Undone::Needs(more)) => simulation.pay_for(more),
+            _ => simulation.pay_for(start.needs()),
+        }
         Ok(Self {
-            simulation,
-            work,
+            simulation: warmed(&simulation)?,
+            undone,
             seconds: 0.0,
             frames: 0,
         })
     }
 
     /// Simulates `frames` frames.
-    pub fn advance(&mut self, frames: u64) -> Result<(), Fault> {
+    pub fn advance(&mut self, frames: u64) -> Result<(), LabError> {
         for _ in 0..frames {
-            self.simulation.evaluate()?;
-            if let Some(work) = &mut self.work {
-                self.seconds += work.seconds(&self.simulation);
+            self.simulation.evaluate().map_err(failed)?;
+            if let Some(Undone::Work(work, _)) = &mut self.undone {
+                self.seconds += work(&self.simulation);
             }
-            self.simulation.integrate()?;
+            self.simulation.integrate().map_err(failed)?;
         }
         self.frames += frames;
         Ok(())
@@ -71,9 +59,17 @@ impl Course {
         self.simulation.stages()
     }
 
-    /// The time of the work.
-    pub fn work_ms_per_frame(&self) -> f64 {
-        1e3 * self.seconds / self.frames as f64
+    /// Milliseconds per frame with the skip undone. Separate work takes the place of stages in the times of a course
+    /// with all skips, `base`.
+    pub fn ms_per_frame(&self, base: &StageTimes) -> f64 {
+        match &self.undone {
+            Some(Undone::Work(_, instead_of)) => {
+                let saved: f64 = instead_of.iter().map(|&stage| ms_of(base, stage)).sum();
+                let work = 1e3 * self.seconds / self.frames as f64;
+                base.total_ms_per_frame() - saved + work
+            }
+            _ => self.times().total_ms_per_frame(),
+        }
     }
 }
 
@@ -83,79 +79,40 @@ fn seconds(work: impl FnOnce()) -> f64 {
     start.elapsed().as_secs_f64()
 }
 
-/// Was the crowd sorted in this frame?
-fn is_sorted(simulation: &Simulation) -> bool {
-    let frame = simulation.frame();
-    frame.neighbors.sorted_at() == frame.agents.position
-}
-
 /// RVO for all agents whose blend contains RVO but gives it no weight at the moment.
-pub struct RvoByBlend;
-
-impl Work for RvoByBlend {
-    fn seconds(&mut self, simulation: &Simulation) -> f64 {
+pub fn rvo_by_blend(simulation: &Simulation) -> Result<Work, &'static str> {
+    let mut groups = simulation.scene().groups.iter();
+    if groups.all(|group| group.blend.rvo().is_none() || !group.blend.depends_on_density()) {
+        return Err("no blend has RVO at some densities only");
+    }
+    Ok(Box::new(|simulation| {
         let frame = simulation.frame();
         if !frame.clock.is_coarse() {
             return 0.0;
         }
         let max_speed = simulation.scene().max_speed;
-        seconds(|| {
-            (0..frame.agents.len()).into_par_iter().for_each_init(
-                Scratch::default,
-                |scratch, i| {
-                    let blend = simulation.blend(i);
-                    if let Some(rvo) = blend.rvo()
-                        && !blend.rvo_acts(&frame, i)
-                    {
-                        black_box(rvo.acceleration(&frame, i, max_speed, scratch));
-                    }
-                },
-            );
-        })
-    }
-
-    fn nothing_to_do(&self, simulation: &Simulation) -> Option<&'static str> {
-        let mut groups = simulation.scene().groups.iter();
-        let none =
-            groups.all(|group| group.blend.rvo().is_none() || !group.blend.depends_on_density());
-        none.then_some("no blend has RVO at some densities only")
-    }
+        let choose = |scratch: &mut Scratch, i: usize| {
+            let blend = simulation.blend(i);
+            if let Some(rvo) = blend.rvo()
+                && !blend.rvo_acts(&frame, i)
+            {
+                black_box(rvo.acceleration(&frame, i, max_speed, scratch));
+            }
+        };
+        let agents = (0..frame.agents.len()).into_par_iter();
+        seconds(|| agents.for_each_init(Scratch::default, choose))
+    }))
 }
 
-/// Sorting and listing at fixed intervals.
-pub struct KeptLists {
-    coarse: bool,
-    neighbors: Neighbors,
-    packed: Packed,
-}
-
-impl KeptLists {
-    pub fn every_frame() -> Self {
-        Self {
-            coarse: false,
-            neighbors: Neighbors::default(),
-            packed: Packed::default(),
-        }
-    }
-
-    pub fn every_coarse_frame() -> Self {
-        Self {
-            coarse: true,
-            ..Self::every_frame()
-        }
-    }
-}
-
-impl Work for KeptLists {
-    fn seconds(&mut self, simulation: &Simulation) -> f64 {
+/// Sorting and listing in every frame, or in every coarse frame.
+pub fn lists(coarse: bool) -> Work {
+    let (mut neighbors, mut packed) = (Neighbors::default(), Packed::default());
+    Box::new(move |simulation| {
         let (frame, scene, needs) = (simulation.frame(), simulation.scene(), simulation.needs());
-        if self.coarse && !frame.clock.is_coarse() {
+        if coarse && !frame.clock.is_coarse() {
             return 0.0;
         }
-        let mut agents: Agents = frame.agents.clone();
-        let Self {
-            neighbors, packed, ..
-        } = self;
+        let mut agents = frame.agents.clone();
         seconds(|| {
             neighbors.sort(&mut agents, scene.ranges(needs));
             neighbors.list_walls(&agents, frame.walls);
@@ -167,44 +124,37 @@ impl Work for KeptLists {
                 });
             }
         })
+    })
+}
+
+/// The time of a search for walls agent by agent, minus that of a search by blocks, in frames that sort the crowd.
+pub fn walls_one_by_one(simulation: &Simulation) -> Result<Work, &'static str> {
+    if simulation.scene().walls.is_empty() {
+        return Err("there are no walls");
     }
-}
-
-/// The time of a wall search agent by agent, minus that of a search by blocks.
-#[derive(Default)]
-pub struct WallsByBlocks {
-    near: Lists,
-    far: Lists,
-}
-
-impl Work for WallsByBlocks {
-    fn seconds(&mut self, simulation: &Simulation) -> f64 {
-        if !is_sorted(simulation) {
-            return 0.0;
-        }
+    let (mut near, mut far) = (Lists::default(), Lists::default());
+    Ok(Box::new(move |simulation| {
         let frame = simulation.frame();
         let (agents, walls) = (frame.agents, frame.walls);
+        if frame.neighbors.sorted_at() != agents.position {
+            return 0.0;
+        }
         let ranges = simulation.scene().ranges(simulation.needs());
         let least = ranges.support.max(ranges.longest_step);
         let mut neighbors = frame.neighbors.clone();
         let by_blocks = seconds(|| neighbors.list_walls(agents, walls));
         let list = |lists: &mut Lists, reach: &(dyn Fn(usize) -> f64 + Sync)| {
-            let nobody_knows = |_| vec![0]; // no search by blocks
-            lists.rebuild(agents.len(), nobody_knows, |i, _, found| {
+            let all = |_| vec![0]; // no search by blocks
+            lists.rebuild(agents.len(), all, |i, _, found| {
                 walls.near(agents.position[i], reach(i) + ranges.drift, found);
             });
         };
         let one_by_one = seconds(|| {
-            list(&mut self.near, &|i| least.max(agents.radius[i]));
+            list(&mut near, &|i| least.max(agents.radius[i]));
             if let Some(radius) = ranges.avoidance {
-                list(&mut self.far, &|_| radius);
+                list(&mut far, &|_| radius);
             }
         });
         one_by_one - by_blocks
-    }
-
-    fn nothing_to_do(&self, simulation: &Simulation) -> Option<&'static str> {
-        let none = simulation.scene().walls.is_empty();
-        none.then_some("there are no walls")
-    }
+    }))
 }

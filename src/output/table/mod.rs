@@ -5,30 +5,17 @@
 //! `speed [m/s]`, those for programs are words, as in `speed_m_per_s`. JSON does not come from tables: it is the serde
 //! form of the rows themselves.
 
+mod cell;
+mod old;
+
+pub use cell::Cell;
+pub use old::OldTable;
+
+use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::analysis::statistics::{Estimate, MeanStd};
-
-/// What a row has in a column.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Cell {
-    /// Words; left-aligned.
-    Text(String),
-    /// A number.
-    Number(f64),
-    /// A number and its uncertainty or deviation, if known: `3.27 ± 0.01`.
-    Spread(f64, Option<f64>),
-    /// No value; also from `None` and NaN.
-    Missing,
-}
-
-/// How text and Markdown show numbers.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Format {
-    AllDigits,
-    Fixed(usize),
-    Exponent(usize),
-}
+use crate::analysis::statistics::Range;
+use cell::Format;
 
 #[derive(Debug, Clone, PartialEq)]
 struct Head {
@@ -88,6 +75,21 @@ impl<'r, R> Columns<'r, R> {
         self.formatted(name, Format::Fixed(digits), Some(suffixes), cell)
     }
 
+    /// Adds three columns with `digits` decimals: minimum, median and maximum.
+    pub fn range<C: Into<Option<Range>>>(
+        self,
+        name: &str,
+        digits: usize,
+        range: impl Fn(&'r R) -> C,
+    ) -> Self {
+        let range = |row| -> Option<Range> { range(row).into() };
+        self.fixed(&format!("{name} min"), digits, |row| {
+            range(row).map(|range| range.minimum)
+        })
+        .fixed("median", digits, |row| range(row).map(|range| range.median))
+        .fixed("max", digits, |row| range(row).map(|range| range.maximum))
+    }
+
     fn formatted<C: Into<Cell>>(
         mut self,
         name: &str,
@@ -127,15 +129,14 @@ impl Table {
     /// As plain text in aligned columns: texts left-aligned, numbers right-aligned.
     pub fn text(&self) -> String {
         let lines = self.lines();
-        let columns = 0..self.heads.len();
-        let width = |k: usize| lines.iter().map(|line| line[k].chars().count()).max();
-        let has_numbers = |k: usize| {
+        let layout = self.heads.iter().enumerate().map(|(k, head)| {
+            let width = lines.iter().map(|line| line[k].chars().count()).max();
             let mut cells = self.rows.iter().map(|row| &row[k]);
-            cells.any(|cell| matches!(cell, Cell::Number(_) | Cell::Spread(..)))
-        };
-        let layout: Vec<(usize, bool)> = columns
-            .map(|k| (width(k).unwrap_or(0), has_numbers(k)))
-            .collect();
+            let is_number = |cell| matches!(cell, &Cell::Number(_) | &Cell::Spread(..));
+            let right = head.format != Format::AllDigits || cells.any(is_number);
+            (width.unwrap_or(0), right)
+        });
+        let layout: Vec<(usize, bool)> = layout.collect();
         let mut text = String::new();
         for line in &lines {
             let cells = line.iter().zip(&layout);
@@ -184,7 +185,8 @@ impl Table {
             });
             fields.collect::<Vec<_>>()
         });
-        csv_lines(std::iter::once(heads.collect()).chain(rows), false)
+        let lines: Vec<Vec<String>> = std::iter::once(heads.collect()).chain(rows).collect();
+        csv_lines(&lines, false)
     }
 
     /// The heads and the rows as they are shown.
@@ -198,186 +200,28 @@ impl Table {
     }
 }
 
-impl Cell {
-    fn shown(&self, format: Format) -> String {
-        let number = |value: f64| match format {
-            Format::AllDigits => value.to_string(),
-            Format::Fixed(digits) => format!("{value:.digits$}"),
-            Format::Exponent(digits) => format!("{value:.digits$e}"),
-        };
-        match self {
-            Self::Text(text) => text.clone(),
-            Self::Number(value) | Self::Spread(value, None) => number(*value),
-            Self::Spread(value, Some(off)) => format!("{} ± {}", number(*value), number(*off)),
-            Self::Missing => "–".to_owned(),
-        }
-    }
-}
-
-impl From<String> for Cell {
-    fn from(text: String) -> Self {
-        Self::Text(text)
-    }
-}
-
-impl From<&str> for Cell {
-    fn from(text: &str) -> Self {
-        Self::Text(text.to_owned())
-    }
-}
-
-impl From<bool> for Cell {
-    fn from(value: bool) -> Self {
-        Self::Text(value.to_string())
-    }
-}
-
-impl From<f64> for Cell {
-    fn from(value: f64) -> Self {
-        if value.is_nan() {
-            return Self::Missing;
-        }
-        Self::Number(value)
-    }
-}
-
-impl From<usize> for Cell {
-    fn from(value: usize) -> Self {
-        Self::Number(value as f64)
-    }
-}
-
-impl From<u32> for Cell {
-    fn from(value: u32) -> Self {
-        Self::Number(f64::from(value))
-    }
-}
-
-impl From<u64> for Cell {
-    fn from(value: u64) -> Self {
-        Self::Number(value as f64)
-    }
-}
-
-/// Mean ± sample standard deviation.
-impl From<MeanStd> for Cell {
-    fn from(of: MeanStd) -> Self {
-        Self::Spread(of.mean, of.std())
-    }
-}
-
-/// Value ± standard error.
-impl From<Estimate> for Cell {
-    fn from(estimate: Estimate) -> Self {
-        Self::Spread(estimate.value, Some(estimate.error))
-    }
-}
-
-impl<C: Into<Cell>> From<Option<C>> for Cell {
-    fn from(value: Option<C>) -> Self {
-        value.map_or(Self::Missing, C::into)
-    }
-}
-
-/// CSV lines of serializable rows: for files with one row per agent and frame, which are too long for a [`Table`].
-/// `has_head` begins with a line of the fields' names.
+/// CSV lines of serializable rows, made in parallel: for files with one row per agent and frame, which are too long for
+/// a [`Table`]. `has_head` begins with a line of the fields' names, if there are rows.
 ///
 /// # Errors
 /// A row cannot be written as one line.
-pub fn csv_lines(
-    rows: impl Iterator<Item: Serialize>,
-    has_head: bool,
-) -> Result<Vec<u8>, csv::Error> {
-    let mut writer = csv::WriterBuilder::new()
-        .has_headers(has_head)
-        .from_writer(Vec::new());
-    for row in rows {
-        writer.serialize(row)?;
-    }
-    writer
-        .into_inner()
-        .map_err(|error| error.into_error().into())
-}
-
-/// A table whose cells are already formatted; only until all callers use [`Table::of`].
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct OldTable {
-    /// Number of text columns at the left; the others hold numbers.
-    pub words: usize,
-    /// The names of the columns.
-    pub head: Vec<String>,
-    /// The rows.
-    pub rows: Vec<Vec<String>>,
-}
-
-impl OldTable {
-    /// An empty table.
-    pub fn new(words: usize, head: &[&str]) -> Self {
-        Self {
-            words,
-            head: head.iter().map(|&name| name.to_owned()).collect(),
-            rows: Vec::new(),
-        }
-    }
-
-    /// Adds a row.
-    pub fn add<const N: usize>(&mut self, row: [String; N]) {
-        self.rows.push(row.to_vec());
-    }
-
-    /// As plain text in aligned columns: text left-aligned, numbers right-aligned.
-    pub fn text(&self) -> String {
-        let length =
-            |line: &Vec<String>, k: usize| line.get(k).map_or(0, |cell| cell.chars().count());
-        let widths: Vec<usize> = (0..self.head.len())
-            .map(|k| self.lines().map(|line| length(line, k)).max().unwrap_or(0))
-            .collect();
-        let mut text = String::new();
-        for line in self.lines() {
-            let cells = line.iter().zip(&widths).enumerate();
-            let padded = cells.map(|(k, (cell, &width))| {
-                if k < self.words {
-                    format!("{cell:<width$}")
-                } else {
-                    format!("{cell:>width$}")
-                }
-            });
-            let padded: Vec<String> = padded.collect();
-            text += &format!("{}\n", padded.join("  ").trim_end());
-        }
-        text
-    }
-
-    /// As Markdown.
-    pub fn markdown(&self) -> String {
-        let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
-        let rule = vec!["---".to_owned(); self.head.len()];
-        let rows = self.rows.iter().map(|row| line(row));
-        line(&self.head) + &line(&rule) + &rows.collect::<String>()
-    }
-
-    /// As CSV.
-    ///
-    /// # Errors
-    /// Never for rows as long as the head.
-    pub fn csv(&self) -> Result<Vec<u8>, csv::Error> {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        for row in self.lines() {
-            writer.write_record(row)?;
-        }
-        writer
-            .into_inner()
-            .map_err(|error| error.into_error().into())
-    }
-
-    fn lines(&self) -> impl Iterator<Item = &Vec<String>> {
-        std::iter::once(&self.head).chain(&self.rows)
-    }
+pub fn csv_lines<R: Serialize + Sync>(rows: &[R], has_head: bool) -> Result<Vec<u8>, csv::Error> {
+    let lines = |(k, rows): (usize, &[R])| {
+        let mut writer = csv::WriterBuilder::new()
+            .has_headers(has_head && k == 0)
+            .from_writer(Vec::new());
+        rows.iter().try_for_each(|row| writer.serialize(row))?;
+        let written = writer.into_inner();
+        written.map_err(|error| error.into_error().into())
+    };
+    let parts = rows.par_chunks(1024).enumerate().map(lines);
+    Ok(parts.collect::<Result<Vec<_>, csv::Error>>()?.concat())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::statistics::Estimate;
 
     struct Row {
         name: &'static str,
