@@ -74,8 +74,8 @@ fn a_column_has_the_flow_of_its_line_density_times_its_speed() {
         assert!(crossing.x.abs() < 1e-12 && (crossing.y - 0.1).abs() < 1e-12);
         assert_eq!((crossing.direction, crossing.forward), (1, k as u64 + 1));
     }
-    assert!((crossings.flow(1).unwrap() - v / spacing).abs() < 1e-12);
-    assert_eq!(crossings.flow(-1), None);
+    assert!((crossings.way(1).flow_per_s.unwrap() - v / spacing).abs() < 1e-12);
+    assert_eq!(crossings.way(-1).flow_per_s, None);
     // Only crossings in the given time interval count.
     let later = Crossings::of(&tracks, 1, gate(), [10.0, 15.0]);
     let within = crossings

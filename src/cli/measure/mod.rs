@@ -1,7 +1,6 @@
 //! `sandbox measure`: densities, speeds and flows in trajectories.
 
 mod arguments;
-mod extras;
 
 pub use arguments::MeasureOptions;
 
@@ -12,9 +11,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::output::check_enabled;
 use super::{Failure, say, talk, use_threads};
 use crate::engine::boundary::WallMethod;
+use crate::lab::error::LabError;
 use crate::lab::measure::{
-    Behind, Kernel, MOST_HIDDEN, MeasureError, Measured, Options, OutputError, Report, Results,
-    Site, check, measure, speed,
+    Behind, Kernel, MOST_HIDDEN, MeasureError, Measured, MomentRecorder, Options, Report, Results,
+    Site, check, files, measure, pictures, speed,
 };
 use crate::output::trajectory::read::{ReadError, ReadOptions, Tracks, Unit, read};
 use crate::runs::outputs::{Manner, Outputs};
@@ -42,19 +42,22 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     let what = what(options, &tracks);
     check(&tracks, &what)?;
     let mut results = Results::create(&folder)?;
-    let mut recording = extras::Recording::create(&folder, &tracks, &site, &what)?;
-    let progress = Progress::new(tracks.len() as u64);
+    let mut recording = MomentRecorder::create(&folder, (&tracks, &site), &what)?;
+    if !recording.has_own_ids() {
+        talk("note: in the recording ids are replaced by numbers in their order, from 0");
+    }
+    let progress = progress(tracks.len() as u64);
     let measured = measure(&tracks, &site, &what, |moments| {
         let rows: usize = moments.iter().map(|moment| moment.people.len()).sum();
-        progress.0.inc(rows as u64);
+        progress.inc(rows as u64);
         results.add(moments)?;
-        recording.add(moments)
+        Ok::<(), Failure>(recording.add(moments)?)
     });
-    progress.0.finish_and_clear();
+    progress.finish_and_clear();
     let measured = measured?;
     results.finish(&measured)?;
     recording.finish()?;
-    extras::save_pictures(&folder, &measured, &site)?;
+    pictures::save(&folder, &measured, &site).map_err(LabError::from)?;
     report_oddities(&measured);
     let report = Report {
         tracks: &tracks,
@@ -76,8 +79,7 @@ fn check_outputs(options: &MeasureOptions, folder: &Path) -> Result<(), Failure>
         outputs.reads("--geometry", plan);
     }
     outputs.writes("--out", folder, Manner::Folder);
-    let names = Results::FILES.into_iter().map(str::to_owned);
-    for name in names.chain(extras::names()) {
+    for name in files() {
         outputs.writes("--out", &folder.join(name), Manner::Beside);
     }
     Ok(outputs.check()?)
@@ -184,16 +186,12 @@ fn report_oddities(measured: &Measured) {
 }
 
 /// A progress bar of the measured rows, shown only if stderr is a terminal.
-struct Progress(ProgressBar);
-
-impl Progress {
-    fn new(rows: u64) -> Self {
-        let bar = ProgressBar::new(rows);
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} rows, {eta} left")
-        {
-            bar.set_style(style);
-        }
-        Self(bar)
+fn progress(rows: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:30} {pos} of {len} rows, {eta} left");
+    let bar = ProgressBar::new(rows);
+    match style {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
     }
 }
 
@@ -206,11 +204,5 @@ impl From<ReadError> for Failure {
 impl From<MeasureError> for Failure {
     fn from(error: MeasureError) -> Self {
         Self::Input(error.to_string())
-    }
-}
-
-impl From<OutputError> for Failure {
-    fn from(error: OutputError) -> Self {
-        Self::Output(error.to_string())
     }
 }

@@ -44,13 +44,8 @@ impl Grid {
     }
 
     /// The number of cells.
-    pub fn len(&self) -> usize {
+    pub fn cells(&self) -> usize {
         self.columns * self.rows
-    }
-
-    /// Whether there are no cells; never true.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 
     /// The center of cell `k`, meters; cells are in rows from the lower left.
@@ -119,8 +114,8 @@ impl Fields {
             })
         };
         Self {
-            views: (0..grid.len()).into_par_iter().map(view).collect(),
-            sums: vec![Sums::default(); grid.len()],
+            views: (0..grid.cells()).into_par_iter().map(view).collect(),
+            sums: vec![Sums::default(); grid.cells()],
             grid,
             kernel,
         }

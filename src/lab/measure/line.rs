@@ -134,6 +134,25 @@ impl Crossings {
         }
     }
 
+    /// The crossings in a direction: 1 forward, −1 backward.
+    pub fn way(&self, direction: i8) -> Way {
+        let all = self.list.iter().filter(|c| c.direction == direction);
+        let mut times = self.passages(direction);
+        let (first, passages) = (times.next(), self.passages(direction).count());
+        let last = times.last().or(first);
+        let span = first.zip(last).map(|(first, last)| last - first);
+        let flow = span.filter(|&span| span > 0.0);
+        let flow = flow.map(|span| (passages - 1) as f64 / span);
+        Way {
+            passages,
+            crossings: all.count(),
+            first_secs: first,
+            last_secs: last,
+            flow_per_s: flow,
+            specific_flow_per_m_s: flow.map(|flow| flow / self.line.length()),
+        }
+    }
+
     /// Times of the passages in a direction, seconds, ascending.
     pub fn passages(&self, direction: i8) -> impl Iterator<Item = f64> + '_ {
         let passages = self.list.iter().filter(|crossing| crossing.passage);
@@ -141,13 +160,21 @@ impl Crossings {
             .filter(move |crossing| crossing.direction == direction)
             .map(|crossing| crossing.time)
     }
+}
 
-    /// (n − 1) / (time of the last passage in this direction − time of the first), P/s; `None` for fewer than two
-    /// passages.
-    pub fn flow(&self, direction: i8) -> Option<f64> {
-        let count = self.passages(direction).count();
-        let first = self.passages(direction).next()?;
-        let last = self.passages(direction).last()?;
-        (last > first).then(|| (count - 1) as f64 / (last - first))
-    }
+/// The crossings of a line in one direction.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Way {
+    /// Number of passages.
+    pub passages: usize,
+    /// Number of crossings, passages or not.
+    pub crossings: usize,
+    /// Time of the first passage, seconds.
+    pub first_secs: Option<f64>,
+    /// Time of the last passage, seconds.
+    pub last_secs: Option<f64>,
+    /// (n − 1) / (time of the last passage − time of the first), P/s; `None` for fewer than two passages.
+    pub flow_per_s: Option<f64>,
+    /// The flow divided by the length of the line, P/(m s).
+    pub specific_flow_per_m_s: Option<f64>,
 }

@@ -20,8 +20,8 @@ pub mod speed;
 pub use density::{Behind, MOST_HIDDEN, Parts, parts};
 pub use diagram::{CLASS, Class, Diagram, FrameMean};
 pub use fields::{Fields, Grid, MOST_CELLS, Mean};
-pub use line::{Crossing, Crossings, Line};
-pub use output::{OutputError, Results};
+pub use line::{Crossing, Crossings, Line, Way};
+pub use output::{Results, files};
 pub use record::MomentRecorder;
 pub use report::Report;
 pub use site::{Hidden, Kernel, Site};
@@ -193,10 +193,9 @@ pub fn measure<E: From<MeasureError>>(
             .collect();
         for moment in &moments {
             overview.add(moment);
-            moment
-                .people
-                .iter()
-                .for_each(|person| seen[person.number as usize] = true);
+            for person in &moment.people {
+                seen[person.number as usize] = true;
+            }
             for (number, diagram) in diagrams.iter_mut().enumerate() {
                 diagram.add(number + 1, moment);
             }
@@ -249,13 +248,15 @@ fn grid(
     chosen: std::ops::Range<usize>,
 ) -> Result<Grid, MeasureError> {
     let rows = tracks.rows(chosen.start).start..tracks.rows(chosen.end - 1).end;
-    let positions = &tracks.position[rows];
-    let first = [positions[0]; 2];
-    let [low, high] = positions
-        .iter()
-        .fold(first, |[low, high], p| [low.inf(p), high.sup(p)]);
+    let [low, high] = bounds(tracks.position[rows].iter().copied());
     let margin = Vector::repeat(options.kernel.support_radius);
     Grid::over(low - margin, high + margin, options.cell).ok_or(MeasureError::Cells(options.cell))
+}
+
+/// The lower left and the upper right corner of the rectangle around some points, meters; infinite without points.
+pub(super) fn bounds(points: impl Iterator<Item = Vector>) -> [Vector; 2] {
+    let far = Vector::repeat(f64::INFINITY);
+    points.fold([far, -far], |[low, high], p| [low.inf(&p), high.sup(&p)])
 }
 
 fn overview(tracks: &Tracks, chosen: std::ops::Range<usize>) -> Overview {

@@ -4,10 +4,14 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{CLASS, Class, Diagram, Fields, Measured, Moment, Person};
+use super::pictures::STEMS;
+use super::record::RECORDING;
+use super::{CLASS, Class, Measured, Moment, Person};
+use crate::analysis::statistics::MeanStd;
+use crate::output::table::{Cell, Table, csv_lines};
+use crate::runs::error::StoreError;
 
 /// All people, frame by frame.
 const AGENTS: &str = "agents.csv";
@@ -16,23 +20,20 @@ const DIAGRAM: &str = "fundamental_diagram.csv";
 const CLASSES: &str = "fundamental_classes.csv";
 const FLOW: &str = "flow.csv";
 
-/// People per parallel task.
-const SOME: usize = 4096;
-
-/// Results cannot be written.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("cannot write {}: {reason}", path.display())]
-pub struct OutputError {
-    /// The file or folder.
-    pub path: PathBuf,
-    /// The system's message.
-    pub reason: String,
+/// The names of all files that a measurement may write, with its recording and its pictures.
+pub fn files() -> impl Iterator<Item = String> {
+    let tables = [AGENTS, FIELDS, DIAGRAM, CLASSES, FLOW, RECORDING];
+    let pictures = STEMS.map(|stem| ["svg", "png"].map(|kind| format!("{stem}.{kind}")));
+    let tables = tables.into_iter().map(str::to_owned);
+    tables.chain(pictures.into_iter().flatten())
 }
 
 /// A folder for results, with an open file of people.
 pub struct Results {
     folder: PathBuf,
     agents: BufWriter<File>,
+    /// Has no frame been written yet?
+    is_empty: bool,
 }
 
 /// A row of [`AGENTS`].
@@ -50,6 +51,7 @@ struct AgentRow {
     density_from_walls: f64,
 }
 
+/// A row of [`FIELDS`]: a cell outside obstacles.
 #[derive(Serialize)]
 struct FieldRow {
     x: f64,
@@ -63,142 +65,93 @@ struct FieldRow {
     people: f64,
 }
 
-#[derive(Serialize)]
-struct ClassRow {
-    region: usize,
-    of: &'static str,
-    density_from: f64,
-    density_to: f64,
-    count: usize,
-    density_mean: f64,
-    density_std: f64,
-    speed_mean: f64,
-    speed_std: f64,
-    flow_mean: f64,
-    flow_std: f64,
-}
-
 impl Results {
-    /// The names of all files that may be written.
-    pub const FILES: [&str; 5] = [AGENTS, FIELDS, DIAGRAM, CLASSES, FLOW];
-
     /// Opens `folder`, creating it if necessary, and begins the file of people, replacing an older one.
     ///
     /// # Errors
     /// The folder or the file cannot be written.
-    pub fn create(folder: &Path) -> Result<Self, OutputError> {
+    pub fn create(folder: &Path) -> Result<Self, StoreError> {
         fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error))?;
         let path = folder.join(AGENTS);
         let file = File::create(&path).map_err(|error| unwritten(&path, &error))?;
-        let mut results = Self {
+        Ok(Self {
             folder: folder.to_owned(),
             agents: BufWriter::new(file),
-        };
-        let head = "frame,time,id,x,y,vel_x,vel_y,speed,density,density_from_walls\n";
-        results.extend(head.as_bytes())?;
-        Ok(results)
+            is_empty: true,
+        })
     }
 
     /// Adds the people of some frames.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn add(&mut self, moments: &[Moment]) -> Result<(), OutputError> {
-        let people = moments.iter();
-        let people =
-            people.flat_map(|moment| moment.people.iter().map(move |person| (moment, person)));
-        let people: Vec<(&Moment, &Person)> = people.collect();
-        let parts = people.par_chunks(SOME).map(|some| {
-            let rows = some
-                .iter()
-                .map(|(moment, person)| agent_row(moment, person));
-            csv_of(rows, false)
-        });
-        let lines = parts.collect::<Result<Vec<_>, _>>();
-        let lines = lines
-            .map_err(|error| self.agents_unwritten(&error))?
-            .concat();
-        self.extend(&lines)
-    }
-
-    fn extend(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
-        let written = self.agents.write_all(bytes);
-        written.map_err(|error| self.agents_unwritten(&error))
-    }
-
-    fn agents_unwritten(&self, error: &dyn std::error::Error) -> OutputError {
-        unwritten(&self.folder.join(AGENTS), error)
+    pub fn add(&mut self, moments: &[Moment]) -> Result<(), StoreError> {
+        let row = |moment: &Moment, person: &Person| AgentRow {
+            frame: moment.frame,
+            time: moment.time,
+            id: person.id,
+            x: person.position.x,
+            y: person.position.y,
+            vel_x: person.velocity.map(|v| v.x),
+            vel_y: person.velocity.map(|v| v.y),
+            speed: person.velocity.map(|v| v.norm()),
+            density: person.density,
+            density_from_walls: person.density_from_walls,
+        };
+        let rows = moments.iter();
+        let rows = rows.flat_map(|moment| moment.people.iter().map(|person| row(moment, person)));
+        let lines = csv_lines(&rows.collect::<Vec<_>>(), self.is_empty);
+        let written = lines
+            .map_err(Into::into)
+            .and_then(|l| self.agents.write_all(&l));
+        self.is_empty = false;
+        written.map_err(|error| unwritten(&self.folder.join(AGENTS), &error))
     }
 
     /// Writes the other files, and closes the file of people.
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn finish(mut self, measured: &Measured) -> Result<(), OutputError> {
+    pub fn finish(mut self, measured: &Measured) -> Result<(), StoreError> {
+        let flushed = self.agents.flush();
+        flushed.map_err(|error| unwritten(&self.folder.join(AGENTS), &error))?;
         let Measured {
-            overview,
-            fields,
             diagrams,
             crossings,
+            ..
         } = measured;
-        let flushed = self.agents.flush();
-        flushed.map_err(|error| self.agents_unwritten(&error))?;
-        self.write(FIELDS, field_rows(fields, overview.frames))?;
+        self.write(FIELDS, csv_lines(&field_rows(measured), true))?;
         let frames = diagrams.iter().flat_map(|diagram| &diagram.frames);
-        self.write(DIAGRAM, frames)?;
-        self.write(CLASSES, diagrams.iter().enumerate().flat_map(class_rows))?;
+        self.write(DIAGRAM, csv_lines(&frames.collect::<Vec<_>>(), true))?;
+        self.write(CLASSES, classes(measured).csv())?;
         if crossings.is_empty() {
             return Ok(());
         }
-        self.write(FLOW, crossings.iter().flat_map(|crossings| &crossings.list))
+        let all = crossings.iter().flat_map(|crossings| &crossings.list);
+        self.write(FLOW, csv_lines(&all.collect::<Vec<_>>(), true))
     }
 
-    fn write(&self, name: &str, rows: impl Iterator<Item: Serialize>) -> Result<(), OutputError> {
+    fn write(&self, name: &str, text: Result<Vec<u8>, csv::Error>) -> Result<(), StoreError> {
         let path = self.folder.join(name);
-        let text = csv_of(rows, true).map_err(|error| unwritten(&path, &error))?;
-        fs::write(&path, text).map_err(|error| unwritten(&path, &error))
+        let written = text
+            .map_err(Into::into)
+            .and_then(|text| fs::write(&path, text));
+        written.map_err(|error| unwritten(&path, &error))
     }
 }
 
-fn unwritten(path: &Path, error: &dyn std::error::Error) -> OutputError {
-    OutputError {
-        path: path.to_owned(),
+fn unwritten(path: &Path, error: &std::io::Error) -> StoreError {
+    StoreError::Unwritable {
+        path: path.display().to_string(),
         reason: error.to_string(),
+        kept: String::new(),
     }
 }
 
-fn csv_of(rows: impl Iterator<Item: Serialize>, head: bool) -> Result<Vec<u8>, csv::Error> {
-    let mut lines = Vec::new();
-    let mut writer = csv::WriterBuilder::new()
-        .has_headers(head)
-        .from_writer(&mut lines);
-    for row in rows {
-        writer.serialize(row)?;
-    }
-    writer.flush()?;
-    drop(writer);
-    Ok(lines)
-}
-
-fn agent_row(moment: &Moment, person: &Person) -> AgentRow {
-    AgentRow {
-        frame: moment.frame,
-        time: moment.time,
-        id: person.id,
-        x: person.position.x,
-        y: person.position.y,
-        vel_x: person.velocity.map(|v| v.x),
-        vel_y: person.velocity.map(|v| v.y),
-        speed: person.velocity.map(|v| v.norm()),
-        density: person.density,
-        density_from_walls: person.density_from_walls,
-    }
-}
-
-/// One row per cell outside obstacles.
-fn field_rows(fields: &Fields, frames: u64) -> impl Iterator<Item = FieldRow> + '_ {
-    let means = fields.means(frames).enumerate();
-    means.filter_map(|(k, mean)| {
+fn field_rows(measured: &Measured) -> Vec<FieldRow> {
+    let fields = &measured.fields;
+    let means = fields.means(measured.overview.frames).enumerate();
+    let rows = means.filter_map(|(k, mean)| {
         let (center, mean) = (fields.grid().center(k), mean?);
         let flow = mean.velocity.map(|velocity| velocity * mean.density);
         Some(FieldRow {
@@ -212,32 +165,30 @@ fn field_rows(fields: &Fields, frames: u64) -> impl Iterator<Item = FieldRow> + 
             flow_y: flow.map(|j| j.y),
             people: mean.people,
         })
-    })
+    });
+    rows.collect()
 }
 
-fn class_rows((k, diagram): (usize, &Diagram)) -> impl Iterator<Item = ClassRow> + '_ {
-    let kinds = [
-        ("persons", &diagram.of_persons),
-        ("frames", &diagram.of_frames),
-    ];
-    kinds.into_iter().flat_map(move |(of, classes)| {
-        let rows = classes.iter();
-        rows.map(move |(&number, class)| class_row(k + 1, of, number, class))
-    })
-}
-
-fn class_row(region: usize, of: &'static str, number: usize, class: &Class) -> ClassRow {
-    ClassRow {
-        region,
-        of,
-        density_from: number as f64 * CLASS,
-        density_to: (number as f64 + 1.0) * CLASS,
-        count: class.density.count,
-        density_mean: class.density.mean,
-        density_std: class.density.population_std(),
-        speed_mean: class.speed.mean,
-        speed_std: class.speed.population_std(),
-        flow_mean: class.flow.mean,
-        flow_std: class.flow.population_std(),
-    }
+/// One row per region, kind of values and density class.
+fn classes(measured: &Measured) -> Table {
+    let regions = measured.diagrams.iter().zip(1_usize..);
+    let classes = regions.flat_map(|(diagram, region)| {
+        let persons = diagram.of_persons.iter().map(|class| ("persons", class));
+        let frames = diagram.of_frames.iter().map(|class| ("frames", class));
+        let both = persons.chain(frames);
+        both.map(move |(of, (&k, class))| (region, of, k, class))
+    });
+    let rows: Vec<(usize, &str, usize, &Class)> = classes.collect();
+    let parts = ["_mean", "_std"];
+    let spread = |of: MeanStd| Cell::Spread(of.mean, Some(of.population_std()));
+    Table::of(&rows)
+        .column("region", |row| row.0)
+        .column("of", |row| row.1)
+        .column("density_from", |row| row.2 as f64 * CLASS)
+        .column("density_to", |row| (row.2 as f64 + 1.0) * CLASS)
+        .column("count", |row| row.3.density.count)
+        .spread("density", 3, parts, |row| spread(row.3.density))
+        .spread("speed", 3, parts, |row| spread(row.3.speed))
+        .spread("flow", 3, parts, |row| spread(row.3.flow))
+        .table()
 }

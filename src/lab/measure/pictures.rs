@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use super::{Class, Crossings, Diagram, Measured, Site};
+use super::{Class, Crossings, Diagram, FrameMean, Measured, Site};
 use crate::analysis::statistics::MeanStd;
 use crate::engine::geometry::Walls;
+use crate::engine::math::Vector;
 use crate::output::colors::{ColorMap, DENSITY, SPEED};
 use crate::output::plot::{
     Axis, BLACK, Cells, ColorBar, Corner, GRAY, LINES, Mark, Panel, PlotError, Point, Sheet, Style,
@@ -40,7 +41,7 @@ pub fn save(folder: &Path, measured: &Measured, site: &Site) -> Result<(), PlotE
 fn maps(measured: &Measured, walls: &Walls) -> Sheet {
     let grid = measured.fields.grid();
     let means: Vec<_> = measured.fields.means(measured.overview.frames).collect();
-    let high = grid.center(grid.len() - 1) + crate::engine::math::Vector::repeat(0.5 * grid.cell);
+    let high = grid.center(grid.cells() - 1) + Vector::repeat(0.5 * grid.cell);
     let (x, y) = ([grid.min.x, high.x], [grid.min.y, high.y]);
     let (width, height) = (x[1] - x[0], y[1] - y[0]);
     let scale = MAP_SIDE / width.max(height);
@@ -72,109 +73,80 @@ fn maps(measured: &Measured, walls: &Walls) -> Sheet {
         let there = mean.filter(|mean| mean.density > NOBODY)?;
         there.speed
     });
-    Sheet {
-        title: String::new(),
-        columns: if width > 1.5 * height { 1 } else { 2 },
-        panel_size: [width, height].map(|side| (side * scale).max(LEAST_SIDE)),
-        shared_axes: false,
-        row_titles: Vec::new(),
-        bar: None,
-        panels: vec![
-            map(
-                "mean density",
-                "density [P/m²]",
-                &DENSITY,
-                density.collect(),
-            ),
-            map("mean speed", "speed [m/s]", &SPEED, speed.collect()),
-        ],
-    }
+    let columns = if width > 1.5 * height { 1 } else { 2 };
+    let size = [width, height].map(|side| (side * scale).max(LEAST_SIDE));
+    let density = map(
+        "mean density",
+        "density [P/m²]",
+        &DENSITY,
+        density.collect(),
+    );
+    let speed = map("mean speed", "speed [m/s]", &SPEED, speed.collect());
+    sheet(columns, size, vec![density, speed])
 }
 
 /// Speed and flow over density: means of frames as dots, classes of people with standard deviations.
 fn diagrams(diagrams: &[Diagram]) -> Sheet {
-    let classes = || {
-        diagrams
-            .iter()
-            .flat_map(|diagram| diagram.of_persons.values())
-    };
-    let top = |of: fn(&Class) -> &MeanStd| {
-        let tops = classes().map(of).filter(|spread| spread.count > 0);
-        let classes = tops.map(|spread| spread.mean + spread.population_std());
-        let dots = diagrams.iter().flat_map(|diagram| dots(diagram, of));
-        classes.chain(dots.map(|dot| dot.y)).fold(0.1, f64::max) * 1.1
-    };
-    let density = classes().filter(|class| class.density.count > 0);
-    let density = density.map(|class| class.density.mean).fold(0.5, f64::max) * 1.1;
-    let panel = |title: &str, label: &str, of: fn(&Class) -> &MeanStd, legend: bool| {
+    let panel = |title: &str,
+                 label: &str,
+                 frame: fn(&FrameMean) -> Option<f64>,
+                 class: fn(&Class) -> MeanStd| {
         let mut marks = Vec::new();
         for (k, diagram) in diagrams.iter().enumerate() {
-            let color = LINES[k % LINES.len()];
-            let pale = color.map(|channel| channel / 3 + 170);
-            marks.push(Mark::Points(dots(diagram, of), Style::full(pale, 1.0, "")));
+            let pale = LINES[k % LINES.len()].map(|channel| channel / 3 + 170);
+            // Thinned: more dots would hide each other.
+            let every = diagram.frames.len().div_ceil(MOST_DOTS).max(1);
+            let frames = diagram.frames.iter().step_by(every);
+            let dots = frames.filter_map(|mean| {
+                let (x, y) = (mean.density, frame(mean)?);
+                Some(Point { x, y, error: 0.0 })
+            });
+            marks.push(Mark::Points(dots.collect(), Style::full(pale, 1.0, "")));
         }
         for (k, diagram) in diagrams.iter().enumerate() {
-            let filled = diagram
-                .of_persons
-                .values()
-                .filter(|class| of(class).count > 0);
-            let points: Vec<Point> = filled
-                .map(|class| Point {
-                    x: class.density.mean,
-                    y: of(class).mean,
-                    error: of(class).population_std(),
-                })
-                .collect();
+            let classes = diagram.of_persons.values();
+            let points = classes.filter(|of| class(of).count > 0).map(|of| Point {
+                x: of.density.mean,
+                y: class(of).mean,
+                error: class(of).population_std(),
+            });
             let name = match diagram.region {
                 None => "everywhere".to_owned(),
                 Some(_) => format!("region {}", k + 1),
             };
             let style = Style::full(LINES[k % LINES.len()], 2.6, &name);
-            marks.push(Mark::Points(points, style));
+            marks.push(Mark::Points(points.collect(), style));
         }
+        let points = marks.iter().flat_map(|mark| match mark {
+            Mark::Points(points, _) => points.as_slice(),
+            _ => &[],
+        });
+        let top = points.map(|point| point.y + point.error);
+        let classes = diagrams.iter().flat_map(|all| all.of_persons.values());
+        let right = classes.map(|class| class.density.mean);
         Panel {
             title: title.to_owned(),
-            x: Axis::linear("density [P/m²]", [0.0, density]),
-            y: Axis::linear(label, [0.0, top(of)]),
+            x: Axis::linear("density [P/m²]", [0.0, 1.1 * right.fold(0.5, f64::max)]),
+            y: Axis::linear(label, [0.0, 1.1 * top.fold(0.1, f64::max)]),
             marks,
             bar: None,
-            legend: legend.then_some(Corner::UpperRight),
+            legend: None,
         }
     };
-    Sheet {
-        title: String::new(),
-        columns: 2,
-        panel_size: [240.0, 200.0],
-        shared_axes: false,
-        row_titles: Vec::new(),
-        bar: None,
-        panels: vec![
-            panel(
-                "speed: persons ± deviation, frames as dots",
-                "speed [m/s]",
-                |c| &c.speed,
-                true,
-            ),
-            panel("flow", "flow [1/(m s)]", |c| &c.flow, false),
-        ],
-    }
-}
-
-/// Means of frames as dots, thinned to at most [`MOST_DOTS`].
-fn dots(diagram: &Diagram, of: fn(&Class) -> &MeanStd) -> Vec<Point> {
-    let every = diagram.frames.len().div_ceil(MOST_DOTS).max(1);
-    let frames = diagram.frames.iter().step_by(every);
-    let dot = |frame: &super::FrameMean| {
-        // A class with a single value, because `of` takes a class.
-        let mut one = Class::default();
-        one.add(frame.density, frame.speed?);
-        Some(Point {
-            x: frame.density,
-            y: of(&one).mean,
-            error: 0.0,
-        })
-    };
-    frames.filter_map(dot).collect()
+    let mut speed = panel(
+        "speed: persons ± deviation, frames as dots",
+        "speed [m/s]",
+        |mean| mean.speed,
+        |class| class.speed,
+    );
+    speed.legend = Some(Corner::UpperRight);
+    let flow = panel(
+        "flow",
+        "flow [1/(m s)]",
+        |mean| mean.flow,
+        |class| class.flow,
+    );
+    sheet(2, [240.0, 200.0], vec![speed, flow])
 }
 
 /// N(t) for every line; dashed for passages backward.
@@ -184,50 +156,49 @@ fn counts(crossings: &[Crossings]) -> Sheet {
             .iter()
             .flat_map(|line| line.list.iter().map(|c| c.time))
     };
-    let (first, last) = (
-        times().fold(f64::INFINITY, f64::min),
-        times().fold(0.0, f64::max),
-    );
+    let last = times().fold(0.0, f64::max);
+    let first = times().fold(f64::INFINITY, f64::min);
     let first = if first < last { first } else { last - 1.0 };
     let mut marks = Vec::new();
     let mut most: f64 = 1.0;
     for (k, line) in crossings.iter().enumerate() {
         let color = LINES[k % LINES.len()];
-        for (direction, name) in [(1, "forward"), (-1, "backward")] {
-            let mut steps = Vec::new();
-            for (n, time) in line.passages(direction).enumerate() {
-                steps.extend([[time, n as f64], [time, (n + 1) as f64]]);
-                most = most.max((n + 1) as f64);
+        let styles: [(_, _, fn(_, _, &str) -> _); 2] =
+            [(1, "forward", Style::full), (-1, "backward", Style::broken)];
+        for (direction, name, style) in styles {
+            let times = line.passages(direction).enumerate();
+            let steps = times.flat_map(|(n, time)| [[time, n as f64], [time, (n + 1) as f64]]);
+            let steps: Vec<[f64; 2]> = steps.collect();
+            if let Some([_, count]) = steps.last() {
+                most = most.max(*count);
+                let label = format!("line {} {name}", k + 1);
+                marks.push(Mark::Line(steps, style(color, 1.2, &label)));
             }
-            if steps.is_empty() {
-                continue;
-            }
-            let label = format!("line {} {name}", k + 1);
-            let style = match direction {
-                1 => Style::full(color, 1.2, &label),
-                _ => Style::broken(color, 1.2, &label),
-            };
-            marks.push(Mark::Line(steps, style));
         }
     }
     if marks.is_empty() {
         let middle = [0.5 * (first + last), 0.5];
-        marks.push(Mark::Text(middle, "nobody passes".to_owned(), BLACK));
+        marks.push(Mark::Text(middle, "no passages".to_owned(), BLACK));
     }
+    let panel = Panel {
+        title: "persons who have passed".to_owned(),
+        x: Axis::linear("t [s]", [first, last]),
+        y: Axis::linear("N", [0.0, 1.05 * most]),
+        marks,
+        bar: None,
+        legend: Some(Corner::UpperLeft),
+    };
+    sheet(1, [330.0, 210.0], vec![panel])
+}
+
+fn sheet(columns: usize, panel_size: [f64; 2], panels: Vec<Panel>) -> Sheet {
     Sheet {
         title: String::new(),
-        columns: 1,
-        panel_size: [330.0, 210.0],
+        columns,
+        panel_size,
         shared_axes: false,
         row_titles: Vec::new(),
         bar: None,
-        panels: vec![Panel {
-            title: "persons who have passed".to_owned(),
-            x: Axis::linear("t [s]", [first, last]),
-            y: Axis::linear("N", [0.0, 1.05 * most]),
-            marks,
-            bar: None,
-            legend: Some(Corner::UpperLeft),
-        }],
+        panels,
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Behind, Moment, Options, Site};
+use super::{Behind, Moment, Options, Site, bounds};
 use crate::engine::agents::REFERENCE_RADIUS;
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
@@ -15,6 +15,9 @@ use crate::output::trajectory::read::Tracks;
 /// largest id.
 const LARGEST_ID: i64 = 1 << 22;
 
+/// The name of the recording in the folder of results.
+pub(super) const RECORDING: &str = "measured.rrd";
+
 /// A recording of measured frames.
 pub struct MomentRecorder<'a> {
     tracks: &'a Tracks,
@@ -25,39 +28,36 @@ pub struct MomentRecorder<'a> {
 }
 
 impl<'a> MomentRecorder<'a> {
-    /// Begins a recording at `path`, replacing an existing file.
+    /// Begins a recording in `folder`, replacing an existing file.
     ///
     /// # Errors
     /// The file cannot be written.
     pub fn create(
-        path: &Path,
+        folder: &Path,
         (tracks, site): (&'a Tracks, &Site),
-        title: &str,
         measured: &Options,
     ) -> Result<Self, RecordingError> {
-        let first = [tracks.position[0]; 2];
-        let [low, high] = tracks
-            .position
-            .iter()
-            .fold(first, |[low, high], p| [low.inf(p), high.sup(p)]);
+        let [low, high] = bounds(tracks.position.iter().copied());
         let margin = Vector::repeat(1.0);
         let ends = [tracks.frames.first(), tracks.frames.last()];
-        let first_and_last = ends.map(|frame| frame.map_or(0.0, |&frame| tracks.time(frame)));
+        let ends = ends.map(|frame| frame.map_or(0.0, |&frame| tracks.time(frame)));
+        let title = folder.file_name().unwrap_or_default().to_string_lossy();
         let options = RecordingOptions {
-            title: title.to_owned(),
+            title: title.into_owned(),
             description: "A crowd that was measured, by its SPH density (§8).".to_owned(),
             document: document(tracks, measured),
             view: Region {
                 min: low - margin,
                 max: high + margin,
             },
-            opens_at: measured.times[0].max(first_and_last[0]),
-            ends_at: measured.times[1].min(first_and_last[1]),
+            opens_at: measured.times[0].max(ends[0]),
+            ends_at: measured.times[1].min(ends[1]),
             debug: DebugAgents::None,
         };
+        let (path, walls) = (folder.join(RECORDING), site.walls());
         Ok(Self {
             tracks,
-            recorder: MeasuredRecorder::create(path, site.walls(), REFERENCE_RADIUS, &options)?,
+            recorder: MeasuredRecorder::create(path.as_path(), walls, REFERENCE_RADIUS, &options)?,
             own_ids: tracks.ids.iter().all(|id| (0..=LARGEST_ID).contains(id)),
             next: None,
         })
@@ -109,17 +109,16 @@ fn document(tracks: &Tracks, options: &Options) -> String {
         Behind::Same => "as dense as where the person stands".to_owned(),
         Behind::Rest(max) => format!("at the rest density, {max} P/m² at most"),
     };
+    let reach = options.speed_reach as f64 * tracks.interval();
     format!(
         "## Measurement\n\
          * {} persons, {} rows, {} frames per second\n\
          * Kernel radius h = {} m, walls by `{:?}`, the crowd behind them {behind}\n\
-         * Velocities from {:.2} s before to {:.2} s after\n",
+         * Velocities from {reach:.2} s before to {reach:.2} s after\n",
         tracks.ids.len(),
         tracks.len(),
         tracks.fps,
         options.kernel.support_radius,
         options.kernel.walls,
-        options.speed_reach as f64 * tracks.interval(),
-        options.speed_reach as f64 * tracks.interval(),
     )
 }

@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Value, json};
 
-use super::{CLASS, Class, Crossings, Diagram, Measured, Options};
+use super::{CLASS, Class, Crossings, Diagram, Measured, Options, Way};
 use crate::analysis::statistics::MeanStd;
-use crate::output::table::OldTable as Table;
+use crate::output::table::{Cell, Table};
 use crate::output::trajectory::read::Tracks;
 
 /// The summary of a measurement.
@@ -23,17 +23,14 @@ impl Report<'_> {
     /// As text for a terminal.
     pub fn text(&self) -> String {
         let overview = &self.measured.overview;
-        let [first, last] = overview.times;
+        let ([first, last], reach) = (overview.times, self.reach());
+        let empty = match overview.empty_frames {
+            0 => String::new(),
+            empty => format!(", {empty} without people"),
+        };
         let mut text = format!(
-            "{} people, {} rows in {} frames at {} fps, {first:.2} s to {last:.2} s{}\n",
-            overview.people,
-            overview.rows,
-            overview.frames,
-            self.tracks.fps,
-            match overview.empty_frames {
-                0 => String::new(),
-                empty => format!(", {empty} without anybody"),
-            },
+            "{} people, {} rows in {} frames at {} fps, {first:.2} s to {last:.2} s{empty}\n",
+            overview.people, overview.rows, overview.frames, self.tracks.fps,
         );
         text += &format!(
             "  density  {:.3} ± {:.3} P/m² over all rows, h = {} m\n",
@@ -42,49 +39,31 @@ impl Report<'_> {
             self.options.kernel.support_radius,
         );
         if let Some(densest) = overview.densest {
-            let person = densest.person;
+            let (person, place) = (densest.person, densest.person.position);
             text += &format!(
                 "           at most {:.3} P/m²: person {} at ({:.2}, {:.2}) m, {:.2} s, frame {}\n",
-                person.density,
-                person.id,
-                person.position.x,
-                person.position.y,
-                densest.time,
-                densest.frame,
+                person.density, person.id, place.x, place.y, densest.time, densest.frame,
             );
         }
         text += &match overview.speed.count {
-            0 => "  speed    not known of anybody\n".to_owned(),
+            0 => "  speed    unknown for all rows\n".to_owned(),
             _ => format!(
-                "  speed    {:.3} ± {:.3} m/s, from {:.2} s before to {:.2} s after\n",
+                "  speed    {:.3} ± {:.3} m/s, from {reach:.2} s before to {reach:.2} s after\n",
                 overview.speed.mean,
                 overview.speed.population_std(),
-                self.reach(),
-                self.reach(),
             ),
         };
         if !self.measured.crossings.is_empty() {
-            text += &format!("\n{}", self.flows().text());
+            text += &format!("\n{}", flows(&self.measured.crossings).text());
         }
         for (k, diagram) in self.measured.diagrams.iter().enumerate() {
-            let place = match diagram.region {
-                None => "everywhere".to_owned(),
-                Some(r) => {
-                    let (min, max) = (r.min, r.max);
-                    format!(
-                        "region {}: ({}, {}) to ({}, {}) m",
-                        k + 1,
-                        min.x,
-                        min.y,
-                        max.x,
-                        max.y
-                    )
-                }
-            };
-            text += &format!(
-                "\nfundamental diagram, {place}\n{}",
-                classes(diagram).text()
-            );
+            let place = diagram.region.map(|region| {
+                let [min, max] = [region.min, region.max].map(|p| format!("({}, {})", p.x, p.y));
+                format!("region {}: {min} to {max} m", k + 1)
+            });
+            let place = place.unwrap_or_else(|| "everywhere".to_owned());
+            let classes = classes(diagram).text();
+            text += &format!("\nfundamental diagram, {place}\n{classes}");
         }
         text
     }
@@ -92,41 +71,6 @@ impl Report<'_> {
     /// Time that a velocity looks back and ahead, seconds.
     fn reach(&self) -> f64 {
         self.options.speed_reach as f64 * self.tracks.interval()
-    }
-
-    fn flows(&self) -> Table {
-        let mut table = Table::new(
-            2,
-            &[
-                "line",
-                "direction",
-                "passages",
-                "crossings",
-                "first s",
-                "last s",
-                "flow 1/s",
-                "1/(m s)",
-            ],
-        );
-        for (k, crossings) in self.measured.crossings.iter().enumerate() {
-            for (direction, name) in [(1, "forward"), (-1, "backward")] {
-                let time = |time: Option<f64>| time.map_or("–".to_owned(), |t| format!("{t:.2}"));
-                let rate = |flow: Option<f64>| flow.map_or("–".to_owned(), |f| format!("{f:.3}"));
-                let flow = crossings.flow(direction);
-                let all = crossings.list.iter().filter(|c| c.direction == direction);
-                table.add([
-                    (k + 1).to_string(),
-                    name.to_owned(),
-                    crossings.passages(direction).count().to_string(),
-                    all.count().to_string(),
-                    time(crossings.passages(direction).next()),
-                    time(crossings.passages(direction).last()),
-                    rate(flow),
-                    rate(flow.map(|flow| flow / crossings.line.length())),
-                ]);
-            }
-        }
-        table
     }
 
     /// As a JSON object.
@@ -145,8 +89,8 @@ impl Report<'_> {
             "wall_method": kernel.walls,
             "speed_window_secs": 2.0 * self.reach(),
             "rows_inside_obstacles": overview.inside.0,
-            "density": spread(&overview.density),
-            "speed": spread(&overview.speed),
+            "density": mean_and_std(&overview.density),
+            "speed": mean_and_std(&overview.speed),
             "densest": overview.densest.map(|densest| json!({
                 "density": densest.person.density,
                 "id": densest.person.id,
@@ -162,72 +106,68 @@ impl Report<'_> {
     }
 }
 
-/// One row per density class, with values of people and of frames.
-fn classes(diagram: &Diagram) -> Table {
-    let head = [
-        "density P/m²",
-        "rows",
-        "speed m/s",
-        "±",
-        "flow 1/(m s)",
-        "±",
-        "frames",
-        "speed m/s",
-        "±",
-    ];
-    let mut table = Table::new(1, &head);
-    let none = Class::default();
-    let numbers = diagram.of_persons.keys().chain(diagram.of_frames.keys());
-    for k in numbers.collect::<BTreeSet<_>>() {
-        let persons = diagram.of_persons.get(k).unwrap_or(&none);
-        let frames = diagram.of_frames.get(k).unwrap_or(&none);
-        let from = *k as f64 * CLASS;
-        let number = |spread: &MeanStd, value: f64| match spread.count {
-            0 => "–".to_owned(),
-            _ => format!("{value:.3}"),
-        };
-        let mean = |spread: &MeanStd| number(spread, spread.mean);
-        let deviation = |spread: &MeanStd| number(spread, spread.population_std());
-        table.add([
-            format!("{from:.1}–{:.1}", from + CLASS),
-            persons.density.count.to_string(),
-            mean(&persons.speed),
-            deviation(&persons.speed),
-            mean(&persons.flow),
-            deviation(&persons.flow),
-            frames.density.count.to_string(),
-            mean(&frames.speed),
-            deviation(&frames.speed),
-        ]);
-    }
-    table
+/// Two rows per line: forward and backward.
+fn flows(crossings: &[Crossings]) -> Table {
+    let lines = crossings.iter().zip(1_usize..);
+    let ways = lines.flat_map(|(line, number)| {
+        [(1, "forward"), (-1, "backward")].map(|(way, name)| (number, name, line.way(way)))
+    });
+    let ways: Vec<(usize, &str, Way)> = ways.collect();
+    Table::of(&ways)
+        .column("line", |row| row.0)
+        .column("direction", |row| row.1)
+        .column("passages", |row| row.2.passages)
+        .column("crossings", |row| row.2.crossings)
+        .fixed("first [s]", 2, |row| row.2.first_secs)
+        .fixed("last [s]", 2, |row| row.2.last_secs)
+        .fixed("flow [1/s]", 3, |row| row.2.flow_per_s)
+        .fixed("flow [1/(m s)]", 3, |row| row.2.specific_flow_per_m_s)
+        .table()
 }
 
-fn spread(spread: &MeanStd) -> Value {
-    match spread.count {
+/// One row per density class, with values of people and of frames.
+fn classes(diagram: &Diagram) -> Table {
+    let class = |classes: &BTreeMap<usize, Class>, k| classes.get(k).copied().unwrap_or_default();
+    let numbers = diagram.of_persons.keys().chain(diagram.of_frames.keys());
+    let numbers: BTreeSet<&usize> = numbers.collect();
+    let rows = numbers.into_iter().map(|k| {
+        let from = *k as f64 * CLASS;
+        (
+            from,
+            class(&diagram.of_persons, k),
+            class(&diagram.of_frames, k),
+        )
+    });
+    let rows: Vec<(f64, Class, Class)> = rows.collect();
+    let spread =
+        |of: MeanStd| (of.count > 0).then(|| Cell::Spread(of.mean, Some(of.population_std())));
+    Table::of(&rows)
+        .column("density [P/m²]", |row| {
+            format!("{:.1}–{:.1}", row.0, row.0 + CLASS)
+        })
+        .column("rows", |row| row.1.density.count)
+        .fixed("speed [m/s]", 3, |row| spread(row.1.speed))
+        .fixed("flow [1/(m s)]", 3, |row| spread(row.1.flow))
+        .column("frames", |row| row.2.density.count)
+        .fixed("speed [m/s]", 3, |row| spread(row.2.speed))
+        .table()
+}
+
+/// `null` without values.
+fn mean_and_std(of: &MeanStd) -> Value {
+    match of.count {
         0 => Value::Null,
-        _ => json!({"mean": spread.mean, "std": spread.population_std()}),
+        _ => json!({"mean": of.mean, "std": of.population_std()}),
     }
 }
 
 fn line(crossings: &Crossings) -> Value {
     let ends = [crossings.line.start, crossings.line.end].map(|p| [p.x, p.y]);
-    let way = |direction: i8| {
-        let flow = crossings.flow(direction);
-        json!({
-            "passages": crossings.passages(direction).count(),
-            "crossings": crossings.list.iter().filter(|c| c.direction == direction).count(),
-            "first_secs": crossings.passages(direction).next(),
-            "last_secs": crossings.passages(direction).last(),
-            "flow_per_s": flow,
-            "specific_flow_per_m_s": flow.map(|flow| flow / crossings.line.length()),
-        })
-    };
     json!({
         "ends": ends,
         "length": crossings.line.length(),
-        "forward": way(1),
-        "backward": way(-1),
+        "forward": crossings.way(1),
+        "backward": crossings.way(-1),
         "across_gaps": crossings.across_gaps,
     })
 }
@@ -239,9 +179,9 @@ fn diagram(diagram: &Diagram) -> Value {
                 "density_from": k as f64 * CLASS,
                 "density_to": (k as f64 + 1.0) * CLASS,
                 "count": class.density.count,
-                "density": spread(&class.density),
-                "speed": spread(&class.speed),
-                "flow": spread(&class.flow),
+                "density": mean_and_std(&class.density),
+                "speed": mean_and_std(&class.speed),
+                "flow": mean_and_std(&class.flow),
             })
         };
         classes.iter().map(class).collect::<Vec<_>>()

@@ -1,5 +1,6 @@
 //! The measurement site: the parts of a kernel that walls hide, from people and from grid cells.
 
+use super::bounds;
 use crate::engine::boundary::WallMethod;
 use crate::engine::geometry::{Polygon, Walls};
 use crate::engine::math::Vector;
@@ -40,11 +41,7 @@ impl Site {
             if obstacle.is_unbounded() {
                 return [f64::NEG_INFINITY, f64::INFINITY].map(Vector::repeat);
             }
-            let corners = obstacle.points();
-            let first = [corners[0]; 2];
-            corners
-                .iter()
-                .fold(first, |[low, high], p| [low.inf(p), high.sup(p)])
+            bounds(obstacle.points().iter().copied())
         });
         Self {
             bounds: bounds.collect(),

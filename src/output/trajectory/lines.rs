@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::error::Cause;
 use super::{Row, Sink};
+use crate::output::table::csv_lines;
 
 /// Lines per parallel task.
 const SOME: usize = 1024;
@@ -17,7 +18,7 @@ pub struct Lines {
     /// Length of the file, bytes.
     length: u64,
     frames: u64,
-    format: fn(rows: &[Row<'_>], is_first: bool) -> io::Result<Vec<u8>>,
+    format: fn(rows: &[Row<'_>], is_first: bool) -> Result<Vec<u8>, Cause>,
 }
 
 impl Lines {
@@ -47,17 +48,14 @@ impl Lines {
             file,
             length: 0,
             frames: 0,
-            format: csv,
+            format: |rows, is_first| Ok(csv_lines(rows, is_first)?),
         }
     }
 }
 
 impl Sink for Lines {
     fn write(&mut self, _: u64, rows: &[Row<'_>]) -> Result<(), Cause> {
-        let (format, is_first) = (self.format, self.length == 0);
-        let parts = rows.par_chunks(SOME).enumerate();
-        let parts = parts.map(|(k, rows)| format(rows, is_first && k == 0));
-        let lines = parts.collect::<io::Result<Vec<_>>>()?.concat();
+        let lines = (self.format)(rows, self.length == 0)?;
         if let Err(error) = self.file.write_all(&lines) {
             // Remove the partial frame. If truncating fails too, the file ends with it.
             self.file.set_len(self.length).ok();
@@ -77,24 +75,14 @@ impl Sink for Lines {
     }
 }
 
-fn text(rows: &[Row<'_>], _: bool) -> io::Result<Vec<u8>> {
-    let mut lines = Vec::new();
-    for row in rows {
-        let Row { id, frame, .. } = row;
-        writeln!(lines, "{id}\t{frame}\t{}\t{}\t0", row.pos_x, row.pos_y)?;
-    }
-    Ok(lines)
-}
-
-fn csv(rows: &[Row<'_>], is_first: bool) -> io::Result<Vec<u8>> {
-    let mut lines = Vec::new();
-    let mut writer = csv::WriterBuilder::new()
-        .has_headers(is_first)
-        .from_writer(&mut lines);
-    for row in rows {
-        writer.serialize(row)?;
-    }
-    writer.flush()?;
-    drop(writer);
-    Ok(lines)
+fn text(rows: &[Row<'_>], _: bool) -> Result<Vec<u8>, Cause> {
+    let parts = rows.par_chunks(SOME).map(|rows| {
+        let mut lines = Vec::new();
+        for row in rows {
+            let Row { id, frame, .. } = row;
+            writeln!(lines, "{id}\t{frame}\t{}\t{}\t0", row.pos_x, row.pos_y)?;
+        }
+        Ok(lines)
+    });
+    Ok(parts.collect::<io::Result<Vec<_>>>()?.concat())
 }
