@@ -2,9 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::common::quadrature::{Integrals, cross, shadow, swept};
+use crate::common::quadrature::{cross, swept};
 use crate::common::{polygon, rectangle, room, vector};
 use proptest::prelude::*;
+use sandbox::analysis::wall_integrals::{Integrals, Region};
 use sandbox::engine::boundary::{WallMethod, WallShare};
 use sandbox::engine::geometry::{Polygon, Walls};
 use sandbox::engine::math::Vector;
@@ -14,6 +15,10 @@ fn shares(method: WallMethod, walls: &Walls, r_i: Vector, h: f64) -> Vec<WallSha
     let mut shares = Vec::new();
     method.shares(walls, &all, r_i, h, |share| shares.push(share));
     shares
+}
+
+fn sum(shares: &[WallShare]) -> Integrals {
+    shares.iter().map(Integrals::from).sum()
 }
 
 /// A triangle whose first edge is the wall from `start` to `end`; its third corner lies behind.
@@ -35,7 +40,7 @@ fn an_infinite_wall_gives_the_printed_values() {
             (WallMethod::Representative, representative),
         ];
         for (method, [kernel, gradient]) in cases {
-            let found = Integrals::of(&shares(method, &walls, vector(3.0, d), 1.0));
+            let found = sum(&shares(method, &walls, vector(3.0, d), 1.0));
             assert!((found.kernel - kernel).abs() < 5e-6, "{method:?} {found:?}");
             // ∇W points to where W grows, here into the wall.
             assert!(
@@ -45,7 +50,7 @@ fn an_infinite_wall_gives_the_printed_values() {
             assert!(found.gradient.y < 0.0 && found.gradient.x.abs() < 1e-12);
         }
     }
-    let area = Integrals::of(&shares(WallMethod::Exact, &walls, vector(0.0, 0.5), 1.0)).area;
+    let area = sum(&shares(WallMethod::Exact, &walls, vector(0.0, 0.5), 1.0)).area;
     assert!((area - 0.61418).abs() < 5e-6);
 }
 
@@ -64,13 +69,13 @@ fn a_wall_hides_the_points_whose_line_of_sight_crosses_it() {
         let crosses = sides(start, end, r_i) != sides(start, end, p)
             && sides(r_i, p, start) != sides(r_i, p, end);
         if x.norm() < h && crosses {
-            seen.add(x, cell * cell, h);
+            seen = seen + Integrals::of_piece(x, cell * cell, h);
         }
     }
     let found: Vec<WallShare> = shares(WallMethod::Exact, &walls, r_i, h);
     assert_eq!(found.len(), 1, "the other faces look away");
-    assert!(Integrals::of(&found).difference(&seen) < 1e-3);
-    assert!(swept(walls.wall(found[0].wall), r_i, h).difference(&seen) < 1e-3);
+    assert!(sum(&found).distance(&seen) < 1e-3);
+    assert!(swept(walls.wall(found[0].wall), r_i, h).distance(&seen) < 1e-3);
 }
 
 /// A wall in any direction near an agent at `r_i`, which is `d` meters in front of its line. The foot of the
@@ -101,8 +106,8 @@ proptest! {
         let found: Vec<WallShare> = found.into_iter().filter(|share| share.wall == 0).collect();
         let expected = swept(walls.wall(0), r_i, h);
         prop_assert!(
-            Integrals::of(&found).difference(&expected) < 1e-9,
-            "{:?} {expected:?}", Integrals::of(&found)
+            sum(&found).distance(&expected) < 1e-9,
+            "{:?} {expected:?}", sum(&found)
         );
         prop_assert_eq!(found.is_empty(), expected.area == 0.0);
     }
@@ -118,12 +123,12 @@ proptest! {
         for method in [WallMethod::Representative, WallMethod::Exact, WallMethod::Union] {
             let near = facing_wall(Vector::zeros(), 0.0, d, foot, 2.0);
             let far = facing_wall(vector(x, y), angle, d.max(1e-8), foot, 2.0);
-            let before = Integrals::of(&shares(method, &near, Vector::zeros(), 1.0)[..1]);
-            let mut after = Integrals::of(&shares(method, &far, vector(x, y), 1.0)[..1]);
+            let before = sum(&shares(method, &near, Vector::zeros(), 1.0)[..1]);
+            let mut after = sum(&shares(method, &far, vector(x, y), 1.0)[..1]);
             let (sine, cosine) = angle.sin_cos();
             let g = after.gradient;
             after.gradient = vector(cosine * g.x + sine * g.y, cosine * g.y - sine * g.x);
-            prop_assert!(before.difference(&after) < 1e-6);
+            prop_assert!(before.distance(&after) < 1e-6);
         }
     }
 
@@ -144,9 +149,9 @@ proptest! {
                     .into_iter()
                     .filter(|share| walls.wall(share.wall).normal.y > 0.5)
                     .collect();
-                Integrals::of(&top)
+                sum(&top)
             };
-            let difference = at(d).difference(&at(0.0));
+            let difference = at(d).distance(&at(0.0));
             prop_assert!(difference < 1e-5, "{method:?} {d:e} {:?} {:?}", at(d), at(0.0));
         }
     }
@@ -166,9 +171,8 @@ proptest! {
             prop_assert!((point.norm() - 0.5 * (nearest.norm() + 1.0)).abs() < 1e-12);
             prop_assert!(cross(point, nearest).abs() < 1e-12 && point.dot(&nearest) >= 0.0);
             let area = swept(wall, r_i, 1.0).area;
-            let mut expected = Integrals::none();
-            expected.add(point, area, 1.0);
-            prop_assert!(Integrals::of(&[share]).difference(&expected) < 1e-9);
+            let expected = Integrals::of_piece(point, area, 1.0);
+            prop_assert!(sum(&[share]).distance(&expected) < 1e-9);
         }
     }
 }
@@ -243,14 +247,14 @@ fn the_union_of_shadows_agrees_with_quadrature_over_visible_walls() {
             if walls.obstacle_at(r_i).is_some() {
                 continue;
             }
-            let union = Integrals::of(&shares(WallMethod::Union, &walls, r_i, 1.0));
-            let expected = shadow(&walls, r_i, 1.0);
-            let difference = union.difference(&expected);
+            let union = sum(&shares(WallMethod::Union, &walls, r_i, 1.0));
+            let expected = Integrals::over(Region::Hidden, &walls, r_i, 1.0, 1e-9);
+            let difference = union.distance(&expected);
             assert!(
                 difference < 1e-6,
                 "{name} {r_i:?}: {difference:e} {union:?} {expected:?}"
             );
-            let sum = Integrals::of(&shares(WallMethod::Exact, &walls, r_i, 1.0));
+            let sum = sum(&shares(WallMethod::Exact, &walls, r_i, 1.0));
             assert!(union.kernel <= sum.kernel + 1e-12 && union.area <= sum.area + 1e-12);
             assert!(union.kernel < 1.0 && union.area < PI);
         }
@@ -267,9 +271,9 @@ fn the_faces_of_one_convex_body_hide_different_points() {
     for k in 0..500 {
         let t = f64::from(k) * 0.777;
         let r_i = vector(t.cos(), t.sin()) * (0.42 + 0.001 * f64::from(k));
-        let exact = Integrals::of(&shares(WallMethod::Exact, &walls, r_i, 1.0));
-        let union = Integrals::of(&shares(WallMethod::Union, &walls, r_i, 1.0));
-        assert!(exact.difference(&union) < 1e-11);
+        let exact = sum(&shares(WallMethod::Exact, &walls, r_i, 1.0));
+        let union = sum(&shares(WallMethod::Union, &walls, r_i, 1.0));
+        assert!(exact.distance(&union) < 1e-11);
     }
 }
 
@@ -277,10 +281,10 @@ fn the_faces_of_one_convex_body_hide_different_points() {
 fn the_union_next_to_a_wall_is_continuous_down_to_it() {
     let walls = Walls::new(vec![room(6.0, 0.8)]);
     for along in [0.05, 0.4, 2.35, 2.59, 3.0] {
-        let at = |d: f64| Integrals::of(&shares(WallMethod::Union, &walls, vector(d, along), 1.0));
+        let at = |d: f64| sum(&shares(WallMethod::Union, &walls, vector(d, along), 1.0));
         let limit = at(1e-6);
         for d in [0.0, 1e-300, 1e-17, 1e-14, 1e-12, 1e-10, 1e-8] {
-            let difference = at(d).difference(&limit);
+            let difference = at(d).distance(&limit);
             assert!(difference < 1e-4, "along {along}, d {d:e}: {difference:e}");
         }
     }

@@ -1,5 +1,5 @@
-//! Analysis: statistics over values, space-time diagrams and the speed of waves in them, and linear theory: the speed
-//! of sound in a crowd and the largest stable time step. It uses only the engine.
+//! Analysis: statistics over values, space-time diagrams and the speed of waves in them, linear theory (the speed of
+//! sound in a crowd and the largest stable time step), and integrals over walls by quadrature. It uses only the engine.
 
 pub mod statistics;
 
@@ -8,3 +8,5 @@ pub mod wave;
 pub mod sound;
 
 pub mod stability;
+
+pub mod wall_integrals;

@@ -81,7 +81,7 @@ impl Report {
         store.write("accuracy.md", text.as_bytes())?;
         store.write("accuracy.csv", &self.csv()?)?;
         if let Some(walls) = &self.walls {
-            store.write("accuracy-walls.csv", walls.csv().as_bytes())?;
+            store.write("accuracy-walls.csv", &walls.csv()?)?;
         }
         let json = format!("{}\n", self.json());
         store.write("accuracy.json", json.as_bytes())?;

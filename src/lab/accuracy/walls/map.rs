@@ -1,8 +1,9 @@
 //! Walls as a map: the effect of the solid on an agent, precomputed at the nodes of a grid.
 
-use super::{Integrals, Region};
+use crate::analysis::wall_integrals::{Integrals, Region};
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
+use crate::lab::measure::bounds;
 
 /// Tolerance of the integrals at the nodes; the error of the interpolation is orders of magnitude larger.
 const TOLERANCE: f64 = 1e-6;
@@ -36,12 +37,7 @@ pub struct Map {
 impl Map {
     /// A map of the bounding box of `floor`; `spacing` in meters.
     pub fn over(walls: &Walls, floor: &[Vector], spacing: f64, stored: Stored, h: f64) -> Self {
-        let low = floor
-            .iter()
-            .fold(Vector::repeat(f64::INFINITY), |low, p| low.inf(p));
-        let high = floor
-            .iter()
-            .fold(Vector::repeat(f64::NEG_INFINITY), |high, p| high.sup(p));
+        let [low, high] = bounds(floor.iter().copied());
         let corner = (low / spacing).map(f64::floor) * spacing;
         let cells = ((high - corner) / spacing).map(|cells| cells.floor() + 1.0);
         let (columns, rows) = (cells.x as usize + 1, cells.y as usize + 1);

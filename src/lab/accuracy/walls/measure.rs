@@ -1,10 +1,13 @@
 //! Errors and costs of every method on every path.
 
+use std::hint::black_box;
+use std::time::Instant;
+
 use serde::Serialize;
 
-use super::timing::{self, Effort};
-use super::{Case, Integrals, METHODS, Method, Prepared, Region, SUPPORT_RADIUS, cases};
+use super::{Case, METHODS, Method, Prepared, SUPPORT_RADIUS, cases};
 use crate::analysis::statistics::Range;
+use crate::analysis::wall_integrals::{Integrals, Region};
 use crate::engine::math::Vector;
 
 /// Tolerances of the exact integrals, and of those that they are checked against.
@@ -96,23 +99,8 @@ pub struct WallReport {
 
 /// Measures every method on every path.
 pub fn measure(quick: bool) -> WallReport {
-    let (places, effort) = if quick {
-        (
-            10,
-            Effort {
-                turns: 3,
-                passes: 2,
-            },
-        )
-    } else {
-        (
-            50,
-            Effort {
-                turns: 7,
-                passes: 40,
-            },
-        )
-    };
+    // Turns of all methods, and passes of a method along the path in each turn.
+    let (places, effort) = if quick { (10, [3, 2]) } else { (50, [7, 40]) };
     let cases = cases(places);
     WallReport {
         quick,
@@ -120,76 +108,63 @@ pub fn measure(quick: bool) -> WallReport {
     }
 }
 
-/// The exact integrals over both regions at every place.
-struct Truth {
-    hidden: Vec<Integrals>,
-    solid: Vec<Integrals>,
-}
+fn of_case(case: &Case, [turns, passes]: [usize; 2]) -> CaseReport {
+    let exact = |region, tolerance| -> Vec<Integrals> {
+        let places = case.places.iter().map(|place| place.position);
+        let over = |r_i| Integrals::over(region, &case.walls, r_i, SUPPORT_RADIUS, tolerance);
+        places.map(over).collect()
+    };
+    let [hidden, solid] = [Region::Hidden, Region::Solid].map(|region| exact(region, TOLERANCE));
+    let coarser = [Region::Hidden, Region::Solid].map(|region| exact(region, COARSER_TOLERANCE));
+    let changes = hidden.iter().chain(&solid).zip(coarser.iter().flatten());
+    let [solid_density, solid_force] = errors(&solid, &hidden);
 
-impl Truth {
-    fn to(tolerance: f64, case: &Case) -> Self {
-        let over = |region| {
-            let places = case.places.iter().map(|place| place.position);
-            places
-                .map(|r_i| Integrals::over(region, &case.walls, r_i, SUPPORT_RADIUS, tolerance))
-                .collect()
+    let mut prepared: Vec<Prepared> = METHODS.map(|method| method.prepare(case)).into();
+    let mut ns = vec![Vec::with_capacity(turns); METHODS.len()];
+    for _ in 0..turns {
+        for (method, ns) in prepared.iter_mut().zip(&mut ns) {
+            ns.push(ns_per_place(case, passes, |r_i| {
+                black_box(method.integrals(r_i));
+            }));
+        }
+    }
+    let methods = METHODS.into_iter().zip(&mut prepared).zip(&ns);
+    let methods = methods.map(|((method, prepared), ns)| {
+        let exact = match method.region() {
+            Region::Hidden => &hidden,
+            Region::Solid => &solid,
         };
-        Self {
-            hidden: over(Region::Hidden),
-            solid: over(Region::Solid),
-        }
-    }
-
-    fn of(&self, region: Region) -> &[Integrals] {
-        match region {
-            Region::Hidden => &self.hidden,
-            Region::Solid => &self.solid,
-        }
-    }
-
-    fn difference(&self, other: &Self) -> f64 {
-        let own = self.hidden.iter().chain(&self.solid);
-        let others = other.hidden.iter().chain(&other.solid);
-        own.zip(others)
-            .map(|(a, b)| a.distance(b))
-            .fold(0.0, f64::max)
-    }
-}
-
-fn of_case(case: &Case, effort: Effort) -> CaseReport {
-    let truth = Truth::to(TOLERANCE, case);
-    let [solid_density, solid_force] = errors(&truth.solid, &truth.hidden);
-    let prepared = METHODS.map(|method| timing::prepared(method, case, effort));
-    let (mut prepared, preparation_ms): (Vec<Prepared>, Vec<f64>) = prepared.into_iter().unzip();
-    let times = timing::evaluations(&mut prepared, case, effort);
-    let methods = METHODS
-        .iter()
-        .zip(&mut prepared)
-        .zip(preparation_ms)
-        .zip(times);
+        let times = (Range::of(ns), preparation_ms(method, case, turns));
+        of_method(method, prepared, (case, exact), times)
+    });
+    let mut near = Vec::new();
+    let search = |_| {
+        ns_per_place(case, passes, |r_i| {
+            near.clear();
+            case.walls.near(r_i, SUPPORT_RADIUS, &mut near);
+            black_box(&near);
+        })
+    };
     CaseReport {
         name: case.name,
         axis: case.axis,
         along: case.places.iter().map(|place| place.along).collect(),
-        hidden: curve(&truth.hidden),
-        solid: curve(&truth.solid),
+        hidden: curve(&hidden),
+        solid: curve(&solid),
         solid_density,
         solid_force,
-        quadrature: truth.difference(&Truth::to(COARSER_TOLERANCE, case)),
-        search_ns: Range::of(&timing::searches(case, effort)),
-        methods: methods
-            .map(|(((method, prepared), preparation_ms), ns)| MethodReport {
-                preparation_ms,
-                ns: Range::of(&ns),
-                ..of_method(method, prepared, case, &truth)
-            })
-            .collect(),
+        quadrature: changes.map(|(a, b)| a.distance(b)).fold(0.0, f64::max),
+        methods: methods.collect(),
+        search_ns: Range::of(&(0..turns).map(search).collect::<Vec<_>>()),
     }
 }
 
-/// All results but the times.
-fn of_method(method: &Method, prepared: &mut Prepared, case: &Case, truth: &Truth) -> MethodReport {
-    let exact = truth.of(method.region());
+fn of_method(
+    method: Method,
+    prepared: &mut Prepared,
+    (case, exact): (&Case, &[Integrals]),
+    (ns, preparation_ms): (Range, f64),
+) -> MethodReport {
     let places = case.places.iter().map(|place| place.position);
     let found: Vec<Integrals> = places.map(|r_i| prepared.integrals(r_i)).collect();
     let [density, force] = errors(&found, exact);
@@ -203,11 +178,31 @@ fn of_method(method: &Method, prepared: &mut Prepared, case: &Case, truth: &Trut
         density,
         force,
         roughness: case.tangent.map(along),
-        ns: Range::of(&[]),
-        preparation_ms: 0.0,
-        bytes: prepared.bytes(),
+        ns,
+        preparation_ms,
+        bytes: prepared.bytes,
         curve: curve(&found),
     }
+}
+
+/// Milliseconds before the first frame: the median of some turns.
+fn preparation_ms(method: Method, case: &Case, turns: usize) -> f64 {
+    let turn = |_| {
+        let start = Instant::now();
+        black_box(method.prepare(case).bytes);
+        1e3 * start.elapsed().as_secs_f64()
+    };
+    Range::of(&(0..turns).map(turn).collect::<Vec<_>>()).median
+}
+
+/// Nanoseconds per place of some passes along the path.
+fn ns_per_place(case: &Case, passes: usize, mut visit: impl FnMut(Vector)) -> f64 {
+    let start = Instant::now();
+    for _ in 0..passes {
+        let places = case.places.iter();
+        places.for_each(|place| visit(black_box(place.position)));
+    }
+    1e9 * start.elapsed().as_secs_f64() / (passes * case.places.len()) as f64
 }
 
 /// The errors of density and force.
@@ -225,9 +220,8 @@ fn largest(exact: &[Integrals]) -> [f64; 2] {
     [0, 1].map(|n| values.iter().map(|value| value[n]).fold(0.0, f64::max))
 }
 
+/// ∫ W and |∫ ∇W| place by place.
 fn curve(integrals: &[Integrals]) -> Vec<[f64; 2]> {
-    integrals
-        .iter()
-        .map(|i| [i.kernel, i.gradient.norm()])
-        .collect()
+    let values = integrals.iter();
+    values.map(|i| [i.kernel, i.gradient.norm()]).collect()
 }

@@ -1,8 +1,8 @@
 //! The compared methods of including walls.
 
-use super::{Case, Integrals, Map, Particles, Region, SUPPORT_RADIUS, Stored, Volumes};
+use super::{Case, Map, Particles, SUPPORT_RADIUS, Stored, Volumes};
+use crate::analysis::wall_integrals::{Integrals, Region};
 use crate::engine::boundary::WallMethod;
-use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 
 /// A method of including walls.
@@ -76,9 +76,9 @@ impl Method {
     /// The region that the method is meant to integrate over.
     pub fn region(&self) -> Region {
         match self {
-            Self::Polygons(_) => Region::Hidden,
-            // Their volumes represent a solid body behind the wall, even if the wall is thin.
-            Self::Particles {
+            // Akinci's volumes represent a solid body behind the wall, even if the wall is thin.
+            Self::Polygons(_)
+            | Self::Particles {
                 volumes: Volumes::Akinci,
                 ..
             } => Region::Hidden,
@@ -90,70 +90,46 @@ impl Method {
     pub fn prepare(self, case: &Case) -> Prepared<'_> {
         let (walls, h) = (&case.walls, SUPPORT_RADIUS);
         match self {
-            Self::Polygons(method) => Prepared::Polygons {
-                method,
-                walls,
-                near: Vec::new(),
-            },
+            Self::Polygons(method) => {
+                let mut near = Vec::new();
+                Prepared::new(0, move |r_i| {
+                    near.clear();
+                    walls.near(r_i, h, &mut near);
+                    let mut sum = Integrals::none();
+                    method.shares(walls, &near, r_i, h, |share| sum = sum + (&share).into());
+                    sum
+                })
+            }
             Self::Particles { spacing, volumes } => {
-                Prepared::Particles(Particles::fill(walls, spacing, volumes, h))
+                let particles = Particles::fill(walls, spacing, volumes, h);
+                Prepared::new(particles.bytes(), move |r_i| particles.integrals(r_i))
             }
             Self::Map { spacing, stored } => {
                 let floor: Vec<Vector> = case.places.iter().map(|place| place.position).collect();
-                Prepared::Map(Map::over(walls, &floor, spacing, stored, h))
+                let map = Map::over(walls, &floor, spacing, stored, h);
+                Prepared::new(map.bytes(), move |r_i| map.integrals(r_i))
             }
         }
     }
 }
 
 /// A method prepared for one case.
-#[derive(Debug, Clone)]
-pub enum Prepared<'a> {
-    /// The polygons themselves.
-    Polygons {
-        /// The method.
-        method: WallMethod,
-        /// The polygons.
-        walls: &'a Walls,
-        /// A buffer for the walls within reach.
-        near: Vec<u32>,
-    },
-    /// Particles in the obstacles.
-    Particles(Particles),
-    /// A map of the floor.
-    Map(Map),
+pub struct Prepared<'a> {
+    integrals: Box<dyn FnMut(Vector) -> Integrals + 'a>,
+    /// Memory in addition to the polygons, which a crowd needs anyway, bytes.
+    pub bytes: usize,
 }
 
-impl Prepared<'_> {
-    /// The integrals over the walls for an agent at `r_i`, including the search for what is within reach.
-    pub fn integrals(&mut self, r_i: Vector) -> Integrals {
-        match self {
-            Self::Polygons {
-                method,
-                walls,
-                near,
-            } => {
-                near.clear();
-                walls.near(r_i, SUPPORT_RADIUS, near);
-                let mut sum = Integrals::none();
-                method.shares(walls, near, r_i, SUPPORT_RADIUS, |share| {
-                    sum.area += share.hidden_area;
-                    sum.kernel += share.kernel;
-                    sum.gradient += share.gradient;
-                });
-                sum
-            }
-            Self::Particles(particles) => particles.integrals(r_i),
-            Self::Map(map) => map.integrals(r_i),
+impl<'a> Prepared<'a> {
+    fn new(bytes: usize, integrals: impl FnMut(Vector) -> Integrals + 'a) -> Self {
+        Self {
+            integrals: Box::new(integrals),
+            bytes,
         }
     }
 
-    /// Memory in addition to the polygons, which a crowd needs anyway, bytes.
-    pub fn bytes(&self) -> usize {
-        match self {
-            Self::Polygons { .. } => 0,
-            Self::Particles(particles) => particles.bytes(),
-            Self::Map(map) => map.bytes(),
-        }
+    /// The integrals over the walls for an agent at `r_i`, including the search for what is within reach.
+    pub fn integrals(&mut self, r_i: Vector) -> Integrals {
+        (self.integrals)(r_i)
     }
 }

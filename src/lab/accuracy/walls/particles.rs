@@ -1,9 +1,10 @@
 //! Walls made of boundary particles, as in fluids: fixed particles that fill the obstacles.
 
-use super::Integrals;
+use crate::analysis::wall_integrals::Integrals;
 use crate::engine::geometry::Walls;
 use crate::engine::kernel;
 use crate::engine::math::Vector;
+use crate::lab::measure::bounds;
 
 /// Cells with a smaller fraction of their area inside an obstacle stay empty.
 const LEAST_PART: f64 = 1e-9;
@@ -43,14 +44,8 @@ pub struct Particles {
 impl Particles {
     /// Fills the obstacles; `spacing` in meters.
     pub fn fill(walls: &Walls, spacing: f64, volumes: Volumes, h: f64) -> Self {
-        let corners = || {
-            walls
-                .obstacles()
-                .iter()
-                .flat_map(|obstacle| obstacle.points())
-        };
-        let low = corners().fold(Vector::repeat(f64::INFINITY), |low, p| low.inf(p));
-        let high = corners().fold(Vector::repeat(f64::NEG_INFINITY), |high, p| high.sup(p));
+        let obstacles = walls.obstacles().iter();
+        let [low, high] = bounds(obstacles.flat_map(|obstacle| obstacle.points()).copied());
         // All obstacles share one lattice.
         let corner = (low / spacing).map(f64::floor) * spacing;
         let cells = ((high - corner) / spacing).map(f64::ceil);
@@ -134,16 +129,6 @@ impl Particles {
             let start = |column: usize| self.starts[row * self.columns + column] as usize;
             start(columns.start)..start(columns.end)
         })
-    }
-
-    /// The number of particles.
-    pub fn len(&self) -> usize {
-        self.position.len()
-    }
-
-    /// Are there none?
-    pub fn is_empty(&self) -> bool {
-        self.position.is_empty()
     }
 
     /// Memory of the particles and of the lattice that finds them, bytes.

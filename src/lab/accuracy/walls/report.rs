@@ -1,127 +1,105 @@
 //! The results as tables for readers and as rows for programs.
 
-use std::fmt::Write;
-
-use super::{CaseReport, Error, METHODS, Method, MethodReport, Region, WallReport};
+use super::{CaseReport, Error, METHODS, MethodReport, WallReport};
+use crate::analysis::wall_integrals::Region;
+use crate::output::table::{Cell, Table};
 
 impl WallReport {
     /// Tables with one row per method and one column per case.
     pub fn markdown(&self) -> String {
-        let error =
-            |of: fn(&MethodReport) -> Error| move |method: &MethodReport| in_percent(of(method));
-        let mut text = "The polygons' methods and Akinci's particles are measured against what the walls hide, the \
-                        other particles and the maps against the solid; 0 is rounding.\n\n"
-            .to_owned();
-        let mut part = |title: &str, table: String| {
-            let _ = write!(text, "{title}\n\n{table}\n");
-        };
-        part(
-            "Error of the density ∫ W in % of the largest exact value on the path, root mean square (largest):",
-            self.table(error(|method| method.density)),
-        );
-        part(
-            "The same of the force ∫ ∇W:",
-            self.table(error(|method| method.force)),
-        );
-        part(
-            "Force along an endless straight wall, which should feel smooth, in % of the largest force:",
-            self.table(|method| method.roughness.map_or("".to_owned(), in_percent)),
-        );
-        part(
-            "Nanoseconds per agent, search for what is in reach included (median):",
-            self.table(|method| format!("{:.0}", method.ns.median)),
-        );
-        part(
-            "Before the first frame: milliseconds, kB beside the polygons:",
-            self.table(|method| match method.bytes {
-                0 => "0".to_owned(),
-                bytes => format!("{:.2}, {:.0}", method.preparation_ms, 1e-3 * bytes as f64),
-            }),
-        );
-        part("What the walls hide and what is solid:", self.regions());
-        text
+        let parts = [
+            (
+                "Error of the density ∫ W in % of the largest exact value on the path, root mean square (largest):",
+                self.table(|method| Some(in_percent(method.density))),
+            ),
+            (
+                "The same of the force ∫ ∇W:",
+                self.table(|method| Some(in_percent(method.force))),
+            ),
+            (
+                "Force along an endless straight wall, which should feel smooth, in % of the largest force:",
+                self.table(|method| method.roughness.map(in_percent)),
+            ),
+            (
+                "Nanoseconds per agent, search for walls within reach included (median):",
+                self.table(|method| Some(format!("{:.0}", method.ns.median))),
+            ),
+            (
+                "Before the first frame: milliseconds, kB beside the polygons:",
+                self.table(|method| {
+                    let (ms, kilobytes) = (method.preparation_ms, 1e-3 * method.bytes as f64);
+                    Some(match method.bytes {
+                        0 => "0".to_owned(),
+                        _ => format!("{ms:.2}, {kilobytes:.0}"),
+                    })
+                }),
+            ),
+            ("The hidden and the solid region:", self.regions()),
+        ];
+        let parts = parts.map(|(title, table)| format!("{title}\n\n{}\n", table.markdown()));
+        "The polygons' methods and Akinci's particles are measured against the hidden region, the other particles and the \
+         maps against the solid; 0 is a rounding error.\n\n"
+            .to_owned()
+            + &parts.concat()
     }
 
     /// One row for each case and method; errors are relative to the largest exact value.
-    pub fn csv(&self) -> String {
-        let mut text =
-            "case,method,against,density_rms,density_max,force_rms,force_max,roughness_rms,\
-                        roughness_max,ns_minimum,ns_median,ns_maximum,preparation_ms,bytes\n"
-                .to_owned();
-        for (case, method) in self.rows() {
-            let against = match method.region {
+    pub fn csv(&self) -> Result<Vec<u8>, csv::Error> {
+        let cases = self.cases.iter();
+        let rows = cases.flat_map(|case| case.methods.iter().map(move |method| (case, method)));
+        let rows: Vec<(&CaseReport, &MethodReport)> = rows.collect();
+        let parts = ["_rms", "_max"];
+        let error = |error: Error| Cell::Spread(error.rms, Some(error.max));
+        Table::of(&rows)
+            .column("case", |row| row.0.name)
+            .column("method", |row| row.1.name.as_str())
+            .column("against", |row| match row.1.region {
                 Region::Hidden => "hidden",
                 Region::Solid => "solid",
-            };
-            let (density, force, ns) = (method.density, method.force, method.ns);
-            let roughness = method
-                .roughness
-                .map_or(",".to_owned(), |r| format!("{:.3e},{:.3e}", r.rms, r.max));
-            let _ = writeln!(
-                text,
-                "\"{}\",\"{}\",{against},{:.3e},{:.3e},{:.3e},{:.3e},{roughness},{:.1},{:.1},{:.1},{:.3},{}",
-                case.name,
-                method.name,
-                density.rms,
-                density.max,
-                force.rms,
-                force.max,
-                ns.minimum,
-                ns.median,
-                ns.maximum,
-                method.preparation_ms,
-                method.bytes,
-            );
+            })
+            .spread("density", 3, parts, |row| error(row.1.density))
+            .spread("force", 3, parts, |row| error(row.1.force))
+            .spread("roughness", 3, parts, |row| row.1.roughness.map(error))
+            .column("ns_minimum", |row| row.1.ns.minimum)
+            .column("ns_median", |row| row.1.ns.median)
+            .column("ns_maximum", |row| row.1.ns.maximum)
+            .column("preparation_ms", |row| row.1.preparation_ms)
+            .column("bytes", |row| row.1.bytes)
+            .table()
+            .csv()
+    }
+
+    /// A table with a column for each case that has a value.
+    fn table(&self, cell: impl Fn(&MethodReport) -> Option<String>) -> Table {
+        let methods: Vec<usize> = (0..METHODS.len()).collect();
+        let mut table = Table::of(&methods).column("method", |&k| METHODS[k].name());
+        for case in &self.cases {
+            if case.methods.iter().any(|method| cell(method).is_some()) {
+                table = table.column(case.name, |&k| cell(&case.methods[k]));
+            }
         }
-        text
+        table.table()
     }
 
-    fn rows(&self) -> impl Iterator<Item = (&CaseReport, &MethodReport)> {
-        self.cases
-            .iter()
-            .flat_map(|case| case.methods.iter().map(move |method| (case, method)))
-    }
-
-    /// A table with a column for each case in which `cell` is not empty.
-    fn table(&self, cell: impl Fn(&MethodReport) -> String) -> String {
-        let speaks = |case: &&CaseReport| case.methods.iter().any(|m| !cell(m).is_empty());
-        let cases: Vec<&CaseReport> = self.cases.iter().filter(speaks).collect();
-        let row = |(k, method): (usize, &Method)| {
-            let cells = cases.iter().map(|case| cell(&case.methods[k]));
-            line(&method.name(), cells)
-        };
-        let rows: String = METHODS.iter().enumerate().map(row).collect();
-        head("method", &cases) + &rows
-    }
-
-    fn regions(&self) -> String {
-        let cases: Vec<&CaseReport> = self.cases.iter().collect();
-        let row = |name: &str, cell: fn(&CaseReport) -> String| {
-            line(name, cases.iter().map(|case| cell(case)))
-        };
-        [
-            head("the solid is off what is hidden by", &cases),
-            row("density, %", |case| in_percent(case.solid_density)),
-            row("force, %", |case| in_percent(case.solid_force)),
-            row("error of the quadrature, 1 or 1/m", |case| {
+    fn regions(&self) -> Table {
+        type Row = (&'static str, fn(&CaseReport) -> String);
+        let rows: [Row; 4] = [
+            ("density, %", |case| in_percent(case.solid_density)),
+            ("force, %", |case| in_percent(case.solid_force)),
+            ("error of the quadrature, 1 or 1/m", |case| {
                 format!("{:.0e}", case.quadrature)
             }),
-            row("search for walls, ns (median)", |case| {
+            ("search for walls, ns (median)", |case| {
                 format!("{:.0}", case.search_ns.median)
             }),
-        ]
-        .concat()
+        ];
+        let mut table =
+            Table::of(&rows).column("the solid region minus the hidden one", |row| row.0);
+        for case in &self.cases {
+            table = table.column(case.name, |row| row.1(case));
+        }
+        table.table()
     }
-}
-
-fn head(first: &str, cases: &[&CaseReport]) -> String {
-    let names = cases.iter().map(|case| case.name.to_owned());
-    line(first, names) + &line("---", cases.iter().map(|_| "---".to_owned()))
-}
-
-fn line(first: &str, cells: impl Iterator<Item = String>) -> String {
-    let cells: Vec<String> = std::iter::once(first.to_owned()).chain(cells).collect();
-    format!("| {} |\n", cells.join(" | "))
 }
 
 fn in_percent(error: Error) -> String {

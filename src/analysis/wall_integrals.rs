@@ -1,11 +1,13 @@
-//! The exact integrals by adaptive quadrature, ray by ray. It shares the kernels with [`crate::engine::boundary`], but
-//! none of its closed forms.
+//! Integrals of the kernels over what walls hide or over what is solid, by adaptive quadrature, ray by ray: a reference
+//! for every method of including walls. It shares the kernels with [`crate::engine::boundary`], but none of its closed
+//! forms.
 
 use std::f64::consts::PI;
 use std::ops::{Add, Mul, Sub};
 
 use serde::Serialize;
 
+use crate::engine::boundary::WallShare;
 use crate::engine::geometry::Walls;
 use crate::engine::kernel;
 use crate::engine::math::Vector;
@@ -84,6 +86,16 @@ impl Integrals {
         let difference = *self - *other;
         let numbers = difference.area.abs().max(difference.kernel.abs());
         numbers.max(difference.gradient.norm())
+    }
+}
+
+impl From<&WallShare> for Integrals {
+    fn from(share: &WallShare) -> Self {
+        Self {
+            area: share.hidden_area,
+            kernel: share.kernel,
+            gradient: share.gradient,
+        }
     }
 }
 
