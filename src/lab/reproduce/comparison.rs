@@ -2,44 +2,9 @@
 
 use serde::Serialize;
 
+use crate::analysis::statistics::MeanStd;
 use crate::lab::error::LabError;
-use crate::output::table::Table;
-
-/// The spread of values over seeds.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Spread {
-    /// The mean.
-    pub mean: f64,
-    /// The sample standard deviation; `None` for a single value.
-    pub deviation: Option<f64>,
-    /// Number of values.
-    pub count: usize,
-}
-
-impl Spread {
-    /// The spread of `values`; `None` without values.
-    pub fn of(values: &[f64]) -> Option<Self> {
-        if values.is_empty() {
-            return None;
-        }
-        let count = values.len();
-        let mean = values.iter().sum::<f64>() / count as f64;
-        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-        Some(Self {
-            mean,
-            deviation: (count > 1).then(|| (squares / (count - 1) as f64).sqrt()),
-            count,
-        })
-    }
-
-    /// `3.27 ± 0.01`, or the value alone.
-    pub fn written(&self) -> String {
-        match self.deviation {
-            Some(deviation) => format!("{:.2} ± {deviation:.2}", self.mean),
-            None => format!("{:.2}", self.mean),
-        }
-    }
-}
+use crate::output::table::{Cell, Table};
 
 /// The largest allowed distance of a mean from the paper's value, inclusive.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -57,7 +22,7 @@ pub struct Comparison {
     /// The paper's value.
     pub paper: f64,
     /// Our values, over the seeds that gave one.
-    pub ours: Option<Spread>,
+    pub ours: Option<MeanStd>,
     /// Number of seeds.
     pub seeds: usize,
     /// The band, if there is one.
@@ -70,7 +35,7 @@ impl Comparison {
         let given: Vec<f64> = values.iter().copied().flatten().collect();
         Self {
             paper,
-            ours: Spread::of(&given),
+            ours: MeanStd::of(&given),
             seeds: values.len(),
             band,
         }
@@ -101,12 +66,12 @@ impl Comparison {
 
     /// Our values, and the number of seeds with a value if it is not all of them.
     pub fn ours_written(&self) -> String {
+        let ours = Cell::from(self.ours).fixed(2);
         match self.ours {
-            None => "–".to_owned(),
-            Some(ours) if ours.count < self.seeds => {
-                format!("{} ({} of {})", ours.written(), ours.count, self.seeds)
+            Some(some) if some.count < self.seeds => {
+                format!("{ours} ({} of {})", some.count, self.seeds)
             }
-            Some(ours) => ours.written(),
+            _ => ours,
         }
     }
 
@@ -120,67 +85,43 @@ impl Comparison {
     }
 }
 
-/// A compared quantity: its name, unit and comparison.
-pub(super) type Quantity<'a> = (&'a str, &'a str, &'a Comparison);
+/// A quantity of a table's row.
+pub(super) struct Quantity<'a> {
+    /// The row's profile.
+    pub profile: &'a str,
+    /// The setting that distinguishes the row, if there is one: key and value.
+    pub setting: Option<(&'a str, f64)>,
+    /// The quantity's name.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Our value beside the paper's.
+    pub compared: &'a Comparison,
+}
 
-/// One line per quantity of rows that are identified by profile and setting.
-pub(super) fn csv<'a>(
-    rows: impl Iterator<Item = (Vec<String>, Vec<Quantity<'a>>)>,
-) -> Result<Vec<u8>, LabError> {
-    let head = [
-        "profile",
-        "setting",
-        "quantity",
-        "unit",
-        "paper",
-        "ours_mean",
-        "ours_std",
-        "seeds_with_value",
-        "seeds",
-        "difference",
-        "relative_difference",
-        "kept",
-    ];
-    let mut table = Table::new(0, &head);
-    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-    for (names, quantities) in rows {
-        for (quantity, unit, c) in quantities {
-            let mut row = names.clone();
-            row.extend([
-                quantity.to_owned(),
-                unit.to_owned(),
-                c.paper.to_string(),
-                number(c.ours.map(|ours| ours.mean)),
-                number(c.ours.and_then(|ours| ours.deviation)),
-                c.ours.map_or(0, |ours| ours.count).to_string(),
-                c.seeds.to_string(),
-                number(c.difference()),
-                number(c.relative()),
-                c.is_kept().map_or(String::new(), |kept| kept.to_string()),
-            ]);
-            table.rows.push(row);
-        }
-    }
-    Ok(table.csv()?)
+/// One line per quantity.
+pub(super) fn csv(quantities: &[Quantity]) -> Result<Vec<u8>, LabError> {
+    let table = Table::of(quantities)
+        .column("profile", |q| q.profile)
+        .column("setting", |q| q.setting.map_or("", |(key, _)| key))
+        .column("value", |q| q.setting.map(|(_, value)| value))
+        .column("quantity", |q| q.name)
+        .column("unit", |q| q.unit)
+        .column("paper", |q| q.compared.paper)
+        .spread("ours", 2, ["_mean", "_std"], |q| q.compared.ours)
+        .column("seeds_with_value", |q| {
+            q.compared.ours.map_or(0, |ours| ours.count)
+        })
+        .column("seeds", |q| q.compared.seeds)
+        .column("difference", |q| q.compared.difference())
+        .column("relative_difference", |q| q.compared.relative())
+        .column("kept", |q| q.compared.is_kept());
+    Ok(table.table().csv()?)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_spread_over_seeds_is_that_of_a_sample() {
-        let spread = Spread::of(&[1.0, 2.0, 3.0]).unwrap();
-        assert_eq!(
-            (spread.mean, spread.deviation, spread.count),
-            (2.0, Some(1.0), 3)
-        );
-        assert_eq!(spread.written(), "2.00 ± 1.00");
-        let single = Spread::of(&[4.0]).unwrap();
-        assert_eq!((single.mean, single.deviation), (4.0, None));
-        assert_eq!(single.written(), "4.00");
-        assert_eq!(Spread::of(&[]), None);
-    }
 
     #[test]
     fn a_row_is_kept_up_to_the_border_of_its_band() {

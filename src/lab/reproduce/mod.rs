@@ -13,7 +13,7 @@ mod table1;
 mod table2;
 mod text;
 
-pub use comparison::{Band, Comparison, Spread};
+pub use comparison::{Band, Comparison};
 pub use product::{PRODUCTS, Product, reproduce};
 pub use published::{CrossingRow, EvacuationRow, Published, Table, published};
 pub use ranking::{Ranked, Ranking, rankings};

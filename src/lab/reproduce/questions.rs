@@ -2,12 +2,13 @@
 
 use serde_json::json;
 
-use super::comparison::Spread;
 use super::product::{Needs, Product};
+use super::published::published;
 use super::table2;
+use crate::analysis::statistics::{MeanStd, Range};
 use crate::lab::error::LabError;
 use crate::lab::sweep::{Combination, Gathered};
-use crate::output::table::Table;
+use crate::output::table::{Cell, Table};
 use crate::runs::store::Store;
 
 /// Answers to all questions.
@@ -58,7 +59,7 @@ fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
         };
         markdown += &format!(
             "### {title}?\n\n{text}\n\n{rankings}{}\n",
-            table(study, &combinations)
+            table(&combinations)
         );
         data.push(json!({ "question": title, "study": study.json() }));
     }
@@ -71,36 +72,32 @@ fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
 }
 
 /// One line per entry of the list.
-fn table(study: &Gathered, combinations: &[Combination]) -> String {
+fn table(combinations: &[Combination]) -> String {
     let measured = |metric: &str| {
         let mut values = combinations.iter().flat_map(|row| row.values(metric));
         values.any(|value| value.is_some())
     };
-    let columns: Vec<_> = COLUMNS
-        .into_iter()
-        .filter(|(metric, _)| measured(metric))
-        .collect();
-    let heads: Vec<&str> = columns.iter().map(|(_, head)| *head).collect();
-    let mut table = Table::new(1, &[&["run"], heads.as_slice()].concat());
-    for row in combinations {
-        let label = row
-            .cells
-            .first()
-            .and_then(|cell| cell.label())
-            .unwrap_or_default();
-        let cells = columns.iter().map(|(metric, _)| {
+    let label = |row: &Combination| label(row).to_owned();
+    let mut table = Table::of(combinations).column("run", label);
+    for (metric, head) in COLUMNS.into_iter().filter(|(metric, _)| measured(metric)) {
+        table = table.fixed(head, 2, |row| {
             let values: Vec<f64> = row.values(metric).into_iter().flatten().collect();
-            match *metric {
-                "locked" => format!("{} of {}", values.iter().sum::<f64>(), study.study.seeds),
-                "evacuated" => evacuated(&values),
-                _ => Spread::of(&values).map_or("–".to_owned(), |spread| spread.written()),
+            match metric {
+                "locked" => format!("{} of {}", values.iter().sum::<f64>(), values.len()).into(),
+                "evacuated" => evacuated(&values).into(),
+                _ => Cell::from(MeanStd::of(&values)),
             }
         });
-        table
-            .rows
-            .push(std::iter::once(label.to_owned()).chain(cells).collect());
     }
-    table.markdown()
+    table.table().markdown()
+}
+
+/// The label of a combination.
+fn label<'a>(row: &Combination<'a>) -> &'a str {
+    row.cells
+        .first()
+        .and_then(|cell| cell.label())
+        .unwrap_or_default()
 }
 
 /// The numbers of all seeds, or a single one if they are equal.
@@ -114,42 +111,41 @@ fn evacuated(values: &[f64]) -> String {
 
 /// Which rankings of Table 2 hold in each geometry, and how many of the crossing stream get through.
 fn rankings(combinations: &[Combination]) -> Result<String, LabError> {
-    let profiles = super::published()?.table2.rows.len();
-    let head = [
-        "geometry",
-        "flow",
-        "density",
-        "broken",
-        "of the stream through in 60 s",
-    ];
-    let mut rankings = Table::new(1, &head);
+    let profiles = published()?.table2.rows.len();
+    let mut geometries = Vec::new();
     for rows in combinations.chunks(profiles) {
-        let table = table2::Table::new(rows)?;
-        let kept = |quantity| {
-            let [kept, all] = table.kept(quantity);
-            format!("{kept} of {all}")
-        };
-        let label = rows
-            .first()
-            .and_then(|row| row.cells.first()?.label())
-            .unwrap_or_default();
+        let label = rows.first().map_or("", label);
         let through = rows
             .iter()
             .flat_map(|row| row.values("uncounted"))
             .flatten();
-        let through: Vec<f64> = through.collect();
-        let least = through.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = through.iter().copied().fold(0.0, f64::max);
-        rankings.add([
-            label
+        geometries.push(Geometry {
+            name: label
                 .rsplit_once(": ")
-                .map_or(label, |(geometry, _)| geometry)
-                .to_owned(),
-            kept("flow"),
-            kept("density"),
-            table.broken().join("; "),
-            format!("{least} to {most}"),
-        ]);
+                .map_or(label, |(geometry, _)| geometry),
+            table: table2::Table::new(rows)?,
+            through: Range::of(&through.collect::<Vec<f64>>()),
+        });
     }
-    Ok(format!("{}\n", rankings.markdown()))
+    let kept = |geometry: &Geometry, quantity| {
+        let [kept, all] = geometry.table.kept(quantity);
+        format!("{kept} of {all}")
+    };
+    let table = Table::of(&geometries)
+        .column("geometry", |geometry| geometry.name)
+        .column("flow", |geometry| kept(geometry, "flow"))
+        .column("density", |geometry| kept(geometry, "density"))
+        .column("broken", |geometry| geometry.table.broken().join("; "))
+        .range("of the stream through in 60 s:", 0, |geometry| {
+            geometry.through
+        });
+    Ok(format!("{}\n", table.table().markdown()))
+}
+
+/// Table 2 in one geometry.
+struct Geometry<'a> {
+    name: &'a str,
+    table: table2::Table,
+    /// How many of the crossing stream get through, over profiles and seeds.
+    through: Range,
 }

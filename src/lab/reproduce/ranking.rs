@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::analysis::statistics::MeanStd;
+
 /// Rows with a smaller difference in the paper, relative to the lower one, are not ranked.
 pub const LEAST_DIFFERENCE: f64 = 0.1;
 
@@ -70,8 +72,7 @@ fn ranking(quantity: &'static str, higher: &Ranked, lower: &Ranked) -> Ranking {
 
 fn mean(values: &[Option<f64>]) -> Option<f64> {
     let all: Option<Vec<f64>> = values.iter().copied().collect();
-    let all = all.filter(|all| !all.is_empty())?;
-    Some(all.iter().sum::<f64>() / all.len() as f64)
+    Some(MeanStd::of(&all?)?.mean)
 }
 
 #[cfg(test)]

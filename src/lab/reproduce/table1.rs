@@ -8,7 +8,7 @@ use super::product::{Needs, Product};
 use super::published::{EvacuationRow, published, written};
 use crate::lab::error::LabError;
 use crate::lab::sweep::{Combination, Gathered};
-use crate::output::table;
+use crate::output::table::Table;
 use crate::runs::store::Store;
 
 /// The table.
@@ -71,27 +71,29 @@ impl Row {
         }
     }
 
-    /// The compared quantities: name, unit and comparison.
+    /// The compared quantities.
     fn quantities(&self) -> [Quantity<'_>; 4] {
+        let quantity = |(name, unit, compared)| Quantity {
+            profile: &self.profile,
+            setting: Some((&self.setting, self.value)),
+            name,
+            unit,
+            compared,
+        };
         [
             ("evacuated", "agents", &self.evacuated),
             ("density", "P/m²", &self.density),
             ("deviation", "P/m²", &self.deviation),
             ("flow", "P/s", &self.flow),
         ]
+        .map(quantity)
     }
 
     /// The quantities outside of their bands.
     pub fn missed(&self) -> Vec<&'static str> {
-        [
-            ("density", &self.density),
-            ("deviation", &self.deviation),
-            ("flow", &self.flow),
-        ]
-        .into_iter()
-        .filter(|(_, comparison)| comparison.is_kept() == Some(false))
-        .map(|(name, _)| name)
-        .collect()
+        let missed = |q: &Quantity| q.compared.is_kept() == Some(false);
+        let quantities = self.quantities().into_iter().filter(missed);
+        quantities.map(|quantity| quantity.name).collect()
     }
 
     /// "kept", or the quantities outside of their bands.
@@ -133,13 +135,8 @@ fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
         "seeds": seeds,
         "rows": rows.iter().map(as_json).collect::<Vec<_>>(),
     });
-    let csv = comparison::csv(rows.iter().map(|row| {
-        let setting = format!("{}={}", row.setting, row.value);
-        (
-            vec![row.profile.clone(), setting],
-            row.quantities().to_vec(),
-        )
-    }))?;
+    let quantities: Vec<Quantity> = rows.iter().flat_map(Row::quantities).collect();
+    let csv = comparison::csv(&quantities)?;
     store.write("table1.md", markdown.as_bytes())?;
     store.write("table1.csv", &csv)?;
     store.write("table1.json", format!("{json:#}\n").as_bytes())?;
@@ -153,43 +150,23 @@ fn as_json(row: &Row) -> serde_json::Value {
 }
 
 fn markdown(rows: &[Row]) -> String {
-    let mut table = table::Table::new(
-        0,
-        &[
-            "profile",
-            "setting",
-            "evacuated: paper",
-            "ours",
-            "density [P/m²]: paper",
-            "ours",
-            "difference",
-            "its deviation: paper",
-            "ours",
-            "difference",
-            "flow [P/s]: paper",
-            "ours",
-            "difference",
-            "band",
-        ],
-    );
-    for row in rows {
-        let evacuated = row.evacuated.ours.map_or(0.0, |ours| ours.mean);
-        table.add([
-            written(&row.profile),
-            setting_written(&row.setting, row.value),
-            row.evacuated.paper.to_string(),
-            format!("{evacuated:.0}"),
-            format!("{:.2}", row.density.paper),
-            row.density.ours_written(),
-            row.density.difference_written(),
-            format!("{:.2}", row.deviation.paper),
-            row.deviation.ours_written(),
-            row.deviation.difference_written(),
-            format!("{:.2}", row.flow.paper),
-            row.flow.ours_written(),
-            row.flow.difference_written(),
-            row.verdict(),
-        ]);
-    }
-    table.markdown()
+    Table::of(rows)
+        .column("profile", |row| written(&row.profile))
+        .column("setting", |row| setting_written(&row.setting, row.value))
+        .column("evacuated: paper", |row| row.evacuated.paper)
+        .fixed("ours", 0, |row| {
+            row.evacuated.ours.map_or(0.0, |ours| ours.mean)
+        })
+        .fixed("density [P/m²]: paper", 2, |row| row.density.paper)
+        .column("ours", |row| row.density.ours_written())
+        .column("difference", |row| row.density.difference_written())
+        .fixed("its deviation: paper", 2, |row| row.deviation.paper)
+        .column("ours", |row| row.deviation.ours_written())
+        .column("difference", |row| row.deviation.difference_written())
+        .fixed("flow [P/s]: paper", 2, |row| row.flow.paper)
+        .column("ours", |row| row.flow.ours_written())
+        .column("difference", |row| row.flow.difference_written())
+        .column("band", Row::verdict)
+        .table()
+        .markdown()
 }

@@ -98,61 +98,42 @@ impl Table {
     }
 
     fn rows_markdown(&self) -> String {
-        let mut table = table::Table::new(
-            0,
-            &[
-                "profile",
-                "density [P/m²]: paper",
-                "ours",
-                "difference",
-                "its deviation: paper",
-                "ours",
-                "difference",
-                "flow [P/s]: paper",
-                "ours",
-                "difference",
-            ],
-        );
-        for row in &self.rows {
-            let mut cells = vec![written(&row.profile)];
-            for quantity in [&row.density, &row.deviation, &row.flow] {
-                cells.push(format!("{:.2}", quantity.paper));
-                cells.push(quantity.ours_written());
-                cells.push(quantity.difference_written());
-            }
-            table.rows.push(cells);
-        }
-        table.markdown()
+        table::Table::of(&self.rows)
+            .column("profile", |row| written(&row.profile))
+            .fixed("density [P/m²]: paper", 2, |row| row.density.paper)
+            .column("ours", |row| row.density.ours_written())
+            .column("difference", |row| row.density.difference_written())
+            .fixed("its deviation: paper", 2, |row| row.deviation.paper)
+            .column("ours", |row| row.deviation.ours_written())
+            .column("difference", |row| row.deviation.difference_written())
+            .fixed("flow [P/s]: paper", 2, |row| row.flow.paper)
+            .column("ours", |row| row.flow.ours_written())
+            .column("difference", |row| row.flow.difference_written())
+            .table()
+            .markdown()
     }
 
     fn rankings_markdown(&self) -> String {
-        let mut table = table::Table::new(
-            0,
-            &[
-                "quantity", "higher", "lower", "paper", "ours", "seeds", "ranking",
-            ],
-        );
-        for ranking in &self.rankings {
-            let [a, b] = ranking.paper;
-            let ours = ranking
-                .ours
-                .map_or("–".to_owned(), |[a, b]| format!("{a:.2} > {b:.2}"));
-            let verdict = if ranking.is_kept() {
-                "kept"
-            } else {
-                "**broken**"
-            };
-            table.add([
-                ranking.quantity.to_owned(),
-                ranking.higher.clone(),
-                ranking.lower.clone(),
-                format!("{a:.2} > {b:.2}"),
-                ours.replace('>', if ranking.is_kept() { ">" } else { "≤" }),
-                format!("{} of {}", ranking.seeds[0], ranking.seeds[1]),
-                verdict.to_owned(),
-            ]);
-        }
-        table.markdown()
+        let pair = |[a, b]: [f64; 2], sign| format!("{a:.2} {sign} {b:.2}");
+        let sign = |ranking: &Ranking| if ranking.is_kept() { ">" } else { "≤" };
+        let verdict = |ranking: &Ranking| match ranking.is_kept() {
+            true => "kept",
+            false => "**broken**",
+        };
+        table::Table::of(&self.rankings)
+            .column("quantity", |ranking| ranking.quantity)
+            .column("higher", |ranking| ranking.higher.as_str())
+            .column("lower", |ranking| ranking.lower.as_str())
+            .column("paper", |ranking| pair(ranking.paper, ">"))
+            .column("ours", |ranking| {
+                ranking.ours.map(|ours| pair(ours, sign(ranking)))
+            })
+            .column("seeds", |ranking| {
+                format!("{} of {}", ranking.seeds[0], ranking.seeds[1])
+            })
+            .column("ranking", verdict)
+            .table()
+            .markdown()
     }
 
     /// The rows, the rankings, and the number of rankings that are kept.
@@ -170,13 +151,21 @@ impl Table {
 }
 
 impl Row {
-    /// The compared quantities: name, unit and comparison.
-    fn quantities(&self) -> Vec<Quantity<'_>> {
-        vec![
+    /// The compared quantities.
+    fn quantities(&self) -> [Quantity<'_>; 3] {
+        let quantity = |(name, unit, compared)| Quantity {
+            profile: &self.profile,
+            setting: None,
+            name,
+            unit,
+            compared,
+        };
+        [
             ("density", "P/m²", &self.density),
             ("deviation", "P/m²", &self.deviation),
             ("flow", "P/s", &self.flow),
         ]
+        .map(quantity)
     }
 }
 
@@ -204,10 +193,8 @@ fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
         "rankings": rankings,
     });
     store.write("table2.md", markdown.as_bytes())?;
-    let rows = table.rows.iter();
-    let csv = comparison::csv(
-        rows.map(|row| (vec![row.profile.clone(), String::new()], row.quantities())),
-    )?;
+    let quantities: Vec<Quantity> = table.rows.iter().flat_map(Row::quantities).collect();
+    let csv = comparison::csv(&quantities)?;
     store.write("table2.csv", &csv)?;
     store.write("table2.json", format!("{json:#}\n").as_bytes())?;
     Ok(markdown)

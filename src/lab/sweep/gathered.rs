@@ -7,9 +7,10 @@ use serde_json::{Map, Value, json};
 
 use super::cell::Cell;
 use super::{Study, tables};
-use crate::analysis::statistics::{Estimate, student_95};
+use crate::analysis::statistics::MeanStd;
 use crate::lab::error::LabError;
 use crate::runs::case::RunResult;
+use crate::runs::identity::ENGINE;
 use crate::runs::store::Store;
 
 /// The state of a cell.
@@ -51,28 +52,6 @@ pub struct Gathered<'a> {
     pub states: Vec<State>,
 }
 
-/// The mean of a number over the seeds of one combination of settings.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Mean {
-    /// The mean.
-    pub mean: f64,
-    /// Half the width of its 95 % confidence interval (Student's t); `None` for a single value.
-    pub interval: Option<f64>,
-    /// Number of values.
-    pub count: usize,
-}
-
-impl Mean {
-    fn of(values: &[f64]) -> Option<Self> {
-        let estimate = Estimate::of_mean(values)?;
-        Some(Self {
-            mean: estimate.value,
-            interval: student_95(values.len()).map(|t| t * estimate.error),
-            count: values.len(),
-        })
-    }
-}
-
 /// One combination of settings, with all its seeds.
 pub struct Combination<'a> {
     /// Its cells.
@@ -80,7 +59,7 @@ pub struct Combination<'a> {
     /// The results of its finished cells.
     pub results: Vec<&'a RunResult>,
     /// The means in the order of [`Gathered::numbers`]; `None` if no run gave a value.
-    pub means: Vec<Option<Mean>>,
+    pub means: Vec<Option<MeanStd>>,
 }
 
 impl<'a> Gathered<'a> {
@@ -132,7 +111,7 @@ impl<'a> Gathered<'a> {
 
     /// The means over seeds as a table for a terminal.
     pub fn text(&self) -> String {
-        tables::text(self).text()
+        tables::text(self)
     }
 
     /// All results as one object.
@@ -156,8 +135,11 @@ impl<'a> Gathered<'a> {
         let combinations = self.combinations();
         let means = combinations.iter().map(|combination| {
             let named = names.iter().zip(&combination.means);
+            let entry = |mean: MeanStd| {
+                json!({ "mean": mean.mean, "ci95": mean.interval_95(), "n": mean.count })
+            };
             let metrics: Map<String, Value> = named
-                .map(|(name, mean)| (name.clone(), mean.map_or(Value::Null, Mean::json)))
+                .map(|(name, mean)| (name.clone(), mean.map_or(Value::Null, entry)))
                 .collect();
             json!({
                 "settings": combination.cells.first().map(settings),
@@ -168,7 +150,7 @@ impl<'a> Gathered<'a> {
         json!({
             "study": self.study.name,
             "file": self.study.document,
-            "engine": env!("SANDBOX_ENGINE"),
+            "engine": ENGINE,
             "cells": cells.collect::<Vec<_>>(),
             "summary": means.collect::<Vec<_>>(),
         })
@@ -201,7 +183,7 @@ impl<'a> Gathered<'a> {
             let results: Vec<&RunResult> = states.iter().filter_map(State::result).collect();
             let mean = |name: &String| {
                 let values = results.iter().filter_map(|result| number(result, name));
-                Mean::of(&values.collect::<Vec<f64>>())
+                MeanStd::of(&values.collect::<Vec<f64>>())
             };
             Combination {
                 cells,
@@ -235,12 +217,6 @@ impl Gathered<'_> {
                 case: format!("{}, {label}", self.study.name),
                 what: "result".to_owned(),
             })
-    }
-}
-
-impl Mean {
-    fn json(self) -> Value {
-        json!({ "mean": self.mean, "ci95": self.interval, "n": self.count })
     }
 }
 

@@ -1,213 +1,169 @@
 //! A study as tables: all cells, and means over seeds.
 
-use serde_json::Value;
-
 use super::cell::{Cell, plain, short};
-use super::gathered::{Gathered, Mean, State};
+use super::gathered::{Combination, Gathered, State};
 use super::{Shard, Study};
-use crate::output::table::OldTable as Table;
+use crate::output::table::{self, Columns, Table};
 use crate::runs::case::RunResult;
 use crate::scenario::quote::shown;
 
+/// A column about the run itself.
+type Count = (&'static str, fn(&RunResult) -> table::Cell);
+
 /// Columns about the run itself, between the metrics and the computing time.
-const COUNTS: [&str; 8] = [
-    "entered",
-    "remaining",
-    "frames",
-    "time_secs",
-    "contained_moves",
-    "clamped_speeds",
-    "displaced_agents",
-    "state_sha256",
+const COUNTS: [Count; 8] = [
+    ("entered", |result| result.summary.agents.into()),
+    ("remaining", |result| result.remaining.into()),
+    ("frames", |result| result.summary.frames.into()),
+    ("time_secs", |result| result.summary.time_secs.into()),
+    ("contained_moves", |result| {
+        result.summary.contained_moves.into()
+    }),
+    ("clamped_speeds", |result| {
+        result.summary.clamped_speeds.into()
+    }),
+    ("displaced_agents", |result| {
+        result.summary.displaced_agents.into()
+    }),
+    ("state_sha256", |result| {
+        result.summary.state_sha256.clone().into()
+    }),
 ];
 
 /// One row per cell.
 pub(super) fn cells(gathered: &Gathered) -> Table {
+    let rows: Vec<Row> = gathered.study.cells.iter().zip(&gathered.states).collect();
     let metrics = gathered.metrics();
-    let evacuated = "evacuated".to_owned();
-    let is_measured = metrics.contains(&evacuated);
-    let mut head = columns(gathered.study, &gathered.study.axes);
-    head.push("status".to_owned());
-    head.extend(metrics.iter().cloned());
-    head.extend((!is_measured).then_some(evacuated));
-    head.extend(COUNTS.map(str::to_owned));
-    head.extend(["wall_secs", "error"].map(str::to_owned));
-    let rows = gathered.study.cells.iter().zip(&gathered.states);
-    let rows = rows.map(|(cell, state)| {
-        let mut row = values(gathered.study, &gathered.study.axes, cell, plain);
-        row.push(state.name().to_owned());
-        match state {
-            State::Finished(result) => {
-                let metric = |name| {
-                    result
-                        .summary
-                        .metrics
-                        .get(name)
-                        .map_or("".to_owned(), number)
-                };
-                row.extend(metrics.iter().map(metric));
-                row.extend((!is_measured).then(|| result.evacuated.to_string()));
-                row.extend(counts(result));
-                row.push(format!("{:.3}", result.wall_secs));
-            }
-            State::Failed(message) => {
-                row.resize(head.len() - 1, String::new());
-                row.push(message.clone());
-            }
-            State::Missing => {}
-        }
-        row.resize(head.len(), String::new());
-        row
-    });
-    Table {
-        words: 0,
-        rows: rows.collect(),
-        head,
+    let mut columns = first_columns(gathered.study, &rows, &gathered.study.axes, false);
+    for name in &metrics {
+        columns = columns.column(name, |(_, state)| {
+            let metric = |result: &RunResult| result.summary.metrics.get(name).map(plain);
+            state
+                .result()
+                .and_then(metric)
+                .filter(|text| text != "null")
+        });
     }
+    if metrics.iter().all(|name| name != "evacuated") {
+        columns = columns.column("evacuated", |(_, state)| {
+            state.result().map(|r| r.evacuated)
+        });
+    }
+    for (name, count) in COUNTS {
+        columns = columns.column(name, |(_, state)| state.result().map(count));
+    }
+    let error = |state: &State| match state {
+        State::Failed(message) => Some(message.clone()),
+        State::Finished(_) | State::Missing => None,
+    };
+    columns
+        .column("wall_secs", |(_, state)| {
+            state.result().map(|r| format!("{:.3}", r.wall_secs))
+        })
+        .column("error", |(_, state)| error(state))
+        .table()
 }
 
 /// One row per combination of settings: the means, half their 95 % confidence intervals, and the numbers of values.
 pub(super) fn summary(gathered: &Gathered) -> Table {
-    let mut head = gathered.study.axes.clone();
-    head.push("runs".to_owned());
-    for name in gathered.numbers() {
-        head.extend(["mean", "ci95", "n"].map(|what| format!("{name}_{what}")));
+    let rows = gathered.combinations();
+    let mut columns = with_axes(&rows, &gathered.study.axes, false);
+    for (k, name) in gathered.numbers().iter().enumerate() {
+        let mean = |row: &Combination| row.means[k];
+        columns = columns
+            .column(&format!("{name}_mean"), |row| {
+                mean(row).map(|mean| mean.mean)
+            })
+            .column(&format!("{name}_ci95"), |row| mean(row)?.interval_95())
+            .column(&format!("{name}_n"), |row| {
+                mean(row).map_or(0, |mean| mean.count)
+            });
     }
-    let rows = gathered.combinations().into_iter().map(|combination| {
-        let mut row = axes(&gathered.study.axes, combination.cells.first(), plain);
-        row.push(combination.results.len().to_string());
-        for mean in combination.means {
-            row.push(mean.map_or(String::new(), |m| m.mean.to_string()));
-            row.push(
-                mean.and_then(|m| m.interval)
-                    .map_or(String::new(), |i| i.to_string()),
-            );
-            row.push(mean.map_or(0, |m| m.count).to_string());
-        }
-        row
-    });
-    Table {
-        words: 0,
-        rows: rows.collect(),
-        head,
-    }
+    columns.table()
 }
 
 /// The same for a terminal: mean ± half the confidence interval.
-pub(super) fn text(gathered: &Gathered) -> Table {
-    let names = gathered.study.short_axes();
-    let mut head: Vec<String> = names.iter().map(|axis| shown(axis)).collect();
-    head.push("runs".to_owned());
-    head.extend(gathered.numbers());
-    let rows = gathered.combinations().into_iter().map(|combination| {
-        let mut row = axes(&names, combination.cells.first(), short);
-        row.push(combination.results.len().to_string());
-        row.extend(combination.means.into_iter().map(readable));
-        row
-    });
-    Table {
-        words: names.len(),
-        rows: rows.collect(),
-        head,
+pub(super) fn text(gathered: &Gathered) -> String {
+    let rows = gathered.combinations();
+    let mut columns = with_axes(&rows, &gathered.study.short_axes(), true);
+    for (k, name) in gathered.numbers().iter().enumerate() {
+        columns = columns.fixed(name, 3, |row| {
+            row.means[k].map(|mean| table::Cell::Spread(mean.mean, mean.interval_95()))
+        });
     }
+    columns.table().text()
 }
 
 impl Study {
     /// The names of the result files: one row per cell, means over seeds, and everything as JSON.
     pub fn files(&self) -> [String; 3] {
-        let name = &self.name;
-        [
-            format!("{name}.csv"),
-            format!("{name}-summary.csv"),
-            format!("{name}-results.json"),
-        ]
+        ["csv", "summary.csv", "results.json"].map(|end| match end {
+            "csv" => format!("{}.csv", self.name),
+            end => format!("{}-{end}", self.name),
+        })
     }
 }
 
 impl Gathered<'_> {
     /// The cells of a shard with their states, for a terminal.
     pub fn list(&self, shard: Shard) -> String {
-        let axes = self.study.short_axes();
         let cells = self.study.cells.iter().zip(&self.states);
-        let rows = cells
-            .filter(|(cell, _)| shard.has(cell.number))
-            .map(|(cell, state)| {
-                let mut row = values(self.study, &axes, cell, short);
-                row.push(state.name().to_owned());
-                row
-            });
-        let names = columns(self.study, &axes);
-        let mut head: Vec<String> = names.iter().map(|name| shown(name)).collect();
-        head.push("status".to_owned());
-        let table = Table {
-            words: head.len(),
-            rows: rows.collect(),
-            head,
-        };
-        table.text()
+        let rows: Vec<Row> = cells.filter(|(cell, _)| shard.has(cell.number)).collect();
+        first_columns(self.study, &rows, &self.study.short_axes(), true)
+            .table()
+            .text()
     }
 }
 
-/// The names of the first columns: the number, the varied settings, and the seed.
-fn columns(study: &Study, axes: &[String]) -> Vec<String> {
-    let mut names = vec!["cell".to_owned()];
-    names.extend(axes.iter().cloned());
-    names.extend((!study.varies_seed()).then(|| "seed".to_owned()));
-    names
-}
+type Row<'a> = (&'a Cell, &'a State);
 
-/// The values of these columns.
-fn values(
+/// The number, the varied settings, the seed and the status.
+fn first_columns<'r>(
     study: &Study,
-    names: &[String],
-    cell: &Cell,
-    write: fn(&Value) -> String,
-) -> Vec<String> {
-    let mut row = vec![cell.number.to_string()];
-    row.extend(axes(names, Some(cell), write));
-    row.extend((!study.varies_seed()).then(|| cell.case.seed.to_string()));
-    row
+    rows: &'r [Row],
+    axes: &[String],
+    is_short: bool,
+) -> Columns<'r, Row<'r>> {
+    let mut columns = Table::of(rows).column("cell", |(cell, _)| cell.number.to_string());
+    for axis in axes {
+        columns = columns.column(&head(axis, is_short), |(cell, _)| {
+            value(cell, axis, is_short)
+        });
+    }
+    if !study.varies_seed() {
+        columns = columns.column("seed", |(cell, _)| cell.case.seed.to_string());
+    }
+    columns.column("status", |(_, state)| state.name())
 }
 
-/// The values of the varied settings; empty if a cell does not have the setting.
-fn axes(names: &[String], cell: Option<&Cell>, write: fn(&Value) -> String) -> Vec<String> {
-    let value = |name: &String| {
-        cell.and_then(|cell| cell.value(name))
-            .map_or(String::new(), write)
-    };
-    names.iter().map(value).collect()
+/// The varied settings and the number of finished runs.
+fn with_axes<'r>(
+    rows: &'r [Combination],
+    axes: &[String],
+    is_short: bool,
+) -> Columns<'r, Combination<'r>> {
+    let mut columns = Table::of(rows);
+    for axis in axes {
+        columns = columns.column(&head(axis, is_short), |row| {
+            row.cells
+                .first()
+                .map_or(String::new(), |cell| value(cell, axis, is_short))
+        });
+    }
+    columns.column("runs", |row| row.results.len())
 }
 
-fn counts(result: &RunResult) -> [String; COUNTS.len()] {
-    let summary = &result.summary;
-    [
-        summary.agents.to_string(),
-        result.remaining.to_string(),
-        summary.frames.to_string(),
-        summary.time_secs.to_string(),
-        summary.contained_moves.to_string(),
-        summary.clamped_speeds.to_string(),
-        summary.displaced_agents.to_string(),
-        summary.state_sha256.clone(),
-    ]
-}
-
-/// A metric with all its digits; empty if it has no value.
-fn number(value: &Value) -> String {
-    match value {
-        Value::Null => String::new(),
-        value => plain(value),
+/// The head of a setting's column; short for a terminal.
+fn head(axis: &str, is_short: bool) -> String {
+    if is_short {
+        shown(axis)
+    } else {
+        axis.to_owned()
     }
 }
 
-fn readable(mean: Option<Mean>) -> String {
-    match mean {
-        None => "–".to_owned(),
-        Some(Mean {
-            mean,
-            interval: Some(interval),
-            ..
-        }) => format!("{mean:.3} ± {interval:.3}"),
-        Some(Mean { mean, .. }) => format!("{mean:.3}"),
-    }
+/// The value of a varied setting, short for a terminal; empty if the cell does not have the setting.
+fn value(cell: &Cell, axis: &str, is_short: bool) -> String {
+    let write = if is_short { short } else { plain };
+    cell.value(axis).map_or(String::new(), write)
 }

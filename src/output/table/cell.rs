@@ -24,6 +24,11 @@ pub(super) enum Format {
 }
 
 impl Cell {
+    /// As text and Markdown show it in a column with `digits` decimals.
+    pub fn fixed(&self, digits: usize) -> String {
+        self.shown(Format::Fixed(digits))
+    }
+
     /// As text and Markdown show it.
     pub(super) fn shown(&self, format: Format) -> String {
         let number = |value: f64| match format {

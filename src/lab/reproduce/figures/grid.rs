@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::super::product::{Needs, Product};
 use super::save;
-use crate::analysis::wave::Estimate;
+use crate::analysis::statistics::Estimate;
 use crate::lab::error::LabError;
 use crate::lab::sweep::{Combination, Gathered};
 use crate::output::colors::{ColorMap, Rgb};

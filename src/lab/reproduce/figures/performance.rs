@@ -1,12 +1,11 @@
 //! Fig. 11: frame time per task against the number of agents.
 
-use std::fmt::Write;
-
 use super::super::product::{Needs, Product};
 use super::save;
 use crate::engine::simulation::Stage;
 use crate::lab::error::LabError;
 use crate::output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::output::table::Table;
 use crate::scenario::measurements::{FrameTime, StageTimes};
 
 /// The figure.
@@ -24,7 +23,7 @@ pub const PRODUCT: Product = Product {
             case: "fig11".to_owned(),
             what: FrameTime::NAME.to_owned(),
         })?;
-        store.write("fig11.csv", csv(&times).as_bytes())?;
+        store.write("fig11.csv", &csv(&times)?)?;
         let threads = times.first().map_or(0, |time| time.threads);
         let machine = format!("{threads} threads of this machine");
         save(&sheet(&times, &machine), store, "fig11")
@@ -108,19 +107,15 @@ fn sheet(times: &[StageTimes], machine: &str) -> Sheet {
     }
 }
 
-/// All sizes as CSV.
-fn csv(times: &[StageTimes]) -> String {
-    let mut text = "agents,threads,total_ms".to_owned();
+/// One line per number of agents, with the milliseconds per frame of every stage.
+fn csv(times: &[StageTimes]) -> Result<Vec<u8>, LabError> {
+    let mut table = Table::of(times)
+        .column("agents", |time| time.agents)
+        .column("threads", |time| time.threads)
+        .column("total_ms", StageTimes::total);
     for stage in Stage::ALL {
-        let _ = write!(text, ",{}_ms", stage.name());
+        let name = format!("{}_ms", stage.name());
+        table = table.column(&name, |time| time.of_stage(stage).unwrap_or(0.0));
     }
-    text.push('\n');
-    for time in times {
-        let _ = write!(text, "{},{},{:.4}", time.agents, time.threads, time.total());
-        for stage in Stage::ALL {
-            let _ = write!(text, ",{:.4}", time.of_stage(stage).unwrap_or(0.0));
-        }
-        text.push('\n');
-    }
-    text
+    Ok(table.table().csv()?)
 }

@@ -3,11 +3,13 @@
 use super::super::product::{Needs, Product};
 use super::save;
 use crate::analysis::sound;
+use crate::analysis::statistics::Estimate;
 use crate::analysis::wave::{self, SpaceTime, Wave};
 use crate::lab::error::LabError;
 use crate::lab::sweep::Gathered;
 use crate::output::colors::ColorMap;
 use crate::output::plot::{Axis, Cells, ColorBar, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::output::table::Table;
 use crate::scenario::measurements::WaveData;
 
 /// K^ag of the baseline (§5.5).
@@ -35,7 +37,7 @@ pub const PRODUCT: Product = Product {
             .zip(GAS_CONSTANTS)
             .map(|(label, k)| Speed::of(study, label, k));
         let runs: Vec<Speed> = runs.collect::<Result<_, _>>()?;
-        store.write("waves.csv", csv(&runs).as_bytes())?;
+        store.write("waves.csv", &csv(&runs)?)?;
         save(&sheet(&runs), store, "waves")
     },
 };
@@ -169,38 +171,33 @@ fn crests(wave: &Wave, speed: &Speed) -> Vec<Mark> {
     marks
 }
 
-/// Measured and theoretical values as CSV; values that do not exist are empty.
-fn csv(speeds: &[Speed]) -> String {
-    let mut text =
-        "gas_constant,arriving_m_per_s,arriving_error,returning_m_per_s,returning_error,\
-        amplitude_m_per_s,amplitude_error,reflection,reflection_error,contacts_per_agent,\
-        fluid_m_per_s,with_contacts_m_per_s,all_touching_m_per_s\n"
-            .to_owned();
-    let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:.4}"));
-    for speed in speeds {
-        let wave = speed.seen.wave.as_ref();
-        let estimates = [
-            wave.map(|w| w.arriving.speed),
-            wave.and_then(|w| w.returning.as_ref()).map(|r| r.speed),
-            wave.map(|w| w.amplitude),
-            wave.and_then(|w| w.reflection),
-        ];
-        text += &speed.gas_constant.to_string();
-        for estimate in estimates {
-            let (value, error) = (estimate.map(|e| e.value), estimate.map(|e| e.error));
-            text += &format!(",{},{}", number(value), number(error));
-        }
-        for value in [
-            speed.contacts,
-            Some(speed.fluid),
-            speed.with_contacts,
-            Some(speed.all_touching),
-        ] {
-            text += &format!(",{}", number(value));
-        }
-        text.push('\n');
+/// One line per k: the measured wave, and the speeds of linear theory.
+fn csv(speeds: &[Speed]) -> Result<Vec<u8>, LabError> {
+    type Of = fn(&Wave) -> Option<Estimate>;
+    let estimates: [(&str, [&str; 2], Of); 4] = [
+        ("arriving", ["_m_per_s", "_error"], |wave| {
+            Some(wave.arriving.speed)
+        }),
+        ("returning", ["_m_per_s", "_error"], |wave| {
+            Some(wave.returning.as_ref()?.speed)
+        }),
+        ("amplitude", ["_m_per_s", "_error"], |wave| {
+            Some(wave.amplitude)
+        }),
+        ("reflection", ["", "_error"], |wave| wave.reflection),
+    ];
+    let mut table = Table::of(speeds).column("gas_constant", |speed| speed.gas_constant);
+    for (name, suffixes, of) in estimates {
+        table = table.spread(name, 4, suffixes, |speed| {
+            speed.seen.wave.as_ref().and_then(of)
+        });
     }
-    text
+    let table = table
+        .column("contacts_per_agent", |speed| speed.contacts)
+        .column("fluid_m_per_s", |speed| speed.fluid)
+        .column("with_contacts_m_per_s", |speed| speed.with_contacts)
+        .column("all_touching_m_per_s", |speed| speed.all_touching);
+    Ok(table.table().csv()?)
 }
 
 fn against_gas_constant(speeds: &[Speed]) -> Panel {
@@ -208,7 +205,7 @@ fn against_gas_constant(speeds: &[Speed]) -> Panel {
         let point = |speed: &Speed| Some([speed.gas_constant, values(speed)?]);
         speeds.iter().filter_map(point).collect()
     };
-    let points = |estimate: &dyn Fn(&Wave) -> Option<wave::Estimate>| -> Vec<Point> {
+    let points = |estimate: &dyn Fn(&Wave) -> Option<Estimate>| -> Vec<Point> {
         let point = |speed: &Speed| {
             let estimate = estimate(speed.seen.wave.as_ref()?)?;
             Some(Point {
