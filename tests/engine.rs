@@ -30,4 +30,6 @@ mod simulation;
 mod skips;
 mod social;
 mod sound;
+mod statistics;
 mod walls;
+mod wave;

@@ -123,3 +123,36 @@ fn contacts_of_large_discs_count_too() {
     let found = sound::contacts(&simulation.frame(), &everywhere).unwrap();
     assert_eq!(found.per_agent, 1.0);
 }
+
+/// A lattice with the paper's parameters whose discs touch within `reach` meters.
+fn apart(spacing: f64, reach: f64) -> Lattice {
+    Lattice {
+        reach,
+        ..lattice(spacing, SphParameters::default().gas_constant, 50.0)
+    }
+}
+
+#[test]
+fn long_waves_in_a_fine_lattice_run_at_the_root_of_half_k() {
+    // With many neighbors the sums approach integrals, and the base pressure cancels.
+    let fine = apart(0.1, 0.0);
+    assert!((fine.speed(0.01) / sound::speed_of_fluid(200.0) - 1.0).abs() < 0.003);
+}
+
+#[test]
+fn at_five_per_square_meter_the_lattice_is_close_to_the_continuum() {
+    let spacing = (2.0 / (5.2 * 3.0_f64.sqrt())).sqrt();
+    let speed = apart(spacing, 0.0).speed(0.1);
+    assert!(
+        (speed / sound::speed_of_fluid(200.0) - 1.0).abs() < 0.07,
+        "{speed}"
+    );
+}
+
+#[test]
+fn touching_discs_add_their_springs() {
+    let (free, touching) = (apart(0.48, 0.0), apart(0.48, 0.48 + 1e-9));
+    let q = 0.01;
+    let added = (touching.frequency_squared(q) - free.frequency_squared(q)) / (q * q);
+    assert!((added - 50.0 * sound::touching_modulus(0.48)).abs() < 1e-3);
+}

@@ -172,40 +172,6 @@ fn pressure_curvature(r: Vector, h: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn lattice(spacing: f64, reach: f64) -> Lattice {
-        Lattice {
-            spacing,
-            reach,
-            sph: SphParameters::default(),
-            agent_stiffness: 50.0,
-        }
-    }
-
-    #[test]
-    fn long_waves_in_a_fine_lattice_run_at_the_root_of_half_k() {
-        // With many neighbors the sums approach integrals, and the base pressure cancels.
-        let fine = lattice(0.1, 0.0);
-        assert!((fine.speed(0.01) / speed_of_fluid(200.0) - 1.0).abs() < 0.003);
-    }
-
-    #[test]
-    fn at_five_per_square_metre_the_lattice_is_close_to_the_continuum() {
-        let spacing = (2.0 / (5.2 * 3.0_f64.sqrt())).sqrt();
-        let speed = lattice(spacing, 0.0).speed(0.1);
-        assert!(
-            (speed / speed_of_fluid(200.0) - 1.0).abs() < 0.07,
-            "{speed}"
-        );
-    }
-
-    #[test]
-    fn touching_discs_add_their_springs() {
-        let (apart, touching) = (lattice(0.48, 0.0), lattice(0.48, 0.48 + 1e-9));
-        let q = 0.01;
-        let added = (touching.frequency_squared(q) - apart.frequency_squared(q)) / (q * q);
-        assert!((added - 50.0 * touching_modulus(0.48)).abs() < 1e-3);
-    }
-
     #[test]
     fn derivatives_of_the_kernels_agree_with_differences() {
         let (r, step) = (Vector::new(0.3, 0.2), Vector::new(1e-6, 0.0));
