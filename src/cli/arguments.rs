@@ -1,122 +1,14 @@
-//! The command line arguments, as typed.
+//! The options of commands that run scenarios, as typed.
 
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use clap::{ArgGroup, Args, Parser, Subcommand};
-use clap_complete::Shell;
+use clap::{ArgGroup, Args};
 
 use super::values::{
     every_frames, frame_rate, id, positive_seconds, recording, seconds, seed, threads,
 };
-use super::{accuracy, bench, measure, reproduce, stress, sweep};
 use crate::scenario::{Preset, SHIPPED};
-
-const EXAMPLES: &str = "\
-Examples:
-  sandbox evacuation --profile 'sf->sph' --set rest_density_max=6 --json
-  sandbox crossing --profile rvo --save crossing.rrd
-  sandbox concert --record-from 149 --save recordings/concert.rrd --force
-  sandbox evacuation --trajectory evacuation.sqlite --trajectory evacuation.csv
-  sandbox run my_station.json --until 60 --threads 2 --json
-  sandbox run my_station.json --geometry station.geojson
-  sandbox inspect evacuation --agent 17 --at 15 --json
-  sandbox sweep study.json --threads 2
-  sandbox bench scaling --largest 100000
-  sandbox list --settings";
-
-const SCHEMA_EXAMPLE: &str = "\
-Example: sandbox schema > scenario.schema.json
-Editors use it where a scenario has the key \"$schema\": \"scenario.schema.json\".";
-
-/// Simulate, measure and inspect dense crowds (SPH crowds, van Toll et al. 2021)
-#[derive(Parser)]
-#[command(version, arg_required_else_help = true, after_help = EXAMPLES)]
-pub struct Arguments {
-    #[command(subcommand)]
-    pub command: Command,
-}
-
-#[derive(Subcommand)]
-pub enum Command {
-    /// Run the evacuation: 400 people leave a room through a narrow door (§6.1)
-    #[command(
-        after_help = "Example: sandbox evacuation --profile 'sf->sph' --set rest_density_max=6 --json"
-    )]
-    Evacuation(RunOptions),
-    /// Run the crossing: a crowd crosses a stream on its way to a narrow door (§6.2)
-    #[command(after_help = "Example: sandbox crossing --profile rvo --save crossing.rrd")]
-    Crossing(RunOptions),
-    /// Run the concert: 10,000 people before a stage, and a shockwave (§6.3)
-    #[command(
-        after_help = "Example: sandbox concert --record-from 149 --save recordings/concert.rrd --force"
-    )]
-    Concert(RunOptions),
-    /// Run the plaza: 50,000 people cross a square to the queues before ten gates (§7)
-    #[command(after_help = "Example: sandbox plaza --until 30 --save plaza.rrd --record-every 25")]
-    Plaza(RunOptions),
-    /// Run a scenario file
-    #[command(after_help = "Example: sandbox run my_station.json --until 60 --threads 2 --json")]
-    Run {
-        /// The scenario, a JSON file
-        file: PathBuf,
-        #[command(flatten)]
-        options: RunOptions,
-    },
-    /// Resume a run from a checkpoint, with the same results as without interruption
-    #[command(after_help = "Example: sandbox resume concert.checkpoint --json")]
-    Resume(ResumeOptions),
-    /// Print every force on single agents at one moment
-    #[command(after_help = "Example: sandbox inspect evacuation --agent 17 --at 15 --json")]
-    Inspect(InspectOptions),
-    /// Regenerate the paper's tables and figures (§6) and compare them with the published ones
-    #[command(
-        after_help = format!("{}Example: sandbox reproduce table1 fig5 --seeds 3", reproduce::about())
-    )]
-    Reproduce(reproduce::ReproduceOptions),
-    /// Measure performance on this machine: a table, a JSON object, pictures
-    #[command(after_help = format!("{}{}", bench::about(), bench::EXAMPLES))]
-    Bench(bench::BenchOptions),
-    /// Measure run time against error for each numerical choice: tables and work-precision diagrams
-    #[command(after_help = format!("{}Example: sandbox accuracy relaxed wall --knob integrator", accuracy::about()))]
-    Accuracy(accuracy::AccuracyOptions),
-    /// Run hard cases, map the largest stable time step, measure jitter
-    #[command(after_help = "Example: sandbox stress --quick")]
-    Stress(stress::StressOptions),
-    /// Print the JSON Schema of scenario files, for completion and checks in editors
-    #[command(after_help = SCHEMA_EXAMPLE)]
-    Schema,
-    /// Run a scenario over a grid or list of settings and over seeds, on many threads or machines
-    #[command(after_help = sweep::EXAMPLE)]
-    Sweep(sweep::SweepOptions),
-    /// Measure densities, speeds and flows in trajectories, real or simulated (§8)
-    #[command(
-        after_help = "Example: sandbox measure run.sqlite --line 21,9.6,21,10.4 --region 15,8,19,12"
-    )]
-    Measure(measure::MeasureOptions),
-    /// List the built-in scenarios and the profiles, or the settings that --set takes
-    #[command(after_help = "Example: sandbox list --settings")]
-    List {
-        /// List the settings that --set takes, with meaning, unit, default and range
-        #[arg(long)]
-        settings: bool,
-    },
-    /// Print a shell completion script
-    #[command(
-        after_help = "Example: sandbox completions bash > ~/.local/share/bash-completion/completions/sandbox"
-    )]
-    Completions {
-        /// The shell
-        shell: Shell,
-    },
-    /// Print the man page, or write the pages of all subcommands
-    #[command(after_help = "Example: sandbox man --out ~/.local/share/man/man1")]
-    Man {
-        /// Write the pages of the program and of all subcommands to this folder instead
-        #[arg(long, value_name = "DIR")]
-        out: Option<PathBuf>,
-    },
-}
 
 /// Options that change a scenario and how it is computed.
 #[derive(Args)]

@@ -8,7 +8,7 @@ use clap::CommandFactory;
 use clap_complete::{Shell, generate};
 use clap_mangen::{Man, generate_to};
 
-use super::arguments::Arguments;
+use super::commands::Arguments;
 use super::{Failure, say};
 use crate::runs::outputs::{Manner, Outputs};
 

@@ -4,6 +4,7 @@ mod accuracy;
 mod arguments;
 mod bench;
 mod checkpoint;
+mod commands;
 mod drive;
 mod inspect;
 mod interrupt;
@@ -34,7 +35,8 @@ use crate::runs::outputs::{Outputs, OutputsError};
 use crate::scenario::floor_plan;
 use crate::scenario::quote::{printable, shown};
 use crate::scenario::{Need, Scenario, ScenarioError, Setting, read_text, shipped_text};
-use arguments::{Arguments, Command, Source};
+use arguments::Source;
+use commands::{Arguments, Command};
 
 /// Why a command failed.
 #[derive(Debug, thiserror::Error)]

@@ -5,6 +5,7 @@
 
 mod comparison;
 mod figures;
+mod list;
 mod product;
 mod published;
 mod questions;
@@ -14,7 +15,8 @@ mod table2;
 mod text;
 
 pub use comparison::{Band, Comparison};
-pub use product::{PRODUCTS, Product, reproduce};
+pub use list::{PRODUCTS, reproduce};
+pub use product::{Needs, Product};
 pub use published::{CrossingRow, EvacuationRow, Published, Table, published};
 pub use ranking::{Ranked, Ranking, rankings};
 pub use table1::{Row, rows as table1_rows};

@@ -7,8 +7,7 @@ use serde_json::Value;
 
 use super::cell::short;
 use super::entries::Entries;
-use super::problem;
-use super::study::MOST_CELLS;
+use super::{MOST_CELLS, problem};
 use crate::runs::case::Source;
 use crate::scenario::quote::shown;
 use crate::scenario::{Problem, SHIPPED, Setting, built_in, suggestion};

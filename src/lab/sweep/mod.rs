@@ -25,6 +25,7 @@ mod cell;
 mod choice;
 mod entries;
 mod gathered;
+mod plan;
 mod seeds;
 mod shard;
 mod study;
@@ -74,6 +75,9 @@ pub fn run(
     let jobs = study.jobs(|cell| shard.has(cell.number));
     job::run(&jobs, store, study.memory, listener)
 }
+
+/// Studies with more cells are rejected as mistakes.
+const MOST_CELLS: usize = 100_000;
 
 /// A problem at a place of the study's file.
 fn problem(path: impl Into<String>, reason: impl Into<String>) -> Problem {
