@@ -8,11 +8,11 @@ use std::collections::BTreeSet;
 
 use super::Row;
 use super::error::Cause;
-use crate::engine::geometry::{Area, AreaIndex};
+use crate::engine::geometry::AreaIndex;
 use crate::engine::math::Vector;
 use crate::engine::scene::{Goal, Region};
 use crate::engine::simulation::Simulation;
-use crate::scenario::floor_plan::{Rings, free};
+use crate::scenario::floor_plan::{Rings, free, to_wkt};
 
 /// Margin around everything, meters.
 const MARGIN: f64 = 5.0;
@@ -119,7 +119,7 @@ impl WalkableArea {
         let around = corners.copied().map(|p| [p, p]);
         let around = around.reduce(|[low, high], [p, _]| [low.inf(&p), high.sup(&p)]);
         let [min, max] = around.unwrap_or(self.bounds);
-        Ok((wkt(&areas), [min.x, min.y, max.x, max.y]))
+        Ok((to_wkt(&areas), [min.x, min.y, max.x, max.y]))
     }
 }
 
@@ -129,23 +129,4 @@ fn entrance(simulation: &Simulation, p: Vector) -> Vector {
     let inside = walls.obstacle_at(p).is_some();
     let exit = inside.then(|| walls.free_point_near(p)).flatten();
     exit.unwrap_or(p)
-}
-
-/// Well-known text: a `POLYGON` for one area, otherwise a `MULTIPOLYGON`; holes are clockwise.
-fn wkt(areas: &[Area]) -> String {
-    let ring = |points: &mut dyn Iterator<Item = &Vector>| {
-        let points: Vec<String> = points.map(|p| format!("{} {}", p.x, p.y)).collect();
-        format!("({}, {})", points.join(", "), points[0])
-    };
-    let polygon = |area: &Area| {
-        let holes = area.holes.iter();
-        let holes = holes.map(|hole| ring(&mut hole.points().iter().rev()));
-        let rings = std::iter::once(ring(&mut area.exterior.points().iter())).chain(holes);
-        format!("({})", rings.collect::<Vec<_>>().join(", "))
-    };
-    let polygons: Vec<String> = areas.iter().map(polygon).collect();
-    match polygons.as_slice() {
-        [polygon] => format!("POLYGON {polygon}"),
-        polygons => format!("MULTIPOLYGON ({})", polygons.join(", ")),
-    }
 }

@@ -17,6 +17,7 @@ mod wkt;
 
 pub use error::FloorPlanError;
 pub use unite::{Rings, free};
+pub use wkt::to_wkt;
 
 use std::path::Path;
 

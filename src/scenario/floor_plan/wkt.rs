@@ -3,10 +3,12 @@
 use std::str::FromStr;
 
 use wkt::Wkt;
-use wkt::types::{LineString, Polygon};
+use wkt::types::{Coord, Dimension, LineString, MultiPolygon, Polygon};
 
 use super::error::FloorPlanError;
 use super::shape::Shape;
+use crate::engine::geometry::Area;
+use crate::engine::math::Vector;
 
 /// EPSG codes of common coordinate systems in degrees.
 pub(super) const IN_DEGREES: [u32; 16] = [
@@ -143,4 +145,30 @@ fn shape(polygon: &Polygon<f64>, place: String) -> Result<Shape, FloorPlanError>
         rings,
         is_obstacle: false,
     })
+}
+
+/// Areas as a `POLYGON`, or as a `MULTIPOLYGON` unless there is exactly one; holes are clockwise.
+pub fn to_wkt(areas: &[Area]) -> String {
+    let ring = |points: &mut dyn Iterator<Item = &Vector>| {
+        let coord = |p: &Vector| Coord {
+            x: p.x,
+            y: p.y,
+            z: None,
+            m: None,
+        };
+        let mut coords: Vec<Coord<f64>> = points.map(coord).collect();
+        coords.extend(coords.first().cloned());
+        LineString::new(coords, Dimension::XY)
+    };
+    let polygon = |area: &Area| {
+        let mut rings = vec![ring(&mut area.exterior.points().iter())];
+        let holes = area.holes.iter();
+        rings.extend(holes.map(|hole| ring(&mut hole.points().iter().rev())));
+        Polygon::new(rings, Dimension::XY)
+    };
+    let polygons: Vec<Polygon<f64>> = areas.iter().map(polygon).collect();
+    match polygons.as_slice() {
+        [polygon] => polygon.to_string(),
+        _ => MultiPolygon::new(polygons, Dimension::XY).to_string(),
+    }
 }
