@@ -167,7 +167,7 @@ fn population_and_behavior_have_separate_seeds() {
     let run = |population: u64, behavior: u64, frames: u32| {
         let mut scene = busy_room("rvo->sph");
         scene.seed = population;
-        scene.behaviour_seed = Some(behavior);
+        scene.behavior_seed = Some(behavior);
         simulated(scene, 2, frames)
     };
     let bodies = |simulation: &Simulation| {
@@ -187,7 +187,7 @@ fn population_and_behavior_have_separate_seeds() {
     assert_ne!(bodies(&one), bodies(&run(6, 1, 20)));
     // Without its own seed, behavior uses that of the population.
     let mut same = busy_room("rvo->sph");
-    same.behaviour_seed = None;
+    same.behavior_seed = None;
     assert_eq!(simulated(same, 2, 20).digest(), run(5, 5, 20).digest());
 }
 

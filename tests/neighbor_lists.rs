@@ -7,7 +7,7 @@ use sandbox::engine::kernel;
 use sandbox::engine::neighbors::ListPolicy;
 use sandbox::engine::scene::{Integrator, Scene};
 use sandbox::engine::simulation::Simulation;
-use sandbox::scenario::{Need, Scenario};
+use sandbox::scenario::{Draft, Need};
 
 /// Two blocks of people that run through each other.
 fn streams(lists: ListPolicy, integrator: Integrator, time_step: f64) -> Simulation {
@@ -118,8 +118,9 @@ fn the_memory_estimate_covers_lists_of_walls() {
     let (held, need) = pool.unwrap().install(|| {
         let mut need = Need::default();
         let held = allocation_counter::measure(|| {
-            let scene = Scenario::parse(&text, "pillars", &[]).unwrap().scene;
-            let parsed = Need::parse(&text, "pillars", &[]).unwrap();
+            let draft = Draft::read(&text, "pillars", &[]).unwrap();
+            let parsed = *draft.need();
+            let scene = draft.scenario().unwrap().scene;
             need = parsed.with_lists(&scene);
             let mut simulation = Simulation::new(scene).unwrap();
             simulation.evaluate().unwrap();

@@ -138,7 +138,7 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
     ],
     [
         "sources.0.rows=0",
-        "--set sources.0.rows=0: must be at least 1",
+        "--set sources.0.rows=0: must be at least 1 and at most 2^32 - 1, not 0",
     ],
     [
         "sources.1.rows=0",
@@ -154,7 +154,7 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
     ],
     [
         "goal=[1]",
-        "--set goal=[1]: invalid length 1, expected a list of length 2",
+        "--set goal=[1]: must be a point [x, y] in meters",
     ],
     ["name=", "--set name=: must not be empty"],
 ];

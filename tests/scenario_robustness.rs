@@ -119,7 +119,7 @@ fn small_scenarios() -> Vec<Value> {
 }
 
 const EVERYTHING: &str = r#"{
-  "name": "everything", "description": "a line", "seed": 1, "population_seed": 2, "behaviour_seed": 3,
+  "name": "everything", "description": "a line", "seed": 1, "population_seed": 2, "behavior_seed": 3,
   "duration_secs": 1, "preset": "fast", "time_step_secs": "auto", "longest_step_secs": 0.04,
   "coarse_every": 5, "integrator": "velocity-verlet", "wall_method": "union", "precision": "double",
   "neighbor_lists": "coarse", "preferred_speed": 1.4, "max_speed": 1.8,

@@ -3,17 +3,28 @@
 use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::scene::{Integrator, Scene};
 use sandbox::scenario::catalog::{self, NAMES, Parameters};
-use sandbox::scenario::{NESTED, Preset, Scenario, Setting, settings};
+use sandbox::scenario::{Preset, Scenario, Setting, nested_settings, schema, settings};
 use serde_json::{Value, json};
 
+/// The keys of parameters, as the program names them to somebody who gives an unknown one.
 fn parameter_keys() -> Vec<String> {
-    let parameters = serde_json::to_value(Parameters::default()).unwrap();
-    parameters.as_object().unwrap().keys().cloned().collect()
+    known_keys("{\"parameters\": {\"?\": 0}}")
 }
 
-fn documented_default(key: &str) -> &'static str {
+/// The keys that the error for an unknown key `?` lists.
+fn known_keys(text: &str) -> Vec<String> {
+    let error = Scenario::parse(text, "f", &[]).unwrap_err().to_string();
+    let names = error.split('`').skip(3).step_by(2);
+    let names: Vec<String> = names.map(str::to_owned).collect();
+    assert!(names.len() > 5, "{error}");
+    names
+}
+
+/// The default in the list of settings.
+fn documented_default(key: &str) -> Option<String> {
     let settings = settings();
-    settings.iter().find(|doc| doc.key == key).unwrap().default
+    let found = settings.iter().find(|doc| doc.key == key);
+    found.unwrap().default.clone()
 }
 
 fn parse(settings: &[&str]) -> Scenario {
@@ -23,57 +34,73 @@ fn parse(settings: &[&str]) -> Scenario {
 
 #[test]
 fn every_key_of_a_file_and_every_parameter_is_documented_once() {
-    let error = Scenario::parse("{\"?\": 0}", "f", &[])
-        .unwrap_err()
-        .to_string();
-    let mut known: Vec<String> = error
-        .split('`')
-        .skip(3)
-        .step_by(2)
-        .map(str::to_owned)
-        .collect();
-    assert!(known.len() > 20, "{error}");
-    known.extend(parameter_keys());
-    known.sort();
-    let mut documented: Vec<&str> = settings().iter().map(|doc| doc.key).collect();
-    documented.sort();
+    let known = [known_keys("{\"?\": 0}"), parameter_keys()].concat();
+    let documented: Vec<&str> = settings().iter().map(|doc| doc.key).collect();
     assert_eq!(documented, known);
+    for doc in settings() {
+        assert!(doc.description.ends_with('.'), "{doc:?}");
+        assert!(!doc.range.is_empty(), "{doc:?}");
+    }
 }
 
 #[test]
 fn the_keys_of_nested_objects_are_documented() {
-    let nested = |list: &str| NESTED.iter().find(|(name, _)| *name == list).unwrap().1;
-    for list in ["agents", "grids", "sources", "events"] {
-        let text = format!("{{\"{list}\": [{{\"?\": 0}}]}}");
-        let error = Scenario::parse(&text, "f", &[]).unwrap_err().to_string();
-        let known: Vec<&str> = error.split('`').skip(3).step_by(2).collect();
-        assert!(known.len() > 5, "{error}");
-        let documented = match list {
-            "sources" => format!("{}, {}", nested("grids"), nested(list)),
-            _ => nested(list).to_owned(),
-        };
-        let words: Vec<&str> = documented.split([' ', ',', '?']).collect();
-        for key in known {
-            assert!(words.contains(&key), "{list}: {key}");
+    let nested = nested_settings();
+    for (list, required) in [("agents", 1), ("grids", 4), ("sources", 5), ("events", 3)] {
+        let first = json!({"?": 0, "position": [0, 0], "min": [0, 0], "max": [0, 0], "columns": 1, "rows": 1,
+            "every_secs": 1, "at_secs": 0, "for_secs": 0, "region": [[0, 0], [0, 0]]});
+        let documented = &nested.iter().find(|(name, _)| name == list).unwrap().1;
+        let documented: Vec<&str> = documented.split(", ").collect();
+        let optional = documented.iter().filter(|key| key.ends_with('?'));
+        assert_eq!(optional.count(), documented.len() - required, "{list}");
+        let mut known = known_keys(&json!({ list: [first] }).to_string());
+        if list == "grids" {
+            known.retain(|key| !["start_secs", "every_secs", "times"].contains(&key.as_str()));
         }
+        known.sort();
+        let mut documented: Vec<&str> = documented
+            .iter()
+            .map(|key| key.trim_end_matches('?'))
+            .collect();
+        documented.sort();
+        assert_eq!(documented, known, "{list}");
+    }
+    for (path, keys) in [
+        (
+            "measurements",
+            "one of density, flow_of_first, flow_until or evacuated",
+        ),
+        ("measurements.density", "at_secs, region?"),
+        ("stop", "idle_secs?, when_empty?"),
+        ("view", "region, opens_at_secs?"),
+        (
+            "profile",
+            "one of base, navigation or blend, name?, parameters?, sph?",
+        ),
+        ("profile.blend", "at_density, profile"),
+    ] {
+        assert!(
+            nested.contains(&(path.to_owned(), keys.to_owned())),
+            "{path}"
+        );
     }
 }
 
 #[test]
 fn every_documented_key_is_accepted() {
     let text = |key: &str| match key {
-        "name" | "description" => "word".to_owned(),
-        "coarse_every" | "population_seed" | "behaviour_seed" => "3".to_owned(),
-        "parameters" | "stop" => "{}".to_owned(),
-        "goal" => "[1, 2]".to_owned(),
-        "walkable_area" => "[[[[0, 0], [9, 0], [9, 9]]]]".to_owned(),
-        "view" => "{\"region\": [[0, 0], [1, 1]]}".to_owned(),
-        "agent_stiffness" | "wall_stiffness" => "10".to_owned(),
-        _ if documented_default(key) == "none" => "[]".to_owned(),
-        _ => documented_default(key).to_owned(),
+        "name" | "description" => "word",
+        "coarse_every" | "population_seed" | "behavior_seed" => "3",
+        "parameters" | "stop" => "{}",
+        "goal" => "[1, 2]",
+        "walkable_area" => "[[[[0, 0], [9, 0], [9, 9]]]]",
+        "view" => "{\"region\": [[0, 0], [1, 1]]}",
+        "agent_stiffness" | "wall_stiffness" => "10",
+        _ => "[]",
     };
     for doc in settings() {
-        let setting = format!("{}={}", doc.key, text(doc.key));
+        let value = doc.default.unwrap_or_else(|| text(doc.key).to_owned());
+        let setting = format!("{}={value}", doc.key);
         let scenario = parse(&[&setting]);
         let place = if parameter_keys().iter().any(|key| key == doc.key) {
             &scenario.document["parameters"][doc.key]
@@ -86,19 +113,29 @@ fn every_documented_key_is_accepted() {
 
 #[test]
 fn the_documented_defaults_of_parameters_are_those_of_the_engine() {
-    for key in parameter_keys() {
-        let default = documented_default(&key);
+    for doc in settings()
+        .into_iter()
+        .filter(|doc| parameter_keys().contains(&doc.key.to_owned()))
+    {
+        let key = doc.key;
         for name in NAMES {
             let Some(expected) = catalog::plain(name, &Parameters::default()) else {
                 continue;
             };
-            let value = match default.split_once("; with SPH ") {
-                Some((_, with)) if name.contains("sph") => with,
-                Some((without, _)) => without,
-                None => default,
+            // The description says a default that depends on the profile.
+            let said = doc
+                .description
+                .split_once("Default: ")
+                .map(|(_, said)| said.trim_end_matches('.'));
+            let said = said.map(|said| said.split_once("; with SPH ").unwrap());
+            let value = match (&doc.default, said) {
+                (Some(value), None) => value,
+                (None, Some((_, with))) if name.contains("sph") => with,
+                (None, Some((without, _))) => without,
+                both => panic!("{key}: {both:?}"),
             };
             let value: Value = serde_json::from_str(value).unwrap();
-            let given: Parameters = serde_json::from_value(json!({ key.as_str(): value })).unwrap();
+            let given: Parameters = serde_json::from_value(json!({ key: value })).unwrap();
             assert_eq!(
                 catalog::plain(name, &given),
                 Some(expected),
@@ -107,6 +144,39 @@ fn the_documented_defaults_of_parameters_are_those_of_the_engine() {
             assert_eq!(given.sph(), Parameters::default().sph(), "{key}");
         }
     }
+}
+
+#[test]
+fn one_seed_sets_both_seeds_and_each_can_be_set_alone() {
+    let seeds = |settings: &[&str]| {
+        let scenario = parse(settings);
+        (
+            scenario.seed,
+            scenario.scene.seed,
+            scenario.scene.behavior_seed,
+        )
+    };
+    assert_eq!(seeds(&[]), (1, 1, Some(1)));
+    assert_eq!(seeds(&["seed=7"]), (7, 7, Some(7)));
+    assert_eq!(seeds(&["seed=7", "population_seed=8"]), (7, 8, Some(7)));
+    assert_eq!(seeds(&["behavior_seed=9", "seed=7"]), (7, 7, Some(9)));
+}
+
+#[test]
+fn the_old_name_of_a_key_still_works() {
+    let old = r#"{"behaviour_seed": 5}"#;
+    let scenario = Scenario::parse(old, "f", &[]).unwrap();
+    assert_eq!(scenario.scene.behavior_seed, Some(5));
+    assert_eq!(scenario.document, json!({"behavior_seed": 5}));
+    let set = "behaviour_seed=6".parse().unwrap();
+    let scenario = Scenario::parse(old, "f", &[set]).unwrap();
+    assert_eq!(scenario.scene.behavior_seed, Some(6));
+    let both = r#"{"behaviour_seed": 5, "behavior_seed": 5}"#;
+    assert_eq!(
+        Scenario::parse(both, "f", &[]).unwrap_err().to_string(),
+        "f: behaviour_seed: the old name of `behavior_seed`, which is given too; remove one"
+    );
+    assert_eq!(schema()["properties"]["behaviour_seed"]["deprecated"], true);
 }
 
 #[test]
@@ -135,7 +205,7 @@ fn the_documented_defaults_of_scenarios_are_those_of_the_engine() {
         "max_speed",
         "profile",
     ];
-    let written = scalars.map(|key| format!("{key}={}", documented_default(key)));
+    let written = scalars.map(|key| format!("{key}={}", documented_default(key).unwrap()));
     let given = parse(&written.each_ref().map(String::as_str));
     assert_eq!(given.scene.seed, bare.scene.seed);
     assert_eq!(given.duration_secs, bare.duration_secs);
@@ -187,7 +257,8 @@ fn a_preset_fills_in_values_that_are_not_given() {
         (bare.wall_method, bare.precision)
     );
 
-    for (name, preset) in Preset::ALL {
+    for name in Preset::names() {
+        let preset: Preset = serde_json::from_value(json!(name)).unwrap();
         let scenario = parse(&[&format!("preset={name}")]);
         let filled = &scenario.document;
         for (key, value) in preset.document().as_object().unwrap() {

@@ -21,7 +21,7 @@ pub struct SceneOptions {
     #[arg(long, allow_negative_numbers = true, value_parser = seed)]
     pub seed: Option<u64>,
     /// Numerical settings: the paper's, cheaper ones, or more accurate ones (see docs/accuracy.md)
-    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Preset::ALL.map(|(name, _)| name)))]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Preset::names()))]
     pub preset: Option<String>,
     /// Time step Δt_fine in seconds, or `auto`: the largest step that is safely stable
     #[arg(long, value_name = "SECS|auto")]

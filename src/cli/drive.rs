@@ -69,10 +69,11 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
     });
     let until: Option<Setting> = until.transpose()?;
     let file = options.file.display().to_string();
-    let need = checkpoint.need(until.as_slice())?;
+    let draft = checkpoint.draft(until.as_slice())?;
+    let need = *draft.need();
     let writing = memory::of_writing(&options.output);
     memory::check(&file, &need, writing)?;
-    let scenario = checkpoint.scenario(until.as_slice())?;
+    let scenario = draft.scenario()?;
     memory::check(&file, &need.with_lists(&scenario.scene), writing)?;
     let resumable = until.is_some().then(|| checkpoint.scenario(&[]).ok());
     let (simulation, metrics) = checkpoint.resume(&scenario)?;

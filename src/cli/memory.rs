@@ -53,18 +53,14 @@ pub fn check(file: &str, need: &Need, writing: u64) -> Result<(), Failure> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::scenario::Scenario;
+    use crate::scenario::Draft;
 
     #[test]
     fn the_shipped_scenarios_fit_into_a_small_machine() {
         for shipped in crate::scenario::SHIPPED {
-            let scene = Scenario::parse(shipped.text, shipped.name, &[])
-                .unwrap()
-                .scene;
-            let need = Need::parse(shipped.text, shipped.name, &[])
-                .unwrap()
-                .with_lists(&scene);
+            let draft = Draft::read(shipped.text, shipped.name, &[]).unwrap();
+            let need = *draft.need();
+            let need = need.with_lists(&draft.scenario().unwrap().scene);
             assert!(need.check(shipped.name, 0, 128 << 20).is_ok(), "{need:?}");
         }
     }

@@ -34,7 +34,7 @@ use crate::runs::error::StoreError;
 use crate::runs::outputs::{Outputs, OutputsError};
 use crate::scenario::floor_plan;
 use crate::scenario::quote::{printable, shown};
-use crate::scenario::{Need, Scenario, ScenarioError, Setting, read_text, shipped_text};
+use crate::scenario::{Draft, Scenario, ScenarioError, Setting, read_text, shipped_text};
 use arguments::Source;
 use commands::{Arguments, Command};
 
@@ -203,9 +203,10 @@ fn scenario(
         Source::Shipped(name) => (shipped_text(name)?.to_owned(), format!("{name}.json")),
         Source::File(path) => (read_text(path)?, path.display().to_string()),
     };
-    let need = Need::parse(&text, &file, &settings)?;
+    let draft = Draft::read(&text, &file, &settings)?;
+    let need = *draft.need();
     memory::check(&file, &need, writing)?;
-    let scenario = Scenario::parse(&text, &file, &settings)?;
+    let scenario = draft.scenario()?;
     memory::check(&file, &need.with_lists(&scenario.scene), writing)?;
     if let Source::File(path) = source {
         outputs.reads("the scenario", path);

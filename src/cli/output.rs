@@ -163,7 +163,7 @@ pub fn save_moment(
 
 /// The options of a recording that begins at the time `from`.
 fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> RecordingOptions {
-    let seed = scenario.scene.seed;
+    let seed = scenario.seed;
     let opens_at = scenario.view.opens_at_secs;
     let recorded = from..scenario.duration_secs;
     RecordingOptions {

@@ -65,7 +65,7 @@ impl<'a> Report<'a> {
             "{} ({}), seed {}: {} agents, {:.2} s in {} frames{}\n",
             shown(&self.scenario.name),
             shown(&self.scenario.profile_name),
-            self.simulation.scene().seed,
+            self.scenario.seed,
             frame.agents.entered(),
             frame.clock.time(),
             frame.clock.frame(),

@@ -120,7 +120,7 @@ pub struct Scene {
     /// Seed of radii and of jitter of initial positions.
     pub seed: u64,
     /// Seed of RVO candidates; `None`: `seed`.
-    pub behaviour_seed: Option<u64>,
+    pub behavior_seed: Option<u64>,
     /// Δt_fine and Δt_coarse.
     pub clock: Clock,
     /// How the state is advanced.
@@ -154,7 +154,7 @@ impl Default for Scene {
     fn default() -> Self {
         Self {
             seed: 1,
-            behaviour_seed: None,
+            behavior_seed: None,
             clock: Clock::default(),
             integrator: Integrator::default(),
             wall_method: WallMethod::default(),

@@ -221,7 +221,7 @@ impl Simulation {
             neighbors: &self.neighbors,
             packed: &self.packed,
             wanted: self.needs.pairs,
-            seed: self.scene.behaviour_seed.unwrap_or(self.scene.seed),
+            seed: self.scene.behavior_seed.unwrap_or(self.scene.seed),
         }
     }
 

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 use super::drive::{Then, drive, unless_over};
 use super::error::RunError;
@@ -16,7 +15,7 @@ use crate::engine::simulation::{Fault, Simulation};
 use crate::scenario::measurements::Metrics;
 use crate::scenario::quote::shown;
 use crate::scenario::{
-    Need, SHIPPED, Scenario, ScenarioError, Setting, built_in, read_text, shipped_text,
+    Draft, Need, SHIPPED, Scenario, ScenarioError, Setting, built_in, read_text, shipped_text,
 };
 
 /// Where a scenario comes from.
@@ -90,15 +89,15 @@ impl Case {
     pub fn new(source: Source, settings: Vec<Setting>, memory: &Memory) -> Result<Self, RunError> {
         let (text, file) = source.text()?;
         let check = |need: &Need| need.check(&file, 0, memory.limit().unwrap_or(u64::MAX));
-        let need = Need::parse(&text, &file, &settings)?;
+        let draft = Draft::read(&text, &file, &settings)?;
+        let need = *draft.need();
         check(&need)?;
         let _lent = memory.lend(need.bytes());
-        let scenario = Scenario::parse(&text, &file, &settings)?;
+        let scenario = draft.scenario()?;
         let need = need.with_lists(&scenario.scene);
         check(&need)?;
-        let given = scenario.document.get("seed").and_then(Value::as_u64);
         Ok(Self {
-            seed: given.unwrap_or(scenario.scene.seed),
+            seed: scenario.seed,
             expected_secs: expected_secs(&scenario),
             need,
             key: key(&scenario),

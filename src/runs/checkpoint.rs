@@ -15,7 +15,7 @@ use crate::engine::simulation::{Simulation, State, StateError};
 use crate::runs::outputs::write_whole;
 use crate::scenario::input;
 use crate::scenario::measurements::Metrics;
-use crate::scenario::{Need, Scenario, ScenarioError, Setting};
+use crate::scenario::{Draft, Scenario, ScenarioError, Setting};
 
 /// The first bytes of every file.
 const MAGIC: &[u8] = b"sandbox checkpoint\n";
@@ -104,12 +104,12 @@ impl Checkpoint {
         self.engine == ENGINE
     }
 
-    /// Estimates the size of its run with additional settings.
+    /// The scenario with additional settings, before its agents are placed.
     ///
     /// # Errors
     /// A setting is invalid.
-    pub fn need(&self, settings: &[Setting]) -> Result<Need, ScenarioError> {
-        Need::parse(&self.document, &self.file, settings)
+    pub fn draft(&self, settings: &[Setting]) -> Result<Draft, ScenarioError> {
+        Draft::read(&self.document, &self.file, settings)
     }
 
     /// The scenario with additional settings.
@@ -117,7 +117,7 @@ impl Checkpoint {
     /// # Errors
     /// A setting is invalid.
     pub fn scenario(&self, settings: &[Setting]) -> Result<Scenario, ScenarioError> {
-        Scenario::parse(&self.document, &self.file, settings)
+        self.draft(settings)?.scenario()
     }
 
     /// Resumes `scenario`, which is the checkpoint's own but may end at another time.

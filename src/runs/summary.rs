@@ -17,10 +17,14 @@ pub struct Summary {
     pub scenario: String,
     /// The default profile.
     pub profile: String,
-    /// Seed of the population: bodies and start positions.
+    /// The scenario's `seed`.
     pub seed: u64,
+    /// Seed of the population: bodies and start positions. 0 in files of versions that did not write it.
+    #[serde(default)]
+    pub population_seed: u64,
     /// Seed of the behavior: RVO's candidate velocities.
-    pub behaviour_seed: u64,
+    #[serde(alias = "behaviour_seed")]
+    pub behavior_seed: u64,
     /// SHA-256 of the final state.
     pub state_sha256: String,
     /// Frames computed.
@@ -50,8 +54,9 @@ impl Summary {
         Self {
             scenario: scenario.name.clone(),
             profile: scenario.profile_name.clone(),
-            seed: simulation.scene().seed,
-            behaviour_seed: frame.seed,
+            seed: scenario.seed,
+            population_seed: simulation.scene().seed,
+            behavior_seed: frame.seed,
             state_sha256: simulation.digest(),
             frames: frame.clock.frame(),
             time_secs: frame.clock.time(),

@@ -8,87 +8,93 @@ use serde_json::Value;
 use super::crowd::{Crowd, MOST_NUMBERED};
 use super::crowding;
 use super::error::{Problem, Under, in_plain_words};
-use super::file::{self, File, Object, ProfileChoice, TimeStep};
+use super::file::{self, DEFAULT_DURATION, DEFAULT_PROFILE, File, TimeStep};
 use super::need::Need;
-use super::range::{COARSE_EVERY, MAX_SPEED, PREFERRED_SPEED, Range, TIME, TIME_STEP};
-use super::range::{point, region};
-use super::{PlanFile, Scenario, Stop, View, parameters, plan, preset, profiles};
+use super::profiles::{ProfileChoice, ProfileName};
+use super::range::{self, region};
+use super::{PlanFile, Scenario, Stop, View, measurements, plan, preset, profiles};
 use crate::analysis::stability;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::engine::math::Vector;
 use crate::engine::profile::Override;
 use crate::engine::scene::{Push, Region, Scene};
-use crate::scenario::measurements;
 
-/// Default duration, seconds.
-const DEFAULT_DURATION: f64 = 60.0;
-/// Default profile.
-const DEFAULT_PROFILE: &str = "sph";
 /// Margin of the default view around walls, agents, goals and sources, meters.
 const DEFAULT_MARGIN: f64 = 1.0;
-/// K^goal of a push.
-pub(super) const GOAL_SCALE: Range = Range::at_least(0.0, 1e9);
-/// Times that must not be zero, seconds.
-pub(super) const UNTIL: Range = Range::above(0.0, 1e7);
 
-/// Estimates the size of a run of `document`. Apart from that only names and types are checked.
-pub(super) fn need(document: &Value, path: &Path) -> Result<Need, Problem> {
-    let file = read(&complete(document, path)?.0)?;
-    let duration_secs = duration(&file)?;
-    Need::of(&file, &first_clock(&file)?, duration_secs)
+/// A document whose keys and values have been checked one by one.
+#[derive(Debug, Clone)]
+pub(super) struct Contents {
+    /// With its preset expanded and the files that it names inlined.
+    document: Value,
+    /// The files that it names.
+    plans: Vec<PlanFile>,
+    keys: File,
+    /// The size of its run.
+    pub need: Need,
 }
 
-/// The document with its preset expanded and the files that it names inlined. File names are relative to the folder
-/// of `path`. Returns the files with their keys.
-fn complete(document: &Value, path: &Path) -> Result<(Value, Vec<PlanFile>), Problem> {
-    let mut document = preset::fill(document);
-    without_schema(&mut document)?;
-    let files = plan::fill(&mut document, path.parent().unwrap_or(Path::new("")))?;
-    Ok((document, files))
-}
+impl Contents {
+    /// Reads `document`, and the files that it names from the folder of `path`.
+    pub(super) fn of(document: Value, path: &Path) -> Result<Self, Problem> {
+        let mut document = preset::fill(document);
+        without_schema(&mut document)?;
+        let plans = plan::fill(&mut document, path.parent().unwrap_or(Path::new("")))?;
+        range::check(&document)?;
+        let keys: File = serde_path_to_error::deserialize(&document).map_err(|error| {
+            let path = error.path().to_string();
+            let path = if path == "." { String::new() } else { path };
+            Problem::new(path, in_plain_words(&error.into_inner().to_string()))
+        })?;
+        let need = Need::of(&keys, &clock(&keys, first_step(&keys)), duration(&keys))?;
+        Ok(Self {
+            document,
+            plans,
+            keys,
+            need,
+        })
+    }
 
-/// Checks `document`, which was read from `path`. The file's name is the default name of the scenario, and its folder
-/// holds the files that the scenario names.
-pub(super) fn scenario(document: &Value, path: &Path) -> Result<Scenario, Problem> {
-    let (document, files) = complete(document, path)?;
-    let file = read(&document)?;
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let name = file.name.clone().unwrap_or_else(|| stem.into_owned());
-    if name.is_empty() {
-        return Err(Problem::new("name", "must not be empty"));
+    /// Checks relations between values and places the agents. The name of the file `path` is the default name of the
+    /// scenario.
+    pub(super) fn scenario(self, path: &Path) -> Result<Scenario, Problem> {
+        let keys = &self.keys;
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let mut scene = empty_scene(keys)?;
+        let choice = keys.profile.clone();
+        let choice =
+            choice.unwrap_or_else(|| ProfileChoice::Named(ProfileName(DEFAULT_PROFILE.to_owned())));
+        let blend = profiles::blend(&choice, &keys.parameters).under("profile")?;
+        Crowd::new(keys, &blend, &mut scene).enter()?;
+        let duration_secs = duration(keys);
+        crowding::check(keys, &scene, duration_secs)?;
+        measurements::check(&keys.measurements)?;
+        scene.pushes = pushes(&keys.events)?;
+        if keys.time_step_secs == Some(TimeStep::Auto(file::Auto::Auto)) {
+            scene.clock = automatic_clock(keys, &scene)?;
+        }
+        Ok(Scenario {
+            name: keys.name.clone().unwrap_or_else(|| stem.into_owned()),
+            description: keys.description.clone().unwrap_or_default(),
+            seed: seed(keys),
+            duration_secs,
+            stop: Stop {
+                when_empty: keys.stop.when_empty,
+                idle_secs: keys.stop.idle_secs,
+            },
+            measurements: keys.measurements.clone(),
+            view: view(keys.view.as_ref(), &scene).under("view")?,
+            debug_agents: match &keys.debug_agents {
+                Some(ids) => without_repetition(ids)?,
+                None => spread(self.need.entering),
+            },
+            entering: self.need.entering,
+            profile_name: blend.name,
+            document: self.document,
+            files: self.plans,
+            scene,
+        })
     }
-    let duration_secs = duration(&file)?;
-    let mut scene = empty_scene(&file)?;
-    parameters::check(&file.parameters.0).under("parameters")?;
-    let choice = file.profile.clone();
-    let choice = choice.unwrap_or_else(|| ProfileChoice::Named(DEFAULT_PROFILE.to_owned()));
-    let blend = profiles::blend(&choice, &file.parameters.0).under("profile")?;
-    file.goal.map(|goal| point("goal", goal)).transpose()?;
-    let need = Need::of(&file, &scene.clock, duration_secs)?;
-    Crowd::new(&file, &blend, &mut scene).enter()?;
-    crowding::check(&file, &scene, duration_secs)?;
-    measurements::check(&file.measurements)?;
-    scene.pushes = pushes(&file.events)?;
-    if file.time_step_secs == Some(TimeStep::Auto) {
-        scene.clock = automatic_clock(&file, &scene)?;
-    }
-    Ok(Scenario {
-        name,
-        description: file.description.clone().unwrap_or_default(),
-        duration_secs,
-        stop: stop(&file.stop.0).under("stop")?,
-        measurements: file.measurements,
-        view: view(file.view.as_ref(), &scene).under("view")?,
-        debug_agents: match &file.debug_agents {
-            Some(ids) => without_repetition(ids)?,
-            None => spread(need.entering),
-        },
-        entering: need.entering,
-        profile_name: blend.name,
-        document,
-        files,
-        scene,
-    })
 }
 
 /// Removes `$schema`, by which editors find the schema.
@@ -105,69 +111,53 @@ fn without_schema(document: &mut Value) -> Result<(), Problem> {
     }
 }
 
-/// Deserializes the document, which checks names and types.
-fn read(document: &Value) -> Result<File, Problem> {
-    let file: Result<Object<File>, _> = serde_path_to_error::deserialize(document);
-    file.map(|Object(file)| file).map_err(|error| {
-        let path = error.path().to_string();
-        let path = if path == "." { String::new() } else { path };
-        Problem::new(path, in_plain_words(&error.into_inner().to_string()))
-    })
+fn duration(keys: &File) -> f64 {
+    keys.duration_secs.unwrap_or(DEFAULT_DURATION)
 }
 
-fn duration(file: &File) -> Result<f64, Problem> {
-    let duration_secs = file.duration_secs.unwrap_or(DEFAULT_DURATION);
-    TIME.check("duration_secs", duration_secs)
+fn seed(keys: &File) -> u64 {
+    keys.seed.unwrap_or(Scene::default().seed)
 }
 
-/// The clock; with the paper's step if the step is missing or `auto`.
-fn first_clock(file: &File) -> Result<Clock, Problem> {
-    TIME_STEP.check_given("longest_step_secs", file.longest_step_secs)?;
-    match file.time_step_secs {
-        Some(TimeStep::Given(step)) => clock(file, step),
-        Some(TimeStep::Auto) | None => clock(file, PAPER_TIME_STEP),
+/// The time step; the paper's if it is missing or `auto`.
+fn first_step(keys: &File) -> f64 {
+    match keys.time_step_secs {
+        Some(TimeStep::Given(step)) => step,
+        Some(TimeStep::Auto(_)) | None => PAPER_TIME_STEP,
     }
 }
 
 /// The scene without agents, sources and pushes.
-fn empty_scene(file: &File) -> Result<Scene, Problem> {
+fn empty_scene(keys: &File) -> Result<Scene, Problem> {
     let paper = Scene::default();
-    let clock = first_clock(file)?;
-    let preferred_speed = file.preferred_speed.unwrap_or(paper.preferred_speed);
-    let max_speed = file.max_speed.unwrap_or(paper.max_speed);
-    let seed = file.seed.unwrap_or(paper.seed);
-    let obstacles = plan::solids(file)?;
+    let seed = seed(keys);
     Ok(Scene {
-        seed: file.population_seed.unwrap_or(seed),
-        behaviour_seed: Some(file.behaviour_seed.unwrap_or(seed)),
-        clock,
-        integrator: file.integrator,
-        wall_method: file.wall_method,
-        precision: file.precision,
-        neighbor_lists: file.neighbor_lists,
-        preferred_speed: PREFERRED_SPEED.check("preferred_speed", preferred_speed)?,
-        max_speed: MAX_SPEED.check("max_speed", max_speed)?,
-        ..Scene::with_obstacles(obstacles)
+        seed: keys.population_seed.unwrap_or(seed),
+        behavior_seed: Some(keys.behavior_seed.unwrap_or(seed)),
+        clock: clock(keys, first_step(keys)),
+        integrator: keys.integrator,
+        wall_method: keys.wall_method,
+        precision: keys.precision,
+        neighbor_lists: keys.neighbor_lists,
+        preferred_speed: keys.preferred_speed.unwrap_or(paper.preferred_speed),
+        max_speed: keys.max_speed.unwrap_or(paper.max_speed),
+        ..Scene::with_obstacles(plan::solids(keys)?)
     })
 }
 
-fn clock(file: &File, time_step: f64) -> Result<Clock, Problem> {
-    let time_step = TIME_STEP.check("time_step_secs", time_step)?;
-    let coarse_every = file
-        .coarse_every
-        .unwrap_or_else(|| Clock::nearest_coarse_every(time_step));
-    COARSE_EVERY.check("coarse_every", f64::from(coarse_every))?;
-    Ok(Clock::new(time_step, coarse_every))
+fn clock(keys: &File, time_step: f64) -> Clock {
+    let nearest = || Clock::nearest_coarse_every(time_step);
+    Clock::new(time_step, keys.coarse_every.unwrap_or_else(nearest))
 }
 
 /// The clock with the step that `auto` finds for `scene`, which is otherwise complete.
-fn automatic_clock(file: &File, scene: &Scene) -> Result<Clock, Problem> {
+fn automatic_clock(keys: &File, scene: &Scene) -> Result<Clock, Problem> {
     let step = stability::time_step(scene).ok_or_else(|| {
         let reason = "`auto` works only with the integrators `semi-implicit` and `velocity-verlet`; \
                       give a number";
         Problem::new("time_step_secs", reason)
     })?;
-    let longest = file.longest_step_secs.unwrap_or(PAPER_COARSE_STEP);
+    let longest = keys.longest_step_secs.unwrap_or(PAPER_COARSE_STEP);
     let step = step.min(longest);
     if step < SHORTEST_TIME_STEP {
         let reason = format!(
@@ -176,10 +166,10 @@ fn automatic_clock(file: &File, scene: &Scene) -> Result<Clock, Problem> {
         );
         return Err(Problem::new("time_step_secs", reason));
     }
-    clock(file, step)
+    Ok(clock(keys, step))
 }
 
-fn pushes(events: &[Object<file::Event>]) -> Result<Vec<Push>, Problem> {
+fn pushes(events: &[file::Event]) -> Result<Vec<Push>, Problem> {
     if events.len() > MOST_NUMBERED {
         let reason = format!(
             "{} events; at most {MOST_NUMBERED} are allowed",
@@ -187,42 +177,25 @@ fn pushes(events: &[Object<file::Event>]) -> Result<Vec<Push>, Problem> {
         );
         return Err(Problem::new("events", reason));
     }
-    let numbered = events.iter().enumerate();
-    numbered
-        .map(|(k, Object(event))| {
-            let name = format!("events[{k}]");
-            push(event, &name).under(&name)
+    let push = |(k, event): (usize, &file::Event)| {
+        let place = format!("events[{k}]");
+        Ok(Push {
+            region: region("region", event.region).under(&place)?,
+            name: event.name.clone().unwrap_or(place),
+            at: event.at_secs,
+            lasting: event.for_secs,
+            change: Override {
+                goal_scale: event.goal_scale,
+                ignore_contact: event.ignore_contact,
+                ignore_sph: event.ignore_sph,
+            },
         })
-        .collect()
+    };
+    events.iter().enumerate().map(push).collect()
 }
 
-fn push(event: &file::Event, place: &str) -> Result<Push, Problem> {
-    let name = event.name.as_deref().unwrap_or(place);
-    if name.is_empty() {
-        return Err(Problem::new("name", "must not be empty"));
-    }
-    Ok(Push {
-        name: name.to_owned(),
-        at: TIME.check("at_secs", event.at_secs)?,
-        lasting: TIME.check("for_secs", event.for_secs)?,
-        region: region("region", event.region)?,
-        change: Override {
-            goal_scale: GOAL_SCALE.check_given("goal_scale", event.goal_scale)?,
-            ignore_contact: event.ignore_contact,
-            ignore_sph: event.ignore_sph,
-        },
-    })
-}
-
-fn stop(given: &file::Stop) -> Result<Stop, Problem> {
-    Ok(Stop {
-        when_empty: given.when_empty,
-        idle_secs: UNTIL.check_given("idle_secs", given.idle_secs)?,
-    })
-}
-
-fn view(given: Option<&Object<file::View>>, scene: &Scene) -> Result<View, Problem> {
-    let Some(Object(given)) = given else {
+fn view(given: Option<&file::View>, scene: &Scene) -> Result<View, Problem> {
+    let Some(given) = given else {
         return Ok(View {
             region: surroundings(scene),
             opens_at_secs: 0.0,
@@ -237,7 +210,7 @@ fn view(given: Option<&Object<file::View>>, scene: &Scene) -> Result<View, Probl
     }
     Ok(View {
         region,
-        opens_at_secs: TIME.check("opens_at_secs", given.opens_at_secs)?,
+        opens_at_secs: given.opens_at_secs,
     })
 }
 

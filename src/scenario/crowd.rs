@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::error::{Problem, Under};
-use super::file::{self, Behavior, File, Object, ProfileChoice};
-use super::parameters::DENSITY;
-use super::profiles;
-use super::range::{self, COORDINATE, Range, point};
+use super::file::{self, File};
+use super::profiles::{self, ProfileChoice};
+use super::range;
 use crate::engine::agents::NewAgent;
+use crate::engine::math::Vector;
 use crate::engine::placement::Grid;
 use crate::engine::profile::Blend;
 use crate::engine::scene::{Goal, Group, Region, Scene, Source};
@@ -17,19 +17,6 @@ pub(super) const MOST_NUMBERED: usize = u16::MAX as usize;
 
 /// Most different profiles defined in full: each takes its own sum over all agents.
 const MOST_CUSTOM: usize = 1_000;
-
-/// D_i, meters.
-pub(super) const RADIUS: Range = Range::at_least(0.01, 10.0);
-/// m_i.
-pub(super) const MASS: Range = Range::at_least(1e-6, 1e6);
-/// Removal radius, meters.
-pub(super) const DISTANCE: Range = Range::above(0.0, 1e6);
-/// Jitter, meters.
-pub(super) const JITTER: Range = Range::at_least(0.0, 1e6);
-/// Time between entries, seconds.
-pub(super) const EVERY: Range = Range::above(0.0, 1e7);
-/// Initial speeds, m/s.
-pub(super) const VELOCITY: Range = Range::at_least(-100.0, 100.0);
 
 /// Relative rounding error that a speed clamped to `max_speed` may have.
 const ROUNDING: f64 = 1e-9;
@@ -59,14 +46,14 @@ impl<'a> Crowd<'a> {
 
     /// Adds single agents, then grids, then sources. Their number has been checked.
     pub(super) fn enter(mut self) -> Result<(), Problem> {
-        for (k, Object(agent)) in self.file.agents.iter().enumerate() {
+        for (k, agent) in self.file.agents.iter().enumerate() {
             self.agent(agent).under(&format!("agents[{k}]"))?;
         }
-        for (k, Object(grid)) in self.file.grids.iter().enumerate() {
+        for (k, grid) in self.file.grids.iter().enumerate() {
             let name = format!("grids[{k}]");
             self.grid(grid, &name).under(&name)?;
         }
-        for (k, Object(source)) in self.file.sources.iter().enumerate() {
+        for (k, source) in self.file.sources.iter().enumerate() {
             let name = format!("sources[{k}]");
             self.source(source, &name).under(&name)?;
         }
@@ -75,8 +62,6 @@ impl<'a> Crowd<'a> {
 
     fn agent(&mut self, agent: &file::Agent) -> Result<(), Problem> {
         let [x, y] = agent.velocity.unwrap_or_default();
-        VELOCITY.check("velocity[0]", x)?;
-        VELOCITY.check("velocity[1]", y)?;
         let (speed, most) = (x.hypot(y), self.scene.max_speed);
         if speed > most * (1.0 + ROUNDING) {
             let reason = format!(
@@ -84,26 +69,37 @@ impl<'a> Crowd<'a> {
             );
             return Err(Problem::new("velocity", reason));
         }
-        let position = point("position", agent.position)?;
-        let goal = match agent.goal {
-            Some(goal) => point("goal", goal)?,
-            None => self.default_goal()?,
-        };
-        let group = self.shared_group(&agent.behavior())?;
+        let goal = agent
+            .goal
+            .map_or_else(|| self.default_goal(), |goal| Ok(goal.into()))?;
+        let group = self.shared_group(Behavior {
+            profile: agent.profile.as_ref(),
+            remove_within: agent.remove_within,
+            counted: agent.counted,
+        })?;
         self.scene.agents.push(NewAgent {
             velocity: [x, y].into(),
-            radius: RADIUS.check_given("radius", agent.radius)?,
-            mass: MASS.check_given("mass", agent.mass)?,
-            mean_density: DENSITY.check_given("mean_density", agent.mean_density)?,
-            ..NewAgent::at(position, goal, group)
+            radius: agent.radius,
+            mass: agent.mass,
+            mean_density: agent.mean_density,
+            ..NewAgent::at(agent.position.into(), goal, group)
         });
         Ok(())
     }
 
     fn grid(&mut self, given: &file::Grid, place: &str) -> Result<(), Problem> {
+        for (key, is_given) in [
+            ("start_secs", given.start_secs.is_some()),
+            ("every_secs", given.every_secs.is_some()),
+            ("times", given.times.is_some()),
+        ] {
+            if is_given {
+                let reason = "is a key of `sources`; agents of `grids` enter once, at the start";
+                return Err(Problem::new(key, reason));
+            }
+        }
         let (grid, goal) = self.placed(given)?;
-        let name = given.name.as_deref().unwrap_or(place);
-        let group = self.group(name, &given.behavior())?;
+        let group = self.grid_group(given, place)?;
         let first_id = self.scene.agents.len() as u32;
         let agents = grid.positions(self.scene.seed, first_id).map(|position| {
             let goal = match goal {
@@ -116,30 +112,30 @@ impl<'a> Crowd<'a> {
         Ok(())
     }
 
-    fn source(&mut self, given: &file::Source, place: &str) -> Result<(), Problem> {
-        let (grid, goal) = self.placed(&given.grid())?;
-        let name = given.name.as_deref().unwrap_or(place);
+    fn source(&mut self, given: &file::Grid, place: &str) -> Result<(), Problem> {
+        let (grid, goal) = self.placed(given)?;
+        let [start, every] = given.schedule();
         let source = Source {
-            name: name.to_owned(),
+            name: given.name.as_deref().unwrap_or(place).to_owned(),
             grid,
-            group: self.group(name, &given.grid().behavior())?,
+            group: self.grid_group(given, place)?,
             goal,
-            start: given.start_secs,
-            every: given.every_secs,
+            start,
+            every,
             times: given.times,
         };
         self.scene.sources.push(source);
         Ok(())
     }
 
-    /// Checks what grids and sources share: the grid and the goal.
+    /// The grid and the goal of a grid or source.
     fn placed(&self, given: &file::Grid) -> Result<(Grid, Goal), Problem> {
         let grid = Grid {
-            min: point("min", given.min)?,
-            max: point("max", given.max)?,
+            min: given.min.into(),
+            max: given.max.into(),
             columns: given.columns,
             rows: given.rows,
-            jitter: JITTER.check("jitter", given.jitter)?,
+            jitter: given.jitter,
         };
         let (min, max) = (grid.min, grid.max);
         range::ordered(&Region { min, max }).map_err(|reason| Problem::new("min", reason))?;
@@ -147,9 +143,6 @@ impl<'a> Crowd<'a> {
             ("columns", grid.columns, max.x - min.x),
             ("rows", grid.rows, max.y - min.y),
         ] {
-            if cells == 0 {
-                return Err(Problem::new(key, "must be at least 1"));
-            }
             if cells > 1 && extent == 0.0 && grid.jitter == 0.0 {
                 let reason = format!(
                     "{cells} agents would stand at one point: `min` and `max` are 0 m apart; move one, or set `jitter`"
@@ -157,37 +150,27 @@ impl<'a> Crowd<'a> {
                 return Err(Problem::new(key, reason));
             }
         }
-        Ok((grid, self.goal(given)?))
+        let goal = match (given.goal, given.goal_offset) {
+            (Some(_), Some(_)) => {
+                let reason = "either `goal` or `goal_offset`, not both";
+                return Err(Problem::new("goal_offset", reason));
+            }
+            (Some(goal), None) => Goal::Point(goal.into()),
+            (None, Some(offset)) => Goal::Offset(offset.into()),
+            (None, None) => Goal::Point(self.default_goal()?),
+        };
+        Ok((grid, goal))
     }
 
-    fn goal(&self, given: &file::Grid) -> Result<Goal, Problem> {
-        match (given.goal, given.goal_offset) {
-            (Some(_), Some(_)) => Err(Problem::new(
-                "goal_offset",
-                "either `goal` or `goal_offset`, not both",
-            )),
-            (Some(goal), None) => Ok(Goal::Point(point("goal", goal)?)),
-            (None, Some(offset)) => Ok(Goal::Offset(point("goal_offset", offset)?)),
-            (None, None) => Ok(Goal::Point(self.default_goal()?)),
-        }
-    }
-
-    fn default_goal(&self) -> Result<crate::engine::math::Vector, Problem> {
-        let [x, y] = self.file.goal.ok_or_else(|| {
-            let reason = "no goal: set `goal` here or at the top of the file";
-            Problem::new("", reason)
-        })?;
-        debug_assert!(
-            COORDINATE.check("goal", x).is_ok(),
-            "the default goal is checked first"
-        );
-        Ok([x, y].into())
+    fn default_goal(&self) -> Result<Vector, Problem> {
+        let reason = "no goal: set `goal` here or at the top of the file";
+        let goal = self.file.goal.ok_or_else(|| Problem::new("", reason))?;
+        Ok(goal.into())
     }
 
     /// The group of single agents with this behavior; creates it if needed.
-    fn shared_group(&mut self, behavior: &Behavior) -> Result<u16, Problem> {
-        let key = serde_json::json!([behavior.profile, behavior.remove_within, behavior.counted,])
-            .to_string();
+    fn shared_group(&mut self, behavior: Behavior) -> Result<u16, Problem> {
+        let key = format!("{behavior:?}");
         if let Some(&group) = self.shared.get(&key) {
             return Ok(group);
         }
@@ -196,10 +179,17 @@ impl<'a> Crowd<'a> {
         Ok(group)
     }
 
-    fn group(&mut self, name: &str, behavior: &Behavior) -> Result<u16, Problem> {
-        if name.is_empty() {
-            return Err(Problem::new("name", "must not be empty"));
-        }
+    /// The group of the agents of a grid or source.
+    fn grid_group(&mut self, given: &file::Grid, place: &str) -> Result<u16, Problem> {
+        let behavior = Behavior {
+            profile: given.profile.as_ref(),
+            remove_within: given.remove_within,
+            counted: given.counted,
+        };
+        self.group(given.name.as_deref().unwrap_or(place), behavior)
+    }
+
+    fn group(&mut self, name: &str, behavior: Behavior) -> Result<u16, Problem> {
         if self.scene.groups.len() >= MOST_NUMBERED {
             let reason = format!(
                 "more than {MOST_NUMBERED} groups of agents; put several into one grid or source, or give \
@@ -207,9 +197,8 @@ impl<'a> Crowd<'a> {
             );
             return Err(Problem::new("", reason));
         }
-        let choice: Option<&ProfileChoice> = behavior.profile.as_ref();
-        if let Some(ProfileChoice::Custom(_)) = choice {
-            self.custom.insert(serde_json::json!(choice).to_string());
+        if let Some(ProfileChoice::Custom(custom)) = behavior.profile {
+            self.custom.insert(format!("{custom:?}"));
             if self.custom.len() > MOST_CUSTOM {
                 let reason = format!(
                     "more than {MOST_CUSTOM} different profiles defined in full; let agents share profiles"
@@ -217,16 +206,23 @@ impl<'a> Crowd<'a> {
                 return Err(Problem::new("profile", reason));
             }
         }
-        let blend = match choice {
+        let blend = match behavior.profile {
             None => self.default.clone(),
-            Some(choice) => profiles::blend(choice, &self.file.parameters.0).under("profile")?,
+            Some(choice) => profiles::blend(choice, &self.file.parameters).under("profile")?,
         };
-        let removal_radius = DISTANCE.check_given("remove_within", behavior.remove_within)?;
         Ok(self.scene.add_group(Group {
             name: name.to_owned(),
             blend,
-            removal_radius,
+            removal_radius: behavior.remove_within,
             counted: behavior.counted.unwrap_or(true),
         }))
     }
+}
+
+/// The keys that decide on an agent's group.
+#[derive(Debug, Clone, Copy)]
+struct Behavior<'a> {
+    profile: Option<&'a ProfileChoice>,
+    remove_within: Option<f64>,
+    counted: Option<bool>,
 }

@@ -1,7 +1,7 @@
 //! Rejects overcrowded cells and agents that start inside obstacles.
 
 use super::error::Problem;
-use super::file::{File, Object};
+use super::file::File;
 use super::need;
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
@@ -32,7 +32,7 @@ pub(super) fn check(file: &File, scene: &Scene, duration_secs: f64) -> Result<()
         return Err(Problem::new(place_of(file, k), reason));
     }
     let last_entry = need::last_entry(file, &scene.clock, duration_secs);
-    for (k, (source, Object(given))) in scene.sources.iter().zip(&file.sources).enumerate() {
+    for (k, (source, given)) in scene.sources.iter().zip(&file.sources).enumerate() {
         if need::entries(given, last_entry) == 0 {
             continue;
         }
@@ -78,7 +78,7 @@ fn place_of(file: &File, id: usize) -> String {
     if id < before {
         return format!("agents[{id}]");
     }
-    for (k, Object(grid)) in file.grids.iter().enumerate() {
+    for (k, grid) in file.grids.iter().enumerate() {
         before = before.saturating_add(grid.columns as usize * grid.rows as usize);
         if id < before {
             return format!("grids[{k}]");

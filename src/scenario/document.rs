@@ -5,8 +5,34 @@ use std::fmt;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
 
-use super::error::{ScenarioError, in_plain_words};
+use super::error::{Problem, ScenarioError, in_plain_words};
 use crate::scenario::quote::shown;
+
+/// Former names of top-level keys, with the present ones.
+pub(super) const OLD_KEYS: [(&str, &str); 1] = [("behaviour_seed", "behavior_seed")];
+
+/// The present name of a top-level key.
+pub(super) fn present_name(key: &str) -> &str {
+    let renamed = OLD_KEYS.into_iter().find(|&(old, _)| old == key);
+    renamed.map_or(key, |(_, new)| new)
+}
+
+/// Gives former keys their present names, so that `--set` and presets find them.
+pub(super) fn rename_old_keys(document: &mut Value) -> Result<(), Problem> {
+    let Value::Object(object) = document else {
+        return Ok(());
+    };
+    for (old, new) in OLD_KEYS {
+        let Some(value) = object.remove(old) else {
+            continue;
+        };
+        if object.insert(new.to_owned(), value).is_some() {
+            let reason = format!("the old name of `{new}`, which is given too; remove one");
+            return Err(Problem::new(old, reason));
+        }
+    }
+    Ok(())
+}
 
 /// Parses `text`; messages call it `file`.
 pub(crate) fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
@@ -24,55 +50,38 @@ pub(crate) fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
     })
 }
 
-/// Writes a document as indented JSON. Values that fit on one line are written on one line.
+/// Writes a document as indented JSON. Values that fit on one line are written on one line; serde_json would give each
+/// number of a point a line.
 pub(super) fn write(value: &Value) -> String {
-    indented(value, 0)
-}
-
-fn indented(value: &Value, indent: usize) -> String {
     /// Most characters in a line.
     const WIDTH: usize = 76;
-    let line = in_a_line(value);
-    if indent + line.chars().count() <= WIDTH {
-        return line;
-    }
-    let (open, close, items) = match value {
-        Value::Array(list) => {
-            let items = list.iter().map(|item| indented(item, indent + 2));
-            ('[', ']', items.collect::<Vec<_>>())
-        }
-        Value::Object(object) => {
-            let entry = |(key, value): (&String, &Value)| {
-                format!(
-                    "{}: {}",
-                    Value::from(key.as_str()),
-                    indented(value, indent + 2)
-                )
-            };
-            ('{', '}', object.iter().map(entry).collect())
-        }
-        _ => return line,
-    };
-    let [outer, inner] = [indent, indent + 2].map(|n| " ".repeat(n));
-    let items = items.join(&format!(",\n{inner}"));
-    format!("{open}\n{inner}{items}\n{outer}{close}")
+    written(value, 0, WIDTH)
 }
 
-fn in_a_line(value: &Value) -> String {
-    match value {
+fn written(value: &Value, indent: usize, width: usize) -> String {
+    let (open, close, items): (_, _, Vec<(String, &Value)>) = match value {
         Value::Array(list) => {
-            let items: Vec<String> = list.iter().map(in_a_line).collect();
-            format!("[{}]", items.join(", "))
+            let items = list.iter().map(|item| (String::new(), item));
+            ('[', ']', items.collect())
         }
         Value::Object(object) => {
-            let entry = |(key, value): (&String, &Value)| {
-                format!("{}: {}", Value::from(key.as_str()), in_a_line(value))
-            };
-            let items: Vec<String> = object.iter().map(entry).collect();
-            format!("{{{}}}", items.join(", "))
+            let entry = |(key, value)| (format!("{}: ", Value::from(String::as_str(key))), value);
+            ('{', '}', object.iter().map(entry).collect())
         }
-        scalar => scalar.to_string(),
+        scalar => return scalar.to_string(),
+    };
+    let joined = |indent: usize, width: usize, between: &str| {
+        let items = items.iter();
+        let items = items.map(|(key, item)| format!("{key}{}", written(item, indent, width)));
+        items.collect::<Vec<_>>().join(between)
+    };
+    let line = format!("{open}{}{close}", joined(0, usize::MAX, ", "));
+    if line.chars().count() <= width.saturating_sub(indent) {
+        return line;
     }
+    let [outer, inner] = [indent, indent + 2].map(|n| " ".repeat(n));
+    let items = joined(indent + 2, width, &format!(",\n{inner}"));
+    format!("{open}\n{inner}{items}\n{outer}{close}")
 }
 
 /// A JSON value whose objects have no duplicate keys.

@@ -1,315 +1,335 @@
-//! The contents of a scenario file, key by key. Only names and types are checked here.
+//! The keys of a scenario file. From these structs come the JSON Schema, the range checks, the keys of `--set` and
+//! their descriptions in `sandbox list --settings`: a key is said once, here. Those of profiles are in
+//! [`profiles`](super::profiles) and [`catalog`](super::catalog), those of measurements in
+//! [`measurements`](super::measurements).
 
-use std::fmt;
-use std::marker::PhantomData;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::Deserialize;
+use serde_json::{Value, json};
 
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, Error, MapAccess, Unexpected, Visitor};
-use serde::{Deserialize, Serialize};
-
-use super::plan::Nested;
+use super::measurements::Measurement;
 use super::preset::Preset;
+use super::profiles::ProfileChoice;
+use super::schema::word;
 use crate::engine::boundary::WallMethod;
+use crate::engine::clock::{PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
+use crate::engine::math::Vector;
 use crate::engine::neighbors::ListPolicy;
 use crate::engine::pairs::Precision;
-use crate::engine::scene::Integrator;
-use crate::scenario::catalog::{NavigationKind, Parameters};
-use crate::scenario::measurements::Measurement;
+use crate::engine::scene::{Integrator, Scene};
+use crate::scenario::catalog::{HIGHEST_DENSITY, Parameters, STRONGEST};
 
-/// The lower left and the upper right corner.
-pub type Corners = [[f64; 2]; 2];
+/// Default duration, seconds.
+pub(super) const DEFAULT_DURATION: f64 = 60.0;
+/// Default profile.
+pub(super) const DEFAULT_PROFILE: &str = "sph";
+/// The longest time, seconds.
+pub(super) const LONGEST_TIME: f64 = 1e7;
+/// The largest coordinate, meters. Beyond this, walls and contacts lose precision.
+const FARTHEST: f64 = 1e6;
 
-/// A value that must be a JSON object. Without this wrapper serde would also accept a list of the fields.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-#[serde(transparent)]
-pub struct Object<T>(pub T);
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_map(ObjectVisitor(PhantomData))
-    }
-}
-
-struct ObjectVisitor<T>(PhantomData<T>);
-
-impl<'de, T: Deserialize<'de>> Visitor<'de> for ObjectVisitor<T> {
-    type Value = Object<T>;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("an object")
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, entries: A) -> Result<Object<T>, A::Error> {
-        T::deserialize(MapAccessDeserializer::new(entries)).map(Object)
-    }
-}
-
-/// A whole file.
-#[derive(Debug, Clone, Default, Deserialize)]
+/// A scenario for `sandbox run`.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[schemars(title = "sandbox scenario")]
 pub(super) struct File {
+    /// The name in reports. Default: the file's name.
+    #[schemars(length(min = 1))]
     pub name: Option<String>,
+    /// What the scenario shows, in one line.
     pub description: Option<String>,
+    /// The seed of all random numbers: the one key that sets both seeds below. The same seed gives the same run, bit
+    /// by bit.
+    #[schemars(extend("default" = Scene::default().seed))]
     pub seed: Option<u64>,
+    /// The seed of the agents' radii and of the jitter of their start positions. Default: `seed`.
     pub population_seed: Option<u64>,
-    pub behaviour_seed: Option<u64>,
+    /// The seed of RVO's candidate velocities. Default: `seed`.
+    pub behavior_seed: Option<u64>,
+    /// The simulated time, seconds. `stop` can end a run earlier.
+    #[schemars(range(min = 0, max = LONGEST_TIME), extend("default" = DEFAULT_DURATION))]
     pub duration_secs: Option<f64>,
-    /// Unused: [`super::preset::fill`] has expanded it.
+    /// Numerical settings for the keys that are not given: `paper` (as published), `fast` (cheaper, larger steps) or
+    /// `accurate` (close to the model's limit for small steps); see docs/accuracy.md.
     #[serde(rename = "preset")]
-    pub _preset: Preset,
+    pub _preset: Preset, // `preset::fill` has expanded it
+    /// Δt_fine, seconds: the length of a frame. `auto` is the largest step that is safely stable. Shorter steps are
+    /// more accurate and cost more. Beyond the stable step (0.028 s for the profiles without SPH) agents shake.
+    #[schemars(extend("default" = PAPER_TIME_STEP))]
     pub time_step_secs: Option<TimeStep>,
+    /// The upper limit on the step that `auto` chooses, seconds. No effect on other steps.
+    #[schemars(range(min = SHORTEST_TIME_STEP, max = 1), extend("default" = PAPER_COARSE_STEP))]
     pub longest_step_secs: Option<f64>,
+    /// Δt_coarse, frames: how often RVO chooses velocities, sources let agents enter and events begin. It is part of
+    /// RVO's model: if agents choose in every frame, they stand 6 % less densely. Default: the number nearest to
+    /// 0.1 s.
+    #[schemars(range(min = 1, max = 1e6))]
     pub coarse_every: Option<u32>,
+    /// The method of time integration. `semi-implicit` reproduces the paper's results; `velocity-verlet` is more
+    /// accurate where agents press or stand, at the same cost; `midpoint` costs twice as much and gains nothing over
+    /// it; `forward-euler`, which the paper names, is off by 18 % in flow.
+    #[schemars(schema_with = "word::<Integrator>")]
     pub integrator: Integrator,
+    /// How walls enter SPH: `representative` (one point per wall, as in the paper), `exact` (integrals over what each
+    /// wall hides) or `union` (the same, overlaps counted once). Exact walls raise the flow through a door by 6 %.
+    #[schemars(schema_with = "word::<WallMethod>")]
     pub wall_method: WallMethod,
+    /// The number format of sums over pairs. `mixed` is faster, with relative errors of at most 1e-5.
+    #[schemars(schema_with = "word::<Precision>")]
     pub precision: Precision,
+    /// `complete` lists never miss a neighbor; `coarse` ones are rebuilt every Δt_coarse without a margin, as in the
+    /// paper, and miss a few.
+    #[schemars(schema_with = "word::<ListPolicy>")]
     pub neighbor_lists: ListPolicy,
+    /// s_pref (§5.6), m/s: the speed at which agents want to walk. Higher: they walk faster and push harder; above
+    /// `max_speed`, they only push harder.
+    #[schemars(range(min = 0, max = 100), extend("default" = Scene::default().preferred_speed))]
     pub preferred_speed: Option<f64>,
+    /// s_max (§5.6), m/s: the upper limit on speeds. Results report how often a speed was clamped to it.
+    #[schemars(range(max = 100), extend("exclusiveMinimum" = 0, "default" = Scene::default().max_speed))]
     pub max_speed: Option<f64>,
+    /// The behavior of agents that name no profile of their own.
+    #[schemars(extend("default" = DEFAULT_PROFILE))]
     pub profile: Option<ProfileChoice>,
-    pub parameters: Object<Parameters>,
-    pub walkable_area: Option<Vec<Vec<Vec<[f64; 2]>>>>,
-    pub obstacles: Vec<Vec<Nested>>,
-    pub goal: Option<[f64; 2]>,
-    pub agents: Vec<Object<Agent>>,
-    pub grids: Vec<Object<Grid>>,
-    pub sources: Vec<Object<Source>>,
-    pub events: Vec<Object<Event>>,
+    /// Parameters of all profiles; they override those given in a profile.
+    pub parameters: Parameters,
+    /// Where agents can walk, corners in meters: a list of polygons, each a list of rings (the outline, then the
+    /// holes), or the name of a WKT or GeoJSON file. Everything around it is solid. Default: everywhere.
+    #[schemars(schema_with = "walkable_area")]
+    pub walkable_area: Option<Vec<Vec<Ring>>>,
+    /// Solid bodies, corners in meters, in either orientation: a list of polygons, each a list of corners or of rings
+    /// (the outline, then the holes), or the name of a WKT or GeoJSON file.
+    #[schemars(schema_with = "obstacles")]
+    pub obstacles: Vec<Obstacle>,
+    /// The goal of agents that have none of their own.
+    pub goal: Option<Point>,
+    /// Single agents.
+    pub agents: Vec<Agent>,
+    /// Agents that stand on grids at the start.
+    #[schemars(schema_with = "grids")]
+    pub grids: Vec<Grid>,
+    /// Agents that enter on grids repeatedly.
+    #[schemars(schema_with = "sources")]
+    pub sources: Vec<Grid>,
+    /// Pushes: agents that are in a region at one moment behave differently for a while.
+    pub events: Vec<Event>,
+    /// Values to report.
     pub measurements: Vec<Measurement>,
-    pub stop: Object<Stop>,
-    pub view: Option<Object<View>>,
+    /// Conditions for stopping early.
+    pub stop: Stop,
+    /// The initial view of a recording. Default: the whole scene.
+    pub view: Option<View>,
+    /// Ids of the agents whose forces a recording shows. Default: a dozen, spread over all agents.
     pub debug_agents: Option<Vec<u32>>,
 }
 
-/// Δt_fine as given.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Δt_fine.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "must be a number of seconds, or \"auto\"")]
 pub(super) enum TimeStep {
-    /// Seconds.
-    Given(f64),
-    /// The largest stable step.
+    Given(#[schemars(range(min = SHORTEST_TIME_STEP, max = 1))] f64),
+    Auto(Auto),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+#[schemars(inline)]
+pub(super) enum Auto {
     Auto,
 }
 
-impl<'de> Deserialize<'de> for TimeStep {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(TimeStepVisitor)
+/// A point [x, y] in meters
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Point(#[schemars(inner(range(min = -FARTHEST, max = FARTHEST)))] pub [f64; 2]);
+
+impl From<Point> for Vector {
+    fn from(Point(point): Point) -> Self {
+        point.into()
     }
 }
 
-struct TimeStepVisitor;
+/// Corners in order, in either orientation
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub(super) struct Ring(#[schemars(length(min = 3))] pub Vec<Point>);
 
-impl Visitor<'_> for TimeStepVisitor {
-    type Value = TimeStep;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a number or \"auto\"")
-    }
-
-    fn visit_f64<E>(self, seconds: f64) -> Result<TimeStep, E> {
-        Ok(TimeStep::Given(seconds))
-    }
-
-    fn visit_u64<E>(self, seconds: u64) -> Result<TimeStep, E> {
-        Ok(TimeStep::Given(seconds as f64))
-    }
-
-    fn visit_i64<E>(self, seconds: i64) -> Result<TimeStep, E> {
-        Ok(TimeStep::Given(seconds as f64))
-    }
-
-    fn visit_str<E: Error>(self, text: &str) -> Result<TimeStep, E> {
-        if text == "auto" {
-            Ok(TimeStep::Auto)
-        } else {
-            Err(E::invalid_value(Unexpected::Str(text), &self))
-        }
-    }
+/// A solid body: its corners, or its rings
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(super) enum Obstacle {
+    Ring(Ring),
+    Polygon(#[schemars(length(min = 1))] Vec<Ring>),
 }
 
-/// The keys about behavior and removal that agents, grids and sources share.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Behavior {
-    pub profile: Option<ProfileChoice>,
-    pub remove_within: Option<f64>,
-    pub counted: Option<bool>,
-}
+/// The lower left and the upper right corner
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Corners(pub [Point; 2]);
 
-/// One agent.
-#[derive(Debug, Clone, Deserialize)]
+/// A single agent.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Agent {
-    pub position: [f64; 2],
+    /// The start position.
+    pub position: Point,
+    /// The initial velocity, m/s, at most `max_speed`. Default: at rest.
+    #[schemars(inner(range(min = -100, max = 100)))]
     pub velocity: Option<[f64; 2]>,
+    /// D_i, meters. Default: random, from 0.215 to 0.265 (§5.6).
+    #[schemars(range(min = 0.01, max = 10))]
     pub radius: Option<f64>,
+    /// m_i, 1 for an average person. Lighter agents need shorter time steps. Default: (D_i / 0.24)².
+    #[schemars(range(min = 1e-6, max = 1e6))]
     pub mass: Option<f64>,
-    pub goal: Option<[f64; 2]>,
+    /// The goal. Default: the scenario's goal.
+    pub goal: Option<Point>,
+    /// ρ̂ (Eq. 8) of the previous frame, P/m². Default: the density from agents alone in its first frame.
+    #[schemars(range(min = 0, max = HIGHEST_DENSITY))]
     pub mean_density: Option<f64>,
+    /// The behavior. Default: the scenario's profile.
     pub profile: Option<ProfileChoice>,
+    /// The agent leaves within this distance of its goal, meters. Default: it stays.
+    #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
     pub remove_within: Option<f64>,
+    /// Whether its arrival counts as evacuated.
+    #[schemars(extend("default" = true))]
     pub counted: Option<bool>,
 }
 
-/// Agents that stand on a grid at the start.
-#[derive(Debug, Clone, Deserialize)]
+/// Agents on a grid, one at the center of each cell.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Grid {
+    /// The name in reports. Default: its place in the file.
+    #[schemars(length(min = 1))]
     pub name: Option<String>,
-    pub min: [f64; 2],
-    pub max: [f64; 2],
+    /// The lower left corner.
+    pub min: Point,
+    /// The upper right corner.
+    pub max: Point,
+    /// The number of cells along x.
+    #[schemars(range(min = 1))]
     pub columns: u32,
+    /// The number of cells along y.
+    #[schemars(range(min = 1))]
     pub rows: u32,
+    /// Each coordinate is shifted at random by up to ± this, meters.
     #[serde(default)]
+    #[schemars(range(min = 0, max = 1e6))]
     pub jitter: f64,
-    pub goal: Option<[f64; 2]>,
-    pub goal_offset: Option<[f64; 2]>,
+    /// The goal. Default: the scenario's goal.
+    pub goal: Option<Point>,
+    /// Instead of `goal`: the goal relative to each agent's start.
+    pub goal_offset: Option<Point>,
+    /// The behavior. Default: the scenario's profile.
     pub profile: Option<ProfileChoice>,
+    /// Agents leave within this distance of their goal, meters. Default: they stay.
+    #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
     pub remove_within: Option<f64>,
+    /// Whether arrivals count as evacuated.
+    #[schemars(extend("default" = true))]
     pub counted: Option<bool>,
-}
-
-/// Agents that enter on a grid repeatedly.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Source {
-    pub name: Option<String>,
-    pub min: [f64; 2],
-    pub max: [f64; 2],
-    pub columns: u32,
-    pub rows: u32,
-    #[serde(default)]
-    pub jitter: f64,
-    pub goal: Option<[f64; 2]>,
-    pub goal_offset: Option<[f64; 2]>,
-    pub profile: Option<ProfileChoice>,
-    pub remove_within: Option<f64>,
-    pub counted: Option<bool>,
-    #[serde(default)]
-    pub start_secs: f64,
-    pub every_secs: f64,
+    /// The time of the first entry, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME), extend("default" = 0))]
+    pub start_secs: Option<f64>,
+    /// The time between entries, seconds.
+    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
+    pub every_secs: Option<f64>,
+    /// The number of entries. Default: unlimited.
     pub times: Option<u32>,
 }
 
-impl Agent {
-    pub(super) fn behavior(&self) -> Behavior {
-        Behavior {
-            profile: self.profile.clone(),
-            remove_within: self.remove_within,
-            counted: self.counted,
-        }
-    }
-}
-
 impl Grid {
-    pub(super) fn behavior(&self) -> Behavior {
-        Behavior {
-            profile: self.profile.clone(),
-            remove_within: self.remove_within,
-            counted: self.counted,
-        }
-    }
-}
-
-impl Source {
-    /// The keys that it shares with a grid.
-    pub(super) fn grid(&self) -> Grid {
-        Grid {
-            name: self.name.clone(),
-            min: self.min,
-            max: self.max,
-            columns: self.columns,
-            rows: self.rows,
-            jitter: self.jitter,
-            goal: self.goal,
-            goal_offset: self.goal_offset,
-            profile: self.profile.clone(),
-            remove_within: self.remove_within,
-            counted: self.counted,
-        }
+    /// The time of the first entry and the time between entries, seconds; agents of `grids` enter once.
+    pub(super) fn schedule(&self) -> [f64; 2] {
+        let start = self.start_secs.unwrap_or(0.0);
+        [start, self.every_secs.unwrap_or(f64::INFINITY)]
     }
 }
 
 /// A push: agents in a region behave differently for a while.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Event {
+    /// The name in reports. Default: its place in the file.
+    #[schemars(length(min = 1))]
     pub name: Option<String>,
+    /// The time at which it begins, seconds; it acts from the next coarse frame.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
     pub at_secs: f64,
+    /// The duration, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
     pub for_secs: f64,
+    /// Agents that are here when it begins take part.
     pub region: Corners,
+    /// K^goal (Eq. 17) of these agents. Default: unchanged.
+    #[schemars(range(min = 0, max = STRONGEST))]
     pub goal_scale: Option<f64>,
+    /// Whether they feel no contact forces.
     #[serde(default)]
     pub ignore_contact: bool,
+    /// Whether they feel no SPH forces.
     #[serde(default)]
     pub ignore_sph: bool,
 }
 
-/// When to stop early.
-#[derive(Debug, Clone, Default, Deserialize)]
+/// Conditions for stopping early.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Stop {
+    /// Stop when no agents are left and none will enter.
     pub when_empty: bool,
+    /// Stop this long after the last counted arrival, or after the start, seconds. Default: never.
+    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
     pub idle_secs: Option<f64>,
 }
 
 /// The initial view of a recording.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct View {
+    /// The visible part of the plane.
     pub region: Corners,
+    /// The time at which the recording opens, seconds.
     #[serde(default)]
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
     pub opens_at_secs: f64,
 }
 
-/// A profile, by name or defined in full.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
-pub(super) enum ProfileChoice {
-    Named(String),
-    Custom(Box<CustomProfile>),
+/// Grids whose agents enter once.
+fn grids(generator: &mut SchemaGenerator) -> Schema {
+    let mut grid = Grid::json_schema(generator);
+    if let Some(keys) = grid.get_mut("properties") {
+        for key in ["start_secs", "every_secs", "times"] {
+            keys[key] = json!({"type": "null", "description": "A key of `sources`."});
+        }
+    }
+    json_schema!({"type": "array", "items": grid})
 }
 
-/// A profile or blend defined in full, with exactly one of `base`, `navigation` and `blend`.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub(super) struct CustomProfile {
-    pub name: Option<String>,
-    pub base: Option<String>,
-    pub navigation: Option<NavigationKind>,
-    pub sph: Option<bool>,
-    pub blend: Option<Vec<Object<Step>>>,
-    pub parameters: Object<Parameters>,
+/// Grids whose agents enter repeatedly.
+fn sources(generator: &mut SchemaGenerator) -> Schema {
+    let mut source = Grid::json_schema(generator);
+    if let Some(Value::Array(required)) = source.get_mut("required") {
+        required.push("every_secs".into());
+    }
+    json_schema!({"type": "array", "items": source})
 }
 
-/// One profile of a blend.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Step {
-    pub at_density: f64,
-    pub profile: ProfileChoice,
+fn walkable_area(generator: &mut SchemaGenerator) -> Schema {
+    let polygon = json_schema!({
+        "description": "Rings: the outline, then the holes.",
+        "type": "array", "items": generator.subschema_for::<Ring>(), "minItems": 1,
+    });
+    json_schema!({"anyOf": [floor_plan(), {"type": "array", "items": polygon, "minItems": 1}, {"type": "null"}]})
 }
 
-/// Implemented by hand: the errors of an untagged enum do not name the wrong key.
-impl<'de> Deserialize<'de> for ProfileChoice {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(ProfileVisitor)
-    }
+fn obstacles(generator: &mut SchemaGenerator) -> Schema {
+    let obstacle = generator.subschema_for::<Obstacle>();
+    json_schema!({"anyOf": [floor_plan(), {"type": "array", "items": obstacle}]})
 }
 
-struct ProfileVisitor;
-
-impl<'de> Visitor<'de> for ProfileVisitor {
-    type Value = ProfileChoice;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("the name of a profile, or an object with its parameters")
-    }
-
-    fn visit_str<E>(self, name: &str) -> Result<ProfileChoice, E> {
-        Ok(ProfileChoice::Named(name.to_owned()))
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, entries: A) -> Result<ProfileChoice, A::Error> {
-        let custom = CustomProfile::deserialize(MapAccessDeserializer::new(entries))?;
-        Ok(ProfileChoice::Custom(Box::new(custom)))
-    }
+fn floor_plan() -> Value {
+    json!({"type": "string", "description": "A WKT or GeoJSON file, relative to this file's folder."})
 }

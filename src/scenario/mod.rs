@@ -1,19 +1,8 @@
 //! Scenario files: the text of a file → a checked [`Scenario`] → a [`Scene`] for the simulation.
 //!
-//! A file is a JSON object. Every top-level key is optional; an unknown key is an error. Lengths are in
-//! meters, times in seconds; points are `[x, y]`, regions `[[x0, y0], [x1, y1]]`. [`settings()`] lists the
-//! top-level keys with their units, defaults and ranges. The nested keys:
-//!
-//! | in | keys |
-//! |---|---|
-//! | `agents` | `position`, and optionally `velocity`, `radius`, `mass`, `goal`, `mean_density` (ρ̂ of the previous frame), `profile`, `remove_within`, `counted` |
-//! | `grids` | `min`, `max`, `columns`, `rows`, and optionally `name`, `jitter`, `goal` or `goal_offset` (relative to each agent's start), `profile`, `remove_within`, `counted` |
-//! | `sources` | the keys of `grids`, `every_secs`, and optionally `start_secs`, `times` |
-//! | `events` | `at_secs`, `for_secs`, `region`, and optionally `name`, `goal_scale`, `ignore_contact`, `ignore_sph` |
-//! | `measurements` | one of `density` (`at_secs`, optionally `region`), `flow_of_first` (`arrivals`), `flow_until` (`until_secs`), `evacuated` (no keys) |
-//! | `stop` | `when_empty`, `idle_secs` |
-//! | `view` | `region`, and optionally `opens_at_secs` |
-//! | `profile` | one of `base` (a name), `navigation` (`goal`, `social` or `rvo`; optionally with `sph`, true or false) and `blend` (a list of `at_density`, `profile`), and optionally `name`, `parameters` |
+//! A file is a JSON object. Every top-level key is optional; an unknown key is an error. The structs in `file.rs`
+//! have one field per key, with its description, default and range; [`schema()`], [`settings()`] and the range checks
+//! come from them. Presets and [`Setting`]s change the JSON before it is parsed once, by [`Draft::read`].
 //!
 //! Agents can walk in the `walkable_area` (everywhere if it is missing) except in the `obstacles`. Each of the two
 //! is a list of polygons, or the name of a file that [`floor_plan`] reads. `$schema` is ignored; editors use it.
@@ -36,12 +25,10 @@ mod check;
 mod crowd;
 mod crowding;
 mod document;
+mod draft;
 mod error;
 mod file;
-mod key;
 mod need;
-mod nested;
-mod parameters;
 mod plan;
 mod preset;
 mod profiles;
@@ -54,15 +41,15 @@ mod wall_lists;
 
 #[cfg(feature = "program")]
 pub(crate) use document::read as read_document;
+pub use draft::Draft;
 pub use error::{Problem, ScenarioError};
 #[cfg(feature = "program")]
 pub(crate) use error::{in_plain_words, suggestion};
 pub use need::{Need, TooLarge, in_units};
-pub use nested::NESTED;
 pub use preset::Preset;
 pub use schema::schema;
 pub use setting::{Setting, SettingError};
-pub use settings::{SettingDoc, settings};
+pub use settings::{SettingDoc, nested_settings, settings};
 pub use shipped::{SHIPPED, Shipped, built_in};
 
 use std::io::ErrorKind;
@@ -85,6 +72,8 @@ pub struct Scenario {
     pub description: String,
     /// What to simulate.
     pub scene: Scene,
+    /// The key `seed`: the seed of the population and of behavior, unless they have their own.
+    pub seed: u64,
     /// Simulated time, seconds.
     pub duration_secs: f64,
     /// When to stop earlier.
@@ -129,12 +118,12 @@ impl Scenario {
         document::write(&self.document)
     }
 
-    /// Reads a scenario from JSON. Messages call it `file`; paths in it are relative to the folder of `file`.
+    /// Reads a scenario from JSON; see [`Draft::read`].
     ///
     /// # Errors
     /// The first problem in the text or the settings, with its place.
     pub fn parse(text: &str, file: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
-        checked(text, file, settings, check::scenario)
+        Draft::read(text, file, settings)?.scenario()
     }
 
     /// Reads a scenario from a file.
@@ -152,18 +141,6 @@ impl Scenario {
     /// An unknown name, or an error of [`parse`](Self::parse) caused by the settings.
     pub fn shipped(name: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
         Self::parse(shipped_text(name)?, &format!("{name}.json"), settings)
-    }
-}
-
-impl Need {
-    /// Estimates the scenario that [`Scenario::parse`] would read, without placing any agents.
-    ///
-    /// # Errors
-    /// Wrong names or types, or too many agents. [`Scenario::parse`] checks the rest.
-    pub fn parse(text: &str, file: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
-        let need = checked(text, file, settings, check::need)?;
-        let text = text.len() as u64;
-        Ok(Self { text, ..need })
     }
 }
 
@@ -205,38 +182,4 @@ fn unreadable_because(error: &std::io::Error) -> String {
         ErrorKind::FileTooLarge => format!("{said}; a scenario must be shorter"),
         _ => said.to_owned(),
     }
-}
-
-/// Parses `text`, applies the settings and runs `check`. Errors name the setting that caused them, else `file`.
-fn checked<T>(
-    text: &str,
-    file: &str,
-    settings: &[Setting],
-    check: fn(&Value, &Path) -> Result<T, Problem>,
-) -> Result<T, ScenarioError> {
-    let given = document::read(text, file)?;
-    let path = Path::new(file);
-    let invalid = |file: String, problem| ScenarioError::Invalid { file, problem };
-    if settings.is_empty() || !given.is_object() {
-        return check(&given, path).map_err(|p| invalid(file.to_owned(), p));
-    }
-    let mut changed = given.clone();
-    let mut paths = Vec::with_capacity(settings.len());
-    for setting in settings {
-        let applied = setting.apply(&mut changed);
-        paths.push(applied.map_err(|problem| setting.refused(problem))?);
-    }
-    check(&changed, path).map_err(|problem| {
-        for (path, setting) in paths.iter().zip(settings).rev() {
-            if let Some(problem) = problem.seen_from(path) {
-                return setting.refused(problem);
-            }
-        }
-        let mut source = file.to_owned();
-        if check(&given, path).is_ok() {
-            source.push_str(" with");
-            source.extend(settings.iter().map(|setting| format!(" {setting}")));
-        }
-        invalid(source, problem)
-    })
 }

@@ -1,10 +1,8 @@
 //! How many agents enter a run and how much memory it takes, estimated before any agents are placed.
 
-use super::crowd::EVERY;
-use super::error::{Problem, Under};
-use super::file::{File, Object, Source, TimeStep};
+use super::error::Problem;
+use super::file::{File, Grid, TimeStep};
 use super::plan;
-use super::range::TIME;
 use super::wall_lists;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP};
 use crate::engine::scene::Scene;
@@ -119,8 +117,8 @@ impl Need {
         )))
     }
 
-    /// Counts the agents and walls of `file`, and checks the values that the counts depend on. `clock` is the
-    /// scenario's clock; it does not matter if the time step is `auto`.
+    /// Counts the agents and walls of `file`. `clock` is the scenario's clock; it does not matter if the time step is
+    /// `auto`.
     pub(super) fn of(file: &File, clock: &Clock, duration_secs: f64) -> Result<Self, Problem> {
         let mut need = Self {
             walls: plan::walls(file),
@@ -146,16 +144,13 @@ impl Need {
             need.initial += 1;
             count(&mut need, "agents", k, 1)?;
         }
-        for (k, Object(grid)) in file.grids.iter().enumerate() {
+        for (k, grid) in file.grids.iter().enumerate() {
             let agents = u64::from(grid.columns) * u64::from(grid.rows);
             need.initial = need.initial.saturating_add(agents);
             count(&mut need, "grids", k, agents)?;
         }
         let last_entry = last_entry(file, clock, duration_secs);
-        for (k, Object(source)) in file.sources.iter().enumerate() {
-            let place = format!("sources[{k}]");
-            TIME.check("start_secs", source.start_secs).under(&place)?;
-            EVERY.check("every_secs", source.every_secs).under(&place)?;
+        for (k, source) in file.sources.iter().enumerate() {
             let agents = u64::from(source.columns) * u64::from(source.rows);
             let agents = agents.saturating_mul(entries(source, last_entry));
             count(&mut need, "sources", k, agents)?;
@@ -166,7 +161,7 @@ impl Need {
 
 /// The latest time at which agents enter, seconds: agents due later do not enter before the end.
 pub(super) fn last_entry(file: &File, clock: &Clock, duration_secs: f64) -> f64 {
-    if file.time_step_secs == Some(TimeStep::Auto) {
+    if let Some(TimeStep::Auto(_)) = file.time_step_secs {
         // The step depends on the agents; the last frame is at most half a step late.
         let longest = file.longest_step_secs.unwrap_or(PAPER_COARSE_STEP);
         return duration_secs + 0.5 * longest;
@@ -178,9 +173,10 @@ pub(super) fn last_entry(file: &File, clock: &Clock, duration_secs: f64) -> f64 
 }
 
 /// How many times agents enter from a source.
-pub(super) fn entries(source: &Source, last_entry: f64) -> u64 {
+pub(super) fn entries(source: &Grid, last_entry: f64) -> u64 {
+    let [start, every] = source.schedule();
     // The cast saturates: a negative number becomes 0.
-    let entries = ((last_entry - source.start_secs) / source.every_secs).floor() + 1.0;
+    let entries = ((last_entry - start) / every).floor() + 1.0;
     (entries as u64).min(source.times.map_or(u64::MAX, u64::from))
 }
 

@@ -1,15 +1,12 @@
 //! Walkable areas and obstacles, given in a scenario or in files that it names.
 
-use std::fmt;
 use std::path::Path;
 
-use serde::de::{Deserialize, Deserializer, SeqAccess, Visitor};
 use serde_json::{Value, json};
 
 use super::PlanFile;
 use super::error::{Problem, Under};
-use super::file::File;
-use super::range::point;
+use super::file::{File, Obstacle, Point, Ring as GivenRing};
 use super::setting::Setting;
 use crate::engine::geometry::{Area, Polygon, Ring};
 use crate::scenario::floor_plan::{self, FloorPlan, FloorPlanError};
@@ -23,49 +20,6 @@ const OBSTACLES: &str = "obstacles";
 const MOST_CORNERS: usize = 20_000;
 /// Most walls of a scenario.
 const MOST_WALLS: u64 = 1_000_000;
-
-/// Nested lists of numbers: a point, a ring of points or a list of rings.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Nested {
-    Number(f64),
-    List(Vec<Nested>),
-}
-
-impl<'de> Deserialize<'de> for Nested {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(NestedVisitor)
-    }
-}
-
-struct NestedVisitor;
-
-impl<'de> Visitor<'de> for NestedVisitor {
-    type Value = Nested;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a number or a list")
-    }
-
-    fn visit_f64<E>(self, number: f64) -> Result<Nested, E> {
-        Ok(Nested::Number(number))
-    }
-
-    fn visit_u64<E>(self, number: u64) -> Result<Nested, E> {
-        Ok(Nested::Number(number as f64))
-    }
-
-    fn visit_i64<E>(self, number: i64) -> Result<Nested, E> {
-        Ok(Nested::Number(number as f64))
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Nested, A::Error> {
-        let mut list = Vec::new();
-        while let Some(item) = items.next_element()? {
-            list.push(item);
-        }
-        Ok(Nested::List(list))
-    }
-}
 
 /// Replaces the names of floor plan files, relative to `folder`, with their contents. Returns the files, each with
 /// its key.
@@ -141,27 +95,12 @@ fn ring_value(ring: &Ring) -> Value {
 
 /// The number of walls in a file: one per corner.
 pub(super) fn walls(file: &File) -> u64 {
-    let obstacles = file.obstacles.iter().flatten().map(corners).sum::<u64>();
-    let areas = file.walkable_area.iter().flatten().flatten();
-    obstacles + areas.map(|ring| ring.len() as u64).sum::<u64>()
-}
-
-/// The number of corners in an element of an obstacle: one for a corner, all of them for a ring.
-fn corners(item: &Nested) -> u64 {
-    match item {
-        Nested::List(inner) if matches!(inner.first(), Some(Nested::List(_))) => inner.len() as u64,
-        Nested::List(_) | Nested::Number(_) => 1,
-    }
-}
-
-/// Rejects a ring with too many corners.
-fn check_length(count: usize) -> Result<(), Problem> {
-    if count <= MOST_CORNERS {
-        return Ok(());
-    }
-    let reason =
-        format!("{count} corners; at most {MOST_CORNERS} are allowed: split it into several");
-    Err(Problem::new("", reason))
+    let rings = file.obstacles.iter().flat_map(|obstacle| match obstacle {
+        Obstacle::Ring(ring) => std::slice::from_ref(ring),
+        Obstacle::Polygon(rings) => rings,
+    });
+    let rings = rings.chain(file.walkable_area.iter().flatten().flatten());
+    rings.map(|ring| ring.0.len() as u64).sum()
 }
 
 /// The obstacles in order, then the solid around the walkable area.
@@ -183,56 +122,41 @@ pub(super) fn solids(file: &File) -> Result<Vec<Polygon>, Problem> {
     Ok(solids)
 }
 
-fn walls_round(polygons: &[Vec<Vec<[f64; 2]>>]) -> Result<Vec<Polygon>, Problem> {
-    for (k, rings) in polygons.iter().enumerate() {
-        for (r, ring) in rings.iter().enumerate() {
-            check_length(ring.len()).under(&format!("[{k}][{r}]"))?;
-            for (c, &corner) in ring.iter().enumerate() {
-                point(&format!("[{k}][{r}][{c}]"), corner)?;
-            }
-        }
+fn walls_round(polygons: &[Vec<GivenRing>]) -> Result<Vec<Polygon>, Problem> {
+    let mut given = Vec::with_capacity(polygons.len());
+    for (k, polygon) in polygons.iter().enumerate() {
+        given.push(rings(polygon).under(&format!("[{k}]"))?);
     }
-    let plan = FloorPlan::walkable(polygons).map_err(problem)?;
+    let plan = FloorPlan::walkable(&given).map_err(problem)?;
     plan.solids()
         .map_err(|error| Problem::new("", error.to_string()))
 }
 
-/// Reads an obstacle: a ring, or a list of rings (the outline, then the holes).
-fn obstacle(given: &[Nested]) -> Result<Polygon, Problem> {
-    let is_corner = |item: &Nested| match item {
-        Nested::List(inner) => matches!(inner.first(), None | Some(Nested::Number(_))),
-        Nested::Number(_) => true,
+fn obstacle(given: &Obstacle) -> Result<Polygon, Problem> {
+    let polygon = match given {
+        Obstacle::Ring(ring) => Polygon::new(points(ring)?.into_iter().map(Into::into).collect()),
+        Obstacle::Polygon(given) => {
+            let area = FloorPlan::obstacle(&rings(given)?).map_err(problem)?;
+            Polygon::filling(area)
+        }
     };
-    if given.iter().all(is_corner) {
-        let corners = ring(given)?;
-        let points = corners.into_iter().map(Into::into).collect();
-        return Polygon::new(points).map_err(|error| Problem::new("", error.to_string()));
-    }
-    let mut rings = Vec::with_capacity(given.len());
-    for (k, item) in given.iter().enumerate() {
-        let place = format!("[{k}]");
-        let Nested::List(corners) = item else {
-            return Err(Problem::new(place, "must be a ring, a list of points"));
-        };
-        rings.push(ring(corners).under(&place)?);
-    }
-    let area = FloorPlan::obstacle(&rings).map_err(problem)?;
-    Polygon::filling(area).map_err(|error| Problem::new("", error.to_string()))
+    polygon.map_err(|error| Problem::new("", error.to_string()))
 }
 
-fn ring(given: &[Nested]) -> Result<Vec<[f64; 2]>, Problem> {
-    let corner = |(k, item): (usize, &Nested)| match item {
-        Nested::List(xy) => match xy[..] {
-            [Nested::Number(x), Nested::Number(y)] => {
-                point(&format!("[{k}]"), [x, y])?;
-                Ok([x, y])
-            }
-            _ => Err(Problem::new(format!("[{k}]"), "must be a point, [x, y]")),
-        },
-        Nested::Number(_) => Err(Problem::new(format!("[{k}]"), "must be a point, [x, y]")),
-    };
-    check_length(given.len())?;
-    given.iter().enumerate().map(corner).collect()
+fn rings(given: &[GivenRing]) -> Result<Vec<Vec<[f64; 2]>>, Problem> {
+    let ring = |(r, ring)| points(ring).under(&format!("[{r}]"));
+    given.iter().enumerate().map(ring).collect()
+}
+
+/// The corners of a ring, if there are not too many.
+fn points(GivenRing(ring): &GivenRing) -> Result<Vec<[f64; 2]>, Problem> {
+    let count = ring.len();
+    if count > MOST_CORNERS {
+        let reason =
+            format!("{count} corners; at most {MOST_CORNERS} are allowed: split it into several");
+        return Err(Problem::new("", reason));
+    }
+    Ok(ring.iter().map(|&Point(point)| point).collect())
 }
 
 /// Converts an error; its place becomes the path if it is an index.

@@ -1,10 +1,13 @@
 //! Presets: named choices of the numerics, measured in `docs/accuracy.md`.
 
-use serde::Deserialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use super::schema::names;
+
 /// The numerics for keys that a scenario does not give: a trade-off between accuracy and run time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Preset {
     /// Reproduces the paper: semi-implicit Euler, Δt = 0.02 s, representative points, no social force left out.
@@ -17,12 +20,10 @@ pub enum Preset {
 }
 
 impl Preset {
-    /// All presets with their names.
-    pub const ALL: [(&'static str, Self); 3] = [
-        ("paper", Self::Paper),
-        ("fast", Self::Fast),
-        ("accurate", Self::Accurate),
-    ];
+    /// Their names.
+    pub fn names() -> &'static [&'static str] {
+        names::<Self>()
+    }
 
     /// The top-level keys that it sets, with their values.
     pub fn document(self) -> Value {
@@ -43,14 +44,13 @@ impl Preset {
 }
 
 /// The document with its preset's values for the keys that it does not give.
-pub(super) fn fill(document: &Value) -> Value {
-    let mut filled = document.clone();
-    let named = document.get("preset").and_then(Value::as_str);
-    let mut presets = Preset::ALL.into_iter();
-    if let Some((_, preset)) = presets.find(|(name, _)| Some(*name) == named) {
-        complete(&mut filled, preset.document());
+pub(super) fn fill(mut document: Value) -> Value {
+    if let Some(named) = document.get("preset")
+        && let Ok(preset) = Preset::deserialize(named)
+    {
+        complete(&mut document, preset.document());
     }
-    filled
+    document
 }
 
 /// Adds missing values to an object, recursively.

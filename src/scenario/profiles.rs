@@ -1,16 +1,105 @@
-//! Profiles and blends of a file → blends of the engine.
+//! Profiles and blends: their keys in a file, and their conversion to blends of the engine.
+
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, MapAccess, Visitor};
+use serde_json::{Value, json};
 
 use super::error::{Problem, Under, suggestion};
-use super::file::{CustomProfile, Object, ProfileChoice, Step};
-use super::parameters::{self, DENSITY};
 use crate::engine::profile::{Blend, BlendStep, Profile};
-use crate::scenario::catalog::{self, NAMES, Parameters};
+use crate::scenario::catalog::{self, ALIASES, HIGHEST_DENSITY, NAMES, NavigationKind, Parameters};
 use crate::scenario::quote::shown;
+
+/// A name (see `sandbox list`), or a profile or blend defined in full
+#[derive(Debug, Clone, JsonSchema)]
+#[schemars(untagged)]
+pub(super) enum ProfileChoice {
+    Named(ProfileName),
+    Custom(Box<CustomProfile>),
+}
+
+/// The name of a profile or blend
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(transparent)]
+#[schemars(extend("enum" = known_names()))]
+pub(super) struct ProfileName(pub String);
+
+/// A profile or blend defined in full, with exactly one of `base`, `navigation` and `blend`.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+#[schemars(extend("oneOf" = ["base", "navigation", "blend"].map(given)))]
+pub(super) struct CustomProfile {
+    /// The name in reports. Default: that of its base, or of its blended profiles.
+    #[schemars(length(min = 1))]
+    pub name: Option<String>,
+    /// A named profile to start from.
+    pub base: Option<ProfileName>,
+    /// The method of navigation.
+    pub navigation: Option<NavigationKind>,
+    /// With `navigation`: whether SPH forces act, too.
+    #[schemars(extend("default" = true))]
+    pub sph: Option<bool>,
+    /// Profiles by density.
+    #[schemars(length(min = 1))]
+    pub blend: Option<Vec<Step>>,
+    /// Parameters of the profile.
+    pub parameters: Parameters,
+}
+
+/// One profile of a blend.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Step {
+    /// ρ^j (§4.4), P/m²: the density at which this profile acts alone. Between two densities both are blended.
+    #[schemars(range(min = 0, max = HIGHEST_DENSITY))]
+    pub at_density: f64,
+    /// A plain profile, not a blend.
+    pub profile: ProfileChoice,
+}
+
+fn known_names() -> Vec<&'static str> {
+    let aliases = ALIASES.into_iter().map(|(alias, _)| alias);
+    NAMES.into_iter().chain(aliases).collect()
+}
+
+/// The schema of objects that have this key.
+fn given(key: &str) -> Value {
+    json!({"required": [key], "properties": {key: {"not": {"type": "null"}}}})
+}
+
+/// Implemented by hand: the errors of an untagged enum do not name the wrong key.
+impl<'de> Deserialize<'de> for ProfileChoice {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(ProfileVisitor)
+    }
+}
+
+struct ProfileVisitor;
+
+impl<'de> Visitor<'de> for ProfileVisitor {
+    type Value = ProfileChoice;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("the name of a profile, or an object with its parameters")
+    }
+
+    fn visit_str<E>(self, name: &str) -> Result<ProfileChoice, E> {
+        Ok(ProfileChoice::Named(ProfileName(name.to_owned())))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, entries: A) -> Result<ProfileChoice, A::Error> {
+        let custom = CustomProfile::deserialize(MapAccessDeserializer::new(entries))?;
+        Ok(ProfileChoice::Custom(Box::new(custom)))
+    }
+}
 
 /// Converts a profile or blend; the scenario-wide values `overriding` override its own.
 pub(super) fn blend(choice: &ProfileChoice, overriding: &Parameters) -> Result<Blend, Problem> {
     let blend = match choice {
-        ProfileChoice::Named(name) => named(name, overriding)?,
+        ProfileChoice::Named(ProfileName(name)) => named(name, overriding)?,
         ProfileChoice::Custom(custom) => custom_blend(custom, overriding)?,
     };
     let (min, max) = (blend.sph.rest_density_min, blend.sph.rest_density_max);
@@ -45,11 +134,11 @@ fn unknown(name: &str) -> Problem {
 
 fn custom_blend(custom: &CustomProfile, overriding: &Parameters) -> Result<Blend, Problem> {
     checked(custom)?;
-    let parameters = overriding.or(&custom.parameters.0);
+    let parameters = overriding.or(&custom.parameters);
     if let Some(steps) = &custom.blend {
         return blend_of_steps(custom, steps, overriding);
     }
-    if let Some(base) = &custom.base
+    if let Some(ProfileName(base)) = &custom.base
         && catalog::plain(base, &parameters).is_none()
     {
         let mut blend = named(base, &parameters).under("base")?;
@@ -67,7 +156,7 @@ fn custom_blend(custom: &CustomProfile, overriding: &Parameters) -> Result<Blend
 /// A profile that is not a blend.
 fn custom_profile(custom: &CustomProfile, parameters: &Parameters) -> Result<Profile, Problem> {
     let profile = match (&custom.base, custom.navigation) {
-        (Some(base), _) => plain(base, parameters).under("base")?,
+        (Some(ProfileName(base)), _) => plain(base, parameters).under("base")?,
         (None, Some(kind)) => parameters.profile("custom", kind, custom.sph.unwrap_or(true)),
         (None, None) => {
             let reason = "a blend must consist of plain profiles, not of blends";
@@ -90,9 +179,6 @@ fn plain(name: &str, parameters: &Parameters) -> Result<Profile, Problem> {
 }
 
 fn checked(custom: &CustomProfile) -> Result<(), Problem> {
-    if custom.name.as_ref().is_some_and(|name| name.is_empty()) {
-        return Err(Problem::new("name", "must not be empty"));
-    }
     let ways = [
         custom.base.is_some(),
         custom.navigation.is_some(),
@@ -108,26 +194,22 @@ fn checked(custom: &CustomProfile) -> Result<(), Problem> {
             "is allowed only with `navigation`; remove it",
         ));
     }
-    parameters::check(&custom.parameters.0).under("parameters")
+    Ok(())
 }
 
 fn blend_of_steps(
     custom: &CustomProfile,
-    steps: &[Object<Step>],
+    steps: &[Step],
     overriding: &Parameters,
 ) -> Result<Blend, Problem> {
     let shared = shared_by(custom, steps)?;
-    let parameters = overriding.or(&custom.parameters.0).or(&shared);
+    let parameters = overriding.or(&custom.parameters).or(&shared);
     let mut converted = Vec::with_capacity(steps.len());
-    for (k, Object(step)) in steps.iter().enumerate() {
-        let place = format!("blend[{k}]");
-        let at_density = DENSITY.check("at_density", step.at_density).under(&place)?;
-        let profile = step_profile(&step.profile, &parameters)
-            .under("profile")
-            .under(&place)?;
+    for (k, step) in steps.iter().enumerate() {
+        let profile = step_profile(&step.profile, &parameters);
         converted.push(BlendStep {
-            at_density,
-            profile,
+            at_density: step.at_density,
+            profile: profile.under(&format!("blend[{k}].profile"))?,
         });
     }
     let name = custom.name.clone().unwrap_or_else(|| {
@@ -143,44 +225,50 @@ fn blend_of_steps(
 
 fn step_profile(choice: &ProfileChoice, parameters: &Parameters) -> Result<Profile, Problem> {
     match choice {
-        ProfileChoice::Named(name) => plain(name, parameters),
+        ProfileChoice::Named(ProfileName(name)) => plain(name, parameters),
         ProfileChoice::Custom(custom) => {
             checked(custom)?;
-            custom_profile(custom, &parameters.or(&custom.parameters.0))
+            custom_profile(custom, &parameters.or(&custom.parameters))
         }
     }
 }
+
+/// A field of the parameters.
+type Field = fn(&mut Parameters) -> &mut Option<f64>;
+
+/// The parameters of SPH, which all profiles of a blend share.
+const SHARED: [(&str, Field); 5] = [
+    ("support_radius", |p| &mut p.support_radius),
+    ("gas_constant", |p| &mut p.gas_constant),
+    ("rest_density_min", |p| &mut p.rest_density_min),
+    ("rest_density_max", |p| &mut p.rest_density_max),
+    ("averaging_time", |p| &mut p.averaging_time),
+];
 
 /// The SPH parameters given anywhere in a blend, which apply to all of it.
-fn shared_by(custom: &CustomProfile, steps: &[Object<Step>]) -> Result<Parameters, Problem> {
-    let mut shared = sph_only(&custom.parameters.0);
-    for (k, Object(step)) in steps.iter().enumerate() {
-        let ProfileChoice::Custom(step) = &step.profile else {
-            continue;
-        };
-        let own = sph_only(&step.parameters.0);
-        let so_far = parameters::given(&shared);
-        for (key, value) in parameters::given(&own) {
-            if let Some((_, other)) = so_far.iter().find(|(k, v)| *k == key && *v != value) {
-                let path = format!("blend[{k}].profile.parameters.{key}");
+fn shared_by(custom: &CustomProfile, steps: &[Step]) -> Result<Parameters, Problem> {
+    let mut shared = Parameters::default();
+    let of_steps = steps
+        .iter()
+        .enumerate()
+        .filter_map(|(k, step)| match &step.profile {
+            ProfileChoice::Custom(own) => Some((format!("blend[{k}].profile."), own.parameters)),
+            ProfileChoice::Named(_) => None,
+        });
+    let of_all = std::iter::once((String::new(), custom.parameters));
+    for (place, mut own) in of_all.chain(of_steps) {
+        for (key, field) in SHARED {
+            let (so_far, here) = (field(&mut shared), *field(&mut own));
+            if let (Some(before), Some(here)) = (*so_far, here)
+                && before != here
+            {
                 let reason = format!(
-                    "must be the same in all profiles of a blend: {value} here, {other} before; give it once"
+                    "must be the same in all profiles of a blend: {here} here, {before} before; give it once"
                 );
-                return Err(Problem::new(path, reason));
+                return Err(Problem::new(format!("{place}parameters.{key}"), reason));
             }
+            *so_far = so_far.or(here);
         }
-        shared = shared.or(&own);
     }
     Ok(shared)
-}
-
-fn sph_only(parameters: &Parameters) -> Parameters {
-    Parameters {
-        support_radius: parameters.support_radius,
-        gas_constant: parameters.gas_constant,
-        rest_density_min: parameters.rest_density_min,
-        rest_density_max: parameters.rest_density_max,
-        averaging_time: parameters.averaging_time,
-        ..Parameters::default()
-    }
 }

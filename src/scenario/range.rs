@@ -1,119 +1,188 @@
-//! Ranges of allowed numbers, with their error messages and schemas.
+//! Checks numbers against the ranges of the schema, with error messages.
 
 use std::fmt;
 
-use serde_json::{Value, json};
+use serde::Deserialize;
+use serde_json::{Map, Value};
 
-use super::error::Problem;
-use crate::engine::clock::SHORTEST_TIME_STEP;
-use crate::engine::math::Vector;
+use super::error::{Problem, in_plain_words};
+use super::file::Corners;
+use super::schema::{allows, resolved, root, ways, words_of};
 use crate::engine::scene::Region;
 
-/// An interval of finite numbers that includes its upper end.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Range {
-    lowest: f64,
-    /// Is `lowest` itself excluded?
-    open: bool,
-    highest: f64,
+/// Refuses numbers out of their ranges, empty names and missing keys, and values of the wrong type where serde would
+/// accept them (the list of an object's values) or not name their place.
+pub(super) fn check(document: &Value) -> Result<(), Problem> {
+    check_value(root(), document)
 }
 
-/// x or y of any point, meters. Beyond this, walls and contacts lose precision.
-pub(super) const COORDINATE: Range = Range::at_least(-1e6, 1e6);
-/// Times and durations, seconds.
-pub(super) const TIME: Range = Range::at_least(0.0, 1e7);
-/// Δt_fine, seconds.
-pub(super) const TIME_STEP: Range = Range::at_least(SHORTEST_TIME_STEP, 1.0);
-/// Δt_coarse in frames.
-pub(super) const COARSE_EVERY: Range = Range::at_least(1.0, 1e6);
-/// s_pref, m/s.
-pub(super) const PREFERRED_SPEED: Range = Range::at_least(0.0, 100.0);
-/// s_max, m/s.
-pub(super) const MAX_SPEED: Range = Range::above(0.0, 100.0);
+fn check_value(schema: &'static Value, value: &Value) -> Result<(), Problem> {
+    if value.is_null() && may_be_null(resolved(schema)) {
+        return Ok(());
+    }
+    let Some(schema) = chosen(schema, value) else {
+        return Ok(());
+    };
+    check_type(schema, value)?;
+    match value {
+        Value::Number(number) => Range::of(schema).check(number.as_f64().unwrap_or(f64::NAN)),
+        Value::String(text) if text.is_empty() && schema["minLength"] == 1 => {
+            Err(Problem::new("", "must not be empty"))
+        }
+        Value::Array(list) => {
+            let item = resolved(&schema["items"]);
+            let check = |(k, value)| {
+                check_value(item, value).map_err(|problem| problem.under(&format!("[{k}]")))
+            };
+            list.iter().enumerate().try_for_each(check)
+        }
+        Value::Object(object) => {
+            if let Some(key) = required(schema).find(|&key| !object.contains_key(key)) {
+                return Err(Problem::new("", format!("missing key `{key}`")));
+            }
+            object.iter().try_for_each(|(key, value)| {
+                let checked = check_value(&schema["properties"][key], value);
+                checked.map_err(|problem| problem.under(key))
+            })
+        }
+        _ => Ok(()),
+    }
+}
+
+fn may_be_null(schema: &Value) -> bool {
+    let mut ways = schema["anyOf"].as_array().into_iter().flatten();
+    allows(schema, "null") || ways.any(|way| allows(way, "null"))
+}
+
+/// Refuses other values in place of objects, of numbers, and of lists with a fixed length and a name.
+fn check_type(schema: &Value, value: &Value) -> Result<(), Problem> {
+    let wrong = if allows(schema, "object") && !value.is_object() {
+        Map::<String, Value>::deserialize(value).err()
+    } else if allows(schema, "number") {
+        f64::deserialize(value).err()
+    } else {
+        let length = schema.get("maxItems").and_then(Value::as_u64);
+        if length.is_some()
+            && value.as_array().map(|list| list.len() as u64) != length
+            && let Some(words) = words_of(schema)
+        {
+            return Err(Problem::new("", format!("must be {words}")));
+        }
+        None
+    };
+    let wrong = wrong.map(|error| Problem::new("", in_plain_words(&error.to_string())));
+    wrong.map_or(Ok(()), Err)
+}
+
+/// The schema itself, or the alternative that is meant by `value`: the only one, the first that it fits, or the first
+/// list for a list.
+fn chosen(schema: &'static Value, value: &Value) -> Option<&'static Value> {
+    let schema = resolved(schema);
+    let Some(all) = ways(schema) else {
+        return Some(schema);
+    };
+    let all: Vec<&'static Value> = all.collect();
+    let is_list = |way: &&'static Value| value.is_array() && allows(resolved(way), "array");
+    let way = match all.as_slice() {
+        [only] => Some(*only),
+        all => {
+            let fitting = all.iter().copied().find(|way| fits(way, value));
+            fitting.or_else(|| all.iter().copied().find(is_list))
+        }
+    };
+    chosen(way?, value)
+}
+
+/// Does the value have the type of the schema, its required keys, and a first item that fits?
+fn fits(schema: &'static Value, value: &Value) -> bool {
+    let Some(schema) = chosen(schema, value) else {
+        return false;
+    };
+    let name = match value {
+        Value::Null => "null",
+        Value::Bool(_) => "boolean",
+        Value::Number(_) if allows(schema, "integer") => "integer",
+        Value::Number(_) => "number",
+        Value::String(_) => "string",
+        Value::Array(_) => "array",
+        Value::Object(_) => "object",
+    };
+    let first = value.as_array().and_then(|list| list.first());
+    allows(schema, name)
+        && required(schema).all(|key| value.get(key).is_some())
+        && first.is_none_or(|first| fits(&schema["items"], first))
+}
+
+/// The keys that an object of this schema must have.
+pub(super) fn required(schema: &Value) -> impl Iterator<Item = &str> {
+    let keys = schema["required"].as_array().into_iter().flatten();
+    keys.filter_map(Value::as_str)
+}
+
+/// An interval of numbers that includes its upper end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Range {
+    lowest: Option<f64>,
+    /// Is `lowest` itself excluded?
+    open: bool,
+    highest: Option<f64>,
+}
 
 impl Range {
-    pub(super) const fn at_least(lowest: f64, highest: f64) -> Self {
+    /// The range that a schema gives.
+    pub(super) fn of(schema: &Value) -> Self {
+        let bound = |key: &str| schema.get(key).and_then(Value::as_f64);
+        let above = bound("exclusiveMinimum");
         Self {
-            lowest,
-            open: false,
-            highest,
+            lowest: above.or_else(|| bound("minimum")),
+            open: above.is_some(),
+            highest: bound("maximum"),
         }
     }
 
-    pub(super) const fn above(lowest: f64, highest: f64) -> Self {
-        Self {
-            lowest,
-            open: true,
-            highest,
+    fn check(&self, value: f64) -> Result<(), Problem> {
+        let high_enough = |lowest| value > lowest || (value == lowest && !self.open);
+        if self.lowest.is_none_or(high_enough) && self.highest.is_none_or(|most| value <= most) {
+            return Ok(());
         }
-    }
-
-    /// The range as JSON Schema; `number` is the type, `number` or `integer`.
-    pub(super) fn schema(&self, number: &str) -> Value {
-        let lowest = if self.open {
-            "exclusiveMinimum"
-        } else {
-            "minimum"
-        };
-        let plain = |bound: f64| match bound as i64 {
-            whole if whole as f64 == bound => json!(whole),
-            _ => json!(bound),
-        };
-        json!({"type": number, lowest: plain(self.lowest), "maximum": plain(self.highest)})
-    }
-
-    /// Returns `value` if it is in range; the error names `key`.
-    pub(super) fn check(&self, key: &str, value: f64) -> Result<f64, Problem> {
-        let high_enough = value > self.lowest || (value == self.lowest && !self.open);
-        if high_enough && value <= self.highest {
-            Ok(value)
-        } else {
-            Err(Problem::new(
-                key,
-                format!("must be {self}, not {}", brief(value)),
-            ))
-        }
-    }
-
-    /// Returns `value` if it is `None` or in range; the error names `key`.
-    pub(super) fn check_given(
-        &self,
-        key: &str,
-        value: Option<f64>,
-    ) -> Result<Option<f64>, Problem> {
-        value.map(|value| self.check(key, value)).transpose()
+        let reason = format!("must be {self}, not {}", brief(value));
+        Err(Problem::new("", reason))
     }
 }
 
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let from = if self.open { "above" } else { "at least" };
-        let (lowest, highest) = (brief(self.lowest), brief(self.highest));
-        write!(f, "{from} {lowest} and at most {highest}")
+        let ends = [(from, self.lowest), ("at most", self.highest)];
+        let ends = ends
+            .into_iter()
+            .filter_map(|(words, end)| Some((words, end?)));
+        let ends: Vec<String> = ends
+            .map(|(words, end)| format!("{words} {}", brief(end)))
+            .collect();
+        f.write_str(&ends.join(" and "))
     }
 }
 
-/// Very large and very small numbers in scientific notation, others in decimal notation.
-fn brief(value: f64) -> String {
-    let plain = value == 0.0 || (1e-4..1e6).contains(&value.abs());
-    if plain {
+/// Very large and very small numbers in scientific notation, the largest integers as powers, others in decimal
+/// notation.
+pub(super) fn brief(value: f64) -> String {
+    if value == f64::from(u32::MAX) {
+        "2^32 - 1".to_owned()
+    } else if value == u64::MAX as f64 {
+        "2^64 - 1".to_owned()
+    } else if value == 0.0 || (1e-4..1e6).contains(&value.abs()) {
         value.to_string()
     } else {
         format!("{value:e}")
     }
 }
 
-/// A point with both coordinates in range.
-pub(super) fn point(key: &str, [x, y]: [f64; 2]) -> Result<Vector, Problem> {
-    let checked = |place: &str, value| COORDINATE.check(&format!("{key}{place}"), value);
-    Ok(Vector::new(checked("[0]", x)?, checked("[1]", y)?))
-}
-
 /// A region from its lower left and upper right corner, which must be in this order.
-pub(super) fn region(key: &str, [min, max]: [[f64; 2]; 2]) -> Result<Region, Problem> {
+pub(super) fn region(key: &str, Corners([min, max]): Corners) -> Result<Region, Problem> {
     let region = Region {
-        min: point(&format!("{key}[0]"), min)?,
-        max: point(&format!("{key}[1]"), max)?,
+        min: min.into(),
+        max: max.into(),
     };
     ordered(&region).map_err(|reason| Problem::new(key, reason))?;
     Ok(region)
@@ -134,15 +203,16 @@ pub(super) fn ordered(region: &Region) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::json;
 
     #[test]
     fn the_ends_belong_to_a_range_unless_it_is_open() {
-        let closed = Range::at_least(0.0, 1.0);
-        let open = Range::above(0.0, 1.0);
-        assert!(closed.check("a", 0.0).is_ok() && closed.check("a", 1.0).is_ok());
-        assert!(open.check("a", 0.0).is_err() && open.check("a", 1.0).is_ok());
-        assert!(closed.check("a", f64::NAN).is_err());
-        assert!(closed.check("a", f64::INFINITY).is_err());
+        let closed = Range::of(&json!({"minimum": 0, "maximum": 1}));
+        let open = Range::of(&json!({"exclusiveMinimum": 0, "maximum": 1}));
+        assert!(closed.check(0.0).is_ok() && closed.check(1.0).is_ok());
+        assert!(open.check(0.0).is_err() && open.check(1.0).is_ok());
+        assert!(closed.check(f64::NAN).is_err());
+        assert!(closed.check(f64::INFINITY).is_err());
         assert_eq!(open.to_string(), "above 0 and at most 1");
     }
 }

@@ -4,9 +4,9 @@ use std::str::FromStr;
 
 use serde_json::{Map, Value};
 
+use super::document::present_name;
 use super::error::{Problem, ScenarioError, suggestion};
-use super::parameters;
-use super::settings::{TEXTS, settings};
+use super::settings::{is_parameter, is_setting, is_text, may_be_empty, settings};
 use crate::scenario::quote::shown;
 
 /// A change: `viscosity=5`, `seed=7`, `profile=sf`, `sources.0.rows=50`.
@@ -45,7 +45,7 @@ impl FromStr for Setting {
         let (key, value) = text.split_once('=').ok_or(SettingError::NoValue)?;
         let key = key.trim();
         let as_text = || Value::from(value.trim());
-        let value = if TEXTS.contains(&key) {
+        let value = if is_text(key) {
             as_text()
         } else {
             serde_json::from_str(value).unwrap_or_else(|_| as_text())
@@ -67,14 +67,15 @@ impl Setting {
     /// The top-level key is unknown.
     pub fn new(key: &str, value: Value, text: String) -> Result<Self, SettingError> {
         let mut path: Vec<String> = key.split('.').map(str::to_owned).collect();
-        let known = settings();
-        if !known.iter().any(|doc| doc.key == path[0]) {
+        path[0] = present_name(&path[0]).to_owned();
+        if !is_setting(&path[0]) {
+            let known = settings();
             return Err(SettingError::UnknownKey {
                 key: path[0].clone(),
                 suggestion: suggestion(&path[0], known.iter().map(|doc| doc.key)),
             });
         }
-        if parameters::is_parameter(&path[0]) {
+        if is_parameter(&path[0]) {
             path.insert(0, "parameters".to_owned());
         }
         Ok(Self { text, path, value })
@@ -116,7 +117,7 @@ impl Setting {
             let begun = if depth + 1 == self.path.len() {
                 Some(Value::Null)
             } else {
-                let may_begin = depth == 0 && BEGUN.contains(&segment.as_str());
+                let may_begin = depth == 0 && may_be_empty(segment);
                 let is_list = self.path[depth + 1] == APPEND;
                 match (may_begin, is_list) {
                     (_, true) => Some(Value::Array(Vec::new())),
@@ -140,9 +141,6 @@ impl Setting {
 
 /// The segment of a path that adds an element to a list, as in `measurements.+`.
 const APPEND: &str = "+";
-
-/// Top-level objects that a setting creates if they are missing.
-const BEGUN: [&str; 2] = ["parameters", "stop"];
 
 /// The element `segment` of the value at `path`; an object that lacks it gets `begun` first.
 fn inner<'a>(

@@ -1,212 +1,169 @@
-//! The top-level keys of a scenario, which `--set` takes, with unit, default, range and meaning.
+//! The list of settings: the keys of a scenario with their descriptions, defaults and ranges, from the schema.
 
-use super::key::{Key, Kind};
-use super::parameters;
-use super::range;
+use std::collections::BTreeSet;
+
+use serde_json::Value;
+
+use super::file::File;
+use super::range::{Range, brief, required};
+use super::schema::{allows, names, property, resolved, ways, words_of};
+use crate::scenario::catalog::Parameters;
 
 /// One line of the list of settings.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SettingDoc {
     /// The key, as in `--set key=value` and in the file.
     pub key: &'static str,
-    /// The unit of its value; empty if it has none.
-    pub unit: &'static str,
-    /// The default: the paper's value, if the paper gives one.
-    pub default: &'static str,
+    /// Its meaning, with its unit.
+    pub description: &'static str,
+    /// The default: the paper's value, if the paper gives one; `None` if the description says it.
+    pub default: Option<String>,
     /// The allowed values, in words.
     pub range: String,
-    /// Its meaning.
-    pub description: &'static str,
 }
 
-impl From<&Key> for SettingDoc {
-    fn from(key: &Key) -> Self {
-        Self {
-            key: key.key,
-            unit: key.unit,
-            default: key.default,
-            range: key.kind.words(),
-            description: key.description,
+/// All keys of `--set`: those at the top of the file, then the parameters of profiles.
+pub fn settings() -> Vec<SettingDoc> {
+    let keys = names::<File>().iter().chain(names::<Parameters>());
+    let line = |&key| {
+        let schema = property(key);
+        SettingDoc {
+            key,
+            description: schema["description"].as_str().unwrap_or_default(),
+            default: schema.get("default").map(plain),
+            range: words(schema),
         }
+    };
+    keys.map(line).collect()
+}
+
+/// Is `key` one of [`settings`]?
+pub(super) fn is_setting(key: &str) -> bool {
+    names::<File>().contains(&key) || is_parameter(key)
+}
+
+/// Is `key` a parameter of profiles?
+pub(super) fn is_parameter(key: &str) -> bool {
+    names::<Parameters>().contains(&key)
+}
+
+/// Is the value of `key` any text, never parsed as JSON?
+pub(super) fn is_text(key: &str) -> bool {
+    let schema = property(key);
+    allows(schema, "string") && schema.get("enum").is_none()
+}
+
+/// Is the value of `key` an object that may be empty?
+pub(super) fn may_be_empty(key: &str) -> bool {
+    let schema = resolved(property(key));
+    allows(schema, "object") && schema.get("required").is_none()
+}
+
+/// A value as `--set` takes it.
+fn plain(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Number(number) => brief(number.as_f64().unwrap_or(f64::NAN)),
+        other => other.to_string(),
     }
 }
 
-/// Keys whose value is text and never parsed as JSON.
-pub(super) const TEXTS: [&str; 2] = ["name", "description"];
-
-/// All keys: those at the top of the file, then the parameters of profiles.
-pub fn settings() -> Vec<SettingDoc> {
-    let keys = KEYS.iter().chain(&parameters::PARAMETERS);
-    keys.map(SettingDoc::from).collect()
+/// The values that a schema allows, in words.
+fn words(schema: &'static Value) -> String {
+    if schema.get("$ref").is_some() {
+        let definition = resolved(schema);
+        return words_of(definition).unwrap_or_else(|| words(definition));
+    }
+    if let Some(ways) = ways(schema) {
+        let ways: Vec<&Value> = ways.collect();
+        return match ways.iter().map(|way| way.get("const").map(plain)).collect() {
+            Some(words) => one_of(words),
+            None => ways
+                .into_iter()
+                .map(words)
+                .collect::<Vec<_>>()
+                .join(", or "),
+        };
+    }
+    if let Some(words) = schema["enum"].as_array() {
+        return one_of(words.iter().map(plain).collect());
+    }
+    let range = Range::of(schema).to_string();
+    match ["integer", "number", "boolean", "string", "array"].map(|name| allows(schema, name)) {
+        [true, ..] => format!("a whole number, {range}"),
+        [_, true, ..] => range,
+        [_, _, true, ..] => "true or false".to_owned(),
+        [_, _, _, true, _] => "text".to_owned(),
+        [.., true] => "a list".to_owned(),
+        _ => "an object".to_owned(),
+    }
 }
 
-const SEED: Kind = Kind::Unsigned(64);
+/// Joins alternatives: `a, b or c`.
+fn one_of(mut words: Vec<String>) -> String {
+    let last = words.pop().unwrap_or_default();
+    match words.is_empty() {
+        true => last,
+        false => format!("{} or {last}", words.join(", ")),
+    }
+}
 
-/// The keys at the top of a file.
-pub(super) const KEYS: [Key; 29] = [
-    Key::new("name", Kind::Name, "name of the scenario in reports").default("the file's name"),
-    Key::new("description", Kind::Text, "what the scenario shows, in one line"),
-    Key::new("seed", SEED, "seed of all random numbers").default("1"),
-    Key::new(
-        "population_seed",
-        SEED,
-        "seed of the agents' radii and of the jitter of their start positions",
-    )
-    .default("seed"),
-    Key::new(
-        "behaviour_seed",
-        SEED,
-        "seed of the candidate velocities of RVO",
-    )
-    .default("seed"),
-    Key::new("duration_secs", Kind::Number(range::TIME), "simulated time")
-        .unit("s")
-        .default("60"),
-    Key::new(
-        "preset",
-        Kind::Word(&["paper", "fast", "accurate"]),
-        "defaults of the numerical settings: paper (as published), fast (cheaper) or accurate (closer to the \
-         model's limit for small steps); see docs/accuracy.md",
-    )
-    .default("paper")
-    .never_null(),
-    Key::new(
-        "time_step_secs",
-        Kind::Step(range::TIME_STEP),
-        "Δt_fine, the length of a frame; auto: the largest step that is safely stable",
-    )
-    .unit("s")
-    .default("0.02"),
-    Key::new(
-        "longest_step_secs",
-        Kind::Number(range::TIME_STEP),
-        "upper limit on the step that auto chooses",
-    )
-    .unit("s")
-    .default("0.1"),
-    Key::new(
-        "coarse_every",
-        Kind::Whole(range::COARSE_EVERY),
-        "Δt_coarse, the interval at which RVO, sources and events act; a whole number",
-    )
-    .unit("frames")
-    .default("the number nearest to 0.1 s"),
-    Key::new(
-        "integrator",
-        Kind::Word(&["semi-implicit", "forward-euler", "velocity-verlet", "midpoint"]),
-        "method of time integration",
-    )
-    .default("semi-implicit")
-    .never_null(),
-    Key::new(
-        "wall_method",
-        Kind::Word(&["representative", "exact", "union"]),
-        "how walls enter SPH: at one point per wall as in the paper, by exact integrals for each wall, or by exact \
-         integrals in which overlaps count once",
-    )
-    .default("representative")
-    .never_null(),
-    Key::new(
-        "precision",
-        Kind::Word(&["mixed", "double"]),
-        "number format of sums over pairs; mixed is faster, with relative errors of at most 1e-5",
-    )
-    .default("mixed")
-    .never_null(),
-    Key::new(
-        "neighbor_lists",
-        Kind::Word(&["complete", "coarse"]),
-        "complete: no neighbor is ever missed; coarse: rebuilt every Δt_coarse without a margin, as in the paper",
-    )
-    .default("complete")
-    .never_null(),
-    Key::new(
-        "preferred_speed",
-        Kind::Number(range::PREFERRED_SPEED),
-        "s_pref, the speed at which agents want to walk",
-    )
-    .unit("m/s")
-    .default("1.4"),
-    Key::new("max_speed", Kind::Number(range::MAX_SPEED), "s_max, the upper limit on speeds")
-        .unit("m/s")
-        .default("1.8"),
-    Key::new(
-        "profile",
-        Kind::Defined(
-            "profile",
-            "a name (see `sandbox list`), or a profile or blend defined in full",
-        ),
-        "behavior of agents that name no profile of their own",
-    )
-    .default("sph"),
-    Key::new(
-        "parameters",
-        Kind::Defined("parameters", "an object of the parameters below"),
-        "parameters of all profiles; they override those given in a profile",
-    )
-    .never_null(),
-    Key::new(
-        "walkable_area",
-        Kind::Defined(
-            "walkable_area",
-            "a list of polygons, each a list of rings (the outline, then holes); or a WKT or GeoJSON file",
-        ),
-        "where agents can walk; everything around it is solid; corners in meters",
-    )
-    .default("everywhere"),
-    Key::new(
-        "obstacles",
-        Kind::Defined(
-            "obstacles",
-            "a list of polygons, each a list of corners, or of rings (the outline, then holes); or a file",
-        ),
-        "solid bodies; corners in meters, in either orientation",
-    )
-    .never_null(),
-    Key::new("goal", Kind::Point, "goal of agents that give none of their own"),
-    Key::new("agents", Kind::List("agent", "a list of objects"), "single agents").never_null(),
-    Key::new(
-        "grids",
-        Kind::List("grid", "a list of objects"),
-        "agents that stand on grids at the start",
-    )
-    .never_null(),
-    Key::new(
-        "sources",
-        Kind::List("source", "a list of objects"),
-        "agents that enter on grids repeatedly",
-    )
-    .never_null(),
-    Key::new(
-        "events",
-        Kind::List("event", "a list of objects"),
-        "pushes: agents in a region at one moment behave differently for a while",
-    )
-    .never_null(),
-    Key::new(
-        "measurements",
-        Kind::List(
-            "measurement",
-            "a list of density, flow_of_first, flow_until, evacuated",
-        ),
-        "values to report",
-    )
-    .never_null(),
-    Key::new(
-        "stop",
-        Kind::Defined("stop", "an object: when_empty, idle_secs"),
-        "conditions for stopping early",
-    )
-    .never_null(),
-    Key::new(
-        "view",
-        Kind::Defined("view", "an object: region, opens_at_secs"),
-        "initial view of a recording",
-    )
-    .default("the whole scene"),
-    Key::new(
-        "debug_agents",
-        Kind::List("id", "a list of ids"),
-        "agents whose forces a recording shows; a dozen if missing",
-    ),
-];
+/// The keys of the nested objects, each with the path of the object: first those that are required, then the optional
+/// ones, marked by `?`.
+pub fn nested_settings() -> Vec<(String, String)> {
+    let mut lines = Vec::new();
+    let mut seen = BTreeSet::new();
+    for key in names::<File>() {
+        collect(key, property(key), &mut seen, &mut lines);
+    }
+    lines
+}
+
+/// Adds the lines of the objects in `schema`, which is that of `path`. Definitions that were `seen` are left out.
+fn collect(
+    path: &str,
+    schema: &'static Value,
+    seen: &mut BTreeSet<&'static str>,
+    lines: &mut Vec<(String, String)>,
+) {
+    if let Some(name) = schema["$ref"].as_str()
+        && (name.ends_with("/Parameters") || !seen.insert(name))
+    {
+        return;
+    }
+    let schema = resolved(schema);
+    // Alternatives that are told apart by a key.
+    let ways = ["anyOf", "oneOf"]
+        .into_iter()
+        .find_map(|key| schema[key].as_array());
+    let ways = || ways.into_iter().flatten();
+    let keyed: Vec<&str> = ways()
+        .filter_map(|way| way["required"][0].as_str())
+        .collect();
+    let keys = || schema["properties"].as_object().into_iter().flatten();
+    let mut line = Vec::new();
+    if !keyed.is_empty() {
+        let keyed = keyed.iter().map(|&key| key.to_owned()).collect();
+        line.push(format!("one of {}", one_of(keyed)));
+    }
+    line.extend(required(schema).map(str::to_owned));
+    let is_named = |key: &str| keyed.contains(&key) || required(schema).any(|one| one == key);
+    let others = keys().filter(|(key, value)| !is_named(key) && value["type"] != "null");
+    line.extend(others.map(|(key, _)| format!("{key}?")));
+    if !line.is_empty() {
+        lines.push((path.to_owned(), line.join(", ")));
+    }
+    for way in ways().chain(schema.get("items")) {
+        match way["properties"].as_object() {
+            Some(keys) if !keyed.is_empty() => {
+                for (key, value) in keys {
+                    collect(&format!("{path}.{key}"), value, seen, lines);
+                }
+            }
+            _ => collect(path, way, seen, lines),
+        }
+    }
+    for (key, value) in keys() {
+        collect(&format!("{path}.{key}"), value, seen, lines);
+    }
+}

@@ -31,25 +31,20 @@ pub struct Shipped {
 
 /// The paper's three scenarios (§6) and its open challenge (§7).
 pub const SHIPPED: [Shipped; 4] = [
-    Shipped {
-        name: "evacuation",
-        text: include_str!("../../scenarios/evacuation.json"),
-    },
-    Shipped {
-        name: "crossing",
-        text: include_str!("../../scenarios/crossing.json"),
-    },
-    Shipped {
-        name: "concert",
-        text: include_str!("../../scenarios/concert.json"),
-    },
-    Shipped {
-        name: "plaza",
-        text: include_str!("../../scenarios/plaza.json"),
-    },
+    Shipped::new(
+        "evacuation",
+        include_str!("../../scenarios/evacuation.json"),
+    ),
+    Shipped::new("crossing", include_str!("../../scenarios/crossing.json")),
+    Shipped::new("concert", include_str!("../../scenarios/concert.json")),
+    Shipped::new("plaza", include_str!("../../scenarios/plaza.json")),
 ];
 
 impl Shipped {
+    const fn new(name: &'static str, text: &'static str) -> Self {
+        Self { name, text }
+    }
+
     /// The file's `description`.
     pub fn description(&self) -> String {
         let document: Value = serde_json::from_str(self.text).unwrap_or_default();

@@ -32,7 +32,7 @@ fn holds(root: &Value, schema: &Value, keyword: &str, rule: &Value, value: &Valu
     let number = value.as_f64();
     let length = || rule.as_u64().unwrap() as usize;
     match keyword {
-        "$schema" | "title" | "description" | "default" | "$defs" => true,
+        "$schema" | "title" | "description" | "default" | "deprecated" | "$defs" => true,
         "$ref" => {
             let pointer = rule.as_str().unwrap().strip_prefix('#').unwrap();
             valid(root, root.pointer(pointer).expect(pointer), value)
@@ -69,10 +69,10 @@ fn holds(root: &Value, schema: &Value, keyword: &str, rule: &Value, value: &Valu
         }),
         "additionalProperties" => {
             assert_eq!(*rule, Value::Bool(false));
-            let known = schema["properties"].as_object().unwrap();
+            let known = |key| schema["properties"].get(key).is_some();
             value
                 .as_object()
-                .is_none_or(|object| object.keys().all(|key| known.contains_key(key)))
+                .is_none_or(|object| object.keys().all(known))
         }
         unknown => panic!("{unknown} is not known here"),
     }

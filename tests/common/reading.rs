@@ -3,7 +3,7 @@
 use sandbox::engine::simulation::{Fault, Simulation};
 use sandbox::runs::drive::{Then, drive};
 use sandbox::scenario::measurements::Metrics;
-use sandbox::scenario::{Need, Scenario, Setting};
+use sandbox::scenario::{Draft, Scenario, Setting};
 
 /// Scenarios with more agents than this are not run.
 const MAX_AGENTS: u64 = 500;
@@ -15,9 +15,10 @@ const MAX_CANDIDATES: u64 = 20_000;
 /// Runs the first frames of a valid scenario, or checks that the error names the file or setting. Returns the
 /// number of agents that may have been created.
 pub fn read(text: &str, settings: &[Setting]) -> u64 {
-    let need = Need::parse(text, "f.json", settings);
-    let scenario = match Scenario::parse(text, "f.json", settings) {
-        Ok(scenario) => scenario,
+    let draft = Draft::read(text, "f.json", settings);
+    let read = draft.and_then(|draft| Ok((*draft.need(), draft.scenario()?)));
+    let (need, scenario) = match read {
+        Ok(read) => read,
         Err(error) => {
             let said = error.to_string();
             assert!(
@@ -27,8 +28,7 @@ pub fn read(text: &str, settings: &[Setting]) -> u64 {
             return 0;
         }
     };
-    // Every valid scenario has an estimate of its needs, which is an upper bound.
-    let need = need.unwrap();
+    // The estimate of its needs is an upper bound.
     assert_eq!(need.initial, scenario.scene.agents.len() as u64);
     // Repeated corners are dropped. Walkable areas that overlap have additional corners.
     let walls = scenario.scene.walls.len() as u64;

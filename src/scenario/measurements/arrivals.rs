@@ -1,64 +1,65 @@
 //! Measurements of arrivals: their number, flows (Tables 1 and 2), pauses.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Measure;
 use crate::engine::simulation::Simulation;
-use crate::scenario::check::UNTIL;
-use crate::scenario::error::Problem;
+use crate::scenario::file::LONGEST_TIME;
 
 /// (n − 1) / (time of the n-th counted arrival − time of the first), P/s.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FlowOfFirst {
     /// n, at least 2.
+    #[schemars(range(min = 2))]
     arrivals: u32,
 }
 
 /// Counted arrivals until the frame nearest to a given time, divided by the time of that frame, P/s.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FlowUntil {
     /// The time, seconds.
+    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
     until_secs: f64,
 }
 
 /// The number of counted arrivals.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Evacuated {}
 
 /// The number of arrivals that are not counted.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Uncounted {}
 
 /// The sum of all long gaps between the first n counted arrivals, seconds, and the flow of these arrivals without the
 /// gaps, P/s.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pauses {
     /// n, at least 2.
+    #[schemars(range(min = 2))]
     arrivals: u32,
     /// Gaps at least this long are pauses, seconds.
+    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
     longer_than_secs: f64,
 }
 
 /// 1 if fewer than n counted agents have arrived at the end of the run, else 0; its mean over seeds is the share of
 /// runs that lock.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Locked {
     /// n, at least 2.
+    #[schemars(range(min = 2))]
     arrivals: u32,
 }
 
 impl Measure for FlowOfFirst {
     type Seen = ();
-
-    fn check(&self) -> Result<(), Problem> {
-        at_least_two("flow_of_first", self.arrivals)
-    }
 
     fn names(&self) -> Vec<(String, &'static str)> {
         vec![("flow_per_s".to_owned(), "P/s")]
@@ -72,12 +73,6 @@ impl Measure for FlowOfFirst {
 
 impl Measure for FlowUntil {
     type Seen = ();
-
-    fn check(&self) -> Result<(), Problem> {
-        UNTIL
-            .check("flow_until.until_secs", self.until_secs)
-            .map(|_| ())
-    }
 
     fn names(&self) -> Vec<(String, &'static str)> {
         vec![(format!("flow_first_{}s_per_s", self.until_secs), "P/s")]
@@ -98,10 +93,6 @@ impl Measure for FlowUntil {
 impl Measure for Evacuated {
     type Seen = ();
 
-    fn check(&self) -> Result<(), Problem> {
-        Ok(())
-    }
-
     fn names(&self) -> Vec<(String, &'static str)> {
         vec![("evacuated".to_owned(), "agents")]
     }
@@ -113,10 +104,6 @@ impl Measure for Evacuated {
 
 impl Measure for Uncounted {
     type Seen = ();
-
-    fn check(&self) -> Result<(), Problem> {
-        Ok(())
-    }
 
     fn names(&self) -> Vec<(String, &'static str)> {
         vec![("uncounted".to_owned(), "agents")]
@@ -130,11 +117,6 @@ impl Measure for Uncounted {
 
 impl Measure for Pauses {
     type Seen = ();
-
-    fn check(&self) -> Result<(), Problem> {
-        UNTIL.check("pauses.longer_than_secs", self.longer_than_secs)?;
-        at_least_two("pauses", self.arrivals)
-    }
 
     fn names(&self) -> Vec<(String, &'static str)> {
         let between = "flow_between_pauses_per_s".to_owned();
@@ -153,10 +135,6 @@ impl Measure for Pauses {
 impl Measure for Locked {
     type Seen = ();
 
-    fn check(&self) -> Result<(), Problem> {
-        at_least_two("locked", self.arrivals)
-    }
-
     fn names(&self) -> Vec<(String, &'static str)> {
         vec![("locked".to_owned(), "runs")]
     }
@@ -166,14 +144,6 @@ impl Measure for Locked {
             first(simulation, self.arrivals).is_none(),
         )))]
     }
-}
-
-fn at_least_two(measurement: &str, arrivals: u32) -> Result<(), Problem> {
-    if arrivals >= 2 {
-        return Ok(());
-    }
-    let reason = format!("a flow needs at least 2 arrivals, not {arrivals}");
-    Err(Problem::new(format!("{measurement}.arrivals"), reason))
 }
 
 /// The times of all counted arrivals, seconds, ascending.

@@ -1,31 +1,28 @@
 //! The smallest distance between the centers of two agents.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Due, Measure};
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::range::TIME;
+use crate::scenario::file::LONGEST_TIME;
 
 /// Time between the frames that are looked at, seconds.
 const EVERY_SECS: f64 = 0.1;
 
 /// The smallest distance between the centers of two agents as a part of D_i + D_j, at most 1, from a given time on, in
 /// ten frames of each second.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Closest {
     /// The time, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
     #[serde(default)]
     from_secs: f64,
 }
 
 impl Measure for Closest {
     type Seen = Option<f64>;
-
-    fn check(&self) -> Result<(), Problem> {
-        TIME.check("closest.from_secs", self.from_secs).map(|_| ())
-    }
 
     fn names(&self) -> Vec<(String, &'static str)> {
         vec![("closest_centers".to_owned(), "D_i + D_j")]

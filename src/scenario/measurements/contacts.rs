@@ -1,20 +1,22 @@
 //! Contacts between agents, for the speed of sound.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Measure;
 use crate::analysis::sound::{self, Contacts};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
-use crate::scenario::file::Corners;
-use crate::scenario::range::{TIME, region};
+use crate::scenario::file::{Corners, LONGEST_TIME};
+use crate::scenario::range::region;
 
 /// The mean number of contacts per agent in a region at one time, and their modulus M along x, m²: with it linear
 /// theory gives the speed of sound (see [`crate::analysis::sound`]).
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactsAt {
     /// The time, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
     at_secs: f64,
     /// The region: lower left and upper right corner, meters.
     region: Corners,
@@ -24,7 +26,6 @@ impl Measure for ContactsAt {
     type Seen = Option<Contacts>;
 
     fn check(&self) -> Result<(), Problem> {
-        TIME.check("contacts.at_secs", self.at_secs)?;
         region("contacts.region", self.region).map(|_| ())
     }
 

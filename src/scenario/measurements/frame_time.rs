@@ -2,20 +2,21 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::Measure;
 use crate::engine::simulation::{Simulation, Stage};
-use crate::scenario::error::Problem;
-use crate::scenario::range::TIME;
+use crate::scenario::file::LONGEST_TIME;
 
 /// The computing time per frame from a given time on, milliseconds, for each stage. It depends on the machine and on
 /// what runs beside it, so it is data rather than a value.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrameTime {
     /// The time, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
     from_secs: f64,
 }
 
@@ -58,11 +59,6 @@ impl FrameTime {
 impl Measure for FrameTime {
     /// At the first frame, at the last one, and the number of agents in that.
     type Seen = (Option<Spent>, Option<Spent>, usize);
-
-    fn check(&self) -> Result<(), Problem> {
-        TIME.check("frame_time.from_secs", self.from_secs)
-            .map(|_| ())
-    }
 
     fn names(&self) -> Vec<(String, &'static str)> {
         Vec::new()

@@ -1,23 +1,26 @@
 //! Jitter: the kinetic energy of a crowd that should rest.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Due, Measure};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
-use crate::scenario::range::TIME;
+use crate::scenario::file::LONGEST_TIME;
 
 /// The share of the agents, the least dense ones, that count as the rim of a crowd.
 const RIM: f64 = 0.25;
 
 /// The mean kinetic energy ½ m v² per agent, m²/s², between two times: of all agents, of the denser three quarters of
 /// the crowd, and of its rim, the quarter with the lowest densities.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Jitter {
     /// The start, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
     from_secs: f64,
     /// The end, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
     to_secs: f64,
 }
 
@@ -35,8 +38,6 @@ impl Measure for Jitter {
     type Seen = Energies;
 
     fn check(&self) -> Result<(), Problem> {
-        TIME.check("jitter.from_secs", self.from_secs)?;
-        TIME.check("jitter.to_secs", self.to_secs)?;
         if self.from_secs > self.to_secs {
             return Err(Problem::new(
                 "jitter.to_secs",

@@ -16,6 +16,7 @@ mod wave;
 
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -31,7 +32,6 @@ pub use speed_by_density::SpeedByDensity;
 pub use wave::{Wave, WaveData};
 
 use super::error::{Problem, Under};
-use super::file::Object;
 use crate::engine::simulation::Simulation;
 
 /// The keys of a measurement. They do not change during a run; what the measurement has seen is its `Seen`.
@@ -39,11 +39,13 @@ pub trait Measure: fmt::Debug + Clone + Send + Sync + 'static {
     /// What it has seen so far: the part of it that a checkpoint holds.
     type Seen: Default + Serialize + DeserializeOwned + Send + Sync + 'static;
 
-    /// Checks its keys.
+    /// Checks relations between its keys; their ranges are checked by the schema.
     ///
     /// # Errors
-    /// A value is out of range.
-    fn check(&self) -> Result<(), Problem>;
+    /// Keys contradict each other.
+    fn check(&self) -> Result<(), Problem> {
+        Ok(())
+    }
 
     /// The names of its values and their units. They are unique in a scenario.
     fn names(&self) -> Vec<(String, &'static str)>;
@@ -64,57 +66,57 @@ pub trait Measure: fmt::Debug + Clone + Send + Sync + 'static {
 }
 
 /// A measurement of a scenario.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Measurement {
     /// Mean and standard deviation of the density.
-    Density(Object<Density>),
+    Density(Density),
     /// Flow of the first arrivals.
-    FlowOfFirst(Object<FlowOfFirst>),
+    FlowOfFirst(FlowOfFirst),
     /// Flow of the arrivals until a given time.
-    FlowUntil(Object<FlowUntil>),
+    FlowUntil(FlowUntil),
     /// Number of counted arrivals.
-    Evacuated(Object<Evacuated>),
+    Evacuated(Evacuated),
     /// Number of arrivals that are not counted.
-    Uncounted(Object<Uncounted>),
+    Uncounted(Uncounted),
     /// Long gaps between arrivals, and the flow without them.
-    Pauses(Object<Pauses>),
+    Pauses(Pauses),
     /// Did the flow come to an end before enough agents arrived?
-    Locked(Object<Locked>),
+    Locked(Locked),
     /// All agents at one time.
-    Snapshot(Object<SnapshotAt>),
+    Snapshot(SnapshotAt),
     /// Speed, amplitude and reflection of a wave along x.
-    Wave(Object<Wave>),
+    Wave(Wave),
     /// Contacts between agents at one time.
-    Contacts(Object<ContactsAt>),
+    Contacts(ContactsAt),
     /// Kinetic energy of a crowd that should rest.
-    Jitter(Object<Jitter>),
+    Jitter(Jitter),
     /// The smallest distance between the centers of two agents.
-    Closest(Object<Closest>),
+    Closest(Closest),
     /// Mean speed by density.
-    SpeedByDensity(Object<SpeedByDensity>),
+    SpeedByDensity(SpeedByDensity),
     /// Computing time by stage.
-    FrameTime(Object<FrameTime>),
+    FrameTime(FrameTime),
 }
 
 impl Measurement {
     /// This measurement before the first frame.
     fn started(&self) -> Box<dyn Running> {
         match self {
-            Self::Density(Object(keys)) => Started::new(keys),
-            Self::FlowOfFirst(Object(keys)) => Started::new(keys),
-            Self::FlowUntil(Object(keys)) => Started::new(keys),
-            Self::Evacuated(Object(keys)) => Started::new(keys),
-            Self::Uncounted(Object(keys)) => Started::new(keys),
-            Self::Pauses(Object(keys)) => Started::new(keys),
-            Self::Locked(Object(keys)) => Started::new(keys),
-            Self::Snapshot(Object(keys)) => Started::new(keys),
-            Self::Wave(Object(keys)) => Started::new(keys),
-            Self::Contacts(Object(keys)) => Started::new(keys),
-            Self::Jitter(Object(keys)) => Started::new(keys),
-            Self::Closest(Object(keys)) => Started::new(keys),
-            Self::SpeedByDensity(Object(keys)) => Started::new(keys),
-            Self::FrameTime(Object(keys)) => Started::new(keys),
+            Self::Density(keys) => Started::new(keys),
+            Self::FlowOfFirst(keys) => Started::new(keys),
+            Self::FlowUntil(keys) => Started::new(keys),
+            Self::Evacuated(keys) => Started::new(keys),
+            Self::Uncounted(keys) => Started::new(keys),
+            Self::Pauses(keys) => Started::new(keys),
+            Self::Locked(keys) => Started::new(keys),
+            Self::Snapshot(keys) => Started::new(keys),
+            Self::Wave(keys) => Started::new(keys),
+            Self::Contacts(keys) => Started::new(keys),
+            Self::Jitter(keys) => Started::new(keys),
+            Self::Closest(keys) => Started::new(keys),
+            Self::SpeedByDensity(keys) => Started::new(keys),
+            Self::FrameTime(keys) => Started::new(keys),
         }
     }
 

@@ -1,18 +1,19 @@
 //! All agents at one time, for pictures.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::Measure;
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::range::TIME;
+use crate::scenario::file::LONGEST_TIME;
 
 /// All agents at one time: positions, radii, speeds and densities.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SnapshotAt {
     /// The time, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
     at_secs: f64,
 }
 
@@ -59,10 +60,6 @@ impl Snapshot {
 
 impl Measure for SnapshotAt {
     type Seen = Option<Snapshot>;
-
-    fn check(&self) -> Result<(), Problem> {
-        TIME.check("snapshot.at_secs", self.at_secs).map(|_| ())
-    }
 
     fn names(&self) -> Vec<(String, &'static str)> {
         Vec::new()

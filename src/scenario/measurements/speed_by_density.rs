@@ -1,25 +1,28 @@
 //! Mean speed by density: the fundamental diagram of the crowd's own densities.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Due, Measure};
 use crate::engine::simulation::Simulation;
-use crate::scenario::check::UNTIL;
 use crate::scenario::error::Problem;
-use crate::scenario::parameters::DENSITY;
-use crate::scenario::range::TIME;
+use crate::scenario::file::LONGEST_TIME;
 
 /// The mean speed of agents with ρ_i in bins 1 P/m² wide, m/s, between two times.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpeedByDensity {
     /// The start, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
     from_secs: f64,
     /// The end, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
     to_secs: f64,
     /// Time between the frames that are looked at, seconds.
+    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
     every_secs: f64,
     /// The lower ends of the bins, ascending, P/m².
+    #[schemars(inner(range(min = 0, max = 1000)))]
     bins: Vec<f64>,
 }
 
@@ -34,12 +37,6 @@ impl Measure for SpeedByDensity {
     type Seen = Vec<Speeds>;
 
     fn check(&self) -> Result<(), Problem> {
-        TIME.check("speed_by_density.from_secs", self.from_secs)?;
-        TIME.check("speed_by_density.to_secs", self.to_secs)?;
-        UNTIL.check("speed_by_density.every_secs", self.every_secs)?;
-        for (k, &bin) in self.bins.iter().enumerate() {
-            DENSITY.check(&format!("speed_by_density.bins[{k}]"), bin)?;
-        }
         match self.bins.is_sorted_by(|a, b| a < b) && !self.bins.is_empty() {
             true => Ok(()),
             false => Err(Problem::new(

@@ -1,37 +1,46 @@
 //! The wave that a push sends along x through a crowd: its speed, amplitude and reflection.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{Due, Measure};
 use crate::analysis::wave::{self, Run, SpaceTime, Strip};
 use crate::engine::simulation::Simulation;
-use crate::scenario::check::UNTIL;
 use crate::scenario::error::Problem;
-use crate::scenario::range::{COORDINATE, TIME};
+use crate::scenario::file::LONGEST_TIME;
 
 /// The speed at which a wave arrives at an obstacle, m/s, its amplitude, m/s, and how much of it is reflected, found in
 /// the space-time diagram of a strip along x (see [`crate::analysis::wave`]); the diagram itself is its data.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wave {
     /// When the push begins, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
     start_secs: f64,
     /// x of the push, meters.
+    #[schemars(range(min = -1e6, max = 1e6))]
     source: f64,
     /// x of the obstacle, meters.
+    #[schemars(range(min = -1e6, max = 1e6))]
     obstacle: f64,
     /// Ends of the strip, meters.
+    #[schemars(inner(range(min = -1e6, max = 1e6)))]
     x: [f64; 2],
     /// Maximum |y| in the strip, meters.
+    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
     half_width: f64,
     /// Length of a bin along x, meters.
+    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
     bin: f64,
     /// Start of the diagram, before the push, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
     from_secs: f64,
     /// End of the diagram, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
     to_secs: f64,
     /// Time between the columns of the diagram, seconds.
+    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
     #[serde(default = "often")]
     every_secs: f64,
 }
@@ -78,26 +87,6 @@ impl Measure for Wave {
     type Seen = Option<SpaceTime>;
 
     fn check(&self) -> Result<(), Problem> {
-        for (key, at) in [("source", self.source), ("obstacle", self.obstacle)] {
-            COORDINATE.check(&format!("wave.{key}"), at)?;
-        }
-        for (k, &at) in self.x.iter().enumerate() {
-            COORDINATE.check(&format!("wave.x[{k}]"), at)?;
-        }
-        for (key, time) in [
-            ("start_secs", self.start_secs),
-            ("from_secs", self.from_secs),
-            ("to_secs", self.to_secs),
-        ] {
-            TIME.check(&format!("wave.{key}"), time)?;
-        }
-        for (key, size) in [
-            ("half_width", self.half_width),
-            ("bin", self.bin),
-            ("every_secs", self.every_secs),
-        ] {
-            UNTIL.check(&format!("wave.{key}"), size)?;
-        }
         match self.strip().bins() {
             2..=100_000 => Ok(()),
             bins => Err(Problem::new(

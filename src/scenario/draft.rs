@@ -1,0 +1,99 @@
+//! A scenario file with its settings, read and checked key by key, before any agents are placed.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::Scenario;
+use super::check::Contents;
+use super::document;
+use super::error::{Problem, ScenarioError};
+use super::need::Need;
+use super::setting::Setting;
+
+/// A scenario whose names, types and ranges are valid. Relations between values are not checked yet.
+#[derive(Debug, Clone)]
+pub struct Draft {
+    contents: Contents,
+    origin: Origin,
+}
+
+/// Where a draft comes from: to tell whether the file or a setting is to blame for a problem.
+#[derive(Debug, Clone)]
+struct Origin {
+    file: String,
+    /// The file without settings; `None` if there are none.
+    without: Option<Value>,
+    /// The settings with their paths in the document.
+    settings: Vec<(String, Setting)>,
+}
+
+impl Draft {
+    /// Reads a scenario from JSON and applies the settings. Messages call it `file`; paths in it are relative to the
+    /// folder of `file`.
+    ///
+    /// # Errors
+    /// The text is not JSON, a name, type or range is wrong, or there are too many agents.
+    pub fn read(text: &str, file: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
+        let mut origin = Origin {
+            file: file.to_owned(),
+            without: None,
+            settings: Vec::with_capacity(settings.len()),
+        };
+        let mut document = document::read(text, file)?;
+        document::rename_old_keys(&mut document).map_err(|problem| origin.blame(problem))?;
+        if document.is_object() && !settings.is_empty() {
+            origin.without = Some(document.clone());
+            for setting in settings {
+                let path = setting.apply(&mut document);
+                let path = path.map_err(|problem| setting.refused(problem))?;
+                origin.settings.push((path, setting.clone()));
+            }
+        }
+        let contents = Contents::of(document, Path::new(file));
+        let mut contents = contents.map_err(|problem| origin.blame(problem))?;
+        contents.need.text = text.len() as u64;
+        Ok(Self { contents, origin })
+    }
+
+    /// The size of its run.
+    pub fn need(&self) -> &Need {
+        &self.contents.need
+    }
+
+    /// Checks the relations between values and places the agents.
+    ///
+    /// # Errors
+    /// The first problem, with its place.
+    pub fn scenario(self) -> Result<Scenario, ScenarioError> {
+        let Self { contents, origin } = self;
+        let scenario = contents.scenario(Path::new(&origin.file));
+        scenario.map_err(|problem| origin.blame(problem))
+    }
+}
+
+impl Origin {
+    /// The error for a problem: it names the setting that put the value there, else the file, and the settings if the
+    /// file is valid without them.
+    fn blame(&self, problem: Problem) -> ScenarioError {
+        for (path, setting) in self.settings.iter().rev() {
+            if let Some(problem) = problem.seen_from(path) {
+                return setting.refused(problem);
+            }
+        }
+        let mut file = self.file.clone();
+        if let Some(document) = &self.without {
+            let path = Path::new(&self.file);
+            let alone = Contents::of(document.clone(), path);
+            if alone.and_then(|contents| contents.scenario(path)).is_ok() {
+                let settings = self
+                    .settings
+                    .iter()
+                    .map(|(_, setting)| format!(" {setting}"));
+                file.push_str(" with");
+                file.extend(settings);
+            }
+        }
+        ScenarioError::Invalid { file, problem }
+    }
+}
