@@ -1,4 +1,5 @@
-//! Plots: both formats of a sheet are complete and have the same size.
+//! Plots: both formats of a sheet are complete and have the same size, ticks are round numbers, and nothing is drawn
+//! outside of its panel.
 
 use sandbox::output::colors;
 use sandbox::output::plot::{
@@ -110,9 +111,146 @@ fn few_people_are_drawn_as_circles_and_a_crowd_as_an_image() {
     assert!(few.matches("<circle").count() >= 1000 && !few.contains("<image"));
     let (crowd, _) = saved(&sheet(2500));
     assert!(crowd.matches("<circle").count() < 100 && crowd.contains("<image"));
+    assert!(crowd.len() < 300_000, "{}", crowd.len());
 }
 
 #[test]
 fn the_same_sheet_gives_the_same_bytes() {
     assert_eq!(saved(&sheet(100)), saved(&sheet(100)));
+}
+
+/// The SVG of a sheet with a single panel without labels.
+fn svg_of(x: Axis, y: Axis, marks: Vec<Mark>) -> String {
+    let panel = Panel {
+        x,
+        y,
+        marks,
+        ..Panel::default()
+    };
+    let sheet = Sheet {
+        title: String::new(),
+        row_titles: Vec::new(),
+        panels: vec![panel],
+        ..sheet(0)
+    };
+    saved(&sheet).0
+}
+
+/// The labels of a horizontal axis.
+fn labels(axis: Axis) -> Vec<String> {
+    let svg = svg_of(axis, Axis::names("", []), Vec::new());
+    let texts = svg.split("<text").skip(1);
+    let text = |element: &str| element.lines().nth(1).unwrap().to_owned();
+    texts.map(text).filter(|text| !text.is_empty()).collect()
+}
+
+#[test]
+fn ticks_are_round_numbers_inside_the_range() {
+    let linear = |range| labels(Axis::linear("", range));
+    assert_eq!(linear([0.0, 8.0]), ["0", "2", "4", "6", "8"]);
+    assert_eq!(
+        linear([-25.0, 25.0]),
+        ["\u{2212}20", "\u{2212}10", "0", "10", "20"]
+    );
+    assert_eq!(linear([-0.3, 0.3]), ["\u{2212}0.2", "0", "0.2"]);
+    assert_eq!(
+        linear([0.0, 2e6]),
+        ["0", "500,000", "1,000,000", "1,500,000", "2,000,000"]
+    );
+    assert!(linear([f64::NAN, 1.0]).is_empty());
+    let log = |range| labels(Axis::log("", range));
+    assert_eq!(log([3.0, 8.0]), ["5"]);
+    assert_eq!(
+        log([2_500.0, 100_000.0]),
+        ["5,000", "10,000", "20,000", "50,000", "100,000"]
+    );
+    let small = ["1e\u{2212}5", "1e\u{2212}4", "0.001", "0.01", "0.1"];
+    assert_eq!(log([1e-5, 0.1]), small);
+}
+
+/// The corners of the last shape of this kind and color, in fractions of the panel, right and up.
+fn shape(svg: &str, kind: &str, color: [u8; 3]) -> Vec<[f64; 2]> {
+    let hex = |[r, g, b]: [u8; 3]| format!("#{r:02X}{g:02X}{b:02X}");
+    let points = |kind: &str, color| -> Vec<[f64; 2]> {
+        let elements = svg.lines().filter(|line| line.starts_with(kind));
+        let mut elements = elements.filter(|line| line.contains(&hex(color)));
+        let text = elements
+            .next_back()
+            .unwrap()
+            .split("points=\"")
+            .nth(1)
+            .unwrap();
+        let pairs = text.split('"').next().unwrap().split_whitespace();
+        let pair = |pair: &str| {
+            let (x, y) = pair.split_once(',').unwrap();
+            [x.parse().unwrap(), y.parse().unwrap()]
+        };
+        pairs.map(pair).collect()
+    };
+    // The rim of the panel is the last line, from its lower left corner to the right.
+    let rim = points("<polyline", BLACK);
+    let (low, high) = (rim[0], rim[2]);
+    let part = |at: [f64; 2]| [0, 1].map(|k| (at[k] - low[k]) / (high[k] - low[k]));
+    points(kind, color).into_iter().map(part).collect()
+}
+
+fn ten() -> Axis {
+    Axis::linear("", [0.0, 10.0])
+}
+
+#[test]
+fn a_line_that_leaves_the_panel_stays_straight_and_ends_at_the_rim() {
+    for style in [Style::full, Style::broken].map(|style| style(LINES[0], 1.0, "")) {
+        let line = Mark::Line(vec![[-5.0, 0.0], [15.0, 10.0]], style);
+        let drawn = shape(&svg_of(ten(), ten(), vec![line]), "<polyline", LINES[0]);
+        for [x, y] in &drawn {
+            assert!((-0.01..=1.01).contains(x), "{drawn:?}");
+            assert!((y - (0.25 + 0.5 * x)).abs() < 0.01, "{drawn:?}");
+        }
+    }
+    let log = || Axis::log("", [1.0, 100.0]);
+    let line = Mark::Line(vec![[0.1, 0.1], [1e3, 1e3]], Style::full(LINES[0], 1.0, ""));
+    let drawn = shape(&svg_of(log(), log(), vec![line]), "<polyline", LINES[0]);
+    assert_eq!(drawn, [[0.0, 0.0], [1.0, 1.0]]);
+}
+
+#[test]
+fn an_area_that_leaves_the_panel_is_cut_at_the_rim() {
+    let triangle = vec![[0.0, -5.0], [15.0, 10.0], [15.0, -5.0]];
+    let svg = svg_of(ten(), ten(), vec![Mark::Area(triangle, GRAY)]);
+    let corners = shape(&svg, "<polygon", GRAY);
+    let next = corners.iter().cycle().skip(1);
+    let twice = corners
+        .iter()
+        .zip(next)
+        .map(|(a, b)| a[0] * b[1] - a[1] * b[0]);
+    let area = 0.5 * twice.sum::<f64>().abs();
+    // The part inside is half a square with sides of 5.
+    assert!((area - 0.125).abs() < 0.002, "{area}");
+}
+
+#[test]
+fn the_first_row_of_cells_is_at_the_bottom() {
+    let map = colors::SPEED.clone();
+    let (first, second) = (map.color(0.0), map.color(1.8));
+    let cells = Mark::Cells(Cells {
+        extent: [[0.0, 0.0], [10.0, 10.0]],
+        columns: 1,
+        values: vec![Some(0.0), Some(1.8), None],
+        map,
+    });
+    let svg = svg_of(ten(), ten(), vec![cells]);
+    let top = |[r, g, b]: [u8; 3]| {
+        let color = format!("fill=\"#{r:02X}{g:02X}{b:02X}\"");
+        let cell = svg.lines().filter(|line| line.starts_with("<rect"));
+        attribute(
+            cell.filter(|line| line.contains(&color))
+                .next_back()
+                .unwrap(),
+            " y",
+        )
+    };
+    assert!(top(first) > top(second));
+    let rectangles = svg.matches("<rect").count();
+    assert_eq!(rectangles, 3, "the background and two cells");
 }

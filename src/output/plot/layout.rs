@@ -1,329 +1,217 @@
 //! The layout of a sheet.
 
-use plotters::prelude::DrawingBackend;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::canvas::{Anchor, Canvas, Font, Place};
-use super::marks::{self, Frame};
-use super::output::PlotError;
-use super::{BLACK, ColorBar, Corner, Mark, Panel, Sheet, Style};
+use super::output::Drawn;
+use super::{Axis, Cells, ColorBar, Corner, Mark, Panel, Sheet, marks};
 
-const TITLE: Font = Font {
-    size: 12.0,
-    bold: true,
-    color: BLACK,
-};
-const PANEL_TITLE: Font = Font {
-    size: 8.5,
-    bold: false,
-    color: BLACK,
-};
-const LABEL: Font = Font {
-    size: 8.5,
-    bold: false,
-    color: BLACK,
-};
-const TICK: Font = Font {
-    size: 7.5,
-    bold: false,
-    color: BLACK,
-};
+/// Units of a picture per point. Backends draw in whole units, so there are several for each point.
+pub const SCALE: u32 = 4;
 
-/// Margin around the sheet, points.
-const MARGIN: f64 = 8.0;
-/// Space left of axes with numbers, points.
-const LEFT: f64 = 44.0;
-/// Space below axes with numbers, points.
-const BELOW: f64 = 28.0;
-/// Space between panels without numbers between them, points.
-const GAP: f64 = 7.0;
-/// Space above a panel for its title, points.
-const ABOVE: f64 = 18.0;
-/// Space for a color bar with its numbers and label, points.
-const BAR: f64 = 58.0;
-/// Space for a legend beside a panel, points.
-const LEGEND: f64 = 165.0;
-/// Width of the color bar itself, points.
-const BAR_WIDTH: f64 = 9.0;
-/// Length of a tick, points.
-const TICK_LENGTH: f64 = 2.5;
+// Lengths in points.
+const MARGIN: f64 = 8.0; // around the sheet
+const TITLE: f64 = 20.0; // for the title of the sheet
+const ROW_TITLE: f64 = 18.0; // for the titles of rows
+const ABOVE: f64 = 20.0; // above a panel, for its title
+const LEFT: f64 = 42.0; // left of an axis with numbers
+const BELOW: f64 = 25.0; // below an axis with numbers
+const GAP: f64 = 9.0; // between panels, color bars and legends
+const BAR: f64 = 48.0; // for a color bar with its numbers and label
+const BAR_WIDTH: f64 = 9.0; // of the color bar itself
+const LEGEND: f64 = 165.0; // for a legend beside a panel
+const SAMPLE: f64 = 18.0; // of a line in a legend
+const RIM: f64 = 0.6; // width of the lines around a panel
+const TICK: f64 = 2.5; // of a tick
+const LABEL: f64 = 8.5; // size of titles of panels and labels of axes
+const NUMBER: f64 = 7.5; // size of numbers and legends
 
-/// Horizontal and vertical distance between the axes of adjacent panels, points.
-fn pitch(sheet: &Sheet) -> [f64; 2] {
-    let [width, height] = sheet.panel_size;
-    let titled = sheet.panels.iter().any(|panel| !panel.title.is_empty());
-    let above = if titled { ABOVE } else { GAP };
-    if sheet.shared_axes {
-        return [width + GAP, height + above];
+type Area<DB> = DrawingArea<DB, Shift>;
+/// The chart of a panel.
+pub type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<Axis, Axis>>;
+
+pub fn centered(style: TextStyle) -> TextStyle {
+    style.pos(Pos::new(HPos::Center, VPos::Center))
+}
+
+/// A length in units of the picture.
+pub fn units(points: f64) -> i32 {
+    (points * f64::from(SCALE)).round() as i32
+}
+
+/// The font of a text.
+pub fn font(points: f64) -> FontDesc<'static> {
+    let size = points * f64::from(SCALE);
+    FontDesc::new(FontFamily::SansSerif, size, FontStyle::Normal)
+}
+
+fn only(when: bool, points: f64) -> f64 {
+    if when { points } else { 0.0 }
+}
+
+/// Where the panels of a sheet are.
+pub struct Layout {
+    columns: usize,
+    /// Upper left corners of the panels' axes, points.
+    corners: Vec<[f64; 2]>,
+    /// Width and height of the sheet, points.
+    pub size: [u32; 2],
+}
+
+impl Layout {
+    pub fn new(sheet: &Sheet) -> Self {
+        let ([width, height], count) = (sheet.panel_size, sheet.panels.len().max(1));
+        let columns = sheet.columns.clamp(1, count);
+        let any = |has: fn(&Panel) -> bool| sheet.panels.iter().any(has);
+        let above = only(any(|panel| !panel.title.is_empty()), ABOVE).max(GAP);
+        let bar = GAP + only(any(|panel| panel.bar.is_some()), BAR + GAP);
+        let step = match sheet.shared_axes {
+            true => [width + GAP, above + height],
+            false => [LEFT + width + bar, above + height + BELOW],
+        };
+        let left = MARGIN + only(!sheet.row_titles.is_empty(), ROW_TITLE) + LEFT;
+        let top = MARGIN + only(!sheet.title.is_empty(), TITLE) + above;
+        let at = |column, row| [left + column as f64 * step[0], top + row as f64 * step[1]];
+        let [right, foot] = at(columns - 1, (count - 1) / columns);
+        let legend = only(any(|panel| panel.legend == Some(Corner::Beside)), LEGEND);
+        let beside = bar
+            .max(legend)
+            .max(only(sheet.bar.is_some(), GAP + BAR + GAP))
+            + MARGIN;
+        let size = [right + width + beside, foot + height + BELOW + MARGIN];
+        Self {
+            columns,
+            corners: (0..count).map(|k| at(k % columns, k / columns)).collect(),
+            size: size.map(|length| length.ceil() as u32),
+        }
     }
-    // Labels beside the last column need no space between panels.
-    let inner = sheet.panels.iter().enumerate();
-    let inner = inner.filter(|(k, _)| k % sheet.columns != sheet.columns - 1);
-    let right = inner.map(|(_, panel)| beside(panel)).fold(GAP, f64::max);
-    [LEFT + width + right, above + height + BELOW]
 }
 
-/// Space right of a panel for its legend or color bar, points.
-fn beside(panel: &Panel) -> f64 {
-    if panel.legend == Some(Corner::Beside) {
-        LEGEND
-    } else if panel.bar.is_some() {
-        BAR
-    } else {
-        GAP
-    }
-}
-
-/// Upper left corner of the first panel's axes.
-fn origin(sheet: &Sheet) -> Place {
-    let titled = sheet.panels.iter().any(|panel| !panel.title.is_empty());
-    let title = if sheet.title.is_empty() { 0.0 } else { 20.0 };
-    let rows = if sheet.row_titles.is_empty() {
-        0.0
-    } else {
-        14.0
-    };
-    [
-        MARGIN + rows + LEFT,
-        MARGIN + title + if titled { ABOVE } else { GAP },
-    ]
-}
-
-fn rows(sheet: &Sheet) -> usize {
-    sheet.panels.len().div_ceil(sheet.columns.max(1))
-}
-
-/// The sheet's width and height, points.
-pub fn size(sheet: &Sheet) -> [f64; 2] {
-    let ([x, y], [dx, dy]) = (origin(sheet), pitch(sheet));
-    let columns = sheet.columns.min(sheet.panels.len()).max(1);
-    let [width, height] = sheet.panel_size;
-    let bar = if sheet.bar.is_some() { BAR } else { GAP };
-    let beside = sheet.panels.iter().map(beside).fold(bar, f64::max);
-    let right = x + (columns - 1) as f64 * dx + width;
-    let below = y + rows(sheet).saturating_sub(1) as f64 * dy + height;
-    [right + beside + MARGIN, below + BELOW + MARGIN]
+/// A part of an area from its upper left corner and its size, points.
+fn part<DB: DrawingBackend>(area: &Area<DB>, corner: [f64; 2], size: [f64; 2]) -> Area<DB> {
+    let [(x, y), (width, height)] = [corner, size].map(|lengths| lengths.map(units).into());
+    area.clone().shrink((x, y), (width, height))
 }
 
 /// Draws a sheet.
-pub fn draw<DB: DrawingBackend>(sheet: &Sheet, canvas: &Canvas<DB>) -> Result<(), PlotError> {
-    let ([x, y], [dx, dy]) = (origin(sheet), pitch(sheet));
+pub fn draw<DB: DrawingBackend>(sheet: &Sheet, root: &Area<DB>) -> Drawn {
+    let layout = Layout::new(sheet);
     let [width, height] = sheet.panel_size;
-    canvas.text([x, MARGIN + 7.0], &sheet.title, Anchor::Left, TITLE)?;
-    for (k, panel) in sheet.panels.iter().enumerate() {
-        let (column, row) = (k % sheet.columns, k / sheet.columns);
-        let frame = Frame {
-            panel,
-            corner: [x + column as f64 * dx, y + row as f64 * dy],
-            size: sheet.panel_size,
-        };
-        draw_panel(&frame, canvas)?;
-        let lowest = k + sheet.columns >= sheet.panels.len();
-        draw_x_axis(&frame, lowest || !sheet.shared_axes, canvas)?;
-        draw_y_axis(&frame, column == 0 || !sheet.shared_axes, canvas)?;
+    let [right, foot] = layout.size.map(|length| f64::from(length) - MARGIN);
+    part(root, [MARGIN; 2], [right - MARGIN, TITLE]).titled(&sheet.title, font(12.0))?;
+    for (k, (panel, &[x, y])) in sheet.panels.iter().zip(&layout.corners).enumerate() {
+        let lowest = k + layout.columns >= sheet.panels.len();
+        let left = only(k % layout.columns == 0 || !sheet.shared_axes, LEFT);
+        let below = only(lowest || !sheet.shared_axes, BELOW);
+        let area = part(root, [x - left, y], [left + width, height + below]);
+        draw_chart(panel, &area, [left, below, 0.0])?;
+        part(root, [x, y - 12.0], [width, 12.0]).titled(&panel.title, font(LABEL))?;
+        if let Some(bar) = &panel.bar {
+            draw_bar(bar, &part(root, [x + width + GAP, y], [BAR, height]))?;
+        }
+        if let Some(corner) = panel.legend {
+            let x = x + only(corner == Corner::Beside, width + GAP);
+            draw_legend(panel, corner, &part(root, [x, y], sheet.panel_size))?;
+        }
     }
-    for (row, title) in sheet.row_titles.iter().enumerate() {
-        let middle = y + row as f64 * dy + height / 2.0;
-        let font = Font {
-            bold: true,
-            ..LABEL
-        };
-        canvas.text([MARGIN + 5.0, middle], title, Anchor::Upwards, font)?;
-    }
+    let top = layout.corners[0][1];
     if let Some(bar) = &sheet.bar {
-        let columns = sheet.columns.min(sheet.panels.len()).max(1);
-        let right = x + (columns - 1) as f64 * dx + width;
-        let total = rows(sheet).saturating_sub(1) as f64 * dy + height;
-        let length = total.min(260.0);
-        draw_bar(
-            bar,
-            [right + 10.0, y + (total - length) / 2.0],
-            length,
-            canvas,
-        )?;
+        let corner = [right - GAP - BAR, top];
+        draw_bar(bar, &part(root, corner, [BAR, foot - BELOW - top]))?;
+    }
+    let upward = font(LABEL).transform(FontTransform::Rotate270);
+    let upward = centered(upward.color(&BLACK));
+    let rows = layout.corners.iter().step_by(layout.columns);
+    for (title, [_, y]) in sheet.row_titles.iter().zip(rows) {
+        let at = [MARGIN + 5.0, y + height / 2.0].map(units).into();
+        root.draw_text(title, &upward, at)?;
     }
     Ok(())
 }
 
-fn draw_panel<DB: DrawingBackend>(frame: &Frame, canvas: &Canvas<DB>) -> Result<(), PlotError> {
-    let ([x, y], [width, height]) = (frame.corner, frame.size);
-    for mark in &frame.panel.marks {
-        marks::draw(mark, frame, canvas)?;
-    }
-    let corners = [
-        [x, y],
-        [x + width, y],
-        [x + width, y + height],
-        [x, y + height],
-        [x, y],
-    ];
-    canvas.line(&corners, 0.6, BLACK)?;
-    let middle = [x + width / 2.0, y - 6.5];
-    canvas.text(middle, &frame.panel.title, Anchor::Center, PANEL_TITLE)?;
-    if let Some(bar) = &frame.panel.bar {
-        draw_bar(bar, [x + width + 8.0, y], height, canvas)?;
-    }
-    match frame.panel.legend {
-        Some(corner) => draw_legend(frame, corner, canvas),
-        None => Ok(()),
-    }
-}
-
-fn draw_x_axis<DB: DrawingBackend>(
-    frame: &Frame,
-    labelled: bool,
-    canvas: &Canvas<DB>,
-) -> Result<(), PlotError> {
-    let (axis, [x, y], [width, height]) = (&frame.panel.x, frame.corner, frame.size);
-    let foot = y + height;
-    for (value, label) in axis.ticks((width / 32.0) as usize) {
-        let place = x + axis.place(value) * width;
-        if axis.ticks.is_empty() {
-            canvas.line(&[[place, foot], [place, foot + TICK_LENGTH]], 0.6, BLACK)?;
-        }
-        if labelled {
-            canvas.text([place, foot + 8.0], &label, Anchor::Center, TICK)?;
-        }
-    }
-    if labelled {
-        let middle = [x + width / 2.0, foot + 19.0];
-        canvas.text(middle, &axis.label, Anchor::Center, LABEL)?;
-    }
-    Ok(())
-}
-
-fn draw_y_axis<DB: DrawingBackend>(
-    frame: &Frame,
-    labelled: bool,
-    canvas: &Canvas<DB>,
-) -> Result<(), PlotError> {
-    let (axis, [x, y], [_, height]) = (&frame.panel.y, frame.corner, frame.size);
-    for (value, label) in axis.ticks((height / 24.0) as usize) {
-        let place = y + (1.0 - axis.place(value)) * height;
-        if axis.ticks.is_empty() {
-            canvas.line(&[[x - TICK_LENGTH, place], [x, place]], 0.6, BLACK)?;
-        }
-        if labelled {
-            canvas.text([x - 5.0, place], &label, Anchor::Right, TICK)?;
-        }
-    }
-    if labelled {
-        let middle = [x - 34.0, y + height / 2.0];
-        canvas.text(middle, &axis.label, Anchor::Upwards, LABEL)?;
-    }
-    Ok(())
-}
-
-/// Draws a color bar down from its upper left corner.
-fn draw_bar<DB: DrawingBackend>(
-    bar: &ColorBar,
-    [x, y]: Place,
-    length: f64,
-    canvas: &Canvas<DB>,
-) -> Result<(), PlotError> {
-    const STEPS: usize = 64;
-    let [first, last] = bar.map.range().map(f64::from);
-    for step in 0..STEPS {
-        let value = first + (last - first) * (step as f64 + 0.5) / STEPS as f64;
-        let upper = y + length * (1.0 - (step + 1) as f64 / STEPS as f64);
-        let lower = y + length * (1.0 - step as f64 / STEPS as f64);
-        canvas.rectangle(
-            [[x, upper], [x + BAR_WIDTH, lower]],
-            bar.map.color(value as f32),
-        )?;
-    }
-    let right = x + BAR_WIDTH;
-    let rim = [
-        [x, y],
-        [right, y],
-        [right, y + length],
-        [x, y + length],
-        [x, y],
-    ];
-    canvas.line(&rim, 0.5, BLACK)?;
-    let axis = super::Axis::linear(&bar.label, [first, last]);
-    for (value, label) in axis.ticks((length / 24.0) as usize) {
-        let place = y + length * (1.0 - axis.place(value));
-        canvas.line(&[[right, place], [right + TICK_LENGTH, place]], 0.6, BLACK)?;
-        canvas.text([right + 5.0, place], &label, Anchor::Left, TICK)?;
-    }
-    let middle = [right + 34.0, y + length / 2.0];
-    canvas.text(middle, &bar.label, Anchor::Upwards, LABEL)
-}
-
-/// Draws a legend: each labeled mark of the panel with a sample.
-fn draw_legend<DB: DrawingBackend>(
-    frame: &Frame,
-    corner: Corner,
-    canvas: &Canvas<DB>,
-) -> Result<(), PlotError> {
-    const LINE: f64 = 11.0;
-    let entries: Vec<&Mark> = frame
-        .panel
-        .marks
-        .iter()
-        .filter(|mark| style_of(mark).is_some_and(|style| !style.label.is_empty()))
-        .collect();
-    let ([x, y], [width, height]) = (frame.corner, frame.size);
-    let top = match corner {
-        Corner::UpperLeft | Corner::UpperRight | Corner::Beside => y + 5.0,
-        Corner::LowerLeft | Corner::LowerRight => y + height - 5.0 - LINE * entries.len() as f64,
-    };
-    let left = matches!(
-        corner,
-        Corner::UpperLeft | Corner::LowerLeft | Corner::Beside
+/// Draws a panel's marks and axes, with so much space left, below and right of them for numbers.
+fn draw_chart<DB: DrawingBackend>(panel: &Panel, area: &Area<DB>, space: [f64; 3]) -> Drawn {
+    let [left, below, right] = space.map(units);
+    let mut builder = ChartBuilder::on(area);
+    builder.x_label_area_size(below).y_label_area_size(left);
+    builder.right_y_label_area_size(right);
+    let (width, height) = area.dim_in_pixel();
+    let [width, height] = [width as i32 - left - right, height as i32 - below];
+    let (x, y) = (
+        panel.x.with_ticks(width / units(32.0)),
+        panel.y.with_ticks(height / units(24.0)),
     );
-    draw_legend_box(frame, &entries, [top, LINE], corner, canvas)?;
-    let sample = match corner {
-        Corner::UpperLeft | Corner::LowerLeft => x + 6.0,
-        Corner::UpperRight | Corner::LowerRight => x + width - 24.0,
-        Corner::Beside => x + width + 8.0,
+    let mut chart = builder.build_cartesian_2d(x, y)?;
+    for mark in &panel.marks {
+        marks::draw(mark, panel, &mut chart)?;
+    }
+    let line = marks::stroke(super::BLACK, RIM);
+    let mut axes = chart.configure_mesh();
+    axes.disable_mesh().set_all_tick_mark_size(units(TICK));
+    axes.axis_style(line);
+    axes.label_style(font(NUMBER)).axis_desc_style(font(LABEL));
+    axes.x_desc(&panel.x.label).y_desc(&panel.y.label).draw()?;
+    let rim = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
+    Ok(chart.plotting_area().draw(&PathElement::new(rim, line))?)
+}
+
+/// Draws a color bar: a chart of its colors with its axis on the right.
+fn draw_bar<DB: DrawingBackend>(bar: &ColorBar, area: &Area<DB>) -> Drawn {
+    const STEPS: u32 = 64;
+    // Without the rounding errors of `f32`, so that the ends get ticks.
+    let exact = |end| (1e6 * f64::from(end)).round() / 1e6;
+    let [first, last] = bar.map.range().map(exact);
+    let value = |step| first + (last - first) * (f64::from(step) + 0.5) / f64::from(STEPS);
+    let panel = Panel {
+        x: Axis::linear("", [0.0, 1.0]),
+        y: Axis::linear(&bar.label, [first, last]),
+        marks: vec![Mark::Cells(Cells {
+            extent: [[0.0, first], [1.0, last]],
+            columns: 1,
+            values: (0..STEPS).map(value).map(Some).collect(),
+            map: bar.map.clone(),
+        })],
+        ..Panel::default()
     };
-    for (k, mark) in entries.into_iter().enumerate() {
-        let Some(style) = style_of(mark) else {
-            continue;
-        };
-        let middle = top + LINE * (k as f64 + 0.5);
+    draw_chart(&panel, area, [0.0, 0.0, BAR - BAR_WIDTH])
+}
+
+/// Draws the legend of a panel's labeled marks. It is a chart without axes, because plotters draws a chart's legend
+/// only inside of it, and ours may be beside the panel.
+fn draw_legend<DB: DrawingBackend>(panel: &Panel, corner: Corner, area: &Area<DB>) -> Drawn {
+    let mut chart = ChartBuilder::on(area).build_cartesian_2d(0.0..1.0, 0.0..1.0)?;
+    let mut empty = true;
+    for mark in &panel.marks {
+        let nothing = LineSeries::new([], BLACK);
         match mark {
-            Mark::Points(..) => marks::marker([sample + 9.0, middle], style, canvas)?,
-            _ => marks::stroke(&[[sample, middle], [sample + 18.0, middle]], style, canvas)?,
+            Mark::Line(_, style) if !style.label.is_empty() => {
+                let ends = |(x, y)| vec![(x, y), (x + units(SAMPLE), y)];
+                let entry = chart.draw_series(nothing)?.label(&style.label);
+                entry.legend(move |at| marks::line(ends(at), style));
+            }
+            Mark::Points(_, style) if !style.label.is_empty() => {
+                let middle = |(x, y)| (x + units(0.5 * SAMPLE), y);
+                let entry = chart.draw_series(nothing)?.label(&style.label);
+                entry.legend(move |at| marks::dot(middle(at), style));
+            }
+            _ => continue,
         }
-        let (at, anchor) = if left {
-            (sample + 22.0, Anchor::Left)
-        } else {
-            (sample - 4.0, Anchor::Right)
-        };
-        canvas.text([at, middle], &style.label, anchor, TICK)?;
+        empty = false;
     }
-    Ok(())
-}
-
-/// Draws a white box behind a legend. Its width is an estimate, because the text is not measured before drawing.
-fn draw_legend_box<DB: DrawingBackend>(
-    frame: &Frame,
-    entries: &[&Mark],
-    [top, line]: [f64; 2],
-    corner: Corner,
-    canvas: &Canvas<DB>,
-) -> Result<(), PlotError> {
-    const LETTER: f64 = 0.46;
-    let letters = |mark: &&Mark| style_of(mark).map_or(0, |style| style.label.chars().count());
-    let Some(most) = entries.iter().map(letters).max() else {
+    if empty {
         return Ok(());
-    };
-    let wide = 32.0 + LETTER * TICK.size * most as f64;
-    let [x, width] = [frame.corner[0], frame.size[0]];
-    let from = match corner {
-        Corner::UpperLeft | Corner::LowerLeft => x + 3.0,
-        Corner::UpperRight | Corner::LowerRight => x + width - 3.0 - wide,
-        Corner::Beside => return Ok(()),
-    };
-    let low = top + line * entries.len() as f64 + 2.0;
-    canvas.rectangle([[from, top - 2.0], [from + wide, low]], [255; 3])
-}
-
-fn style_of(mark: &Mark) -> Option<&Style> {
-    match mark {
-        Mark::Line(_, style) | Mark::Points(_, style) => Some(style),
-        _ => None,
     }
+    let mut legend = chart.configure_series_labels();
+    legend.position(match corner {
+        Corner::UpperLeft | Corner::Beside => SeriesLabelPosition::UpperLeft,
+        Corner::UpperRight => SeriesLabelPosition::UpperRight,
+        Corner::LowerLeft => SeriesLabelPosition::LowerLeft,
+        Corner::LowerRight => SeriesLabelPosition::LowerRight,
+    });
+    legend
+        .legend_area_size(units(SAMPLE + 4.0))
+        .margin(units(3.0));
+    legend.label_font(font(NUMBER)).background_style(WHITE);
+    Ok(legend.draw()?)
 }

@@ -1,280 +1,191 @@
-//! Draws the marks of a panel.
+//! Draws the marks of a panel on its chart.
 
-use plotters::prelude::DrawingBackend;
+use std::vec::IntoIter;
 
-use super::canvas::{Anchor, Canvas, Font, Place};
-use super::output::PlotError;
-use super::{Cells, Disc, Mark, Panel, Point, Style, clip, raster};
+use image::RgbImage;
+use plotters::element::DashedPathElement;
+use plotters::prelude::*;
+
+use super::layout::{Chart, centered, font, units};
+use super::output::Drawn;
+use super::{Disc, Mark, Panel, Style};
 use crate::output::colors::Rgb;
 
 /// More discs or cells than this are drawn as pixels: as separate shapes, they would make an SVG too large for
 /// most viewers.
 const MOST_SHAPES: usize = 2000;
-/// Length of a dash and of the gap after it, points.
-const DASH: f64 = 3.0;
+const DASH: f64 = 3.0; // length of a dash and of the gap after it, points
+const ERROR_BAR: f64 = 0.8; // width of its lines, points
 
-/// Where a panel's axes are on the sheet.
-#[derive(Clone, Copy)]
-pub struct Frame<'a> {
-    pub panel: &'a Panel,
-    /// Upper left corner.
-    pub corner: Place,
-    /// Width and height, points.
-    pub size: [f64; 2],
+/// Right and up, from 0 to 1 inside of the plotting area.
+type Place = (f64, f64);
+
+fn fill([r, g, b]: Rgb) -> ShapeStyle {
+    RGBColor(r, g, b).filled()
 }
 
-impl Frame<'_> {
-    /// Axis values to positions in the unit square.
-    fn unit(&self, [x, y]: [f64; 2]) -> Place {
-        [self.panel.x.place(x), self.panel.y.place(y)]
-    }
-
-    /// Positions in the unit square to the sheet.
-    fn on_sheet(&self, [x, y]: Place) -> Place {
-        let [width, height] = self.size;
-        [
-            self.corner[0] + x * width,
-            self.corner[1] + (1.0 - y) * height,
-        ]
-    }
-
-    /// Axis values to the sheet.
-    pub fn place(&self, values: [f64; 2]) -> Place {
-        self.on_sheet(self.unit(values))
-    }
-
-    fn shows(&self, values: [f64; 2]) -> bool {
-        let inside = |part: f64| (-1e-9..=1.0 + 1e-9).contains(&part);
-        self.unit(values).into_iter().all(inside)
-    }
-
-    /// Points per unit of the x axis.
-    fn per_unit(&self) -> f64 {
-        let [first, last] = self.panel.x.range;
-        self.size[0] / (last - first)
-    }
-
-    /// Size of the axes in backend units.
-    fn units(&self, scale: f64) -> [u32; 2] {
-        self.size.map(|points| (points * scale).round() as u32)
-    }
+pub fn stroke([r, g, b]: Rgb, width: f64) -> ShapeStyle {
+    RGBColor(r, g, b).stroke_width(units(width).max(1) as u32)
 }
 
-/// Draws one mark.
-pub fn draw<DB: DrawingBackend>(
-    mark: &Mark,
-    frame: &Frame,
-    canvas: &Canvas<DB>,
-) -> Result<(), PlotError> {
-    match mark {
-        Mark::Discs(discs) => draw_discs(discs, frame, canvas),
-        Mark::Area(corners, color) => draw_area(corners, *color, frame, canvas),
-        Mark::Line(points, style) => draw_line(points, style, frame, canvas),
-        Mark::Points(points, style) => draw_points(points, style, frame, canvas),
-        Mark::Cells(cells) => draw_cells(cells, frame, canvas),
-        Mark::Text(at, text, color) => {
-            let font = Font {
-                size: 7.0,
-                bold: false,
-                color: *color,
-            };
-            canvas.text(frame.place(*at), text, Anchor::Center, font)
-        }
-    }
-}
-
-fn draw_discs<DB: DrawingBackend>(
-    discs: &[Disc],
-    frame: &Frame,
-    canvas: &Canvas<DB>,
-) -> Result<(), PlotError> {
-    let shown = || discs.iter().filter(|disc| frame.shows(disc.center));
-    if shown().count() <= MOST_SHAPES {
-        return shown().try_for_each(|disc| {
-            let radius = disc.radius * frame.per_unit();
-            canvas.disc(frame.place(disc.center), radius, disc.color)
-        });
-    }
-    let scale = canvas.scale;
-    let in_pixels = shown().map(|disc| {
-        let place = frame.place(disc.center);
-        Disc {
-            center: [0, 1].map(|k| (place[k] - frame.corner[k]) * scale),
-            radius: disc.radius * frame.per_unit() * scale,
-            color: disc.color,
-        }
-    });
-    let pixels = raster::discs(frame.units(scale), in_pixels);
-    canvas.pixels(frame.corner, &pixels)
-}
-
-fn draw_area<DB: DrawingBackend>(
-    corners: &[[f64; 2]],
-    color: Rgb,
-    frame: &Frame,
-    canvas: &Canvas<DB>,
-) -> Result<(), PlotError> {
-    let corners: Vec<Place> = corners.iter().map(|&c| frame.unit(c)).collect();
-    let kept = clip::polygon(&corners);
-    if kept.len() < 3 {
-        return Ok(());
-    }
-    let kept: Vec<Place> = kept.into_iter().map(|p| frame.on_sheet(p)).collect();
-    canvas.area(&kept, color)
-}
-
-fn draw_line<DB: DrawingBackend>(
-    points: &[[f64; 2]],
-    style: &Style,
-    frame: &Frame,
-    canvas: &Canvas<DB>,
-) -> Result<(), PlotError> {
-    let mut path: Vec<Place> = Vec::new();
-    for pair in points.windows(2) {
-        let kept = clip::segment(frame.unit(pair[0]), frame.unit(pair[1]));
-        let Some([from, to]) = kept.map(|ends| ends.map(|p| frame.on_sheet(p))) else {
-            continue;
-        };
-        if path.last() != Some(&from) {
-            stroke(&std::mem::take(&mut path), style, canvas)?;
-            path.push(from);
-        }
-        path.push(to);
-    }
-    stroke(&path, style, canvas)
-}
-
-/// Draws a path on the sheet, solid or dashed.
-pub fn stroke<DB: DrawingBackend>(
-    path: &[Place],
-    style: &Style,
-    canvas: &Canvas<DB>,
-) -> Result<(), PlotError> {
-    if path.len() < 2 {
-        return Ok(());
-    }
-    if !style.broken {
-        // The backend draws a spike where a thick line turns back, so we split the path there.
-        let pieces = path.len() - 1;
-        let sharp = (1..pieces).filter(|&k| turns_back([path[k - 1], path[k], path[k + 1]]));
-        let ends: Vec<usize> = std::iter::once(0).chain(sharp).chain([pieces]).collect();
-        return ends
-            .windows(2)
-            .try_for_each(|ends| canvas.line(&path[ends[0]..=ends[1]], style.width, style.color));
-    }
-    dashes(path)
-        .iter()
-        .try_for_each(|dash| canvas.line(dash, style.width, style.color))
-}
-
-/// Whether the path turns by more than 90° at its middle point.
-fn turns_back([a, b, c]: [Place; 3]) -> bool {
-    (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0.0
-}
-
-/// Splits a path into dashes of [`DASH`] points with gaps of the same length.
-fn dashes(path: &[Place]) -> Vec<[Place; 2]> {
-    let mut found = Vec::new();
-    let mut walked = 0.0;
-    for pair in path.windows(2) {
-        let [from, to] = [pair[0], pair[1]];
-        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-        let at = |along: f64| {
-            let part = along / length;
-            [0, 1].map(|k| from[k] + part * (to[k] - from[k]))
-        };
-        let mut along = 0.0;
-        while along < length {
-            let phase = (walked + along) % (2.0 * DASH);
-            let left = if phase < DASH {
-                DASH - phase
-            } else {
-                2.0 * DASH - phase
-            };
-            let end = (along + left.max(1e-6)).min(length);
-            if phase < DASH {
-                found.push([at(along), at(end)]);
-            }
-            along = end;
-        }
-        walked += length;
-    }
-    found
-}
-
-fn draw_points<DB: DrawingBackend>(
-    points: &[Point],
-    style: &Style,
-    frame: &Frame,
-    canvas: &Canvas<DB>,
-) -> Result<(), PlotError> {
-    for point in points.iter().filter(|p| frame.shows([p.x, p.y])) {
-        if point.error > 0.0 {
-            let [low, high] = [-1.0, 1.0].map(|sign| [point.x, point.y + sign * point.error]);
-            draw_line(&[low, high], &bar_style(style), frame, canvas)?;
-        }
-        marker(frame.place([point.x, point.y]), style, canvas)?;
-    }
-    Ok(())
-}
-
-fn bar_style(style: &Style) -> Style {
-    Style::full(style.color, 0.8, "")
-}
-
-/// Draws a dot on the sheet, filled or hollow.
-pub fn marker<DB: DrawingBackend>(
-    at: Place,
-    style: &Style,
-    canvas: &Canvas<DB>,
-) -> Result<(), PlotError> {
-    canvas.disc(at, style.width, style.color)?;
-    if style.broken {
-        canvas.disc(at, 0.6 * style.width, [255; 3])?;
-    }
-    Ok(())
-}
-
-fn draw_cells<DB: DrawingBackend>(
-    cells: &Cells,
-    frame: &Frame,
-    canvas: &Canvas<DB>,
-) -> Result<(), PlotError> {
-    let [low, high] = cells.extent.map(|corner| frame.place(corner));
-    let (columns, rows) = (cells.columns, cells.rows());
-    if columns * rows > MOST_SHAPES {
-        let size = [high[0] - low[0], low[1] - high[1]];
-        let size = size.map(|points| (points * canvas.scale).round() as u32);
-        let pixels = raster::cells(size, cells);
-        return canvas.pixels([low[0], high[1]], &pixels);
-    }
-    let corner = |column: usize, row: usize| {
-        let parts = [column as f64 / columns as f64, row as f64 / rows as f64];
-        [0, 1].map(|k| low[k] + parts[k] * (high[k] - low[k]))
+/// A dot, filled or hollow.
+pub fn dot<C>(at: C, style: &Style) -> Circle<C, i32> {
+    let (radius, look) = match style.broken {
+        // Half of the outline is outside of the circle.
+        true => (0.8 * style.width, stroke(style.color, 0.4 * style.width)),
+        false => (style.width, fill(style.color)),
     };
-    for (k, value) in cells.values.iter().enumerate() {
-        if let Some(value) = value {
-            let (column, row) = (k % columns, k / columns);
-            let ends = [corner(column, row + 1), corner(column + 1, row)];
-            canvas.rectangle(ends, cells.map.color(*value as f32))?;
+    Circle::new(at, units(radius).max(1), look)
+}
+
+/// A line: dashed, or a single dash.
+pub fn line<C: Clone>(path: Vec<C>, style: &Style) -> DashedPathElement<IntoIter<C>, i32> {
+    let dash = if style.broken { units(DASH) } else { i32::MAX };
+    DashedPathElement::new(path, dash, units(DASH), stroke(style.color, style.width))
+}
+
+/// Draws one mark. Pixels cover earlier marks also where they are white.
+pub fn draw<DB: DrawingBackend>(mark: &Mark, panel: &Panel, chart: &mut Chart<DB>) -> Drawn {
+    let shapes = match mark {
+        Mark::Discs(discs) => panel.shown(discs, |disc| disc.center).len(),
+        Mark::Cells(cells) => cells.values.len(),
+        _ => 0,
+    };
+    if shapes <= MOST_SHAPES {
+        return draw_shapes(mark, panel, chart);
+    }
+    let size @ (width, height) = chart.plotting_area().dim_in_pixel();
+    let mut image = RgbImage::from_pixel(width, height, image::Rgb([255; 3]));
+    if let Mark::Discs(discs) = mark {
+        color_discs(discs, panel, &mut image);
+    } else {
+        let area = BitMapBackend::with_buffer(&mut image, size).into_drawing_area();
+        let (x, y) = (panel.x.clone(), panel.y.clone());
+        draw_shapes(
+            mark,
+            panel,
+            &mut ChartBuilder::on(&area).build_cartesian_2d(x, y)?,
+        )?;
+    }
+    chart.draw_series(BitMapElement::with_ref((0.0, 1.0), size, &image))?;
+    Ok(())
+}
+
+/// Colors the pixels of discs. plotters' circles are too coarse for small discs: their radii are whole pixels.
+fn color_discs(discs: &[Disc], panel: &Panel, image: &mut RgbImage) {
+    let (width, height) = image.dimensions();
+    for (disc, (x, y)) in panel.shown(discs, |disc| disc.center) {
+        let (x, y) = (x * f64::from(width), (1.0 - y) * f64::from(height));
+        let r = disc.radius * panel.scale(width);
+        let span = |at: f64, end: u32| (at - r) as u32..((at + r) as u32 + 1).min(end);
+        for row in span(y, height) {
+            for column in span(x, width) {
+                if (f64::from(column) + 0.5 - x).hypot(f64::from(row) + 0.5 - y) <= r {
+                    image.put_pixel(column, row, image::Rgb(disc.color));
+                }
+            }
+        }
+    }
+}
+
+fn draw_shapes<DB: DrawingBackend>(mark: &Mark, panel: &Panel, chart: &mut Chart<DB>) -> Drawn {
+    match mark {
+        Mark::Discs(discs) => {
+            let scale = panel.scale(chart.plotting_area().dim_in_pixel().0);
+            let shown = panel.shown(discs, |disc| disc.center);
+            chart.draw_series(shown.into_iter().map(|(disc, at)| {
+                let radius = (disc.radius * scale).round().max(1.0) as i32;
+                Circle::new(at, radius, fill(disc.color))
+            }))?;
+        }
+        Mark::Area(corners, color) => {
+            let rim = corners.iter().chain(corners.first());
+            let rim = with_crossings(rim.map(|&corner| panel.place(corner)).collect());
+            chart.draw_series([Polygon::new(rim, fill(*color))])?;
+        }
+        Mark::Line(points, style) => {
+            let path = with_crossings(points.iter().map(|&point| panel.place(point)).collect());
+            let parts = path.split(|place| !is_inside(place));
+            chart.draw_series(parts.map(|part| line(part.to_vec(), style)))?;
+        }
+        Mark::Points(points, style) => {
+            let shown = panel.shown(points, |point| [point.x, point.y]);
+            let (look, ends) = (stroke(style.color, ERROR_BAR), units(1.6 * style.width));
+            let uncertain = shown.iter().filter(|(point, _)| point.error > 0.0);
+            chart.draw_series(uncertain.map(|&(point, (x, y))| {
+                let low = panel.y.place(point.y - point.error).max(0.0);
+                let high = panel.y.place(point.y + point.error).min(1.0);
+                ErrorBar::new_vertical(x, low, y, high, look, ends as u32)
+            }))?;
+            if style.broken {
+                // Error bars and lines do not show through hollow dots.
+                let white = Style::full([255; 3], 0.8 * style.width, "");
+                chart.draw_series(shown.iter().map(|&(_, at)| dot(at, &white)))?;
+            }
+            chart.draw_series(shown.iter().map(|&(_, at)| dot(at, style)))?;
+        }
+        Mark::Cells(cells) => {
+            let [low, high] = cells.extent;
+            let counts = [cells.columns, cells.values.len() / cells.columns.max(1)];
+            let corner = |index: [usize; 2]| {
+                let part = |k: usize| index[k] as f64 / counts[k] as f64;
+                panel.place([0, 1].map(|k| low[k] + part(k) * (high[k] - low[k])))
+            };
+            let values = cells.values.iter().enumerate();
+            chart.draw_series(values.filter_map(|(k, value)| {
+                let (column, row) = (k % cells.columns, k / cells.columns);
+                let corners = [corner([column, row]), corner([column + 1, row + 1])];
+                let look = fill(cells.map.color((*value)? as f32));
+                Some(Rectangle::new(corners, look))
+            }))?;
+        }
+        Mark::Text(at, text, [r, g, b]) => {
+            let style = centered(font(7.0).color(&RGBColor(*r, *g, *b)));
+            chart.draw_series([Text::new(text.clone(), panel.place(*at), style)])?;
         }
     }
     Ok(())
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+fn is_inside(&(x, y): &Place) -> bool {
+    let inside = -1e-9..=1.0 + 1e-9;
+    inside.contains(&x) && inside.contains(&y)
+}
 
-    #[test]
-    fn dashes_go_round_corners() {
-        let found = dashes(&[[0.0, 0.0], [7.0, 0.0], [7.0, 6.0]]);
-        let length: f64 = found
-            .iter()
-            .map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1]))
-            .sum();
-        assert!((length - 7.0).abs() < 1e-9, "{length}");
-        assert_eq!(found[0], [[0.0, 0.0], [3.0, 0.0]]);
-        assert_eq!(found[1], [[6.0, 0.0], [7.0, 0.0]]);
+/// A path with a further point wherever it crosses a side of the plotting area or its extension. plotters moves each
+/// point outside to the rim: this clips areas with such points, but bends other lines and areas that leave the panel.
+fn with_crossings(mut path: Vec<Place>) -> Vec<Place> {
+    let [x, y]: [fn(Place) -> f64; 2] = [|place| place.0, |place| place.1];
+    for (axis, limit) in [(x, 0.0), (x, 1.0), (y, 0.0), (y, 1.0)] {
+        let mut longer: Vec<Place> = Vec::with_capacity(path.len());
+        for to in path {
+            if let Some(&from) = longer.last()
+                && (axis(from) < limit) != (axis(to) < limit)
+            {
+                let part = (limit - axis(from)) / (axis(to) - axis(from));
+                let between = |of: fn(Place) -> f64| of(from) + part * (of(to) - of(from));
+                longer.push((between(x), between(y)));
+            }
+            longer.push(to);
+        }
+        path = longer;
+    }
+    path
+}
+
+impl Panel {
+    fn place(&self, [x, y]: [f64; 2]) -> Place {
+        (self.x.place(x), self.y.place(y))
+    }
+
+    /// The items inside of the plotting area with their places.
+    fn shown<'a, T>(&self, items: &'a [T], at: fn(&T) -> [f64; 2]) -> Vec<(&'a T, Place)> {
+        let placed = items.iter().map(|item| (item, self.place(at(item))));
+        placed.filter(|(_, place)| is_inside(place)).collect()
+    }
+
+    /// Pixels per unit of the x axis.
+    fn scale(&self, width: u32) -> f64 {
+        f64::from(width) / (self.x.range[1] - self.x.range[0])
     }
 }

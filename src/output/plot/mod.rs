@@ -5,17 +5,12 @@
 //! sheet shows; this module decides the layout. Sizes are in points: one SVG unit or two PNG pixels per point.
 
 mod axis;
-mod canvas;
-mod clip;
 mod layout;
 mod marks;
 mod output;
-mod raster;
 
-pub use axis::{Axis, Scale};
+pub use axis::Axis;
 pub use output::PlotError;
-
-use std::path::Path;
 
 use crate::output::colors::{ColorMap, Rgb};
 
@@ -54,7 +49,7 @@ pub struct Sheet {
 }
 
 /// A pair of axes and the marks on them. Later marks cover earlier ones.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Panel {
     /// Title above the panel; may be empty.
     pub title: String,
@@ -162,13 +157,6 @@ pub struct Cells {
     pub map: ColorMap,
 }
 
-impl Cells {
-    /// Number of rows.
-    pub fn rows(&self) -> usize {
-        self.values.len() / self.columns.max(1)
-    }
-}
-
 /// A mark in a panel, in axis units.
 #[derive(Debug, Clone)]
 pub enum Mark {
@@ -184,15 +172,4 @@ pub enum Mark {
     Cells(Cells),
     /// Text, centered at a position.
     Text([f64; 2], String, Rgb),
-}
-
-impl Sheet {
-    /// Writes `stem`.svg and `stem`.png.
-    ///
-    /// # Errors
-    /// The sheet cannot be drawn or a file cannot be written.
-    pub fn save(&self, stem: &Path) -> Result<(), PlotError> {
-        output::save_svg(self, &stem.with_extension("svg"))?;
-        output::save_png(self, &stem.with_extension("png"))
-    }
 }
