@@ -122,7 +122,7 @@ impl Cell {
     pub fn job(crowd: Rest, detail: Detail, first_seed: u64) -> Job<'static> {
         let steps = detail.bisections();
         let name = format!(
-            "map k={} ρ⁰max={} K^ag={} μ={}, {steps} bisections, people after {first_seed}",
+            "map k={} ρ⁰max={} K^ag={} μ={}, {steps} bisections, seeds after {first_seed}",
             crowd.gas_constant, crowd.rest_density_max, crowd.agent_stiffness, crowd.viscosity
         );
         // Simulated seconds: 8 s in two rooms with three crowds, mostly for the fine steps.

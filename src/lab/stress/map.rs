@@ -123,6 +123,11 @@ impl Detail {
         once
     }
 
+    /// The label of the hard case that is left out: the soak, or its shorter form.
+    pub fn omitted_case(self) -> &'static str {
+        if self.quick { "soak" } else { "short_soak" }
+    }
+
     /// Number of bisections in the search for a step.
     pub fn bisections(self) -> u32 {
         if self.quick { 3 } else { 4 }

@@ -1,21 +1,19 @@
 //! What `sandbox stress` prints and writes.
 
-use std::fmt::Write;
-
 use super::cell::Cell;
 use super::condition::Condition;
 use super::fit::LEAST;
-use super::hard::Survival;
-use super::jitter::{Jitter, Variant};
+use super::suite::Finished;
 use crate::analysis::stability::{Constants, FITTED};
 use crate::lab::error::LabError;
+use crate::output::table::Table;
 use crate::runs::store::Store;
 
 /// All results.
 #[derive(Debug, Clone)]
 pub struct Report {
-    /// The hard cases by name.
-    pub hard: Vec<(&'static str, Survival)>,
+    /// The hard cases.
+    pub hard: Vec<Finished>,
     /// The maps.
     pub cells: Vec<Cell>,
     /// Points that the fit does not use.
@@ -23,19 +21,20 @@ pub struct Report {
     /// The constants fitted to the maps.
     pub fitted: Constants,
     /// The residual motion of crowds at rest.
-    pub jitter: Vec<(Variant, Jitter)>,
+    pub jitter: Vec<Finished>,
 }
 
 impl Report {
     /// All violated requirements; empty if there are none.
     pub fn failures(&self) -> Vec<String> {
-        let hard = self
-            .hard
-            .iter()
-            .filter(|(_, survival)| !survival.is_passed());
-        let hard = hard.map(|(name, survival)| match &survival.fault {
-            Some(fault) => format!("{name}: {fault}"),
-            None => format!("{name}: {} through a wall", survival.found.passed),
+        let hard = self.hard.iter().filter(|run| !is_passed(run));
+        let hard = hard.map(|run| {
+            let [through_walls, not_finite] =
+                FAULTS.map(|name| run.metric(name).unwrap_or_default());
+            format!(
+                "{}: {through_walls} agents through a wall, {not_finite} frames with numbers that are not finite",
+                run.label
+            )
         });
         let everywhere = self.cells.iter().chain(&self.held_out);
         let unstable = everywhere.filter(|cell| !cell.auto_is_stable());
@@ -62,13 +61,13 @@ impl Report {
     pub fn write(&self, store: &Store) -> Result<(), LabError> {
         let text: String = self.parts().map(|(_, text)| text + "\n").concat();
         store.write("report.md", text.as_bytes())?;
-        store.write("maps.csv", csv(&self.cells).as_bytes())?;
-        store.write("held_out.csv", csv(&self.held_out).as_bytes())?;
+        store.write("maps.csv", &csv(&self.cells)?)?;
+        store.write("held_out.csv", &csv(&self.held_out)?)?;
         let json = serde_json::json!({
             "hard": self.hard,
             "maps": self.cells,
             "held_out": self.held_out,
-            "jitter": self.jitter.iter().map(|(v, j)| (v.label, j)).collect::<Vec<_>>(),
+            "jitter": self.jitter,
         });
         let json = format!("{json}\n");
         store.write("stress.json", json.as_bytes())?;
@@ -84,7 +83,7 @@ impl Report {
         };
         format!(
             "{}\n{} Constants of the engine: {}. Fitted to these maps: {}.\n\n\
-             Places that the fit never saw, with other people:\n\n{}\n{}\n",
+             Places that the fit does not use, with other agents:\n\n{}\n{}\n",
             map_table(&self.cells),
             summary(&self.cells),
             constants(&FITTED),
@@ -118,117 +117,95 @@ fn summary(cells: &[Cell]) -> String {
 }
 
 fn map_table(cells: &[Cell]) -> String {
-    let mut text = "| k | ρ⁰max | K^ag | μ | auto is stable |".to_owned();
-    for Condition { name, .. } in Condition::ALL {
-        let _ = write!(
-            text,
-            " {name}: auto / largest stable Δt [s] | speed, fine steps → auto [m/s] |"
-        );
+    let mut table = Table::of(cells)
+        .column("k", |cell| cell.crowd.gas_constant)
+        .column("ρ⁰max", |cell| cell.crowd.rest_density_max)
+        .column("K^ag", |cell| cell.crowd.agent_stiffness)
+        .column("μ", |cell| cell.crowd.viscosity)
+        .column("auto is stable", |cell| yes(cell.auto_is_stable()));
+    for (k, condition) in Condition::ALL.iter().enumerate() {
+        let steps = format!("{}: auto / largest stable Δt [s]", condition.name);
+        table = table
+            .column(&steps, |cell| {
+                let limit = cell.limits[k];
+                let (auto, largest) = (limit.auto, limit.largest);
+                format!("{auto} / {largest:.4} = {:.2}", limit.ratio())
+            })
+            .column("speed, fine steps → auto [m/s]", |cell| {
+                let limit = cell.limits[k];
+                format!("{:.2} → {:.2}", limit.fine_speed, limit.auto_speed)
+            });
     }
-    let columns = 5 + 2 * Condition::ALL.len();
-    let _ = writeln!(text, "\n|{}", "---|".repeat(columns));
-    for cell in cells {
-        let crowd = cell.crowd;
-        let _ = write!(
-            text,
-            "| {} | {} | {} | {} | {} |",
-            crowd.gas_constant,
-            crowd.rest_density_max,
-            crowd.agent_stiffness,
-            crowd.viscosity,
-            if cell.auto_is_stable() {
-                "yes"
-            } else {
-                "**no**"
-            },
-        );
-        for limit in cell.limits {
-            let _ = write!(
-                text,
-                " {} / {:.4} = {:.2} | {:.2} → {:.2} |",
-                limit.auto,
-                limit.largest,
-                limit.ratio(),
-                limit.fine_speed,
-                limit.auto_speed,
-            );
-        }
-        text.push('\n');
-    }
-    text
+    table.table().markdown()
 }
 
-fn hard_table(hard: &[(&str, Survival)]) -> String {
-    let mut text = "| case | what it is | passed | agents | frames | through a wall | stopped at a wall | speeds cut | \
-                    put out of obstacles | nearest centers [D_i + D_j] |\n|---|---|---|---|---|---|---|---|---|---|\n"
-        .to_owned();
-    for (name, survival) in hard {
-        let found = &survival.found;
-        let _ = writeln!(
-            text,
-            "| {name} | {} | {} | {} | {} | {} | {} | {} | {} | {:.2} |",
-            survival.description,
-            if survival.is_passed() {
-                "yes"
-            } else {
-                "**no**"
-            },
-            found.entered,
-            found.frames,
-            found.passed,
-            found.contained_moves,
-            found.clamped_speeds,
-            found.displaced,
-            found.closest,
-        );
-    }
-    text
+/// The values of a hard case that must be zero.
+const FAULTS: [&str; 2] = ["agents_through_walls", "non_finite_frames"];
+
+fn is_passed(run: &Finished) -> bool {
+    FAULTS.iter().all(|name| run.metric(name) == Some(0.0))
 }
 
-fn jitter_table(jitter: &[(Variant, Jitter)]) -> String {
-    let mut text =
-        "| crowd | energy before the push [m²/s²] | after it | inside | rim | density [P/m²] | \
-                    nearest centers [D_i + D_j] |\n|---|---|---|---|---|---|---|\n"
-            .to_owned();
-    for (variant, jitter) in jitter {
-        let _ = writeln!(
-            text,
-            "| {} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.2} | {:.2} |",
-            variant.label,
-            jitter.energy[0],
-            jitter.energy[1],
-            jitter.inside_and_rim[0],
-            jitter.inside_and_rim[1],
-            jitter.density,
-            jitter.closest,
-        );
+fn yes(is_good: bool) -> &'static str {
+    if is_good { "yes" } else { "**no**" }
+}
+
+fn hard_table(hard: &[Finished]) -> String {
+    let table = Table::of(hard)
+        .column("case", |run| run.label.as_str())
+        .column("what it is", |run| run.description.as_str())
+        .column("passed", |run| yes(is_passed(run)))
+        .column("agents", |run| run.result.summary.agents)
+        .column("frames", |run| run.result.summary.frames)
+        .column("through a wall", |run| run.metric(FAULTS[0]))
+        .column("stopped at a wall", |run| {
+            run.result.summary.contained_moves
+        })
+        .column("speeds cut", |run| run.result.summary.clamped_speeds)
+        .column("put out of obstacles", |run| {
+            run.result.summary.displaced_agents
+        })
+        .fixed("nearest centers [D_i + D_j]", 2, |run| {
+            run.metric("closest_centers")
+        });
+    table.table().markdown()
+}
+
+fn jitter_table(jitter: &[Finished]) -> String {
+    let mut table = Table::of(jitter).column("crowd", |run| run.label.as_str());
+    for (name, metric) in [
+        ("energy before the push [m²/s²]", "jitter_35_to_40s"),
+        ("after it", "jitter_50_to_60s"),
+        ("inside", "jitter_inside_50_to_60s"),
+        ("rim", "jitter_rim_50_to_60s"),
+    ] {
+        table = table.exponent(name, 1, |run| run.metric(metric));
     }
-    text
+    let table = table
+        .fixed("density [P/m²]", 2, |run| run.metric("density_mean_60s"))
+        .fixed("nearest centers [D_i + D_j]", 2, |run| {
+            run.metric("closest_centers")
+        });
+    table.table().markdown()
 }
 
 /// One row for each point and condition.
-fn csv(cells: &[Cell]) -> String {
-    let mut text = "gas_constant,rest_density_max,agent_stiffness,viscosity,condition,auto_secs,auto_is_stable,\
-                    largest_secs,fine_speed,auto_speed\n"
-        .to_owned();
-    for cell in cells {
-        let crowd = cell.crowd;
-        for (condition, limit) in Condition::ALL.iter().zip(cell.limits) {
-            let _ = writeln!(
-                text,
-                "{},{},{},{},{},{},{},{:.5},{:.4},{:.4}",
-                crowd.gas_constant,
-                crowd.rest_density_max,
-                crowd.agent_stiffness,
-                crowd.viscosity,
-                condition.name,
-                limit.auto,
-                limit.auto_is_stable,
-                limit.largest,
-                limit.fine_speed,
-                limit.auto_speed,
-            );
-        }
-    }
-    text
+fn csv(cells: &[Cell]) -> Result<Vec<u8>, csv::Error> {
+    let rows = cells.iter().flat_map(|cell| {
+        let limits = Condition::ALL.into_iter().zip(cell.limits);
+        limits.map(|limit| (cell.crowd, limit))
+    });
+    let rows: Vec<_> = rows.collect();
+    let table = Table::of(&rows)
+        .column("gas_constant", |(crowd, _)| crowd.gas_constant)
+        .column("rest_density_max", |(crowd, _)| crowd.rest_density_max)
+        .column("agent_stiffness", |(crowd, _)| crowd.agent_stiffness)
+        .column("viscosity", |(crowd, _)| crowd.viscosity)
+        .column("condition", |(_, (condition, _))| condition.name)
+        .column("auto_secs", |(_, (_, limit))| limit.auto)
+        .column("auto_is_stable", |(_, (_, limit))| limit.auto_is_stable)
+        .column("largest_secs", |(_, (_, limit))| limit.largest)
+        .column("fine_speed", |(_, (_, limit))| limit.fine_speed)
+        .column("auto_speed", |(_, (_, limit))| limit.auto_speed);
+    table.table().csv()
 }

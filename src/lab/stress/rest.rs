@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::condition::Condition;
-use super::watch::Watch;
 use crate::analysis::stability::Mode;
 use crate::engine::agents::{Agents, NewAgent};
 use crate::engine::clock::Clock;
@@ -14,6 +13,7 @@ use crate::engine::profile::Blend;
 use crate::engine::scene::{Group, Scene};
 use crate::engine::simulation::{Fault, Simulation};
 use crate::scenario::catalog::{NavigationKind, Parameters};
+use crate::scenario::measurements::{Watched, closest};
 
 /// Agents along each side of the room.
 const COLUMNS: u32 = 10;
@@ -29,6 +29,8 @@ const KICK: f64 = 0.7;
 const DURATION: f64 = 8.0;
 /// The last part of it, in which the crowd is tested, seconds.
 const JUDGED: f64 = 3.0;
+/// Distances between agents are checked every this many frames.
+const CLOSEST_EVERY: u64 = 5;
 /// Number of crowds, each with another seed.
 const SEEDS: u64 = 3;
 /// Crowds below this speed are at rest, m/s.
@@ -80,8 +82,8 @@ pub struct Remains {
     pub persistence: f64,
     /// The smallest distance between two centers, relative to the sum of their radii.
     pub closest: f64,
-    /// Number of times that an agent passed through a wall.
-    pub escaped: u64,
+    /// Number of agents that passed through a wall.
+    pub escaped: usize,
 }
 
 impl Remains {
@@ -95,25 +97,56 @@ impl Remains {
     }
 }
 
-/// The motion in the last seconds, summed over agents and frames.
+/// What is seen of some crowds: sums over agents and frames of the last seconds, and all that goes wrong.
 #[derive(Debug, Clone, Copy, Default)]
-struct Motion {
-    people: f64,
+struct Seen {
+    agents: f64,
     /// |v|², m²/s².
     squares: f64,
     /// v · v of the previous frame, m²/s².
     lasting: f64,
+    closest: Option<f64>,
+    escaped: usize,
+    failed: bool,
 }
 
-impl Motion {
-    /// Adds a frame. `before` are the previous frame's velocities by id; they are replaced.
+impl Seen {
+    /// Adds a frame of the last seconds. `before` are the previous frame's velocities by id; they are replaced.
     fn add(&mut self, agents: &Agents, before: &mut [Vector]) {
         for (&id, velocity) in agents.id.iter().zip(&agents.velocity) {
             let last = std::mem::replace(&mut before[id as usize], *velocity);
-            self.people += 1.0;
+            self.agents += 1.0;
             self.squares += velocity.norm_squared();
             self.lasting += velocity.dot(&last);
         }
+    }
+
+    /// Runs a crowd to its end, or until it fails.
+    fn run(&mut self, simulation: &mut Simulation) -> Result<(), Fault> {
+        let clock = *simulation.frame().clock;
+        let judged = clock.frame_at(DURATION - JUDGED);
+        let last = clock.frame_at(DURATION).max(1);
+        let mut before = vec![Vector::zeros(); simulation.frame().agents.len()];
+        let mut watched = Watched::default();
+        for frame in 1..=last {
+            simulation.evaluate()?;
+            watched.observe(simulation);
+            if (frame - 1).is_multiple_of(CLOSEST_EVERY) {
+                let now = closest(simulation);
+                self.closest = Some(self.closest.map_or(now, |before| before.min(now)));
+            }
+            if simulation.integrate().is_err() {
+                self.failed = true;
+                break;
+            }
+            if frame == judged {
+                Self::default().add(simulation.frame().agents, &mut before);
+            } else if frame > judged {
+                self.add(simulation.frame().agents, &mut before);
+            }
+        }
+        self.escaped += watched.agents_through_walls(simulation);
+        Ok(())
     }
 }
 
@@ -178,25 +211,19 @@ impl Rest {
         time_step: f64,
         surroundings: Surroundings,
     ) -> Result<Remains, Fault> {
-        let (mut motion, mut broken) = (Motion::default(), false);
-        let (mut closest, mut escaped) = (f64::INFINITY, 0);
+        let mut seen = Seen::default();
         for seed in 1..=SEEDS {
             let mut scene = self.scene(density, time_step);
             scene.seed = surroundings.first_seed + seed;
             scene.wall_method = surroundings.condition.walls;
             scene.integrator = surroundings.condition.scheme.integrator();
-            let mut simulation = Simulation::new(scene)?;
-            let mut watch = Watch::new(&simulation);
-            broken |= !settle(&mut simulation, &mut watch, &mut motion)?;
-            let found = watch.found(&simulation);
-            closest = found.closest.min(closest);
-            escaped += found.passed;
+            seen.run(&mut Simulation::new(scene)?)?;
         }
         Ok(Remains {
-            speed: (!broken).then_some((motion.squares / motion.people).sqrt()),
-            persistence: motion.lasting / motion.squares,
-            closest,
-            escaped,
+            speed: (!seen.failed).then_some((seen.squares / seen.agents).sqrt()),
+            persistence: seen.lasting / seen.squares,
+            closest: seen.closest.unwrap_or(1.0),
+            escaped: seen.escaped,
         })
     }
 
@@ -229,33 +256,6 @@ impl Rest {
     pub fn mode(&self) -> Mode {
         Mode::of(&self.scene(LOOSE, 1.0))
     }
-}
-
-/// Runs one crowd to its end; `false` if it fails.
-fn settle(
-    simulation: &mut Simulation,
-    watch: &mut Watch,
-    motion: &mut Motion,
-) -> Result<bool, Fault> {
-    let clock = *simulation.frame().clock;
-    let (judged, last) = (
-        clock.frame_at(DURATION - JUDGED),
-        clock.frame_at(DURATION).max(1),
-    );
-    let mut before = vec![Vector::zeros(); simulation.frame().agents.len()];
-    for frame in 1..=last {
-        simulation.evaluate()?;
-        watch.look(simulation);
-        if simulation.integrate().is_err() {
-            return Ok(false);
-        }
-        if frame == judged {
-            Motion::default().add(simulation.frame().agents, &mut before);
-        } else if frame > judged {
-            motion.add(simulation.frame().agents, &mut before);
-        }
-    }
-    Ok(true)
 }
 
 /// Two L-shaped walls, 1 m thick, around [0, side]²: at no place do more than two edges push in the same direction.

@@ -1,71 +1,90 @@
 //! The whole suite.
 
+use serde::Serialize;
+use serde_json::Value;
+
 use super::cell::Cell;
 use super::fit::fit;
-use super::hard::{HARD, Hard, Survival};
-use super::jitter::{Jitter, VARIANTS};
 use super::map::Detail;
 use super::report::Report;
 use crate::lab::error::LabError;
 use crate::lab::jobs::{read, results};
-use crate::runs::identity::Identity;
-use crate::runs::job::{Job, Listener, Progress};
+use crate::lab::sweep::{self, Study};
+use crate::runs::case::RunResult;
+use crate::runs::job::Listener;
 use crate::runs::store::Store;
 
 /// Held-out crowds use the seeds after this one, which the maps do not use.
 const OTHER_PEOPLE: u64 = 100;
 
-/// Does all jobs whose results are not in `store`, and writes tables and pictures.
+/// A finished run of one of the studies.
+#[derive(Debug, Clone, Serialize)]
+pub struct Finished {
+    /// Its label in the study.
+    pub label: String,
+    /// The description of its scenario, one line.
+    pub description: String,
+    /// Its result.
+    #[serde(flatten)]
+    pub result: RunResult,
+}
+
+impl Finished {
+    /// The value of a measurement; `None` if it has none.
+    pub fn metric(&self, name: &str) -> Option<f64> {
+        self.result.summary.metric(name)
+    }
+}
+
+/// Computes all results that are not in `store`, and writes tables and pictures.
 ///
 /// # Errors
-/// A run or a file fails.
+/// A run fails, or a file cannot be written.
 pub fn stress(detail: Detail, store: &Store, listener: &dyn Listener) -> Result<Report, LabError> {
+    let hard = Study::built_in("stress_hard", None, None)?;
+    let jitter = Study::built_in("stress_jitter", None, None)?;
     let (crowds, held_out) = (detail.crowds(), detail.held_out());
-    let mut jobs = Vec::new();
-    for hard in HARD {
-        jobs.push(hard.job(detail.quick)?);
-    }
+    let wanted = |cell: &sweep::Cell| cell.label() != Some(detail.omitted_case());
+    let mut jobs = hard.jobs(wanted);
+    jobs.extend(jitter.jobs(|_| true));
     jobs.extend(crowds.iter().map(|&crowd| Cell::job(crowd, detail, 0)));
     let others = held_out.iter();
     jobs.extend(others.map(|&crowd| Cell::job(crowd, detail, OTHER_PEOPLE)));
-    jobs.extend(VARIANTS.map(|variant| variant.job()));
-    let results = results(&jobs, store, listener)?;
-    let (hard, rest) = results.split_at(HARD.len());
-    let (cells, rest) = rest.split_at(crowds.len());
-    let (held_out, jitter) = rest.split_at(held_out.len());
-    let hard: Result<Vec<Survival>, _> = hard.iter().map(read).collect();
-    let cells: Result<Vec<Cell>, _> = cells.iter().map(read).collect();
-    let held_out: Result<Vec<Cell>, _> = held_out.iter().map(read).collect();
-    let jitter: Result<Vec<Jitter>, _> = jitter.iter().map(read).collect();
-    let cells = cells?;
+    let results = &mut results(&jobs, store, listener)?.into_iter();
+    let hard = runs(hard.cells.iter().filter(|cell| wanted(cell)), results)?;
+    let jitter = runs(jitter.cells.iter(), results)?;
+    let cells = places(crowds.len(), results)?;
     let report = Report {
-        hard: HARD.iter().map(|hard| hard.name).zip(hard?).collect(),
+        hard,
         fitted: fit(&cells),
         cells,
-        held_out: held_out?,
-        jitter: VARIANTS.into_iter().zip(jitter?).collect(),
+        held_out: places(held_out.len(), results)?,
+        jitter,
     };
     report.write(store)?;
     super::pictures::save(&report, detail, store)?;
     Ok(report)
 }
 
-impl Hard {
-    /// The job that runs it.
-    fn job(&self, quick: bool) -> Result<Job<'static>, LabError> {
-        let invalid = |error| LabError::of(self.name.to_owned(), error);
-        let shortened = self.quick_secs.filter(|_| quick);
-        let settings: Result<Vec<_>, _> = shortened
-            .iter()
-            .map(|secs| format!("duration_secs={secs}").parse())
-            .collect();
-        let settings =
-            settings.map_err(|error| LabError::Data(format!("{}: {error}", self.name)))?;
-        let scenario = self.scenario(&settings).map_err(invalid)?;
-        let frames = scenario.duration_secs / scenario.scene.clock.time_step();
-        let name = format!("hard {}, {frames} frames", self.name);
-        let work = move |_: Progress| Ok::<Survival, LabError>(Self::survive(&scenario));
-        let key = Identity::of(&name, self.text);
-        Ok(Job::new(name, key, 0.3 + 1.5e-5 * frames, work))
-    }
+/// The runs of these cells, with the next results.
+fn runs<'a>(
+    cells: impl Iterator<Item = &'a sweep::Cell>,
+    results: &mut impl Iterator<Item = Value>,
+) -> Result<Vec<Finished>, LabError> {
+    let run = |(cell, result): (&sweep::Cell, Value)| {
+        let label = cell.label().unwrap_or_default().to_owned();
+        let scenario = cell.case.scenario();
+        let scenario = scenario.map_err(|error| LabError::of(label.clone(), error))?;
+        Ok(Finished {
+            label,
+            description: scenario.description,
+            result: read(&result)?,
+        })
+    };
+    cells.zip(results).map(run).collect()
+}
+
+/// The next `count` results as points of a map.
+fn places(count: usize, results: &mut impl Iterator<Item = Value>) -> Result<Vec<Cell>, LabError> {
+    results.take(count).map(|result| read(&result)).collect()
 }

@@ -8,7 +8,9 @@ mod arrivals;
 mod closest;
 mod contacts;
 mod density;
+mod fence;
 mod frame_time;
+mod integrity;
 mod jitter;
 mod snapshot;
 mod speed_by_density;
@@ -26,6 +28,7 @@ pub use closest::{Closest, closest};
 pub use contacts::ContactsAt;
 pub use density::Density;
 pub use frame_time::{FrameTime, StageTimes};
+pub use integrity::{Integrity, Watched};
 pub use jitter::Jitter;
 pub use snapshot::{Snapshot, SnapshotAt};
 pub use speed_by_density::SpeedByDensity;
@@ -93,6 +96,8 @@ pub enum Measurement {
     Jitter(Jitter),
     /// The smallest distance between the centers of two agents.
     Closest(Closest),
+    /// Agents through walls, numbers that are not finite, and speeds.
+    Integrity(Integrity),
     /// Mean speed by density.
     SpeedByDensity(SpeedByDensity),
     /// Computing time by stage.
@@ -115,6 +120,7 @@ impl Measurement {
             Self::Contacts(keys) => Started::new(keys),
             Self::Jitter(keys) => Started::new(keys),
             Self::Closest(keys) => Started::new(keys),
+            Self::Integrity(keys) => Started::new(keys),
             Self::SpeedByDensity(keys) => Started::new(keys),
             Self::FrameTime(keys) => Started::new(keys),
         }

@@ -21,7 +21,7 @@ struct Edge {
 
 /// All edges of a scene, indexed by the square cells that their bounding boxes touch.
 #[derive(Debug, Clone)]
-pub struct Fence {
+pub(super) struct Fence {
     edges: Vec<Edge>,
     /// Number of edges of each obstacle, in order, and whether the obstacle is solid outside.
     counts: Vec<(usize, bool)>,
@@ -32,7 +32,7 @@ pub struct Fence {
 
 impl Fence {
     /// The edges of `walls`.
-    pub fn new(walls: &Walls) -> Self {
+    pub(super) fn new(walls: &Walls) -> Self {
         let obstacles = walls.obstacles();
         let edges: Vec<Edge> = obstacles
             .iter()
@@ -94,14 +94,14 @@ impl Fence {
     }
 
     /// Does the straight path from `a` to `b` lead into an obstacle?
-    pub fn is_crossed(&self, a: Vector, b: Vector) -> bool {
+    pub(super) fn is_crossed(&self, a: Vector, b: Vector) -> bool {
         self.touched(a, b)
             .flat_map(|cell| &self.cells[cell])
             .any(|&k| self.edges[k as usize].is_crossed(a, b))
     }
 
     /// Is `p` inside an obstacle? Counts the edges that a ray to the right crosses.
-    pub fn encloses(&self, p: Vector) -> bool {
+    pub(super) fn encloses(&self, p: Vector) -> bool {
         let mut edges = self.edges.iter();
         self.counts.iter().any(|&(count, unbounded)| {
             let (mut odd, mut near) = (unbounded, false);

@@ -1,0 +1,110 @@
+//! Integrity: do walls hold, are all numbers finite, and how fast do agents move?
+
+use std::collections::BTreeSet;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Measure;
+use super::fence::Fence;
+use crate::engine::math::{Vector, are_finite, numbers_are_finite};
+use crate::engine::simulation::Simulation;
+
+/// The number of agents that were inside an obstacle or moved through a wall, checked without the engine's own
+/// geometry; the number of frames in which a position, velocity, acceleration or density was not finite; the highest
+/// speed of an agent in any frame and the root mean square speed in the last frame, m/s.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Integrity {}
+
+/// What an independent observer has seen of a run.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub struct Watched {
+    /// Built from the scene in the first frame.
+    #[serde(skip)]
+    fence: Option<Fence>,
+    /// The last known position of each agent, by id; `None` before the agent's first frame.
+    last: Vec<Option<Vector>>,
+    /// Number of arrivals that were processed.
+    arrivals: usize,
+    through_walls: BTreeSet<u32>,
+    non_finite_frames: u64,
+    /// m/s.
+    highest_speed: f64,
+}
+
+impl Measure for Integrity {
+    type Seen = Watched;
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        let name = |(name, unit): (&str, _)| (name.to_owned(), unit);
+        [
+            ("agents_through_walls", "agents"),
+            ("non_finite_frames", "frames"),
+            ("highest_speed_m_per_s", "m/s"),
+            ("speed_at_end_m_per_s", "m/s"),
+        ]
+        .map(name)
+        .into()
+    }
+
+    fn observe(&self, seen: &mut Watched, simulation: &Simulation) {
+        seen.observe(simulation);
+    }
+
+    fn values(&self, seen: &Watched, simulation: &Simulation) -> Vec<Option<f64>> {
+        let velocities = &simulation.frame().agents.velocity;
+        let squares: f64 = velocities.iter().map(Vector::norm_squared).sum();
+        let mean = squares / velocities.len() as f64;
+        vec![
+            Some(seen.agents_through_walls(simulation) as f64),
+            Some(seen.non_finite_frames as f64),
+            Some(seen.highest_speed),
+            (!velocities.is_empty()).then(|| mean.sqrt()),
+        ]
+    }
+}
+
+impl Watched {
+    /// Observes an evaluated frame; call it in every frame.
+    pub fn observe(&mut self, simulation: &Simulation) {
+        let frame = simulation.frame();
+        let agents = frame.agents;
+        let fence = self
+            .fence
+            .get_or_insert_with(|| Fence::new(&simulation.scene().walls));
+        self.last.resize(agents.entered() as usize, None);
+        for (&id, &position) in agents.id.iter().zip(&agents.position) {
+            let passed = match self.last[id as usize].replace(position) {
+                None => fence.encloses(position),
+                Some(before) => before != position && fence.is_crossed(before, position),
+            };
+            self.through_walls.extend(passed.then_some(id));
+        }
+        // Agents that have left made one more move before.
+        for arrival in simulation.outcome().arrivals.iter().skip(self.arrivals) {
+            let before = self.last[arrival.id as usize];
+            let passed = before.is_some_and(|before| fence.is_crossed(before, arrival.position));
+            self.through_walls.extend(passed.then_some(arrival.id));
+        }
+        self.arrivals = simulation.outcome().arrivals.len();
+        let fields = frame.fields;
+        let vectors = [&agents.position, &agents.velocity, &fields.acceleration];
+        let finite = vectors.into_iter().all(|v| are_finite(v));
+        self.non_finite_frames += u64::from(!finite || !numbers_are_finite(&fields.density));
+        let squares = agents.velocity.iter().map(Vector::norm_squared);
+        self.highest_speed = squares.fold(0.0, f64::max).sqrt().max(self.highest_speed);
+    }
+
+    /// The number of agents that were inside an obstacle or moved through a wall so far, or are inside an obstacle
+    /// now.
+    pub fn agents_through_walls(&self, simulation: &Simulation) -> usize {
+        let agents = simulation.frame().agents;
+        let positions = agents.id.iter().zip(&agents.position);
+        let inside = positions.filter(|(id, position)| {
+            let fence = self.fence.as_ref();
+            !self.through_walls.contains(id) && fence.is_some_and(|f| f.encloses(**position))
+        });
+        self.through_walls.len() + inside.count()
+    }
+}
