@@ -1,53 +1,98 @@
 //! Work and precision: scenes and knobs are valid, errors decrease with the time step, and the command writes its
 //! tables and pictures.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use crate::common::program;
 use sandbox::engine::boundary::WallMethod;
-use sandbox::lab::accuracy::{Detail, KNOBS, Kind, Knob, Lyapunov, Motion, SCENES, Scene, sample};
+use sandbox::lab::accuracy::{
+    Kind, Lyapunov, Motion, SAMPLES, SCENES, Scene, Trial, knobs, limit, trials,
+};
 use sandbox::scenario::{Scenario, Setting};
 use serde_json::{Value, json};
 
-fn scene(name: &str) -> &'static Scene {
-    SCENES.iter().find(|scene| scene.name == name).unwrap()
-}
-
-fn parse(document: &Value, settings: &[String]) -> Scenario {
-    let settings: Vec<Setting> = settings.iter().map(|s| s.parse().unwrap()).collect();
-    Scenario::parse(&document.to_string(), "f.json", &settings).unwrap()
+/// The scenario of a scene, and what is tried in it.
+fn tried(scene: &Scene) -> (Scenario, Vec<Trial>) {
+    let study = scene.study(Some(1)).unwrap();
+    let scenario = study.cells[0].case.scenario().unwrap();
+    let trials = trials(&study, &scenario.document).unwrap();
+    (scenario, trials)
 }
 
 #[test]
-fn every_value_of_every_knob_is_a_setting() {
-    for (name, knob) in KNOBS {
-        assert_eq!(knob.name(), name);
-        for curve in knob.curves(Detail::All) {
-            for settings in &curve.points {
-                parse(&small("sph"), settings);
-            }
+fn knobs_are_tried_in_all_scenes_where_they_change_something() {
+    for scene in &SCENES {
+        let (scenario, trials) = tried(scene);
+        let needs = scenario.scene.needs();
+        let acts = |knob: &&str| match *knob {
+            "coarse" | "candidates" => needs.rvo,
+            "tolerance" => needs.social,
+            "walls" => needs.pairs.pressure && !scenario.scene.walls.is_empty(),
+            _ => true,
+        };
+        let expected: BTreeSet<&str> = knobs().into_iter().filter(acts).collect();
+        let found: BTreeSet<&str> = trials.iter().map(|trial| trial.knob.as_str()).collect();
+        assert_eq!(found, expected, "{}", scene.name);
+    }
+}
+
+#[test]
+fn a_knob_has_the_same_values_in_all_scenes_but_statistics_skip_the_finest_step() {
+    let mut values: BTreeMap<String, Vec<Vec<String>>> = BTreeMap::new();
+    for scene in &SCENES {
+        let is_skipped = |settings: &Vec<String>| {
+            scene.kind == Kind::Statistics && settings[0] == "time_step_secs=0.0025"
+        };
+        let mut own: BTreeMap<String, Vec<Vec<String>>> = BTreeMap::new();
+        for trial in tried(scene).1 {
+            let settings = trial.settings.iter().map(Setting::to_string).collect();
+            own.entry(trial.knob).or_default().push(settings);
+        }
+        for (knob, own) in own {
+            let mut all = values.entry(knob).or_insert(own.clone()).clone();
+            all.retain(|settings| !is_skipped(settings));
+            assert_eq!(own, all, "{}", scene.name);
         }
     }
 }
 
 #[test]
-fn knobs_act_only_in_scenes_where_they_change_something() {
-    let turned = |name: &str| -> Vec<&str> {
-        let scenario = parse(&scene(name).document().unwrap(), &[]);
-        let (needs, has_walls) = (scenario.scene.needs(), !scenario.scene.walls.is_empty());
-        let acts = KNOBS
-            .iter()
-            .filter(|(_, knob)| knob.acts(&needs, has_walls));
-        acts.map(|(name, _)| *name).collect()
-    };
-    let always = ["time-step", "integrator", "lists", "precision", "preset"];
-    for (name, more) in [
-        ("relaxed", &["walls"][..]),
-        ("social", &["tolerance"]),
-        ("rvo", &["coarse", "candidates"]),
-        ("evacuation-social", &["walls", "tolerance"]),
-    ] {
-        let found = turned(name);
-        assert_eq!(found.len(), always.len() + more.len(), "{name}: {found:?}");
-        assert!(always.iter().chain(more).all(|knob| found.contains(knob)));
+fn every_curve_has_the_default_but_those_of_other_integrators() {
+    for scene in &SCENES {
+        let (_, trials) = tried(scene);
+        for curve in trials.chunk_by(|a, b| a.curve == b.curve) {
+            let Trial {
+                knob,
+                curve: label,
+                best,
+                ..
+            } = &curve[0];
+            let defaults = curve.iter().filter(|trial| trial.is_default).count();
+            assert_eq!(
+                defaults,
+                usize::from(knob != "integrator"),
+                "{} {label}",
+                scene.name
+            );
+            let has_best = !["time-step", "integrator", "preset"].contains(&knob.as_str());
+            assert_eq!(best.is_some(), has_best, "{knob}");
+        }
+    }
+}
+
+#[test]
+fn every_step_of_scenes_of_motion_meets_every_sample() {
+    for scene in SCENES.iter().filter(|scene| scene.kind == Kind::Motion) {
+        for cell in scene.study(None).unwrap().cells {
+            let step = cell.case.scenario().unwrap().scene.clock.time_step();
+            for time in SAMPLES {
+                let frames = time / step;
+                assert!(
+                    (frames - frames.round()).abs() < 1e-9,
+                    "{cell}: {step} s, {time} s"
+                );
+            }
+        }
     }
 }
 
@@ -63,14 +108,18 @@ fn small(profile: &str) -> Value {
 fn errors_are_symmetric_and_decrease_with_the_time_step() {
     let document = small("sph");
     let motion = |settings: &[&str]| {
-        let settings: Vec<String> = settings.iter().map(|s| (*s).to_owned()).collect();
+        let settings: Vec<Setting> = settings.iter().map(|s| s.parse().unwrap()).collect();
         Motion::of(&document, &settings).unwrap()
     };
     let default = motion(&[]);
     let zero = default.errors(&motion(&["time_step_secs=0.02"]));
     assert_eq!([zero.position, zero.velocity, zero.density], [[0.0; 3]; 3]);
 
-    let (reference, own) = Motion::reference(&document, WallMethod::default(), false).unwrap();
+    let [reference, coarser] = [1.0, 2.0].map(|coarser| {
+        let settings = limit(WallMethod::default(), false, coarser).unwrap();
+        Motion::of(&document, &settings).unwrap()
+    });
+    let own = coarser.errors(&reference);
     let errors = ["0.04", "0.02", "0.01"].map(|step| {
         let motion = motion(&[&format!("time_step_secs={step}")]);
         assert_eq!(motion.errors(&reference), reference.errors(&motion));
@@ -87,7 +136,7 @@ fn errors_are_symmetric_and_decrease_with_the_time_step() {
 
 #[test]
 fn a_time_step_that_misses_a_sample_time_is_refused() {
-    let refused = Motion::of(&small("sph"), &["time_step_secs=0.025".to_owned()]);
+    let refused = Motion::of(&small("sph"), &["time_step_secs=0.025".parse().unwrap()]);
     assert!(refused.unwrap_err().to_string().contains("0.025"));
 }
 
@@ -107,29 +156,34 @@ fn perturbations_grow_in_a_crowd_but_not_among_lone_walkers() {
 }
 
 #[test]
-fn a_sample_depends_only_on_its_seed() {
-    let wave = scene("wave");
-    assert_eq!(wave.kind, Kind::Wave);
-    let document = wave.document().unwrap();
-    let speed = |seed| sample(wave.kind, &document, &[], seed).unwrap().values[0].unwrap();
-    let (one, again, other) = (speed(1), speed(1), speed(2));
-    assert_eq!(one, again);
-    assert_ne!(one, other);
-    // In theory √(k/2) = 10 m/s.
-    assert!((one / 10.0 - 1.0).abs() < 0.05, "{one}");
-}
-
-#[test]
-fn best_values_are_among_those_tried() {
-    for (_, knob) in KNOBS {
-        let Some(best) = knob.best() else {
-            assert!(matches!(
-                knob,
-                Knob::TimeStep | Knob::Integrator | Knob::Preset
-            ));
-            continue;
-        };
-        assert!(knob.curves(Detail::All)[0].points.contains(&best));
+fn statistics_are_means_over_seeds_compared_with_the_first_point() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let out = program::text(&out);
+    let run = program::run(&[
+        "accuracy", "wave", "--knob", "lists", "--quick", "--json", "--out", out,
+    ]);
+    let report = program::json(&run);
+    let scene = &report["scenes"][0];
+    assert_eq!(scene["quantities"][0]["name"], "wave speed");
+    let points = scene["points"].as_array().unwrap();
+    assert_eq!(points.len(), 2);
+    assert_eq!(
+        [&points[0]["default"], &points[1]["default"]],
+        [true, false]
+    );
+    assert_eq!(points[0]["errors"][0]["error"], 0.0);
+    for point in points {
+        let mean = &point["errors"][0]["mean"];
+        // In theory √(k/2) = 10 m/s.
+        assert!(
+            (mean[0].as_f64().unwrap() / 10.0 - 1.0).abs() < 0.05,
+            "{point}"
+        );
+        assert!(
+            mean[1].as_f64().unwrap() > 0.0,
+            "both seeds are the same: {point}"
+        );
     }
 }
 

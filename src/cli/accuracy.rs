@@ -9,7 +9,7 @@ use super::update::{check, update};
 use super::values::threads;
 use super::watch::Watch;
 use super::{Failure, say, use_threads};
-use crate::lab::accuracy::{KNOBS, Knob, Plan, SCENES, Scene, WALLS, accuracy};
+use crate::lab::accuracy::{Plan, SCENES, Scene, WALLS, accuracy, knobs};
 use crate::runs::store::Store;
 
 #[derive(Args)]
@@ -40,16 +40,11 @@ pub struct AccuracyOptions {
 /// All scenes, each with a line about it.
 pub fn about() -> String {
     let walls = "density and force of five ways to treat walls, compared with the exact integrals";
-    let lines = SCENES.iter().map(|scene| (scene.name, scene.about));
+    let lines = SCENES.iter().map(|scene| (scene.name, scene.about()));
     lines
         .chain([(WALLS, walls)])
         .map(|(name, about)| format!("  {name:<18} {about}\n"))
         .collect()
-}
-
-/// The values of `--knob`.
-pub fn knobs() -> Vec<&'static str> {
-    KNOBS.iter().map(|(name, _)| *name).collect()
 }
 
 /// The names of all scenes.
@@ -65,18 +60,14 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
     }
     let store = Store::open(&options.out)?;
     let wanted = |name: &str| options.scene.is_empty() || options.scene.iter().any(|s| s == name);
-    let turned = |name: &str| options.knob.is_empty() || options.knob.iter().any(|k| k == name);
     let in_time = |scene: &Scene| !(options.quick && scene.is_long && options.scene.is_empty());
     let scenes = SCENES
         .iter()
         .filter(|scene| wanted(scene.name) && in_time(scene));
-    let knobs = KNOBS
-        .iter()
-        .filter(|(name, _): &&(&str, Knob)| turned(name));
     let plan = Plan {
         scenes: scenes.copied().collect(),
         walls: wanted(WALLS),
-        knobs: knobs.map(|(_, knob)| *knob).collect(),
+        knobs: options.knob.clone(),
         quick: options.quick,
     };
     let watch = Watch::new();

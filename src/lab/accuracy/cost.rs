@@ -6,6 +6,7 @@ use super::scenes::simulation;
 use crate::analysis::statistics::Range;
 use crate::lab::bench::{Contender, alternate, ms_per_frame, pool};
 use crate::lab::error::LabError;
+use crate::scenario::Setting;
 
 /// Simulated time of one measurement, seconds.
 const SECONDS: f64 = 0.96;
@@ -14,13 +15,13 @@ const SECONDS: f64 = 0.96;
 ///
 /// # Errors
 /// A setting is invalid, or a run fails.
-pub fn measure(
+pub fn measure<'a>(
     document: &Value,
-    settings: &[Vec<String>],
+    settings: impl Iterator<Item = &'a [Setting]>,
     repeats: usize,
 ) -> Result<Vec<Range>, LabError> {
     let pool = pool(1)?;
-    let mut contenders: Vec<Contender> = Vec::with_capacity(settings.len());
+    let mut contenders: Vec<Contender> = Vec::new();
     for settings in settings {
         let start = simulation(document, settings)?;
         let pool = &pool;

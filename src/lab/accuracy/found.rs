@@ -3,11 +3,10 @@
 use serde::Serialize;
 
 use super::front::{Front, cheapest};
-use super::knob::{Knob, are_default};
-use super::scenes::{Kind, Scene};
-use super::statistics::Deviation;
+use super::scenes::{Kind, Scene, names};
+use super::trials::Trial;
 use crate::analysis::statistics::Range;
-use crate::output::table::OldTable as Table;
+use crate::output::table::Table;
 
 /// A quantity whose error is measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -19,11 +18,9 @@ pub struct Quantity {
 }
 
 impl Quantity {
-    pub(super) fn new(name: &str, unit: &'static str) -> Self {
-        Self {
-            name: name.to_owned(),
-            unit,
-        }
+    pub(super) fn new(name: impl Into<String>, unit: &'static str) -> Self {
+        let name = name.into();
+        Self { name, unit }
     }
 }
 
@@ -48,35 +45,39 @@ impl Measured {
         }
     }
 
+    /// Do the seeds distinguish the quantity from the reference?
+    pub fn is_significant(&self) -> bool {
+        self.error > self.interval
+    }
+
     /// The error or half its confidence interval, whichever is larger: smaller errors cannot be told from 0.
     pub fn bound(&self) -> f64 {
         self.error.max(self.interval)
     }
 }
 
-impl From<Deviation> for Measured {
-    fn from(found: Deviation) -> Self {
-        Self {
-            mean: Some((found.mean, found.interval)),
-            error: found.error,
-            interval: found.error_interval,
-        }
-    }
-}
-
-/// The result of one setting of one knob in one scene.
-#[derive(Debug, Clone, PartialEq)]
+/// The result of one trial in one scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Point {
-    /// The knob.
-    pub knob: Knob,
-    /// The label of its curve.
-    pub curve: String,
-    /// The settings, as `--set` takes them.
-    pub settings: Vec<String>,
+    /// The knob and the settings.
+    #[serde(flatten)]
+    pub trial: Trial,
     /// Milliseconds per simulated second on one thread.
+    #[serde(rename = "ms_per_s")]
     pub cost: Range,
     /// The errors in the order of [`Found::quantities`]; `None` if a quantity has no value.
     pub errors: Vec<Option<Measured>>,
+}
+
+/// The errors of all trials in one scene.
+#[derive(Default)]
+pub(super) struct Judged {
+    /// The measured quantities.
+    pub quantities: Vec<Quantity>,
+    /// The errors of each trial.
+    pub errors: Vec<Vec<Option<Measured>>>,
+    /// Further findings, in words.
+    pub notes: String,
 }
 
 /// The results of one scene.
@@ -92,6 +93,16 @@ pub struct Found {
     pub notes: String,
 }
 
+/// A row of the table of cheapest settings.
+pub(super) struct Choice {
+    scene: &'static str,
+    /// The bound on the error, or "the default".
+    wanted: String,
+    settings: String,
+    cost: Option<f64>,
+    error: Option<String>,
+}
+
 /// Position errors for which the cheapest settings are listed, meters.
 const POSITIONS: [f64; 4] = [0.03, 0.01, 0.003, 0.001];
 /// The same for statistics, as relative errors.
@@ -103,7 +114,7 @@ impl Found {
     pub fn overall(&self, point: &Point) -> Option<f64> {
         match self.scene.kind {
             Kind::Motion => point.errors[1].map(|error| error.error),
-            Kind::Evacuation | Kind::Wave => {
+            Kind::Statistics => {
                 let relative = point.errors.iter().map(|error| {
                     let error = (*error)?;
                     Some(error.error / error.mean?.0.abs())
@@ -114,136 +125,101 @@ impl Found {
         }
     }
 
-    /// The points that have such an error: their indices, and their (cost, error).
-    fn compared(&self) -> (Vec<usize>, Vec<(f64, f64)>) {
-        let points = self.points.iter().enumerate();
-        points
-            .filter_map(|(k, point)| Some((k, (point.cost.median, self.overall(point)?))))
-            .unzip()
-    }
-
-    fn targets(&self) -> (&'static [f64], fn(f64) -> String) {
+    /// The bounds for which the cheapest settings are listed, with their names.
+    fn bounds(&self) -> Vec<(f64, String)> {
         match self.scene.kind {
-            Kind::Motion => (&POSITIONS, |error| format!("{} mm", 1e3 * error)),
-            Kind::Evacuation | Kind::Wave => (&PARTS, |error| format!("{} %", 100.0 * error)),
+            Kind::Motion => POSITIONS.map(|m| (m, format!("{} mm", 1e3 * m))).to_vec(),
+            Kind::Statistics => PARTS
+                .map(|part| (part, format!("{} %", 100.0 * part)))
+                .to_vec(),
         }
     }
 
-    /// Table rows: the cheapest settings for each target error, and the settings that beat the default.
-    pub fn choices(&self) -> Vec<Vec<String>> {
-        let (indices, compared) = self.compared();
-        let (targets, write) = self.targets();
-        let named = |k: usize| self.points[indices[k]].settings.join(" ");
-        let mut rows = Vec::new();
-        for &most in targets {
-            let found = cheapest(&compared, most);
-            let found = found.map_or_else(
-                || ["none".to_owned(), String::new(), String::new()],
-                |k| {
-                    let (cost, error) = compared[k];
-                    [
-                        named(k),
-                        format!("{cost:.1}"),
-                        precise(self.scene.kind, error),
-                    ]
-                },
-            );
-            rows.push(row(
-                self.scene.name,
-                &format!("at most {}", write(most)),
-                found,
-            ));
+    /// Formats an error by which settings are compared, with its unit.
+    fn precise(&self, error: f64) -> String {
+        match self.scene.kind {
+            Kind::Motion => format!("{:.2} mm", 1e3 * error),
+            Kind::Statistics => format!("{:.1} %", 100.0 * error),
         }
-        let default = indices
-            .iter()
-            .position(|&k| are_default(&self.points[k].settings));
-        if let Some(k) = default {
-            let (cost, error) = compared[k];
+    }
+
+    /// The cheapest settings for each bound, and the settings that beat the default.
+    pub(super) fn choices(&self) -> Vec<Choice> {
+        let points = self.points.iter();
+        let (points, compared): (Vec<&Point>, Vec<(f64, f64)>) = points
+            .filter_map(|point| Some((point, (point.cost.median, self.overall(point)?))))
+            .unzip();
+        let named = |k: usize| names(&points[k].trial.settings);
+        let choice = |wanted: String, settings: String, found: Option<(f64, f64)>| Choice {
+            scene: self.scene.name,
+            wanted,
+            settings,
+            cost: found.map(|(cost, _)| cost),
+            error: found.map(|(_, error)| self.precise(error)),
+        };
+        let bounds = self.bounds().into_iter();
+        let mut choices: Vec<Choice> = bounds
+            .map(|(most, name)| {
+                let found = cheapest(&compared, most);
+                let settings = found.map_or("none".to_owned(), named);
+                let found = found.map(|k| compared[k]);
+                choice(format!("at most {name}"), settings, found)
+            })
+            .collect();
+        if let Some(k) = points.iter().position(|point| point.trial.is_default) {
             let front = Front::of(&compared, k);
-            let mut verdict = Vec::new();
-            if let Some((other, error)) = front.best_at_cost {
-                let error = precise(self.scene.kind, error);
-                verdict.push(format!("at its cost: {} ({error})", named(other)));
-            }
-            if let Some((other, cost)) = front.cheapest_at_error {
-                verdict.push(format!("at its error: {} ({cost:.1} ms)", named(other)));
-            }
-            let verdict = if verdict.is_empty() {
-                "on the front".to_owned()
-            } else {
-                format!("beaten {}", verdict.join("; "))
+            let at_cost = front.best_at_cost.map(|(other, error)| {
+                format!("at its cost: {} ({})", named(other), self.precise(error))
+            });
+            let at_error = front
+                .cheapest_at_error
+                .map(|(other, cost)| format!("at its error: {} ({cost:.1} ms)", named(other)));
+            let beaten: Vec<String> = at_cost.into_iter().chain(at_error).collect();
+            let verdict = match beaten.is_empty() {
+                true => "on the front".to_owned(),
+                false => format!("beaten {}", beaten.join("; ")),
             };
-            let found = [
-                verdict,
-                format!("{cost:.1}"),
-                precise(self.scene.kind, error),
-            ];
-            rows.push(row(self.scene.name, "the default", found));
+            choices.push(choice("the default".to_owned(), verdict, Some(compared[k])));
         }
-        rows
+        choices
     }
 
     /// A table of all points.
     pub fn table(&self) -> Table {
-        let mut head = vec![
-            "knob".to_owned(),
-            "settings".to_owned(),
-            "ms per s".to_owned(),
-        ];
-        let quantities = self.quantities.iter();
-        head.extend(quantities.map(|quantity| format!("{} [{}]", quantity.name, quantity.unit)));
-        let rows = self.points.iter().map(|point| {
-            let mut settings = point.settings.join(" ");
-            if are_default(&point.settings) {
-                settings += " (default)";
-            }
-            let cells = point
-                .errors
-                .iter()
-                .map(|error| error.map_or(String::new(), written));
-            let first = [
-                point.knob.name().to_owned(),
-                settings,
-                format!("{:.2}", point.cost.median),
-            ];
-            first.into_iter().chain(cells).collect()
-        });
-        Table {
-            words: 2,
-            head,
-            rows: rows.collect(),
-        }
-    }
-}
-
-fn row(scene: &str, wanted: &str, found: [String; 3]) -> Vec<String> {
-    [scene.to_owned(), wanted.to_owned()]
-        .into_iter()
-        .chain(found)
-        .collect()
-}
-
-/// Formats an error by which settings are compared, with its unit.
-fn precise(kind: Kind, error: f64) -> String {
-    match kind {
-        Kind::Motion => format!("{:.2} mm", 1e3 * error),
-        Kind::Evacuation | Kind::Wave => format!("{:.1} %", 100.0 * error),
-    }
-}
-
-fn written(measured: Measured) -> String {
-    match measured.mean {
-        Some((mean, interval)) => {
-            let sign = if measured.error > measured.interval {
-                ""
-            } else {
-                "≤ "
+        let mut table = Table::of(&self.points)
+            .column("knob", |point| point.trial.knob.as_str())
+            .column("settings", |point| {
+                let default = ["", " (default)"][usize::from(point.trial.is_default)];
+                names(&point.trial.settings) + default
+            })
+            .fixed("ms per s", 2, |point| point.cost.median);
+        for (k, Quantity { name, unit }) in self.quantities.iter().enumerate() {
+            let name = format!("{name} [{unit}]");
+            let error = |point: &Point| point.errors[k];
+            table = match self.scene.kind {
+                Kind::Motion => table.exponent(&name, 2, |point| error(point).map(|e| e.error)),
+                Kind::Statistics => table.column(&name, |point| error(point).and_then(written)),
             };
-            format!(
-                "{mean:.3} ± {interval:.3}, off {sign}{:.3}",
-                measured.bound()
-            )
         }
-        None => format!("{:.2e}", measured.error),
+        table.table()
     }
+}
+
+/// A table of choices.
+pub(super) fn table(choices: &[Choice]) -> Table {
+    Table::of(choices)
+        .column("scene", |choice| choice.scene)
+        .column("error", |choice| choice.wanted.as_str())
+        .column("settings", |choice| choice.settings.as_str())
+        .fixed("ms per s", 1, |choice| choice.cost)
+        .column("error found", |choice| choice.error.clone())
+        .table()
+}
+
+/// A mean over seeds with its deviation from the reference.
+fn written(measured: Measured) -> Option<String> {
+    let (mean, interval) = measured.mean?;
+    let bound = measured.bound();
+    let sign = ["≤ ", ""][usize::from(measured.is_significant())];
+    Some(format!("{mean:.3} ± {interval:.3}, off {sign}{bound:.3}"))
 }

@@ -1,10 +1,13 @@
 //! How fast two crowds with almost equal starts diverge.
 
+use std::f64::consts::TAU;
+
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::scenes::simulation;
+use super::scenes::{by_id, continued, names, setting, simulation};
 use crate::analysis::statistics::Line;
+use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
 use crate::lab::error::LabError;
 
@@ -62,18 +65,16 @@ pub fn golden(k: u32) -> f64 {
 
 /// Times, and root mean square distances between a crowd and a copy whose agents are moved by [`SHIFT`].
 fn distances(document: &Value, shift: u32) -> Result<Vec<(f64, f64)>, LabError> {
-    let settings = ["precision=double", "time_step_secs=0.005"].map(str::to_owned);
+    let settings = [
+        setting("precision", &json!("double"))?,
+        setting("time_step_secs", &json!(0.005))?,
+    ];
     let one = simulation(document, &settings)?;
-    let start = super::scenes::continued(document, &one);
-    let mut moved = start.clone();
-    let people = moved["agents"].as_array_mut().into_iter().flatten();
-    for (agent, id) in people.zip(0_u32..) {
-        let (sine, cosine) = (std::f64::consts::TAU * golden(id + 1009 * shift)).sin_cos();
-        for (k, part) in [cosine, sine].into_iter().enumerate() {
-            let place = agent["position"][k].as_f64().unwrap_or_default();
-            agent["position"][k] = json!(place + SHIFT * part);
-        }
-    }
+    let start = continued(document, &one, |_, _, _| ());
+    let moved = continued(document, &one, |id, position, _| {
+        let (sine, cosine) = (TAU * golden(id + 1009 * shift)).sin_cos();
+        *position += SHIFT * Vector::new(cosine, sine);
+    });
     let mut one = simulation(&start, &settings)?;
     let mut other = simulation(&moved, &settings)?;
     let mut distances = Vec::new();
@@ -81,25 +82,18 @@ fn distances(document: &Value, shift: u32) -> Result<Vec<(f64, f64)>, LabError> 
         for simulation in [&mut one, &mut other] {
             simulation
                 .step()
-                .map_err(|fault| LabError::of(document["name"].to_string(), fault))?;
+                .map_err(|fault| LabError::of(names(&settings), fault))?;
         }
         distances.push((one.frame().clock.time(), distance(&one, &other)));
     }
     Ok(distances)
 }
 
+/// Root mean square distance between the agents of two crowds.
 fn distance(one: &Simulation, other: &Simulation) -> f64 {
-    let place = |simulation: &Simulation| {
-        let agents = simulation.frame().agents;
-        let mut places: Vec<_> = agents.id.iter().zip(&agents.position).collect();
-        places.sort_by_key(|(id, _)| **id);
-        places
-            .into_iter()
-            .map(|(_, place)| *place)
-            .collect::<Vec<_>>()
-    };
-    let (one, other) = (place(one), place(other));
-    let squares = one.iter().zip(&other).map(|(a, b)| (a - b).norm_squared());
+    let pairs = by_id(one).into_iter().zip(by_id(other));
+    let [one, other] = [one, other].map(|crowd| &crowd.frame().agents.position);
+    let squares = pairs.map(|(i, k)| (one[i] - other[k]).norm_squared());
     (squares.sum::<f64>() / one.len().max(1) as f64).sqrt()
 }
 

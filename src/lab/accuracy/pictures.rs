@@ -1,7 +1,6 @@
 //! Work-precision diagrams: error against cost, one curve per knob.
 
 use super::found::{Found, Point as Setting};
-use super::knob::{Knob, are_default};
 use super::report::{Report, WALLS};
 use super::scenes::Kind;
 use crate::lab::error::LabError;
@@ -29,11 +28,11 @@ fn sheet(found: &Found) -> Sheet {
     let costs = range(found.points.iter().map(|point| point.cost.median));
     let quantities = match found.scene.kind {
         Kind::Motion => MOTION.to_vec(),
-        Kind::Evacuation | Kind::Wave => (0..found.quantities.len()).collect(),
+        Kind::Statistics => (0..found.quantities.len()).collect(),
     };
     let columns = quantities.len().div_ceil(2).max(1);
     Sheet {
-        title: format!("{}: {}", found.scene.name, found.scene.about),
+        title: format!("{}: {}", found.scene.name, found.scene.about()),
         columns,
         panel_size: [225.0, 195.0],
         shared_axes: false,
@@ -66,19 +65,11 @@ fn panel(found: &Found, quantity: usize, costs: [f64; 2], legend: bool) -> Panel
         .iter()
         .filter_map(|point| point.errors[quantity]);
     let errors = range(errors.map(|error| error.bound()));
-    let mut curves: Vec<(Knob, &str)> = Vec::new();
-    for point in &found.points {
-        if !curves.contains(&(point.knob, &point.curve)) {
-            curves.push((point.knob, &point.curve));
-        }
-    }
+    let curves = found.points.chunk_by(|a, b| a.trial.shares_curve(&b.trial));
     let mut marks = Vec::new();
-    for (number, (knob, curve)) in curves.into_iter().enumerate() {
-        let style = style(number, curve);
-        let own = found.points.iter();
-        let own = own
-            .filter(|point| point.knob == knob && point.curve == curve)
-            .filter(shown);
+    for (number, curve) in curves.enumerate() {
+        let style = style(number, &curve[0].trial.curve);
+        let own = curve.iter().filter(shown);
         let points: Vec<Point> = own.filter_map(|point| at(point, quantity)).collect();
         if points.is_empty() {
             continue;
@@ -97,10 +88,7 @@ fn panel(found: &Found, quantity: usize, costs: [f64; 2], legend: bool) -> Panel
             },
         ));
     }
-    let default = found
-        .points
-        .iter()
-        .find(|point| are_default(&point.settings));
+    let default = found.points.iter().find(|point| point.trial.is_default);
     let default = default.filter(shown).and_then(|point| at(point, quantity));
     marks.extend(default.map(|point| {
         Mark::Points(

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use super::found::Found;
-use super::knob::are_default;
+use super::found::{self, Found};
+use super::scenes::names;
 use super::walls::WallReport;
 use crate::lab::error::LabError;
-use crate::output::table::OldTable as Table;
+use crate::output::table::Table;
 use crate::runs::store::Store;
 
 /// The name of the wall measurements in lists of scenes.
@@ -26,12 +26,8 @@ pub struct Report {
 impl Report {
     /// A table of the cheapest settings for each error.
     fn choices(&self) -> Table {
-        let mut choices = Table::new(
-            3,
-            &["scene", "error", "settings", "ms per s", "error found"],
-        );
-        choices.rows = self.scenes.iter().flat_map(Found::choices).collect();
-        choices
+        let choices: Vec<_> = self.scenes.iter().flat_map(Found::choices).collect();
+        found::table(&choices)
     }
 
     /// The cheapest settings for each error, then all points, as Markdown: (name, text).
@@ -54,7 +50,7 @@ impl Report {
                 text,
                 "{}: {}\n{}\n\n{}\n",
                 found.scene.name,
-                found.scene.about,
+                found.scene.about(),
                 found.notes,
                 found.table().text()
             );
@@ -90,75 +86,44 @@ impl Report {
 
     /// One row for each error of each point.
     fn csv(&self) -> Result<Vec<u8>, LabError> {
-        let mut table = Table::new(
-            0,
-            &[
-                "scene",
-                "knob",
-                "curve",
-                "settings",
-                "default",
-                "ms_per_s",
-                "ms_per_s_min",
-                "ms_per_s_max",
-                "quantity",
-                "unit",
-                "mean",
-                "mean_interval",
-                "error",
-                "error_interval",
-            ],
-        );
+        let mut rows = Vec::new();
         for found in &self.scenes {
             for point in &found.points {
-                for (quantity, measured) in found.quantities.iter().zip(&point.errors) {
-                    let Some(measured) = measured else { continue };
-                    let (mean, interval) = measured.mean.unzip();
-                    let number =
-                        |value: Option<f64>| value.map_or(String::new(), |v| v.to_string());
-                    table.add([
-                        found.scene.name.to_owned(),
-                        point.knob.name().to_owned(),
-                        point.curve.clone(),
-                        point.settings.join(" "),
-                        are_default(&point.settings).to_string(),
-                        point.cost.median.to_string(),
-                        point.cost.minimum.to_string(),
-                        point.cost.maximum.to_string(),
-                        quantity.name.clone(),
-                        quantity.unit.to_owned(),
-                        number(mean),
-                        number(interval),
-                        measured.error.to_string(),
-                        measured.interval.to_string(),
-                    ]);
-                }
+                let errors = found.quantities.iter().zip(&point.errors);
+                let errors = errors.filter_map(|(quantity, error)| Some((quantity, (*error)?)));
+                rows.extend(errors.map(|(quantity, error)| (found, point, quantity, error)));
             }
         }
-        table
-            .csv()
-            .map_err(|error| LabError::Data(error.to_string()))
+        let table = Table::of(&rows)
+            .column("scene", |(found, ..)| found.scene.name)
+            .column("knob", |(_, point, ..)| point.trial.knob.as_str())
+            .column("curve", |(_, point, ..)| point.trial.curve.as_str())
+            .column("settings", |(_, point, ..)| names(&point.trial.settings))
+            .column("default", |(_, point, ..)| point.trial.is_default)
+            .column("ms_per_s", |(_, point, ..)| point.cost.median)
+            .column("ms_per_s_min", |(_, point, ..)| point.cost.minimum)
+            .column("ms_per_s_max", |(_, point, ..)| point.cost.maximum)
+            .column("quantity", |(.., quantity, _)| quantity.name.as_str())
+            .column("unit", |(.., quantity, _)| quantity.unit)
+            .column("mean", |(.., error)| error.mean.map(|(mean, _)| mean))
+            .column("mean_interval", |(.., error)| {
+                error.mean.map(|(_, interval)| interval)
+            })
+            .column("error", |(.., error)| error.error)
+            .column("error_interval", |(.., error)| error.interval)
+            .table();
+        Ok(table.csv()?)
     }
 
     /// All results as one object.
     pub fn json(&self) -> serde_json::Value {
         let scenes = self.scenes.iter().map(|found| {
-            let points = found.points.iter().map(|point| {
-                serde_json::json!({
-                    "knob": point.knob.name(),
-                    "curve": point.curve,
-                    "settings": point.settings,
-                    "default": are_default(&point.settings),
-                    "ms_per_s": point.cost,
-                    "errors": point.errors,
-                })
-            });
             serde_json::json!({
                 "scene": found.scene.name,
-                "about": found.scene.about,
+                "about": found.scene.about(),
                 "notes": found.notes,
                 "quantities": found.quantities,
-                "points": points.collect::<Vec<_>>(),
+                "points": found.points,
             })
         });
         serde_json::json!({ "quick": self.quick, "scenes": scenes.collect::<Vec<_>>(), "walls": self.walls })

@@ -1,16 +1,20 @@
 //! The positions of agents in the first seconds, and how far they are from the reference.
 
-use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use std::rc::Rc;
 
-use super::knob::Knob;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::found::{Judged, Measured, Quantity};
 use super::lyapunov::Lyapunov;
-use super::scenes::simulation;
+use super::scenes::{by_id, names, scenario, setting, simulation};
+use super::trials::Trial;
 use crate::engine::boundary::WallMethod;
 use crate::engine::clock::PAPER_TIME_STEP;
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
 use crate::lab::error::LabError;
+use crate::scenario::Setting;
 
 /// The sampled times, seconds: about 0.5, 1 and 2, moved to times that are frames of all time steps.
 pub const SAMPLES: [f64; 3] = [0.48, 0.96, 1.92];
@@ -46,11 +50,11 @@ impl Motion {
     ///
     /// # Errors
     /// A setting is invalid, the run fails, or the time step does not divide all of [`SAMPLES`].
-    pub fn of(document: &Value, settings: &[String]) -> Result<Self, LabError> {
+    pub fn of(document: &Value, settings: &[Setting]) -> Result<Self, LabError> {
         let mut simulation = simulation(document, settings)?;
         simulation.request_density_until(u64::MAX);
         let step = simulation.frame().clock.time_step();
-        let fault = |fault| LabError::of(settings.join(" "), fault);
+        let fault = |fault| LabError::of(names(settings), fault);
         let mut at = |time: f64| {
             let frames = time / step;
             if (frames - frames.round()).abs() > 1e-6 {
@@ -64,33 +68,6 @@ impl Motion {
             Ok(Snapshot::of(&simulation))
         };
         Ok(Self([at(SAMPLES[0])?, at(SAMPLES[1])?, at(SAMPLES[2])?]))
-    }
-
-    /// The limit of a scene as Δt → 0, and its difference from a run at twice the step, which is about as large as the
-    /// reference's own error.
-    ///
-    /// # Errors
-    /// As [`of`](Self::of).
-    pub fn reference(
-        document: &Value,
-        walls: WallMethod,
-        quick: bool,
-    ) -> Result<(Self, Errors), LabError> {
-        let walls =
-            serde_json::to_value(walls).map_err(|error| LabError::Data(error.to_string()))?;
-        let at = |step: f64| {
-            let settings = [
-                format!("time_step_secs={step}"),
-                format!("wall_method={walls}"),
-                "integrator=midpoint".to_owned(),
-                "precision=double".to_owned(),
-            ];
-            Self::of(document, &settings)
-        };
-        let step = PAPER_TIME_STEP / FINENESS[usize::from(quick)];
-        let reference = at(step)?;
-        let errors = at(2.0 * step)?.errors(&reference);
-        Ok((reference, errors))
     }
 
     /// The difference between two motions, over all agents that are in both.
@@ -108,8 +85,7 @@ impl Snapshot {
     fn of(simulation: &Simulation) -> Self {
         let frame = simulation.frame();
         let agents = frame.agents;
-        let mut order: Vec<usize> = (0..agents.len()).collect();
-        order.sort_by_key(|&i| agents.id[i]);
+        let order = by_id(simulation);
         Self {
             id: order.iter().map(|&i| agents.id[i]).collect(),
             position: order.iter().map(|&i| agents.position[i]).collect(),
@@ -136,81 +112,115 @@ impl Snapshot {
     }
 }
 
-/// The errors of all points of a scene that is judged by motion, in the order of the points.
+/// The limit of a scene as Δt → 0 with these walls, as settings. Its own error is about as large as the difference from
+/// a run at twice the step, which `coarser` = 2 gives.
+///
+/// # Errors
+/// Never: all settings exist.
+pub fn limit(walls: WallMethod, quick: bool, coarser: f64) -> Result<Vec<Setting>, LabError> {
+    let step = coarser * PAPER_TIME_STEP / FINENESS[usize::from(quick)];
+    let all = [
+        ("time_step_secs", json!(step)),
+        ("wall_method", json!(walls)),
+        ("integrator", json!("midpoint")),
+        ("precision", json!("double")),
+    ];
+    all.iter().map(|(key, value)| setting(key, value)).collect()
+}
+
+/// The errors of all trials of a scene that is judged by motion, in their order.
 #[derive(Serialize, Deserialize)]
 pub struct Trajectories {
-    /// Errors against the reference, and against the knob's best value with all else at the defaults.
-    pub points: Vec<(Errors, Option<Errors>)>,
-    /// The approximate error of the reference itself.
-    pub reference: Errors,
+    /// Errors against the limit, and against the knob's best settings.
+    pub trials: Vec<(Errors, Option<Errors>)>,
+    /// The approximate error of the limit itself.
+    pub limit: Errors,
     /// How fast small differences grow.
     pub lyapunov: Lyapunov,
 }
 
-/// Runs a scene that is judged by motion under the settings of all points.
-pub fn trajectories(
-    document: &Value,
-    points: &[(Knob, Vec<String>)],
-    quick: bool,
-) -> Result<Trajectories, LabError> {
-    let mut known = Known::default();
-    let mut errors = Vec::new();
-    for (knob, settings) in points {
-        let motion = Motion::of(document, settings)?;
-        // The reference is the limit of the paper's model; for a preset, the limit with the preset's own walls.
-        let walls = match knob {
-            Knob::Preset => simulation(document, settings)?.scene().wall_method,
-            _ => WallMethod::default(),
+impl Trajectories {
+    /// Runs a document under the settings of all trials.
+    ///
+    /// # Errors
+    /// As [`Motion::of`].
+    pub fn of(document: &Value, trials: &[Trial], quick: bool) -> Result<Self, LabError> {
+        let mut motions = Motions {
+            document,
+            known: Vec::new(),
         };
-        let (reference, _) = known.reference(document, walls, quick)?;
-        let total = motion.errors(reference);
-        let own = known.best(document, *knob)?.map(|best| motion.errors(best));
-        errors.push((total, own));
-    }
-    Ok(Trajectories {
-        points: errors,
-        reference: known.reference(document, WallMethod::default(), quick)?.1,
-        lyapunov: Lyapunov::of(document)?,
-    })
-}
-
-/// The motions that others are compared with, each computed once.
-#[derive(Default)]
-struct Known {
-    references: Vec<(WallMethod, (Motion, Errors))>,
-    best: Vec<(Knob, Motion)>,
-}
-
-impl Known {
-    fn reference(
-        &mut self,
-        document: &Value,
-        walls: WallMethod,
-        quick: bool,
-    ) -> Result<&(Motion, Errors), LabError> {
-        let found = self
-            .references
-            .iter()
-            .position(|(other, _)| *other == walls);
-        let k = match found {
-            Some(k) => k,
-            None => {
-                let found = Motion::reference(document, walls, quick)?;
-                self.references.push((walls, found));
-                self.references.len() - 1
-            }
-        };
-        Ok(&self.references[k].1)
-    }
-
-    fn best(&mut self, document: &Value, knob: Knob) -> Result<Option<&Motion>, LabError> {
-        let Some(settings) = knob.best() else {
-            return Ok(None);
-        };
-        if !self.best.iter().any(|(other, _)| *other == knob) {
-            self.best.push((knob, Motion::of(document, &settings)?));
+        let mut errors = Vec::new();
+        for trial in trials {
+            let motion = motions.get(&trial.settings)?;
+            // For a preset, the limit has the preset's own walls; for all other knobs, those of the paper.
+            let walls = match trial.knob.as_str() {
+                "preset" => scenario(document, &trial.settings)?.scene.wall_method,
+                _ => WallMethod::default(),
+            };
+            let total = motion.errors(&*motions.get(&limit(walls, quick, 1.0)?)?);
+            let best = trial.best.as_ref().map(|best| motions.get(best));
+            errors.push((total, best.transpose()?.map(|best| motion.errors(&best))));
         }
-        let found = self.best.iter().find(|(other, _)| *other == knob);
-        Ok(found.map(|(_, motion)| motion))
+        let [finest, coarser] = [1.0, 2.0].map(|by| limit(WallMethod::default(), quick, by));
+        let limit = motions.get(&coarser?)?;
+        Ok(Self {
+            trials: errors,
+            limit: limit.errors(&*motions.get(&finest?)?),
+            lyapunov: Lyapunov::of(document)?,
+        })
+    }
+
+    /// The errors in the form of a report.
+    pub(super) fn judge(&self) -> Judged {
+        let mut quantities = Vec::new();
+        for (name, unit) in [("position", "m"), ("velocity", "m/s"), ("density", "P/m²")] {
+            let at = |time: f64| Quantity::new(format!("{name} at {time} s"), unit);
+            quantities.extend(SAMPLES.map(at));
+        }
+        let middle = SAMPLES[1];
+        let alone = format!("position at {middle} s by this knob alone");
+        quantities.push(Quantity::new(alone, "m"));
+        let errors = self.trials.iter().map(|(total, own)| {
+            let all = [total.position, total.velocity, total.density].concat();
+            let own = own.map(|own| own.position[1]);
+            let values = all.into_iter().map(Some).chain([own]);
+            values.map(|v| v.map(Measured::exact)).collect()
+        });
+        let lyapunov = &self.lyapunov;
+        let notes = format!(
+            "Two crowds that began almost alike part by e^({:.1} t), t in seconds ({}); after {} s at most \
+             {:.3} times as far as at the start. The reference's own error at {middle} s is some {:.0e} m.",
+            lyapunov.rate(),
+            lyapunov.time().map_or_else(
+                || "they draw together".to_owned(),
+                |time| format!("Lyapunov time {time:.2} s")
+            ),
+            SAMPLES[2],
+            lyapunov.growth,
+            self.limit.position[1],
+        );
+        Judged {
+            quantities,
+            errors: errors.collect(),
+            notes,
+        }
+    }
+}
+
+/// Motions of a document, each computed once.
+struct Motions<'a> {
+    document: &'a Value,
+    known: Vec<(Vec<Setting>, Rc<Motion>)>,
+}
+
+impl Motions<'_> {
+    fn get(&mut self, settings: &[Setting]) -> Result<Rc<Motion>, LabError> {
+        let mut known = self.known.iter();
+        if let Some((_, motion)) = known.find(|(other, _)| other == settings) {
+            return Ok(Rc::clone(motion));
+        }
+        let motion = Rc::new(Motion::of(self.document, settings)?);
+        self.known.push((settings.to_vec(), Rc::clone(&motion)));
+        Ok(motion)
     }
 }

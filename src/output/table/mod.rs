@@ -6,10 +6,8 @@
 //! form of the rows themselves.
 
 mod cell;
-mod old;
 
 pub use cell::Cell;
-pub use old::OldTable;
 
 use rayon::prelude::*;
 use serde::Serialize;

@@ -1,0 +1,142 @@
+//! What is tried in a scene: values of the numerical choices ("knobs") that act in it.
+//!
+//! Every entry of the scene's study is a trial. Its label is `KNOB: CURVE`, where pictures join the points of a curve
+//! by a line, or just `KNOB`; ` (best)` marks the value with which the knob has no error of its own. Two entries are
+//! no trials: the first one, without settings, and `reference`, with which statistics are compared.
+
+use serde::{Serialize, Serializer};
+use serde_json::Value;
+
+use super::scenes::{SCENES, scenario, setting};
+use crate::lab::error::LabError;
+use crate::lab::sweep::{Cell, Study};
+use crate::scenario::Setting;
+
+/// The label of the first entry.
+const DEFAULT: &str = "default";
+/// The label of the entry with which statistics are compared.
+const REFERENCE: &str = "reference";
+/// The end of the label of a knob's best value.
+const BEST: &str = " (best)";
+
+/// Settings that are tried in a scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Trial {
+    /// The knob.
+    pub knob: String,
+    /// The label of its curve.
+    pub curve: String,
+    /// The settings.
+    #[serde(serialize_with = "texts")]
+    pub settings: Vec<Setting>,
+    /// Are these the defaults?
+    #[serde(rename = "default")]
+    pub is_default: bool,
+    /// The knob's best settings, with all others at their defaults; `None` for a knob without.
+    #[serde(skip)]
+    pub best: Option<Vec<Setting>>,
+    /// The index of the study's entry with its runs; defaults share those of the first entry.
+    #[serde(skip)]
+    pub(super) entry: usize,
+}
+
+impl Trial {
+    /// Are both on one curve?
+    pub fn shares_curve(&self, other: &Self) -> bool {
+        (&self.knob, &self.curve) == (&other.knob, &other.curve)
+    }
+
+    /// Does the curve of this trial go over time steps?
+    fn varies_step(&self) -> bool {
+        let first = self.settings.first();
+        first.is_some_and(|setting| setting.path() == ["time_step_secs"])
+    }
+}
+
+fn texts<S: Serializer>(settings: &[Setting], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(settings.iter().map(Setting::to_string))
+}
+
+/// The names of all knobs.
+pub fn knobs() -> Vec<&'static str> {
+    let mut knobs = Vec::new();
+    for label in SCENES.iter().flat_map(|scene| scene.labels()) {
+        let (knob, _) = knob_and_curve(label);
+        if ![DEFAULT, REFERENCE].contains(&knob) && !knobs.contains(&knob) {
+            knobs.push(knob);
+        }
+    }
+    knobs
+}
+
+fn knob_and_curve(label: &str) -> (&str, &str) {
+    let label = label.strip_suffix(BEST).unwrap_or(label);
+    label.split_once(": ").unwrap_or((label, label))
+}
+
+/// The trials of a study. `document` is the scene's document, which their settings change.
+///
+/// # Errors
+/// A setting is invalid.
+pub fn trials(study: &Study, document: &Value) -> Result<Vec<Trial>, LabError> {
+    let default = numerics(document, &[])?;
+    let (mut trials, mut best) = (Vec::new(), Vec::new());
+    for (entry, cells) in study.cells.chunks(study.seeds).enumerate() {
+        let label = cells[0].label().unwrap_or_default();
+        if [DEFAULT, REFERENCE].contains(&label) {
+            continue;
+        }
+        let settings = settings(&cells[0])?;
+        let (knob, curve) = knob_and_curve(label);
+        if label.ends_with(BEST) {
+            best.push((knob, settings.clone()));
+        }
+        let is_default = numerics(document, &settings)? == default;
+        trials.push(Trial {
+            knob: knob.to_owned(),
+            curve: curve.to_owned(),
+            settings,
+            is_default,
+            best: None,
+            entry: if is_default { 0 } else { entry },
+        });
+    }
+    for trial in &mut trials {
+        let own = best.iter().find(|(knob, _)| *knob == trial.knob);
+        trial.best = own.map(|(_, settings)| settings.clone());
+    }
+    Ok(trials)
+}
+
+/// The settings of a cell, without its seed.
+///
+/// # Errors
+/// Never: the study has been checked.
+pub fn settings(cell: &Cell) -> Result<Vec<Setting>, LabError> {
+    let values = cell.values.iter();
+    values.map(|(key, value)| setting(key, value)).collect()
+}
+
+/// The index of the study's entry with which statistics are compared.
+pub fn reference(study: &Study) -> Option<usize> {
+    let mut entries = study.cells.chunks(study.seeds);
+    entries.position(|cells| cells[0].label() == Some(REFERENCE))
+}
+
+/// A few trials of each curve: its last three, or the three before the last one if these are time steps.
+pub fn few(trials: &[Trial]) -> Vec<Trial> {
+    let curves = trials.chunk_by(Trial::shares_curve);
+    let few = curves.flat_map(|curve| {
+        let end = curve.len() - usize::from(curve[0].varies_step());
+        &curve[end.saturating_sub(3)..end]
+    });
+    few.cloned().collect()
+}
+
+/// The numerical choices of a document under some settings, with all defaults filled in.
+fn numerics(document: &Value, settings: &[Setting]) -> Result<impl PartialEq + use<>, LabError> {
+    let scene = scenario(document, settings)?.scene;
+    let (clock, integrator, walls) = (scene.clock, scene.integrator, scene.wall_method);
+    let (precision, lists) = (scene.precision, scene.neighbor_lists);
+    Ok((clock, integrator, walls, precision, lists, scene.groups))
+}
