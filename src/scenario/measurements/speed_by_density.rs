@@ -57,11 +57,14 @@ impl Measure for SpeedByDensity {
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
-        if !Due::new(simulation, self.from_secs, self.to_secs, self.every_secs).is_now(simulation) {
+        let frame = simulation.frame();
+        let is_early = frame.clock.frame() < frame.clock.frame_at(self.from_secs);
+        // Counted from the start of the run.
+        let due = Due::new(simulation, 0.0, self.to_secs, self.every_secs);
+        if is_early || !due.is_now(simulation) {
             return;
         }
         seen.resize(self.bins.len(), Speeds::default());
-        let frame = simulation.frame();
         for (density, v) in frame.fields.density.iter().zip(&frame.agents.velocity) {
             let bin = self.bins.iter().rposition(|low| density >= low);
             if let Some(bin) = bin.filter(|&bin| density - self.bins[bin] < 1.0) {
