@@ -113,8 +113,8 @@ pub fn trials(study: &Study, document: &Value) -> Result<Vec<Trial>, LabError> {
 /// # Errors
 /// Never: the study has been checked.
 pub fn settings(cell: &Cell) -> Result<Vec<Setting>, LabError> {
-    let values = cell.values.iter();
-    values.map(|(key, value)| setting(key, value)).collect()
+    let settings = cell.settings();
+    settings.map(|(key, value)| setting(key, value)).collect()
 }
 
 /// The index of the study's entry with which statistics are compared.

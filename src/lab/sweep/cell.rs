@@ -27,6 +27,11 @@ impl Cell {
         self.value(LABEL)?.as_str()
     }
 
+    /// The varied settings without the label.
+    pub fn settings(&self) -> impl Iterator<Item = &(String, Value)> {
+        self.values.iter().filter(|(key, _)| key != LABEL)
+    }
+
     /// The value of a varied setting.
     pub fn value(&self, key: &str) -> Option<&Value> {
         let mut values = self.values.iter();
