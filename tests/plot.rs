@@ -111,7 +111,7 @@ fn few_people_are_drawn_as_circles_and_a_crowd_as_an_image() {
     assert!(few.matches("<circle").count() >= 1000 && !few.contains("<image"));
     let (crowd, _) = saved(&sheet(2500));
     assert!(crowd.matches("<circle").count() < 100 && crowd.contains("<image"));
-    assert!(crowd.len() < 300_000, "{}", crowd.len());
+    assert!(crowd.len() < 500_000, "{}", crowd.len());
 }
 
 #[test]
@@ -119,21 +119,24 @@ fn the_same_sheet_gives_the_same_bytes() {
     assert_eq!(saved(&sheet(100)), saved(&sheet(100)));
 }
 
-/// The SVG of a sheet with a single panel without labels.
-fn svg_of(x: Axis, y: Axis, marks: Vec<Mark>) -> String {
+/// The SVG and the PNG of a sheet with a single panel without labels.
+fn single(x: Axis, y: Axis, marks: Vec<Mark>) -> (String, Vec<u8>) {
     let panel = Panel {
         x,
         y,
         marks,
         ..Panel::default()
     };
-    let sheet = Sheet {
+    saved(&Sheet {
         title: String::new(),
         row_titles: Vec::new(),
         panels: vec![panel],
         ..sheet(0)
-    };
-    saved(&sheet).0
+    })
+}
+
+fn svg_of(x: Axis, y: Axis, marks: Vec<Mark>) -> String {
+    single(x, y, marks).0
 }
 
 /// The labels of a horizontal axis.
@@ -226,7 +229,7 @@ fn an_area_that_leaves_the_panel_is_cut_at_the_rim() {
         .map(|(a, b)| a[0] * b[1] - a[1] * b[0]);
     let area = 0.5 * twice.sum::<f64>().abs();
     // The part inside is half a square with sides of 5.
-    assert!((area - 0.125).abs() < 0.002, "{area}");
+    assert!((area - 0.125).abs() < 0.004, "{area}");
 }
 
 #[test]
@@ -242,15 +245,37 @@ fn the_first_row_of_cells_is_at_the_bottom() {
     let svg = svg_of(ten(), ten(), vec![cells]);
     let top = |[r, g, b]: [u8; 3]| {
         let color = format!("fill=\"#{r:02X}{g:02X}{b:02X}\"");
-        let cell = svg.lines().filter(|line| line.starts_with("<rect"));
-        attribute(
-            cell.filter(|line| line.contains(&color))
-                .next_back()
-                .unwrap(),
-            " y",
-        )
+        let mut shapes = svg.lines().filter(|line| line.starts_with("<rect"));
+        let cell = shapes.rfind(|line| line.contains(&color));
+        attribute(cell.unwrap(), " y")
     };
     assert!(top(first) > top(second));
     let rectangles = svg.matches("<rect").count();
     assert_eq!(rectangles, 3, "the background and two cells");
+}
+
+#[test]
+fn a_crowd_covers_the_area_of_its_discs() {
+    // Not on a regular grid: there, all discs would have the same rounding errors.
+    let near =
+        |place: usize, k: usize| 0.1 + 0.2 * place as f64 + 0.02 * (0.618 * k as f64).fract();
+    let disc = |k: usize| Disc {
+        center: [near(k % 50, k), near(k / 50, 3 * k)],
+        radius: 0.08,
+        color: BLACK,
+    };
+    // In pixels.
+    let black = |count: usize| {
+        let marks = vec![Mark::Discs((0..count).map(disc).collect())];
+        let (_, png) = single(ten(), ten(), marks);
+        let image = image::load_from_memory(&png).unwrap().to_luma8();
+        image
+            .pixels()
+            .map(|p| f64::from(255 - p.0[0]) / 255.0)
+            .sum::<f64>()
+    };
+    // Two pixels per point, and 150 points for 10 m.
+    let area = 2500.0 * std::f64::consts::PI * (0.08_f64 * 30.0).powi(2);
+    let drawn = black(2500) - black(0);
+    assert!((drawn / area - 1.0).abs() < 0.03, "{drawn} of {area}");
 }
