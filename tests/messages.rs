@@ -46,7 +46,6 @@ fn text_from_a_scenario_is_shortened_and_escaped() {
         ("profile", json!({"base": long}), 2),
         ("seed", json!(long), 2),
         ("integrator", json!(long), 2),
-        ("time_step_secs", json!(long), 2),
         ("walkable_area", json!(long.replace('/', "")), 2),
         ("parameters", json!({ long.as_str(): 1 }), 2),
         (

@@ -121,6 +121,10 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
     ],
     ["viscosity", "a setting has the form key=value"],
     [
+        "=5",
+        "unknown setting `` (`sandbox list --settings` shows them all)",
+    ],
+    [
         "seed=x",
         r#"--set seed=x: invalid type: text "x", expected a whole number from 0 to 2^64 - 1"#,
     ],

@@ -2,6 +2,7 @@
 
 use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::scene::{Integrator, Scene};
+use sandbox::runs::summary::Summary;
 use sandbox::scenario::catalog::{self, NAMES, Parameters};
 use sandbox::scenario::{Preset, Scenario, Setting, nested_settings, schema, settings};
 use serde_json::{Value, json};
@@ -177,6 +178,11 @@ fn the_old_name_of_a_key_still_works() {
         "f: behaviour_seed: the old name of `behavior_seed`, which is given too; remove one"
     );
     assert_eq!(schema()["properties"]["behaviour_seed"]["deprecated"], true);
+    let result = json!({"scenario": "f", "profile": "sph", "seed": 1, "behaviour_seed": 5, "state_sha256": "",
+        "frames": 1, "time_secs": 1, "agents": 1, "metrics": {}, "contained_moves": 0, "clamped_speeds": 0,
+        "displaced_agents": 0});
+    let result: Summary = serde_json::from_value(result).unwrap();
+    assert_eq!(result.behavior_seed, 5);
 }
 
 #[test]

@@ -4,8 +4,8 @@ use super::{Failure, say};
 use crate::scenario::catalog::NAMES;
 use crate::scenario::{self, SHIPPED, nested_settings, settings};
 
-/// Most characters in a line of descriptions.
-const WIDTH: usize = 100;
+/// Most characters in a line beside a name.
+const WIDTH: usize = 80;
 
 pub fn run(list_settings: bool) -> Result<(), Failure> {
     let mut text = String::new();
@@ -14,12 +14,13 @@ pub fn run(list_settings: bool) -> Result<(), Failure> {
             let default = setting
                 .default
                 .map(|default| format!("default: {default}; "));
-            let values = format!("  {}{}", default.unwrap_or_default(), setting.range);
-            text += &entry(setting.key, &[setting.description, &values]);
+            let values = format!("{}{}", default.unwrap_or_default(), setting.range);
+            text += &entry(setting.key, 0, setting.description);
+            text += &entry("", 2, &values);
         }
         text += "\nKeys of nested objects (? = optional; `sandbox schema` describes them):\n";
         for (path, keys) in nested_settings() {
-            text += &entry(&path, &[&keys]);
+            text += &entry(&path, 0, &keys);
         }
         text += "\nA dotted path sets a value inside a list or object: --set sources.0.rows=50\n\
                  Parameters set this way apply to all profiles of the scenario.\n";
@@ -37,23 +38,22 @@ pub fn schema() -> Result<(), Failure> {
     say(format!("{:#}\n", scenario::schema()))
 }
 
-/// A name with paragraphs beside it, broken into lines.
-fn entry(name: &str, paragraphs: &[&str]) -> String {
-    let mut text = String::new();
-    let mut name = name;
-    for paragraph in paragraphs {
-        let mut line = String::new();
-        for word in paragraph.split(' ') {
-            if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > WIDTH - 21 {
-                text += &format!("{name:<20} {line}\n");
-                name = "";
-                line.clear();
+/// A name with a text beside it, broken into lines that are indented by `indent` spaces.
+fn entry(name: &str, indent: usize, text: &str) -> String {
+    let indent = " ".repeat(indent);
+    let mut lines = vec![indent.clone()];
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + word.chars().count() < WIDTH => {
+                *line += word;
+                *line += " ";
             }
-            line += if line.is_empty() { "" } else { " " };
-            line += word;
+            _ => lines.push(format!("{indent}{word} ")),
         }
-        text += &format!("{name:<20} {line}\n");
-        name = "";
     }
-    text
+    let names = std::iter::once(name).chain(std::iter::repeat(""));
+    let lines = names.zip(lines.iter().map(|line| line.trim_end()));
+    lines
+        .map(|(name, line)| format!("{name:<20} {line}\n"))
+        .collect()
 }

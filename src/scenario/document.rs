@@ -175,19 +175,4 @@ mod tests {
             assert!(written.lines().all(|line| line.chars().count() < 120));
         }
     }
-
-    #[test]
-    fn a_key_given_twice_and_bad_syntax_are_reported_with_their_place() {
-        let twice = read("{\"seed\": 1,\n \"seed\": 2}", "f.json").unwrap_err();
-        assert_eq!(
-            twice.to_string(),
-            "f.json: line 2, column 7: key `seed` is given twice; remove one"
-        );
-        let cut = read("{\"seed\": 1", "f.json").unwrap_err();
-        assert_eq!(
-            cut.to_string(),
-            "f.json: line 1, column 10: the text ends within an object"
-        );
-        assert!(read(&"[".repeat(100_000), "f").is_err());
-    }
 }

@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn slips_of_the_finger_are_recognised() {
+    fn slips_of_the_finger_are_recognized() {
         assert_eq!(suggestion("fs", ["sf", "sph"]), "; did you mean `sf`?");
         assert_eq!(
             suggestion("duration", ["duration_secs"]),

@@ -75,15 +75,12 @@ fn words(schema: &'static Value) -> String {
         return words_of(definition).unwrap_or_else(|| words(definition));
     }
     if let Some(ways) = ways(schema) {
-        let ways: Vec<&Value> = ways.collect();
-        return match ways.iter().map(|way| way.get("const").map(plain)).collect() {
-            Some(words) => one_of(words),
-            None => ways
-                .into_iter()
-                .map(words)
-                .collect::<Vec<_>>()
-                .join(", or "),
-        };
+        let (constants, others): (Vec<_>, Vec<_>) =
+            ways.partition(|way| way["const"] != Value::Null);
+        let constants = one_of(constants.iter().map(|way| plain(&way["const"])).collect());
+        let others = others.into_iter().map(words);
+        let all = others.chain(Some(constants).filter(|words| !words.is_empty()));
+        return all.collect::<Vec<_>>().join(", or ");
     }
     if let Some(words) = schema["enum"].as_array() {
         return one_of(words.iter().map(plain).collect());
@@ -112,7 +109,7 @@ fn one_of(mut words: Vec<String>) -> String {
 /// ones, marked by `?`.
 pub fn nested_settings() -> Vec<(String, String)> {
     let mut lines = Vec::new();
-    let mut seen = BTreeSet::new();
+    let mut seen = BTreeSet::from(["#/$defs/Parameters"]); // among the settings
     for key in names::<File>() {
         collect(key, property(key), &mut seen, &mut lines);
     }
@@ -126,20 +123,18 @@ fn collect(
     seen: &mut BTreeSet<&'static str>,
     lines: &mut Vec<(String, String)>,
 ) {
-    if let Some(name) = schema["$ref"].as_str()
-        && (name.ends_with("/Parameters") || !seen.insert(name))
+    if schema["$ref"]
+        .as_str()
+        .is_some_and(|name| !seen.insert(name))
     {
         return;
     }
     let schema = resolved(schema);
-    // Alternatives that are told apart by a key.
-    let ways = ["anyOf", "oneOf"]
-        .into_iter()
-        .find_map(|key| schema[key].as_array());
-    let ways = || ways.into_iter().flatten();
-    let keyed: Vec<&str> = ways()
-        .filter_map(|way| way["required"][0].as_str())
-        .collect();
+    let ways = ["anyOf", "oneOf"].map(|key| schema[key].as_array());
+    let ways = || ways.into_iter().flatten().flatten();
+    // The keys that tell alternatives apart.
+    let keyed = ways().filter_map(|way| way["required"][0].as_str());
+    let keyed: Vec<&str> = keyed.collect();
     let keys = || schema["properties"].as_object().into_iter().flatten();
     let mut line = Vec::new();
     if !keyed.is_empty() {
