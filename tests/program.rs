@@ -25,6 +25,7 @@ mod read;
 mod recording;
 mod reproduction;
 mod scenario_geometry;
+mod stability;
 mod stress;
 mod study_robustness;
 mod sweep;

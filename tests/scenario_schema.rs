@@ -116,7 +116,7 @@ fn every_object_has_the_keys_that_the_parser_knows() {
         ("/grids/0", "/properties/grids/items"),
         ("/sources/0", "/properties/sources/items"),
         ("/events/0", "/$defs/Event"),
-        ("/measurements/0/density", "/$defs/DensityAt"),
+        ("/measurements/0/density", "/$defs/Density"),
         ("/measurements/2/flow_of_first", "/$defs/FlowOfFirst"),
         ("/measurements/3/flow_until", "/$defs/FlowUntil"),
         ("/stop", "/$defs/Stop"),

@@ -69,7 +69,8 @@ fn the_keys_of_nested_objects_are_documented() {
     for (path, keys) in [
         (
             "measurements",
-            "one of density, flow_of_first, flow_until or evacuated",
+            "one of density, flow_of_first, flow_until, evacuated, uncounted, pauses, locked, snapshot, wave, contacts, \
+             jitter, closest, integrity, speed_by_density or frame_time",
         ),
         ("measurements.density", "at_secs, region?"),
         ("stop", "idle_secs?, when_empty?"),

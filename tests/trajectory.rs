@@ -253,7 +253,7 @@ fn an_aborted_run_leaves_whole_frames() {
 /// The rings of a polygon in well-known text: the outline, then the holes.
 fn rings(wkt: &str) -> Vec<Polygon> {
     let inside = wkt
-        .strip_prefix("POLYGON ((")
+        .strip_prefix("POLYGON((")
         .unwrap()
         .strip_suffix("))")
         .unwrap();
@@ -262,11 +262,11 @@ fn rings(wkt: &str) -> Vec<Polygon> {
         vector(x.parse().unwrap(), y.parse().unwrap())
     };
     let ring = |text: &str| {
-        let mut points: Vec<Vector> = text.split(", ").map(point).collect();
+        let mut points: Vec<Vector> = text.split(',').map(point).collect();
         assert_eq!(points.pop(), points.first().copied());
         Polygon::new(points).unwrap()
     };
-    inside.split("), (").map(ring).collect()
+    inside.split("),(").map(ring).collect()
 }
 
 fn contains(rings: &[Polygon], p: Vector) -> bool {

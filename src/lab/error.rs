@@ -20,9 +20,6 @@ pub enum LabError {
     /// Results cannot be stored.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// A study is invalid.
-    #[error(transparent)]
-    Study(#[from] super::sweep::StudyError),
     /// A requested result is missing, or has another form.
     #[error("{case}: there is no {what}")]
     Missing {
@@ -34,7 +31,7 @@ pub enum LabError {
     /// A picture cannot be made.
     #[error(transparent)]
     Picture(#[from] PlotError),
-    /// Data that ship with the program are invalid, or a table cannot be written.
+    /// Data or a study that ship with the program are invalid, or a table cannot be written.
     #[error("{0}")]
     Data(String),
 }

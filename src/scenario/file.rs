@@ -149,7 +149,7 @@ impl From<Point> for Vector {
     }
 }
 
-/// Corners in order, in either orientation
+/// A ring: its corners in order, in either orientation
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub(super) struct Ring(#[schemars(length(min = 3))] pub Vec<Point>);

@@ -60,6 +60,9 @@ fn check_type(schema: &Value, value: &Value) -> Result<(), Problem> {
         Map::<String, Value>::deserialize(value).err()
     } else if allows(schema, "number") {
         f64::deserialize(value).err()
+    } else if allows(schema, "array") && !value.is_array() && words_of(schema).is_some() {
+        let words = words_of(schema).unwrap_or_default();
+        return Err(Problem::new("", format!("must be {words}")));
     } else {
         let length = schema.get("maxItems").and_then(Value::as_u64);
         if length.is_some()

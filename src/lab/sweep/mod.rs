@@ -36,6 +36,7 @@ pub use gathered::{Combination, Gathered, State};
 pub use shard::Shard;
 pub use study::Study;
 
+use crate::lab::error::LabError;
 use crate::runs::error::{RunError, StoreError};
 use crate::runs::job::{self, Listener, Tally};
 use crate::runs::store::Store;
@@ -60,6 +61,12 @@ pub enum StudyError {
     /// The cells cannot be checked in parallel.
     #[error(transparent)]
     Machine(#[from] StoreError),
+}
+
+impl From<StudyError> for LabError {
+    fn from(error: StudyError) -> Self {
+        Self::Data(error.to_string())
+    }
 }
 
 /// Computes the cells of a shard that are not in `store`, as [`job::run`] does, within the study's memory.
