@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn strange_sizes_and_extents_make_small_grids() {
-        for height in [0.0, 5e-324, 1e-300] {
+        for height in [0.0, 5e-324, 1e-300, 1.14] {
             for positions in [
                 vec![Vector::zeros()],
                 vec![Vector::zeros(), Vector::new(9.0, 1e9)],

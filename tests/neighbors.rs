@@ -1,0 +1,163 @@
+//! Neighbor lists and searches, compared with brute force.
+
+use crate::common::vector;
+use rand::Rng;
+use sandbox::engine::agents::{Agents, NewAgent};
+use sandbox::engine::math::Vector;
+use sandbox::engine::neighbors::{BLOCK, CLUSTER, Neighbors, Ranges, SKIN};
+use sandbox::engine::random::{Purpose, stream};
+
+fn crowd(count: u32, side: f64) -> Agents {
+    let mut agents = Agents::default();
+    for id in 0..count {
+        let mut rng = stream(7, Purpose::Placement, id, 0);
+        let position = vector(rng.random_range(0.0..side), rng.random_range(0.0..side));
+        agents.enter(NewAgent::at(position, Vector::zeros(), 0), 7);
+    }
+    agents
+}
+
+fn listed(agents: &mut Agents) -> Neighbors {
+    let mut neighbors = Neighbors::default();
+    let ranges = Ranges {
+        support: 1.0,
+        avoidance: Some(5.0),
+        social: Some(5.0),
+        longest_step: 0.036,
+        drift: 0.5 * SKIN,
+        margin: 0.5 * SKIN,
+    };
+    neighbors.sort(agents, ranges);
+    neighbors.list_agents();
+    neighbors
+}
+
+fn near(neighbors: &Neighbors, i: usize) -> Vec<usize> {
+    neighbors.near().near(i).collect()
+}
+
+#[test]
+fn lists_hold_all_near_agents_once_in_ascending_order() {
+    for (count, side) in [(0, 1.0), (1, 1.0), (300, 6.0), (300, 300.0), (300, 0.1)] {
+        let mut agents = crowd(count, side);
+        let neighbors = listed(&mut agents);
+        for i in 0..agents.len() {
+            let found = near(&neighbors, i);
+            assert!(found.is_sorted_by(|a, b| a < b) && found.contains(&i));
+            for j in 0..agents.len() {
+                let distance = (agents.position[i] - agents.position[j]).norm();
+                assert!(distance >= 1.0 + SKIN || found.contains(&j));
+            }
+        }
+    }
+}
+
+#[test]
+fn lists_hold_few_agents_beyond_the_reach_of_a_cluster() {
+    let mut agents = crowd(8000, 40.0);
+    let neighbors = listed(&mut agents);
+    let listed: usize = (0..8000).map(|i| near(&neighbors, i).len()).sum();
+    let area = listed as f64 / 8000.0 / 5.0;
+    // At 5 agents per m², eight agents in a row 1.14 m high take up 1.40 m. With 1.14 m added on all sides that
+    // is 12.6 m²; partly covered cells add 0.5 m² on average.
+    assert!(area < 13.3, "{area} m²");
+}
+
+#[test]
+fn clusters_hold_all_agents_once_in_order() {
+    for (count, side) in [(0, 1.0), (1, 1.0), (300, 6.0), (300, 300.0), (300, 0.1)] {
+        let mut agents = crowd(count, side);
+        let neighbors = listed(&mut agents);
+        let blocks = (0..agents.len().div_ceil(BLOCK)).map(|b| neighbors.near().block(b));
+        let members: Vec<usize> = blocks
+            .flat_map(|block| block.clusters())
+            .inspect(|(agents, _)| assert!(agents.len() <= CLUSTER))
+            .flat_map(|(agents, _)| agents)
+            .collect();
+        assert_eq!(members, (0..agents.len()).collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn no_neighbor_is_missed_until_the_lists_are_stale() {
+    let mut agents = crowd(400, 12.0);
+    let mut neighbors = listed(&mut agents);
+    for step in 1..=2 {
+        assert!(!neighbors.are_stale());
+        for (i, r) in agents.position.iter_mut().enumerate() {
+            let angle = i as f64;
+            *r += vector(angle.cos(), angle.sin()) * 0.05;
+        }
+        neighbors.travelled(0.05 * f64::from(step));
+        for i in 0..agents.len() {
+            let r_i = agents.position[i];
+            let around: Vec<usize> = neighbors.around(r_i, 5.0).flatten().collect();
+            let near = near(&neighbors, i);
+            let mut runs = Vec::new();
+            let alone = i..i + 1;
+            neighbors.around_cluster(alone, &agents.position, 5.0, &mut runs);
+            for j in (0..agents.len()).filter(|&j| j != i) {
+                let distance = (r_i - agents.position[j]).norm();
+                assert!(distance >= 1.0 || near.contains(&j));
+                assert!(distance >= 5.0 || around.contains(&j));
+                assert!(distance >= 5.0 || runs.iter().any(|run| run.contains(&(j as u32))));
+            }
+        }
+        // Lists rebuilt on the old cells are valid as long as before.
+        neighbors.list_agents();
+    }
+    neighbors.travelled(0.1 + 1e-6);
+    assert!(neighbors.are_stale());
+}
+
+#[test]
+fn all_agents_around_a_cluster_are_found_once() {
+    for (count, side) in [(1, 1.0), (300, 6.0), (300, 60.0), (300, 3000.0)] {
+        let mut agents = crowd(count, side);
+        let neighbors = listed(&mut agents);
+        let mut runs = Vec::new();
+        let blocks = (0..agents.len().div_ceil(BLOCK)).map(|b| neighbors.near().block(b));
+        for (cluster, _) in blocks.flat_map(|block| block.clusters()) {
+            for radius in [0.5, 2.7, 5.0] {
+                neighbors.around_cluster(cluster.clone(), &agents.position, radius, &mut runs);
+                let found: Vec<usize> =
+                    runs.iter().cloned().flatten().map(|j| j as usize).collect();
+                assert!(found.is_sorted_by(|a, b| a < b));
+                for (i, j) in cluster
+                    .clone()
+                    .flat_map(|i| (0..agents.len()).map(move |j| (i, j)))
+                {
+                    let offset = agents.position[i] - agents.position[j];
+                    assert!(offset.norm() >= radius || found.contains(&j));
+                    // Agents that are found do not seem near when coordinates wrap.
+                    let wrapped = 2.0 * neighbors.extent() - offset.amax() - SKIN;
+                    assert!(!found.contains(&j) || wrapped > radius + SKIN, "{offset}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn no_listed_agent_seems_near_when_coordinates_wrap() {
+    for (count, side) in [(300, 6.0), (300, 40.0), (300, 60.0), (40, 300.0)] {
+        let mut agents = crowd(count, side);
+        let neighbors = listed(&mut agents);
+        for i in 0..agents.len() {
+            for j in near(&neighbors, i) {
+                let offset = (agents.position[i] - agents.position[j]).abs();
+                let wrapped = 2.0 * neighbors.extent() - offset.max() - SKIN;
+                assert!(wrapped > 1.0 + SKIN, "{offset}");
+            }
+        }
+    }
+}
+
+#[test]
+fn an_agent_far_from_the_others_has_no_neighbors() {
+    let mut agents = crowd(50, 5.0);
+    agents.enter(NewAgent::at(vector(1e9, -1e9), Vector::zeros(), 0), 0);
+    let neighbors = listed(&mut agents);
+    let far = agents.index_of(50).unwrap();
+    assert_eq!(near(&neighbors, far), [far]);
+}
