@@ -7,12 +7,14 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::density::from_agents;
+use sandbox::engine::forces::near::{self, PairCoefficients, Wanted};
 use sandbox::engine::forces::rvo::{Rvo, Scratch};
 use sandbox::engine::forces::social::SocialForce;
 use sandbox::engine::geometry::{Polygon, Walls};
 use sandbox::engine::math::Vector;
 use sandbox::engine::neighbors::{BLOCK, Neighbors};
-use sandbox::engine::pairs::{Packed, PairCoefficients, Precision, Wanted};
+use sandbox::engine::pairs::{Packed, Precision};
 use sandbox::engine::simulation::Simulation;
 use sandbox::lab::bench::Crowd;
 
@@ -35,7 +37,6 @@ fn density(criterion: &mut Criterion) {
     for precision in [Precision::Mixed, Precision::Double] {
         let simulation = evaluated(&Crowd::concert(AGENTS), precision);
         let frame = simulation.frame();
-        let mut packed = frame.packed.clone();
         let mut densities = vec![0.0; AGENTS as usize];
         group.bench_function(
             BenchmarkId::from_parameter(format!("{precision:?}")),
@@ -43,9 +44,9 @@ fn density(criterion: &mut Criterion) {
                 bencher.iter(|| {
                     for (b, out) in densities.chunks_mut(BLOCK).enumerate() {
                         let block = frame.neighbors.near().block(b);
-                        match &mut packed {
-                            Packed::Double(columns) => columns.pressures().0.densities(block, out),
-                            Packed::Mixed(columns) => columns.pressures().0.densities(block, out),
+                        match frame.packed {
+                            Packed::Double(columns) => from_agents(&columns.bodies, block, out),
+                            Packed::Mixed(columns) => from_agents(&columns.bodies, block, out),
                         }
                     }
                     black_box(densities[0])
@@ -71,20 +72,12 @@ fn pair_forces(criterion: &mut Criterion) {
         pressure: true,
         ..Wanted::default()
     };
-    let all = Wanted {
-        pressure: true,
-        viscosity: true,
-        contact: true,
-    };
-    for (name, wanted) in [("pressure", pressure), ("all", all)] {
+    for (name, wanted) in [("pressure", pressure), ("all", Wanted::ALL)] {
         let mut out = vec![Vector::zeros(); AGENTS as usize];
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
                 for (b, out) in out.chunks_mut(BLOCK).enumerate() {
-                    let block = frame.neighbors.near().block(b);
-                    frame
-                        .packed
-                        .accelerations(block, &coefficients, wanted, out);
+                    near::accelerations(&frame, b, &coefficients, wanted, out);
                 }
                 black_box(out[0])
             });

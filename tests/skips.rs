@@ -3,7 +3,7 @@
 use crate::common;
 use crate::common::{blend, blend_with, block, person, rectangle, room, scene, vector};
 use sandbox::engine::boundary::WallMethod;
-use sandbox::engine::pairs::Wanted;
+use sandbox::engine::forces::near::Wanted;
 use sandbox::engine::profile::Blend;
 use sandbox::engine::scene::Needs;
 use sandbox::engine::simulation::{Simulation, Stage};

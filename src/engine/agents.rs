@@ -4,7 +4,7 @@ use rand::Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::engine::math::{Vector, pairs_of};
+use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
 
 /// D_i ∈ U[0.215, 0.265] m (§5.6).
@@ -53,13 +53,10 @@ pub struct Agents {
     /// Unique number, in the order of entry from 0.
     pub id: Vec<u32>,
     /// r_i, meters.
-    #[serde(with = "pairs_of::many")]
     pub position: Vec<Vector>,
     /// v_i, m/s.
-    #[serde(with = "pairs_of::many")]
     pub velocity: Vec<Vector>,
     /// g_i, meters.
-    #[serde(with = "pairs_of::many")]
     pub goal: Vec<Vector>,
     /// D_i, meters.
     pub radius: Vec<f64>,
@@ -75,11 +72,9 @@ pub struct Agents {
     pub push: Vec<Option<u16>>,
     /// The RVO acceleration held until the next coarse frame, m/s²; `None` where RVO does not act. Empty if no
     /// profile uses RVO.
-    #[serde(with = "pairs_of::some")]
     pub avoidance: Vec<Option<Vector>>,
     /// The acceleration of the previous frame, m/s²; `None` for agents that entered since. Used by velocity Verlet
     /// only, otherwise empty.
-    #[serde(with = "pairs_of::some")]
     pub acceleration_before: Vec<Option<Vector>>,
     next_id: u32,
 }
@@ -121,6 +116,11 @@ impl Agents {
     /// The current index of agent `id`; `None` if it has left.
     pub fn index_of(&self, id: u32) -> Option<usize> {
         self.id.iter().position(|&other| other == id)
+    }
+
+    /// ρ̂_i of the previous frame, P/m²; `None` for a newcomer.
+    pub fn kept_mean_density(&self, i: usize) -> Option<f64> {
+        (!self.newcomer[i]).then_some(self.mean_density[i])
     }
 
     /// Adds an agent and returns its id.

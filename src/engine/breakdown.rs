@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::engine::boundary::WallShare;
 use crate::engine::density::mean_density_before;
+use crate::engine::forces::pressure;
 use crate::engine::math::Vector;
 use crate::engine::profile::Terms;
 use crate::engine::simulation::{Fault, Simulation};
@@ -174,25 +175,20 @@ impl Breakdown {
 
 fn wall_terms(simulation: &Simulation, i: usize) -> Vec<WallTerm> {
     let frame = simulation.frame();
-    let (fields, r_i) = (frame.fields, frame.agents.position[i]);
+    let (agents, fields) = (frame.agents, frame.fields);
+    let r_i = agents.position[i];
     let from_agents = fields.density[i] - fields.density_from_walls[i];
     let sph = &simulation.blend(i).sph;
-    let rest_density_before = sph.rest_density(mean_density_before(&frame, i, from_agents));
-    let feels_pressure = fields.density[i] >= fields.rest_density[i];
+    let before = mean_density_before(agents.kept_mean_density(i), from_agents);
     let mut terms = Vec::new();
     let take = |share: WallShare| {
-        let force = share.gradient * (-fields.pressure[i] / fields.density[i]);
         terms.push(WallTerm {
             wall: share.wall,
             nearest_point: frame.walls.wall(share.wall).nearest_point(r_i).point.into(),
             representative_point: share.representative_point.map(Into::into),
             hidden_area: share.hidden_area,
-            density: rest_density_before * share.kernel,
-            pressure_acceleration: if feels_pressure {
-                force.into()
-            } else {
-                [0.0; 2]
-            },
+            density: sph.rest_density(before) * share.kernel,
+            pressure_acceleration: pressure::from_walls(&frame, i, share.gradient).into(),
         });
     };
     let candidates = frame.neighbors.near_walls(i);

@@ -1,8 +1,21 @@
 //! Step 1B: density, personal rest density and pressure (§4.2, §4.3).
 
+use std::f64::consts::PI;
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::engine::agents::Agents;
 use crate::engine::boundary::WallMethod;
-use crate::engine::frame::Frame;
+use crate::engine::frame::Fields;
+use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
+use crate::engine::neighbors::{BLOCK, ClusterBlock, Neighbors, TASK};
+use crate::engine::pairs::prelude::*;
+use crate::engine::pairs::{
+    Bodies, Columns, Lanes, Level, PairSum, Real, Simd, add_pairs, dispatch, load, splat, spread,
+    store,
+};
 
 /// Parameters of SPH density and pressure, shared by all profiles of a blend.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,100 +56,160 @@ impl SphParameters {
         mean_density.clamp(self.rest_density_min, self.rest_density_max)
     }
 
+    /// Eqs. 10 and 8: the density from walls and the moving average ρ̂, P/m². `hidden` is Σ_k ∫ W over P_k, and `kept`
+    /// is the average `time_step` seconds before; a newcomer has none.
+    pub fn next_averages(
+        &self,
+        from_agents: f64,
+        hidden: f64,
+        kept: Option<f64>,
+        time_step: f64,
+    ) -> [f64; 2] {
+        let before = mean_density_before(kept, from_agents);
+        let from_walls = hidden * self.rest_density(before);
+        let mean = self.averaged(before, from_agents + from_walls, time_step);
+        [from_walls, mean]
+    }
+
     /// Eq. 5.
     pub fn pressure(&self, density: f64, rest_density: f64) -> f64 {
         self.gas_constant * (density - rest_density)
     }
 }
 
-/// Results of step 1B for consecutive agents; units as in [`Fields`](crate::engine::frame::Fields).
-pub struct SphStates<'a> {
-    /// Input: Eq. 9 without walls. Output: ρ_i.
-    pub density: &'a mut [f64],
-    /// The part of ρ_i from walls. Sorting resets it to zero, and it stays zero if no walls are near these agents
-    /// (see [`Fields::forget_walls`](crate::engine::frame::Fields::forget_walls)).
-    pub density_from_walls: &'a mut [f64],
-    /// ρ̂_i after this step.
-    pub mean_density: &'a mut [f64],
-    /// ρ_i⁰.
-    pub rest_density: &'a mut [f64],
-    /// p_i.
-    pub pressure: &'a mut [f64],
-    /// Σ_k ∫ ∇W over P_k; reset to zero like `density_from_walls`.
-    pub wall_gradient: &'a mut [Vector],
+/// ρ̂ of the previous frame, P/m²: the one that was `kept`, or, for a newcomer, its sum `from_agents` of Eq. 9.
+pub fn mean_density_before(kept: Option<f64>, from_agents: f64) -> f64 {
+    kept.unwrap_or(from_agents)
 }
 
-/// ρ̂ of the previous frame, P/m²; for a newcomer, the sum `from_agents` of Eq. 9.
-pub fn mean_density_before(frame: &Frame, i: usize, from_agents: f64) -> f64 {
-    if frame.agents.newcomer[i] {
-        from_agents
-    } else {
-        frame.agents.mean_density[i]
+/// Eq. 9 without walls for eight agents i: Σ_j m_j W(r_ij), including j = i.
+struct FromAgents<'a, R: Real, S: Simd> {
+    mass: &'a [R],
+    /// −(meters per coordinate unit)²/h².
+    scale: Lanes<R, S>,
+    /// The sum without the factor 4/(π h²) of Eq. 13.
+    sum: Lanes<R, S>,
+}
+
+impl<'a, R: Real, S: Simd> PairSum<R, S> for FromAgents<'a, R, S> {
+    type Run = &'a [R];
+
+    #[inline(always)]
+    fn run(&self, run: Range<usize>) -> &'a [R] {
+        &self.mass[run]
+    }
+
+    #[inline(always)]
+    fn add(&mut self, simd: S, [dx, dy]: [Lanes<R, S>; 2], mass: &'a [R], j: usize) {
+        let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
+        let squared = dy.mul_add(dy, dx * dx);
+        let rest = squared.mul_add(self.scale, one).max(zero);
+        self.sum = (spread::<R, S>(simd, mass[j]) * rest).mul_add(rest * rest, self.sum);
     }
 }
 
-impl SphStates<'_> {
-    /// Eqs. 9, 10, 8 and 5, in this order, for agents `from` and up, `dt` seconds after the moving average was last
-    /// stored. Walls use the rest density of the previous frame. `sph` holds the parameters if all these agents
-    /// share them, and `sph_of` returns those of one agent.
-    pub fn update<'s>(
-        &mut self,
-        frame: &Frame,
-        dt: f64,
-        from: usize,
-        walls: WallMethod,
-        sph: Option<SphParameters>,
-        sph_of: impl Fn(usize) -> &'s SphParameters,
-    ) {
-        let walled = self.see_walls(frame, from, walls, &sph_of);
-        let to = from + self.density.len();
-        let newcomer = &frame.agents.newcomer[from..to];
-        let before = &frame.agents.mean_density[from..to];
-        for k in 0..to - from {
-            let sph = sph.unwrap_or_else(|| *sph_of(from + k));
-            let before = if newcomer[k] {
-                self.density[k]
-            } else {
-                before[k]
-            };
-            let mut density = self.density[k];
-            if walled {
-                self.density_from_walls[k] *= sph.rest_density(before);
-                density += self.density_from_walls[k];
-            }
-            let mean_density = sph.averaged(before, density, dt);
-            let rest_density = sph.rest_density(mean_density);
-            self.density[k] = density;
-            self.mean_density[k] = mean_density;
-            self.rest_density[k] = rest_density;
-            self.pressure[k] = sph.pressure(density, rest_density);
+/// Eq. 9 without walls: Σ_j m_j W(r_ij), including j = i, in P/m², for each agent of a block.
+pub fn from_agents<R: Real>(bodies: &Bodies<R>, block: &ClusterBlock, out: &mut [f64]) {
+    dispatch!(Level::new(), simd => sums(simd, bodies, block, out));
+}
+
+#[inline(always)]
+fn sums<R: Real, S: Simd>(simd: S, bodies: &Bodies<R>, block: &ClusterBlock, out: &mut [f64]) {
+    for (agents, runs) in block.clusters() {
+        let per_h: Lanes<R, S> = load(simd, &bodies.per_support, agents.start);
+        let per_h_squared = per_h * per_h;
+        let mut sum = FromAgents {
+            mass: &bodies.mass,
+            scale: per_h_squared * splat::<R, S>(simd, -bodies.unit * bodies.unit),
+            sum: splat::<R, S>(simd, 0.0),
+        };
+        add_pairs(simd, bodies, (agents.start, runs), &mut sum);
+        let sums = sum.sum * per_h_squared * splat::<R, S>(simd, 4.0 / PI);
+        let own = agents.start % BLOCK;
+        for (density, sum) in out[own..own + agents.len()]
+            .iter_mut()
+            .zip(store::<R, S>(sums))
+        {
+            *density = sum;
         }
     }
+}
 
-    /// Stores Σ_k ∫ W over P_k in `density_from_walls` and Σ_k ∫ ∇W in `wall_gradient`. Does nothing and returns
-    /// `false` if no walls are near.
-    fn see_walls<'s>(
-        &mut self,
-        frame: &Frame,
-        from: usize,
-        walls: WallMethod,
-        sph_of: impl Fn(usize) -> &'s SphParameters,
-    ) -> bool {
-        let agents = from..from + self.density.len();
-        let mut near_walls = frame.neighbors.agents_near_walls(agents).peekable();
+/// What step 1B reads.
+#[derive(Clone, Copy)]
+pub struct Input<'a, P> {
+    /// The state of the crowd.
+    pub agents: &'a Agents,
+    /// Neighbor lists.
+    pub neighbors: &'a Neighbors,
+    /// Walls of the obstacles, and how they enter SPH.
+    pub walls: (&'a Walls, WallMethod),
+    /// The parameters of a group.
+    pub parameters: P,
+    /// Seconds since the moving average was last stored.
+    pub time_step: f64,
+}
+
+impl<'a, P: Fn(u16) -> &'a SphParameters + Sync> Input<'a, P> {
+    /// Step 1B for all agents: Eqs. 9, 10, 8 and 5, in this order. Walls use the rest density of the previous frame.
+    pub fn update<R: Real>(&self, columns: &mut Columns<R>, fields: &mut Fields) {
+        let bodies = &columns.bodies;
+        let blocks = (
+            fields.density.par_chunks_mut(BLOCK),
+            fields.density_from_walls.par_chunks_mut(BLOCK),
+            fields.mean_density.par_chunks_mut(BLOCK),
+            fields.rest_density.par_chunks_mut(BLOCK),
+            fields.pressure.par_chunks_mut(BLOCK),
+            fields.wall_gradient.par_chunks_mut(BLOCK),
+            columns.volume.par_chunks_mut(BLOCK),
+            columns.pressure.par_chunks_mut(BLOCK),
+        );
+        blocks
+            .into_par_iter()
+            .with_min_len(TASK)
+            .enumerate()
+            .for_each(|(b, block)| {
+                let (density, from_walls, mean, rest, pressure, gradient, volume, packed) = block;
+                let agents = b * BLOCK..b * BLOCK + density.len();
+                from_agents(bodies, self.neighbors.near().block(b), density);
+                self.see_walls(agents.clone(), from_walls, gradient);
+                let group = &self.agents.group[agents.clone()];
+                let same = group.iter().all(|&other| other == group[0]);
+                let shared = same.then(|| *(self.parameters)(group[0]));
+                for (k, i) in agents.enumerate() {
+                    let sph = shared.unwrap_or_else(|| *(self.parameters)(group[k]));
+                    let kept = self.agents.kept_mean_density(i);
+                    let hidden = from_walls[k];
+                    [from_walls[k], mean[k]] =
+                        sph.next_averages(density[k], hidden, kept, self.time_step);
+                    density[k] += from_walls[k];
+                    rest[k] = sph.rest_density(mean[k]);
+                    pressure[k] = sph.pressure(density[k], rest[k]);
+                    volume[k] = R::of(self.agents.mass[i] / density[k]);
+                    packed[k] = R::of(pressure[k]);
+                }
+            });
+    }
+
+    /// Stores Σ_k ∫ W over P_k in `kernel` and Σ_k ∫ ∇W in `gradient`. Sorting resets both to zero, and they stay zero
+    /// if no walls are near these agents (see [`Fields::forget_walls`]).
+    fn see_walls(&self, agents: Range<usize>, kernel: &mut [f64], gradient: &mut [Vector]) {
+        let first = agents.start;
+        let mut near_walls = self.neighbors.agents_near_walls(agents).peekable();
         if near_walls.peek().is_none() {
-            return false;
+            return;
         }
-        self.density_from_walls.fill(0.0);
-        self.wall_gradient.fill(Vector::zeros());
+        kernel.fill(0.0);
+        gradient.fill(Vector::zeros());
         for (i, near) in near_walls {
-            let (r_i, h) = (frame.agents.position[i], sph_of(i).support_radius);
-            walls.shares(frame.walls, near, r_i, h, |share| {
-                self.density_from_walls[i - from] += share.kernel;
-                self.wall_gradient[i - from] += share.gradient;
+            let r_i = self.agents.position[i];
+            let h = (self.parameters)(self.agents.group[i]).support_radius;
+            let (walls, method) = self.walls;
+            method.shares(walls, near, r_i, h, |share| {
+                kernel[i - first] += share.kernel;
+                gradient[i - first] += share.gradient;
             });
         }
-        true
     }
 }
 

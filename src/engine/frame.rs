@@ -6,8 +6,8 @@ use crate::engine::agents::Agents;
 use crate::engine::clock::Clock;
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
-use crate::engine::neighbors::{BLOCK, CLUSTER, Neighbors};
-use crate::engine::pairs::{Packed, PairCoefficients, Wanted};
+use crate::engine::neighbors::{CLUSTER, Neighbors};
+use crate::engine::pairs::Packed;
 
 /// Quantities derived from the state, one array each, with the step that writes it in parentheses.
 #[derive(Debug, Clone, Default)]
@@ -34,37 +34,20 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// All arrays empty.
-    pub const NONE: Self = Self {
-        density: Vec::new(),
-        density_from_walls: Vec::new(),
-        mean_density: Vec::new(),
-        rest_density: Vec::new(),
-        pressure: Vec::new(),
-        wall_gradient: Vec::new(),
-        preferred_velocity: Vec::new(),
-        velocity_ranges: Vec::new(),
-        acceleration: Vec::new(),
-    };
-
-    /// Discards all wall contributions; [`resize`](Self::resize) sets them to zero.
+    /// Discards all wall contributions; [`resize_sph`](Self::resize_sph) sets them to zero.
     pub fn forget_walls(&mut self) {
         self.density_from_walls.clear();
         self.wall_gradient.clear();
     }
 
-    /// Resizes all arrays for `count` agents. Without `density` the SPH arrays are emptied, so that stale values
-    /// cannot be read.
-    pub fn resize(&mut self, count: usize, density: bool) {
-        let sph = if density { count } else { 0 };
-        self.density.resize(sph, 0.0);
-        self.density_from_walls.resize(sph, 0.0);
-        self.mean_density.resize(sph, 0.0);
-        self.rest_density.resize(sph, 0.0);
-        self.pressure.resize(sph, 0.0);
-        self.wall_gradient.resize(sph, Vector::zeros());
-        self.preferred_velocity.resize(count, Vector::zeros());
-        self.acceleration.resize(count, Vector::zeros());
+    /// Resizes the arrays that step 1B writes.
+    pub fn resize_sph(&mut self, count: usize) {
+        self.density.resize(count, 0.0);
+        self.density_from_walls.resize(count, 0.0);
+        self.mean_density.resize(count, 0.0);
+        self.rest_density.resize(count, 0.0);
+        self.pressure.resize(count, 0.0);
+        self.wall_gradient.resize(count, Vector::zeros());
     }
 }
 
@@ -90,8 +73,6 @@ pub struct Frame<'a> {
     pub neighbors: &'a Neighbors,
     /// Agents and fields, packed for sums over pairs.
     pub packed: &'a Packed,
-    /// The sums over pairs that some profile reads.
-    pub wanted: Wanted,
     /// Seed of the agents' random choices.
     pub seed: u64,
 }
@@ -117,14 +98,5 @@ impl Frame<'_> {
         });
         let [lowest, highest] = velocity_range(ranges.copied());
         (high - lowest).sup(&(highest - low)).norm()
-    }
-
-    /// The acceleration of agent `i` by the agents near it, m/s².
-    pub fn from_near_agents(&self, i: usize, coefficients: &PairCoefficients) -> Vector {
-        let mut accelerations = [Vector::zeros(); BLOCK];
-        let block = self.neighbors.near().block(i / BLOCK);
-        self.packed
-            .accelerations(block, coefficients, self.wanted, &mut accelerations);
-        accelerations[i % BLOCK]
     }
 }

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use crate::engine::forces::contact::{self, Contact};
 use crate::engine::forces::goal::GoalForce;
+use crate::engine::forces::near::{self, PairCoefficients, Wanted};
 use crate::engine::forces::pressure;
 use crate::engine::forces::rvo::Rvo;
 use crate::engine::forces::social::SocialForce;
@@ -15,7 +16,6 @@ use crate::engine::forces::viscosity::Viscosity;
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::BLOCK;
-use crate::engine::pairs::PairCoefficients;
 
 /// Steps 3, 3B and 4 for one agent: how it navigates, and which forces act on it.
 #[derive(Debug, Clone, PartialEq)]
@@ -195,6 +195,15 @@ impl Terms {
 }
 
 impl Profile {
+    /// The sums over near agents that this profile reads.
+    pub fn wanted(&self) -> Wanted {
+        Wanted {
+            pressure: self.pressure,
+            viscosity: self.viscosity.is_some(),
+            contact: self.contact.agent_stiffness.is_some(),
+        }
+    }
+
     /// Does this profile have `term`, given agents and walls?
     pub fn has(&self, term: Term) -> bool {
         let social = matches!(self.navigation, Navigation::Social(..));
@@ -216,34 +225,21 @@ impl Profile {
         self.each_term(frame, i..i + 1, changed, |place, _, term| {
             *place(&mut terms) = Some(term);
         });
-        let mut all = PairCoefficients::default();
-        self.add_pair_coefficients(frame, i..i + 1, changed, 1.0, &mut all);
-        let alone = |coefficients| frame.from_near_agents(i, &coefficients);
-        let PairCoefficients {
-            pressure,
-            viscosity,
-            contact,
-        } = all;
-        let none = PairCoefficients::default;
+        let mut felt = PairCoefficients::default();
+        self.add_pair_coefficients(frame, i..i + 1, changed, 1.0, &mut felt);
+        let [pressure, viscosity, contact] = near::accelerations_of(frame, i, &felt);
         if feels_sph(changed) {
             if self.pressure {
-                terms.pressure_agents = Some(alone(PairCoefficients { pressure, ..none() }));
+                terms.pressure_agents = Some(pressure);
                 terms.pressure_walls.get_or_insert(Vector::zeros());
             }
-            terms.viscosity = self.viscosity.map(|_| {
-                alone(PairCoefficients {
-                    viscosity,
-                    ..none()
-                })
-            });
+            terms.viscosity = self.viscosity.map(|_| viscosity);
         }
         if let Some(social) = self.navigation.social() {
             terms.social_agents = Some(social.from_agents(frame, i));
         }
         if feels_contact(changed) {
-            if self.contact.agent_stiffness.is_some() {
-                terms.contact_agents = Some(alone(PairCoefficients { contact, ..none() }));
-            }
+            terms.contact_agents = self.contact.agent_stiffness.map(|_| contact);
             if self.contact.wall_stiffness.is_some() {
                 terms.contact_walls.get_or_insert(Vector::zeros());
             }
@@ -313,7 +309,9 @@ impl Profile {
         }
         if self.pressure && feels_sph(changed) {
             for (i, _) in frame.neighbors.agents_near_walls(agents.clone()) {
-                take(|t| &mut t.pressure_walls, i, pressure::from_walls(frame, i));
+                let gradient = frame.fields.wall_gradient[i];
+                let push = pressure::from_walls(frame, i, gradient);
+                take(|t| &mut t.pressure_walls, i, push);
             }
         }
         if let Some(stiffness) = self.contact.wall_stiffness

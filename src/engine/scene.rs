@@ -5,14 +5,15 @@ use std::sync::Arc;
 use crate::engine::agents::NewAgent;
 use crate::engine::boundary::WallMethod;
 use crate::engine::clock::Clock;
+use crate::engine::forces::near::Wanted;
 use crate::engine::forces::own::Force;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::geometry::{Polygon, Walls};
 use crate::engine::math::Vector;
 use crate::engine::neighbors::{ListPolicy, Ranges, SKIN};
-use crate::engine::pairs::{Precision, Wanted};
+use crate::engine::pairs::Precision;
 use crate::engine::placement::Grid;
-use crate::engine::profile::{Blend, Override};
+use crate::engine::profile::{Blend, Override, Profile};
 
 /// How the state is advanced by one frame (§5).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -195,11 +196,9 @@ impl Scene {
                 .flat_map(|group| group.blend.steps())
                 .map(|step| &step.profile)
         };
-        let pairs = Wanted {
-            pressure: profiles().any(|profile| profile.pressure),
-            viscosity: profiles().any(|profile| profile.viscosity.is_some()),
-            contact: profiles().any(|profile| profile.contact.agent_stiffness.is_some()),
-        };
+        let pairs = profiles()
+            .map(Profile::wanted)
+            .fold(Wanted::default(), Wanted::with);
         let blending = self
             .groups
             .iter()

@@ -11,13 +11,15 @@ pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};
 pub use state::{State, StateError};
 
+use std::sync::LazyLock;
+
 use serde::{Deserialize, Serialize};
 
 use crate::engine::agents::Agents;
 use crate::engine::clock::Clock;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::frame::{Fields, Frame};
-use crate::engine::math::{Vector, pairs_of};
+use crate::engine::math::Vector;
 use crate::engine::neighbors::Neighbors;
 use crate::engine::pairs::{Packed, Precision};
 use crate::engine::profile::{Blend, Override};
@@ -30,23 +32,52 @@ use crate::engine::scene::{Needs, Scene};
 /// threads, because every agent reads the frozen frame and writes only its own slot.
 #[derive(Clone)]
 pub struct Simulation {
+    fixed: Fixed,
+    crowd: Crowd,
+    derived: Derived,
+    buffers: Buffers,
+    stages: StageTimes,
+    /// The density is requested in all frames before this one.
+    density_until: u64,
+}
+
+/// What never changes.
+#[derive(Clone)]
+struct Fixed {
     scene: Scene,
     needs: Needs,
     /// The distinct social forces of the scene.
     social_forces: Vec<SocialForce>,
-    density_until: u64,
+}
+
+/// What is integrated.
+#[derive(Clone)]
+struct Crowd {
     clock: Clock,
     agents: Agents,
-    fields: Fields,
-    neighbors: Neighbors,
-    packed: Packed,
     schedule: schedule::Schedule,
     outcome: Outcome,
-    stages: StageTimes,
+    /// Have agents entered or left since they were last sorted?
+    changed: bool,
+}
+
+/// What is computed from both.
+#[derive(Clone)]
+struct Derived {
+    neighbors: Neighbors,
+    packed: Packed,
+    fields: Fields,
+    /// Do the fields match the crowd?
     evaluated: bool,
     /// Are all numbers of the evaluated frame finite?
     finite: bool,
-    crowd_changed: bool,
+}
+
+/// What a step computes while it reads the frame; when it is complete, it is swapped with the frame's own.
+#[derive(Clone, Default)]
+struct Buffers {
+    avoidance: Vec<Option<Vector>>,
+    acceleration: Vec<Vector>,
 }
 
 /// What has happened so far.
@@ -70,7 +101,6 @@ pub struct Arrival {
     /// Time at the end of the move that reached the goal, seconds.
     pub time: f64,
     /// Position at the end of that move, meters.
-    #[serde(with = "pairs_of::one")]
     pub position: Vector,
     /// Does it count as evacuated?
     pub counted: bool,
@@ -113,27 +143,38 @@ impl Simulation {
     /// # Errors
     /// An agent is inside an obstacle, and no free point is near.
     pub fn new(scene: Scene) -> Result<Self, Fault> {
-        let mut simulation = Self {
+        let fixed = Fixed {
             needs: scene.needs(),
             social_forces: scene.social_forces(),
-            density_until: 0,
-            clock: scene.clock,
+            scene: Scene {
+                agents: Vec::new(),
+                ..scene
+            },
+        };
+        let mut crowd = Crowd {
+            clock: fixed.scene.clock,
             agents: Agents::default(),
-            fields: Fields::default(),
-            neighbors: Neighbors::default(),
-            packed: Packed::new(scene.precision),
             schedule: schedule::Schedule::default(),
             outcome: Outcome::default(),
-            stages: StageTimes::default(),
-            evaluated: false,
-            finite: true,
-            crowd_changed: true,
-            scene,
+            changed: true,
         };
-        for agent in std::mem::take(&mut simulation.scene.agents) {
-            simulation.enter(agent)?;
+        for agent in scene.agents {
+            crowd.enter(&fixed.scene, agent)?;
         }
-        Ok(simulation)
+        Ok(Self {
+            derived: Derived {
+                neighbors: Neighbors::default(),
+                packed: Packed::new(fixed.scene.precision),
+                fields: Fields::default(),
+                evaluated: false,
+                finite: true,
+            },
+            fixed,
+            crowd,
+            buffers: Buffers::default(),
+            stages: StageTimes::default(),
+            density_until: 0,
+        })
     }
 
     /// Simulates one frame.
@@ -151,21 +192,21 @@ impl Simulation {
     /// # Errors
     /// An agent enters inside an obstacle, and no free point is near.
     pub fn evaluate(&mut self) -> Result<Frame<'_>, Fault> {
-        if !self.evaluated {
+        if !self.derived.evaluated {
             self.follow_schedule()?; // entries and pushes, coarse
             self.update_neighbors(); // 1
             self.pack();
-            self.update_density_and_pressure(self.clock.time_step()); // 1B
+            self.update_density_and_pressure(self.crowd.clock.time_step()); // 1B
             self.update_preferred_velocity(); // 2
             self.update_rvo(); // 3, coarse
             self.update_acceleration(); // 3, 3B, 4
-            self.evaluated = true;
+            self.derived.evaluated = true;
         }
         Ok(self.frame())
     }
 
     fn density_is_due(&self) -> bool {
-        self.needs.density || self.clock.frame() < self.density_until
+        self.fixed.needs.density || self.crowd.clock.frame() < self.density_until
     }
 
     /// Requests the density in every frame before `frame`, even if no force reads it: for a metric, a color, a
@@ -180,28 +221,28 @@ impl Simulation {
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
     pub fn evaluate_with_density(&mut self) -> Result<Frame<'_>, Fault> {
-        self.request_density_until(self.clock.frame() + 1);
-        self.evaluated = false;
+        self.request_density_until(self.crowd.clock.frame() + 1);
+        self.derived.evaluated = false;
         self.evaluate()
     }
 
     /// Sets the precision of sums over pairs for all later evaluations, in place of the scene's.
     pub fn set_precision(&mut self, precision: Precision) {
-        self.packed = Packed::new(precision);
+        self.derived.packed = Packed::new(precision);
     }
 
     /// From the next evaluation on, also computes the quantities in `more`, though nothing reads them: to measure
     /// the time saved by not computing them. Agents are sorted again; their motion stays identical to the last bit.
     pub fn pay_for(&mut self, more: &Needs) {
-        self.needs = self.needs.with(more);
-        self.crowd_changed = true; // rebuild neighbor lists with the new ranges
+        self.fixed.needs = self.fixed.needs.with(more);
+        self.crowd.changed = true; // rebuild neighbor lists with the new ranges
     }
 
     /// The current frame. Its fields are those computed by [`evaluate`](Self::evaluate). After
     /// [`integrate`](Self::integrate), which moves the agents, they are empty until the next evaluation.
     pub fn frame(&self) -> Frame<'_> {
-        let frame = self.frozen();
-        if self.evaluated {
+        let frame = self.derived.frame(&self.fixed, &self.crowd);
+        if self.derived.evaluated {
             frame
         } else {
             Frame {
@@ -211,53 +252,39 @@ impl Simulation {
         }
     }
 
-    /// The frame during its evaluation, with the fields computed so far.
-    fn frozen(&self) -> Frame<'_> {
-        Frame {
-            clock: &self.clock,
-            walls: &self.scene.walls,
-            agents: &self.agents,
-            fields: &self.fields,
-            neighbors: &self.neighbors,
-            packed: &self.packed,
-            wanted: self.needs.pairs,
-            seed: self.scene.behavior_seed.unwrap_or(self.scene.seed),
-        }
-    }
-
     /// The scene of this simulation, without the initial agents, which have already entered.
     pub fn scene(&self) -> &Scene {
-        &self.scene
+        &self.fixed.scene
     }
 
     /// The quantities that are computed.
     pub fn needs(&self) -> &Needs {
-        &self.needs
+        &self.fixed.needs
     }
 
     /// The blend of agent `i`.
     pub fn blend(&self, i: usize) -> &Blend {
-        blend_of(&self.scene, &self.agents, i)
+        self.fixed.blend(&self.crowd.agents, i)
     }
 
     /// The change by a current push for agent `i`, if any.
     pub fn change(&self, i: usize) -> Option<&Override> {
-        change_of(&self.scene, &self.agents, i)
+        self.fixed.change(&self.crowd.agents, i)
     }
 
     /// What has happened so far.
     pub fn outcome(&self) -> &Outcome {
-        &self.outcome
+        &self.crowd.outcome
     }
 
     /// Will more agents enter?
     pub fn expects_agents(&self) -> bool {
-        self.schedule.expects_agents(&self.scene)
+        self.crowd.schedule.expects_agents(&self.fixed.scene)
     }
 
     /// Entries, and beginnings and ends of pushes, so far.
     pub fn events(&self) -> &[Event] {
-        self.schedule.events()
+        self.crowd.schedule.events()
     }
 
     /// Time spent per stage.
@@ -272,12 +299,29 @@ impl Simulation {
 }
 
 /// The fields of a frame that has not been evaluated.
-static NO_FIELDS: Fields = Fields::NONE;
+static NO_FIELDS: LazyLock<Fields> = LazyLock::new(Fields::default);
 
-fn blend_of<'a>(scene: &'a Scene, agents: &Agents, i: usize) -> &'a Blend {
-    &scene.groups[usize::from(agents.group[i])].blend
+impl Derived {
+    /// The frame, during its evaluation with the fields computed so far.
+    fn frame<'a>(&'a self, fixed: &'a Fixed, crowd: &'a Crowd) -> Frame<'a> {
+        Frame {
+            clock: &crowd.clock,
+            walls: &fixed.scene.walls,
+            agents: &crowd.agents,
+            fields: &self.fields,
+            neighbors: &self.neighbors,
+            packed: &self.packed,
+            seed: fixed.scene.behaviour_seed.unwrap_or(fixed.scene.seed),
+        }
+    }
 }
 
-fn change_of<'a>(scene: &'a Scene, agents: &Agents, i: usize) -> Option<&'a Override> {
-    agents.push[i].map(|push| &scene.pushes[usize::from(push)].change)
+impl Fixed {
+    fn blend(&self, agents: &Agents, i: usize) -> &Blend {
+        &self.scene.groups[usize::from(agents.group[i])].blend
+    }
+
+    fn change(&self, agents: &Agents, i: usize) -> Option<&Override> {
+        agents.push[i].map(|push| &self.scene.pushes[usize::from(push)].change)
+    }
 }

@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
+use crate::engine::pairs::prelude::*;
+use crate::engine::pairs::{Columns, Lanes, Real, Simd, lanes_from, load, splat};
 
 /// Distance in meters below which a center is taken to lie on a wall. Coordinates up to 10⁶ m round by less;
 /// without it, rounding would decide the direction of the push.
@@ -16,6 +18,41 @@ pub struct Contact {
     pub agent_stiffness: Option<f64>,
     /// K^obs.
     pub wall_stiffness: Option<f64>,
+}
+
+/// Eq. 22 for eight agents i: Σ_j max(0, D_i + D_j − |r_ij|) r̂_ij, times a coefficient.
+pub struct FromAgents<R: Real, S: Simd> {
+    stiffness: Lanes<R, S>,
+    radius: Lanes<R, S>,
+    /// Minus the meters per coordinate unit.
+    minus_unit: Lanes<R, S>,
+}
+
+impl<R: Real, S: Simd> FromAgents<R, S> {
+    /// The sum for the agents from `start` on, with their coefficients.
+    #[inline(always)]
+    pub fn new(simd: S, columns: &Columns<R>, start: usize, coefficients: &[f64]) -> Self {
+        Self {
+            stiffness: lanes_from::<R, S>(simd, coefficients),
+            radius: load(simd, &columns.bodies.radius, start),
+            minus_unit: splat::<R, S>(simd, -columns.bodies.unit),
+        }
+    }
+
+    /// `others` plus the force along r_ij of an agent j with radius `radius_j` at a distance in coordinate units.
+    #[inline(always)]
+    pub fn added_to(
+        &self,
+        simd: S,
+        others: Lanes<R, S>,
+        distance: Lanes<R, S>,
+        radius_j: Lanes<R, S>,
+    ) -> Lanes<R, S> {
+        let touching = self.radius + radius_j;
+        let overlap = self.minus_unit.mul_add(distance, touching);
+        let overlap = overlap.max(splat::<R, S>(simd, 0.0));
+        self.stiffness.mul_add(overlap, others)
+    }
 }
 
 /// Adds the coefficient of the sum in Eq. 22, `stiffness` divided by the mass, for each of `agents`.

@@ -1,10 +1,11 @@
 //! Steps 3, 3B and 4: one file per force, one pure function per equation.
 //!
 //! Every function reads the frozen [`Frame`](crate::engine::frame::Frame) and returns, or adds, its contribution
-//! to accelerations in m/s², divided by mass or density.
+//! to accelerations in m/s², divided by mass or density. Sums over agents are written for eight agents at a time.
 
 pub mod contact;
 pub mod goal;
+pub mod near;
 pub mod own;
 pub mod pressure;
 pub mod rvo;

@@ -1,7 +1,9 @@
 //! Reciprocal velocity obstacles (§5.3.2, Eqs. 20 and 21).
 
+mod rings;
 mod search;
 
+pub use rings::MovingDisc;
 pub use search::Search;
 
 use rand::Rng;
@@ -9,7 +11,6 @@ use rand::Rng;
 use crate::engine::frame::Frame;
 use crate::engine::geometry::Wall;
 use crate::engine::math::{Vector, unit_vector};
-pub use crate::engine::pairs::MovingDisc;
 use crate::engine::random::{self, Purpose};
 
 /// Parameters of Eq. 20 and of its sampling.

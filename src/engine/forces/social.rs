@@ -1,10 +1,17 @@
 //! Social force: avoidance of agents and walls (§5.3.1, Eqs. 18 and 19).
 
+use std::f64::consts::{LN_2, SQRT_2};
+use std::ops::Range;
+
 use crate::engine::frame::Frame;
 use crate::engine::geometry::WallPart;
 use crate::engine::math::{Vector, direction};
 use crate::engine::neighbors::BLOCK;
-use crate::engine::pairs::SocialLaw;
+use crate::engine::pairs::prelude::*;
+use crate::engine::pairs::{
+    Bodies, Lanes, Level, PairSum, Real, Simd, add_pairs, dispatch, each, load, splat, spread,
+    store,
+};
 
 /// Parameters of Eqs. 18 and 19 and of the field of view.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,8 +47,8 @@ impl Default for SocialForce {
     }
 }
 
-/// Half the field of view: neighbors within this angle of the walking direction have full weight.
-const FIELD_OF_VIEW: f64 = 100.0 / 180.0 * std::f64::consts::PI;
+/// The cosine of half the field of view, 100°: neighbors within this angle of the walking direction have full weight.
+const FIELD_OF_VIEW: f64 = -0.173_648_177_666_930_3;
 /// Weight of a neighbor outside the field of view.
 const UNSEEN_WEIGHT: f64 = 0.5;
 
@@ -64,7 +71,6 @@ impl SocialForce {
         coefficients: &[f64; BLOCK],
         accelerations: &mut [Vector],
     ) {
-        let law = self.law();
         let mut runs = Vec::new();
         for (agents, _) in frame.neighbors.near().block(b).clusters() {
             let own = agents.start % BLOCK..agents.start % BLOCK + agents.len();
@@ -84,9 +90,10 @@ impl SocialForce {
                     around(radius, &mut runs);
                 }
             }
-            frame
-                .packed
-                .add_social(&law, (agents, &runs), coefficients, &mut accelerations[own]);
+            let out = &mut accelerations[own];
+            each!(frame.packed, columns => dispatch!(Level::new(), simd => {
+                self.add_sums(simd, &columns.bodies, (agents.start, &runs), coefficients, out);
+            }));
         }
     }
 
@@ -103,15 +110,25 @@ impl SocialForce {
         beyond.max(s / 0.75).min(self.avoidance_radius)
     }
 
-    /// Eq. 18 in the form used by sums over pairs.
-    fn law(&self) -> SocialLaw {
-        SocialLaw {
-            strength: self.agent_strength / self.agent_range,
-            range: self.agent_range,
-            anticipation_time: self.anticipation_time,
-            radius: self.avoidance_radius,
-            field_of_view: FIELD_OF_VIEW.cos(),
-            unseen_weight: UNSEEN_WEIGHT,
+    /// Adds Eq. 18 on the agents of one cluster, from `start` on, times their coefficients, to their accelerations,
+    /// m/s². `runs` contain all agents in reach, and some out of reach.
+    #[inline(always)]
+    fn add_sums<R: Real, S: Simd>(
+        &self,
+        simd: S,
+        bodies: &Bodies<R>,
+        (start, runs): (usize, &[Range<u32>]),
+        coefficients: &[f64],
+        out: &mut [Vector],
+    ) {
+        let mut sum = FromAgents::new(simd, self, bodies, start);
+        add_pairs(simd, bodies, (start, runs), &mut sum);
+        sum.add_last(simd);
+        let (x, y) = (store::<R, S>(sum.sum[0]), store::<R, S>(sum.sum[1]));
+        // 1/(4h) of the force, with √2 h in its place.
+        let scale = self.agent_strength / self.agent_range * SQRT_2 / 4.0;
+        for (k, (out, coefficient)) in out.iter_mut().zip(coefficients).enumerate() {
+            *out += Vector::new(x[k], y[k]) * (scale * coefficient);
         }
     }
 
@@ -153,6 +170,143 @@ impl SocialForce {
     }
 }
 
+/// Eq. 18 for eight agents i.
+struct FromAgents<'a, R: Real, S: Simd> {
+    bodies: &'a Bodies<R>,
+    velocity: [Lanes<R, S>; 2],
+    /// −T, in coordinate units per (m/s).
+    minus_ahead: Lanes<R, S>,
+    /// T times the velocity, in coordinate units.
+    ahead: [Lanes<R, S>; 2],
+    /// Minus the speed, times the cosine of half the field of view.
+    edge_of_view: Lanes<R, S>,
+    unseen_weight: Lanes<R, S>,
+    /// In coordinate units².
+    radius_squared: Lanes<R, S>,
+    /// −1/(√2 σ ln 2), per coordinate unit.
+    falling: Lanes<R, S>,
+    /// The effect of the agent before, which is not summed yet.
+    last: Effect<R, S>,
+    sum: [Lanes<R, S>; 2],
+}
+
+/// One agent's effect on eight agents, before the exponential.
+#[derive(Clone, Copy)]
+struct Effect<R: Real, S: Simd> {
+    /// √2 b, in coordinate units.
+    b: Lanes<R, S>,
+    /// (|d| + |a|)/(√2 h |d||a|) with h² = (|d||a| + |d·a|)/2, weighted; zero if the agent has no effect.
+    size: Lanes<R, S>,
+    /// A vector along the force: |d||a| times the sum or difference of the directions of d and a.
+    along: [Lanes<R, S>; 2],
+}
+
+impl<'a, R: Real, S: Simd> FromAgents<'a, R, S> {
+    /// The sum for the agents from `start` on.
+    #[inline(always)]
+    fn new(simd: S, social: &SocialForce, bodies: &'a Bodies<R>, start: usize) -> Self {
+        let zero = splat::<R, S>(simd, 0.0);
+        let time = social.anticipation_time / bodies.unit;
+        let radius = social.avoidance_radius / bodies.unit;
+        let falling = -bodies.unit / (SQRT_2 * LN_2 * social.agent_range);
+        let x = load(simd, &bodies.velocity_x, start);
+        let y = load(simd, &bodies.velocity_y, start);
+        let ahead = splat::<R, S>(simd, time);
+        let speed = y.mul_add(y, x * x).sqrt();
+        Self {
+            bodies,
+            velocity: [x, y],
+            minus_ahead: splat::<R, S>(simd, -time),
+            ahead: [x * ahead, y * ahead],
+            edge_of_view: speed * splat::<R, S>(simd, -FIELD_OF_VIEW),
+            unseen_weight: splat::<R, S>(simd, UNSEEN_WEIGHT),
+            radius_squared: splat::<R, S>(simd, radius * radius),
+            falling: splat::<R, S>(simd, falling),
+            last: Effect {
+                b: zero,
+                size: zero,
+                along: [zero; 2],
+            },
+            sum: [zero; 2],
+        }
+    }
+
+    /// The effect of an agent at a distance d = r_ij with velocity (`vx`, `vy`).
+    ///
+    /// With s = T v_ij and a = d + s, the force points along the bisector of d and a, and its magnitude is
+    /// V₀/σ e^(−b/σ) (|d| + |a|)/(2√(|d||a|)). If d and a are nearly opposite, as for agents on a collision course,
+    /// computing b and the sum of the two directions as in the equation cancels nearly equal numbers. In that case
+    /// both are computed from d × s instead.
+    #[inline(always)]
+    fn effect(
+        &self,
+        simd: S,
+        [dx, dy]: [Lanes<R, S>; 2],
+        [vx, vy]: [Lanes<R, S>; 2],
+    ) -> Effect<R, S> {
+        let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
+        let sx = vx.mul_add(self.minus_ahead, self.ahead[0]);
+        let sy = vy.mul_add(self.minus_ahead, self.ahead[1]);
+        let (ax, ay) = (dx + sx, dy + sy);
+        let squared = dy.mul_add(dy, dx * dx);
+        let d = squared.sqrt();
+        let a = ay.mul_add(ay, ax * ax).sqrt();
+        let product = d * a;
+        let dot = dy.mul_add(ay, dx * ax);
+        let cross = dx * sy - dy * sx;
+
+        let h = (product + dot.abs()).sqrt(); // √2 h
+        let per_h_product = one / (h * product);
+        let facing = dot.simd_ge(zero);
+        let b = facing.select(h, cross.abs() * (product * per_h_product));
+
+        // |a| d + |d| a, or, if d·a < 0, their difference turned by a right angle.
+        let side = one.copysign(cross);
+        let (px, py) = (dx * a, dy * a);
+        let (qx, qy) = (ax * d, ay * d);
+        let along_x = facing.select(px + qx, side * (qy - py));
+        let along_y = facing.select(py + qy, side * (px - qx));
+
+        let seen = dy.mul_add(self.velocity[1], dx * self.velocity[0]);
+        let seen = seen.simd_le(self.edge_of_view * d);
+        let size = (d + a) * seen.select(one, self.unseen_weight) * per_h_product;
+        // No effect from the agent itself, from agents out of range, or where the ellipse degenerates and values
+        // may be NaN.
+        let counts = b.simd_gt(zero) & squared.simd_lt(self.radius_squared);
+        Effect {
+            b: counts.select(b, zero),
+            size: counts.select(size, zero),
+            along: [along_x, along_y],
+        }
+    }
+
+    #[inline(always)]
+    fn add_last(&mut self, simd: S) {
+        let size = R::exp2(simd, self.last.b * self.falling) * self.last.size;
+        self.sum[0] = size.mul_add(self.last.along[0], self.sum[0]);
+        self.sum[1] = size.mul_add(self.last.along[1], self.sum[1]);
+    }
+}
+
+impl<'a, R: Real, S: Simd> PairSum<R, S> for FromAgents<'a, R, S> {
+    type Run = [&'a [R]; 2];
+
+    #[inline(always)]
+    fn run(&self, run: Range<usize>) -> [&'a [R]; 2] {
+        let bodies = self.bodies;
+        [&bodies.velocity_x[run.clone()], &bodies.velocity_y[run]]
+    }
+
+    /// Software pipelining: the exponential for one agent is computed alongside the roots for the next agent, since
+    /// neither depends on the other.
+    #[inline(always)]
+    fn add(&mut self, simd: S, r_ij: [Lanes<R, S>; 2], [vx, vy]: [&'a [R]; 2], j: usize) {
+        let next = self.effect(simd, r_ij, [spread(simd, vx[j]), spread(simd, vy[j])]);
+        self.add_last(simd);
+        self.last = next;
+    }
+}
+
 /// Full weight inside the field of view; an agent at rest sees in all directions.
 struct FieldOfView {
     heading: Vector,
@@ -166,7 +320,7 @@ impl FieldOfView {
     }
 
     fn weight(&self, towards: Vector) -> f64 {
-        let ahead = self.heading.dot(&towards) >= FIELD_OF_VIEW.cos() * towards.norm();
+        let ahead = self.heading.dot(&towards) >= FIELD_OF_VIEW * towards.norm();
         if ahead || self.heading == Vector::zeros() {
             1.0
         } else {

@@ -1,8 +1,11 @@
 //! SPH viscosity (§3.3, Eq. 7, times μ and divided by the density as in Eq. 2).
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
 use crate::engine::frame::Frame;
+use crate::engine::pairs::prelude::*;
+use crate::engine::pairs::{Columns, Lanes, Real, Simd, lanes_from, load, splat};
 
 /// The viscosity force of one profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,5 +27,48 @@ impl Viscosity {
         for (sum, &density) in coefficients.iter_mut().zip(density) {
             *sum += self.coefficient * weight / density;
         }
+    }
+}
+
+/// Eq. 7 for eight agents i: Σ_j m_j (v_j − v_i)/ρ_j ∇²W, times a coefficient.
+pub struct FromAgents<R: Real, S: Simd> {
+    /// The coefficient times Eq. 15, without 1 − r/h.
+    drag: Lanes<R, S>,
+    velocity: [Lanes<R, S>; 2],
+    change: [Lanes<R, S>; 2],
+}
+
+impl<R: Real, S: Simd> FromAgents<R, S> {
+    /// The sum for the agents from `start` on, with their coefficients.
+    #[inline(always)]
+    pub fn new(simd: S, columns: &Columns<R>, start: usize, coefficients: &[f64]) -> Self {
+        let bodies = &columns.bodies;
+        let per_h = load(simd, &bodies.per_support, start);
+        let drag = lanes_from::<R, S>(simd, coefficients) * (per_h * per_h * per_h) * per_h;
+        Self {
+            drag: drag * splat::<R, S>(simd, 360.0 / (29.0 * PI)),
+            velocity: [
+                load(simd, &bodies.velocity_x, start),
+                load(simd, &bodies.velocity_y, start),
+            ],
+            change: [splat::<R, S>(simd, 0.0); 2],
+        }
+    }
+
+    /// Adds an agent j with velocity `v_j`; `weight` is m_j/ρ_j (1 − r/h).
+    #[inline(always)]
+    pub fn add(&mut self, weight: Lanes<R, S>, v_j: [Lanes<R, S>; 2]) {
+        self.change[0] = weight.mul_add(v_j[0] - self.velocity[0], self.change[0]);
+        self.change[1] = weight.mul_add(v_j[1] - self.velocity[1], self.change[1]);
+    }
+
+    /// `others` plus the sum.
+    #[inline(always)]
+    pub fn added_to(self, [x, y]: [Lanes<R, S>; 2]) -> [Lanes<R, S>; 2] {
+        let [change_x, change_y] = self.change;
+        [
+            self.drag.mul_add(change_x, x),
+            self.drag.mul_add(change_y, y),
+        ]
     }
 }

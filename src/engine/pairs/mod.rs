@@ -1,30 +1,25 @@
-//! Quantities computed for eight pairs of agents at a time: density (Eq. 9), pressure (Eq. 11), viscosity (Eq. 7)
-//! and contact (Eq. 22) between near agents; social forces (Eq. 18) and possible RVO collisions between agents
-//! farther apart. The only module that names fearless_simd.
+//! Sums over pairs of agents, for eight agents i at a time, in the SIMD vectors that the processor has. The only
+//! module that names fearless_simd.
 //!
 //! A dense scene spends nearly all of its time here. Agents that are close together (see
 //! [`Clusters`](crate::engine::neighbors::Clusters)) share their neighbors, so the sums of eight agents are computed
-//! together, in the SIMD vectors that the processor has. Each agent is included in its own sums: it adds its own
-//! share to the density, and no force.
+//! together, from data packed in [`Columns`]. What is summed stands with its equation: a [`PairSum`] in
+//! [`density`](crate::engine::density) (Eq. 9), [`near`](crate::engine::forces::near) (Eqs. 7, 11 and 22) and
+//! [`social`](crate::engine::forces::social) (Eq. 18). Each agent is included in its own sums: it adds its own share to
+//! the density, and no force.
 
 mod columns;
-mod kernels;
-mod meeting;
 mod real;
-mod social;
+mod sums;
 mod vectors;
 
-pub use columns::{Columns, Motion};
-pub use meeting::{MovingDisc, Rings};
-pub use real::{LANES, Real};
-pub use social::SocialLaw;
+pub use columns::{Bodies, Columns};
+pub use fearless_simd::{Level, Simd, dispatch, f32x8, prelude};
+pub use real::{LANES, Lanes, Real};
+pub use sums::{PairSum, add_pairs, lanes_from, load, splat, spread, store};
 pub use vectors::Vectors;
 
-use std::ops::Range;
-
 use crate::engine::agents::Agents;
-use crate::engine::math::Vector;
-use crate::engine::neighbors::{BLOCK, ClusterBlock};
 
 /// The precision of sums over pairs; everything else is in double precision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -39,28 +34,6 @@ pub enum Precision {
     Mixed,
 }
 
-/// Factors that turn the sums over the near neighbors of a block's agents into accelerations; 0 for an agent that
-/// does not feel the force.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PairCoefficients {
-    /// Factor of −Σ_j m_j (p_i + p_j)/(2ρ_j) ∇W, Eq. 11: 1/ρ_i.
-    pub pressure: [f64; BLOCK],
-    /// Factor of Σ_j m_j (v_j − v_i)/ρ_j ∇²W, Eq. 7: μ/ρ_i.
-    pub viscosity: [f64; BLOCK],
-    /// Factor of Σ_j max(0, D_i + D_j − |r_ij|) r̂_ij, Eq. 22: K^ag/m_i.
-    pub contact: [f64; BLOCK],
-}
-
-impl Default for PairCoefficients {
-    fn default() -> Self {
-        Self {
-            pressure: [0.0; BLOCK],
-            viscosity: [0.0; BLOCK],
-            contact: [0.0; BLOCK],
-        }
-    }
-}
-
 /// The crowd, packed for sums over pairs.
 #[derive(Debug, Clone)]
 pub enum Packed {
@@ -68,33 +41,6 @@ pub enum Packed {
     Double(Columns<f64>),
     /// In [`Precision::Mixed`].
     Mixed(Columns<f32>),
-}
-
-/// The sums that the profiles of a scene read; other sums may be skipped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Wanted {
-    /// Eq. 11.
-    pub pressure: bool,
-    /// Eq. 7.
-    pub viscosity: bool,
-    /// Eq. 22.
-    pub contact: bool,
-}
-
-impl Wanted {
-    /// Whether any sum is wanted.
-    pub fn any(self) -> bool {
-        self.pressure || self.viscosity || self.contact
-    }
-
-    /// The sums that either wants.
-    pub fn with(self, other: Self) -> Self {
-        Self {
-            pressure: self.pressure || other.pressure,
-            viscosity: self.viscosity || other.viscosity,
-            contact: self.contact || other.contact,
-        }
-    }
 }
 
 /// Evaluates `$body` with `$columns` bound to the columns of either precision.
@@ -126,12 +72,12 @@ impl Packed {
 
     /// Whether no agents are packed.
     pub fn is_empty(&self) -> bool {
-        each!(self, columns => columns.is_empty())
+        each!(self, columns => columns.bodies.x.is_empty())
     }
 
     /// Removes all agents.
     pub fn clear(&mut self) {
-        each!(self, columns => *columns = Columns::default());
+        each!(self, columns => columns.bodies.x.clear());
     }
 
     /// Packs the bodies of all agents. Coordinates may wrap with a period of twice `extent` meters (see
@@ -146,26 +92,8 @@ impl Packed {
         }
     }
 
-    /// The accelerations of a block's agents by their near neighbors, m/s².
-    pub fn accelerations(
-        &self,
-        block: &ClusterBlock,
-        coefficients: &PairCoefficients,
-        wanted: Wanted,
-        out: &mut [Vector],
-    ) {
-        each!(self, columns => columns.accelerations(block, coefficients, wanted, out));
-    }
-
-    /// Adds the social forces on `agents`, which are one cluster, times their coefficients, m/s². `runs` contain all
-    /// agents in reach, and some out of reach.
-    pub fn add_social(
-        &self,
-        law: &SocialLaw,
-        (agents, runs): (Range<usize>, &[Range<u32>]),
-        coefficients: &[f64],
-        out: &mut [Vector],
-    ) {
-        each!(self, columns => columns.add_social(law, (agents, runs), coefficients, out));
+    /// Packs the positions and velocities of all agents.
+    pub fn take_motions(&mut self, agents: &Agents) {
+        each!(self, columns => columns.bodies.take_motions(agents));
     }
 }

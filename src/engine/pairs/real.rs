@@ -1,14 +1,19 @@
 //! Number types for sums over pairs.
 
+use std::fmt::Debug;
+
 use fearless_simd::{Simd, f32x8, f64x8, i32x8, prelude::*};
 
 /// The number of agents whose sums are computed together: one cluster, on every processor.
 pub const LANES: usize = crate::engine::neighbors::CLUSTER;
 
+/// [`LANES`] numbers of type `R`.
+pub type Lanes<R, S> = <R as Real>::Lanes<S>;
+
 /// A number type for sums over pairs, with its representation of coordinates.
-pub trait Real: SimdFloatElement + Copy + Default + Send + Sync + 'static {
+pub trait Real: SimdFloatElement + Into<f64> + Copy + Default + Send + Sync + 'static {
     /// A coordinate; only differences between near coordinates are meaningful.
-    type Coordinate: Copy + Default + Send + Sync + 'static;
+    type Coordinate: Copy + Debug + Default + Send + Sync + 'static;
     /// [`LANES`] numbers.
     type Lanes<S: Simd>: SimdFloat<S, Element = Self>;
     /// [`LANES`] coordinates.
@@ -20,9 +25,6 @@ pub trait Real: SimdFloatElement + Copy + Default + Send + Sync + 'static {
 
     /// The number nearest to `value`.
     fn of(value: f64) -> Self;
-
-    /// The number in double precision, exactly.
-    fn double(self) -> f64;
 
     /// `meters` in coordinate units, `per_meter` of which make a meter.
     fn coordinate(meters: f64, per_meter: f64) -> Self::Coordinate;
@@ -47,10 +49,6 @@ impl Real for f64 {
 
     fn of(value: f64) -> Self {
         value
-    }
-
-    fn double(self) -> f64 {
-        self
     }
 
     fn coordinate(meters: f64, per_meter: f64) -> f64 {
@@ -84,10 +82,6 @@ impl Real for f32 {
 
     fn of(value: f64) -> Self {
         value as f32
-    }
-
-    fn double(self) -> f64 {
-        f64::from(self)
     }
 
     fn coordinate(meters: f64, per_meter: f64) -> i32 {

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use super::{Navigation, Override, Profile};
 use crate::engine::density::SphParameters;
+use crate::engine::forces::near::PairCoefficients;
 use crate::engine::forces::rvo::Rvo;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::BLOCK;
-use crate::engine::pairs::PairCoefficients;
 
 /// Largest number of profiles in a blend. Every group of agents has its own copy of them.
 const MOST_STEPS: usize = 16;

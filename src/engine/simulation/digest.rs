@@ -11,10 +11,10 @@ impl Simulation {
     /// number of threads, or on requests by observers: the mean density ρ̂ is included only if the scene needs it
     /// ([`Needs::density`](crate::engine::scene::Needs::density)).
     pub fn digest(&self) -> String {
-        let has_mean_density = self.scene.needs().density;
+        let has_mean_density = self.fixed.scene.needs().density;
         let mut hasher = Sha256::new();
-        hasher.update(self.clock.frame().to_le_bytes());
-        let agents = &self.agents;
+        hasher.update(self.crowd.clock.frame().to_le_bytes());
+        let agents = &self.crowd.agents;
         let mut order: Vec<usize> = (0..agents.len()).collect();
         order.sort_unstable_by_key(|&i| agents.id[i]);
         for i in order {
@@ -25,7 +25,7 @@ impl Simulation {
                 hasher.update(agents.mean_density[i].to_bits().to_le_bytes());
             }
         }
-        for arrival in &self.outcome.arrivals {
+        for arrival in &self.crowd.outcome.arrivals {
             hasher.update(arrival.id.to_le_bytes());
             hasher.update(arrival.time.to_bits().to_le_bytes());
             add(&mut hasher, arrival.position);

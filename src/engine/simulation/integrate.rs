@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{Arrival, Fault, Simulation, Stage};
+use super::{Arrival, Crowd, Fault, Simulation, Stage};
 use crate::engine::math::{Vector, clamp_length, is_finite};
 use crate::engine::neighbors::{BLOCK, TASK};
 use crate::engine::scene::{Integrator, Scene};
@@ -16,60 +16,58 @@ impl Simulation {
     pub fn integrate(&mut self) -> Result<(), Fault> {
         self.evaluate()?;
         self.check()?;
-        match self.scene.integrator {
-            Integrator::SemiImplicit => self.move_semi_implicitly(),
-            Integrator::ForwardEuler => self.move_with_old_velocities(),
-            Integrator::VelocityVerlet => self.move_by_verlet(),
-            Integrator::Midpoint => self.move_by_midpoint()?,
+        let dt = self.crowd.clock.time_step();
+        match self.fixed.scene.integrator {
+            Integrator::SemiImplicit => {
+                self.keep_mean_density();
+                self.move_all(|_, v, a| Motion {
+                    way: v + a * dt,
+                    velocity: v + a * dt,
+                });
+            }
+            Integrator::ForwardEuler => {
+                self.keep_mean_density();
+                self.move_all(|_, v, a| Motion {
+                    way: v,
+                    velocity: v + a * dt,
+                });
+            }
+            Integrator::VelocityVerlet => self.move_by_verlet(dt),
+            Integrator::Midpoint => self.move_by_midpoint(dt)?,
         }
-        self.clock.advance();
-        self.evaluated = false;
-        if self.needs.removal {
-            let mut stages = std::mem::take(&mut self.stages);
-            stages.time(Stage::Removal, || self.remove_arrivals());
-            self.stages = stages;
+        self.crowd.clock.advance();
+        self.derived.evaluated = false;
+        if self.fixed.needs.removal {
+            let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
+            self.stages
+                .time(Stage::Removal, || crowd.remove_arrivals(scene));
         }
         self.stages.count_frame();
         Ok(())
     }
 
-    fn move_semi_implicitly(&mut self) {
+    /// The velocities of the frame were predicted with the accelerations of the previous frame. Corrects them first
+    /// with the accelerations of this frame.
+    fn move_by_verlet(&mut self, dt: f64) {
         self.keep_mean_density();
-        let dt = self.clock.time_step();
-        self.move_all(|_, v, a| Motion::along(v + a * dt));
-    }
-
-    fn move_with_old_velocities(&mut self) {
-        self.keep_mean_density();
-        let dt = self.clock.time_step();
+        let agents = &mut self.crowd.agents;
+        let count = agents.len();
+        agents.acceleration_before.resize(count, None); // for agents that entered since
+        let before = &mut agents.acceleration_before;
+        let states = agents.velocity.iter_mut().zip(before);
+        for ((v, before), &a) in states.zip(&self.derived.fields.acceleration) {
+            if let Some(before) = before.replace(a) {
+                *v += (a - before) * (0.5 * dt);
+            }
+        }
         self.move_all(|_, v, a| Motion {
-            way: v,
+            way: v + a * (0.5 * dt),
             velocity: v + a * dt,
         });
     }
 
-    /// The velocities of the frame were predicted with the accelerations of the previous frame. Corrects them first
-    /// with the accelerations of this frame.
-    fn move_by_verlet(&mut self) {
-        self.keep_mean_density();
-        let dt = self.clock.time_step();
-        let mut before = std::mem::take(&mut self.agents.acceleration_before);
-        before.resize(self.agents.len(), None); // for agents that entered since
-        self.move_all(|i, v, a| {
-            let v = v + before[i].map_or(Vector::zeros(), |before| (a - before) * (0.5 * dt));
-            Motion {
-                way: v + a * (0.5 * dt),
-                velocity: v + a * dt,
-            }
-        });
-        before.clear();
-        before.extend(self.fields.acceleration.iter().copied().map(Some));
-        self.agents.acceleration_before = before;
-    }
-
-    fn move_by_midpoint(&mut self) -> Result<(), Fault> {
-        let dt = self.clock.time_step();
-        let begin = self.agents.clone();
+    fn move_by_midpoint(&mut self, dt: f64) -> Result<(), Fault> {
+        let mut begin = self.crowd.agents.clone();
         self.keep_mean_density();
         self.move_agents(0.5 * dt, |_, v, a| Motion {
             way: v,
@@ -79,10 +77,14 @@ impl Simulation {
         self.update_density_and_pressure(0.5 * dt);
         self.update_preferred_velocity();
         self.update_acceleration();
-        self.check()
-            .inspect_err(|_| self.agents.clone_from(&begin))?;
-        let half_way = std::mem::replace(&mut self.agents.velocity, begin.velocity);
-        self.agents.position = begin.position;
+        if let Err(fault) = self.check() {
+            self.crowd.agents = begin;
+            return Err(fault);
+        }
+        let agents = &mut self.crowd.agents;
+        agents.position = begin.position;
+        std::mem::swap(&mut agents.velocity, &mut begin.velocity);
+        let half_way = begin.velocity;
         self.move_all(|i, v, a| Motion {
             way: half_way[i],
             velocity: v + a * dt,
@@ -92,17 +94,18 @@ impl Simulation {
 
     /// Stores the moving averages of the evaluated frame for the next one.
     fn keep_mean_density(&mut self) {
-        if !self.fields.density.is_empty() {
-            std::mem::swap(&mut self.agents.mean_density, &mut self.fields.mean_density);
-            self.agents.newcomer.fill(false);
+        let (agents, fields) = (&mut self.crowd.agents, &mut self.derived.fields);
+        if !fields.density.is_empty() {
+            std::mem::swap(&mut agents.mean_density, &mut fields.mean_density);
+            agents.newcomer.fill(false);
         }
     }
 
     /// Moves all agents by a whole frame; counts moves stopped by walls and clamped speeds.
     fn move_all(&mut self, motion: impl Fn(usize, Vector, Vector) -> Motion + Sync) {
-        let moves = self.move_agents(self.clock.time_step(), motion);
-        self.outcome.contained_moves += moves.contained;
-        self.outcome.clamped_speeds += moves.clamped;
+        let moves = self.move_agents(self.crowd.clock.time_step(), motion);
+        self.crowd.outcome.contained_moves += moves.contained;
+        self.crowd.outcome.clamped_speeds += moves.clamped;
     }
 
     /// Moves all agents by `dt` seconds. `motion` maps index, velocity and acceleration to the motion of an agent.
@@ -111,30 +114,17 @@ impl Simulation {
         dt: f64,
         motion: impl Fn(usize, Vector, Vector) -> Motion + Sync,
     ) -> Moves {
-        let mut stages = std::mem::take(&mut self.stages);
-        let moves = stages.time(Stage::Integration, || self.moved_by(dt, motion));
-        self.stages = stages;
-        self.neighbors.travelled(moves.farthest.sqrt());
-        moves
-    }
-
-    fn moved_by(
-        &mut self,
-        dt: f64,
-        motion: impl Fn(usize, Vector, Vector) -> Motion + Sync,
-    ) -> Moves {
-        let (scene, neighbors) = (&self.scene, &self.neighbors);
-        let agents = &mut self.agents;
-        (
+        let (scene, agents) = (&self.fixed.scene, &mut self.crowd.agents);
+        let neighbors = &self.derived.neighbors;
+        let blocks = (
             agents.position.par_chunks_mut(BLOCK),
             agents.velocity.par_chunks_mut(BLOCK),
-            self.fields.acceleration.par_chunks(BLOCK),
+            self.derived.fields.acceleration.par_chunks(BLOCK),
             neighbors.sorted_at().par_chunks(BLOCK),
-        )
-            .into_par_iter()
-            .with_min_len(TASK)
-            .enumerate()
-            .map(|(b, (positions, velocities, accelerations, sorted_at))| {
+        );
+        let moves = self.stages.time(Stage::Integration, || {
+            let blocks = blocks.into_par_iter().with_min_len(TASK).enumerate();
+            let moved = blocks.map(|(b, (positions, velocities, accelerations, sorted_at))| {
                 let mut moves = Moves::default();
                 let from = b * BLOCK;
                 let walled = neighbors.agents_near_walls(from..from + positions.len());
@@ -149,21 +139,27 @@ impl Simulation {
                     moves.farthest = moves.farthest.max((*position - start).norm_squared());
                 }
                 moves
-            })
-            .reduce(Moves::default, Moves::and)
+            });
+            moved.reduce(Moves::default, Moves::and)
+        });
+        self.derived.neighbors.travelled(moves.farthest.sqrt());
+        moves
     }
 
     fn check(&self) -> Result<(), Fault> {
-        let fault = if self.finite { None } else { self.find_fault() };
-        fault.map_or(Ok(()), Err)
+        if self.derived.finite {
+            return Ok(());
+        }
+        self.find_fault().map_or(Ok(()), Err)
     }
 
     /// The first quantity that is not finite, and its agent.
     fn find_fault(&self) -> Option<Fault> {
-        let (agents, fields) = (&self.agents, &self.fields);
+        let (crowd, fields) = (&self.crowd, &self.derived.fields);
+        let agents = &crowd.agents;
         let fault = |i: usize, quantity| Fault::NotFinite {
-            frame: self.clock.frame(),
-            time: self.clock.time(),
+            frame: crowd.clock.frame(),
+            time: crowd.clock.time(),
             agent: agents.id[i],
             position: agents.position[i],
             quantity,
@@ -177,39 +173,35 @@ impl Simulation {
             .or_else(|| Some((not_finite(&fields.acceleration)?, "acceleration")))
             .map(|(i, quantity)| fault(i, quantity))
     }
+}
 
-    fn remove_arrivals(&mut self) {
+impl Crowd {
+    fn remove_arrivals(&mut self, scene: &Scene) {
+        let agents = &mut self.agents;
+        let group = |i: usize| &scene.groups[usize::from(agents.group[i])];
         let has_arrived = |i: usize| {
-            let group = &self.scene.groups[usize::from(self.agents.group[i])];
-            let distance = (self.agents.goal[i] - self.agents.position[i]).norm();
-            group
-                .removal_radius
-                .is_some_and(|radius| distance <= radius)
+            let distance = (agents.goal[i] - agents.position[i]).norm();
+            let radius = group(i).removal_radius;
+            radius.is_some_and(|radius| distance <= radius)
         };
-        let agents = (0..self.agents.len()).into_par_iter();
+        let all = (0..agents.len()).into_par_iter();
         // Most frames have no arrival: return before anything is allocated.
-        if !agents.with_min_len(TASK * BLOCK).any(has_arrived) {
+        if !all.with_min_len(TASK * BLOCK).any(has_arrived) {
             return;
         }
         let (arrived, staying): (Vec<u32>, Vec<u32>) =
-            (0..self.agents.len() as u32).partition(|&i| has_arrived(i as usize));
-        let mut arrivals: Vec<Arrival> = arrived
-            .into_iter()
-            .map(|i| self.arrival(i as usize))
-            .collect();
-        arrivals.sort_by_key(|arrival| arrival.id);
-        self.outcome.arrivals.append(&mut arrivals);
-        self.agents.arrange(&staying);
-        self.crowd_changed = true;
-    }
-
-    fn arrival(&self, i: usize) -> Arrival {
-        Arrival {
-            id: self.agents.id[i],
+            (0..agents.len() as u32).partition(|&i| has_arrived(i as usize));
+        let arrivals = arrived.into_iter().map(|i| i as usize).map(|i| Arrival {
+            id: agents.id[i],
             time: self.clock.time(),
-            position: self.agents.position[i],
-            counted: self.scene.groups[usize::from(self.agents.group[i])].counted,
-        }
+            position: agents.position[i],
+            counted: group(i).counted,
+        });
+        let first = self.outcome.arrivals.len();
+        self.outcome.arrivals.extend(arrivals);
+        self.outcome.arrivals[first..].sort_by_key(|arrival| arrival.id);
+        agents.arrange(&staying);
+        self.changed = true;
     }
 }
 
@@ -219,16 +211,6 @@ struct Motion {
     way: Vector,
     /// The velocity after it, m/s.
     velocity: Vector,
-}
-
-impl Motion {
-    /// A motion with the same velocity during and after the move.
-    fn along(velocity: Vector) -> Self {
-        Self {
-            way: velocity,
-            velocity,
-        }
-    }
 }
 
 /// Statistics of moves.

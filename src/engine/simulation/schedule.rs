@@ -4,10 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::agents::NewAgent;
 use crate::engine::clock::Clock;
-use crate::engine::math::Vector;
-use crate::engine::scene::{Goal, Scene, Source};
+use crate::engine::scene::{Goal, Push, Scene, Source};
 
-use super::{Fault, Simulation, Stage};
+use super::{Crowd, Fault, Simulation, Stage};
 
 /// A scheduled event.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -84,92 +83,77 @@ impl Source {
 impl Simulation {
     /// On coarse frames, lets agents in, and begins and ends pushes that are due.
     pub(super) fn follow_schedule(&mut self) -> Result<(), Fault> {
-        let nothing = self.scene.sources.is_empty() && self.scene.pushes.is_empty();
-        if nothing || !self.clock.is_coarse() {
+        let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
+        let nothing = scene.sources.is_empty() && scene.pushes.is_empty();
+        if nothing || !crowd.clock.is_coarse() {
             return Ok(());
         }
-        let mut stages = std::mem::take(&mut self.stages);
-        let followed = stages.time(Stage::Schedule, || self.enter_and_push());
-        self.stages = stages;
-        followed
+        self.stages.time(Stage::Schedule, || {
+            crowd.schedule.entries.resize(scene.sources.len(), 0);
+            crowd.schedule.begun.resize(scene.pushes.len(), false);
+            for (s, source) in scene.sources.iter().enumerate() {
+                crowd.follow_source(scene, s, source)?;
+            }
+            crowd.end_pushes(scene);
+            for (p, push) in scene.pushes.iter().enumerate() {
+                crowd.begin_push(p, push);
+            }
+            Ok(())
+        })
     }
+}
 
-    fn enter_and_push(&mut self) -> Result<(), Fault> {
-        self.schedule.entries.resize(self.scene.sources.len(), 0);
-        self.schedule.begun.resize(self.scene.pushes.len(), false);
-        for s in 0..self.scene.sources.len() {
-            self.follow_source(s)?;
-        }
-        self.end_pushes();
-        for p in 0..self.scene.pushes.len() {
-            self.begin_push(p);
-        }
-        Ok(())
-    }
-
-    fn follow_source(&mut self, s: usize) -> Result<(), Fault> {
-        let frame = self.clock.frame();
-        let source = self.scene.sources[s].clone();
-        while source
-            .frame_of(self.schedule.entries[s], &self.clock)
-            .is_some_and(|due| due <= frame)
-        {
+impl Crowd {
+    fn follow_source(&mut self, scene: &Scene, s: usize, source: &Source) -> Result<(), Fault> {
+        let clock = self.clock;
+        let is_due = |entry| {
+            let due = source.frame_of(entry, &clock);
+            due.is_some_and(|due| due <= clock.frame())
+        };
+        while is_due(self.schedule.entries[s]) {
             self.schedule.entries[s] += 1;
-            let positions: Vec<Vector> = source
-                .grid
-                .positions(self.scene.seed, self.agents.entered())
-                .collect();
-            for &position in &positions {
+            let first = self.agents.entered();
+            for position in source.grid.positions(scene.seed, first) {
                 let goal = match source.goal {
                     Goal::Point(goal) => goal,
                     Goal::Offset(offset) => position + offset,
                 };
-                self.enter(NewAgent::at(position, goal, source.group))?;
+                self.enter(scene, NewAgent::at(position, goal, source.group))?;
             }
-            let kind = EventKind::Entered(positions.len());
-            self.schedule.note(frame, &source.name, kind);
+            let kind = EventKind::Entered((self.agents.entered() - first) as usize);
+            self.schedule.note(clock.frame(), &source.name, kind);
         }
         Ok(())
     }
 
     /// Lets one agent in. An agent inside an obstacle is moved to a free point nearby.
-    pub(super) fn enter(&mut self, mut agent: NewAgent) -> Result<(), Fault> {
-        let id = self.agents.entered();
-        if let Some(obstacle) = self.scene.walls.obstacle_at(agent.position) {
-            agent.position =
-                self.scene
-                    .walls
-                    .free_point_near(agent.position)
-                    .ok_or(Fault::NoFreePoint {
-                        agent: id,
-                        obstacle,
-                    })?;
-            self.outcome.displaced.push((id, obstacle));
+    pub(super) fn enter(&mut self, scene: &Scene, mut new: NewAgent) -> Result<(), Fault> {
+        let agent = self.agents.entered();
+        if let Some(obstacle) = scene.walls.obstacle_at(new.position) {
+            let free = scene.walls.free_point_near(new.position);
+            new.position = free.ok_or(Fault::NoFreePoint { agent, obstacle })?;
+            self.outcome.displaced.push((agent, obstacle));
         }
-        self.agents.enter(agent, self.scene.seed);
-        self.crowd_changed = true;
+        self.agents.enter(new, scene.seed);
+        self.changed = true;
         Ok(())
     }
 
-    fn end_pushes(&mut self) {
+    fn end_pushes(&mut self, scene: &Scene) {
         let frame = self.clock.frame();
-        let (over, going_on) = std::mem::take(&mut self.schedule.pushing)
-            .into_iter()
-            .partition(|&(_, end)| end <= frame);
-        self.schedule.pushing = going_on;
-        let over: Vec<(u16, u64)> = over;
+        let is_over = |&mut (_, end): &mut (u16, u64)| end <= frame;
+        let over: Vec<_> = self.schedule.pushing.extract_if(.., is_over).collect();
         for (p, _) in over {
             for push in &mut self.agents.push {
                 *push = push.filter(|&current| current != p);
             }
-            let name = &self.scene.pushes[usize::from(p)].name;
+            let name = &scene.pushes[usize::from(p)].name;
             self.schedule.note(frame, name, EventKind::PushEnded);
         }
     }
 
-    fn begin_push(&mut self, p: usize) {
+    fn begin_push(&mut self, p: usize, push: &Push) {
         let frame = self.clock.frame();
-        let push = &self.scene.pushes[p];
         if self.schedule.begun[p] || self.clock.coarse_frame_at(push.at) > frame {
             return;
         }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::schedule::Schedule;
 use super::{Outcome, Simulation};
 use crate::engine::agents::Agents;
-use crate::engine::math::{Vector, pairs_of};
+use crate::engine::math::Vector;
 use crate::engine::scene::Scene;
 
 /// The state: together with the scene, it determines the rest of a run. Densities, pressures, forces and other
@@ -17,7 +17,6 @@ pub struct State {
     frame: u64,
     agents: Agents,
     /// Positions of all agents when they were last sorted, meters.
-    #[serde(with = "pairs_of::many")]
     sorted_at: Vec<Vector>,
     /// Have agents entered or left since?
     crowd_changed: bool,
@@ -35,14 +34,15 @@ pub struct StateError;
 impl Simulation {
     /// The state of an evaluated frame.
     pub fn state(&self) -> State {
+        let crowd = &self.crowd;
         State {
-            frame: self.clock.frame(),
-            agents: self.agents.clone(),
-            sorted_at: self.neighbors.sorted_at().to_vec(),
-            crowd_changed: self.crowd_changed,
-            schedule: self.schedule.clone(),
-            outcome: self.outcome.clone(),
-            has_density: !self.fields.density.is_empty(),
+            frame: crowd.clock.frame(),
+            agents: crowd.agents.clone(),
+            sorted_at: self.derived.neighbors.sorted_at().to_vec(),
+            crowd_changed: crowd.changed,
+            schedule: crowd.schedule.clone(),
+            outcome: crowd.outcome.clone(),
+            has_density: !self.derived.fields.density.is_empty(),
         }
     }
 
@@ -56,64 +56,54 @@ impl Simulation {
             ..scene
         };
         let mut simulation = Self::new(empty).map_err(|_| StateError)?;
-        simulation.check_state(&state)?;
-        let State {
-            frame,
-            agents,
-            sorted_at,
-            crowd_changed,
-            schedule,
-            outcome,
-            has_density,
-        } = state;
-        simulation.clock.go_to(frame);
-        simulation.agents = agents;
-        simulation.schedule = schedule;
-        simulation.outcome = outcome;
-        simulation.crowd_changed = crowd_changed;
-        if !crowd_changed {
-            simulation.list_again(sorted_at)?;
+        state.check(&simulation.fixed.scene)?;
+        let crowd = &mut simulation.crowd;
+        crowd.clock.go_to(state.frame);
+        crowd.agents = state.agents;
+        crowd.schedule = state.schedule;
+        crowd.outcome = state.outcome;
+        crowd.changed = state.crowd_changed;
+        if !state.crowd_changed {
+            simulation.list_again(state.sorted_at)?;
         }
-        if has_density {
-            simulation.fields.resize(simulation.agents.len(), true);
+        if state.has_density {
+            let count = simulation.crowd.agents.len();
+            simulation.derived.fields.resize_sph(count);
         }
         Ok(simulation)
     }
 
-    fn check_state(&self, state: &State) -> Result<(), StateError> {
-        let agents = &state.agents;
-        let groups = self.scene.groups.len();
-        let pushes = self.scene.pushes.len();
-        let known = agents
-            .group
-            .iter()
-            .all(|&group| usize::from(group) < groups)
-            && agents
-                .push
-                .iter()
-                .flatten()
-                .all(|&push| usize::from(push) < pushes)
-            && state.schedule.fits(&self.scene);
-        let listed = state.crowd_changed || state.sorted_at.len() == agents.len();
+    /// Rebuilds the neighbor lists as they were when the agents were at `sorted_at`.
+    fn list_again(&mut self, sorted_at: Vec<Vector>) -> Result<(), StateError> {
+        let agents = &mut self.crowd.agents;
+        let (ids, positions) = (agents.id.clone(), agents.position.clone());
+        agents.position = sorted_at;
+        self.sort_agents();
+        let (agents, neighbors) = (&mut self.crowd.agents, &mut self.derived.neighbors);
+        if agents.id != ids {
+            return Err(StateError); // the saved agents were not in the order of their cells
+        }
+        agents.position = positions;
+        let ways = agents.position.iter().zip(neighbors.sorted_at());
+        let squares = ways.map(|(now, then)| (now - then).norm_squared());
+        let farthest = squares.fold(0.0, f64::max);
+        neighbors.travelled(farthest.sqrt());
+        Ok(())
+    }
+}
+
+impl State {
+    /// Does this state fit `scene`?
+    fn check(&self, scene: &Scene) -> Result<(), StateError> {
+        let agents = &self.agents;
+        let mut groups = agents.group.iter().map(|&group| usize::from(group));
+        let mut pushes = agents.push.iter().flatten().map(|&push| usize::from(push));
+        let known = groups.all(|group| group < scene.groups.len())
+            && pushes.all(|push| push < scene.pushes.len())
+            && self.schedule.fits(scene);
+        let listed = self.crowd_changed || self.sorted_at.len() == agents.len();
         (agents.is_whole() && known && listed)
             .then_some(())
             .ok_or(StateError)
-    }
-
-    /// Rebuilds the neighbor lists as they were when the agents were at `sorted_at`.
-    fn list_again(&mut self, sorted_at: Vec<Vector>) -> Result<(), StateError> {
-        let positions = std::mem::replace(&mut self.agents.position, sorted_at);
-        let ids = self.agents.id.clone();
-        self.sort_agents();
-        self.list_walls();
-        if self.agents.id != ids {
-            return Err(StateError); // the saved agents were not in the order of their cells
-        }
-        let ways = positions.iter().zip(self.neighbors.sorted_at());
-        let squares = ways.map(|(now, then)| (now - then).norm_squared());
-        let farthest = squares.fold(0.0, f64::max);
-        self.neighbors.travelled(farthest.sqrt());
-        self.agents.position = positions;
-        Ok(())
     }
 }

@@ -15,7 +15,7 @@ use super::report::Findings;
 use super::stages::{Started, Stretch, busiest};
 use super::{Benchmark, Plan};
 use crate::analysis::statistics::Range;
-use crate::engine::pairs::Wanted;
+use crate::engine::forces::near::Wanted;
 use crate::engine::scene::Needs;
 use crate::engine::simulation::{Simulation, Stage};
 use crate::lab::error::LabError;

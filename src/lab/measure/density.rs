@@ -1,14 +1,12 @@
 //! The density of people in a frame (§8): Eqs. 9 and 10 without a simulation.
 
-use rayon::prelude::*;
-
 use super::site::{Hidden, Kernel, Site};
 use crate::engine::agents::{Agents, NewAgent, REFERENCE_RADIUS};
-use crate::engine::density::SphParameters;
+use crate::engine::density::{SphParameters, from_agents};
 use crate::engine::kernel;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::{BLOCK, Neighbors, Ranges};
-use crate::engine::pairs::Columns;
+use crate::engine::pairs::Bodies;
 
 /// At most this share of a kernel counts as hidden: in a narrow gap, the visible rest is too small to be meaningful.
 pub const MOST_HIDDEN: f64 = 0.9;
@@ -93,20 +91,12 @@ pub fn parts(
 
 /// Eq. 9 without walls, by the engine's own sums, in double precision and in the engine's order of agents.
 fn sums(agents: &Agents, neighbors: &Neighbors, h: f64) -> Vec<f64> {
-    let mut columns = Columns::<f64>::default();
-    columns.take_bodies(agents, 1.0, |_| h);
-    let states = (
-        columns.motions(),
-        agents.position.par_chunks(BLOCK),
-        agents.velocity.par_chunks(BLOCK),
-    );
-    states
-        .into_par_iter()
-        .for_each(|(mut motion, positions, velocities)| motion.take(positions, velocities));
+    let mut bodies = Bodies::<f64>::default();
+    bodies.take(agents, 1.0, |_| h);
+    bodies.take_motions(agents);
     let mut sums = vec![0.0; agents.len()];
-    let (bodies, _) = columns.pressures();
     for (b, sums) in sums.chunks_mut(BLOCK).enumerate() {
-        bodies.densities(neighbors.near().block(b), sums);
+        from_agents(&bodies, neighbors.near().block(b), sums);
     }
     sums
 }
@@ -151,11 +141,10 @@ impl History {
         }
         // A person who was absent one frame earlier is new, as in the engine.
         let before = self.kept[person].filter(|&(last, _)| last == frame - step);
-        let before = before.map_or(from_people, |(_, mean)| mean);
-        let from_walls = hidden.share * self.sph.rest_density(before);
-        let mean = self
-            .sph
-            .averaged(before, from_people + from_walls, interval);
+        let before = before.map(|(_, mean)| mean);
+        let [from_walls, mean] =
+            self.sph
+                .next_averages(from_people, hidden.share, before, interval);
         self.kept[person] = Some((frame, mean));
         from_walls
     }

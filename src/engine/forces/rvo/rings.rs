@@ -1,9 +1,8 @@
 //! Collision tests in single precision: the discs that a moving agent may meet before a given time.
 
-use fearless_simd::{Level, Simd, dispatch, f32x8, prelude::*};
-
-use super::real::LANES;
 use crate::engine::math::Vector;
+use crate::engine::pairs::prelude::*;
+use crate::engine::pairs::{LANES, Level, Simd, dispatch, f32x8};
 
 /// A moving disc, relative to agent i.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,8 @@
 //! Branch and bound for the cheapest candidate; gives the same result as an exhaustive search.
 
+use super::rings::Rings;
 use super::{Candidate, Situation, time_to_contact};
 use crate::engine::math::Vector;
-use crate::engine::pairs::Rings;
 
 /// Width in m/s of the buckets by which candidates are sorted; candidates in a bucket are unordered.
 const WIDTH: f64 = 0.1;
