@@ -56,9 +56,9 @@ impl SphParameters {
         mean_density.clamp(self.rest_density_min, self.rest_density_max)
     }
 
-    /// Eqs. 10 and 8: the density from walls and the moving average ρ̂, P/m². `hidden` is Σ_k ∫ W over P_k, and `kept`
+    /// The density from walls (Eq. 10) and the moving average ρ̂ (Eq. 8), P/m². `hidden` is Σ_k ∫ W over P_k, and `kept`
     /// is the average `time_step` seconds before; a newcomer has none.
-    pub fn next_averages(
+    pub fn from_walls_and_mean(
         &self,
         from_agents: f64,
         hidden: f64,
@@ -176,16 +176,21 @@ impl<'a, P: Fn(u16) -> &'a SphParameters + Sync> Input<'a, P> {
                 let group = &self.agents.group[agents.clone()];
                 let same = group.iter().all(|&other| other == group[0]);
                 let shared = same.then(|| *(self.parameters)(group[0]));
-                for (k, i) in agents.enumerate() {
+                let newcomer = &self.agents.newcomer[agents.clone()];
+                let before = &self.agents.mean_density[agents.clone()];
+                let mass = &self.agents.mass[agents];
+                for k in 0..mass.len() {
                     let sph = shared.unwrap_or_else(|| *(self.parameters)(group[k]));
-                    let kept = self.agents.kept_mean_density(i);
+                    let kept = (!newcomer[k]).then_some(before[k]);
                     let hidden = from_walls[k];
                     [from_walls[k], mean[k]] =
-                        sph.next_averages(density[k], hidden, kept, self.time_step);
+                        sph.from_walls_and_mean(density[k], hidden, kept, self.time_step);
                     density[k] += from_walls[k];
                     rest[k] = sph.rest_density(mean[k]);
                     pressure[k] = sph.pressure(density[k], rest[k]);
-                    volume[k] = R::of(self.agents.mass[i] / density[k]);
+                }
+                for k in 0..mass.len() {
+                    volume[k] = R::of(mass[k] / density[k]);
                     packed[k] = R::of(pressure[k]);
                 }
             });

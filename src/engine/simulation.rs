@@ -311,7 +311,7 @@ impl Derived {
             fields: &self.fields,
             neighbors: &self.neighbors,
             packed: &self.packed,
-            seed: fixed.scene.behaviour_seed.unwrap_or(fixed.scene.seed),
+            seed: fixed.scene.behavior_seed.unwrap_or(fixed.scene.seed),
         }
     }
 }

@@ -119,7 +119,7 @@ fn sums<R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool>(
     simd: S,
     columns: &Columns<R>,
     block: &ClusterBlock,
-    coefficients: &PairCoefficients,
+    felt: &PairCoefficients,
     out: &mut [Vector],
 ) {
     for (agents, runs) in block.clusters() {
@@ -129,19 +129,9 @@ fn sums<R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool>(
             columns,
             minus_unit_per_h: splat::<R, S>(simd, -columns.bodies.unit)
                 * load(simd, &columns.bodies.per_support, start),
-            pressure: pressure::FromAgents::new(
-                simd,
-                columns,
-                start,
-                &coefficients.pressure[own..],
-            ),
-            viscosity: viscosity::FromAgents::new(
-                simd,
-                columns,
-                start,
-                &coefficients.viscosity[own..],
-            ),
-            contact: contact::FromAgents::new(simd, columns, start, &coefficients.contact[own..]),
+            pressure: pressure::FromAgents::new(simd, columns, start, &felt.pressure[own..]),
+            viscosity: viscosity::FromAgents::new(simd, columns, start, &felt.viscosity[own..]),
+            contact: contact::FromAgents::new(simd, columns, start, &felt.contact[own..]),
             along: [splat::<R, S>(simd, 0.0); 2],
         };
         add_pairs(simd, &columns.bodies, (start, runs), &mut sum);
@@ -201,13 +191,12 @@ impl<'a, R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool> PairSum<
         if PRESSURE {
             let rest = self.minus_unit_per_h.mul_add(distance, one).max(zero);
             let weight = spread::<R, S>(simd, run.volume[j]) * rest;
-            force = self
-                .pressure
-                .along(weight, rest, spread(simd, run.pressure[j]));
+            let p_j = spread(simd, run.pressure[j]);
+            force = self.pressure.along(weight, rest, p_j);
             if VISCOSITY {
-                let v_j = [run.velocity_x[j], run.velocity_y[j]];
-                self.viscosity
-                    .add(weight, [spread(simd, v_j[0]), spread(simd, v_j[1])]);
+                let v_x = spread(simd, run.velocity_x[j]);
+                let v_y = spread(simd, run.velocity_y[j]);
+                self.viscosity.add(weight, [v_x, v_y]);
             }
         }
         let radius_j = spread(simd, run.radius[j]);

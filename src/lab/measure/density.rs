@@ -144,7 +144,7 @@ impl History {
         let before = before.map(|(_, mean)| mean);
         let [from_walls, mean] =
             self.sph
-                .next_averages(from_people, hidden.share, before, interval);
+                .from_walls_and_mean(from_people, hidden.share, before, interval);
         self.kept[person] = Some((frame, mean));
         from_walls
     }

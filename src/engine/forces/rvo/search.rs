@@ -37,21 +37,14 @@ impl Search {
         candidates: &[Candidate],
         collision_weight: f64,
     ) -> Vector {
-        let max_squared = situation.max_speed * situation.max_speed;
-        let preferred = (situation.preferred_velocity - situation.velocity).norm();
-        let numbered = (0..).zip(candidates.iter().copied());
+        self.sort(situation, candidates);
         let Self {
             candidates: sorted,
             rings,
             perhaps,
             velocities,
         } = self;
-        sorted.sort(
-            WIDTH,
-            numbered.map(|(k, candidate)| ((candidate.length - preferred).abs(), (k, candidate))),
-        );
-        rings.sort(&situation.discs);
-
+        let max_squared = situation.max_speed * situation.max_speed;
         let (mut best, mut first) = (Vector::zeros(), u32::MAX);
         let mut best_cost = f64::INFINITY;
         for (least, candidates) in sorted.iter() {
@@ -93,6 +86,16 @@ impl Search {
             }
         }
         best
+    }
+
+    /// Sorts the candidates by a lower bound of their deviation, and the discs into rings.
+    fn sort(&mut self, situation: &Situation, candidates: &[Candidate]) {
+        let preferred = (situation.preferred_velocity - situation.velocity).norm();
+        let numbered = (0..).zip(candidates.iter().copied());
+        let bounded =
+            numbered.map(|(k, candidate)| ((candidate.length - preferred).abs(), (k, candidate)));
+        self.candidates.sort(WIDTH, bounded);
+        self.rings.sort(&situation.discs);
     }
 }
 
