@@ -58,7 +58,7 @@ fn all_scenario_files_and_one_with_every_key_are_valid() {
     let schema = schema();
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let mut seen = 0;
-    for folder in [scenarios.clone(), scenarios.join("stress")] {
+    for folder in ["", "stress", "accuracy"].map(|folder| scenarios.join(folder)) {
         for entry in fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
             if path

@@ -17,8 +17,7 @@ pub trait PairSum<R: Real, S: Simd> {
     /// These columns for the agents `run`.
     fn run(&self, run: Range<usize>) -> Self::Run;
 
-    /// Adds agent `j` of a run, which is at −r_ij from the agents i; r_ij is in coordinate units. Agents out of reach
-    /// must add zero.
+    /// Adds agent `j` of a run, given r_ij = r_i − r_j in coordinate units. Agents out of reach must add zero.
     fn add(&mut self, simd: S, r_ij: [Lanes<R, S>; 2], run: Self::Run, j: usize);
 }
 

@@ -68,28 +68,6 @@ impl Simulation {
         }
     }
 
-    /// Step 2.
-    pub(super) fn update_preferred_velocity(&mut self) {
-        let (agents, speed) = (&self.crowd.agents, self.fixed.scene.preferred_speed);
-        let preferred = &mut self.derived.fields.preferred_velocity;
-        preferred.resize(agents.len(), Vector::zeros());
-        self.stages.time(Stage::PreferredVelocity, || {
-            let blocks = (
-                preferred.par_chunks_mut(BLOCK),
-                agents.position.par_chunks(BLOCK),
-                agents.goal.par_chunks(BLOCK),
-            );
-            blocks
-                .into_par_iter()
-                .with_min_len(TASK)
-                .for_each(|(preferred, positions, goals)| {
-                    for ((v, &r), &g) in preferred.iter_mut().zip(positions).zip(goals) {
-                        *v = goal::preferred_velocity(r, g, speed);
-                    }
-                });
-        });
-    }
-
     /// Step 1B, `dt` seconds after the moving average was last stored.
     pub(super) fn update_density_and_pressure(&mut self, dt: f64) {
         let due = self.density_is_due();
@@ -112,6 +90,28 @@ impl Simulation {
         };
         self.stages.time(Stage::DensityAndPressure, || {
             each!(&mut derived.packed, columns => input.update(columns, fields));
+        });
+    }
+
+    /// Step 2.
+    pub(super) fn update_preferred_velocity(&mut self) {
+        let (agents, speed) = (&self.crowd.agents, self.fixed.scene.preferred_speed);
+        let preferred = &mut self.derived.fields.preferred_velocity;
+        preferred.resize(agents.len(), Vector::zeros());
+        self.stages.time(Stage::PreferredVelocity, || {
+            let blocks = (
+                preferred.par_chunks_mut(BLOCK),
+                agents.position.par_chunks(BLOCK),
+                agents.goal.par_chunks(BLOCK),
+            );
+            blocks
+                .into_par_iter()
+                .with_min_len(TASK)
+                .for_each(|(preferred, positions, goals)| {
+                    for ((v, &r), &g) in preferred.iter_mut().zip(positions).zip(goals) {
+                        *v = goal::preferred_velocity(r, g, speed);
+                    }
+                });
         });
     }
 

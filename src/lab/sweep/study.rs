@@ -47,7 +47,7 @@ impl Study {
     pub(super) fn short_axes(&self) -> Vec<String> {
         let others = self.axes.len() - self.grid_axes;
         match self.axes.split_at(others) {
-            ([label, ..], grid) if label == LABEL => [&[label.clone()], grid].concat(),
+            ([label, ..], grid) if label == LABEL => [std::slice::from_ref(label), grid].concat(),
             _ => self.axes.clone(),
         }
     }

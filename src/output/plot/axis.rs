@@ -64,7 +64,7 @@ impl Axis {
         let [first, last] = self.range;
         if axis.ticks.is_empty() && (last - first).is_finite() {
             let values = match self.is_log {
-                false => RangedCoordf64::from(first..last).key_points(most as usize + 1),
+                false => linear_ticks(self.range, most),
                 true => log_ticks(self.range, most),
             };
             axis.ticks = values.into_iter().map(|v| (v, number(v))).collect();
@@ -79,7 +79,8 @@ impl Ranged for Axis {
     type ValueType = f64;
 
     fn map(&self, place: &f64, limit: (i32, i32)) -> i32 {
-        RangedCoordf64::from(self.range()).map(place, limit)
+        // Places far outside would overflow.
+        RangedCoordf64::from(self.range()).map(&place.clamp(-9.0, 9.0), limit)
     }
 
     fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {
@@ -97,6 +98,17 @@ impl ValueFormatter<f64> for Axis {
         let tick = ticks.find(|tick| self.place(tick.0) == *place);
         tick.map_or(String::new(), |tick| tick.1.clone())
     }
+}
+
+/// Multiples of 1, 2 or 5 times a power of ten. plotters' own lose the last tick to rounding errors.
+fn linear_ticks([first, last]: [f64; 2], most: i32) -> Vec<f64> {
+    let rough = (last - first) / f64::from(most.max(1));
+    let decade = 10_f64.powf(rough.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade);
+    let step = steps.into_iter().find(|step| *step > 0.999 * rough);
+    let step = step.unwrap_or(rough);
+    let (from, to) = ((first / step - 1e-6).ceil(), (last / step + 1e-6).floor());
+    (from as i64..=to as i64).map(|k| k as f64 * step).collect()
 }
 
 /// 1, 2 and 5 times every power of ten, or only powers of ten if there is little room. plotters' `LogCoord` has
@@ -117,8 +129,7 @@ fn log_ticks([first, last]: [f64; 2], most: i32) -> Vec<f64> {
 /// A number with commas between thousands and as many decimals as it needs.
 fn number(value: f64) -> String {
     let text = match value.abs() {
-        ..1e-15 => "0".to_owned(), // plotters may return a tiny number for zero
-        ..0.9e-3 => format!("{value:.1e}").replace(".0e", "e"),
+        f64::MIN_POSITIVE..0.9e-3 => format!("{value:.1e}").replace(".0e", "e"),
         _ => format!("{:.9}", HumanFloatCount(value)),
     };
     text.replace('-', "\u{2212}")

@@ -159,9 +159,7 @@ fn draw_chart<DB: DrawingBackend>(panel: &Panel, area: &Area<DB>, space: [f64; 3
 /// Draws a color bar: a chart of its colors with its axis on the right.
 fn draw_bar<DB: DrawingBackend>(bar: &ColorBar, area: &Area<DB>) -> Drawn {
     const STEPS: u32 = 64;
-    // Without the rounding errors of `f32`, so that the ends get ticks.
-    let exact = |end| (1e6 * f64::from(end)).round() / 1e6;
-    let [first, last] = bar.map.range().map(exact);
+    let [first, last] = bar.map.range().map(f64::from);
     let value = |step| first + (last - first) * (f64::from(step) + 0.5) / f64::from(STEPS);
     let panel = Panel {
         x: Axis::linear("", [0.0, 1.0]),
