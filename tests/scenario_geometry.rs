@@ -122,7 +122,7 @@ fn mistakes_in_a_plan_are_reported_with_the_scenario_the_key_and_the_file() {
         ),
         (
             json!({"obstacles": [[[0, 0], [4, 0, 1], [4, 4]]]}),
-            vec!["obstacles[0][1]: must be a point, [x, y]"],
+            vec!["obstacles[0][1]: must be a point [x, y]"],
         ),
     ] {
         let (_folder, path) = folder(&changes);

@@ -343,7 +343,7 @@ fn closed_rooms_are_walkable_only_if_an_agent_is_inside() {
         .push(person(vector(11.0, 1.0), vector(13.0, 3.0)));
     let both = area(rooms, 1);
     assert!(
-        both.starts_with("MULTIPOLYGON (((") && both.matches("((").count() == 2,
+        both.starts_with("MULTIPOLYGON(((") && both.matches("((").count() == 2,
         "{both}"
     );
 }
