@@ -58,7 +58,7 @@ pub struct Combination<'a> {
     pub cells: &'a [Cell],
     /// The results of its finished cells.
     pub results: Vec<&'a RunResult>,
-    /// The means in the order of [`Gathered::numbers`]; `None` if no run gave a value.
+    /// The means of all numbers, in the order of the tables; `None` if no run gave a value.
     pub means: Vec<Option<MeanStd>>,
 }
 
