@@ -4,7 +4,7 @@ use crate::common::vector;
 use rand::Rng;
 use sandbox::engine::agents::{Agents, NewAgent};
 use sandbox::engine::math::Vector;
-use sandbox::engine::neighbors::{BLOCK, CLUSTER, Neighbors, Ranges, SKIN};
+use sandbox::engine::neighbors::{BLOCK, CLUSTER, Grid, Neighbors, Ranges, SKIN};
 use sandbox::engine::random::{Purpose, stream};
 
 fn crowd(count: u32, side: f64) -> Agents {
@@ -160,4 +160,20 @@ fn an_agent_far_from_the_others_has_no_neighbors() {
     let neighbors = listed(&mut agents);
     let far = agents.index_of(50).unwrap();
     assert_eq!(near(&neighbors, far), [far]);
+}
+
+#[test]
+fn strange_sizes_and_extents_make_small_grids() {
+    for height in [0.0, 5e-324, 1e-300, 1.14] {
+        for positions in [
+            vec![Vector::zeros()],
+            vec![Vector::zeros(), Vector::new(9.0, 1e9)],
+            vec![Vector::zeros(), Vector::new(f64::INFINITY, 1e9)],
+            vec![Vector::new(f64::NAN, 0.0); 3],
+        ] {
+            let mut grid = Grid::default();
+            assert_eq!(grid.rebuild(&positions, height).len(), positions.len());
+            assert!(grid.cells() <= 1024);
+        }
+    }
 }

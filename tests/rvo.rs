@@ -27,7 +27,7 @@ fn meeting(offset: Vector, velocity: Vector, reach: f64) -> f64 {
 }
 
 /// The time when a disc meets a wall, in coordinates of the wall: s along it and d in front of it.
-fn meeting_wall(wall: &Wall, position: Vector, velocity: Vector, radius: f64) -> f64 {
+pub fn meeting_wall(wall: &Wall, position: Vector, velocity: Vector, radius: f64) -> f64 {
     let way = wall.end - wall.start;
     let length = (way.x * way.x + way.y * way.y).sqrt();
     let coordinates = |v: Vector| {

@@ -1,6 +1,7 @@
-//! When agents enter, push and leave.
+//! The clock, and when agents enter, push and leave.
 
 use crate::common::{acceleration, blend, block, breakdown, run, scene, state, vector, walker};
+use sandbox::engine::clock::Clock;
 use sandbox::engine::math::Vector;
 use sandbox::engine::placement::Grid;
 use sandbox::engine::profile::Override;
@@ -196,4 +197,37 @@ fn a_push_does_not_change_the_forces_on_other_agents() {
         }
     }
     assert!(changed > 0);
+}
+
+#[test]
+fn a_coarse_frame_comes_every_fifth_frame_for_ever() {
+    let mut clock = Clock::default();
+    for frame in 0..100_000 {
+        assert_eq!(clock.is_coarse(), frame % 5 == 0);
+        assert_eq!(clock.coarse_frame(), frame / 5);
+        clock.advance();
+    }
+    assert_eq!(clock.time(), 2000.0);
+}
+
+#[test]
+fn times_in_between_act_at_the_next_coarse_frame() {
+    let clock = Clock::default();
+    assert_eq!(clock.coarse_frame_at(150.0), 7500);
+    assert_eq!(clock.coarse_frame_at(0.12), 10);
+    assert_eq!(clock.coarse_frame_at(0.101), 10);
+    assert_eq!(clock.coarse_frame_at(0.1), 5);
+    for k in 0..10_000 {
+        assert_eq!(
+            clock.coarse_frame_at(0.1 * f64::from(k)),
+            5 * u64::from(k as u32)
+        );
+    }
+    assert_eq!(clock.frame_at(15.0), 750);
+}
+
+#[test]
+fn the_coarse_step_stays_near_a_tenth_of_a_second() {
+    let frames = [0.0025, 0.02, 0.03, 0.08, 0.5].map(Clock::nearest_coarse_every);
+    assert_eq!(frames, [40, 5, 3, 1, 1]);
 }

@@ -2,7 +2,7 @@
 
 use crate::common;
 use crate::common::social::{condition, force, potential, weight};
-use crate::common::{blend, blend_with, scene, vector, walker};
+use crate::common::{blend, blend_with, rectangle, scene, vector, walker};
 use proptest::prelude::*;
 use rand::Rng;
 use sandbox::engine::agents::NewAgent;
@@ -290,4 +290,40 @@ fn each_group_uses_its_own_parameters() {
     let agents = simulation.frame().agents;
     let [plain, strong] = [0, 1].map(|id| engine_sum(&simulation, agents.index_of(id).unwrap()));
     assert!(plain.norm() > 0.1 && (strong + plain * 2.0).norm() < 1e-12);
+}
+
+#[test]
+fn the_wall_force_is_the_gradient_of_its_potential() {
+    let social = SocialForce::default();
+    let potential = |d: f64| social.wall_strength * (-d / social.wall_range).exp();
+    for d in [0.05, 0.24, 1.0] {
+        let slope = (potential(d + 1e-6) - potential(d - 1e-6)) / 2e-6;
+        let force = social.wall_force(Vector::new(0.0, d));
+        assert!((force - Vector::new(0.0, -slope)).norm() < 1e-7);
+    }
+}
+
+/// Eq. 19 for a straight wall below an agent that walks at an angle to the direction of the wall, in degrees.
+fn wall_weight(degrees: f64, speed: f64) -> f64 {
+    let (sine, cosine) = degrees.to_radians().sin_cos();
+    let social = SocialForce::default();
+    let wall = rectangle([-9.0, 9.0], [-1.0, 0.0]);
+    let mut scene = scene(vec![wall], blend("sf"));
+    let velocity = vector(sine, -cosine) * speed;
+    scene.agents = vec![walker(vector(0.0, 1.0), velocity, vector(9.0, 9.0))];
+    let simulation = common::evaluated(scene);
+    let found = social.from_walls(&simulation.frame(), 0);
+    found.norm() / social.wall_force(vector(0.0, 1.0)).norm()
+}
+
+#[test]
+fn what_lies_behind_counts_half_and_a_standing_agent_sees_all_round() {
+    for (degrees, speed, weight) in [
+        (99.9, 1.0, 1.0),
+        (-99.9, 0.3, 1.0),
+        (100.1, 1.0, 0.5),
+        (180.0, 0.0, 1.0),
+    ] {
+        assert!((wall_weight(degrees, speed) - weight).abs() < 1e-12);
+    }
 }

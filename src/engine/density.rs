@@ -217,25 +217,3 @@ impl<'a, P: Fn(u16) -> &'a SphParameters + Sync> Input<'a, P> {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_moving_average_forgets_at_the_rate_of_its_averaging_time() {
-        let sph = SphParameters::default();
-        let after = (0..5).fold(0.0, |mean, _| sph.averaged(mean, 1.0, 0.02));
-        assert!((after - (1.0 - 0.8_f64.powi(5))).abs() < 1e-15);
-        assert_eq!(sph.averaged(7.0, 3.0, 0.5), 3.0);
-    }
-
-    #[test]
-    fn the_rest_density_is_clamped_and_the_pressure_changes_sign_there() {
-        let sph = SphParameters::default();
-        assert_eq!(sph.rest_density(7.0), 5.0);
-        assert_eq!(sph.rest_density(-1.0), 0.0);
-        assert_eq!(sph.pressure(4.0, 5.0), -200.0);
-        assert_eq!(sph.pressure(5.5, 5.0), 100.0);
-    }
-}

@@ -68,6 +68,12 @@ pub fn clamp_length(v: Vector, limit: f64) -> Vector {
     }
 }
 
+/// The lower left and the upper right corner of the rectangle around some points; `None` without points.
+pub fn bounds(points: impl IntoIterator<Item = Vector>) -> Option<[Vector; 2]> {
+    let corners = points.into_iter().map(|p| [p; 2]);
+    corners.reduce(|[low, high], [p, _]| [low.inf(&p), high.sup(&p)])
+}
+
 /// Are both coordinates finite?
 pub fn is_finite(v: Vector) -> bool {
     v.x.is_finite() && v.y.is_finite()
@@ -83,35 +89,4 @@ pub fn are_finite(vectors: &[Vector]) -> bool {
 /// Are all numbers finite?
 pub fn numbers_are_finite(numbers: &[f64]) -> bool {
     numbers.iter().map(|number| number * 0.0).sum::<f64>() == 0.0
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn unit_vectors_are_the_cosines_and_sines_of_their_turns() {
-        for k in 0..100_000_u32 {
-            let turn = k.wrapping_mul(2_654_435_761);
-            let v = unit_vector(turn);
-            let angle = f64::from(turn) / 2_f64.powi(32) * std::f64::consts::TAU;
-            assert!((v - Vector::new(angle.cos(), angle.sin())).norm() < 2e-15);
-            assert!((v.norm() - 1.0).abs() < 1e-15);
-        }
-        let quarters = [0, 1, 2, 3].map(|quarter| unit_vector(quarter << 30));
-        assert_eq!(quarters, QUARTERS.map(Vector::from));
-    }
-
-    #[test]
-    fn one_number_that_is_none_is_seen_among_many() {
-        let mut numbers = vec![1e300; 99];
-        assert!(numbers_are_finite(&numbers) && numbers_are_finite(&[]));
-        let mut vectors = vec![Vector::new(-1e300, 0.0); 99];
-        assert!(are_finite(&vectors) && are_finite(&[]));
-        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            numbers[57] = bad;
-            vectors[57].y = bad;
-            assert!(!numbers_are_finite(&numbers) && !are_finite(&vectors));
-        }
-    }
 }

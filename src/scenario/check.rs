@@ -15,7 +15,7 @@ use super::range::{self, region};
 use super::{PlanFile, Scenario, Stop, View, measurements, plan, preset, profiles};
 use crate::analysis::stability;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, bounds};
 use crate::engine::profile::Override;
 use crate::engine::scene::{Push, Region, Scene};
 
@@ -226,12 +226,7 @@ fn surroundings(scene: &Scene) -> Region {
         .iter()
         .flat_map(|source| [source.grid.min, source.grid.max]);
     let margin = Vector::new(DEFAULT_MARGIN, DEFAULT_MARGIN);
-    let bounds = corners
-        .chain(agents)
-        .chain(sources)
-        .map(|p| (p, p))
-        .reduce(|(low, high), (p, _)| (low.inf(&p), high.sup(&p)));
-    let (low, high) = bounds.unwrap_or((Vector::zeros(), Vector::zeros()));
+    let [low, high] = bounds(corners.chain(agents).chain(sources)).unwrap_or_default();
     Region {
         min: low - margin,
         max: high + margin,

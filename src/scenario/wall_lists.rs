@@ -1,7 +1,7 @@
 //! An upper bound on the size of the lists of walls near agents, without building the lists.
 
 use crate::engine::geometry::{Wall, Walls};
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::Scene;
 
 /// Most cells per side.
@@ -57,9 +57,8 @@ struct Cells {
 
 impl Cells {
     fn over(walls: &Walls, reach: f64) -> Self {
-        let ends = || walls.iter().flat_map(|wall| [wall.start, wall.end]);
-        let first = ends().next().unwrap_or(Vector::zeros());
-        let (min, max) = ends().fold((first, first), |(min, max), p| (min.inf(&p), max.sup(&p)));
+        let ends = walls.iter().flat_map(|wall| [wall.start, wall.end]);
+        let [min, max] = bounds(ends).unwrap_or_default();
         let margin = Vector::repeat(reach);
         let (corner, size) = (min - margin, max - min + 2.0 * margin);
         let side = (reach / CELLS_PER_REACH).max(size.amax() / MOST_CELLS);

@@ -328,29 +328,3 @@ impl FieldOfView {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_wall_force_is_the_gradient_of_its_potential() {
-        let social = SocialForce::default();
-        let potential = |d: f64| social.wall_strength * (-d / social.wall_range).exp();
-        for d in [0.05, 0.24, 1.0] {
-            let slope = (potential(d + 1e-6) - potential(d - 1e-6)) / 2e-6;
-            let force = social.wall_force(Vector::new(0.0, d));
-            assert!((force - Vector::new(0.0, -slope)).norm() < 1e-7);
-        }
-    }
-
-    #[test]
-    fn what_lies_behind_counts_half_and_a_standing_agent_sees_all_round() {
-        let walking = FieldOfView::new(Vector::new(1.0, 0.0));
-        let at = |degrees: f64| Vector::new(degrees.to_radians().cos(), degrees.to_radians().sin());
-        assert_eq!(walking.weight(at(99.9)), 1.0);
-        assert_eq!(walking.weight(at(-99.9) * 3.0), 1.0);
-        assert_eq!(walking.weight(at(100.1)), 0.5);
-        assert_eq!(FieldOfView::new(Vector::zeros()).weight(at(180.0)), 1.0);
-    }
-}

@@ -10,7 +10,6 @@ mod grid;
 mod lists;
 
 pub use clusters::{BLOCK, CLUSTER, ClusterBlock, Clusters, TASK};
-use grid::bounds;
 pub use grid::{Grid, Place};
 pub use lists::Lists;
 
@@ -18,7 +17,7 @@ use std::ops::Range;
 
 use crate::engine::agents::Agents;
 use crate::engine::geometry::Walls;
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, bounds};
 
 /// Margin of all lists, meters: when an agent has moved by half of it since the sort, all lists are rebuilt. With a
 /// larger margin, lists are rebuilt less often but are longer.
@@ -150,7 +149,8 @@ impl Neighbors {
         found.clear();
         let reach = radius + self.ranges.margin;
         if self.grid.height() <= self.reach {
-            found.extend(self.grid.rows(bounds(&positions[agents]), reach));
+            let corners = bounds(positions[agents].iter().copied()).unwrap_or_default();
+            found.extend(self.grid.rows(corners, reach));
             return;
         }
         // Cells had to be made larger than the reach of the lists, so clusters have one agent: list only its

@@ -127,26 +127,3 @@ const SERIES: [f32; 7] = [
     0.001_333_355_814_642_84,
     0.000_154_035_303_933_816,
 ];
-
-#[cfg(test)]
-mod tests {
-    use fearless_simd::{Level, dispatch};
-
-    use super::*;
-
-    #[test]
-    fn powers_of_two_are_right_to_the_last_bits() {
-        for k in 0..100_000 {
-            let x = -1e-3 * f64::from(k) as f32;
-            let power = dispatch!(Level::new(), simd => {
-                <f32 as Real>::exp2(simd, f32x8::splat(simd, x))[3]
-            });
-            let exact = f64::from(x).exp2();
-            assert!((f64::from(power) / exact - 1.0).abs() < 3e-7, "{x}");
-        }
-        let far = dispatch!(Level::new(), simd => {
-            <f32 as Real>::exp2(simd, f32x8::splat(simd, -1e9))[0]
-        });
-        assert!((0.0..=f32::MIN_POSITIVE).contains(&far));
-    }
-}

@@ -29,7 +29,7 @@ pub use site::{Hidden, Kernel, Site};
 use rayon::prelude::*;
 
 use crate::analysis::statistics::MeanStd;
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::Region;
 use crate::output::trajectory::read::Tracks;
 use density::History;
@@ -248,15 +248,9 @@ fn grid(
     chosen: std::ops::Range<usize>,
 ) -> Result<Grid, MeasureError> {
     let rows = tracks.rows(chosen.start).start..tracks.rows(chosen.end - 1).end;
-    let [low, high] = bounds(tracks.position[rows].iter().copied());
+    let [low, high] = bounds(tracks.position[rows].iter().copied()).unwrap_or_default();
     let margin = Vector::repeat(options.kernel.support_radius);
     Grid::over(low - margin, high + margin, options.cell).ok_or(MeasureError::Cells(options.cell))
-}
-
-/// The lower left and the upper right corner of the rectangle around some points, meters; infinite without points.
-pub(super) fn bounds(points: impl Iterator<Item = Vector>) -> [Vector; 2] {
-    let far = Vector::repeat(f64::INFINITY);
-    points.fold([far, -far], |[low, high], p| [low.inf(&p), high.sup(&p)])
 }
 
 fn overview(tracks: &Tracks, chosen: std::ops::Range<usize>) -> Overview {

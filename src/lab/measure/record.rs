@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::{Behind, Moment, Options, Site, bounds};
+use super::{Behind, Moment, Options, Site};
 use crate::engine::agents::REFERENCE_RADIUS;
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::Region;
 use crate::output::recording::{
     DebugAgents, MeasuredPerson, MeasuredRecorder, RecordingError, RecordingOptions,
@@ -37,7 +37,7 @@ impl<'a> MomentRecorder<'a> {
         (tracks, site): (&'a Tracks, &Site),
         measured: &Options,
     ) -> Result<Self, RecordingError> {
-        let [low, high] = bounds(tracks.position.iter().copied());
+        let [low, high] = bounds(tracks.position.iter().copied()).unwrap_or_default();
         let margin = Vector::repeat(1.0);
         let ends = [tracks.frames.first(), tracks.frames.last()];
         let ends = ends.map(|frame| frame.map_or(0.0, |&frame| tracks.time(frame)));

@@ -1,9 +1,8 @@
 //! The measurement site: the parts of a kernel that walls hide, from people and from grid cells.
 
-use super::bounds;
 use crate::engine::boundary::WallMethod;
 use crate::engine::geometry::{Polygon, Walls};
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, bounds};
 
 /// Obstacles, with a fast test for points inside them.
 #[derive(Debug, Clone)]
@@ -41,7 +40,7 @@ impl Site {
             if obstacle.is_unbounded() {
                 return [f64::NEG_INFINITY, f64::INFINITY].map(Vector::repeat);
             }
-            bounds(obstacle.points().iter().copied())
+            bounds(obstacle.points().iter().copied()).unwrap_or_default()
         });
         Self {
             bounds: bounds.collect(),

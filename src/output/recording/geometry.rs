@@ -11,7 +11,7 @@ use rerun::{
 use super::error::Cause;
 use crate::engine::agents::Agents;
 use crate::engine::geometry::Polygon;
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Goal, Scene};
 
 /// The filled obstacles: an image below everything else.
@@ -92,10 +92,8 @@ struct Raster {
 
 impl Raster {
     fn of(obstacles: &[Polygon]) -> Self {
-        let points = || obstacles.iter().flat_map(Polygon::points);
-        let infinity = Vector::repeat(f64::INFINITY);
-        let min = points().fold(infinity, |min, p| min.inf(p));
-        let max = points().fold(-infinity, |max, p| max.sup(p));
+        let points = obstacles.iter().flat_map(Polygon::points);
+        let [min, max] = bounds(points.copied()).unwrap_or_default();
         let unbounded = obstacles.iter().any(Polygon::is_unbounded);
         let margin = Vector::repeat(if unbounded { SOLID_MARGIN } else { 0.0 });
         let (min, max) = (min - margin, max + margin);

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use super::Row;
 use super::error::Cause;
 use crate::engine::geometry::AreaIndex;
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Goal, Region};
 use crate::engine::simulation::Simulation;
 use crate::scenario::floor_plan::{Rings, free, to_wkt};
@@ -47,9 +47,8 @@ impl WalkableArea {
         let obstacles = scene.walls.obstacles();
         let corners = obstacles.iter().flat_map(|obstacle| obstacle.points());
         let everything = entries.iter().chain(&goals).chain(corners);
-        let [min, max] = everything.fold([view.min, view.max], |[low, high], p| {
-            [low.inf(p), high.sup(p)]
-        });
+        let everything = everything.chain([&view.min, &view.max]);
+        let [min, max] = bounds(everything.copied()).unwrap_or_default();
         let margin = Vector::new(MARGIN, MARGIN);
         let (mut floors, mut bodies) = (Vec::new(), Rings::new());
         for obstacle in obstacles {
@@ -116,9 +115,7 @@ impl WalkableArea {
                 .collect();
         }
         let corners = areas.iter().flat_map(|area| area.exterior.points());
-        let around = corners.copied().map(|p| [p, p]);
-        let around = around.reduce(|[low, high], [p, _]| [low.inf(&p), high.sup(&p)]);
-        let [min, max] = around.unwrap_or(self.bounds);
+        let [min, max] = bounds(corners.copied()).unwrap_or(self.bounds);
         Ok((to_wkt(&areas), [min.x, min.y, max.x, max.y]))
     }
 }

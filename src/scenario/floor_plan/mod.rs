@@ -22,7 +22,7 @@ pub use wkt::to_wkt;
 use std::path::Path;
 
 use crate::engine::geometry::{Area, Polygon, PolygonError, Ring};
-use crate::engine::math::Vector;
+use crate::engine::math::bounds;
 use crate::scenario::input;
 use shape::Shape;
 
@@ -200,10 +200,9 @@ impl FloorPlan {
     }
 }
 
-/// The extent along x and along y, meters; negative without areas.
+/// The extent along x and along y, meters; 0 without areas.
 fn extent<'a>(areas: impl Iterator<Item = &'a Area>) -> [f64; 2] {
     let points = areas.flat_map(Area::rings).flat_map(Ring::points);
-    let none = [f64::INFINITY, f64::NEG_INFINITY].map(Vector::repeat);
-    let [low, high] = points.fold(none, |[low, high], p| [low.inf(p), high.sup(p)]);
+    let [low, high] = bounds(points.copied()).unwrap_or_default();
     [high.x - low.x, high.y - low.y]
 }

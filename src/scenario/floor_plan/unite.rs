@@ -7,7 +7,7 @@ use geo::{BooleanOps, Coord, LineString, MultiPolygon, Orient, Polygon};
 use super::error::FloorPlanError;
 use super::shape::SAME;
 use crate::engine::geometry::{Area, Ring, assemble};
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, bounds};
 
 /// Largest distance between a computed and a given corner, relative to the whole extent: geo computes on a grid of
 /// about 2⁻³⁰ of it.
@@ -36,13 +36,7 @@ pub fn free(floors: &[Rings], bodies: &Rings) -> Result<Vec<Area>, FloorPlanErro
         free = so_far.intersection_with_fill_rule(&to_geo(floor), FillRule::Positive);
     }
     let given = || floors.iter().chain([bodies]).flatten().flatten().copied();
-    let [low, high] = given().fold(
-        [
-            Vector::repeat(f64::INFINITY),
-            Vector::repeat(f64::NEG_INFINITY),
-        ],
-        |[low, high], p| [low.inf(&p), high.sup(&p)],
-    );
+    let [low, high] = bounds(given()).unwrap_or_default();
     let tolerance = SAME.max((high - low).max() * ROUNDING);
     assemble(&oriented(&free), given(), tolerance).map_err(|(error, ring)| {
         let distance = |p: &Vector| (p - ring[0]).norm();

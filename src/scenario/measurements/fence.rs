@@ -2,7 +2,7 @@
 //! not the index of walls, the test for crossings, or the test for points inside.
 
 use crate::engine::geometry::Walls;
-use crate::engine::math::{Vector, perpendicular};
+use crate::engine::math::{Vector, bounds, perpendicular};
 
 /// Walls begin this far inside, meters: the engine stops agents 10⁻⁶ m in front of a wall, and coordinates of 10⁶ m are
 /// rounded to 10⁻¹⁰ m.
@@ -49,9 +49,8 @@ impl Fence {
                 }
             })
             .collect();
-        let ends = || edges.iter().flat_map(|edge| [edge.start, edge.end()]);
-        let low = ends().reduce(|a, b| a.inf(&b)).unwrap_or_default();
-        let high = ends().reduce(|a, b| a.sup(&b)).unwrap_or_default();
+        let ends = edges.iter().flat_map(|edge| [edge.start, edge.end()]);
+        let [low, high] = bounds(ends).unwrap_or_default();
         let mut fence = Self {
             counts: obstacles
                 .iter()

@@ -2,8 +2,7 @@
 
 use crate::analysis::wall_integrals::{Integrals, Region};
 use crate::engine::geometry::Walls;
-use crate::engine::math::Vector;
-use crate::lab::measure::bounds;
+use crate::engine::math::{Vector, bounds};
 
 /// Tolerance of the integrals at the nodes; the error of the interpolation is orders of magnitude larger.
 const TOLERANCE: f64 = 1e-6;
@@ -37,7 +36,7 @@ pub struct Map {
 impl Map {
     /// A map of the bounding box of `floor`; `spacing` in meters.
     pub fn over(walls: &Walls, floor: &[Vector], spacing: f64, stored: Stored, h: f64) -> Self {
-        let [low, high] = bounds(floor.iter().copied());
+        let [low, high] = bounds(floor.iter().copied()).unwrap_or_default();
         let corner = (low / spacing).map(f64::floor) * spacing;
         let cells = ((high - corner) / spacing).map(|cells| cells.floor() + 1.0);
         let (columns, rows) = (cells.x as usize + 1, cells.y as usize + 1);

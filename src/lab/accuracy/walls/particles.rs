@@ -1,10 +1,9 @@
 //! Walls made of boundary particles, as in fluids: fixed particles that fill the obstacles.
 
 use crate::analysis::wall_integrals::Integrals;
-use crate::engine::geometry::Walls;
+use crate::engine::geometry::{Polygon, Walls};
 use crate::engine::kernel;
-use crate::engine::math::Vector;
-use crate::lab::measure::bounds;
+use crate::engine::math::{Vector, bounds};
 
 /// Cells with a smaller fraction of their area inside an obstacle stay empty.
 const LEAST_PART: f64 = 1e-9;
@@ -45,7 +44,8 @@ impl Particles {
     /// Fills the obstacles; `spacing` in meters.
     pub fn fill(walls: &Walls, spacing: f64, volumes: Volumes, h: f64) -> Self {
         let obstacles = walls.obstacles().iter();
-        let [low, high] = bounds(obstacles.flat_map(|obstacle| obstacle.points()).copied());
+        let points = obstacles.flat_map(Polygon::points).copied();
+        let [low, high] = bounds(points).unwrap_or_default();
         // All obstacles share one lattice.
         let corner = (low / spacing).map(f64::floor) * spacing;
         let cells = ((high - corner) / spacing).map(f64::ceil);

@@ -1,0 +1,93 @@
+//! New agents: their bodies, their start positions and their random numbers.
+
+use rand::Rng;
+use sandbox::engine::agents::{Agents, NewAgent};
+use sandbox::engine::math::Vector;
+use sandbox::engine::placement::Grid;
+use sandbox::engine::random::{Purpose, stream};
+
+#[test]
+fn bodies_depend_on_seed_and_id_and_stay_in_the_papers_range() {
+    let crowd = |seed| {
+        let mut agents = Agents::default();
+        for x in 0..1000 {
+            let somebody = NewAgent::at(Vector::new(f64::from(x), 0.0), Vector::zeros(), 0);
+            agents.enter(somebody, seed);
+        }
+        agents
+    };
+    let agents = crowd(1);
+    assert_eq!(agents.radius, crowd(1).radius);
+    assert_ne!(agents.radius, crowd(2).radius);
+    for (radius, mass) in agents.radius.iter().zip(&agents.mass) {
+        assert!((0.215..=0.265).contains(radius));
+        assert!((mass - (radius / 0.24).powi(2)).abs() < 1e-15);
+    }
+    let mean = agents.radius.iter().sum::<f64>() / 1000.0;
+    assert!((mean - 0.24).abs() < 0.002);
+}
+
+#[test]
+fn arranging_moves_every_quantity_and_drops_who_is_not_named() {
+    let mut agents = Agents::default();
+    for x in 0..4 {
+        let somebody = NewAgent::at(Vector::new(f64::from(x), 0.0), Vector::zeros(), x as u16);
+        agents.enter(somebody, 0);
+    }
+    let radius = agents.radius.clone();
+    agents.arrange(&[3, 1]);
+    assert_eq!(agents.id, [3, 1]);
+    assert_eq!(agents.group, [3, 1]);
+    assert_eq!(agents.radius, [radius[3], radius[1]]);
+    assert_eq!(agents.entered(), 4);
+    assert_eq!(agents.index_of(1), Some(1));
+    assert_eq!(agents.index_of(0), None);
+}
+
+#[test]
+fn agents_stand_at_the_centres_of_the_cells() {
+    let grid = Grid {
+        min: Vector::new(0.0, 0.0),
+        max: Vector::new(20.0, 20.0),
+        columns: 20,
+        rows: 20,
+        jitter: 0.0,
+    };
+    let positions: Vec<Vector> = grid.positions(1, 0).collect();
+    assert_eq!(positions.len(), 400);
+    assert_eq!(positions[0], Vector::new(0.5, 0.5));
+    assert_eq!(positions[399], Vector::new(19.5, 19.5));
+}
+
+#[test]
+fn a_row_is_a_grid_of_one_column_and_jitter_stays_in_bounds() {
+    let row = Grid {
+        min: Vector::new(0.0, -50.0),
+        max: Vector::new(0.0, 50.0),
+        columns: 1,
+        rows: 100,
+        jitter: 0.2,
+    };
+    for (k, p) in row.positions(1, 0).enumerate() {
+        assert!(p.x.abs() <= 0.2);
+        assert!((p.y - (k as f64 - 49.5)).abs() <= 0.2);
+    }
+    assert_ne!(row.positions(1, 0).next(), row.positions(2, 0).next());
+    assert_ne!(row.positions(1, 0).next(), row.positions(1, 100).next());
+}
+
+#[test]
+fn every_key_has_its_own_stream_and_repeats_it() {
+    let draw =
+        |seed, purpose, agent, frame| -> u64 { stream(seed, purpose, agent, frame).random() };
+    let base = draw(1, Purpose::Body, 2, 3);
+    assert_eq!(base, draw(1, Purpose::Body, 2, 3));
+    for other in [
+        draw(2, Purpose::Body, 2, 3),
+        draw(1, Purpose::Placement, 2, 3),
+        draw(1, Purpose::Body, 3, 3),
+        draw(1, Purpose::Body, 2, 4),
+    ] {
+        assert_ne!(base, other);
+    }
+}
