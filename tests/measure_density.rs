@@ -194,7 +194,7 @@ fn people_behind_a_thin_wall_count_only_with_the_method_of_the_engine() {
 
 /// ∫ρ over all cells.
 fn mass(measured: &Measured) -> f64 {
-    let cell = measured.fields.grid().cell;
+    let cell = measured.fields.grid.cell;
     let means = measured.fields.means(measured.overview.frames).flatten();
     means.map(|mean| mean.density * cell * cell).sum()
 }
@@ -250,7 +250,7 @@ fn the_field_at_a_person_is_the_persons_density() {
     let rows = [(1, 0, 0.125, 0.125), (2, 0, 0.6, 0.3), (3, 0, -0.4, 0.9)];
     let site = Site::new(vec![rectangle([-5.0, 5.0], [-1.0, 0.0])]);
     let (measured, moments) = measured(&tracks(10.0, &rows), &site, &options());
-    let grid = measured.fields.grid();
+    let grid = &measured.fields.grid;
     let at = (0..grid.cells()).find(|&k| (grid.center(k) - vector(0.125, 0.125)).norm() < 1e-9);
     let means: Vec<_> = measured.fields.means(1).collect();
     let field = means[at.unwrap()].unwrap().density;

@@ -43,7 +43,7 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     check(&tracks, &what)?;
     let mut results = Results::create(&folder)?;
     let mut recording = MomentRecorder::create(&folder, (&tracks, &site), &what)?;
-    if !recording.has_own_ids() {
+    if !recording.has_own_ids {
         talk("note: in the recording ids are replaced by numbers in their order, from 0");
     }
     let progress = progress(tracks.len() as u64);

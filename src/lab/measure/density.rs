@@ -57,14 +57,20 @@ pub fn parts(
     neighbors.sort(&mut agents, ranges);
     neighbors.list_agents();
     neighbors.list_walls(&agents, site.walls());
-    let mut from_people = sums(&agents, &neighbors, kernel.support_radius);
-    let mut near: Vec<Vec<u32>> = Vec::with_capacity(agents.len());
-    let hidden: Vec<Hidden> = (0..agents.len())
-        .map(|i| {
-            near.push(neighbors.near_walls(i).to_vec());
-            site.hidden(agents.position[i], &mut near[i], kernel)
-        })
-        .collect();
+    // Eq. 9 without walls, by the engine's own sums, in double precision.
+    let mut bodies = Bodies::<f64>::default();
+    bodies.take(&agents, 1.0, |_| kernel.support_radius);
+    bodies.take_motions(&agents);
+    let mut from_people = vec![0.0; agents.len()];
+    for (b, sums) in from_people.chunks_mut(BLOCK).enumerate() {
+        from_agents(&bodies, neighbors.near().block(b), sums);
+    }
+    let seen = (0..agents.len()).map(|i| {
+        let mut near = neighbors.near_walls(i).to_vec();
+        let hidden = site.hidden(agents.position[i], &mut near, kernel);
+        (near, hidden)
+    });
+    let (near, hidden): (Vec<Vec<u32>>, Vec<Hidden>) = seen.unzip();
     if behind == Behind::Same {
         for i in (0..agents.len()).filter(|&i| !near[i].is_empty()) {
             let eye = hidden[i].eye;
@@ -82,23 +88,9 @@ pub fn parts(
         hidden: hidden[i],
     };
     // The ids are in the order of the positions.
-    let mut places: Vec<usize> = vec![0; agents.len()];
-    for (i, &id) in agents.id.iter().enumerate() {
-        places[id as usize] = i;
-    }
-    places.into_iter().map(of).collect()
-}
-
-/// Eq. 9 without walls, by the engine's own sums, in double precision and in the engine's order of agents.
-fn sums(agents: &Agents, neighbors: &Neighbors, h: f64) -> Vec<f64> {
-    let mut bodies = Bodies::<f64>::default();
-    bodies.take(agents, 1.0, |_| h);
-    bodies.take_motions(agents);
-    let mut sums = vec![0.0; agents.len()];
-    for (b, sums) in sums.chunks_mut(BLOCK).enumerate() {
-        from_agents(&bodies, neighbors.near().block(b), sums);
-    }
-    sums
+    let mut order: Vec<usize> = (0..agents.len()).collect();
+    order.sort_by_key(|&i| agents.id[i]);
+    order.into_iter().map(of).collect()
 }
 
 /// The moving averages for [`Behind::Rest`].
@@ -116,10 +108,7 @@ impl History {
         if let Behind::Rest(max) = behind {
             sph.rest_density_max = max;
         }
-        let kept = match behind {
-            Behind::Same => Vec::new(),
-            Behind::Rest(_) => vec![None; people],
-        };
+        let kept = vec![None; people];
         Self { behind, sph, kept }
     }
 
@@ -131,20 +120,16 @@ impl History {
         parts: &Parts,
         (step, interval): (i64, f64),
     ) -> f64 {
-        let Parts {
-            from_people,
-            hidden,
-        } = *parts;
+        let (from_people, hidden) = (parts.from_people, parts.hidden.share);
         if self.behind == Behind::Same {
-            let hidden = hidden.share.min(MOST_HIDDEN);
+            let hidden = hidden.min(MOST_HIDDEN);
             return from_people * hidden / (1.0 - hidden);
         }
         // A person who was absent one frame earlier is new, as in the engine.
         let before = self.kept[person].filter(|&(last, _)| last == frame - step);
         let before = before.map(|(_, mean)| mean);
-        let [from_walls, mean] =
-            self.sph
-                .from_walls_and_mean(from_people, hidden.share, before, interval);
+        let sph = &self.sph;
+        let [from_walls, mean] = sph.from_walls_and_mean(from_people, hidden, before, interval);
         self.kept[person] = Some((frame, mean));
         from_walls
     }

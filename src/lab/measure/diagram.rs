@@ -50,7 +50,7 @@ impl Class {
 }
 
 /// The results for one region.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Diagram {
     /// The region; `None` for everywhere.
     pub region: Option<Region>,
@@ -63,16 +63,6 @@ pub struct Diagram {
 }
 
 impl Diagram {
-    /// An empty diagram.
-    pub fn new(region: Option<Region>) -> Self {
-        Self {
-            region,
-            frames: Vec::new(),
-            of_persons: BTreeMap::new(),
-            of_frames: BTreeMap::new(),
-        }
-    }
-
     /// Adds a frame; `number` is that of the region.
     pub fn add(&mut self, number: usize, moment: &Moment) {
         let is_there = |p| self.region.is_none_or(|region| region.contains(p));
@@ -89,18 +79,18 @@ impl Diagram {
                 class(&mut self.of_persons, person.density).add(person.density, velocity.norm());
             }
         }
-        let known = (speed.count > 0).then_some(speed.mean);
-        if let Some(speed) = known {
-            class(&mut self.of_frames, density.mean).add(density.mean, speed);
+        let (density, speed) = (density.mean, (speed.count > 0).then_some(speed.mean));
+        if let Some(speed) = speed {
+            class(&mut self.of_frames, density).add(density, speed);
         }
         self.frames.push(FrameMean {
             region: number,
             frame: moment.frame,
             time: moment.time,
             people: there.len(),
-            density: density.mean,
-            speed: known,
-            flow: known.map(|speed| density.mean * speed),
+            density,
+            speed,
+            flow: speed.map(|speed| density * speed),
         });
     }
 }

@@ -83,7 +83,8 @@ pub struct Mean {
 
 /// Fields while they are summed.
 pub struct Fields {
-    grid: Grid,
+    /// The grid.
+    pub grid: Grid,
     kernel: Kernel,
     sums: Vec<Sums>,
     views: Vec<Option<View>>,
@@ -130,18 +131,11 @@ impl Fields {
             let rows = band * BAND..(band * BAND + sums.len() / grid.columns);
             let edge = |row: usize| grid.min.y + row as f64 * grid.cell;
             let (low, high) = (edge(rows.start) - h, edge(rows.end) + h);
-            for person in people
-                .iter()
-                .filter(|p| (low..high).contains(&p.position.y))
-            {
+            let near = |person: &&&Person| (low..high).contains(&person.position.y);
+            for person in people.iter().filter(near) {
                 spread((grid, site, views), rows.clone(), sums, person, h);
             }
         });
-    }
-
-    /// The grid.
-    pub fn grid(&self) -> &Grid {
-        &self.grid
     }
 
     /// The means over `frames` frames, cell by cell; `None` inside obstacles.

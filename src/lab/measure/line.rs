@@ -20,19 +20,16 @@ impl Line {
         (self.end - self.start).norm()
     }
 
-    /// Positive on the left of the line. A point on the line counts as right.
-    fn left(&self, p: Vector) -> f64 {
-        (self.end - self.start).perp(&(p - self.start))
-    }
-
-    /// Where the path from `from` to `to` crosses the line, as a fraction of the path, and whether forward.
+    /// Where the path from `from` to `to` crosses the line, as a fraction of the path, and whether forward. A point on
+    /// the line counts as right of it.
     pub fn crossed(&self, from: Vector, to: Vector) -> Option<(f64, bool)> {
-        let [before, after] = [from, to].map(|p| self.left(p));
+        let way = self.end - self.start;
+        let [before, after] = [from, to].map(|p| way.perp(&(p - self.start)));
         if (before > 0.0) == (after > 0.0) {
             return None;
         }
         let part = before / (before - after);
-        let along = (from + (to - from) * part - self.start).dot(&(self.end - self.start));
+        let along = (from + (to - from) * part - self.start).dot(&way);
         let within = (0.0..self.length() * self.length()).contains(&along);
         within.then_some((part, before > 0.0))
     }
@@ -137,17 +134,16 @@ impl Crossings {
     /// The crossings in a direction: 1 forward, −1 backward.
     pub fn way(&self, direction: i8) -> Way {
         let all = self.list.iter().filter(|c| c.direction == direction);
-        let mut times = self.passages(direction);
-        let (first, passages) = (times.next(), self.passages(direction).count());
-        let last = times.last().or(first);
+        let times: Vec<f64> = self.passages(direction).collect();
+        let (first, last) = (times.first(), times.last());
         let span = first.zip(last).map(|(first, last)| last - first);
         let flow = span.filter(|&span| span > 0.0);
-        let flow = flow.map(|span| (passages - 1) as f64 / span);
+        let flow = flow.map(|span| (times.len() - 1) as f64 / span);
         Way {
-            passages,
+            passages: times.len(),
             crossings: all.count(),
-            first_secs: first,
-            last_secs: last,
+            first_secs: first.copied(),
+            last_secs: last.copied(),
             flow_per_s: flow,
             specific_flow_per_m_s: flow.map(|flow| flow / self.line.length()),
         }

@@ -88,17 +88,6 @@ pub struct Moment {
     pub people: Vec<Person>,
 }
 
-/// The highest density measured.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Densest {
-    /// The person with this density.
-    pub person: Person,
-    /// The frame number.
-    pub frame: i64,
-    /// Time, seconds.
-    pub time: f64,
-}
-
 /// Summary of a measurement.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overview {
@@ -116,8 +105,8 @@ pub struct Overview {
     pub density: MeanStd,
     /// Over all rows with a known velocity, m/s.
     pub speed: MeanStd,
-    /// The highest density.
-    pub densest: Option<Densest>,
+    /// The person with the highest density; the frame and its time, seconds.
+    pub densest: Option<(Person, i64, f64)>,
     /// Number of rows inside an obstacle, and the greatest depth, meters.
     pub inside: (u64, f64),
     /// Number of rows with more than [`MOST_HIDDEN`] of the kernel hidden.
@@ -164,7 +153,11 @@ pub fn measure<E: From<MeasureError>>(
         [] => vec![None],
         regions => regions.iter().copied().map(Some).collect(),
     };
-    let mut diagrams: Vec<Diagram> = regions.into_iter().map(Diagram::new).collect();
+    let diagram = |region| Diagram {
+        region,
+        ..Diagram::default()
+    };
+    let mut diagrams: Vec<Diagram> = regions.into_iter().map(diagram).collect();
     let mut history = History::new(options.behind, tracks.ids.len());
     let mut overview = overview(tracks, chosen.clone());
     let mut seen = vec![false; tracks.ids.len()];
@@ -175,22 +168,18 @@ pub fn measure<E: From<MeasureError>>(
         while next < chosen.end && (next == begin || tracks.rows(next).end - first < BATCH) {
             next += 1;
         }
-        let frames = (begin..next).into_par_iter();
-        let parts: Vec<Vec<Parts>> = frames
-            .map(|k| {
-                let rows = tracks.rows(k);
-                let masses = tracks.mass.get(rows.clone()).unwrap_or(&[]);
-                let how = (&options.kernel, options.behind);
-                parts(site, &tracks.position[rows], masses, how)
-            })
-            .collect();
-        let frames = (begin..next).zip(parts);
-        let moments: Vec<Moment> = frames
-            .map(|(k, parts)| {
-                overview.look_at(&parts);
-                moment(tracks, k, &parts, &velocities, &mut history)
-            })
-            .collect();
+        let parts = (begin..next).into_par_iter().map(|k| {
+            let rows = tracks.rows(k);
+            let masses = tracks.mass.get(rows.clone()).unwrap_or(&[]);
+            let how = (&options.kernel, options.behind);
+            parts(site, &tracks.position[rows], masses, how)
+        });
+        let parts: Vec<Vec<Parts>> = parts.collect();
+        let moments = (begin..next).zip(parts).map(|(k, parts)| {
+            overview.look_at(&parts);
+            moment(tracks, k, &parts, &velocities, &mut history)
+        });
+        let moments: Vec<Moment> = moments.collect();
         for moment in &moments {
             overview.add(moment);
             for person in &moment.people {
@@ -227,15 +216,12 @@ pub fn check(tracks: &Tracks, options: &Options) -> Result<(), MeasureError> {
 /// The frames in the requested time.
 fn chosen(tracks: &Tracks, options: &Options) -> Result<std::ops::Range<usize>, MeasureError> {
     let [from, until] = options.times;
-    let begin = tracks
-        .frames
-        .partition_point(|&frame| tracks.time(frame) < from);
-    let end = tracks
-        .frames
-        .partition_point(|&frame| tracks.time(frame) <= until);
+    let frames = &tracks.frames;
+    let begin = frames.partition_point(|&frame| tracks.time(frame) < from);
+    let end = frames.partition_point(|&frame| tracks.time(frame) <= until);
     if begin >= end {
-        let [first, last] = [tracks.frames.first(), tracks.frames.last()]
-            .map(|frame| frame.map_or(0.0, |&frame| tracks.time(frame)));
+        let ends = [frames.first(), frames.last()];
+        let [first, last] = ends.map(|frame| frame.map_or(0.0, |&frame| tracks.time(frame)));
         return Err(MeasureError::Nobody(from, until, first, last));
     }
     Ok(begin..end)
@@ -311,13 +297,8 @@ impl Overview {
             if let Some(velocity) = person.velocity {
                 self.speed.add(velocity.norm());
             }
-            let before = self.densest.map_or(0.0, |densest| densest.person.density);
-            if person.density > before {
-                self.densest = Some(Densest {
-                    person: *person,
-                    frame: moment.frame,
-                    time: moment.time,
-                });
+            if person.density > self.densest.map_or(0.0, |(densest, ..)| densest.density) {
+                self.densest = Some((*person, moment.frame, moment.time));
             }
         }
     }

@@ -4,12 +4,11 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
-
 use super::pictures::STEMS;
 use super::record::RECORDING;
-use super::{CLASS, Class, Measured, Moment, Person};
+use super::{CLASS, Class, Measured, Moment};
 use crate::analysis::statistics::MeanStd;
+use crate::engine::math::Vector;
 use crate::output::table::{Cell, Table, csv_lines};
 use crate::runs::error::StoreError;
 
@@ -19,6 +18,9 @@ const FIELDS: &str = "fields.csv";
 const DIAGRAM: &str = "fundamental_diagram.csv";
 const CLASSES: &str = "fundamental_classes.csv";
 const FLOW: &str = "flow.csv";
+
+const AGENT_COLUMNS: &str = "frame,time,id,x,y,vel_x,vel_y,speed,density,density_from_walls";
+const FIELD_COLUMNS: &str = "x,y,density,vel_x,vel_y,speed,flow_x,flow_y,people";
 
 /// The names of all files that a measurement may write, with its recording and its pictures.
 pub fn files() -> impl Iterator<Item = String> {
@@ -32,37 +34,6 @@ pub fn files() -> impl Iterator<Item = String> {
 pub struct Results {
     folder: PathBuf,
     agents: BufWriter<File>,
-    /// Has no frame been written yet?
-    is_empty: bool,
-}
-
-/// A row of [`AGENTS`].
-#[derive(Serialize)]
-struct AgentRow {
-    frame: i64,
-    time: f64,
-    id: i64,
-    x: f64,
-    y: f64,
-    vel_x: Option<f64>,
-    vel_y: Option<f64>,
-    speed: Option<f64>,
-    density: f64,
-    density_from_walls: f64,
-}
-
-/// A row of [`FIELDS`]: a cell outside obstacles.
-#[derive(Serialize)]
-struct FieldRow {
-    x: f64,
-    y: f64,
-    density: f64,
-    vel_x: Option<f64>,
-    vel_y: Option<f64>,
-    speed: Option<f64>,
-    flow_x: Option<f64>,
-    flow_y: Option<f64>,
-    people: f64,
 }
 
 impl Results {
@@ -74,10 +45,12 @@ impl Results {
         fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error))?;
         let path = folder.join(AGENTS);
         let file = File::create(&path).map_err(|error| unwritten(&path, &error))?;
+        let mut agents = BufWriter::new(file);
+        let begun = writeln!(agents, "{AGENT_COLUMNS}");
+        begun.map_err(|error| unwritten(&path, &error))?;
         Ok(Self {
             folder: folder.to_owned(),
-            agents: BufWriter::new(file),
-            is_empty: true,
+            agents,
         })
     }
 
@@ -86,25 +59,24 @@ impl Results {
     /// # Errors
     /// The file cannot be written.
     pub fn add(&mut self, moments: &[Moment]) -> Result<(), StoreError> {
-        let row = |moment: &Moment, person: &Person| AgentRow {
-            frame: moment.frame,
-            time: moment.time,
-            id: person.id,
-            x: person.position.x,
-            y: person.position.y,
-            vel_x: person.velocity.map(|v| v.x),
-            vel_y: person.velocity.map(|v| v.y),
-            speed: person.velocity.map(|v| v.norm()),
-            density: person.density,
-            density_from_walls: person.density_from_walls,
-        };
-        let rows = moments.iter();
-        let rows = rows.flat_map(|moment| moment.people.iter().map(|person| row(moment, person)));
-        let lines = csv_lines(&rows.collect::<Vec<_>>(), self.is_empty);
+        let rows = moments.iter().flat_map(|moment| {
+            moment.people.iter().map(|person| {
+                let (velocity, speed) = (parts(person.velocity), person.velocity.map(|v| v.norm()));
+                let densities = [person.density, person.density_from_walls];
+                let when = (moment.frame, moment.time, person.id);
+                (
+                    when,
+                    [person.position.x, person.position.y],
+                    velocity,
+                    speed,
+                    densities,
+                )
+            })
+        });
+        let lines = csv_lines(&rows.collect::<Vec<_>>(), false);
         let written = lines
             .map_err(Into::into)
-            .and_then(|l| self.agents.write_all(&l));
-        self.is_empty = false;
+            .and_then(|lines| self.agents.write_all(&lines));
         written.map_err(|error| unwritten(&self.folder.join(AGENTS), &error))
     }
 
@@ -115,12 +87,8 @@ impl Results {
     pub fn finish(mut self, measured: &Measured) -> Result<(), StoreError> {
         let flushed = self.agents.flush();
         flushed.map_err(|error| unwritten(&self.folder.join(AGENTS), &error))?;
-        let Measured {
-            diagrams,
-            crossings,
-            ..
-        } = measured;
-        self.write(FIELDS, csv_lines(&field_rows(measured), true))?;
+        let (diagrams, crossings) = (&measured.diagrams, &measured.crossings);
+        self.write(FIELDS, fields(measured))?;
         let frames = diagrams.iter().flat_map(|diagram| &diagram.frames);
         self.write(DIAGRAM, csv_lines(&frames.collect::<Vec<_>>(), true))?;
         self.write(CLASSES, classes(measured).csv())?;
@@ -148,25 +116,29 @@ fn unwritten(path: &Path, error: &std::io::Error) -> StoreError {
     }
 }
 
-fn field_rows(measured: &Measured) -> Vec<FieldRow> {
+/// The components of a vector, if it is known.
+fn parts(of: Option<Vector>) -> [Option<f64>; 2] {
+    of.map_or([None; 2], |of| [Some(of.x), Some(of.y)])
+}
+
+/// A line for each cell outside obstacles.
+fn fields(measured: &Measured) -> Result<Vec<u8>, csv::Error> {
     let fields = &measured.fields;
     let means = fields.means(measured.overview.frames).enumerate();
     let rows = means.filter_map(|(k, mean)| {
-        let (center, mean) = (fields.grid().center(k), mean?);
-        let flow = mean.velocity.map(|velocity| velocity * mean.density);
-        Some(FieldRow {
-            x: center.x,
-            y: center.y,
-            density: mean.density,
-            vel_x: mean.velocity.map(|v| v.x),
-            vel_y: mean.velocity.map(|v| v.y),
-            speed: mean.speed,
-            flow_x: flow.map(|j| j.x),
-            flow_y: flow.map(|j| j.y),
-            people: mean.people,
-        })
+        let (center, mean) = (fields.grid.center(k), mean?);
+        let flow = parts(mean.velocity.map(|velocity| velocity * mean.density));
+        let velocity = (parts(mean.velocity), mean.speed);
+        Some((
+            [center.x, center.y],
+            mean.density,
+            velocity,
+            flow,
+            mean.people,
+        ))
     });
-    rows.collect()
+    let lines = csv_lines(&rows.collect::<Vec<_>>(), false)?;
+    Ok([format!("{FIELD_COLUMNS}\n").as_bytes(), &lines].concat())
 }
 
 /// One row per region, kind of values and density class.

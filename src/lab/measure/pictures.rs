@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Class, Crossings, Diagram, FrameMean, Measured, Site};
+use super::{Class, Crossings, Diagram, FrameMean, Mean, Measured, Site};
 use crate::analysis::statistics::MeanStd;
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
@@ -39,17 +39,18 @@ pub fn save(folder: &Path, measured: &Measured, site: &Site) -> Result<(), PlotE
 
 /// Maps of density and speed, with the walls.
 fn maps(measured: &Measured, walls: &Walls) -> Sheet {
-    let grid = measured.fields.grid();
+    let grid = &measured.fields.grid;
     let means: Vec<_> = measured.fields.means(measured.overview.frames).collect();
     let high = grid.center(grid.cells() - 1) + Vector::repeat(0.5 * grid.cell);
     let (x, y) = ([grid.min.x, high.x], [grid.min.y, high.y]);
     let (width, height) = (x[1] - x[0], y[1] - y[0]);
     let scale = MAP_SIDE / width.max(height);
-    let map = |title: &str, label: &str, map: &ColorMap, values: Vec<Option<f64>>| {
+    let map = |title: &str, label: &str, map: &ColorMap, value: fn(&Mean) -> Option<f64>| {
+        let values = means.iter().map(|mean| value(mean.as_ref()?));
         let mut marks = vec![Mark::Cells(Cells {
             extent: [[x[0], y[0]], [x[1], y[1]]],
             columns: grid.columns,
-            values,
+            values: values.collect(),
             map: map.clone(),
         })];
         marks.extend(walls.iter().map(|wall| {
@@ -57,31 +58,26 @@ fn maps(measured: &Measured, walls: &Walls) -> Sheet {
             Mark::Line(ends.to_vec(), Style::full(GRAY, 1.2, ""))
         }));
         Panel {
-            title: title.to_owned(),
-            x: Axis::linear("x [m]", x),
-            y: Axis::linear("y [m]", y),
-            marks,
             bar: Some(ColorBar {
                 label: label.to_owned(),
                 map: map.clone(),
             }),
-            legend: None,
+            ..Panel::new(
+                title,
+                Axis::linear("x [m]", x),
+                Axis::linear("y [m]", y),
+                marks,
+            )
         }
     };
-    let density = means.iter().map(|mean| mean.map(|mean| mean.density));
-    let speed = means.iter().map(|mean| {
-        let there = mean.filter(|mean| mean.density > NOBODY)?;
-        there.speed
-    });
     let columns = if width > 1.5 * height { 1 } else { 2 };
     let size = [width, height].map(|side| (side * scale).max(LEAST_SIDE));
-    let density = map(
-        "mean density",
-        "density [P/m²]",
-        &DENSITY,
-        density.collect(),
-    );
-    let speed = map("mean speed", "speed [m/s]", &SPEED, speed.collect());
+    let density = map("mean density", "density [P/m²]", &DENSITY, |mean| {
+        Some(mean.density)
+    });
+    let speed = map("mean speed", "speed [m/s]", &SPEED, |mean| {
+        mean.speed.filter(|_| mean.density > NOBODY)
+    });
     sheet(columns, size, vec![density, speed])
 }
 
@@ -97,11 +93,8 @@ fn diagrams(diagrams: &[Diagram]) -> Sheet {
             // Thinned: more dots would hide each other.
             let every = diagram.frames.len().div_ceil(MOST_DOTS).max(1);
             let frames = diagram.frames.iter().step_by(every);
-            let dots = frames.filter_map(|mean| {
-                let (x, y) = (mean.density, frame(mean)?);
-                Some(Point { x, y, error: 0.0 })
-            });
-            marks.push(Mark::Points(dots.collect(), Style::full(pale, 1.0, "")));
+            let dots = frames.filter_map(|mean| Some([mean.density, frame(mean)?]));
+            marks.push(Mark::dots(dots, Style::full(pale, 1.0, "")));
         }
         for (k, diagram) in diagrams.iter().enumerate() {
             let classes = diagram.of_persons.values();
@@ -124,21 +117,12 @@ fn diagrams(diagrams: &[Diagram]) -> Sheet {
         let top = points.map(|point| point.y + point.error);
         let classes = diagrams.iter().flat_map(|all| all.of_persons.values());
         let right = classes.map(|class| class.density.mean);
-        Panel {
-            title: title.to_owned(),
-            x: Axis::linear("density [P/m²]", [0.0, 1.1 * right.fold(0.5, f64::max)]),
-            y: Axis::linear(label, [0.0, 1.1 * top.fold(0.1, f64::max)]),
-            marks,
-            bar: None,
-            legend: None,
-        }
+        let x = Axis::linear("density [P/m²]", [0.0, 1.1 * right.fold(0.5, f64::max)]);
+        let y = Axis::linear(label, [0.0, 1.1 * top.fold(0.1, f64::max)]);
+        Panel::new(title, x, y, marks)
     };
-    let mut speed = panel(
-        "speed: persons ± deviation, frames as dots",
-        "speed [m/s]",
-        |mean| mean.speed,
-        |class| class.speed,
-    );
+    let title = "speed: persons ± deviation, frames as dots";
+    let mut speed = panel(title, "speed [m/s]", |mean| mean.speed, |class| class.speed);
     speed.legend = Some(Corner::UpperRight);
     let flow = panel(
         "flow",
@@ -151,13 +135,9 @@ fn diagrams(diagrams: &[Diagram]) -> Sheet {
 
 /// N(t) for every line; dashed for passages backward.
 fn counts(crossings: &[Crossings]) -> Sheet {
-    let times = || {
-        crossings
-            .iter()
-            .flat_map(|line| line.list.iter().map(|c| c.time))
-    };
-    let last = times().fold(0.0, f64::max);
-    let first = times().fold(f64::INFINITY, f64::min);
+    let all = || crossings.iter().flat_map(|line| &line.list);
+    let last = all().map(|c| c.time).fold(0.0, f64::max);
+    let first = all().map(|c| c.time).fold(f64::INFINITY, f64::min);
     let first = if first < last { first } else { last - 1.0 };
     let mut marks = Vec::new();
     let mut most: f64 = 1.0;
@@ -180,25 +160,20 @@ fn counts(crossings: &[Crossings]) -> Sheet {
         let middle = [0.5 * (first + last), 0.5];
         marks.push(Mark::Text(middle, "no passages".to_owned(), BLACK));
     }
-    let panel = Panel {
-        title: "persons who have passed".to_owned(),
-        x: Axis::linear("t [s]", [first, last]),
-        y: Axis::linear("N", [0.0, 1.05 * most]),
-        marks,
-        bar: None,
-        legend: Some(Corner::UpperLeft),
-    };
+    let (x, y) = (
+        Axis::linear("t [s]", [first, last]),
+        Axis::linear("N", [0.0, 1.05 * most]),
+    );
+    let mut panel = Panel::new("persons who have passed", x, y, marks);
+    panel.legend = Some(Corner::UpperLeft);
     sheet(1, [330.0, 210.0], vec![panel])
 }
 
 fn sheet(columns: usize, panel_size: [f64; 2], panels: Vec<Panel>) -> Sheet {
     Sheet {
-        title: String::new(),
         columns,
         panel_size,
-        shared_axes: false,
-        row_titles: Vec::new(),
-        bar: None,
         panels,
+        ..Sheet::default()
     }
 }

@@ -22,7 +22,8 @@ pub(super) const RECORDING: &str = "measured.rrd";
 pub struct MomentRecorder<'a> {
     tracks: &'a Tracks,
     recorder: MeasuredRecorder,
-    own_ids: bool,
+    /// Whether the recording has the ids of the file. Otherwise it numbers people from 0 in the order of their ids.
+    pub has_own_ids: bool,
     /// Number of the next frame.
     next: Option<i64>,
 }
@@ -58,14 +59,9 @@ impl<'a> MomentRecorder<'a> {
         Ok(Self {
             tracks,
             recorder: MeasuredRecorder::create(path.as_path(), walls, REFERENCE_RADIUS, &options)?,
-            own_ids: tracks.ids.iter().all(|id| (0..=LARGEST_ID).contains(id)),
+            has_own_ids: tracks.ids.iter().all(|id| (0..=LARGEST_ID).contains(id)),
             next: None,
         })
-    }
-
-    /// Whether the recording has the ids of the file. Otherwise it numbers people from 0 in the order of their ids.
-    pub fn has_own_ids(&self) -> bool {
-        self.own_ids
     }
 
     /// Adds some frames. A gap before a frame is recorded as a single empty frame.
@@ -79,10 +75,9 @@ impl<'a> MomentRecorder<'a> {
                 self.recorder.log(empty, time, std::iter::empty())?;
             }
             let people = moment.people.iter().map(|person| MeasuredPerson {
-                id: if self.own_ids {
-                    person.id as u32
-                } else {
-                    person.number
+                id: match self.has_own_ids {
+                    true => person.id as u32,
+                    false => person.number,
                 },
                 position: person.position,
                 velocity: person.velocity,

@@ -38,11 +38,11 @@ impl Report<'_> {
             overview.density.population_std(),
             self.options.kernel.support_radius,
         );
-        if let Some(densest) = overview.densest {
-            let (person, place) = (densest.person, densest.person.position);
+        if let Some((person, frame, time)) = overview.densest {
+            let place = person.position;
             text += &format!(
-                "           at most {:.3} P/m²: person {} at ({:.2}, {:.2}) m, {:.2} s, frame {}\n",
-                person.density, person.id, place.x, place.y, densest.time, densest.frame,
+                "           at most {:.3} P/m²: person {} at ({:.2}, {:.2}) m, {time:.2} s, frame {frame}\n",
+                person.density, person.id, place.x, place.y,
             );
         }
         text += &match overview.speed.count {
@@ -91,13 +91,13 @@ impl Report<'_> {
             "rows_inside_obstacles": overview.inside.0,
             "density": mean_and_std(&overview.density),
             "speed": mean_and_std(&overview.speed),
-            "densest": overview.densest.map(|densest| json!({
-                "density": densest.person.density,
-                "id": densest.person.id,
-                "x": densest.person.position.x,
-                "y": densest.person.position.y,
-                "time_secs": densest.time,
-                "frame": densest.frame,
+            "densest": overview.densest.map(|(person, frame, time)| json!({
+                "density": person.density,
+                "id": person.id,
+                "x": person.position.x,
+                "y": person.position.y,
+                "time_secs": time,
+                "frame": frame,
             })),
             "lines": self.measured.crossings.iter().map(line).collect::<Vec<_>>(),
             "fundamental_diagrams": self.measured.diagrams.iter().map(diagram).collect::<Vec<_>>(),
@@ -130,35 +130,28 @@ fn classes(diagram: &Diagram) -> Table {
     let class = |classes: &BTreeMap<usize, Class>, k| classes.get(k).copied().unwrap_or_default();
     let numbers = diagram.of_persons.keys().chain(diagram.of_frames.keys());
     let numbers: BTreeSet<&usize> = numbers.collect();
-    let rows = numbers.into_iter().map(|k| {
-        let from = *k as f64 * CLASS;
-        (
-            from,
-            class(&diagram.of_persons, k),
-            class(&diagram.of_frames, k),
-        )
-    });
-    let rows: Vec<(f64, Class, Class)> = rows.collect();
+    let both = |k| [&diagram.of_persons, &diagram.of_frames].map(|classes| class(classes, k));
+    let rows = numbers.into_iter().map(|k| (*k as f64 * CLASS, both(k)));
+    let rows: Vec<(f64, [Class; 2])> = rows.collect();
     let spread =
         |of: MeanStd| (of.count > 0).then(|| Cell::Spread(of.mean, Some(of.population_std())));
     Table::of(&rows)
         .column("density [P/m²]", |row| {
             format!("{:.1}–{:.1}", row.0, row.0 + CLASS)
         })
-        .column("rows", |row| row.1.density.count)
-        .fixed("speed [m/s]", 3, |row| spread(row.1.speed))
-        .fixed("flow [1/(m s)]", 3, |row| spread(row.1.flow))
-        .column("frames", |row| row.2.density.count)
-        .fixed("speed [m/s]", 3, |row| spread(row.2.speed))
+        .column("rows", |(_, [persons, _])| persons.density.count)
+        .fixed("speed [m/s]", 3, |(_, [persons, _])| spread(persons.speed))
+        .fixed("flow [1/(m s)]", 3, |(_, [persons, _])| {
+            spread(persons.flow)
+        })
+        .column("frames", |(_, [_, frames])| frames.density.count)
+        .fixed("speed [m/s]", 3, |(_, [_, frames])| spread(frames.speed))
         .table()
 }
 
 /// `null` without values.
-fn mean_and_std(of: &MeanStd) -> Value {
-    match of.count {
-        0 => Value::Null,
-        _ => json!({"mean": of.mean, "std": of.population_std()}),
-    }
+fn mean_and_std(of: &MeanStd) -> Option<Value> {
+    (of.count > 0).then(|| json!({"mean": of.mean, "std": of.population_std()}))
 }
 
 fn line(crossings: &Crossings) -> Value {

@@ -30,7 +30,7 @@ pub const LINES: [Rgb; 7] = [
 ];
 
 /// A picture: panels in rows.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Sheet {
     /// Title above the panels; may be empty.
     pub title: String,
@@ -63,6 +63,19 @@ pub struct Panel {
     pub bar: Option<ColorBar>,
     /// Position of the legend of labeled marks.
     pub legend: Option<Corner>,
+}
+
+impl Panel {
+    /// A panel without a color bar and a legend.
+    pub fn new(title: &str, x: Axis, y: Axis, marks: Vec<Mark>) -> Self {
+        Self {
+            title: title.to_owned(),
+            x,
+            y,
+            marks,
+            ..Self::default()
+        }
+    }
 }
 
 /// A position in or beside a panel.
@@ -172,4 +185,12 @@ pub enum Mark {
     Cells(Cells),
     /// Text, centered at a position.
     Text([f64; 2], String, Rgb),
+}
+
+impl Mark {
+    /// Points without error bars.
+    pub fn dots(points: impl IntoIterator<Item = [f64; 2]>, style: Style) -> Self {
+        let dots = points.into_iter().map(|[x, y]| Point { x, y, error: 0.0 });
+        Self::Points(dots.collect(), style)
+    }
 }
