@@ -1,7 +1,8 @@
 //! The largest stable time step: the automatic step, and what happens beyond it.
 
 use crate::common::program;
-use sandbox::lab::stress::{Cell, Condition, Detail, Limit, Rest, Surroundings};
+use sandbox::analysis::stability::{Constants, FITTED};
+use sandbox::lab::stress::{Cell, Condition, Detail, Limit, Rest, fit};
 use sandbox::scenario::Scenario;
 
 #[test]
@@ -22,7 +23,7 @@ fn the_automatic_step_is_stable_and_at_least_70_percent_of_the_largest() {
             ..paper
         },
     ] {
-        let cell = Cell::find(crowd, Detail { quick: true }, 0).unwrap();
+        let cell = Cell::find(crowd, 3, 0).unwrap();
         assert!(cell.auto_is_stable(), "{cell:?}");
         let limits = cell.limits.iter();
         let mut ratios = limits.map(Limit::ratio);
@@ -38,13 +39,9 @@ fn a_crowd_at_rest_oscillates_with_twice_the_automatic_step() {
     };
     for condition in Condition::ALL {
         let step = crowd.mode().time_step(condition.scheme);
-        let surroundings = Surroundings {
-            condition,
-            first_seed: 0,
-        };
-        let [full, loose] = crowd.rooms(step, surroundings).unwrap();
+        let [full, loose] = crowd.rooms(step, (condition, 0)).unwrap();
         assert!(full.speed < Some(0.1) && loose.speed < Some(0.01));
-        let [full, _] = crowd.rooms(2.0 * step, surroundings).unwrap();
+        let [full, _] = crowd.rooms(2.0 * step, (condition, 0)).unwrap();
         assert!(full.speed > Some(0.5) && full.persistence < 0.0, "{full:?}");
         assert!(!full.are_stable());
     }
@@ -58,11 +55,7 @@ fn sustained_motion_is_persistent_unless_the_step_is_too_long() {
     };
     for condition in [Condition::PAPER, Condition::VERLET] {
         let step = crowd.mode().time_step(condition.scheme);
-        let surroundings = Surroundings {
-            condition,
-            first_seed: 0,
-        };
-        let run = |step| crowd.run(5.5, step, surroundings).unwrap();
+        let run = |step| crowd.run(5.5, step, (condition, 0)).unwrap();
         let (fine, auto, long) = (run(0.2 * step), run(step), run(1.5 * step));
         assert!(fine.speed > Some(0.5) && fine.persistence > 0.9, "{fine:?}");
         assert!(auto.are_stable() && auto.persistence > 0.1, "{auto:?}");
@@ -125,4 +118,47 @@ fn a_time_step_that_is_too_long_gives_a_warning() {
     assert!(!stderr("0.02", &[thick]).contains("warning"));
     assert!(stderr("0.02", &[thick, verlet]).contains("warning: time_step_secs 0.02 is "));
     assert!(!stderr("auto", &[thick, verlet]).contains("warning"));
+}
+
+#[test]
+fn constants_are_found_again_from_steps_that_they_have_made() {
+    let made = Constants {
+        pressure: 3.1,
+        contact: 4.4,
+        drag: 1.3,
+        ..FITTED
+    };
+    let cell = |crowd: Rest| Cell {
+        crowd,
+        limits: Condition::ALL.map(|condition| Limit {
+            largest: crowd.mode().largest_step(condition.scheme, &made),
+            auto: 0.01,
+            auto_is_stable: true,
+            fine_speed: 0.0,
+            auto_speed: 0.0,
+        }),
+    };
+    let crowds = Detail::read(true).unwrap().crowds().into_iter();
+    let found = fit(&crowds.map(cell).collect::<Vec<_>>());
+    for (found, made, most) in [
+        (found.pressure, made.pressure, 0.01),
+        (found.contact, made.contact, 0.02),
+        (found.drag, made.drag, 0.02),
+        // The largest ratio of steps that the fit allows.
+        (found.margin, 0.97, 0.02),
+        (found.verlet_margin, 0.97, 0.02),
+    ] {
+        assert!((found / made - 1.0).abs() < most, "{found} for {made}");
+    }
+}
+
+#[test]
+fn the_maps_have_every_crowd_once() {
+    for (quick, points, others) in [(false, 73, 27), (true, 15, 4)] {
+        let detail = Detail::read(quick).unwrap();
+        assert_eq!(
+            (detail.crowds().len(), detail.held_out.len()),
+            (points, others)
+        );
+    }
 }

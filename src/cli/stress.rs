@@ -33,11 +33,9 @@ pub fn run(options: &StressOptions) -> Result<(), Failure> {
         check(file, &options.out)?;
     }
     let store = Store::open(&options.out)?;
-    let detail = Detail {
-        quick: options.quick,
-    };
+    let detail = Detail::read(options.quick)?;
     let watch = Watch::new();
-    let report = stress(detail, &store, &watch);
+    let report = stress(&detail, &store, &watch);
     watch.ends();
     let report = report?;
     let parts = report.parts();

@@ -3,13 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::condition::Condition;
-use super::map::Detail;
-use super::rest::{Remains, Rest, Surroundings};
-use crate::analysis::stability::{FITTED, Mode};
+use super::rest::{Remains, Rest};
+use crate::analysis::stability::FITTED;
 use crate::engine::clock::PAPER_COARSE_STEP;
 use crate::engine::simulation::Fault;
 use crate::runs::identity::Identity;
-use crate::runs::job::Job;
+use crate::runs::job::{Job, Progress};
 
 /// No time step is longer, seconds: Δt_fine never exceeds Δt_coarse.
 const LONGEST: f64 = PAPER_COARSE_STEP;
@@ -36,15 +35,15 @@ pub struct Limit {
 }
 
 impl Limit {
-    fn find(crowd: &Rest, bisections: u32, surroundings: Surroundings) -> Result<Self, Fault> {
-        let (mode, scheme) = (crowd.mode(), surroundings.condition.scheme);
+    fn find(crowd: &Rest, bisections: u32, under: (Condition, u64)) -> Result<Self, Fault> {
+        let (mode, scheme) = (crowd.mode(), under.0.scheme);
         let (formula, auto) = (mode.largest_step(scheme, &FITTED), mode.time_step(scheme));
-        let at_auto = crowd.rooms(auto, surroundings)?;
+        let at_auto = crowd.rooms(auto, under)?;
         Ok(Self {
-            largest: largest(crowd, formula, bisections, surroundings)?,
+            largest: largest(crowd, formula, bisections, under)?,
             auto,
             auto_is_stable: at_auto.iter().all(Remains::are_stable),
-            fine_speed: fastest(&crowd.rooms(FINE * formula, surroundings)?),
+            fine_speed: fastest(&crowd.rooms(FINE * formula, under)?),
             auto_speed: fastest(&at_auto),
         })
     }
@@ -61,12 +60,12 @@ fn largest(
     crowd: &Rest,
     guess: f64,
     bisections: u32,
-    surroundings: Surroundings,
+    under: (Condition, u64),
 ) -> Result<f64, Fault> {
-    let rises = crowd.is_stable(guess, surroundings)?;
+    let rises = crowd.is_stable(guess, under)?;
     let factor = if rises { WIDTH } else { 1.0 / WIDTH };
     let (mut from, mut to) = (guess, (guess * factor).min(LONGEST));
-    while crowd.is_stable(to, surroundings)? == rises {
+    while crowd.is_stable(to, under)? == rises {
         if to >= LONGEST || to < SHORTEST * guess {
             return Ok(to);
         }
@@ -75,10 +74,9 @@ fn largest(
     let (mut low, mut high) = if rises { (from, to) } else { (to, from) };
     for _ in 0..bisections {
         let middle = (low * high).sqrt();
-        if crowd.is_stable(middle, surroundings)? {
-            low = middle;
-        } else {
-            high = middle;
+        match crowd.is_stable(middle, under)? {
+            true => low = middle,
+            false => high = middle,
         }
     }
     Ok(low)
@@ -103,14 +101,8 @@ impl Cell {
     ///
     /// # Errors
     /// An agent cannot be placed at the start.
-    pub fn find(crowd: Rest, detail: Detail, first_seed: u64) -> Result<Self, Fault> {
-        let limit = |condition| {
-            let surroundings = Surroundings {
-                condition,
-                first_seed,
-            };
-            Limit::find(&crowd, detail.bisections(), surroundings)
-        };
+    pub fn find(crowd: Rest, bisections: u32, first_seed: u64) -> Result<Self, Fault> {
+        let limit = |condition| Limit::find(&crowd, bisections, (condition, first_seed));
         let [paper, exact_walls, verlet] = Condition::ALL.map(limit);
         Ok(Self {
             crowd,
@@ -119,32 +111,22 @@ impl Cell {
     }
 
     /// The job that finds it.
-    pub fn job(crowd: Rest, detail: Detail, first_seed: u64) -> Job<'static> {
-        let steps = detail.bisections();
+    pub fn job(crowd: Rest, bisections: u32, first_seed: u64) -> Job<'static> {
         let name = format!(
-            "map k={} ρ⁰max={} K^ag={} μ={}, {steps} bisections, seeds after {first_seed}",
+            "map k={} ρ⁰max={} K^ag={} μ={}, {bisections} bisections, seeds after {first_seed}",
             crowd.gas_constant, crowd.rest_density_max, crowd.agent_stiffness, crowd.viscosity
         );
         // Simulated seconds: 8 s in two rooms with three crowds, mostly for the fine steps.
-        let simulated = 48.0 * (1.0 / FINE + f64::from(steps) + 3.0);
+        let simulated = 48.0 * (1.0 / FINE + f64::from(bisections) + 3.0);
         let mode = crowd.mode();
-        let frames = Condition::ALL.map(|condition| {
-            let formula = mode.largest_step(condition.scheme, &FITTED);
-            simulated / formula
-        });
+        let frames = Condition::ALL.map(|on| simulated / mode.largest_step(on.scheme, &FITTED));
         let expected = 5e-5 * frames.iter().sum::<f64>();
-        Job::new(name.clone(), Identity::of(&name, ""), expected, move |_| {
-            Self::find(crowd, detail, first_seed)
-        })
+        let work = move |_: Progress| Self::find(crowd, bisections, first_seed);
+        Job::new(name.clone(), Identity::of(&name, ""), expected, work)
     }
 
     /// Is `auto` stable under every condition?
     pub fn auto_is_stable(&self) -> bool {
         self.limits.iter().all(|limit| limit.auto_is_stable)
-    }
-
-    /// The fastest mode.
-    pub fn mode(&self) -> Mode {
-        self.crowd.mode()
     }
 }

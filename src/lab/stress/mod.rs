@@ -15,5 +15,5 @@ pub use condition::Condition;
 pub use fit::fit;
 pub use map::Detail;
 pub use report::Report;
-pub use rest::{Remains, Rest, Surroundings};
+pub use rest::{Remains, Rest};
 pub use suite::{Finished, stress};

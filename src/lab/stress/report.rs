@@ -1,24 +1,29 @@
 //! What `sandbox stress` prints and writes.
 
+use serde::Serialize;
+
 use super::cell::Cell;
 use super::condition::Condition;
 use super::fit::LEAST;
 use super::suite::Finished;
 use crate::analysis::stability::{Constants, FITTED};
+use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
 use crate::output::table::Table;
 use crate::runs::store::Store;
 
 /// All results.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Report {
     /// The hard cases.
     pub hard: Vec<Finished>,
     /// The maps.
+    #[serde(rename = "maps")]
     pub cells: Vec<Cell>,
     /// Points that the fit does not use.
     pub held_out: Vec<Cell>,
     /// The constants fitted to the maps.
+    #[serde(skip)]
     pub fitted: Constants,
     /// The residual motion of crowds at rest.
     pub jitter: Vec<Finished>,
@@ -63,13 +68,7 @@ impl Report {
         store.write("report.md", text.as_bytes())?;
         store.write("maps.csv", &csv(&self.cells)?)?;
         store.write("held_out.csv", &csv(&self.held_out)?)?;
-        let json = serde_json::json!({
-            "hard": self.hard,
-            "maps": self.cells,
-            "held_out": self.held_out,
-            "jitter": self.jitter,
-        });
-        let json = format!("{json}\n");
+        let json = format!("{}\n", serde_json::json!(self));
         store.write("stress.json", json.as_bytes())?;
         Ok(())
     }
@@ -94,19 +93,14 @@ impl Report {
     }
 }
 
-/// The smallest and the largest ratio of `auto` to the largest stable step under one of the conditions.
-fn range(cells: &[Cell], condition: usize) -> [f64; 2] {
-    let ratios = || cells.iter().map(|cell| cell.limits[condition].ratio());
-    [
-        ratios().fold(f64::INFINITY, f64::min),
-        ratios().fold(0.0, f64::max),
-    ]
-}
-
 fn summary(cells: &[Cell]) -> String {
     let ranges = Condition::ALL.iter().enumerate().map(|(k, condition)| {
-        let [least, most] = range(cells, k);
-        format!("{least:.2} to {most:.2} ({})", condition.name)
+        let ratios: Vec<f64> = cells.iter().map(|cell| cell.limits[k].ratio()).collect();
+        let ratio = Range::of(&ratios);
+        format!(
+            "{:.2} to {:.2} ({})",
+            ratio.minimum, ratio.maximum, condition.name
+        )
     });
     let stable = cells.iter().filter(|cell| cell.auto_is_stable()).count();
     format!(

@@ -40,6 +40,7 @@ const CLOSEST: f64 = 0.1;
 
 /// Square rooms of agents whose goals are their own positions, each moving in another direction at the start.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Rest {
     /// k.
     pub gas_constant: f64,
@@ -49,15 +50,6 @@ pub struct Rest {
     pub agent_stiffness: f64,
     /// μ.
     pub viscosity: f64,
-}
-
-/// The condition and the seeds of a test.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Surroundings {
-    /// The wall method, and the integration scheme.
-    pub condition: Condition,
-    /// The seeds are the numbers after this one.
-    pub first_seed: u64,
 }
 
 impl Default for Rest {
@@ -105,7 +97,7 @@ struct Seen {
     squares: f64,
     /// v · v of the previous frame, m²/s².
     lasting: f64,
-    closest: Option<f64>,
+    closest: f64,
     escaped: usize,
     failed: bool,
 }
@@ -132,8 +124,7 @@ impl Seen {
             simulation.evaluate()?;
             watched.observe(simulation);
             if (frame - 1).is_multiple_of(CLOSEST_EVERY) {
-                let now = closest(simulation);
-                self.closest = Some(self.closest.map_or(now, |before| before.min(now)));
+                self.closest = self.closest.min(closest(simulation));
             }
             if simulation.integrate().is_err() {
                 self.failed = true;
@@ -156,19 +147,15 @@ impl Rest {
         [FILLING * self.rest_density_max, LOOSE]
     }
 
-    fn parameters(&self) -> Parameters {
-        Parameters {
+    /// A room with its agents at `density` P/m², for a time step in seconds.
+    pub fn scene(&self, density: f64, time_step: f64) -> Scene {
+        let parameters = Parameters {
             gas_constant: Some(self.gas_constant),
             rest_density_max: Some(self.rest_density_max),
             agent_stiffness: Some(self.agent_stiffness),
             viscosity: Some(self.viscosity),
             ..Parameters::default()
-        }
-    }
-
-    /// A room with its agents at `density` P/m², for a time step in seconds.
-    pub fn scene(&self, density: f64, time_step: f64) -> Scene {
-        let parameters = self.parameters();
+        };
         let spacing = (1.0 / density).sqrt();
         let side = f64::from(COLUMNS) * spacing;
         let mut scene = Scene::with_obstacles(walls(side));
@@ -201,7 +188,7 @@ impl Rest {
         scene
     }
 
-    /// Runs rooms of one density at a time step in seconds, each with another seed.
+    /// Runs rooms of one density at a time step in seconds under a condition, with the seeds after `first_seed`.
     ///
     /// # Errors
     /// An agent cannot be placed at the start.
@@ -209,20 +196,23 @@ impl Rest {
         &self,
         density: f64,
         time_step: f64,
-        surroundings: Surroundings,
+        (condition, first_seed): (Condition, u64),
     ) -> Result<Remains, Fault> {
-        let mut seen = Seen::default();
+        let mut seen = Seen {
+            closest: f64::INFINITY,
+            ..Seen::default()
+        };
         for seed in 1..=SEEDS {
             let mut scene = self.scene(density, time_step);
-            scene.seed = surroundings.first_seed + seed;
-            scene.wall_method = surroundings.condition.walls;
-            scene.integrator = surroundings.condition.scheme.integrator();
+            scene.seed = first_seed + seed;
+            scene.wall_method = condition.walls;
+            scene.integrator = condition.scheme.integrator();
             seen.run(&mut Simulation::new(scene)?)?;
         }
         Ok(Remains {
             speed: (!seen.failed).then_some((seen.squares / seen.agents).sqrt()),
             persistence: seen.lasting / seen.squares,
-            closest: seen.closest.unwrap_or(1.0),
+            closest: seen.closest,
             escaped: seen.escaped,
         })
     }
@@ -231,21 +221,19 @@ impl Rest {
     ///
     /// # Errors
     /// As [`run`](Self::run).
-    pub fn rooms(&self, time_step: f64, surroundings: Surroundings) -> Result<[Remains; 2], Fault> {
-        let [full, loose] = self.densities();
-        Ok([
-            self.run(full, time_step, surroundings)?,
-            self.run(loose, time_step, surroundings)?,
-        ])
+    pub fn rooms(&self, time_step: f64, under: (Condition, u64)) -> Result<[Remains; 2], Fault> {
+        let run = |density| self.run(density, time_step, under);
+        let [full, loose] = self.densities().map(run);
+        Ok([full?, loose?])
     }
 
     /// Is a time step in seconds stable in both rooms?
     ///
     /// # Errors
     /// As [`run`](Self::run).
-    pub fn is_stable(&self, time_step: f64, surroundings: Surroundings) -> Result<bool, Fault> {
+    pub fn is_stable(&self, time_step: f64, under: (Condition, u64)) -> Result<bool, Fault> {
         for density in self.densities() {
-            if !self.run(density, time_step, surroundings)?.are_stable() {
+            if !self.run(density, time_step, under)?.are_stable() {
                 return Ok(false);
             }
         }

@@ -40,25 +40,29 @@ impl Finished {
 ///
 /// # Errors
 /// A run fails, or a file cannot be written.
-pub fn stress(detail: Detail, store: &Store, listener: &dyn Listener) -> Result<Report, LabError> {
+pub fn stress(detail: &Detail, store: &Store, listener: &dyn Listener) -> Result<Report, LabError> {
     let hard = Study::built_in("stress_hard", None, None)?;
     let jitter = Study::built_in("stress_jitter", None, None)?;
-    let (crowds, held_out) = (detail.crowds(), detail.held_out());
-    let wanted = |cell: &sweep::Cell| cell.label() != Some(detail.omitted_case());
+    let (crowds, held_out) = (detail.crowds(), &detail.held_out);
+    let wanted = |cell: &sweep::Cell| cell.label() != Some(&detail.omitted_case);
     let mut jobs = hard.jobs(wanted);
     jobs.extend(jitter.jobs(|_| true));
-    jobs.extend(crowds.iter().map(|&crowd| Cell::job(crowd, detail, 0)));
-    let others = held_out.iter();
-    jobs.extend(others.map(|&crowd| Cell::job(crowd, detail, OTHER_PEOPLE)));
+    let seeded = crowds.iter().map(|crowd| (crowd, 0));
+    let seeded = seeded.chain(held_out.iter().map(|crowd| (crowd, OTHER_PEOPLE)));
+    jobs.extend(seeded.map(|(&crowd, seed)| Cell::job(crowd, detail.bisections, seed)));
     let results = &mut results(&jobs, store, listener)?.into_iter();
     let hard = runs(hard.cells.iter().filter(|cell| wanted(cell)), results)?;
     let jitter = runs(jitter.cells.iter(), results)?;
-    let cells = places(crowds.len(), results)?;
+    let mut points = |count| -> Result<Vec<Cell>, LabError> {
+        let points = results.take(count);
+        points.map(|point| read(&point)).collect()
+    };
+    let cells = points(crowds.len())?;
     let report = Report {
         hard,
         fitted: fit(&cells),
         cells,
-        held_out: places(held_out.len(), results)?,
+        held_out: points(held_out.len())?,
         jitter,
     };
     report.write(store)?;
@@ -82,9 +86,4 @@ fn runs<'a>(
         })
     };
     cells.zip(results).map(run).collect()
-}
-
-/// The next `count` results as points of a map.
-fn places(count: usize, results: &mut impl Iterator<Item = Value>) -> Result<Vec<Cell>, LabError> {
-    results.take(count).map(|result| read(&result)).collect()
 }
