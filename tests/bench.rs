@@ -8,7 +8,7 @@ use crate::common;
 use crate::common::program;
 use crate::common::{blend, block, room, scene, vector};
 use sandbox::engine::simulation::{Simulation, Stage};
-use sandbox::lab::bench::{BENCHMARKS, Plan, Report, SKIPS, everything};
+use sandbox::lab::bench::{BENCHMARKS, Crowd, Plan, Report, SKIPS, everything};
 use sandbox::scenario::catalog::NAMES;
 use serde_json::Value;
 
@@ -128,6 +128,19 @@ fn ratios_have_the_stated_baseline() {
     }
     let threads = rows(&measure("threads", &quick()));
     assert_eq!(threads[0]["threads"], 1);
+    let counts: Vec<u64> = threads
+        .iter()
+        .map(|row| row["threads"].as_u64().unwrap())
+        .collect();
+    let [doubled @ .., all] = counts.as_slice() else {
+        panic!("no rows");
+    };
+    assert_eq!(
+        *all,
+        sandbox::lab::machine::Machine::here().hardware_threads as u64
+    );
+    let powers = (0..).map(|k| 1_u64 << k).take_while(|count| count < all);
+    assert!(powers.eq(doubled.iter().copied()), "{counts:?}");
     assert_eq!(threads[0]["speed_up"]["maximum"], 1.0);
     for row in threads {
         let threads = row["threads"].as_f64().unwrap();
@@ -317,4 +330,25 @@ fn results_are_replaced_only_with_force() {
     assert_eq!(read(), printed);
     assert_eq!(run(&["--force", "--repeats", "4"]).status.code(), Some(0));
     assert_eq!(read()["repeats"], 4);
+}
+
+#[test]
+fn a_crowd_is_as_large_and_as_dense_as_was_asked_for() {
+    for agents in [1, 2, 1000, 3000] {
+        let scene = Crowd::concert(agents).scene().unwrap();
+        assert_eq!(scene.agents.len(), agents as usize);
+    }
+    let mut simulation = Crowd::concert(3000).settled(0).unwrap();
+    simulation.evaluate().unwrap();
+    let mut densities = simulation.frame().fields.density.clone();
+    densities.sort_by(f64::total_cmp);
+    let median = densities[1500];
+    assert!((median - 5.0).abs() < 0.25, "{median} P/m²");
+}
+
+#[test]
+fn streams_go_both_ways() {
+    let scene = Crowd::streams(100, "sf").scene().unwrap();
+    let to_the_right = scene.agents.iter().filter(|a| a.goal.x > a.position.x);
+    assert_eq!(to_the_right.count(), 50);
 }

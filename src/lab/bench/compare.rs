@@ -182,10 +182,10 @@ fn table(rows: &[Row]) -> Table {
 
 fn picture(rows: &[Row]) -> Sheet {
     let name = |row: &Row| {
-        let Description {
-            engine, threads, ..
-        } = &row.description;
-        format!("{engine}, {threads} thread(s)")
+        format!(
+            "{}, {} thread(s)",
+            row.description.engine, row.description.threads
+        )
     };
     let mut names: Vec<String> = Vec::new();
     for name in rows.iter().map(name) {
@@ -200,10 +200,12 @@ fn picture(rows: &[Row]) -> Sheet {
     });
     let times = rows.iter().map(|row| row.ms_per_step);
     let times = times.flat_map(|range| [range.minimum, range.maximum]);
+    let x = Axis::linear("radius [m]", [0.0, 6.0]);
+    let y = Axis::log("time per step [ms]", around(times, 1.3));
     sheet(
         "Social forces at 4 P/m², time per step",
-        Axis::linear("radius [m]", [0.0, 6.0]),
-        Axis::log("time per step [ms]", around(times, 1.3)),
+        x,
+        y,
         marks.collect(),
     )
 }

@@ -118,29 +118,3 @@ impl Crowd {
         Ok(simulation)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_crowd_is_as_large_and_as_dense_as_was_asked_for() {
-        for agents in [1, 2, 1000, 3000] {
-            let scene = Crowd::concert(agents).scene().unwrap();
-            assert_eq!(scene.agents.len(), agents as usize);
-        }
-        let mut simulation = Crowd::concert(3000).settled(0).unwrap();
-        simulation.evaluate().unwrap();
-        let mut densities = simulation.frame().fields.density.clone();
-        densities.sort_by(f64::total_cmp);
-        let median = densities[1500];
-        assert!((median - 5.0).abs() < 0.25, "{median} P/m²");
-    }
-
-    #[test]
-    fn streams_go_both_ways() {
-        let scene = Crowd::streams(100, "sf").scene().unwrap();
-        let to_the_right = scene.agents.iter().filter(|a| a.goal.x > a.position.x);
-        assert_eq!(to_the_right.count(), 50);
-    }
-}

@@ -22,7 +22,9 @@ pub(crate) use timing::{ms_per_frame, pool};
 
 use std::path::PathBuf;
 
+use crate::engine::pairs::Vectors;
 use crate::lab::error::LabError;
+use crate::lab::machine::Machine;
 use report::Findings;
 
 /// How much to measure.
@@ -62,16 +64,13 @@ impl Plan {
     }
 }
 
-/// Runs a benchmark, and reports its progress.
-type Measure = fn(&Plan, &dyn Fn(&str)) -> Result<Findings, LabError>;
-
 /// A benchmark.
 pub struct Benchmark {
     /// Its name on the command line.
     pub name: &'static str,
     /// A description, in one line.
     pub about: &'static str,
-    run: Measure,
+    run: fn(&Plan, &dyn Fn(&str)) -> Result<Findings, LabError>,
 }
 
 impl Benchmark {
@@ -80,7 +79,16 @@ impl Benchmark {
     /// # Errors
     /// A simulation fails, or another program stops.
     pub fn measure(&self, plan: &Plan, say: &dyn Fn(&str)) -> Result<Report, LabError> {
-        Ok(Report::of(self, plan, (self.run)(plan, say)?))
+        Ok(Report {
+            benchmark: self.name,
+            about: self.about,
+            findings: (self.run)(plan, say)?,
+            machine: Machine::here(),
+            vectors: Vectors::here(),
+            threads: rayon::current_num_threads(),
+            repeats: plan.repeats,
+            quick: plan.quick,
+        })
     }
 }
 

@@ -2,26 +2,18 @@
 
 use crate::analysis::statistics::Range;
 use crate::output::colors::Rgb;
-use crate::output::plot::{Axis, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::output::plot::{Axis, Corner, LINES, Mark, Panel, Sheet, Style};
 
 /// A sheet with one panel.
 pub fn sheet(title: &str, x: Axis, y: Axis, marks: Vec<Mark>) -> Sheet {
-    let panel = Panel {
-        title: String::new(),
-        x,
-        y,
-        marks,
-        bar: None,
-        legend: Some(Corner::Beside),
-    };
+    let mut panel = Panel::new("", x, y, marks);
+    panel.legend = Some(Corner::Beside);
     Sheet {
         title: title.to_owned(),
         columns: 1,
         panel_size: [420.0, 280.0],
-        shared_axes: false,
-        row_titles: Vec::new(),
-        bar: None,
         panels: vec![panel],
+        ..Sheet::default()
     }
 }
 
@@ -36,23 +28,17 @@ pub fn dots(points: &[(f64, Range)], color: Rgb, label: &str) -> Vec<Mark> {
         let ends = vec![[x, range.minimum], [x, range.maximum]];
         Mark::Line(ends, Style::full(color, 0.8, ""))
     };
-    let dot = |&(x, range): &(f64, Range)| Point {
-        x,
-        y: range.median,
-        error: 0.0,
-    };
-    let dots = points.iter().map(dot).collect();
-    let dots = Mark::Points(dots, Style::full(color, 2.2, label));
+    let dots = points.iter().map(|&(x, range)| [x, range.median]);
+    let dots = Mark::dots(dots, Style::full(color, 2.2, label));
     points.iter().map(ends).chain([dots]).collect()
 }
 
 /// The same, with a line through the medians.
 pub fn curve(points: &[(f64, Range)], color: Rgb, label: &str) -> Vec<Mark> {
     let line = points.iter().map(|&(x, range)| [x, range.median]);
-    let line = Mark::Line(line.collect(), Style::full(color, 1.4, label));
-    std::iter::once(line)
-        .chain(dots(points, color, ""))
-        .collect()
+    let mut marks = vec![Mark::Line(line.collect(), Style::full(color, 1.4, label))];
+    marks.extend(dots(points, color, ""));
+    marks
 }
 
 /// An upright bar.
@@ -69,7 +55,9 @@ pub fn key(color: Rgb, label: &str) -> Mark {
 /// The smallest and the largest value, moved outward by a factor, for a logarithmic axis.
 pub fn around(values: impl Iterator<Item = f64>, factor: f64) -> [f64; 2] {
     let values = values.filter(|value| *value > 0.0 && value.is_finite());
-    let ends = values.map(|value| [value; 2]);
-    let ends = ends.reduce(|[low, high], [a, b]| [low.min(a), high.max(b)]);
-    ends.map_or([1.0, 10.0], |[low, high]| [low / factor, high * factor])
+    let range = Range::of(&values.collect::<Vec<_>>());
+    match range.median.is_nan() {
+        true => [1.0, 10.0],
+        false => [range.minimum / factor, range.maximum * factor],
+    }
 }

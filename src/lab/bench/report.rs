@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{Benchmark, Plan};
 use crate::engine::pairs::Vectors;
 use crate::lab::error::LabError;
 use crate::lab::machine::Machine;
@@ -32,40 +31,23 @@ pub(super) struct Findings {
 /// The results of a benchmark, and their circumstances.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
-    /// The benchmark.
-    benchmark: &'static str,
-    about: &'static str,
-    machine: Machine,
+    pub(super) benchmark: &'static str,
+    pub(super) about: &'static str,
+    pub(super) machine: Machine,
     /// The vector instructions for sums over pairs.
-    vectors: Vectors,
+    pub(super) vectors: Vectors,
     /// Threads, unless a row says otherwise.
-    threads: usize,
-    repeats: usize,
-    quick: bool,
+    pub(super) threads: usize,
+    pub(super) repeats: usize,
+    pub(super) quick: bool,
     #[serde(flatten)]
-    findings: Findings,
+    pub(super) findings: Findings,
 }
 
 impl Report {
-    pub(super) fn of(benchmark: &Benchmark, plan: &Plan, findings: Findings) -> Self {
-        Self {
-            benchmark: benchmark.name,
-            about: benchmark.about,
-            machine: Machine::here(),
-            vectors: Vectors::here(),
-            threads: rayon::current_num_threads(),
-            repeats: plan.repeats,
-            quick: plan.quick,
-            findings,
-        }
-    }
-
     /// The text for a terminal.
     pub fn text(&self) -> String {
-        let quick = match self.quick {
-            true => "; quick: these times are meaningless",
-            false => "",
-        };
+        let quick = ["", "; quick: these times are meaningless"][usize::from(self.quick)];
         let mut text = format!(
             "{}: {}\n{}\n{}, {} thread(s), {} repeat(s){quick}\n\n{}",
             self.benchmark,

@@ -56,15 +56,11 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     for row in &mut rows {
         row.ratio_to_10000 = reference.map(|reference| median(row) / reference);
     }
-    let memory = match before {
-        Some(_) => {
-            "Memory is what the process holds with the crowd running, and at its peak, minus what it held before the \
-             first crowd. It includes the program and its threads: below about 100,000 agents it means little."
-        }
-        None => {
-            "The memory of a process is read from /proc/self/status, which this system does not have."
-        }
-    };
+    let memory = "Memory is what the process holds with the crowd running, and at its peak, minus what it held before the \
+                  first crowd. It includes the program and its threads: below about 100,000 agents it means little.";
+    let unknown =
+        "The memory of a process is read from /proc/self/status, which this system does not have.";
+    let memory = if before.is_some() { memory } else { unknown };
     Ok(Findings {
         table: table(&rows),
         sheet: picture(&rows),
@@ -82,10 +78,8 @@ fn measure(agents: u32, plan: &Plan, before: Option<Resident>) -> Result<Row, La
     let peak_before = Resident::read();
     let mut simulation = Crowd::concert(agents).settled(plan.choose(SETTLING, 5))?;
     let frames = plan.frames(agents, AGENT_FRAMES, FRAMES);
-    let times: Result<Vec<f64>, _> = (0..plan.repeats)
-        .map(|_| ms_per_frame(&mut simulation, frames))
-        .collect();
-    let ms_per_frame = Range::of(&times?);
+    let times = (0..plan.repeats).map(|_| ms_per_frame(&mut simulation, frames));
+    let ms_per_frame = Range::of(&times.collect::<Result<Vec<f64>, _>>()?);
     let now = Resident::read();
     let per_agent = |bytes: u64| bytes as f64 / f64::from(agents);
     let resident = before.zip(now);
@@ -123,13 +117,8 @@ fn picture(rows: &[Row]) -> Sheet {
     let range = Style::full(color(0), 0.8, "minimum to maximum");
     marks.push(Mark::Line(Vec::new(), range));
     let most = points.iter().map(|(_, range)| range.maximum);
-    sheet(
-        "Time per agent and frame, a crowd at 5 P/m²",
-        Axis::log("agents", around(points.iter().map(|point| point.0), 1.3)),
-        Axis::linear(
-            "time per agent and frame [ns]",
-            [0.0, 1.1 * most.fold(1.0, f64::max)],
-        ),
-        marks,
-    )
+    let times = [0.0, 1.1 * most.fold(1.0, f64::max)];
+    let x = Axis::log("agents", around(points.iter().map(|point| point.0), 1.3));
+    let y = Axis::linear("time per agent and frame [ns]", times);
+    sheet("Time per agent and frame, a crowd at 5 P/m²", x, y, marks)
 }

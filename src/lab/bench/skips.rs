@@ -12,7 +12,7 @@ use serde_json::json;
 use self::work::{Course, Work};
 use super::pictures::{bar, color, key, sheet};
 use super::report::Findings;
-use super::stages::{Started, Stretch, busiest};
+use super::stages::{Started, begin, busiest};
 use super::{Benchmark, Plan};
 use crate::analysis::statistics::Range;
 use crate::engine::forces::near::Wanted;
@@ -145,8 +145,15 @@ struct Row {
 fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     let mut rows = Vec::new();
     for stretch in busiest(plan) {
-        for profile in profiles(stretch) {
-            let started = stretch.begin(plan, *profile)?;
+        // Small scenes have social forces alone, too, which read no density.
+        let is_large = matches!(stretch.0, "concert" | "plaza");
+        let profiles: &[_] = if is_large {
+            &[None]
+        } else {
+            &[None, Some("sf")]
+        };
+        for &profile in profiles {
+            let started = begin(stretch, plan, profile)?;
             say(&format!("{} ({})", started.name, started.profile));
             rows.append(&mut measure(&started, plan)?);
         }
@@ -164,15 +171,6 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
                 .to_owned(),
         ],
     })
-}
-
-/// The profiles of a stretch: the shipped one and, for small scenes, social forces alone, which read no density.
-fn profiles(stretch: &Stretch) -> &'static [Option<&'static str>] {
-    if matches!(stretch.scenario, "concert" | "plaza") {
-        &[None]
-    } else {
-        &[None, Some("sf")]
-    }
 }
 
 fn measure(started: &Started, plan: &Plan) -> Result<Vec<Row>, LabError> {
@@ -206,15 +204,13 @@ fn measure(started: &Started, plan: &Plan) -> Result<Vec<Row>, LabError> {
 fn repeat(started: &Started) -> Result<(f64, Vec<Option<f64>>), LabError> {
     let start = &started.simulation;
     let mut base = Course::new(start, None)?;
-    let mut others: Vec<Option<Course>> = Vec::new();
-    for skip in &SKIPS {
-        let undone = (skip.undo)(start).ok();
-        others.push(
-            undone
-                .map(|undone| Course::new(start, Some(undone)))
-                .transpose()?,
-        );
-    }
+    let others = SKIPS.iter().map(|skip| (skip.undo)(start).ok());
+    let others = others.map(|undone| {
+        undone
+            .map(|undone| Course::new(start, Some(undone)))
+            .transpose()
+    });
+    let mut others: Vec<Option<Course>> = others.collect::<Result<_, _>>()?;
     let mut left = started.frames;
     while left > 0 {
         let some = left.min(TURN);
@@ -258,10 +254,11 @@ fn picture(rows: &[Row]) -> Sheet {
                 let ends = [ratio.min(1.0), ratio.max(1.0)];
                 bar([left, left + 0.9 * width], ends, color(skip))
             }
-            None => {
-                let below = [left + 0.5 * width, 1.0 - 0.03 * most];
-                Mark::Text(below, "–".to_owned(), GRAY)
-            }
+            None => Mark::Text(
+                [left + 0.5 * width, 1.0 - 0.03 * most],
+                "–".to_owned(),
+                GRAY,
+            ),
         });
     }
     let one = vec![[0.0, 1.0], [scenes.len() as f64, 1.0]];
@@ -271,10 +268,11 @@ fn picture(rows: &[Row]) -> Sheet {
     let names = scenes
         .iter()
         .map(|scene| format!("{} ({})", scene[0].scenario, scene[0].profile));
+    let ratios = Axis::linear("time without the skip over time with it", [0.0, 1.1 * most]);
     sheet(
         "What each skip saves",
         Axis::names("", names),
-        Axis::linear("time without the skip over time with it", [0.0, 1.1 * most]),
+        ratios,
         marks,
     )
 }

@@ -15,7 +15,7 @@ use crate::engine::simulation::{Simulation, Stage, StageTimes};
 use crate::lab::error::LabError;
 use crate::output::plot::{Axis, BLACK, Mark, Sheet};
 use crate::output::table::Table;
-use crate::scenario::{Scenario, Setting, SettingError};
+use crate::scenario::{Scenario, Setting};
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "stages",
@@ -23,31 +23,16 @@ pub const BENCHMARK: Benchmark = Benchmark {
     run,
 };
 
-/// A time interval of a scenario.
-pub struct Stretch {
-    /// The scenario's name.
-    pub scenario: &'static str,
-    /// Its start, seconds.
-    from: f64,
-    /// Its length, seconds.
-    lasting: f64,
-}
-
-const fn stretch(scenario: &'static str, from: f64, lasting: f64) -> Stretch {
-    Stretch {
-        scenario,
-        from,
-        lasting,
-    }
-}
+/// A time interval of a scenario: the scenario's name, the start and the length, seconds.
+pub type Stretch = (&'static str, f64, f64);
 
 /// The busiest stretches: in the evacuation all agents have gathered at the door; in the crossing the streams meet; in
 /// the concert the crowd is pushed.
 const BUSIEST: [Stretch; 4] = [
-    stretch("evacuation", 10.0, 10.0),
-    stretch("crossing", 40.0, 10.0),
-    stretch("concert", 150.0, 10.0),
-    stretch("plaza", 10.0, 0.5),
+    ("evacuation", 10.0, 10.0),
+    ("crossing", 40.0, 10.0),
+    ("concert", 150.0, 10.0),
+    ("plaza", 10.0, 0.5),
 ];
 
 /// The stretches of a plan: all, or those of the small scenes if the plan is quick.
@@ -63,28 +48,27 @@ pub struct Started {
     pub frames: u64,
 }
 
-impl Stretch {
-    /// The scenario at the start of the stretch, as shipped or with another profile, and the number of frames.
-    ///
-    /// # Errors
-    /// The profile is invalid, or the simulation fails.
-    pub fn begin(&self, plan: &Plan, profile: Option<&str>) -> Result<Started, LabError> {
-        let invalid = |error: SettingError| LabError::Data(error.to_string());
-        let setting = profile.map(|name| format!("profile={name}").parse::<Setting>());
-        let setting = setting.transpose().map_err(invalid)?;
-        let scenario = Scenario::shipped(self.scenario, setting.as_slice());
-        let scenario = scenario.map_err(|error| LabError::of(self.scenario, error))?;
-        let mut simulation = Simulation::new(scenario.scene).map_err(failed)?;
-        let (from, lasting) = plan.choose((self.from, self.lasting), (0.1, 0.2));
-        let clock = *simulation.frame().clock;
-        ms_per_frame(&mut simulation, clock.frame_at(from))?;
-        Ok(Started {
-            name: self.scenario,
-            profile: scenario.profile_name,
-            simulation,
-            frames: clock.frame_at(lasting),
-        })
-    }
+/// A scenario at the start of a stretch, as shipped or with another profile.
+///
+/// # Errors
+/// The profile is invalid, or the simulation fails.
+pub fn begin(stretch: &Stretch, plan: &Plan, profile: Option<&str>) -> Result<Started, LabError> {
+    let &(name, from, lasting) = stretch;
+    let setting = profile.map(|profile| format!("profile={profile}").parse::<Setting>());
+    let setting = setting.transpose();
+    let setting = setting.map_err(|error| LabError::Data(error.to_string()))?;
+    let scenario = Scenario::shipped(name, setting.as_slice());
+    let scenario = scenario.map_err(|error| LabError::of(name, error))?;
+    let mut simulation = Simulation::new(scenario.scene).map_err(failed)?;
+    let (from, lasting) = plan.choose((from, lasting), (0.1, 0.2));
+    let clock = *simulation.frame().clock;
+    ms_per_frame(&mut simulation, clock.frame_at(from))?;
+    Ok(Started {
+        name,
+        profile: scenario.profile_name,
+        simulation,
+        frames: clock.frame_at(lasting),
+    })
 }
 
 /// The results for one crowd.
@@ -102,8 +86,8 @@ struct Row {
 fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     let mut rows = Vec::new();
     for stretch in busiest(plan) {
-        say(stretch.scenario);
-        rows.push(measure(stretch.begin(plan, None)?, plan)?);
+        say(stretch.0);
+        rows.push(measure(begin(stretch, plan, None)?, plan)?);
     }
     let agents = plan.choose(10_000, 400);
     for profile in ["sf", "rvo"] {
@@ -116,8 +100,9 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
         };
         rows.push(measure(started, plan)?);
     }
-    let stretch = |s: &Stretch| format!("{} {}–{} s", s.scenario, s.from, s.from + s.lasting);
-    let stretches = BUSIEST.each_ref().map(stretch).join(", ");
+    let stretches =
+        BUSIEST.map(|(name, from, lasting)| format!("{name} {from}–{} s", from + lasting));
+    let stretches = stretches.join(", ");
     Ok(Findings {
         table: table(&rows),
         sheet: picture(&rows),
@@ -143,16 +128,14 @@ fn measure(started: Started, plan: &Plan) -> Result<Row, LabError> {
         Range::of(&values)
     };
     let stages = Stage::ALL.map(|stage| (stage.name(), range(&|times| ms_of(times, stage))));
+    let stages = stages.into_iter().filter(|(_, range)| range.maximum > 0.0);
     Ok(Row {
         crowd: started.name,
         agents: started.simulation.frame().agents.len(),
         profile: started.profile,
         frames: started.frames,
         ms_per_frame: range(&StageTimes::total_ms_per_frame),
-        stages_ms: stages
-            .into_iter()
-            .filter(|(_, range)| range.maximum > 0.0)
-            .collect(),
+        stages_ms: stages.collect(),
     })
 }
 
@@ -191,25 +174,15 @@ fn picture(rows: &[Row]) -> Sheet {
         // About three digits.
         let ms = row.ms_per_frame.median;
         let digits = (2.0 - ms.log10().floor()).clamp(0.0, 3.0) as usize;
-        marks.push(Mark::Text(
-            [middle, 105.0],
-            format!("{ms:.digits$} ms"),
-            BLACK,
-        ));
+        let text = format!("{ms:.digits$} ms");
+        marks.push(Mark::Text([middle, 105.0], text, BLACK));
     }
     let stages = Stage::ALL.iter().enumerate().rev();
     marks.extend(stages.map(|(k, stage)| key(color(k), &stage.name().replace('_', " "))));
-    let names = rows
-        .iter()
-        .map(|row| format!("{} ({})", row.crowd, row.profile));
+    let name = |row: &Row| format!("{} ({})", row.crowd, row.profile);
+    let names = Axis::names("", rows.iter().map(name));
     let mut share = Axis::linear("share of the frame [%]", [0.0, 110.0]);
-    share.ticks = (0..=5)
-        .map(|k| (20.0 * f64::from(k), format!("{}", 20 * k)))
-        .collect();
-    sheet(
-        "Where the time of a frame goes",
-        Axis::names("", names),
-        share,
-        marks,
-    )
+    let ticks = [0, 20, 40, 60, 80, 100].map(|k| (f64::from(k), k.to_string()));
+    share.ticks = ticks.into();
+    sheet("Where the time of a frame goes", names, share, marks)
 }

@@ -48,13 +48,11 @@ pub fn ms_per_frame(simulation: &mut Simulation, frames: u64) -> Result<f64, Lab
 }
 
 /// A crowd that continues from one turn to the next, on `threads` threads.
-pub fn going_on(
-    mut simulation: Simulation,
-    threads: usize,
-) -> Result<Contender<'static>, LabError> {
+pub fn going_on(mut crowd: Simulation, threads: usize) -> Result<Contender<'static>, LabError> {
     let pool = pool(threads)?;
-    let turn = move |steps| pool.install(|| ms_per_frame(&mut simulation, steps));
-    Ok(Box::new(turn))
+    Ok(Box::new(move |steps| {
+        pool.install(|| ms_per_frame(&mut crowd, steps))
+    }))
 }
 
 /// A copy of a simulation after the warm-up, with its stage times set to 0.
@@ -68,9 +66,8 @@ pub fn warmed(start: &Simulation) -> Result<Simulation, LabError> {
 /// Milliseconds per frame of one stage; 0 if it never ran.
 pub fn ms_of(times: &StageTimes, wanted: Stage) -> f64 {
     let mut stages = times.ms_per_frame();
-    stages
-        .find(|(stage, _)| *stage == wanted)
-        .map_or(0.0, |(_, ms)| ms)
+    let found = stages.find(|(stage, _)| *stage == wanted);
+    found.map_or(0.0, |(_, ms)| ms)
 }
 
 /// A pool of `threads` threads.

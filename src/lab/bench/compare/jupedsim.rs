@@ -23,9 +23,8 @@ pub fn entries(start: &Start, python: &Path) -> Result<Vec<Entry>, String> {
             python.display()
         )
     };
-    let asked = Command::new(python)
-        .args(["-c", "import jupedsim"])
-        .output();
+    let import = ["-c", "import jupedsim"];
+    let asked = Command::new(python).args(import).output();
     let asked = asked.map_err(|error| how(&error.to_string()))?;
     if !asked.status.success() {
         let said = String::from_utf8_lossy(&asked.stderr);
@@ -93,15 +92,12 @@ impl Walking {
             Err(error) => Err(stopped(error)),
         }
     }
-}
 
-impl Walking {
     fn ms_per_step(&mut self, steps: u64) -> Result<f64, LabError> {
         writeln!(self.orders, "{steps}").map_err(stopped)?;
         let answer = self.answer()?;
-        let seconds: f64 = answer
-            .parse()
-            .map_err(|_| stopped(format!("it said {answer:?}")))?;
+        let seconds = answer.parse::<f64>();
+        let seconds = seconds.map_err(|_| stopped(format!("it said {answer:?}")))?;
         Ok(1e3 * seconds / steps as f64)
     }
 }
@@ -118,15 +114,9 @@ impl Drop for Walking {
 fn people(start: &Start) -> std::io::Result<NamedTempFile> {
     let mut file = NamedTempFile::new()?;
     let agents = start.agents;
-    let mut text = String::new();
-    for i in 0..agents.len() {
-        let (r, goal) = (agents.position[i], agents.goal[i]);
-        text += &format!(
-            "{} {} {} {} {}\n",
-            r.x, r.y, agents.radius[i], goal.x, goal.y
-        );
-    }
-    file.write_all(text.as_bytes())?;
-    file.flush()?;
+    let people = agents.position.iter().zip(&agents.radius).zip(&agents.goal);
+    let lines = people
+        .map(|((r, radius), goal)| format!("{} {} {radius} {} {}\n", r.x, r.y, goal.x, goal.y));
+    file.write_all(lines.collect::<String>().as_bytes())?;
     Ok(file)
 }
