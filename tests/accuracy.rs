@@ -6,7 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::common::program;
 use sandbox::engine::boundary::WallMethod;
 use sandbox::lab::accuracy::{
-    Kind, Lyapunov, Motion, SAMPLES, SCENES, Scene, Trial, knobs, limit, trials,
+    Kind, Lyapunov, Measured, Motion, SAMPLES, SCENES, Scene, Trial, better, cheapest, knobs,
+    limit, trials,
 };
 use sandbox::scenario::{Scenario, Setting};
 use serde_json::{Value, json};
@@ -215,4 +216,28 @@ fn the_command_writes_tables_and_pictures_and_keeps_finished_cases() {
     let unknown = run(&["wall", "--knob", "taste"]);
     assert_eq!(unknown.status.code(), Some(2));
     assert!(program::stderr(&unknown).contains("time-step"));
+}
+
+#[test]
+fn a_point_on_the_front_is_beaten_by_no_other_point() {
+    let points = [(1.0, 1.0), (2.0, 0.5), (4.0, 0.6), (2.1, 0.1)];
+    assert_eq!(better(&points, 0), [None, None]);
+    assert_eq!(better(&points, 2), [Some(3), Some(1)]);
+    // Its cost counts as equal: it is within a tenth.
+    assert_eq!(better(&points, 1), [Some(3), None]);
+    assert_eq!(cheapest(&points, 0.5), Some(1));
+    assert_eq!(cheapest(&points, 0.01), None);
+}
+
+#[test]
+fn what_seeds_cannot_tell_apart_is_not_significant() {
+    let reference = [10.0, 10.2, 9.8, 10.1, 9.9];
+    let same = Measured::between(&[10.1, 9.9, 10.2, 9.9, 10.0], &reference).unwrap();
+    let other = Measured::between(&[11.1, 10.9, 11.2, 10.9, 11.0], &reference).unwrap();
+    assert!(!same.is_significant() && other.is_significant());
+    assert!((other.error - 1.02).abs() < 1e-12);
+    // Five values of variance 0.025: t = 2.776, standard error 0.0707.
+    let (mean, interval) = Measured::between(&reference, &[0.0]).unwrap().mean.unwrap();
+    assert!((mean - 10.0).abs() < 1e-12);
+    assert!((interval - 2.776_445 * (0.025_f64 / 5.0).sqrt()).abs() < 1e-6);
 }

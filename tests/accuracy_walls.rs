@@ -19,9 +19,9 @@ fn exact(region: Region, case: &Case) -> Vec<Integrals> {
 }
 
 fn found(method: Method, case: &Case) -> Vec<Integrals> {
-    let mut prepared = method.prepare(case);
+    let (mut integrals, _) = method.prepare(case);
     let places = case.places.iter().map(|place| place.position);
-    places.map(|r_i| prepared.integrals(r_i)).collect()
+    places.map(&mut integrals).collect()
 }
 
 /// The larger of the root-mean-square errors of density and force over the path.

@@ -9,6 +9,7 @@ use crate::common::program;
 use crate::common::{blend, block, room, scene, vector};
 use sandbox::engine::simulation::{Simulation, Stage};
 use sandbox::lab::bench::{BENCHMARKS, Crowd, Plan, Report, SKIPS, everything};
+use sandbox::lab::machine::{Machine, Resident, main_memory};
 use sandbox::scenario::catalog::NAMES;
 use serde_json::Value;
 
@@ -135,10 +136,7 @@ fn ratios_have_the_stated_baseline() {
     let [doubled @ .., all] = counts.as_slice() else {
         panic!("no rows");
     };
-    assert_eq!(
-        *all,
-        sandbox::lab::machine::Machine::here().hardware_threads as u64
-    );
+    assert_eq!(*all, Machine::here().hardware_threads as u64);
     let powers = (0..).map(|k| 1_u64 << k).take_while(|count| count < all);
     assert!(powers.eq(doubled.iter().copied()), "{counts:?}");
     assert_eq!(threads[0]["speed_up"]["maximum"], 1.0);
@@ -351,4 +349,18 @@ fn streams_go_both_ways() {
     let scene = Crowd::streams(100, "sf").scene().unwrap();
     let to_the_right = scene.agents.iter().filter(|a| a.goal.x > a.position.x);
     assert_eq!(to_the_right.count(), 50);
+}
+
+#[test]
+fn memory_is_read_in_bytes_or_not_at_all() {
+    let status = "Name:\tsandbox\nVmHWM:\t    2048 kB\nVmRSS:\t    1024 kB\n";
+    let memory = Resident::parse(status).unwrap();
+    assert_eq!((memory.now, memory.peak), (1 << 20, 1 << 21));
+    assert_eq!(Resident::parse("VmRSS:\t 1024 kB\n"), None);
+}
+
+#[test]
+fn a_process_may_use_no_more_memory_than_the_machine_has() {
+    let bytes = main_memory().unwrap();
+    assert!(bytes > 1 << 26 && bytes <= Machine::here().memory_bytes);
 }

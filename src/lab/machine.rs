@@ -96,7 +96,7 @@ impl Resident {
     }
 
     /// From the text of `/proc/self/status`.
-    fn parse(status: &str) -> Option<Self> {
+    pub fn parse(status: &str) -> Option<Self> {
         let bytes = |key: &str| -> Option<u64> {
             let line = status.lines().find_map(|line| line.strip_prefix(key))?;
             let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
@@ -106,24 +106,5 @@ impl Resident {
             now: bytes("VmRSS:")?,
             peak: bytes("VmHWM:")?,
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn memory_is_read_in_bytes_or_not_at_all() {
-        let status = "Name:\tsandbox\nVmHWM:\t    2048 kB\nVmRSS:\t    1024 kB\n";
-        let memory = Resident::parse(status).unwrap();
-        assert_eq!((memory.now, memory.peak), (1 << 20, 1 << 21));
-        assert_eq!(Resident::parse("VmRSS:\t 1024 kB\n"), None);
-    }
-
-    #[test]
-    fn a_process_may_use_no_more_memory_than_the_machine_has() {
-        let bytes = main_memory().unwrap();
-        assert!(bytes > 1 << 26 && bytes <= Machine::here().memory_bytes);
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::front::{Front, cheapest};
+use super::front::{better, cheapest};
 use super::scenes::{Kind, Scene, names};
 use super::trials::Trial;
 use crate::analysis::statistics::Range;
@@ -93,20 +93,19 @@ pub struct Found {
     pub notes: String,
 }
 
-/// A row of the table of cheapest settings.
-pub(super) struct Choice {
-    scene: &'static str,
-    /// The bound on the error, or "the default".
-    wanted: String,
-    settings: String,
-    cost: Option<f64>,
-    error: Option<String>,
-}
+/// A row of the table of cheapest settings: the scene; the bound on the error, or "the default"; the settings, their
+/// cost and their error.
+pub(super) type Choice = (&'static str, String, String, Option<f64>, Option<String>);
 
-/// Position errors for which the cheapest settings are listed, meters.
-const POSITIONS: [f64; 4] = [0.03, 0.01, 0.003, 0.001];
+/// Position errors for which the cheapest settings are listed, meters, with their names.
+const POSITIONS: [(f64, &str); 4] = [
+    (0.03, "30 mm"),
+    (0.01, "10 mm"),
+    (0.003, "3 mm"),
+    (0.001, "1 mm"),
+];
 /// The same for statistics, as relative errors.
-const PARTS: [f64; 3] = [0.05, 0.02, 0.01];
+const PARTS: [(f64, &str); 3] = [(0.05, "5 %"), (0.02, "2 %"), (0.01, "1 %")];
 
 impl Found {
     /// The one error by which settings are compared. For motion: of positions after about a second, in meters. For
@@ -114,24 +113,10 @@ impl Found {
     pub fn overall(&self, point: &Point) -> Option<f64> {
         match self.scene.kind {
             Kind::Motion => point.errors[1].map(|error| error.error),
-            Kind::Statistics => {
-                let relative = point.errors.iter().map(|error| {
-                    let error = (*error)?;
-                    Some(error.error / error.mean?.0.abs())
-                });
-                let all: Option<Vec<f64>> = relative.collect();
-                all.map(|all| all.into_iter().fold(0.0, f64::max))
-            }
-        }
-    }
-
-    /// The bounds for which the cheapest settings are listed, with their names.
-    fn bounds(&self) -> Vec<(f64, String)> {
-        match self.scene.kind {
-            Kind::Motion => POSITIONS.map(|m| (m, format!("{} mm", 1e3 * m))).to_vec(),
-            Kind::Statistics => PARTS
-                .map(|part| (part, format!("{} %", 100.0 * part)))
-                .to_vec(),
+            Kind::Statistics => point.errors.iter().try_fold(0.0, |largest: f64, error| {
+                let error = (*error)?;
+                Some(largest.max(error.error / error.mean?.0.abs()))
+            }),
         }
     }
 
@@ -150,36 +135,38 @@ impl Found {
             .filter_map(|point| Some((point, (point.cost.median, self.overall(point)?))))
             .unzip();
         let named = |k: usize| names(&points[k].trial.settings);
-        let choice = |wanted: String, settings: String, found: Option<(f64, f64)>| Choice {
-            scene: self.scene.name,
-            wanted,
-            settings,
-            cost: found.map(|(cost, _)| cost),
-            error: found.map(|(_, error)| self.precise(error)),
+        let choice = |wanted: String, settings: String, found: Option<usize>| {
+            let cost = found.map(|k| compared[k].0);
+            let error = found.map(|k| self.precise(compared[k].1));
+            (self.scene.name, wanted, settings, cost, error)
         };
-        let bounds = self.bounds().into_iter();
-        let mut choices: Vec<Choice> = bounds
-            .map(|(most, name)| {
-                let found = cheapest(&compared, most);
-                let settings = found.map_or("none".to_owned(), named);
-                let found = found.map(|k| compared[k]);
-                choice(format!("at most {name}"), settings, found)
-            })
-            .collect();
+        let bounds: &[_] = match self.scene.kind {
+            Kind::Motion => &POSITIONS,
+            Kind::Statistics => &PARTS,
+        };
+        let at_most = bounds.iter().map(|&(most, name)| {
+            let found = cheapest(&compared, most);
+            let settings = found.map_or("none".to_owned(), named);
+            choice(format!("at most {name}"), settings, found)
+        });
+        let mut choices: Vec<Choice> = at_most.collect();
         if let Some(k) = points.iter().position(|point| point.trial.is_default) {
-            let front = Front::of(&compared, k);
-            let at_cost = front.best_at_cost.map(|(other, error)| {
-                format!("at its cost: {} ({})", named(other), self.precise(error))
+            let [at_cost, at_error] = better(&compared, k);
+            let at_cost = at_cost.map(|k| {
+                format!(
+                    "at its cost: {} ({})",
+                    named(k),
+                    self.precise(compared[k].1)
+                )
             });
-            let at_error = front
-                .cheapest_at_error
-                .map(|(other, cost)| format!("at its error: {} ({cost:.1} ms)", named(other)));
+            let at_error =
+                at_error.map(|k| format!("at its error: {} ({:.1} ms)", named(k), compared[k].0));
             let beaten: Vec<String> = at_cost.into_iter().chain(at_error).collect();
             let verdict = match beaten.is_empty() {
                 true => "on the front".to_owned(),
                 false => format!("beaten {}", beaten.join("; ")),
             };
-            choices.push(choice("the default".to_owned(), verdict, Some(compared[k])));
+            choices.push(choice("the default".to_owned(), verdict, Some(k)));
         }
         choices
     }
@@ -208,11 +195,11 @@ impl Found {
 /// A table of choices.
 pub(super) fn table(choices: &[Choice]) -> Table {
     Table::of(choices)
-        .column("scene", |choice| choice.scene)
-        .column("error", |choice| choice.wanted.as_str())
-        .column("settings", |choice| choice.settings.as_str())
-        .fixed("ms per s", 1, |choice| choice.cost)
-        .column("error found", |choice| choice.error.clone())
+        .column("scene", |choice| choice.0)
+        .column("error", |choice| choice.1.as_str())
+        .column("settings", |choice| choice.2.as_str())
+        .fixed("ms per s", 1, |choice| choice.3)
+        .column("error found", |choice| choice.4.clone())
         .table()
 }
 

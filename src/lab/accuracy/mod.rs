@@ -20,7 +20,7 @@ mod trials;
 pub mod walls;
 
 pub use found::{Found, Measured, Point, Quantity};
-pub use front::{Front, cheapest};
+pub use front::{better, cheapest};
 pub use lyapunov::Lyapunov;
 pub use report::{Report, WALLS};
 pub use scenes::{Kind, SCENES, Scene};

@@ -3,8 +3,9 @@
 use super::found::{Found, Point as Setting};
 use super::report::{Report, WALLS};
 use super::scenes::Kind;
+use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
-use crate::output::plot::{Axis, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Sheet, Style};
 use crate::runs::store::Store;
 
 /// The quantities drawn for scenes of motion: positions at all samples, velocity and density at the middle one, and the
@@ -31,100 +32,58 @@ fn sheet(found: &Found) -> Sheet {
         Kind::Statistics => (0..found.quantities.len()).collect(),
     };
     let columns = quantities.len().div_ceil(2).max(1);
+    let panels = quantities.into_iter().enumerate();
+    let panels = panels.map(|(place, k)| panel(found, k, costs, place + 1 == columns));
     Sheet {
         title: format!("{}: {}", found.scene.name, found.scene.about()),
         columns,
         panel_size: [225.0, 195.0],
-        shared_axes: false,
-        row_titles: Vec::new(),
-        bar: None,
-        panels: quantities
-            .into_iter()
-            .enumerate()
-            .map(|(place, k)| panel(found, k, costs, place + 1 == columns))
-            .collect(),
+        panels: panels.collect(),
+        ..Sheet::default()
     }
 }
 
 /// A range that is slightly wider than all positive values.
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let positive = values.filter(|&v| v > 0.0 && v.is_finite());
-    let [low, high] = positive.fold([f64::INFINITY, 0.0], |[low, high], v| {
-        [v.min(low), v.max(high)]
-    });
-    if low > high {
-        return [0.1, 1.0];
+    let range = Range::of(&positive.collect::<Vec<_>>());
+    match range.median.is_nan() {
+        true => [0.1, 1.0],
+        false => [0.6 * range.minimum, 1.6 * range.maximum],
     }
-    [0.6 * low, 1.6 * high]
 }
 
 fn panel(found: &Found, quantity: usize, costs: [f64; 2], legend: bool) -> Panel {
-    let shown = |point: &&Setting| point.errors[quantity].is_some_and(|error| error.bound() > 0.0);
-    let errors = found
-        .points
-        .iter()
-        .filter_map(|point| point.errors[quantity]);
-    let errors = range(errors.map(|error| error.bound()));
+    // At its error or, if that is larger, at the error's confidence interval.
+    let place = |point: &Setting| {
+        let bound = point.errors[quantity]?.bound();
+        (bound > 0.0).then_some([point.cost.median, bound])
+    };
+    let errors = found.points.iter().filter_map(place);
+    let errors = range(errors.map(|[_, error]| error));
     let curves = found.points.chunk_by(|a, b| a.trial.shares_curve(&b.trial));
     let mut marks = Vec::new();
     for (number, curve) in curves.enumerate() {
-        let style = style(number, &curve[0].trial.curve);
-        let own = curve.iter().filter(shown);
-        let points: Vec<Point> = own.filter_map(|point| at(point, quantity)).collect();
+        let points: Vec<[f64; 2]> = curve.iter().filter_map(place).collect();
         if points.is_empty() {
             continue;
         }
-        let line = points.iter().map(|point| [point.x, point.y]).collect();
-        let unnamed = Style {
-            label: String::new(),
-            ..style.clone()
+        let (color, label) = (LINES[number % LINES.len()], &curve[0].trial.curve);
+        let style: fn(_, _, &str) -> _ = match number < LINES.len() {
+            true => Style::full,
+            false => Style::broken,
         };
-        marks.push(Mark::Line(line, unnamed));
-        marks.push(Mark::Points(
-            points,
-            Style {
-                width: 2.6,
-                ..style
-            },
-        ));
+        marks.push(Mark::Line(points.clone(), style(color, 1.2, "")));
+        marks.push(Mark::dots(points, style(color, 2.6, label)));
     }
     let default = found.points.iter().find(|point| point.trial.is_default);
-    let default = default.filter(shown).and_then(|point| at(point, quantity));
-    marks.extend(default.map(|point| {
-        Mark::Points(
-            vec![Point {
-                error: 0.0,
-                ..point
-            }],
-            Style::broken(crate::output::plot::BLACK, 6.0, "default"),
-        )
-    }));
+    let default = default.and_then(place);
+    marks.extend(default.map(|at| Mark::dots([at], Style::broken(BLACK, 6.0, "default"))));
     let shown = &found.quantities[quantity];
+    let x = Axis::log("cost [ms per simulated second]", costs);
+    let y = Axis::log(&format!("error [{}]", shown.unit), errors);
     Panel {
-        title: shown.name.clone(),
-        x: Axis::log("cost [ms per simulated second]", costs),
-        y: Axis::log(&format!("error [{}]", shown.unit), errors),
-        marks,
-        bar: None,
         legend: legend.then_some(Corner::Beside),
-    }
-}
-
-/// The position of a point in the panel: at its error or, if that is larger, at the error's confidence interval.
-fn at(point: &Setting, quantity: usize) -> Option<Point> {
-    let error = point.errors[quantity]?;
-    Some(Point {
-        x: point.cost.median,
-        y: error.bound(),
-        error: 0.0,
-    })
-}
-
-fn style(number: usize, label: &str) -> Style {
-    let color = LINES[number % LINES.len()];
-    if number < LINES.len() {
-        Style::full(color, 1.2, label)
-    } else {
-        Style::broken(color, 1.2, label)
+        ..Panel::new(&shown.name, x, y, marks)
     }
 }

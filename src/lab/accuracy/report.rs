@@ -1,7 +1,5 @@
 //! What `sandbox accuracy` prints and writes.
 
-use std::fmt::Write;
-
 use super::found::{self, Found};
 use super::scenes::names;
 use super::walls::WallReport;
@@ -32,37 +30,25 @@ impl Report {
 
     /// The cheapest settings for each error, then all points, as Markdown: (name, text).
     pub fn parts(&self) -> Vec<(String, String)> {
-        let mut parts = vec![("choices".to_owned(), self.choices().markdown())];
-        for found in &self.scenes {
+        let choices = [("choices".to_owned(), self.choices().markdown())].into_iter();
+        let scenes = self.scenes.iter().map(|found| {
             let text = format!("{}\n\n{}", found.notes, found.table().markdown());
-            parts.push((found.scene.name.to_owned(), text));
-        }
+            (found.scene.name.to_owned(), text)
+        });
         let walls = self.walls.iter();
-        parts.extend(walls.map(|walls| (WALLS.to_owned(), walls.markdown())));
-        parts
+        let walls = walls.map(|walls| (WALLS.to_owned(), walls.markdown()));
+        choices.chain(scenes).chain(walls).collect()
     }
 
     /// The text for a terminal.
     pub fn text(&self) -> String {
-        let mut text = String::new();
-        for found in &self.scenes {
-            let _ = write!(
-                text,
-                "{}: {}\n{}\n\n{}\n",
-                found.scene.name,
-                found.scene.about(),
-                found.notes,
-                found.table().text()
-            );
-        }
-        if !self.scenes.is_empty() {
-            text += &self.choices().text();
-        }
-        text + &self
-            .walls
-            .as_ref()
-            .map(WallReport::markdown)
-            .unwrap_or_default()
+        let scenes = self.scenes.iter().map(|found| {
+            let (name, about, table) = (found.scene.name, found.scene.about(), found.table());
+            format!("{name}: {about}\n{}\n\n{}\n", found.notes, table.text())
+        });
+        let choices = (!self.scenes.is_empty()).then(|| self.choices().text());
+        let walls = self.walls.as_ref().map(WallReport::markdown);
+        scenes.chain(choices).chain(walls).collect()
     }
 
     /// Writes tables, CSV and JSON into the store's folder.

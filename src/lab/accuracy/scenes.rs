@@ -42,16 +42,25 @@ pub struct Scene {
 
 /// All scenes.
 pub const SCENES: [Scene; 9] = [
-    Scene::motion("relaxed", Some(whirl)),
-    Scene::motion("pulse", Some(compression)),
-    Scene::motion("wall", None),
-    Scene::motion("social", None),
-    Scene::motion("rvo", None),
-    Scene::statistics("evacuation", false),
-    Scene::statistics("evacuation-social", true),
-    Scene::statistics("evacuation-rvo", true),
-    Scene::statistics("wave", false),
+    scene("relaxed", Kind::Motion, false, Some(whirl)),
+    scene("pulse", Kind::Motion, false, Some(compression)),
+    scene("wall", Kind::Motion, false, None),
+    scene("social", Kind::Motion, false, None),
+    scene("rvo", Kind::Motion, false, None),
+    scene("evacuation", Kind::Statistics, false, None),
+    scene("evacuation-social", Kind::Statistics, true, None),
+    scene("evacuation-rvo", Kind::Statistics, true, None),
+    scene("wave", Kind::Statistics, false, None),
 ];
+
+const fn scene(name: &'static str, kind: Kind, is_long: bool, push: Option<Push>) -> Scene {
+    Scene {
+        name,
+        kind,
+        is_long,
+        push,
+    }
+}
 
 /// What a study says without its cells.
 #[derive(Default, Deserialize)]
@@ -67,24 +76,6 @@ struct Entry {
 }
 
 impl Scene {
-    const fn motion(name: &'static str, push: Option<Push>) -> Self {
-        Self {
-            name,
-            kind: Kind::Motion,
-            is_long: false,
-            push,
-        }
-    }
-
-    const fn statistics(name: &'static str, is_long: bool) -> Self {
-        Self {
-            name,
-            kind: Kind::Statistics,
-            is_long,
-            push: None,
-        }
-    }
-
     /// The name of its study.
     fn study_name(&self) -> String {
         format!("accuracy_{}", self.name)
@@ -159,8 +150,8 @@ pub fn setting(key: &str, value: &Value) -> Result<Setting, LabError> {
 
 /// The names of some settings: `time_step_secs=0.04 integrator=midpoint`.
 pub fn names(settings: &[Setting]) -> String {
-    let names: Vec<String> = settings.iter().map(Setting::to_string).collect();
-    names.join(" ")
+    let names = settings.iter().map(Setting::to_string);
+    names.collect::<Vec<_>>().join(" ")
 }
 
 /// The scenario of a document under some settings.

@@ -60,19 +60,15 @@ struct Task {
 pub fn accuracy(plan: &Plan, store: &Store, listener: &dyn Listener) -> Result<Report, LabError> {
     let tasks = plan.scenes.iter().map(|&scene| Task::new(scene, plan));
     let tasks = tasks.collect::<Result<Vec<Task>, _>>()?;
-    let mut jobs = Vec::new();
-    let mut ends = Vec::new();
-    for task in &tasks {
-        jobs.extend(task.jobs());
-        ends.push(jobs.len());
-    }
-    let results = results(&jobs, store, listener)?;
-    let mut found = Vec::new();
-    let mut begin = 0;
-    for (task, end) in tasks.iter().zip(ends) {
-        found.push(task.finish(&results[begin..end], listener)?);
-        begin = end;
-    }
+    let jobs: Vec<Vec<Job>> = tasks.iter().map(Task::jobs).collect();
+    let counts: Vec<usize> = jobs.iter().map(Vec::len).collect();
+    let jobs: Vec<Job> = jobs.into_iter().flatten().collect();
+    let mut results = results(&jobs, store, listener)?.into_iter();
+    let found = tasks.iter().zip(counts).map(|(task, count)| {
+        let own: Vec<Value> = results.by_ref().take(count).collect();
+        task.finish(&own, listener)
+    });
+    let found = found.collect::<Result<Vec<Found>, _>>()?;
     if plan.walls {
         listener.notes("wall-integrals: measuring errors and costs");
     }
@@ -112,24 +108,23 @@ impl Task {
     }
 
     fn jobs<'a>(&'a self) -> Vec<Job<'a>> {
-        let name = self.scene.name;
-        match self.scene.kind {
-            Kind::Motion => vec![self.motion_job()],
-            Kind::Statistics => {
-                let entries = self.entries().into_iter();
-                let cells = entries.flat_map(|entry| self.cells(entry));
-                let job = |cell: &'a Cell| cell.case.job(format!("{name} {cell}"));
-                cells.map(job).collect()
-            }
+        let (scene, document, trials, quick) =
+            (self.scene.name, &self.document, &self.trials, self.quick);
+        if self.scene.kind == Kind::Statistics {
+            let entries = self.entries().into_iter();
+            let cells = entries.flat_map(|entry| self.cells(entry));
+            let job = |cell: &'a Cell| cell.case.job(format!("{scene} {cell}"));
+            return cells.map(job).collect();
         }
-    }
-
-    fn motion_job(&self) -> Job<'_> {
-        let (document, trials, quick) = (&self.document, &self.trials, self.quick);
-        let name = format!("motion {}, {} points", self.scene.name, trials.len());
+        let name = format!("motion {scene}, {} points", trials.len());
         let input = format!("{document} {trials:?} {quick}");
         let work = move |_: Progress| Trajectories::of(document, trials, quick);
-        Job::new(name.clone(), Identity::of(&name, input), 100.0, work)
+        vec![Job::new(
+            name.clone(),
+            Identity::of(&name, input),
+            100.0,
+            work,
+        )]
     }
 
     /// The entries of the study whose runs statistics need.
@@ -151,10 +146,10 @@ impl Task {
             Kind::Statistics => self.statistics(results)?,
         };
         let trials = self.trials.iter();
-        let settings: BTreeMap<usize, &[Setting]> = trials
+        let settings = trials
             .clone()
-            .map(|trial| (trial.entry, &trial.settings[..]))
-            .collect();
+            .map(|trial| (trial.entry, &trial.settings[..]));
+        let settings: BTreeMap<usize, &[Setting]> = settings.collect();
         let (count, name) = (settings.len(), self.scene.name);
         listener.notes(&format!("{name}: measuring the cost of {count} settings"));
         let turns = if self.quick { 1 } else { TURNS };

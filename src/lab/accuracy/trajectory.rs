@@ -1,5 +1,6 @@
 //! The positions of agents in the first seconds, and how far they are from the reference.
 
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use serde::{Deserialize, Serialize};
@@ -7,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::found::{Judged, Measured, Quantity};
 use super::lyapunov::Lyapunov;
-use super::scenes::{by_id, names, scenario, setting, simulation};
+use super::scenes::{names, scenario, setting, simulation};
 use super::trials::Trial;
 use crate::engine::boundary::WallMethod;
 use crate::engine::clock::PAPER_TIME_STEP;
@@ -21,14 +22,8 @@ pub const SAMPLES: [f64; 3] = [0.48, 0.96, 1.92];
 /// The reference's time step is the paper's, divided by this; the second value is for quick plans.
 const FINENESS: [f64; 2] = [64.0, 16.0];
 
-/// All agents at one time, sorted by id.
-#[derive(Debug, Clone, PartialEq)]
-struct Snapshot {
-    id: Vec<u32>,
-    position: Vec<Vector>,
-    velocity: Vec<Vector>,
-    density: Vec<f64>,
-}
+/// Position, velocity and density of all agents at one time, by id.
+type Snapshot = BTreeMap<u32, (Vector, Vector, f64)>;
 
 /// A crowd at the times of [`SAMPLES`].
 #[derive(Debug, Clone, PartialEq)]
@@ -65,14 +60,14 @@ impl Motion {
                 simulation.step().map_err(fault)?;
             }
             simulation.evaluate().map_err(fault)?;
-            Ok(Snapshot::of(&simulation))
+            Ok(snapshot(&simulation))
         };
         Ok(Self([at(SAMPLES[0])?, at(SAMPLES[1])?, at(SAMPLES[2])?]))
     }
 
     /// The difference between two motions, over all agents that are in both.
     pub fn errors(&self, other: &Self) -> Errors {
-        let pairs = [0, 1, 2].map(|k| self.0[k].distance(&other.0[k]));
+        let pairs = [0, 1, 2].map(|k| distance(&self.0[k], &other.0[k]));
         Errors {
             position: pairs.map(|p| p[0]),
             velocity: pairs.map(|p| p[1]),
@@ -81,35 +76,24 @@ impl Motion {
     }
 }
 
-impl Snapshot {
-    fn of(simulation: &Simulation) -> Self {
-        let frame = simulation.frame();
-        let agents = frame.agents;
-        let order = by_id(simulation);
-        Self {
-            id: order.iter().map(|&i| agents.id[i]).collect(),
-            position: order.iter().map(|&i| agents.position[i]).collect(),
-            velocity: order.iter().map(|&i| agents.velocity[i]).collect(),
-            density: order.iter().map(|&i| frame.fields.density[i]).collect(),
-        }
-    }
+fn snapshot(simulation: &Simulation) -> Snapshot {
+    let frame = simulation.frame();
+    let (agents, density) = (frame.agents, &frame.fields.density);
+    let state = |i: usize| (agents.position[i], agents.velocity[i], density[i]);
+    let ids = agents.id.iter().enumerate();
+    ids.map(|(i, &id)| (id, state(i))).collect()
+}
 
-    /// Root mean square differences of position, velocity and density.
-    fn distance(&self, other: &Self) -> [f64; 3] {
-        let (mut sums, mut count, mut k) = ([0.0; 3], 0.0_f64, 0);
-        for (i, id) in self.id.iter().enumerate() {
-            while other.id.get(k).is_some_and(|other| other < id) {
-                k += 1;
-            }
-            if other.id.get(k) == Some(id) {
-                sums[0] += (self.position[i] - other.position[k]).norm_squared();
-                sums[1] += (self.velocity[i] - other.velocity[k]).norm_squared();
-                sums[2] += (self.density[i] - other.density[k]).powi(2);
-                count += 1.0;
-            }
-        }
-        sums.map(|sum| (sum / count.max(1.0)).sqrt())
-    }
+/// Root mean square differences of position, velocity and density, over all agents that are in both.
+fn distance(one: &Snapshot, other: &Snapshot) -> [f64; 3] {
+    let pairs = one.iter().filter_map(|(id, a)| Some((a, other.get(id)?)));
+    let squares = pairs.map(|(a, b)| {
+        let [position, velocity] = [a.0 - b.0, a.1 - b.1].map(|off| off.norm_squared());
+        [position, velocity, (a.2 - b.2).powi(2)]
+    });
+    let squares: Vec<[f64; 3]> = squares.collect();
+    let sum = |k: usize| squares.iter().map(|squares| squares[k]).sum::<f64>();
+    [0, 1, 2].map(|k| (sum(k) / squares.len().max(1) as f64).sqrt())
 }
 
 /// The limit of a scene as Δt → 0 with these walls, as settings. Its own error is about as large as the difference from
@@ -145,10 +129,8 @@ impl Trajectories {
     /// # Errors
     /// As [`Motion::of`].
     pub fn of(document: &Value, trials: &[Trial], quick: bool) -> Result<Self, LabError> {
-        let mut motions = Motions {
-            document,
-            known: Vec::new(),
-        };
+        let known = Vec::new();
+        let mut motions = Motions { document, known };
         let mut errors = Vec::new();
         for trial in trials {
             let motion = motions.get(&trial.settings)?;

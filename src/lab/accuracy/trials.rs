@@ -45,12 +45,6 @@ impl Trial {
     pub fn shares_curve(&self, other: &Self) -> bool {
         (&self.knob, &self.curve) == (&other.knob, &other.curve)
     }
-
-    /// Does the curve of this trial go over time steps?
-    fn varies_step(&self) -> bool {
-        let first = self.settings.first();
-        first.is_some_and(|setting| setting.path() == ["time_step_secs"])
-    }
 }
 
 fn texts<S: Serializer>(settings: &[Setting], serializer: S) -> Result<S::Ok, S::Error> {
@@ -127,7 +121,9 @@ pub fn reference(study: &Study) -> Option<usize> {
 pub fn few(trials: &[Trial]) -> Vec<Trial> {
     let curves = trials.chunk_by(Trial::shares_curve);
     let few = curves.flat_map(|curve| {
-        let end = curve.len() - usize::from(curve[0].varies_step());
+        let first = curve[0].settings.first();
+        let varies_step = first.is_some_and(|setting| setting.path() == ["time_step_secs"]);
+        let end = curve.len() - usize::from(varies_step);
         &curve[end.saturating_sub(3)..end]
     });
     few.cloned().collect()

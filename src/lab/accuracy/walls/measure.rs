@@ -124,7 +124,7 @@ fn of_case(case: &Case, [turns, passes]: [usize; 2]) -> CaseReport {
     for _ in 0..turns {
         for (method, ns) in prepared.iter_mut().zip(&mut ns) {
             ns.push(ns_per_place(case, passes, |r_i| {
-                black_box(method.integrals(r_i));
+                black_box((method.0)(r_i));
             }));
         }
     }
@@ -166,7 +166,7 @@ fn of_method(
     (ns, preparation_ms): (Range, f64),
 ) -> MethodReport {
     let places = case.places.iter().map(|place| place.position);
-    let found: Vec<Integrals> = places.map(|r_i| prepared.integrals(r_i)).collect();
+    let found: Vec<Integrals> = places.map(|r_i| (prepared.0)(r_i)).collect();
     let [density, force] = errors(&found, exact);
     let along = |tangent: Vector| {
         let forces = found.iter().map(|f| f.gradient.dot(&tangent));
@@ -180,7 +180,7 @@ fn of_method(
         roughness: case.tangent.map(along),
         ns,
         preparation_ms,
-        bytes: prepared.bytes,
+        bytes: prepared.1,
         curve: curve(&found),
     }
 }
@@ -189,7 +189,7 @@ fn of_method(
 fn preparation_ms(method: Method, case: &Case, turns: usize) -> f64 {
     let turn = |_| {
         let start = Instant::now();
-        black_box(method.prepare(case).bytes);
+        black_box(method.prepare(case).1);
         1e3 * start.elapsed().as_secs_f64()
     };
     Range::of(&(0..turns).map(turn).collect::<Vec<_>>()).median

@@ -92,44 +92,30 @@ impl Method {
         match self {
             Self::Polygons(method) => {
                 let mut near = Vec::new();
-                Prepared::new(0, move |r_i| {
+                let integrals = move |r_i| {
                     near.clear();
                     walls.near(r_i, h, &mut near);
                     let mut sum = Integrals::none();
                     method.shares(walls, &near, r_i, h, |share| sum = sum + (&share).into());
                     sum
-                })
+                };
+                (Box::new(integrals), 0)
             }
             Self::Particles { spacing, volumes } => {
                 let particles = Particles::fill(walls, spacing, volumes, h);
-                Prepared::new(particles.bytes(), move |r_i| particles.integrals(r_i))
+                let bytes = particles.bytes();
+                (Box::new(move |r_i| particles.integrals(r_i)), bytes)
             }
             Self::Map { spacing, stored } => {
                 let floor: Vec<Vector> = case.places.iter().map(|place| place.position).collect();
                 let map = Map::over(walls, &floor, spacing, stored, h);
-                Prepared::new(map.bytes(), move |r_i| map.integrals(r_i))
+                let bytes = map.bytes();
+                (Box::new(move |r_i| map.integrals(r_i)), bytes)
             }
         }
     }
 }
 
-/// A method prepared for one case.
-pub struct Prepared<'a> {
-    integrals: Box<dyn FnMut(Vector) -> Integrals + 'a>,
-    /// Memory in addition to the polygons, which a crowd needs anyway, bytes.
-    pub bytes: usize,
-}
-
-impl<'a> Prepared<'a> {
-    fn new(bytes: usize, integrals: impl FnMut(Vector) -> Integrals + 'a) -> Self {
-        Self {
-            integrals: Box::new(integrals),
-            bytes,
-        }
-    }
-
-    /// The integrals over the walls for an agent at `r_i`, including the search for what is within reach.
-    pub fn integrals(&mut self, r_i: Vector) -> Integrals {
-        (self.integrals)(r_i)
-    }
-}
+/// A method prepared for one case: the integrals over the walls for an agent at r_i, including the search for what is
+/// within reach, and memory in addition to the polygons, which a crowd needs anyway, bytes.
+pub type Prepared<'a> = (Box<dyn FnMut(Vector) -> Integrals + 'a>, usize);

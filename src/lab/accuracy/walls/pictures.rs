@@ -3,7 +3,7 @@
 use super::{CaseReport, Error, METHODS, Method, MethodReport, Stored, Volumes, WallReport};
 use crate::engine::boundary::WallMethod;
 use crate::output::colors::Rgb;
-use crate::output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Sheet, Style};
 
 /// The color of the exact values, drawn below everything else.
 const PALE: Rgb = [200, 200, 200];
@@ -40,10 +40,8 @@ impl WallReport {
                 .to_owned(),
             columns: COLUMNS,
             panel_size: [270.0, 180.0],
-            shared_axes: false,
-            row_titles: Vec::new(),
-            bar: None,
             panels,
+            ..Sheet::default()
         }
     }
 
@@ -52,36 +50,19 @@ impl WallReport {
         let dots = |k: usize| {
             let methods = self.cases.iter().map(|case| &case.methods[k]);
             let dots = methods.filter_map(|method| {
-                let y = (100.0 * error(method)?.rms).max(LEAST_ERROR);
-                Some(Point {
-                    x: method.ns.median,
-                    y,
-                    error: 0.0,
-                })
+                let percent = 100.0 * error(method)?.rms;
+                Some([method.ns.median, percent.max(LEAST_ERROR)])
             });
-            Mark::Points(
-                dots.collect(),
-                Style {
-                    width: 2.6,
-                    ..style(k)
-                },
-            )
+            Mark::dots(dots, style(k, 2.6))
         };
         let numbers = |values: &[f64]| values.iter().map(|&v| (v, v.to_string())).collect();
+        let mut x = Axis::log("time per agent [ns]", TIMES);
+        x.ticks = numbers(&[30.0, 100.0, 300.0, 1000.0, 3000.0]);
         let mut y = Axis::log("error [%]", ERRORS);
         y.ticks = numbers(&[0.001, 0.01, 0.1, 1.0, 10.0, 100.0]);
         y.ticks[0].1 = "≤ 0.001".to_owned();
-        Panel {
-            title: format!("work and precision: {title}, one dot a path"),
-            x: Axis {
-                ticks: numbers(&[30.0, 100.0, 300.0, 1000.0, 3000.0]),
-                ..Axis::log("time per agent [ns]", TIMES)
-            },
-            y,
-            marks: (0..METHODS.len()).map(dots).collect(),
-            bar: None,
-            legend: None,
-        }
+        let title = format!("work and precision: {title}, one dot a path");
+        Panel::new(&title, x, y, (0..METHODS.len()).map(dots).collect())
     }
 }
 
@@ -98,20 +79,20 @@ fn curves(case: &CaseReport, n: usize, label: &str, legend: Option<Corner>) -> P
         line(&case.solid, Style::broken(BLACK, 1.6, "solid (truth)")),
     ];
     let methods = case.methods.iter().enumerate();
-    marks.extend(methods.map(|(k, method)| line(&method.curve, style(k))));
+    marks.extend(methods.map(|(k, method)| line(&method.curve, style(k, 1.0))));
     let ends = [case.along[0], case.along[case.along.len() - 1]];
+    let (x, y) = (
+        Axis::linear(case.axis, ends),
+        Axis::linear(label, [0.0, 2.0 * largest]),
+    );
     Panel {
-        title: case.name.to_owned(),
-        x: Axis::linear(case.axis, ends),
-        y: Axis::linear(label, [0.0, 2.0 * largest]),
-        marks,
-        bar: None,
         legend,
+        ..Panel::new(case.name, x, y, marks)
     }
 }
 
 /// One color for each kind of method. Lines of coarser particles are broken; the title explains them.
-fn style(k: usize) -> Style {
+fn style(k: usize, width: f64) -> Style {
     let method = METHODS[k];
     let color = match method {
         Method::Polygons(WallMethod::Representative) => LINES[1],
@@ -128,7 +109,7 @@ fn style(k: usize) -> Style {
         },
     };
     match method {
-        Method::Particles { spacing, .. } if spacing > 0.1 => Style::broken(color, 1.0, ""),
-        _ => Style::full(color, 1.0, &method.name()),
+        Method::Particles { spacing, .. } if spacing > 0.1 => Style::broken(color, width, ""),
+        _ => Style::full(color, width, &method.name()),
     }
 }
