@@ -171,9 +171,8 @@ fn off_the_walls() -> impl Iterator<Item = Case> {
 #[test]
 fn particles_in_cut_cells_converge_to_the_solid_with_order_two() {
     for case in off_the_walls() {
-        let found = orders(&case, 0.2, |spacing| Method::Particles {
-            spacing,
-            volumes: Volumes::Cut,
+        let found = orders(&case, 0.2, |spacing| {
+            Method::Particles(Volumes::Cut, spacing)
         });
         assert!(
             found.iter().all(|order| *order > 1.5),
@@ -188,7 +187,7 @@ fn particles_in_whole_cells_converge_with_larger_errors_than_in_cut_cells() {
     for case in off_the_walls() {
         let exact = exact(Region::Solid, &case);
         let error = |spacing, volumes| {
-            let method = Method::Particles { spacing, volumes };
+            let method = Method::Particles(volumes, spacing);
             error(method, &case, &exact)
         };
         let [coarse, fine] = [0.2, 0.05].map(|spacing| error(spacing, Volumes::Whole));
@@ -200,9 +199,8 @@ fn particles_in_whole_cells_converge_with_larger_errors_than_in_cut_cells() {
 #[test]
 fn a_map_of_integrals_converges_to_the_solid_with_order_two() {
     for case in off_the_walls() {
-        let found = orders(&case, 0.2, |spacing| Method::Map {
-            spacing,
-            stored: Stored::Integrals,
+        let found = orders(&case, 0.2, |spacing| {
+            Method::Map(Stored::Integrals, spacing)
         });
         assert!(
             found.iter().all(|order| *order > 1.5),
@@ -215,10 +213,7 @@ fn a_map_of_integrals_converges_to_the_solid_with_order_two() {
 #[test]
 fn a_volume_map_puts_the_whole_solid_at_the_nearest_point() {
     let straight = cases(PLACES).into_iter().next().unwrap();
-    let map = Method::Map {
-        spacing: 0.02,
-        stored: Stored::Volume,
-    };
+    let map = Method::Map(Stored::Volume, 0.02);
     let solid = exact(Region::Solid, &straight);
     for ((place, solid), found) in straight.places.iter().zip(solid).zip(found(map, &straight)) {
         let weight = kernel::density(place.along * place.along, SUPPORT_RADIUS);

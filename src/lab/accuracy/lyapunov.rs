@@ -20,6 +20,8 @@ const DURATION: f64 = 1.92;
 const FIT_FROM: f64 = 0.48;
 /// Number of shifts.
 const SHIFTS: u32 = 3;
+/// The fractional parts of its multiples fill [0, 1) evenly.
+const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// The largest Lyapunov exponent of a crowd's first seconds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -47,20 +49,14 @@ impl Lyapunov {
     /// # Errors
     /// The run fails.
     pub fn of(document: &Value) -> Result<Self, LabError> {
-        let (mut rates, mut growth) = (Vec::new(), 0.0_f64);
-        for shift in 0..SHIFTS {
-            let distances = distances(document, shift)?;
-            rates.push(slope(&distances));
-            let last = distances.last().map_or(0.0, |&(_, distance)| distance);
-            growth = growth.max(last / SHIFT);
-        }
-        Ok(Self { rates, growth })
+        let all = (0..SHIFTS).map(|shift| distances(document, shift));
+        let all: Vec<_> = all.collect::<Result<_, _>>()?;
+        let last = all.iter().filter_map(|distances| distances.last());
+        Ok(Self {
+            rates: all.iter().map(|distances| slope(distances)).collect(),
+            growth: last.fold(0.0, |most, &(_, last)| most.max(last / SHIFT)),
+        })
     }
-}
-
-/// Fractional parts of multiples of the golden ratio: they fill [0, 1) evenly.
-pub fn golden(k: u32) -> f64 {
-    (f64::from(k) * 0.618_033_988_749_895).fract()
 }
 
 /// Times, and root mean square distances between a crowd and a copy whose agents are moved by [`SHIFT`].
@@ -72,7 +68,7 @@ fn distances(document: &Value, shift: u32) -> Result<Vec<(f64, f64)>, LabError> 
     let one = simulation(document, &settings)?;
     let start = continued(document, &one, |_, _, _| ());
     let moved = continued(document, &one, |id, position, _| {
-        let (sine, cosine) = (TAU * golden(id + 1009 * shift)).sin_cos();
+        let (sine, cosine) = (TAU * (f64::from(id + 1009 * shift) * GOLDEN).fract()).sin_cos();
         *position += SHIFT * Vector::new(cosine, sine);
     });
     let mut one = simulation(&start, &settings)?;
@@ -80,9 +76,8 @@ fn distances(document: &Value, shift: u32) -> Result<Vec<(f64, f64)>, LabError> 
     let mut distances = Vec::new();
     while one.frame().clock.time() < DURATION {
         for simulation in [&mut one, &mut other] {
-            simulation
-                .step()
-                .map_err(|fault| LabError::of(names(&settings), fault))?;
+            let stepped = simulation.step();
+            stepped.map_err(|fault| LabError::of(names(&settings), fault))?;
         }
         distances.push((one.frame().clock.time(), distance(&one, &other)));
     }
@@ -99,10 +94,9 @@ fn distance(one: &Simulation, other: &Simulation) -> f64 {
 
 /// Slope of the logarithm of distances over time, by least squares.
 fn slope(distances: &[(f64, f64)]) -> f64 {
-    let points = distances
-        .iter()
-        .filter(|&&(time, d)| time >= FIT_FROM && d > 0.0);
-    let points: Vec<(f64, f64)> = points.map(|&(time, d)| (time, d.ln())).collect();
+    let points = distances.iter().copied();
+    let points = points.filter(|&(time, d)| time >= FIT_FROM && d > 0.0);
+    let points: Vec<(f64, f64)> = points.map(|(time, d)| (time, d.ln())).collect();
     Line::through(&points).map_or(f64::NAN, |line| line.slope)
 }
 

@@ -179,9 +179,8 @@ pub fn simulation(document: &Value, settings: &[Setting]) -> Result<Simulation, 
 pub fn run_until(crowd: &mut Simulation, seconds: f64) -> Result<(), LabError> {
     while crowd.frame().clock.time() < seconds {
         let time = crowd.frame().clock.time();
-        crowd
-            .step()
-            .map_err(|fault| LabError::of(format!("at {time} s"), fault))?;
+        let stepped = crowd.step();
+        stepped.map_err(|fault| LabError::of(format!("at {time} s"), fault))?;
     }
     Ok(())
 }

@@ -98,9 +98,6 @@ fn distance(one: &Snapshot, other: &Snapshot) -> [f64; 3] {
 
 /// The limit of a scene as Δt → 0 with these walls, as settings. Its own error is about as large as the difference from
 /// a run at twice the step, which `coarser` = 2 gives.
-///
-/// # Errors
-/// Never: all settings exist.
 pub fn limit(walls: WallMethod, quick: bool, coarser: f64) -> Result<Vec<Setting>, LabError> {
     let step = coarser * PAPER_TIME_STEP / FINENESS[usize::from(quick)];
     let all = [
@@ -169,14 +166,14 @@ impl Trajectories {
             values.map(|v| v.map(Measured::exact)).collect()
         });
         let lyapunov = &self.lyapunov;
+        let growth = lyapunov
+            .time()
+            .map(|time| format!("Lyapunov time {time:.2} s"));
         let notes = format!(
             "Two crowds that began almost alike part by e^({:.1} t), t in seconds ({}); after {} s at most \
              {:.3} times as far as at the start. The reference's own error at {middle} s is some {:.0e} m.",
             lyapunov.rate(),
-            lyapunov.time().map_or_else(
-                || "they draw together".to_owned(),
-                |time| format!("Lyapunov time {time:.2} s")
-            ),
+            growth.unwrap_or_else(|| "they draw together".to_owned()),
             SAMPLES[2],
             lyapunov.growth,
             self.limit.position[1],

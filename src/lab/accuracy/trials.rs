@@ -103,9 +103,6 @@ pub fn trials(study: &Study, document: &Value) -> Result<Vec<Trial>, LabError> {
 }
 
 /// The settings of a cell, without its seed.
-///
-/// # Errors
-/// Never: the study has been checked.
 pub fn settings(cell: &Cell) -> Result<Vec<Setting>, LabError> {
     let settings = cell.settings();
     settings.map(|(key, value)| setting(key, value)).collect()

@@ -56,7 +56,7 @@ pub fn parts(
     let mut neighbors = Neighbors::default();
     neighbors.sort(&mut agents, ranges);
     neighbors.list_agents();
-    neighbors.list_walls(&agents, site.walls());
+    neighbors.list_walls(&agents, &site.walls);
     // Eq. 9 without walls, by the engine's own sums, in double precision.
     let mut bodies = Bodies::<f64>::default();
     bodies.take(&agents, 1.0, |_| kernel.support_radius);

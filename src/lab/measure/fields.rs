@@ -108,7 +108,7 @@ impl Fields {
                 return None;
             }
             let mut near = Vec::new();
-            site.walls().near(p, kernel.support_radius, &mut near);
+            site.walls.near(p, kernel.support_radius, &mut near);
             Some(View {
                 hidden: site.share(p, &near, &kernel),
                 near: near.into_boxed_slice(),

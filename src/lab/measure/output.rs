@@ -2,15 +2,17 @@
 
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::pictures::STEMS;
 use super::record::RECORDING;
 use super::{CLASS, Class, Measured, Moment};
 use crate::analysis::statistics::MeanStd;
 use crate::engine::math::Vector;
+use crate::lab::error::LabError;
 use crate::output::table::{Cell, Table, csv_lines};
 use crate::runs::error::StoreError;
+use crate::runs::store::Store;
 
 /// All people, frame by frame.
 const AGENTS: &str = "agents.csv";
@@ -32,7 +34,7 @@ pub fn files() -> impl Iterator<Item = String> {
 
 /// A folder for results, with an open file of people.
 pub struct Results {
-    folder: PathBuf,
+    store: Store,
     agents: BufWriter<File>,
 }
 
@@ -49,7 +51,7 @@ impl Results {
         let begun = writeln!(agents, "{AGENT_COLUMNS}");
         begun.map_err(|error| unwritten(&path, &error))?;
         Ok(Self {
-            folder: folder.to_owned(),
+            store: Store::at(folder),
             agents,
         })
     }
@@ -77,34 +79,26 @@ impl Results {
         let written = lines
             .map_err(Into::into)
             .and_then(|lines| self.agents.write_all(&lines));
-        written.map_err(|error| unwritten(&self.folder.join(AGENTS), &error))
+        written.map_err(|error| unwritten(&self.store.path(AGENTS), &error))
     }
 
     /// Writes the other files, and closes the file of people.
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn finish(mut self, measured: &Measured) -> Result<(), StoreError> {
-        let flushed = self.agents.flush();
-        flushed.map_err(|error| unwritten(&self.folder.join(AGENTS), &error))?;
+    pub fn finish(mut self, measured: &Measured) -> Result<(), LabError> {
+        let (store, flushed) = (self.store, self.agents.flush());
+        flushed.map_err(|error| unwritten(&store.path(AGENTS), &error))?;
         let (diagrams, crossings) = (&measured.diagrams, &measured.crossings);
-        self.write(FIELDS, fields(measured))?;
+        store.write(FIELDS, &fields(measured)?)?;
         let frames = diagrams.iter().flat_map(|diagram| &diagram.frames);
-        self.write(DIAGRAM, csv_lines(&frames.collect::<Vec<_>>(), true))?;
-        self.write(CLASSES, classes(measured).csv())?;
-        if crossings.is_empty() {
-            return Ok(());
+        store.write(DIAGRAM, &csv_lines(&frames.collect::<Vec<_>>(), true)?)?;
+        store.write(CLASSES, &classes(measured).csv()?)?;
+        if !crossings.is_empty() {
+            let all = crossings.iter().flat_map(|crossings| &crossings.list);
+            store.write(FLOW, &csv_lines(&all.collect::<Vec<_>>(), true)?)?;
         }
-        let all = crossings.iter().flat_map(|crossings| &crossings.list);
-        self.write(FLOW, csv_lines(&all.collect::<Vec<_>>(), true))
-    }
-
-    fn write(&self, name: &str, text: Result<Vec<u8>, csv::Error>) -> Result<(), StoreError> {
-        let path = self.folder.join(name);
-        let written = text
-            .map_err(Into::into)
-            .and_then(|text| fs::write(&path, text));
-        written.map_err(|error| unwritten(&path, &error))
+        Ok(())
     }
 }
 

@@ -29,7 +29,7 @@ pub const STEMS: [&str; 3] = ["fields", "fundamental_diagram", "flow"];
 /// A picture cannot be written.
 pub fn save(folder: &Path, measured: &Measured, site: &Site) -> Result<(), PlotError> {
     let [fields, diagram, flow] = STEMS;
-    maps(measured, site.walls()).save(&folder.join(fields))?;
+    maps(measured, &site.walls).save(&folder.join(fields))?;
     diagrams(&measured.diagrams).save(&folder.join(diagram))?;
     if !measured.crossings.is_empty() {
         counts(&measured.crossings).save(&folder.join(flow))?;

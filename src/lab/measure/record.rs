@@ -55,7 +55,7 @@ impl<'a> MomentRecorder<'a> {
             ends_at: measured.times[1].min(ends[1]),
             debug: DebugAgents::None,
         };
-        let (path, walls) = (folder.join(RECORDING), site.walls());
+        let (path, walls) = (folder.join(RECORDING), &site.walls);
         Ok(Self {
             tracks,
             recorder: MeasuredRecorder::create(path.as_path(), walls, REFERENCE_RADIUS, &options)?,

@@ -7,7 +7,8 @@ use crate::engine::math::{Vector, bounds};
 /// Obstacles, with a fast test for points inside them.
 #[derive(Debug, Clone)]
 pub struct Site {
-    walls: Walls,
+    /// The obstacles and their walls.
+    pub walls: Walls,
     /// The corners of each obstacle's bounding box, infinite for an unbounded obstacle.
     bounds: Vec<[Vector; 2]>,
 }
@@ -48,27 +49,18 @@ impl Site {
         }
     }
 
-    /// The obstacles and their walls.
-    pub fn walls(&self) -> &Walls {
-        &self.walls
-    }
-
     /// Whether `p` is inside an obstacle.
     pub fn is_inside(&self, p: Vector) -> bool {
-        let obstacles = self.bounds.iter().zip(self.walls.obstacles());
+        let mut obstacles = self.bounds.iter().zip(self.walls.obstacles());
         let may = |[low, high]: &[Vector; 2]| p == p.sup(low) && p == p.inf(high);
-        obstacles
-            .filter(|(bounds, _)| may(bounds))
-            .any(|(_, obstacle)| obstacle.contains(p))
+        obstacles.any(|(bounds, obstacle)| may(bounds) && obstacle.contains(p))
     }
 
     /// The share of the kernel at `p` that the walls in `near` hide. `p` is outside obstacles.
     pub fn share(&self, p: Vector, near: &[u32], kernel: &Kernel) -> f64 {
         let mut share = 0.0;
-        let h = kernel.support_radius;
-        kernel
-            .walls
-            .shares(&self.walls, near, p, h, |wall| share += wall.kernel);
+        let (method, h) = (kernel.walls, kernel.support_radius);
+        method.shares(&self.walls, near, p, h, |wall| share += wall.kernel);
         share
     }
 

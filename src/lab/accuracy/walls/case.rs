@@ -116,25 +116,19 @@ fn placed(point: [f64; 2]) -> Vector {
 }
 
 fn walls(obstacles: &[&[[f64; 2]]]) -> Walls {
-    let corners = obstacles
-        .iter()
-        .map(|corners| corners.iter().map(|&p| placed(p)).collect());
-    Walls::new(
-        corners
-            .filter_map(|corners| Polygon::new(corners).ok())
-            .collect(),
-    )
+    let obstacle = |corners: &&[[f64; 2]]| {
+        let corners = corners.iter().map(|&corner| placed(corner));
+        Polygon::new(corners.collect()).ok()
+    };
+    Walls::new(obstacles.iter().filter_map(obstacle).collect())
 }
 
 /// From 2 cm to 1 m in front of a wall, each place at another position along it.
 fn distances(count: usize) -> Vec<Place> {
     let place = |k: usize| {
-        let distance = 0.02 + 0.98 * k as f64 / count as f64;
-        let position = placed([(k as f64 * GOLDEN).fract(), distance]);
-        Place {
-            along: distance,
-            position,
-        }
+        let along = 0.02 + 0.98 * k as f64 / count as f64;
+        let position = placed([(k as f64 * GOLDEN).fract(), along]);
+        Place { along, position }
     };
     (0..count).map(place).collect()
 }
@@ -142,16 +136,12 @@ fn distances(count: usize) -> Vec<Place> {
 /// Places at equal distances along straight lines between `corners`.
 fn path(corners: &[[f64; 2]], count: usize) -> Vec<Place> {
     let corners: Vec<Vector> = corners.iter().map(|&corner| placed(corner)).collect();
-    let length: f64 = corners
-        .windows(2)
-        .map(|ends| (ends[1] - ends[0]).norm())
-        .sum();
+    let ways: Vec<Vector> = corners.windows(2).map(|ends| ends[1] - ends[0]).collect();
+    let length: f64 = ways.iter().map(|way| way.norm()).sum();
     let place = |k: usize| {
         let along = length * (k as f64 + 0.5) / count as f64;
-        let mut left = along;
-        let mut position = corners[0];
-        for ends in corners.windows(2) {
-            let way = ends[1] - ends[0];
+        let (mut left, mut position) = (along, corners[0]);
+        for way in &ways {
             let part = (left / way.norm()).clamp(0.0, 1.0);
             position += way * part;
             left -= way.norm() * part;

@@ -10,24 +10,10 @@ use crate::engine::math::Vector;
 pub enum Method {
     /// One of the engine's methods, on the polygons themselves.
     Polygons(WallMethod),
-    /// Boundary particles.
-    Particles {
-        /// Distance between neighboring particles, meters.
-        spacing: f64,
-        /// What each particle stands for.
-        volumes: Volumes,
-    },
-    /// A map on a grid.
-    Map {
-        /// Distance between nodes, meters.
-        spacing: f64,
-        /// What each node stores.
-        stored: Stored,
-    },
-}
-
-const fn particles(spacing: f64, volumes: Volumes) -> Method {
-    Method::Particles { spacing, volumes }
+    /// Boundary particles, and the distance between neighboring ones, meters.
+    Particles(Volumes, f64),
+    /// A map on a grid, and the distance between nodes, meters.
+    Map(Stored, f64),
 }
 
 /// The compared methods.
@@ -37,20 +23,14 @@ pub const METHODS: [Method; 11] = [
     Method::Polygons(WallMethod::Representative),
     Method::Polygons(WallMethod::Exact),
     Method::Polygons(WallMethod::Union),
-    particles(0.1, Volumes::Whole),
-    particles(0.25, Volumes::Whole),
-    particles(0.1, Volumes::Cut),
-    particles(0.25, Volumes::Cut),
-    particles(0.1, Volumes::Akinci),
-    particles(0.25, Volumes::Akinci),
-    Method::Map {
-        spacing: 0.1,
-        stored: Stored::Integrals,
-    },
-    Method::Map {
-        spacing: 0.1,
-        stored: Stored::Volume,
-    },
+    Method::Particles(Volumes::Whole, 0.1),
+    Method::Particles(Volumes::Whole, 0.25),
+    Method::Particles(Volumes::Cut, 0.1),
+    Method::Particles(Volumes::Cut, 0.25),
+    Method::Particles(Volumes::Akinci, 0.1),
+    Method::Particles(Volumes::Akinci, 0.25),
+    Method::Map(Stored::Integrals, 0.1),
+    Method::Map(Stored::Volume, 0.1),
 ];
 
 impl Method {
@@ -60,15 +40,11 @@ impl Method {
             Self::Polygons(WallMethod::Representative) => return "representative point".to_owned(),
             Self::Polygons(WallMethod::Exact) => return "exact".to_owned(),
             Self::Polygons(WallMethod::Union) => return "union".to_owned(),
-            Self::Particles { spacing, volumes } => match volumes {
-                Volumes::Whole => ("particles", spacing),
-                Volumes::Cut => ("particles (cut cells)", spacing),
-                Volumes::Akinci => ("particles (Akinci)", spacing),
-            },
-            Self::Map { spacing, stored } => match stored {
-                Stored::Integrals => ("map of integrals", spacing),
-                Stored::Volume => ("volume map (Bender)", spacing),
-            },
+            Self::Particles(Volumes::Whole, spacing) => ("particles", spacing),
+            Self::Particles(Volumes::Cut, spacing) => ("particles (cut cells)", spacing),
+            Self::Particles(Volumes::Akinci, spacing) => ("particles (Akinci)", spacing),
+            Self::Map(Stored::Integrals, spacing) => ("map of integrals", spacing),
+            Self::Map(Stored::Volume, spacing) => ("volume map (Bender)", spacing),
         };
         format!("{kind}, {spacing} m")
     }
@@ -77,12 +53,8 @@ impl Method {
     pub fn region(&self) -> Region {
         match self {
             // Akinci's volumes represent a solid body behind the wall, even if the wall is thin.
-            Self::Polygons(_)
-            | Self::Particles {
-                volumes: Volumes::Akinci,
-                ..
-            } => Region::Hidden,
-            Self::Particles { .. } | Self::Map { .. } => Region::Solid,
+            Self::Polygons(_) | Self::Particles(Volumes::Akinci, _) => Region::Hidden,
+            Self::Particles(..) | Self::Map(..) => Region::Solid,
         }
     }
 
@@ -101,12 +73,12 @@ impl Method {
                 };
                 (Box::new(integrals), 0)
             }
-            Self::Particles { spacing, volumes } => {
+            Self::Particles(volumes, spacing) => {
                 let particles = Particles::fill(walls, spacing, volumes, h);
                 let bytes = particles.bytes();
                 (Box::new(move |r_i| particles.integrals(r_i)), bytes)
             }
-            Self::Map { spacing, stored } => {
+            Self::Map(stored, spacing) => {
                 let floor: Vec<Vector> = case.places.iter().map(|place| place.position).collect();
                 let map = Map::over(walls, &floor, spacing, stored, h);
                 let bytes = map.bytes();

@@ -98,18 +98,14 @@ fn style(k: usize, width: f64) -> Style {
         Method::Polygons(WallMethod::Representative) => LINES[1],
         Method::Polygons(WallMethod::Exact) => LINES[0],
         Method::Polygons(WallMethod::Union) => LINES[2],
-        Method::Particles { volumes, .. } => match volumes {
-            Volumes::Whole => BROWN,
-            Volumes::Cut => LINES[3],
-            Volumes::Akinci => LINES[4],
-        },
-        Method::Map { stored, .. } => match stored {
-            Stored::Integrals => LINES[5],
-            Stored::Volume => LINES[6],
-        },
+        Method::Particles(Volumes::Whole, _) => BROWN,
+        Method::Particles(Volumes::Cut, _) => LINES[3],
+        Method::Particles(Volumes::Akinci, _) => LINES[4],
+        Method::Map(Stored::Integrals, _) => LINES[5],
+        Method::Map(Stored::Volume, _) => LINES[6],
     };
     match method {
-        Method::Particles { spacing, .. } if spacing > 0.1 => Style::broken(color, width, ""),
+        Method::Particles(_, spacing) if spacing > 0.1 => Style::broken(color, width, ""),
         _ => Style::full(color, width, &method.name()),
     }
 }
