@@ -11,10 +11,8 @@ use crate::scenario::Setting;
 /// Simulated time of one measurement, seconds.
 const SECONDS: f64 = 0.96;
 
-/// Milliseconds per simulated second of a document under each of several settings.
-///
-/// # Errors
-/// A setting is invalid, or a run fails.
+/// Milliseconds per simulated second of a document under each of several settings; an error if a setting is invalid or a
+/// run fails.
 pub fn measure<'a>(
     document: &Value,
     settings: impl Iterator<Item = &'a [Setting]>,

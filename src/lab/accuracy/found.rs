@@ -17,15 +17,8 @@ pub struct Quantity {
     pub unit: &'static str,
 }
 
-impl Quantity {
-    pub(super) fn new(name: impl Into<String>, unit: &'static str) -> Self {
-        let name = name.into();
-        Self { name, unit }
-    }
-}
-
 /// A measured error.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Measured {
     /// If the quantity is a statistic over seeds: its mean and half its 95 % confidence interval.
     pub mean: Option<(f64, f64)>,
@@ -36,15 +29,6 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// An error that is not random.
-    pub(super) fn exact(error: f64) -> Self {
-        Self {
-            mean: None,
-            error,
-            interval: 0.0,
-        }
-    }
-
     /// Do the seeds distinguish the quantity from the reference?
     pub fn is_significant(&self) -> bool {
         self.error > self.interval

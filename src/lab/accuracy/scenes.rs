@@ -138,10 +138,7 @@ fn compression(r: Vector, size: Vector) -> Vector {
     Vector::new(0.8 * (-0.5 * along * along).exp(), 0.0)
 }
 
-/// A setting that is called `key=value`.
-///
-/// # Errors
-/// The key is unknown.
+/// A setting that is called `key=value`; an error if the key is unknown.
 pub fn setting(key: &str, value: &Value) -> Result<Setting, LabError> {
     let text = value.as_str().map_or(value.to_string(), str::to_owned);
     Setting::new(key, value.clone(), format!("{key}={text}"))
@@ -154,28 +151,19 @@ pub fn names(settings: &[Setting]) -> String {
     names.collect::<Vec<_>>().join(" ")
 }
 
-/// The scenario of a document under some settings.
-///
-/// # Errors
-/// A setting is invalid.
+/// The scenario of a document under some settings; an error if a setting is invalid.
 pub fn scenario(document: &Value, settings: &[Setting]) -> Result<Scenario, LabError> {
     Scenario::parse(&document.to_string(), "scene.json", settings)
         .map_err(|error| LabError::of(names(settings), error))
 }
 
-/// The first frame of a document under some settings.
-///
-/// # Errors
-/// A setting is invalid, or an agent cannot be placed.
+/// The first frame of a document under some settings; an error if a setting is invalid or an agent cannot be placed.
 pub fn simulation(document: &Value, settings: &[Setting]) -> Result<Simulation, LabError> {
     let scene = scenario(document, settings)?.scene;
     Simulation::new(scene).map_err(|fault| LabError::of(names(settings), fault))
 }
 
-/// Computes frames until this time, seconds.
-///
-/// # Errors
-/// A frame fails.
+/// Computes frames until this time, seconds, or until a frame fails.
 pub fn run_until(crowd: &mut Simulation, seconds: f64) -> Result<(), LabError> {
     while crowd.frame().clock.time() < seconds {
         let time = crowd.frame().clock.time();

@@ -24,19 +24,21 @@ pub(super) fn judge<'a>(
     let metrics = || metrics.into_iter().flat_map(|metrics| metrics.keys());
     let single = METRICS.into_iter().filter_map(|(metric, name, unit)| {
         let metric = metrics().find(|measured| *measured == metric)?;
-        Some((Quantity::new(name, unit), vec![metric]))
+        Some(((name, unit), vec![metric]))
     });
     let bins: Vec<&String> = metrics().filter(|name| name.starts_with(DIAGRAM)).collect();
-    let diagram = (!bins.is_empty()).then(|| (Quantity::new("speed by density", "m/s"), bins));
-    let (quantities, metrics): (_, Vec<_>) = single.chain(diagram).unzip();
+    let diagram = (!bins.is_empty()).then(|| (("speed by density", "m/s"), bins));
+    let (names, metrics): (Vec<_>, Vec<_>) = single.chain(diagram).unzip();
+    let quantities = names.into_iter().map(|(name, unit)| Quantity {
+        name: name.to_owned(),
+        unit,
+    });
     let errors = |runs: &[Summary]| {
-        let metrics = metrics.iter();
-        metrics
-            .map(|metrics| deviation(metrics, runs, reference))
-            .collect()
+        let errors = metrics.iter().map(|of| deviation(of, runs, reference));
+        errors.collect()
     };
     Judged {
-        quantities,
+        quantities: quantities.collect(),
         errors: points.map(errors).collect(),
         notes,
     }

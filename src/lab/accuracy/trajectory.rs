@@ -153,17 +153,21 @@ impl Trajectories {
     pub(super) fn judge(&self) -> Judged {
         let mut quantities = Vec::new();
         for (name, unit) in [("position", "m"), ("velocity", "m/s"), ("density", "P/m²")] {
-            let at = |time: f64| Quantity::new(format!("{name} at {time} s"), unit);
-            quantities.extend(SAMPLES.map(at));
+            let names = SAMPLES.map(|time| format!("{name} at {time} s"));
+            quantities.extend(names.map(|name| Quantity { name, unit }));
         }
         let middle = SAMPLES[1];
-        let alone = format!("position at {middle} s by this knob alone");
-        quantities.push(Quantity::new(alone, "m"));
+        let (name, unit) = (format!("position at {middle} s by this knob alone"), "m");
+        quantities.push(Quantity { name, unit });
         let errors = self.trials.iter().map(|(total, own)| {
             let all = [total.position, total.velocity, total.density].concat();
             let own = own.map(|own| own.position[1]);
+            let exact = |error| Measured {
+                error,
+                ..Measured::default()
+            };
             let values = all.into_iter().map(Some).chain([own]);
-            values.map(|v| v.map(Measured::exact)).collect()
+            values.map(|error| error.map(exact)).collect()
         });
         let lyapunov = &self.lyapunov;
         let growth = lyapunov

@@ -48,10 +48,7 @@ pub struct Started {
     pub frames: u64,
 }
 
-/// A scenario at the start of a stretch, as shipped or with another profile.
-///
-/// # Errors
-/// The profile is invalid, or the simulation fails.
+/// A scenario at the start of a stretch, as shipped or with another profile; an error if the simulation fails.
 pub fn begin(stretch: &Stretch, plan: &Plan, profile: Option<&str>) -> Result<Started, LabError> {
     let &(name, from, lasting) = stretch;
     let setting = profile.map(|profile| format!("profile={profile}").parse::<Setting>());

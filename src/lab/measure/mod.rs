@@ -26,6 +26,8 @@ pub use record::MomentRecorder;
 pub use report::Report;
 pub use site::{Hidden, Kernel, Site};
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::analysis::statistics::MeanStd;
@@ -214,7 +216,7 @@ pub fn check(tracks: &Tracks, options: &Options) -> Result<(), MeasureError> {
 }
 
 /// The frames in the requested time.
-fn chosen(tracks: &Tracks, options: &Options) -> Result<std::ops::Range<usize>, MeasureError> {
+fn chosen(tracks: &Tracks, options: &Options) -> Result<Range<usize>, MeasureError> {
     let [from, until] = options.times;
     let frames = &tracks.frames;
     let begin = frames.partition_point(|&frame| tracks.time(frame) < from);
@@ -228,18 +230,14 @@ fn chosen(tracks: &Tracks, options: &Options) -> Result<std::ops::Range<usize>, 
 }
 
 /// A grid that covers the kernels of all people.
-fn grid(
-    tracks: &Tracks,
-    options: &Options,
-    chosen: std::ops::Range<usize>,
-) -> Result<Grid, MeasureError> {
+fn grid(tracks: &Tracks, options: &Options, chosen: Range<usize>) -> Result<Grid, MeasureError> {
     let rows = tracks.rows(chosen.start).start..tracks.rows(chosen.end - 1).end;
     let [low, high] = bounds(tracks.position[rows].iter().copied()).unwrap_or_default();
     let margin = Vector::repeat(options.kernel.support_radius);
     Grid::over(low - margin, high + margin, options.cell).ok_or(MeasureError::Cells(options.cell))
 }
 
-fn overview(tracks: &Tracks, chosen: std::ops::Range<usize>) -> Overview {
+fn overview(tracks: &Tracks, chosen: Range<usize>) -> Overview {
     let [first, last] = [chosen.start, chosen.end - 1].map(|k| tracks.frames[k]);
     let frames = ((last - first) / tracks.step) as u64 + 1;
     Overview {

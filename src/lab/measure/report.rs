@@ -24,6 +24,7 @@ impl Report<'_> {
     pub fn text(&self) -> String {
         let overview = &self.measured.overview;
         let ([first, last], reach) = (overview.times, self.reach());
+        let spread = |of: &MeanStd| format!("{:.3} ± {:.3}", of.mean, of.population_std());
         let empty = match overview.empty_frames {
             0 => String::new(),
             empty => format!(", {empty} without people"),
@@ -33,9 +34,8 @@ impl Report<'_> {
             overview.people, overview.rows, overview.frames, self.tracks.fps,
         );
         text += &format!(
-            "  density  {:.3} ± {:.3} P/m² over all rows, h = {} m\n",
-            overview.density.mean,
-            overview.density.population_std(),
+            "  density  {} P/m² over all rows, h = {} m\n",
+            spread(&overview.density),
             self.options.kernel.support_radius,
         );
         if let Some((person, frame, time)) = overview.densest {
@@ -48,9 +48,8 @@ impl Report<'_> {
         text += &match overview.speed.count {
             0 => "  speed    unknown for all rows\n".to_owned(),
             _ => format!(
-                "  speed    {:.3} ± {:.3} m/s, from {reach:.2} s before to {reach:.2} s after\n",
-                overview.speed.mean,
-                overview.speed.population_std(),
+                "  speed    {} m/s, from {reach:.2} s before to {reach:.2} s after\n",
+                spread(&overview.speed),
             ),
         };
         if !self.measured.crossings.is_empty() {

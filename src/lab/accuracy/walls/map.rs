@@ -85,14 +85,11 @@ fn knowledge(stored: Stored, walls: &Walls, r_i: Vector, h: f64) -> [f64; 3] {
     let solid = Integrals::over(Region::Solid, walls, r_i, h, TOLERANCE);
     let (scalar, vector) = match stored {
         Stored::Integrals => (solid.kernel, solid.gradient),
-        Stored::Volume => (solid.area, to_nearest(walls, r_i)),
+        Stored::Volume => {
+            let feet = walls.iter().map(|wall| wall.nearest_point(r_i).point - r_i);
+            let nearest = feet.min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
+            (solid.area, nearest.unwrap_or_default())
+        }
     };
     [scalar, vector.x, vector.y]
-}
-
-/// r* − r_i.
-fn to_nearest(walls: &Walls, r_i: Vector) -> Vector {
-    let feet = walls.iter().map(|wall| wall.nearest_point(r_i).point - r_i);
-    feet.min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))
-        .unwrap_or(Vector::zeros())
 }

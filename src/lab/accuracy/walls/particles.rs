@@ -63,7 +63,12 @@ impl Particles {
             particles.fill_cell(walls, cell, volumes);
         }
         if volumes == Volumes::Akinci {
-            particles.volume = particles.akinci_volumes();
+            let weight = |x: &Vector| -> f64 {
+                let offsets = particles.near(*x).map(|c| particles.position[c] - x);
+                offsets.map(|r| kernel::density(r.norm_squared(), h)).sum()
+            };
+            let volumes = particles.position.iter().map(|x| 1.0 / weight(x));
+            particles.volume = volumes.collect();
         }
         particles
     }
@@ -96,20 +101,10 @@ impl Particles {
         self.starts.push(self.position.len() as u32);
     }
 
-    fn akinci_volumes(&self) -> Vec<f64> {
-        let number = |x: &Vector| -> f64 {
-            self.near(*x)
-                .map(|c| kernel::density((self.position[c] - x).norm_squared(), self.h))
-                .sum()
-        };
-        self.position.iter().map(|x| 1.0 / number(x)).collect()
-    }
-
     /// The sums over the particles within reach of an agent at `r_i`.
     pub fn integrals(&self, r_i: Vector) -> Integrals {
-        self.near(r_i)
-            .map(|b| Integrals::of_piece(self.position[b] - r_i, self.volume[b], self.h))
-            .sum()
+        let piece = |b: usize| Integrals::of_piece(self.position[b] - r_i, self.volume[b], self.h);
+        self.near(r_i).map(piece).sum()
     }
 
     /// All particles within reach of `x`, and few others: in each row of the lattice, the cells along the chord.
@@ -121,9 +116,8 @@ impl Particles {
             (low.floor().max(0.0) as usize).min(end)..end
         };
         within(from.y - reach, from.y + reach, self.rows).flat_map(move |row| {
-            let across = (row as f64 - from.y)
-                .max(from.y - row as f64 - 1.0)
-                .max(0.0);
+            let below = row as f64 - from.y;
+            let across = below.max(-below - 1.0).max(0.0);
             let half = (reach * reach - across * across).max(0.0).sqrt();
             let columns = within(from.x - half, from.x + half, self.columns);
             let start = |column: usize| self.starts[row * self.columns + column] as usize;

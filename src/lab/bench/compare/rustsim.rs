@@ -19,19 +19,11 @@ mod present {
 
     type Step = fn(&mut [Pedestrian], &[WallSegment], &Params, f64, &mut Scratch);
 
-    /// Its step functions: name, function, and whether it uses all threads.
+    /// Its step functions: addition to its name, function, and whether it uses all threads.
     const STEPS: [(&str, Step, bool); 3] = [
-        ("rustsim-crowd 0.0.1", social_force::step_scratch, false),
-        (
-            "rustsim-crowd 0.0.1, SIMD",
-            social_force::step_scratch_simd,
-            false,
-        ),
-        (
-            "rustsim-crowd 0.0.1, rayon",
-            social_force::step_scratch_par,
-            true,
-        ),
+        ("", social_force::step_scratch, false),
+        (", SIMD", social_force::step_scratch_simd, false),
+        (", rayon", social_force::step_scratch_par, true),
     ];
 
     /// Its entries, with its default radius and with the paper's.
@@ -48,7 +40,7 @@ mod present {
                 let threads = if parallel { start.threads } else { 1 };
                 let pool = pool(threads).map_err(|error| error.to_string())?;
                 let description = Description {
-                    engine: name.to_owned(),
+                    engine: format!("rustsim-crowd 0.0.1{name}"),
                     model: "social force, circular, no contact",
                     radius: social_force::neighbor_cutoff(&params),
                     precision: "f64",
@@ -89,7 +81,6 @@ mod present {
 /// Says how to include rustsim-crowd.
 #[cfg(not(feature = "compare"))]
 pub fn entries(_: &super::Start) -> Result<Vec<super::Entry>, String> {
-    Err(
-        "this program was built without it; `cargo build --release --features compare` brings it in".to_owned(),
-    )
+    let how = "`cargo build --release --features compare` brings it in";
+    Err(format!("this program was built without it; {how}"))
 }
