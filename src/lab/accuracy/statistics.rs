@@ -27,7 +27,7 @@ pub(super) fn judge<'a>(
         Some(((name, unit), vec![metric]))
     });
     let bins: Vec<&String> = metrics().filter(|name| name.starts_with(DIAGRAM)).collect();
-    let diagram = (!bins.is_empty()).then(|| (("speed by density", "m/s"), bins));
+    let diagram = (!bins.is_empty()).then_some((("speed by density", "m/s"), bins));
     let (names, metrics): (Vec<_>, Vec<_>) = single.chain(diagram).unzip();
     let quantities = names.into_iter().map(|(name, unit)| Quantity {
         name: name.to_owned(),

@@ -64,13 +64,16 @@ impl Plan {
     }
 }
 
+/// Runs a benchmark, and reports its progress.
+type Measure = fn(&Plan, &dyn Fn(&str)) -> Result<Findings, LabError>;
+
 /// A benchmark.
 pub struct Benchmark {
     /// Its name on the command line.
     pub name: &'static str,
     /// A description, in one line.
     pub about: &'static str,
-    run: fn(&Plan, &dyn Fn(&str)) -> Result<Findings, LabError>,
+    run: Measure,
 }
 
 impl Benchmark {
