@@ -12,9 +12,7 @@ use super::report::Findings;
 use super::timing::{Contender, alternate, failed, going_on};
 use super::{Benchmark, Plan};
 use crate::analysis::statistics::Range;
-use crate::engine::agents::Agents;
 use crate::engine::pairs::Precision;
-use crate::engine::scene::Scene;
 use crate::engine::simulation::Simulation;
 use crate::lab::error::LabError;
 use crate::lab::machine::Machine;
@@ -48,14 +46,6 @@ struct Description {
 /// An engine that takes part.
 type Entry = (Description, Contender<'static>);
 
-/// The initial state that every engine starts from.
-struct Start<'a> {
-    scene: &'a Scene,
-    agents: &'a Agents,
-    /// The machine's hardware threads.
-    threads: usize,
-}
-
 /// The times of one engine.
 #[derive(Serialize)]
 struct Row {
@@ -69,23 +59,19 @@ struct Row {
 fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     let agents = plan.choose(10_000, 400);
     let crowd = Crowd::streams(agents, "sf").settled(0)?;
-    let start = Start {
-        scene: crowd.scene(),
-        agents: crowd.frame().agents,
-        threads: Machine::here().hardware_threads,
-    };
+    let threads = Machine::here().hardware_threads;
     let mut notes = vec![differences(agents)];
     let mut others = Vec::new();
     for (engine, joined) in [
-        ("rustsim-crowd", rustsim::entries(&start)),
-        ("JuPedSim", jupedsim::entries(&start, &plan.python)),
+        ("rustsim-crowd", rustsim::entries(&crowd, threads)),
+        ("JuPedSim", jupedsim::entries(&crowd, &plan.python)),
     ] {
         match joined {
             Ok(mut entries) => others.append(&mut entries),
             Err(missing) => notes.push(format!("{engine} is missing: {missing}")),
         }
     }
-    let ours = ours(agents, &others, start.threads)?;
+    let ours = ours(agents, &others, threads)?;
     let rows = race(ours, others, plan, say)?;
     Ok(Findings {
         table: table(&rows),

@@ -41,14 +41,6 @@ pub struct Class {
     pub flow: MeanStd,
 }
 
-impl Class {
-    pub(super) fn add(&mut self, density: f64, speed: f64) {
-        self.density.add(density);
-        self.speed.add(speed);
-        self.flow.add(density * speed);
-    }
-}
-
 /// The results for one region.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Diagram {
@@ -76,12 +68,12 @@ impl Diagram {
             density.add(person.density);
             if let Some(velocity) = person.velocity {
                 speed.add(velocity.norm());
-                class(&mut self.of_persons, person.density).add(person.density, velocity.norm());
+                add(&mut self.of_persons, person.density, velocity.norm());
             }
         }
         let (density, speed) = (density.mean, (speed.count > 0).then_some(speed.mean));
         if let Some(speed) = speed {
-            class(&mut self.of_frames, density).add(density, speed);
+            add(&mut self.of_frames, density, speed);
         }
         self.frames.push(FrameMean {
             region: number,
@@ -95,7 +87,10 @@ impl Diagram {
     }
 }
 
-/// The class of a density.
-fn class(classes: &mut BTreeMap<usize, Class>, density: f64) -> &mut Class {
-    classes.entry((density / CLASS) as usize).or_default()
+/// Adds a person or a frame to its class.
+fn add(classes: &mut BTreeMap<usize, Class>, density: f64, speed: f64) {
+    let class = classes.entry((density / CLASS) as usize).or_default();
+    class.density.add(density);
+    class.speed.add(speed);
+    class.flow.add(density * speed);
 }

@@ -13,32 +13,22 @@ pub const FRAMES: i64 = 5;
 /// if the person is absent in between: no motion is measured across gaps.
 pub fn velocities(tracks: &Tracks, reach: i64) -> Vec<Option<Vector>> {
     let frames = reach.saturating_mul(tracks.step);
-    let people = (0..tracks.ids.len()).into_par_iter();
-    let of_people: Vec<Vec<Option<Vector>>> = people
-        .map(|p| {
-            let rows = tracks.rows_of(p);
-            let frame: Vec<i64> = rows
-                .iter()
-                .map(|&row| tracks.frame_of(row as usize))
-                .collect();
-            // The row is as many rows away as frames: no frame is missing in between.
-            let at = |k: Option<usize>, offset: i64, here: i64| {
-                let k = k.filter(|&k| frame.get(k) == Some(&here.saturating_add(offset)))?;
-                Some((frame[k], tracks.position[rows[k] as usize]))
-            };
-            let reach = reach as usize;
-            (0..rows.len())
-                .map(|k| {
-                    let here = (frame[k], tracks.position[rows[k] as usize]);
-                    let before = at(k.checked_sub(reach), -frames, frame[k]);
-                    let after = at(Some(k + reach), frames, frame[k]);
-                    before.or(after)?;
-                    let (from, to) = (before.unwrap_or(here), after.unwrap_or(here));
-                    Some((to.1 - from.1) / ((to.0 - from.0) as f64 / tracks.fps))
-                })
-                .collect()
-        })
-        .collect();
+    let of_people = (0..tracks.ids.len()).into_par_iter().map(|p| {
+        let rows = tracks.rows_of(p).iter().map(|&row| row as usize);
+        let states = rows.map(|row| (tracks.frame_of(row), tracks.position[row]));
+        let states: Vec<(i64, Vector)> = states.collect();
+        // The state is as many rows away as frames: no frame is missing in between.
+        let at = |k: Option<usize>, frame| states.get(k?).filter(|state| state.0 == frame);
+        let velocity = |(k, here): (usize, &(i64, Vector))| {
+            let before = at(k.checked_sub(reach as usize), here.0.saturating_sub(frames));
+            let after = at(Some(k + reach as usize), here.0.saturating_add(frames));
+            before.or(after)?;
+            let (from, to) = (before.unwrap_or(here), after.unwrap_or(here));
+            Some((to.1 - from.1) / ((to.0 - from.0) as f64 / tracks.fps))
+        };
+        states.iter().enumerate().map(velocity).collect()
+    });
+    let of_people: Vec<Vec<Option<Vector>>> = of_people.collect();
     let mut velocities = vec![None; tracks.len()];
     for (p, own) in of_people.into_iter().enumerate() {
         for (&row, velocity) in tracks.rows_of(p).iter().zip(own) {

@@ -6,7 +6,8 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use tempfile::NamedTempFile;
 
-use super::{Description, Entry, Start};
+use super::{Description, Entry};
+use crate::engine::simulation::Simulation;
 use crate::lab::error::LabError;
 
 const SCRIPT: &str = include_str!("jupedsim.py");
@@ -15,7 +16,7 @@ const ENGINE: &str = "JuPedSim";
 const RADIUS: f64 = 2.5;
 
 /// JuPedSim, if this Python has it; otherwise the error says how to install it.
-pub fn entries(start: &Start, python: &Path) -> Result<Vec<Entry>, String> {
+pub fn entries(crowd: &Simulation, python: &Path) -> Result<Vec<Entry>, String> {
     let how = |said: &str| {
         format!(
             "`{} -c 'import jupedsim'` does not work: {said}; `python3 -m venv jps && jps/bin/pip install jupedsim`, \
@@ -31,7 +32,7 @@ pub fn entries(start: &Start, python: &Path) -> Result<Vec<Entry>, String> {
         return Err(how(said.lines().last().unwrap_or("no reason given")));
     }
     let (mut walking, version, time_step) =
-        Walking::begin(start, python).map_err(|error| error.to_string())?;
+        Walking::begin(crowd, python).map_err(|error| error.to_string())?;
     let description = Description {
         engine: format!("{ENGINE} {version}"),
         model: "social force, circular, with body force and friction",
@@ -58,12 +59,12 @@ fn stopped(reason: impl ToString) -> LabError {
 
 impl Walking {
     /// Starts the process with all agents, and returns its version and its time step in seconds.
-    fn begin(start: &Start, python: &Path) -> Result<(Self, String, f64), LabError> {
-        let people = people(start).map_err(stopped)?;
+    fn begin(crowd: &Simulation, python: &Path) -> Result<(Self, String, f64), LabError> {
+        let people = people(crowd).map_err(stopped)?;
         let mut child = Command::new(python)
             .args(["-c", SCRIPT])
             .arg(people.path())
-            .arg(start.scene.preferred_speed.to_string())
+            .arg(crowd.scene().preferred_speed.to_string())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()
@@ -111,9 +112,9 @@ impl Drop for Walking {
 }
 
 /// A file with one agent per line: position, radius and goal, meters.
-fn people(start: &Start) -> std::io::Result<NamedTempFile> {
+fn people(crowd: &Simulation) -> std::io::Result<NamedTempFile> {
     let mut file = NamedTempFile::new()?;
-    let agents = start.agents;
+    let agents = crowd.frame().agents;
     let people = agents.position.iter().zip(&agents.radius).zip(&agents.goal);
     let lines = people
         .map(|((r, radius), goal)| format!("{} {} {radius} {} {}\n", r.x, r.y, goal.x, goal.y));

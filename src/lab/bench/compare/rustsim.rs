@@ -11,7 +11,8 @@ mod present {
     use rustsim_crowd::social_force::{self, Params};
     use rustsim_crowd::{Pedestrian, Scratch, WallSegment, recommended_cell_size};
 
-    use crate::lab::bench::compare::{Description, Entry, Start, WIDE};
+    use crate::engine::simulation::Simulation;
+    use crate::lab::bench::compare::{Description, Entry, WIDE};
     use crate::lab::bench::timing::{Contender, pool};
 
     /// The time step of this engine, seconds.
@@ -27,7 +28,7 @@ mod present {
     ];
 
     /// Its entries, with its default radius and with the paper's.
-    pub fn entries(start: &Start) -> Result<Vec<Entry>, String> {
+    pub fn entries(crowd: &Simulation, threads: usize) -> Result<Vec<Entry>, String> {
         let own = Params::default();
         // Its radius is 8 B + 1 m.
         let wide = Params {
@@ -37,7 +38,7 @@ mod present {
         let mut entries = Vec::new();
         for params in [own, wide] {
             for (name, step, parallel) in STEPS {
-                let threads = if parallel { start.threads } else { 1 };
+                let threads = if parallel { threads } else { 1 };
                 let pool = pool(threads).map_err(|error| error.to_string())?;
                 let description = Description {
                     engine: format!("rustsim-crowd 0.0.1{name}"),
@@ -47,25 +48,30 @@ mod present {
                     time_step: TIME_STEP,
                     threads,
                 };
-                entries.push((description, walking(start, params, step, pool)));
+                entries.push((description, walking(crowd, params, step, pool)));
             }
         }
         Ok(entries)
     }
 
     /// The crowd of `start`, which takes steps on request.
-    fn walking(start: &Start, params: Params, step: Step, pool: ThreadPool) -> Contender<'static> {
-        let agents = start.agents;
+    fn walking(
+        crowd: &Simulation,
+        params: Params,
+        step: Step,
+        pool: ThreadPool,
+    ) -> Contender<'static> {
+        let (scene, agents) = (crowd.scene(), crowd.frame().agents);
         let person = |i: usize| {
             let (r, v, goal) = (agents.position[i], agents.velocity[i], agents.goal[i]);
-            let speed = start.scene.preferred_speed;
+            let speed = scene.preferred_speed;
             Pedestrian::new(r.into(), v.into(), agents.radius[i], speed, goal.into())
         };
         let cell = recommended_cell_size(social_force::neighbor_cutoff(&params));
         let mut people: Vec<Pedestrian> = (0..agents.len()).map(person).collect();
         let mut scratch = Scratch::with_capacity(agents.len(), cell);
         let params = Params {
-            max_speed: start.scene.max_speed,
+            max_speed: scene.max_speed,
             ..params
         };
         Box::new(move |steps| {
@@ -78,9 +84,12 @@ mod present {
     }
 }
 
+#[cfg(not(feature = "compare"))]
+use crate::engine::simulation::Simulation;
+
 /// Says how to include rustsim-crowd.
 #[cfg(not(feature = "compare"))]
-pub fn entries(_: &super::Start) -> Result<Vec<super::Entry>, String> {
+pub fn entries(_: &Simulation, _: usize) -> Result<Vec<super::Entry>, String> {
     let how = "`cargo build --release --features compare` brings it in";
     Err(format!("this program was built without it; {how}"))
 }
