@@ -191,7 +191,7 @@ fn a_recording_on_a_disk_that_fills_up_is_readable_and_the_run_is_reported() {
     );
     assert!(said.ends_with("; it opens, but ends early"), "{said}");
     assert_eq!(json(&output)["frames"], 200);
-    let recording = sandbox::output::recording::Recording::read(&path).unwrap();
+    let recording = crate::common::recording::Recording::read(&path);
     assert!(recording.entities().contains("/world/geometry/walls"));
 }
 

@@ -159,7 +159,7 @@ fn a_recording_has_all_agents_and_the_details_of_twelve() {
     let path = file.to_str().unwrap();
     let run = ["evacuation", "--until", "0.2", "--save", path, "--json"];
     assert_eq!(run_json(&run)["frames"], 10);
-    let recording = sandbox::output::recording::Recording::read(&file).unwrap();
+    let recording = crate::common::recording::Recording::read(&file);
     let crowd = recording.pairs("/world/agents", "Points2D:positions");
     let frames: Vec<_> = crowd
         .iter()

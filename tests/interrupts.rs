@@ -41,7 +41,7 @@ fn outputs_of_an_interrupted_run_are_complete_up_to_its_last_frame() {
         "100 enter at once"
     );
 
-    let recording = sandbox::output::recording::Recording::read(&rrd).unwrap();
+    let recording = crate::common::recording::Recording::read(&rrd);
     let crowd = recording.pairs("/world/agents", "Points2D:positions");
     let recorded = crowd.iter();
     let recorded = recorded.map(|(frame, places)| (frame.cast_unsigned() / 5, places.len()));

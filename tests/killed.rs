@@ -6,9 +6,9 @@ use std::path::Path;
 use std::time::Duration;
 
 use crate::common::program::{start_and_wait, text};
+use crate::common::recording::Recording;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use sandbox::output::recording::Recording;
 use sandbox::runs::checkpoint::Checkpoint;
 
 /// The number of runs that are killed.
@@ -58,7 +58,7 @@ fn kill_one(seed: u64) {
     child.kill().unwrap(); // SIGKILL
     child.wait().unwrap();
 
-    let recording = Recording::read(&rrd).unwrap();
+    let recording = Recording::read(&rrd);
     let crowd = recording.pairs("/world/agents", "Points2D:positions");
     let frames: Vec<u64> = crowd
         .iter()

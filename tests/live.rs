@@ -6,7 +6,8 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use crate::common::program::{self, PROGRAM, json, start_and_wait, stderr, stop_with, text};
-use sandbox::output::recording::Recording;
+use crate::common::recording::Recording;
+use sandbox::output::recording::{Address, AddressError};
 
 fn evacuation(arguments: &[&str]) -> Output {
     program::run(&[&["evacuation", "--until", "0.2"], arguments].concat())
@@ -41,6 +42,27 @@ fn an_invalid_address_is_bad_input() {
 }
 
 #[test]
+fn an_address_is_whole_or_a_host_and_a_port() {
+    let address = |text: &str| text.parse::<Address>().map(|address| address.to_string());
+    let whole = "rerun+http://127.0.0.1:9876/proxy".to_owned();
+    assert_eq!(address(&whole), Ok(whole.clone()));
+    assert_eq!(address("127.0.0.1:9876"), Ok(whole.clone()));
+    assert_eq!(address("127.0.0.1"), Ok(whole));
+    let bracketed = "rerun+http://[::1]:9876/proxy".to_owned();
+    assert_eq!(address("[::1]:9876"), Ok(bracketed));
+    let wrong = [
+        "",
+        "http://",
+        "ftp://127.0.0.1:1/proxy",
+        "host:port",
+        "a b:1",
+    ];
+    for wrong in wrong {
+        assert_eq!(address(wrong), Err(AddressError), "{wrong}");
+    }
+}
+
+#[test]
 fn a_missing_viewer_is_reported_with_how_to_install_it() {
     let mut program = Command::new(PROGRAM);
     let output = program
@@ -70,7 +92,7 @@ fn a_viewer_that_disconnects_gives_a_note_and_the_file_is_complete() {
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(0), "{said}");
     assert_eq!(said.matches(&note(&address)).count(), 1, "{said}");
-    let recording = Recording::read(&path).unwrap();
+    let recording = Recording::read(&path);
     let crowd = recording.pairs("/world/agents", "Points2D:positions");
     assert_eq!(crowd.len(), 3, "frames 0, 5 and 10");
 }
@@ -111,7 +133,7 @@ fn closes(mut connection: TcpStream) {
 
 /// Entities of a recording, and the positions and densities of its crowd.
 fn crowd(path: &Path) -> impl PartialEq + use<> {
-    let recording = Recording::read(path).unwrap();
+    let recording = Recording::read(path);
     let positions = recording.pairs("/world/agents", "Points2D:positions");
     assert!(!positions.is_empty());
     let densities = recording.numbers("/world/agents", "agent:density");

@@ -131,7 +131,7 @@ fn a_corridor_is_measured_into_a_folder() {
 
 #[test]
 fn the_recording_has_the_crowd_and_its_walls() {
-    use sandbox::output::recording::Recording;
+    use crate::common::recording::Recording;
 
     let (_folder, [trajectory, plan, out]) = walkers();
     let output = measure(&[
@@ -144,7 +144,7 @@ fn the_recording_has_the_crowd_and_its_walls() {
         "1",
     ]);
     assert_eq!(output.status.code(), Some(0));
-    let recording = Recording::read(&Path::new(&out).join("measured.rrd")).unwrap();
+    let recording = Recording::read(&Path::new(&out).join("measured.rrd"));
     let entities = recording.entities();
     for entity in [
         "/world/agents",

@@ -2,13 +2,17 @@
 
 use std::collections::BTreeMap;
 
+use crate::common::recording::Recording;
+use crate::common::{polygon, rectangle};
+use rerun::components::{ImageBuffer, ImageFormat, Scale3D, Translation3D};
 use sandbox::engine::agents::NewAgent;
-use sandbox::engine::geometry::Polygon;
+use sandbox::engine::geometry::{Area, Polygon, Ring, Walls};
 use sandbox::engine::math::Vector;
 use sandbox::engine::scene::{Group, Region, Scene};
 use sandbox::engine::simulation::Simulation;
 use sandbox::output::recording::{
-    DebugAgents, METERS_PER_ACCELERATION, Recorder, Recording, RecordingError, RecordingOptions,
+    DebugAgents, METERS_PER_ACCELERATION, MeasuredRecorder, Recorder, RecordingError,
+    RecordingOptions,
 };
 use sandbox::scenario::catalog::{self, Parameters};
 
@@ -16,9 +20,7 @@ const CROWD: &str = "/world/agents";
 
 /// 49 agents close together, the first of them at a wall; some reach the goal at once.
 fn scene(profile: &str) -> Scene {
-    let wall = [[-1.0, -1.0], [8.0, -1.0], [8.0, 0.0], [-1.0, 0.0]];
-    let wall = Polygon::new(wall.map(|[x, y]| Vector::new(x, y)).to_vec()).unwrap();
-    let mut scene = Scene::with_obstacles(vec![wall]);
+    let mut scene = Scene::with_obstacles(vec![rectangle([-1.0, 8.0], [-1.0, 0.0])]);
     let group = scene.add_group(Group {
         name: "people".to_owned(),
         blend: catalog::named(profile, &Parameters::default())
@@ -85,7 +87,7 @@ fn record(
         simulation.integrate().unwrap();
     }
     recorder.finish().unwrap();
-    (Recording::read(&path).unwrap(), truth)
+    (Recording::read(&path), truth)
 }
 
 #[test]
@@ -217,4 +219,94 @@ fn a_full_disk_is_an_error() {
         },
     );
     assert!(result.is_err());
+}
+
+/// The obstacles as an image, 1 inside; rows go up from the lowest y.
+struct Raster {
+    min: Vector,
+    cell: f64,
+    columns: usize,
+    pixels: Vec<u8>,
+}
+
+impl Raster {
+    /// The image that is recorded for these obstacles.
+    fn of(obstacle: &Polygon) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("test.rrd");
+        let (walls, options) = (
+            Walls::new(vec![obstacle.clone()]),
+            options(DebugAgents::None),
+        );
+        let recorder = MeasuredRecorder::create(path.as_path(), &walls, 0.2, &options);
+        recorder.unwrap().finish().unwrap();
+        let recording = Recording::read(&path);
+        let entity = "world/geometry/obstacles";
+        let place: Translation3D = recording.of_static(entity, "Transform3D:translation");
+        let scale: Scale3D = recording.of_static(entity, "Transform3D:scale");
+        let format: ImageFormat = recording.of_static(entity, "SegmentationImage:format");
+        let pixels: ImageBuffer = recording.of_static(entity, "SegmentationImage:buffer");
+        Self {
+            min: Vector::new(f64::from(place.x()), f64::from(place.y())),
+            cell: f64::from(scale.x()),
+            columns: format.width as usize,
+            pixels: pixels.to_vec(),
+        }
+    }
+
+    fn filled(&self) -> f64 {
+        let filled = self.pixels.iter().filter(|&&pixel| pixel == 1).count();
+        filled as f64 * self.cell.powi(2)
+    }
+}
+
+#[test]
+fn the_picture_of_an_obstacle_covers_its_area() {
+    let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [2.0, 1.0], [0.0, 3.0]];
+    let raster = Raster::of(&polygon(&corners));
+    assert!((raster.filled() - 8.0).abs() < 0.1);
+    assert_eq!(raster.pixels[0], 1, "the lower left corner is solid");
+    let above_the_notch = raster.pixels.len() - raster.columns / 2;
+    assert_eq!(raster.pixels[above_the_notch], 0);
+}
+
+fn ring(corners: &[[f64; 2]]) -> Ring {
+    Ring::new(corners.iter().map(|&p| Vector::from(p)).collect()).unwrap()
+}
+
+#[test]
+fn the_picture_of_holes_that_touch_the_outline_and_each_other_is_what_the_engine_takes_for_solid() {
+    let floor = Area {
+        exterior: ring(&[[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]),
+        holes: vec![
+            ring(&[[10.0, 10.0], [5.0, 8.0], [5.0, 5.0], [8.0, 5.0]]),
+            ring(&[[5.0, 5.0], [2.0, 4.0], [4.0, 2.0]]),
+            ring(&[[0.0, 6.0], [1.0, 7.0], [0.0, 8.0]]),
+        ],
+    };
+    let walls = Polygon::enclosing(vec![floor]).unwrap();
+    let raster = Raster::of(&walls);
+    for (k, &pixel) in raster.pixels.iter().enumerate() {
+        let place = Vector::new((k % raster.columns) as f64, (k / raster.columns) as f64);
+        let p = raster.min + (place + Vector::repeat(0.5)) * raster.cell;
+        let nearest = walls.edges().map(|(a, b)| {
+            let along = (b - a).dot(&(p - a)) / (b - a).norm_squared();
+            (a + (b - a) * along.clamp(0.0, 1.0) - p).norm()
+        });
+        if nearest.fold(f64::INFINITY, f64::min) > 1e-6 {
+            assert_eq!(pixel == 1, walls.contains(p), "{p}");
+        }
+    }
+}
+
+#[test]
+fn the_picture_of_an_enclosure_leaves_the_floor_free_and_has_a_margin() {
+    let square = |low: f64, high: f64| ring(&[[low, low], [high, low], [high, high], [low, high]]);
+    let floor = Area {
+        exterior: square(0.0, 10.0),
+        holes: vec![square(4.0, 6.0)],
+    };
+    let raster = Raster::of(&Polygon::enclosing(vec![floor]).unwrap());
+    assert!((raster.filled() - (144.0 - 96.0)).abs() < 0.5);
+    assert_eq!((raster.pixels[0], raster.pixels.last()), (1, Some(&1)));
 }

@@ -17,6 +17,8 @@ pub mod reading_checkpoints;
 pub mod reading_studies;
 #[cfg(feature = "program")]
 pub mod reading_trajectories;
+#[cfg(feature = "program")]
+pub mod recording;
 pub mod social;
 #[cfg(feature = "program")]
 pub mod sweep;

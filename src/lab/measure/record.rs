@@ -11,8 +11,7 @@ use crate::output::recording::{
 };
 use crate::output::trajectory::read::Tracks;
 
-/// With ids larger than this, the recording uses the people's numbers instead: sorting by id needs memory up to the
-/// largest id.
+/// With ids larger than this, the recording uses the people's numbers instead.
 const LARGEST_ID: i64 = 1 << 22;
 
 /// The name of the recording in the folder of results.

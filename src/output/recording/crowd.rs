@@ -26,7 +26,6 @@ pub const SPEED_COLORS: &str = "agent:speed_colors";
 #[derive(Default)]
 pub struct Crowd {
     logged_ids: Vec<u32>,
-    rows: Rows,
 }
 
 fn color(map: &ColorMap, value: f32) -> Color {
@@ -41,9 +40,9 @@ pub fn log_style(stream: &RecordingStream) -> Result<(), Cause> {
 
 impl Crowd {
     pub fn log(&mut self, stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
-        self.rows.sort(&snapshot.ids);
-        self.log_bodies(stream, snapshot)?;
-        let rows = &self.rows.order;
+        let mut rows: Vec<usize> = (0..snapshot.ids.len()).collect();
+        rows.sort_unstable_by_key(|&i| snapshot.ids[i]);
+        self.log_bodies(stream, snapshot, &rows)?;
         let positions = rows.iter().map(|&i| snapshot.positions[i]);
         let mut points = Points2D::update_fields().with_positions(positions);
         let speed = |&i: &usize| {
@@ -57,13 +56,13 @@ impl Crowd {
         } else {
             let density = |&i: &usize| color(&colors::DENSITY, snapshot.densities[i]);
             points = points.with_colors(rows.iter().map(density));
-            values = values.with_component_from_data("density", halves(rows, &snapshot.densities));
+            values = values.with_component_from_data("density", halves(&rows, &snapshot.densities));
         }
         if !snapshot.pressures.is_empty() {
             let pressure = rows.iter().map(|&i| snapshot.pressures[i]);
             let pressure = Arc::new(Float32Array::from_iter_values(pressure)) as ArrayRef;
             values = values
-                .with_component_from_data("rest_density", halves(rows, &snapshot.rest_densities))
+                .with_component_from_data("rest_density", halves(&rows, &snapshot.rest_densities))
                 .with_component_from_data("pressure", pressure);
         }
         stream.log(ENTITY, &[&points as &dyn AsComponents, &values])?;
@@ -71,17 +70,20 @@ impl Crowd {
     }
 
     /// Logs the values that stay constant while an agent is present.
-    fn log_bodies(&mut self, stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
-        let rows = &self.rows.order;
-        let ids = rows.iter().map(|&i| snapshot.ids[i]);
-        if ids.clone().eq(self.logged_ids.iter().copied()) {
+    fn log_bodies(
+        &mut self,
+        stream: &RecordingStream,
+        snapshot: &Snapshot,
+        rows: &[usize],
+    ) -> Result<(), Cause> {
+        let ids: Vec<u32> = rows.iter().map(|&i| snapshot.ids[i]).collect();
+        if ids == self.logged_ids {
             return Ok(());
         }
-        self.logged_ids.clear();
-        self.logged_ids.extend(ids);
         let radii = rows.iter().map(|&i| snapshot.radii[i]);
         let points = Points2D::update_fields().with_radii(radii.map(Radius::new_scene_units));
-        let ids = Arc::new(UInt32Array::from(self.logged_ids.clone())) as ArrayRef;
+        self.logged_ids.clone_from(&ids);
+        let ids = Arc::new(UInt32Array::from(ids));
         let values = DynamicArchetype::new(ARCHETYPE).with_component_from_data("id", ids);
         stream.log(ENTITY, &[&points as &dyn AsComponents, &values])?;
         Ok(())
@@ -92,29 +94,4 @@ impl Crowd {
 fn halves(rows: &[usize], values: &[f32]) -> ArrayRef {
     let halves = rows.iter().map(|&i| F16::from_f32(values[i]));
     Arc::new(Float16Array::from_iter_values(halves))
-}
-
-/// Sorts agents by id in linear time and reuses its memory.
-#[derive(Default)]
-struct Rows {
-    index_of: Vec<u32>,
-    /// Indices of the agents in the order of their ids.
-    order: Vec<usize>,
-}
-
-impl Rows {
-    fn sort(&mut self, ids: &[u32]) {
-        const NOBODY: u32 = u32::MAX;
-        self.order.clear();
-        let (Some(&first), Some(&last)) = (ids.iter().min(), ids.iter().max()) else {
-            return;
-        };
-        self.index_of.clear();
-        self.index_of.resize((last - first) as usize + 1, NOBODY);
-        for (i, id) in ids.iter().enumerate() {
-            self.index_of[(id - first) as usize] = i as u32;
-        }
-        let present = self.index_of.iter().filter(|&&i| i != NOBODY);
-        self.order.extend(present.map(|&i| i as usize));
-    }
 }

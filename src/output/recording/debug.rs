@@ -28,72 +28,40 @@ pub enum DebugAgents {
     None,
 }
 
-/// Finds the debug agents and computes their breakdowns.
-pub struct Debug {
-    who: DebugAgents,
-}
-
-impl Debug {
-    pub fn new(who: DebugAgents) -> Self {
-        Self { who }
-    }
-
-    /// The indices of the selected agents, in the order of their ids.
-    fn among(&self, simulation: &Simulation) -> Vec<usize> {
+impl DebugAgents {
+    /// The breakdowns of the debug agents in the current frame, in the order of their ids; empty if the frame has no
+    /// densities.
+    pub(super) fn open(&self, simulation: &Simulation) -> Vec<Open> {
         let agents = simulation.frame().agents;
-        let everybody = 0..agents.len();
-        let mut chosen: Vec<usize> = match &self.who {
-            DebugAgents::None => Vec::new(),
-            DebugAgents::All => everybody.collect(),
-            DebugAgents::Region(region) => everybody
-                .filter(|&i| region.contains(agents.position[i]))
-                .collect(),
-            DebugAgents::Ids(ids) => {
-                let mut wanted = vec![false; agents.entered() as usize];
-                for &id in ids {
-                    if let Some(wanted) = wanted.get_mut(id as usize) {
-                        *wanted = true;
-                    }
-                }
-                everybody
-                    .filter(|&i| wanted[agents.id[i] as usize])
-                    .collect()
-            }
+        let is_chosen = |&i: &usize| match self {
+            Self::Ids(ids) => ids.contains(&agents.id[i]),
+            Self::Region(region) => region.contains(agents.position[i]),
+            Self::All => true,
+            Self::None => false,
         };
+        let mut chosen: Vec<usize> = (0..agents.len()).filter(is_chosen).collect();
         chosen.sort_unstable_by_key(|&i| agents.id[i]);
-        chosen
-    }
-
-    /// The breakdowns of the debug agents in the current frame; empty if the frame has no densities.
-    pub fn open(&self, simulation: &Simulation) -> Vec<Open> {
-        let chosen = self.among(simulation).into_iter();
+        let chosen = chosen.into_iter();
         chosen.filter_map(|i| Open::of(simulation, i)).collect()
     }
 
     /// The region to show: the selected rectangle with a margin, or the surroundings of the first selected id that is
     /// present.
-    pub fn focus(&self, simulation: &Simulation) -> Option<Region> {
+    pub(super) fn focus(&self, simulation: &Simulation) -> Option<Region> {
         let agents = simulation.frame().agents;
-        match &self.who {
-            DebugAgents::Region(region) => {
-                let margin = (region.max - region.min) * MARGIN;
-                Some(grown(*region, margin))
-            }
-            DebugAgents::Ids(ids) => {
+        let (min, max, margin) = match self {
+            Self::Region(Region { min, max }) => (*min, *max, (max - min) * MARGIN),
+            Self::Ids(ids) => {
                 let first = ids.iter().find_map(|&id| agents.index_of(id))?;
-                let (min, max) = (agents.position[first], agents.position[first]);
-                Some(grown(Region { min, max }, Vector::repeat(FOCUS)))
+                let position = agents.position[first];
+                (position, position, Vector::repeat(FOCUS))
             }
-            DebugAgents::All | DebugAgents::None => None,
-        }
-    }
-}
-
-/// `region` grown by `margin` on every side.
-fn grown(region: Region, margin: Vector) -> Region {
-    Region {
-        min: region.min - margin,
-        max: region.max + margin,
+            Self::All | Self::None => return None,
+        };
+        Some(Region {
+            min: min - margin,
+            max: max + margin,
+        })
     }
 }
 

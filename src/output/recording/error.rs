@@ -2,30 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use rerun::RecordingStreamError;
-use rerun::sink::SinkFlushError;
-
 /// An error of rerun or the system.
-#[derive(Debug, thiserror::Error)]
-pub enum Cause {
-    /// The file cannot be created, or a thread cannot be started.
-    #[error(transparent)]
-    System(#[from] std::io::Error),
-    /// The stream rejected data.
-    #[error(transparent)]
-    Stream(#[from] RecordingStreamError),
-    /// Data did not reach the file.
-    #[error(transparent)]
-    Flush(#[from] SinkFlushError),
-    /// A write error found when the file was closed.
-    #[error("{0}")]
-    File(String),
-    /// The writer thread ended early.
-    #[error("the thread that writes has failed")]
-    WriterGone,
-}
+pub type Cause = Box<dyn std::error::Error + Send + Sync>;
 
-/// A recording could not be written or read.
+/// A recording could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// Rerun is switched off by its environment variable.
@@ -74,19 +54,11 @@ pub enum RecordingError {
         /// What is wrong with it.
         reason: String,
     },
-    /// The file cannot be read as a recording.
-    #[error("cannot read the recording {}: {reason}", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
 }
 
 impl RecordingError {
     /// A failure to write to `file`, or to the viewer if there is no file.
-    pub(super) fn unwritten(file: Option<&Path>, cause: &Cause) -> Self {
+    pub(super) fn unwritten(file: Option<&Path>, cause: &impl ToString) -> Self {
         let cause = cause.to_string();
         match file {
             Some(path) => Self::Unwritten {

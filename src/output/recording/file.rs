@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -15,25 +15,11 @@ use rerun::sink::{LogSink, SinkFlushError};
 /// Maximum number of queued messages; senders wait when the queue is full.
 const QUEUE: usize = 1024;
 
-/// The first error of a sink, shared by both of its sides.
-#[derive(Clone, Default)]
-pub struct Failure(Arc<Mutex<Option<String>>>);
+/// The first error of a sink, shared by both of its sides; readable after the sink is dropped.
+pub type Failure = Arc<OnceLock<String>>;
 
-impl Failure {
-    /// The first error, if any.
-    pub fn reason(&self) -> Option<String> {
-        self.0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .clone()
-    }
-
-    /// Records an error, unless there is one already.
-    pub fn is(&self, reason: &dyn ToString) {
-        let mut first = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        first.get_or_insert_with(|| reason.to_string());
-    }
-}
+/// The error of a thread that has panicked.
+pub const GONE: &str = "the thread that writes has failed";
 
 /// A sink that writes rerun's messages to a file on its own thread.
 ///
@@ -43,7 +29,7 @@ pub struct FileSink {
     /// `None` once the thread has been asked to end.
     commands: Option<SyncSender<Command>>,
     thread: Option<JoinHandle<()>>,
-    failure: Failure,
+    pub failure: Failure,
 }
 
 enum Command {
@@ -57,7 +43,7 @@ impl FileSink {
     pub fn create(path: &Path) -> io::Result<Self> {
         let (version, options) = (CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED);
         let encoder = Encoder::new_eager(version, options, File::create(path)?);
-        let encoder = encoder.map_err(|error| cause(&error))?;
+        let encoder = encoder.map_err(|error| io::Error::other(cause(&error)))?;
         let (commands, queue) = sync_channel(QUEUE);
         let failure = Failure::default();
         let seen = failure.clone();
@@ -69,11 +55,6 @@ impl FileSink {
             thread: Some(thread),
             failure,
         })
-    }
-
-    /// The first error, readable while the sink is in use and after it is dropped.
-    pub fn failure(&self) -> Failure {
-        self.failure.clone()
     }
 
     fn send(&self, command: Command) {
@@ -95,13 +76,12 @@ impl LogSink for FileSink {
         match all_written.recv_timeout(timeout) {
             Err(RecvTimeoutError::Timeout) => return Err(SinkFlushError::Timeout),
             Err(RecvTimeoutError::Disconnected) => {
-                self.failure.is(&"the thread that writes has failed")
+                self.failure.set(GONE.to_owned()).ok();
             }
             Ok(()) => {}
         }
-        self.failure
-            .reason()
-            .map_or(Ok(()), |reason| Err(SinkFlushError::failed(reason)))
+        let reason = self.failure.get();
+        reason.map_or(Ok(()), |reason| Err(SinkFlushError::failed(reason)))
     }
 
     fn defers_finalization_to_shutdown(&self) -> bool {
@@ -127,7 +107,7 @@ fn write_all(queue: &Receiver<Command>, encoder: Encoder<File>, failure: &Failur
         match (command, &mut open) {
             (Command::Write(message), Some(encoder)) => {
                 if let Err(error) = encoder.append(&message) {
-                    failure.is(&cause(&error));
+                    failure.set(cause(&error)).ok();
                     // Dropping the encoder would write an index.
                     open.take().map(Encoder::into_inner);
                 }
@@ -139,17 +119,14 @@ fn write_all(queue: &Receiver<Command>, encoder: Encoder<File>, failure: &Failur
         }
     }
     if let Some(Err(error)) = open.as_mut().map(Encoder::finish) {
-        failure.is(&cause(&error));
+        failure.set(cause(&error)).ok();
     }
 }
 
 /// The operating system's error, if there is one.
-fn cause(error: &EncodeError) -> io::Error {
+fn cause(error: &EncodeError) -> String {
     match error {
-        EncodeError::Write(error) => match error.raw_os_error() {
-            Some(code) => io::Error::from_raw_os_error(code),
-            None => io::Error::other(error.to_string()),
-        },
-        other => io::Error::other(other.to_string()),
+        EncodeError::Write(error) => error.to_string(),
+        other => other.to_string(),
     }
 }

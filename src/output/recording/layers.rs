@@ -8,6 +8,7 @@ use super::debug::{DebugAgents, Open};
 use super::error::Cause;
 use super::geometry::xy;
 use crate::engine::boundary::WallMethod;
+use crate::engine::breakdown::WallTerm;
 use crate::engine::math::Vector;
 use crate::engine::profile::Term;
 use crate::engine::scene::Scene;
@@ -17,13 +18,6 @@ const MOST_LABELS: usize = 40;
 
 /// Length of an arrow in meters per m/s² of acceleration: 0.5 m for the goal force of an average person at rest.
 pub const METERS_PER_ACCELERATION: f64 = 0.2;
-
-/// One entity under `world/debug`.
-struct Layer {
-    entity: String,
-    kind: Kind,
-    shown: bool,
-}
 
 /// What a layer shows.
 #[derive(Clone, Copy, PartialEq)]
@@ -40,7 +34,7 @@ enum Kind {
 }
 
 /// The color of a force's arrows, in words and as RGB.
-fn color(term: Term) -> (&'static str, [u8; 3]) {
+pub fn color(term: Term) -> (&'static str, [u8; 3]) {
     match term {
         Term::Goal => ("green", [95, 211, 120]),
         Term::SocialAgents => ("light blue", [86, 180, 233]),
@@ -54,76 +48,58 @@ fn color(term: Term) -> (&'static str, [u8; 3]) {
     }
 }
 
-/// The names of the forces and the colors of their arrows in words.
-pub fn force_colors() -> impl Iterator<Item = (&'static str, &'static str)> {
-    Term::all().map(|term| (term.name(), color(term).0))
-}
-
-/// Logs the debug agents.
-pub struct Layers {
-    layers: Vec<Layer>,
-}
-
-impl Layers {
-    /// The layers that can have content in `scene`.
-    pub fn new(scene: &Scene, who: &DebugAgents) -> Self {
-        let kinds = if *who == DebugAgents::None {
-            Vec::new()
-        } else {
-            kinds(scene)
-        };
-        let layers = kinds.into_iter().map(|kind| Layer {
-            entity: format!("world/debug/{}", kind.name()),
-            kind,
-            shown: false,
-        });
-        Self {
-            layers: layers.collect(),
-        }
-    }
-
-    /// No layers at all.
-    pub fn none() -> Self {
-        Self { layers: Vec::new() }
-    }
-
-    pub fn log_style(&self, stream: &RecordingStream) -> Result<(), Cause> {
-        for layer in &self.layers {
-            stream.log_static(layer.entity.as_str(), layer.kind.style().as_ref())?;
-        }
-        Ok(())
-    }
-
-    /// Logs one frame. A layer that has just become empty is logged as empty, so that it disappears from view.
-    pub fn log(&mut self, stream: &RecordingStream, open: &[Open]) -> Result<(), Cause> {
-        for layer in &mut self.layers {
-            let (data, count) = layer.kind.data(open, METERS_PER_ACCELERATION);
-            if count > 0 || layer.shown {
-                stream.log(layer.entity.as_str(), data.as_ref())?;
-            }
-            layer.shown = count > 0;
-        }
-        Ok(())
-    }
+/// One entity under `world/debug`.
+pub struct Layer {
+    entity: String,
+    kind: Kind,
+    color: Color,
+    /// Line width or point radius on the screen.
+    radius: Radius,
+    shown: bool,
 }
 
 /// The layers that can have content in `scene`.
-fn kinds(scene: &Scene) -> Vec<Kind> {
-    let mut kinds = vec![Kind::Labels, Kind::Kernels];
+pub fn layers(scene: &Scene, who: &DebugAgents) -> Vec<Layer> {
+    if *who == DebugAgents::None {
+        return Vec::new();
+    }
+    let mut layers = vec![
+        Layer::new(Kind::Labels, "agents", [255, 255, 255], 1.5),
+        Layer::new(Kind::Kernels, "kernels", [150, 160, 220], 0.6),
+    ];
     let walls = !scene.walls.is_empty();
     if walls {
-        kinds.extend([Kind::HiddenRegions, Kind::Links, Kind::NearestPoints]);
-        if scene.wall_method == WallMethod::Representative {
-            kinds.push(Kind::RepresentativePoints);
-        }
+        layers.extend([
+            Layer::new(
+                Kind::HiddenRegions,
+                "walls/hidden_regions",
+                [220, 120, 200],
+                0.8,
+            ),
+            Layer::new(Kind::Links, "walls/links", [190, 110, 110], 0.4),
+            Layer::new(
+                Kind::NearestPoints,
+                "walls/nearest_points",
+                [255, 90, 80],
+                3.0,
+            ),
+        ]);
     }
-    kinds.extend(
-        Term::all()
-            .filter(|&term| acts(term, scene))
-            .map(Kind::Force),
-    );
-    kinds.push(Kind::Total);
-    kinds
+    if walls && scene.wall_method == WallMethod::Representative {
+        let (kind, name) = (Kind::RepresentativePoints, "walls/representative_points");
+        layers.push(Layer::new(kind, name, [255, 190, 80], 3.0));
+    }
+    for term in Term::all().filter(|&term| acts(term, scene)) {
+        let name = format!("forces/{}", term.name());
+        layers.push(Layer::new(Kind::Force(term), &name, color(term).1, 1.2));
+    }
+    layers.push(Layer::new(
+        Kind::Total,
+        "forces/total",
+        [255, 255, 255],
+        1.6,
+    ));
+    layers
 }
 
 /// Does some profile of `scene` have this force?
@@ -132,71 +108,79 @@ fn acts(term: Term, scene: &Scene) -> bool {
     (!term.is_of_walls() || !scene.walls.is_empty()) && steps.any(|step| step.profile.has(term))
 }
 
-impl Kind {
-    fn name(self) -> String {
-        match self {
-            Self::Labels => "agents".to_owned(),
-            Self::Kernels => "kernels".to_owned(),
-            Self::HiddenRegions => "walls/hidden_regions".to_owned(),
-            Self::Links => "walls/links".to_owned(),
-            Self::NearestPoints => "walls/nearest_points".to_owned(),
-            Self::RepresentativePoints => "walls/representative_points".to_owned(),
-            Self::Force(term) => format!("forces/{}", term.name()),
-            Self::Total => "forces/total".to_owned(),
+impl Layer {
+    fn new(kind: Kind, name: &str, [r, g, b]: [u8; 3], radius: f32) -> Self {
+        Self {
+            entity: format!("world/debug/{name}"),
+            kind,
+            color: Color::from_rgb(r, g, b),
+            radius: Radius::new_ui_points(radius),
+            shown: false,
         }
     }
 
-    /// The static style: colors, widths, drawing order.
-    fn style(self) -> Box<dyn AsComponents> {
-        let points = |[r, g, b]: [u8; 3], size: f32| {
-            Points2D::update_fields()
-                .with_radii([Radius::new_ui_points(size)])
-                .with_colors([Color::from_rgb(r, g, b)])
-                .with_draw_order(12.0)
-        };
-        let lines = |[r, g, b]: [u8; 3], width: f32| {
-            LineStrips2D::update_fields()
-                .with_radii([Radius::new_ui_points(width)])
-                .with_colors([Color::from_rgb(r, g, b)])
-                .with_draw_order(11.0)
-        };
-        let arrows = |[r, g, b]: [u8; 3], width: f32, order: f32| {
-            Arrows2D::update_fields()
-                .with_radii([Radius::new_ui_points(width)])
-                .with_colors([Color::from_rgb(r, g, b)])
-                .with_draw_order(order)
-        };
-        match self {
-            Self::Labels => Box::new(points([255, 255, 255], 1.5).with_show_labels(true)),
-            Self::Kernels => Box::new(
+    /// Logs colors, widths and the drawing order.
+    pub fn log_style(&self, stream: &RecordingStream) -> Result<(), Cause> {
+        let (radii, colors) = ([self.radius], [self.color]);
+        let points = Points2D::update_fields()
+            .with_radii(radii)
+            .with_colors(colors)
+            .with_draw_order(12.0);
+        let arrows = Arrows2D::update_fields()
+            .with_radii(radii)
+            .with_colors(colors);
+        let style: Box<dyn AsComponents> = match self.kind {
+            Kind::Labels => Box::new(points.with_show_labels(true)),
+            Kind::NearestPoints | Kind::RepresentativePoints => Box::new(points),
+            Kind::Kernels => Box::new(
                 Ellipses2D::update_fields()
-                    .with_line_radii([Radius::new_ui_points(0.6)])
-                    .with_colors([Color::from_rgb(150, 160, 220)])
+                    .with_line_radii(radii)
+                    .with_colors(colors)
                     .with_draw_order(10.0),
             ),
-            Self::HiddenRegions => Box::new(lines([220, 120, 200], 0.8)),
-            Self::Links => Box::new(lines([190, 110, 110], 0.4)),
-            Self::NearestPoints => Box::new(points([255, 90, 80], 3.0)),
-            Self::RepresentativePoints => Box::new(points([255, 190, 80], 3.0)),
-            Self::Force(term) => Box::new(arrows(color(term).1, 1.2, 13.0)),
-            Self::Total => Box::new(arrows([255, 255, 255], 1.6, 14.0)),
-        }
+            Kind::HiddenRegions | Kind::Links => Box::new(
+                LineStrips2D::update_fields()
+                    .with_radii(radii)
+                    .with_colors(colors)
+                    .with_draw_order(11.0),
+            ),
+            Kind::Force(_) => Box::new(arrows.with_draw_order(13.0)),
+            Kind::Total => Box::new(arrows.with_draw_order(14.0)),
+        };
+        Ok(stream.log_static(self.entity.as_str(), style.as_ref())?)
     }
 
+    /// Logs one frame. A layer that has just become empty is logged as empty, so that it disappears from view.
+    pub fn log(&mut self, stream: &RecordingStream, open: &[Open]) -> Result<(), Cause> {
+        let (data, count) = self.kind.data(open);
+        if count > 0 || self.shown {
+            stream.log(self.entity.as_str(), data.as_ref())?;
+        }
+        self.shown = count > 0;
+        Ok(())
+    }
+}
+
+impl Kind {
     /// The data of one frame for all debug agents, and its number of elements.
-    fn data(self, open: &[Open], scale: f64) -> (Box<dyn AsComponents>, usize) {
+    fn data(self, open: &[Open]) -> (Box<dyn AsComponents>, usize) {
+        let positions = open.iter().map(|agent| xy(agent.position));
+        let walls = open.iter().flat_map(|agent| {
+            let walls = agent.breakdown.walls.iter();
+            walls.map(|term| (xy(agent.position), term))
+        });
         match self {
             Self::Labels => {
-                let labels = open.iter().map(|agent| agent.breakdown.id.to_string());
-                let points = Points2D::update_fields().with_positions(positions(open));
                 let readable = open.len() <= MOST_LABELS;
-                let labels = labels.filter(|_| readable);
+                let labels = open.iter().filter(|_| readable);
+                let labels = labels.map(|agent| agent.breakdown.id.to_string());
+                let points = Points2D::update_fields().with_positions(positions);
                 (Box::new(points.with_labels(labels)), open.len())
             }
             Self::Kernels => {
                 let half_sizes = open.iter().map(|agent| [agent.support_radius as f32; 2]);
                 let circles = Ellipses2D::update_fields()
-                    .with_centers(positions(open))
+                    .with_centers(positions)
                     .with_half_sizes(half_sizes);
                 (Box::new(circles), open.len())
             }
@@ -204,38 +188,24 @@ impl Kind {
                 let outlines = open.iter().flat_map(|agent| agent.hidden.iter().cloned());
                 strips(outlines.collect())
             }
-            Self::Links => strips(links(open)),
-            Self::NearestPoints => dots(nearest_points(open)),
+            Self::Links => {
+                let link =
+                    |(from, term): ([f32; 2], &WallTerm)| vec![from, xy(term.nearest_point.into())];
+                strips(walls.map(link).collect())
+            }
+            Self::NearestPoints => dots(
+                walls
+                    .map(|(_, term)| xy(term.nearest_point.into()))
+                    .collect(),
+            ),
             Self::RepresentativePoints => {
-                let walls = open.iter().flat_map(|agent| &agent.breakdown.walls);
-                let found = walls.filter_map(|term| term.representative_point);
+                let found = walls.filter_map(|(_, term)| term.representative_point);
                 dots(found.map(|p| xy(p.into())).collect())
             }
-            Self::Force(term) => arrows(open, scale, |agent| agent.force(term)),
-            Self::Total => arrows(open, scale, |agent| agent.breakdown.acceleration.into()),
+            Self::Force(term) => arrows(open, |agent| agent.force(term)),
+            Self::Total => arrows(open, |agent| agent.breakdown.acceleration.into()),
         }
     }
-}
-
-fn positions(open: &[Open]) -> impl Iterator<Item = [f32; 2]> + '_ {
-    open.iter().map(|agent| xy(agent.position))
-}
-
-fn nearest_points(open: &[Open]) -> Vec<[f32; 2]> {
-    let walls = open.iter().flat_map(|agent| &agent.breakdown.walls);
-    walls.map(|term| xy(term.nearest_point.into())).collect()
-}
-
-/// Lines from each agent to its nearest point on each wall.
-fn links(open: &[Open]) -> Vec<Vec<[f32; 2]>> {
-    let of = |agent: &Open| {
-        let walls = agent.breakdown.walls.iter();
-        let link = |end: [f64; 2]| vec![xy(agent.position), xy(end.into())];
-        walls
-            .map(|term| link(term.nearest_point))
-            .collect::<Vec<_>>()
-    };
-    open.iter().flat_map(of).collect()
 }
 
 fn strips(strips: Vec<Vec<[f32; 2]>>) -> (Box<dyn AsComponents>, usize) {
@@ -251,16 +221,12 @@ fn dots(points: Vec<[f32; 2]>) -> (Box<dyn AsComponents>, usize) {
 }
 
 /// Arrows for the nonzero accelerations.
-fn arrows(
-    open: &[Open],
-    scale: f64,
-    acceleration: impl Fn(&Open) -> Vector,
-) -> (Box<dyn AsComponents>, usize) {
+fn arrows(open: &[Open], acceleration: impl Fn(&Open) -> Vector) -> (Box<dyn AsComponents>, usize) {
     let (origins, vectors): (Vec<_>, Vec<_>) = open
         .iter()
         .map(|agent| (xy(agent.position), acceleration(agent)))
         .filter(|(_, acceleration)| *acceleration != Vector::zeros())
-        .map(|(origin, acceleration)| (origin, xy(acceleration * scale)))
+        .map(|(origin, acceleration)| (origin, xy(acceleration * METERS_PER_ACCELERATION)))
         .unzip();
     let count = origins.len();
     let arrows = Arrows2D::update_fields()

@@ -1,11 +1,11 @@
 //! A recording of measured frames.
 
-use super::blueprint::{Content, Opening};
-use super::error::{Cause, RecordingError};
-use super::layers::Layers;
+use super::blueprint::Content;
+use super::error::RecordingError;
 use super::output::{Destination, Output};
-use super::writer::Writer;
-use super::{DebugAgents, RecordingOptions, blueprint, crowd, end, geometry, stats, text};
+use super::session::Session;
+use super::snapshot::Snapshot;
+use super::{DebugAgents, RecordingOptions, geometry, text};
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 
@@ -24,9 +24,7 @@ pub struct MeasuredPerson {
 
 /// Writes a recording of measured frames: the crowd by density and by speed, walls, time series.
 pub struct MeasuredRecorder {
-    output: Output,
-    writer: Writer,
-    options: RecordingOptions,
+    session: Session,
     radius: f64,
 }
 
@@ -47,13 +45,17 @@ impl MeasuredRecorder {
             ..options.clone()
         };
         let output = Output::open(&to.into(), &options.title, options.title.clone())?;
-        let begun = begin(&output, walls, &options);
-        Ok(Self {
-            writer: output.checked(begun)?,
+        let session = Session::begin(
             output,
             options,
-            radius,
-        })
+            Content::Measurement,
+            Vec::new(),
+            |stream, options| {
+                text::log_measurement(stream, options)?;
+                geometry::log_still(stream, walls.obstacles())
+            },
+        )?;
+        Ok(Self { session, radius })
     }
 
     /// Adds a frame, which may be empty.
@@ -66,8 +68,11 @@ impl MeasuredRecorder {
         time: f64,
         people: impl Iterator<Item = MeasuredPerson>,
     ) -> Result<(), RecordingError> {
-        let mut snapshot = self.writer.empty();
-        snapshot.clear(frame, time);
+        let mut snapshot = Snapshot {
+            frame,
+            time,
+            ..Snapshot::default()
+        };
         for person in people {
             let velocity = person.velocity.unwrap_or(Vector::repeat(f64::NAN));
             snapshot.ids.push(person.id);
@@ -76,40 +81,14 @@ impl MeasuredRecorder {
             snapshot.radii.push(self.radius as f32);
             snapshot.densities.push(person.density as f32);
         }
-        self.output.checked(self.writer.write(snapshot))
+        self.session.write(snapshot)
     }
 
     /// Sends the buffered data, closes the file and checks that it is complete.
     ///
     /// # Errors
     /// Data could not be written, for example because the disk is full; or the viewer is gone or took no data for 2 s.
-    pub fn finish(mut self) -> Result<(), RecordingError> {
-        let opening = Opening::Whole(None);
-        let ended = end(
-            &mut self.writer,
-            &self.output,
-            &self.options,
-            opening,
-            Content::Measurement,
-        );
-        self.output.checked(ended)?;
-        self.output.close()
+    pub fn finish(self) -> Result<(), RecordingError> {
+        self.session.finish(None)
     }
-}
-
-/// Logs the layout and the static data.
-fn begin(output: &Output, walls: &Walls, options: &RecordingOptions) -> Result<Writer, Cause> {
-    let stream = &output.stream;
-    let opening = if output.is_live() {
-        Opening::Live
-    } else {
-        Opening::Empty
-    };
-    blueprint::send(stream, options, opening, Content::Measurement)?;
-    text::log_measurement(stream, options)?;
-    geometry::log_still(stream, walls.obstacles())?;
-    crowd::log_style(stream)?;
-    stats::log_style(stream)?;
-    stream.flush_blocking()?;
-    Writer::start(stream.clone(), Layers::none())
 }

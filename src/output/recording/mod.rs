@@ -22,8 +22,8 @@ mod geometry;
 mod layers;
 mod measured;
 mod output;
-mod read;
 mod relay;
+mod session;
 mod snapshot;
 mod stats;
 mod text;
@@ -35,18 +35,16 @@ pub use error::RecordingError;
 pub use layers::METERS_PER_ACCELERATION;
 pub use measured::{MeasuredPerson, MeasuredRecorder};
 pub use output::{Destination, check_enabled};
-pub use read::Recording;
 pub use viewer::{Address, AddressError, Viewer};
 
 use rerun::RecordingStream;
 
 use crate::engine::scene::Region;
 use crate::engine::simulation::{Event, Simulation};
-use blueprint::{Content, Opening};
-use debug::Debug;
-use error::Cause;
+use blueprint::Content;
 use output::{APPLICATION, Output};
-use writer::Writer;
+use session::Session;
+use snapshot::Snapshot;
 
 const FRAME: &str = "frame";
 const SIM_TIME: &str = "sim_time";
@@ -74,10 +72,7 @@ pub struct RecordingOptions {
 ///
 /// [`log`](Self::log) only copies; one thread turns the copies into rows, another compresses and writes them.
 pub struct Recorder {
-    output: Output,
-    writer: Writer,
-    debug: Debug,
-    options: RecordingOptions,
+    session: Session,
     /// Whether the time to show first has been reached.
     opened: bool,
     /// Region of the debug view.
@@ -97,12 +92,15 @@ impl Recorder {
     ) -> Result<Self, RecordingError> {
         let id = format!("{}-seed{}", options.title, simulation.scene().seed);
         let output = Output::open(&to.into(), &options.title, id)?;
-        let begun = begin(&output, simulation, options);
+        let (scene, agents) = (simulation.scene(), simulation.frame().agents);
+        let layers = layers::layers(scene, &options.debug);
+        let options = options.clone();
+        let session = Session::begin(output, options, Content::Run, layers, |stream, options| {
+            text::log_run(stream, scene, options)?;
+            geometry::log(stream, scene, agents)
+        })?;
         Ok(Self {
-            writer: output.checked(begun)?,
-            output,
-            debug: Debug::new(options.debug.clone()),
-            options: options.clone(),
+            session,
             opened: false,
             focus: None,
             progress: Progress::default(),
@@ -121,74 +119,28 @@ impl Recorder {
         simulation: &Simulation,
         ms_per_frame: f64,
     ) -> Result<(), RecordingError> {
-        let mut snapshot = self.writer.empty();
-        snapshot.take(simulation, &self.debug);
+        let options = &mut self.session.options;
+        let mut snapshot = Snapshot::of(simulation, &options.debug);
         snapshot.ms_per_frame = Some(ms_per_frame);
         snapshot.evacuated = Some(self.progress.count_arrivals(simulation));
         snapshot.events = self.progress.new_events(simulation);
-        snapshot.opens_here = !self.opened && snapshot.time >= self.options.opens_at;
+        snapshot.opens_here = !self.opened && snapshot.time >= options.opens_at;
         // A run may end before that time; the debug view then shows an agent that was present earlier.
         if snapshot.opens_here || self.focus.is_none() {
-            self.focus = self.debug.focus(simulation).or(self.focus);
+            self.focus = options.debug.focus(simulation).or(self.focus);
         }
         self.opened |= snapshot.opens_here;
-        self.options.ends_at = snapshot.time;
-        self.output.checked(self.writer.write(snapshot))
+        options.ends_at = snapshot.time;
+        self.session.write(snapshot)
     }
 
     /// Sends the buffered data, closes the file and checks that it is complete.
     ///
     /// # Errors
     /// Data could not be written, for example because the disk is full; or the viewer is gone or took no data for 2 s.
-    pub fn finish(mut self) -> Result<(), RecordingError> {
-        let opening = Opening::Whole(self.focus);
-        let ended = end(
-            &mut self.writer,
-            &self.output,
-            &self.options,
-            opening,
-            Content::Run,
-        );
-        self.output.checked(ended)?;
-        self.output.close()
+    pub fn finish(self) -> Result<(), RecordingError> {
+        self.session.finish(self.focus)
     }
-}
-
-/// Logs the layout and the static data.
-fn begin(
-    output: &Output,
-    simulation: &Simulation,
-    options: &RecordingOptions,
-) -> Result<Writer, Cause> {
-    let (stream, scene) = (&output.stream, simulation.scene());
-    let layers = layers::Layers::new(scene, &options.debug);
-    let opening = if output.is_live() {
-        Opening::Live
-    } else {
-        Opening::Empty
-    };
-    blueprint::send(stream, options, opening, Content::Run)?;
-    text::log_document(stream, scene, options)?;
-    geometry::log(stream, scene, simulation.frame().agents)?;
-    crowd::log_style(stream)?;
-    layers.log_style(stream)?;
-    stats::log_style(stream)?;
-    stream.flush_blocking()?;
-    Writer::start(stream.clone(), layers)
-}
-
-/// Sends the buffered data, then the final layout.
-fn end(
-    writer: &mut Writer,
-    output: &Output,
-    options: &RecordingOptions,
-    opening: Opening,
-    content: Content,
-) -> Result<(), Cause> {
-    writer.finish()?;
-    // The viewer cannot go to a time that it has not read yet.
-    output.stream.flush_blocking()?;
-    blueprint::send(&output.stream, options, opening, content)
 }
 
 /// How much of the simulation's reports has been recorded.

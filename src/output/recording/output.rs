@@ -1,17 +1,19 @@
 //! The destination of a recording, and the rerun stream that goes there.
 
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
+use rerun::external::re_log_encoding::{Decodable as _, StreamFooter};
 use rerun::log::ChunkBatcherConfig;
 use rerun::sink::LogSink;
 use rerun::{RecordingStream, RecordingStreamBuilder};
 
 use super::error::{Cause, RecordingError};
 use super::file::{Failure, FileSink};
-use super::read;
 use super::viewer::{Address, Viewer};
 
 /// Application id; the viewer keeps its settings per application.
@@ -36,8 +38,7 @@ impl From<&Path> for Destination {
     fn from(path: &Path) -> Self {
         Self {
             file: Some(path.to_owned()),
-            viewer: None,
-            interrupted: Arc::default(),
+            ..Self::default()
         }
     }
 }
@@ -58,21 +59,18 @@ impl Output {
     /// recording gets an id of its own.
     pub fn open(to: &Destination, name: &str, id: String) -> Result<Self, RecordingError> {
         check_enabled()?;
-        let sink = to
-            .viewer
-            .as_ref()
-            .map(|viewer| viewer.connect(&to.interrupted));
+        let sink = to.viewer.as_ref();
+        let sink = sink.map(|viewer| viewer.connect(&to.interrupted));
         let sink = sink.transpose()?;
-        let viewer = sink
-            .as_ref()
-            .map(|sink| (sink.address().clone(), sink.failure()));
+        let viewer = sink.as_ref();
+        let viewer = viewer.map(|sink| (sink.address.clone(), Arc::clone(&sink.failure)));
         let is_live = viewer.is_some();
         let mut file_failure = Failure::default();
         let open = || -> Result<RecordingStream, Cause> {
             let mut sinks: Vec<Box<dyn LogSink>> = Vec::new();
             if let Some(path) = &to.file {
                 let file = FileSink::create(path)?;
-                file_failure = file.failure();
+                file_failure = Arc::clone(&file.failure);
                 sinks.push(Box::new(file));
             }
             if let Some(sink) = sink {
@@ -107,7 +105,7 @@ impl Output {
     }
 
     /// Adds the destination to an error.
-    pub fn checked<T>(&self, result: Result<T, Cause>) -> Result<T, RecordingError> {
+    pub fn checked<T, C: ToString>(&self, result: Result<T, C>) -> Result<T, RecordingError> {
         result.map_err(|cause| RecordingError::unwritten(self.file.as_deref(), &cause))
     }
 
@@ -116,19 +114,22 @@ impl Output {
     /// # Errors
     /// The file is incomplete, or the viewer is gone or took no data for 2 s.
     pub fn close(self) -> Result<(), RecordingError> {
-        self.checked(self.stream.flush_blocking().map_err(Cause::from))?;
+        self.checked(self.stream.flush_blocking())?;
         drop(self.stream); // Also drops the sinks; the file sink writes the index and waits for its thread.
         let file = self.file.as_deref();
-        if let Some(reason) = self.file_failure.reason() {
-            return Err(RecordingError::unwritten(file, &Cause::File(reason)));
+        if let Some(reason) = self.file_failure.get() {
+            return Err(RecordingError::unwritten(file, reason));
         }
-        file.map_or(Ok(()), read::check_footer)?;
-        let gone = |(address, failure): (Address, Failure)| {
-            let address = address.to_string();
-            let gone = |reason| RecordingError::ViewerGone { address, reason };
-            failure.reason().map(gone)
-        };
-        self.viewer.and_then(gone).map_or(Ok(()), Err)
+        file.map_or(Ok(()), check_footer)?;
+        if let Some((address, failure)) = &self.viewer
+            && let Some(reason) = failure.get()
+        {
+            return Err(RecordingError::ViewerGone {
+                address: address.to_string(),
+                reason: reason.clone(),
+            });
+        }
+        Ok(())
     }
 }
 
@@ -151,4 +152,31 @@ fn batches(is_live: bool) -> ChunkBatcherConfig {
         flush_tick: if is_live { VIEWER_TICK } else { FILE_TICK },
         ..ChunkBatcherConfig::DEFAULT
     }
+}
+
+/// Checks that the file ends like a recording that was closed. Reads only its last bytes.
+fn check_footer(path: &Path) -> Result<(), RecordingError> {
+    let incomplete = |reason: String| RecordingError::Incomplete {
+        path: path.to_owned(),
+        reason,
+    };
+    let last_bytes = || -> std::io::Result<(Vec<u8>, u64)> {
+        let mut file = File::open(path)?;
+        let size = StreamFooter::ENCODED_SIZE_BYTES as u64;
+        let start = file.seek(SeekFrom::End(-i64::try_from(size).unwrap_or(0)))?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes)?;
+        Ok((bytes, start))
+    };
+    let (bytes, start) = last_bytes().map_err(|error| incomplete(error.to_string()))?;
+    let footer =
+        StreamFooter::from_rrd_bytes(&bytes).map_err(|error| incomplete(error.to_string()))?;
+    let index_fits = footer.entries.iter().all(|entry| {
+        let span = &entry.rrd_footer_byte_span_from_start_excluding_header;
+        span.start + span.len <= start
+    });
+    if footer.entries.is_empty() || !index_fits {
+        return Err(incomplete("its index is missing".to_owned()));
+    }
+    Ok(())
 }

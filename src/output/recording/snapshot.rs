@@ -1,6 +1,7 @@
 //! A copy of one frame, so that another thread can write it.
 
-use super::debug::{Debug, Open};
+use super::debug::{DebugAgents, Open};
+use super::geometry::xy;
 use crate::engine::math::Vector;
 use crate::engine::simulation::{Event, Simulation};
 
@@ -34,46 +35,25 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// Starts a new, empty frame and reuses the memory.
-    pub fn clear(&mut self, frame: i64, time: f64) {
-        self.frame = frame;
-        self.time = time;
-        self.ids.clear();
-        self.positions.clear();
-        self.velocities.clear();
-        self.radii.clear();
-        self.masses.clear();
-        self.densities.clear();
-        self.rest_densities.clear();
-        self.pressures.clear();
-        self.open.clear();
-        self.events.clear();
-    }
-
-    /// Copies the crowd of the current frame and reuses the memory.
-    pub fn take(&mut self, simulation: &Simulation, debug: &Debug) {
+    /// The crowd of the current frame.
+    pub fn of(simulation: &Simulation, debug: &DebugAgents) -> Self {
         let frame = simulation.frame();
         let (agents, fields) = (frame.agents, frame.fields);
-        self.frame = frame.clock.frame().cast_signed();
-        self.time = frame.clock.time();
-        self.ids.clone_from(&agents.id);
-        copy_vectors(&mut self.positions, &agents.position);
-        copy_vectors(&mut self.velocities, &agents.velocity);
-        copy(&mut self.radii, &agents.radius);
-        copy(&mut self.masses, &agents.mass);
-        copy(&mut self.densities, &fields.density);
-        copy(&mut self.rest_densities, &fields.rest_density);
-        copy(&mut self.pressures, &fields.pressure);
-        self.open = debug.open(simulation);
+        let vectors = |values: &[Vector]| values.iter().map(|&v| xy(v)).collect();
+        let numbers = |values: &[f64]| values.iter().map(|&x| x as f32).collect();
+        Self {
+            frame: frame.clock.frame().cast_signed(),
+            time: frame.clock.time(),
+            ids: agents.id.clone(),
+            positions: vectors(&agents.position),
+            velocities: vectors(&agents.velocity),
+            radii: numbers(&agents.radius),
+            masses: numbers(&agents.mass),
+            densities: numbers(&fields.density),
+            rest_densities: numbers(&fields.rest_density),
+            pressures: numbers(&fields.pressure),
+            open: debug.open(simulation),
+            ..Self::default()
+        }
     }
-}
-
-fn copy(to: &mut Vec<f32>, from: &[f64]) {
-    to.clear();
-    to.extend(from.iter().map(|&x| x as f32));
-}
-
-fn copy_vectors(to: &mut Vec<[f32; 2]>, from: &[Vector]) {
-    to.clear();
-    to.extend(from.iter().map(|v| [v.x as f32, v.y as f32]));
 }

@@ -15,7 +15,7 @@ use rerun::{DEFAULT_SERVER_PORT, SpawnError, SpawnOptions};
 
 use super::error::RecordingError;
 use super::file::Failure;
-use super::relay::{GivenUp, Relay};
+use super::relay::{GivenUp, Items, Relay};
 
 /// Timeout for connecting to a viewer.
 const CONNECTING: Duration = Duration::from_secs(3);
@@ -125,23 +125,23 @@ fn spawn_options() -> SpawnOptions {
 /// A connected viewer, fed by its own thread: rerun's sink waits forever for a viewer that accepts the connection
 /// but reads nothing. The run goes on when the viewer is gone.
 pub struct ViewerSink {
-    relay: Arc<Relay<LogMsg>>,
-    address: Address,
-    failure: Failure,
+    relay: Relay<LogMsg>,
+    pub address: Address,
+    pub failure: Failure,
     /// Whether the viewer has a layout. The final layout, meant for the file, would undo changes by the viewer's user.
     has_layout: AtomicBool,
 }
 
 impl ViewerSink {
     fn open(address: Address, interrupted: Arc<AtomicBool>) -> std::io::Result<Self> {
-        let relay = Arc::new(Relay::new(PATIENCE, interrupted));
-        let (queue, uri) = (Arc::clone(&relay), address.0.clone());
+        let (relay, items) = Relay::new(PATIENCE, interrupted);
+        let uri = address.0.clone();
         let failure = Failure::default();
         let seen = failure.clone();
         // Never joined, because it may wait for the viewer until the process ends.
         std::thread::Builder::new()
             .name("viewer".to_owned())
-            .spawn(move || feed(&queue, GrpcSink::new(uri), &seen))?;
+            .spawn(move || feed(items, GrpcSink::new(uri), &seen))?;
         Ok(Self {
             relay,
             address,
@@ -150,34 +150,25 @@ impl ViewerSink {
         })
     }
 
-    /// Why the viewer went away; readable while the sink is in use and after it is dropped.
-    pub fn failure(&self) -> Failure {
-        self.failure.clone()
-    }
-
-    /// The viewer's address.
-    pub fn address(&self) -> &Address {
-        &self.address
-    }
-
     fn give_up(&self, GivenUp(after): &GivenUp) {
         let secs = after.as_secs_f64();
-        self.failure.is(&format!("it took no data for {secs} s"));
+        let reason = format!("it took no data for {secs} s");
+        self.failure.set(reason).ok();
     }
 }
 
 /// Forwards all messages, then waits until the viewer confirms the end of the data.
-fn feed(queue: &Relay<LogMsg>, stream: GrpcSink, failure: &Failure) {
-    while let Some(message) = queue.take() {
+fn feed(mut items: Items<LogMsg>, stream: GrpcSink, failure: &Failure) {
+    for message in items.by_ref() {
         stream.send(message);
         // Without this flush, messages would wait in rerun's own queue, whose progress we cannot see.
         if let Err(error) = stream.flush_blocking(Duration::MAX) {
-            failure.is(&error);
+            failure.set(error.to_string()).ok();
             break;
         }
     }
     drop(stream);
-    queue.end();
+    drop(items);
 }
 
 impl LogSink for ViewerSink {
@@ -212,28 +203,6 @@ impl Drop for ViewerSink {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn an_address_is_whole_or_a_host_and_a_port() {
-        let address = |text: &str| text.parse::<Address>().map(|address| address.to_string());
-        let whole = "rerun+http://127.0.0.1:9876/proxy".to_owned();
-        assert_eq!(address(&whole), Ok(whole.clone()));
-        assert_eq!(address("127.0.0.1:9876"), Ok(whole.clone()));
-        assert_eq!(address("127.0.0.1"), Ok(whole));
-        assert_eq!(
-            address("[::1]:9876"),
-            Ok("rerun+http://[::1]:9876/proxy".to_owned())
-        );
-        for wrong in [
-            "",
-            "http://",
-            "ftp://127.0.0.1:1/proxy",
-            "host:port",
-            "a b:1",
-        ] {
-            assert_eq!(address(wrong), Err(AddressError), "{wrong}");
-        }
-    }
 
     #[test]
     fn a_started_viewer_listens_on_this_machine_only() {

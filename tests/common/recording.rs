@@ -2,19 +2,15 @@
 
 use std::collections::BTreeSet;
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 use rerun::external::arrow::array::{ArrayRef, AsArray as _};
 use rerun::external::arrow::compute::cast;
 use rerun::external::arrow::datatypes::{DataType, Float64Type};
-use rerun::external::re_log_encoding::{Decodable as _, StreamFooter};
 use rerun::{
-    ChunkStore, ChunkStoreConfig, ComponentIdentifier, EntityPath, StoreKind, TimelineName,
+    ChunkStore, ChunkStoreConfig, Component, ComponentIdentifier, EntityPath, StoreKind,
+    TimelineName,
 };
-
-use super::FRAME;
-use super::error::RecordingError;
 
 /// A recording in memory.
 pub struct Recording {
@@ -22,22 +18,23 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Reads the file at `path`.
-    ///
-    /// # Errors
-    /// The file cannot be read, or is not a recording.
-    pub fn read(path: &Path) -> Result<Self, RecordingError> {
-        let unreadable = |reason: String| RecordingError::Unreadable {
-            path: path.to_owned(),
-            reason,
-        };
-        let mut file = File::open(path).map_err(|error| unreadable(error.to_string()))?;
-        let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::DEFAULT, &mut file)
-            .map_err(|error| unreadable(error.to_string()))?;
+    pub fn read(path: &Path) -> Self {
+        let mut file = File::open(path).unwrap();
+        let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::DEFAULT, &mut file).unwrap();
         let mut stores = stores.into_iter();
         let store = stores.find(|(id, _)| id.kind() == StoreKind::Recording);
-        let (_, store) = store.ok_or_else(|| unreadable("it holds no recording".to_owned()))?;
-        Ok(Self { store })
+        let (_, store) = store.unwrap();
+        Self { store }
+    }
+
+    /// The first value of a static component.
+    pub fn of_static<C: Component>(&self, entity: &str, component: &str) -> C {
+        let component = ComponentIdentifier::try_new(component).unwrap();
+        let entity = EntityPath::from(entity);
+        let chunks = self.store.iter_physical_chunks();
+        let mut own = chunks.filter(|chunk| chunk.is_static() && *chunk.entity_path() == entity);
+        let found = own.find_map(|chunk| chunk.component_mono::<C>(component, 0));
+        found.unwrap().unwrap()
     }
 
     /// The names of its timelines.
@@ -83,7 +80,9 @@ impl Recording {
         let entity = EntityPath::from(entity);
         let mut rows = Vec::new();
         for chunk in self.store.iter_physical_chunks() {
-            let frames = chunk.timelines().get(&TimelineName::from_static_str(FRAME));
+            let frames = chunk
+                .timelines()
+                .get(&TimelineName::from_static_str("frame"));
             let Some(frames) = frames.filter(|_| *chunk.entity_path() == entity) else {
                 continue;
             };
@@ -102,31 +101,4 @@ fn numbers(array: &ArrayRef) -> Option<Vec<f64>> {
     let numbers = cast(array, &DataType::Float64).ok()?;
     let numbers = numbers.as_primitive_opt::<Float64Type>()?;
     Some(numbers.values().to_vec())
-}
-
-/// Checks that the file ends like a recording that was closed. Reads only its last bytes.
-pub fn check_footer(path: &Path) -> Result<(), RecordingError> {
-    let incomplete = |reason: String| RecordingError::Incomplete {
-        path: path.to_owned(),
-        reason,
-    };
-    let last_bytes = || -> std::io::Result<(Vec<u8>, u64)> {
-        let mut file = File::open(path)?;
-        let size = StreamFooter::ENCODED_SIZE_BYTES as u64;
-        let start = file.seek(SeekFrom::End(-i64::try_from(size).unwrap_or(0)))?;
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes)?;
-        Ok((bytes, start))
-    };
-    let (bytes, start) = last_bytes().map_err(|error| incomplete(error.to_string()))?;
-    let footer =
-        StreamFooter::from_rrd_bytes(&bytes).map_err(|error| incomplete(error.to_string()))?;
-    let index_fits = footer.entries.iter().all(|entry| {
-        let span = &entry.rrd_footer_byte_span_from_start_excluding_header;
-        span.start + span.len <= start
-    });
-    if footer.entries.is_empty() || !index_fits {
-        return Err(incomplete("its index is missing".to_owned()));
-    }
-    Ok(())
 }
