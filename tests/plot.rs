@@ -115,6 +115,14 @@ fn few_people_are_drawn_as_circles_and_a_crowd_as_an_image() {
 }
 
 #[test]
+fn values_beyond_the_range_have_the_colors_of_its_ends() {
+    assert_eq!(colors::DENSITY.color(-1.0), colors::DENSITY.color(0.0));
+    assert_eq!(colors::DENSITY.color(1e9), colors::DENSITY.color(8.0));
+    assert_eq!(colors::SPEED.color(f32::NAN), colors::SPEED.color(0.0));
+    assert_ne!(colors::SPEED.color(0.9), colors::SPEED.color(1.8));
+}
+
+#[test]
 fn the_same_sheet_gives_the_same_bytes() {
     assert_eq!(saved(&sheet(100)), saved(&sheet(100)));
 }

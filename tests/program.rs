@@ -31,6 +31,8 @@ mod study_robustness;
 mod sweep;
 mod sweep_program;
 mod sweep_study;
+mod tables;
 mod trajectory;
 mod trajectory_area;
+mod trajectory_formats;
 mod trajectory_robustness;

@@ -85,10 +85,30 @@ fn text_files_are_read_with_all_common_headers() {
 }
 
 #[test]
+fn frame_rates_are_found_as_they_are_written() {
+    for (comment, fps) in [
+        (" Framerate = 25", 25.0),
+        ("frame rate: 12.5 (camera 3)", 12.5),
+        ("framerate=30fps, of 2 cameras", 30.0),
+        ("framerate information: 1e1/s", 10.0),
+    ] {
+        let tracks = read_text(&format!("#{comment}\n# id: the agent\n1 2 3 4\n"));
+        assert_eq!((tracks.fps, tracks.time(2)), (fps, 2.0 / fps), "{comment}");
+    }
+    for comment in [" framerate: unknown", " 25 frames"] {
+        let text = format!("#{comment}\n1 2 3 4\n");
+        let said = read_as("a.txt", &text, &PLAIN).unwrap_err();
+        assert!(said.starts_with("a.txt: it has no frame rate "), "{said}");
+    }
+}
+
+#[test]
 fn columns_follow_the_order_in_the_header() {
     let tracks = read_text("# framerate: 5\n# frame y/m x/m id\n7 2 1 30\n8.0 3 1 30.0\n");
     assert_eq!(rows(&tracks), [(7, 30, 1.0, 2.0), (8, 30, 1.0, 3.0)]);
     assert_eq!(tracks.time(8), 1.6);
+    let tracks = read_text("# framerate: 5\n# y[cm] x[cm] frame ID\n200 100 7.0 3\n");
+    assert_eq!(rows(&tracks), [(7, 3, 1.0, 2.0)]);
 }
 
 #[test]

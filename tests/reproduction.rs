@@ -3,7 +3,10 @@
 use std::fs;
 use std::sync::Mutex;
 
-use sandbox::lab::reproduce::{PRODUCTS, Product, published, reproduce, table1_rows};
+use sandbox::lab::reproduce::{
+    Band, Comparison, PRODUCTS, Product, PublishedRow, Ranked, published, put_between, rankings,
+    reproduce, table1_rows,
+};
 use sandbox::lab::sweep::{Gathered, Study};
 use sandbox::runs::case::RunResult;
 use sandbox::runs::job::{self, Job, Listener, Progress};
@@ -42,14 +45,17 @@ fn every_product_has_a_unique_name_and_valid_studies() {
 #[test]
 fn the_studies_of_the_tables_have_the_rows_of_the_paper() {
     let published = published().unwrap();
+    assert!(published.source.contains("10.1016/j.cag.2021.06.005"));
+    let [rows1, rows2] = [&published.table1, &published.table2].map(|table| table.rows.len());
+    assert_eq!((rows1, rows2), (30, 7));
     let table1 = Study::built_in("table1", Some(1), None).unwrap();
     assert_eq!(table1.cells.len(), published.table1.rows.len());
     for (cell, row) in table1.cells.iter().zip(&published.table1.rows) {
         assert_eq!(cell.value("profile"), Some(&json!(row.profile)));
-        assert_eq!(
-            cell.value(&row.setting).and_then(Value::as_f64),
-            Some(row.value)
-        );
+        let varied = row.varied.as_ref().unwrap();
+        let value = cell.value(&varied.setting).and_then(Value::as_f64);
+        assert_eq!(value, Some(varied.value));
+        assert!(row.evacuated.is_some());
     }
     for (name, times) in [("table2", 1), ("questions_crossing", 3)] {
         let study = Study::built_in(name, Some(1), None).unwrap();
@@ -123,10 +129,7 @@ fn tables_are_written_in_three_formats_from_kept_results() {
     let studies = table2.studies(1).unwrap();
     // Kept results as runs write them, but with the numbers of the paper.
     let paper = published().unwrap().table2.rows;
-    let job = |(cell, row): (
-        &sandbox::lab::sweep::Cell,
-        &sandbox::lab::reproduce::CrossingRow,
-    )| {
+    let job = |(cell, row): (&sandbox::lab::sweep::Cell, &PublishedRow)| {
         let metrics = json!({
             "density_mean_45s": row.density,
             "density_std_45s": row.deviation,
@@ -154,4 +157,71 @@ fn tables_are_written_in_three_formats_from_kept_results() {
     let rankings = json["rankings"].as_array().unwrap();
     assert!(rankings.iter().all(|ranking| ranking["kept"] == true));
     assert!(store.is_begun());
+}
+
+#[test]
+fn a_row_is_kept_up_to_the_border_of_its_band() {
+    let kept = |paper, ours, band| Comparison::new(paper, &[Some(ours)], Some(band)).is_kept();
+    assert_eq!(kept(4.0, 4.06, Band::Relative(0.015)), Some(true));
+    assert_eq!(kept(4.0, 3.94, Band::Relative(0.015)), Some(true));
+    assert_eq!(kept(4.0, 4.061, Band::Relative(0.015)), Some(false));
+    assert_eq!(kept(0.27, 0.39, Band::Absolute(0.12)), Some(true));
+    assert_eq!(kept(0.27, 0.14, Band::Absolute(0.12)), Some(false));
+    assert_eq!(Comparison::new(4.0, &[Some(4.0)], None).is_kept(), None);
+}
+
+#[test]
+fn a_seed_without_a_value_misses_the_band_and_is_told() {
+    let values = [Some(1.0), None, Some(3.0)];
+    let flow = Comparison::new(2.0, &values, Some(Band::Relative(0.25)));
+    assert_eq!(flow.relative(), Some(0.0));
+    assert_eq!(flow.is_kept(), Some(false));
+    assert_eq!(flow.ours_written(), "2.00 ± 1.41 (2 of 3)");
+    let nothing = Comparison::new(2.0, &[None], Some(Band::Relative(0.25)));
+    assert_eq!(nothing.is_kept(), Some(false));
+    assert_eq!(nothing.ours_written(), "–");
+    assert_eq!(nothing.difference_written(), "–");
+}
+
+fn ranked(name: &str, paper: f64, ours: &[f64]) -> Ranked {
+    Ranked {
+        name: name.to_owned(),
+        paper,
+        ours: ours.iter().copied().map(Some).collect(),
+    }
+}
+
+#[test]
+fn only_rows_more_than_a_tenth_apart_are_ranked() {
+    let rows = [
+        ranked("a", 1.0, &[1.0, 3.0]),
+        ranked("b", 1.1, &[1.0, 1.0]),
+        ranked("c", 1.2, &[1.5, 0.5]),
+    ];
+    let found = rankings("flow", &rows);
+    assert_eq!(found.len(), 1);
+    let ranking = &found[0];
+    assert_eq!([&*ranking.higher, &*ranking.lower], ["c", "a"]);
+    assert_eq!(ranking.ours, Some([1.0, 2.0]));
+    assert_eq!(ranking.seeds, [1, 2]);
+    assert!(!ranking.is_kept());
+}
+
+#[test]
+fn a_row_without_a_value_keeps_no_ranking() {
+    let mut lost = ranked("high", 2.0, &[2.0, 2.0]);
+    lost.ours[1] = None;
+    let found = rankings("flow", &[lost, ranked("low", 1.0, &[1.0, 1.0])]);
+    assert_eq!(found[0].ours, None);
+    assert_eq!(found[0].seeds, [1, 2]);
+    assert!(!found[0].is_kept());
+}
+
+#[test]
+fn a_text_takes_the_place_of_the_one_before_it() {
+    let document = "a\n<!-- t -->\nold\n<!-- /t -->\nb\n";
+    let once = put_between(document, "t", "new\n").unwrap();
+    assert_eq!(once, "a\n<!-- t -->\n\nnew\n\n<!-- /t -->\nb\n");
+    assert_eq!(put_between(&once, "t", "new").unwrap(), once);
+    assert_eq!(put_between(document, "u", "new"), None);
 }

@@ -17,8 +17,11 @@ pub struct Product {
     /// What it needs of them.
     pub needs: Needs,
     /// Writes its files into the store's folder, and returns a text about them.
-    pub write: fn(&[Gathered], &Store) -> Result<String, LabError>,
+    pub write: Write,
 }
+
+/// Writes the files of a product from its studies, and returns a text about them.
+pub type Write = fn(&[Gathered], &Store) -> Result<String, LabError>;
 
 /// What a product needs of its studies.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -131,11 +131,16 @@ fn rankings(combinations: &[Combination]) -> Result<String, LabError> {
         let [kept, all] = geometry.table.kept(quantity);
         format!("{kept} of {all}")
     };
+    let broken = |geometry: &Geometry| {
+        let broken = geometry.table.rankings.iter().filter(|r| !r.is_kept());
+        let broken = broken.map(|r| format!("{} {} > {}", r.quantity, r.higher, r.lower));
+        broken.collect::<Vec<_>>().join("; ")
+    };
     let table = Table::of(&geometries)
         .column("geometry", |geometry| geometry.name)
         .column("flow", |geometry| kept(geometry, "flow"))
         .column("density", |geometry| kept(geometry, "density"))
-        .column("broken", |geometry| geometry.table.broken().join("; "))
+        .column("broken", broken)
         .range("of the stream through in 60 s:", 0, |geometry| {
             geometry.through
         });

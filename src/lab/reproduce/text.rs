@@ -8,17 +8,3 @@ pub fn put_between(document: &str, name: &str, text: &str) -> Option<String> {
     let text = text.trim_end();
     Some(format!("{before}{open}\n{text}\n\n{close}{after}"))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_text_takes_the_place_of_the_one_before_it() {
-        let document = "a\n<!-- t -->\nold\n<!-- /t -->\nb\n";
-        let once = put_between(document, "t", "new\n").unwrap();
-        assert_eq!(once, "a\n<!-- t -->\n\nnew\n\n<!-- /t -->\nb\n");
-        assert_eq!(put_between(&once, "t", "new").unwrap(), once);
-        assert_eq!(put_between(document, "u", "new"), None);
-    }
-}

@@ -66,10 +66,6 @@ impl Sink for Lines {
         Ok(())
     }
 
-    fn finish(&mut self) -> Result<(), Cause> {
-        Ok(())
-    }
-
     fn kept(&self) -> u64 {
         self.frames
     }

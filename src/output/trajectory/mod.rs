@@ -97,7 +97,9 @@ trait Sink: Send {
     fn write(&mut self, frame: u64, rows: &[Row<'_>]) -> Result<(), Cause>;
 
     /// Writes buffered data to the file.
-    fn finish(&mut self) -> Result<(), Cause>;
+    fn finish(&mut self) -> Result<(), Cause> {
+        Ok(())
+    }
 
     /// Number of frames in the file, even after an error.
     fn kept(&self) -> u64;
@@ -168,39 +170,5 @@ impl Trajectory {
         let is_there = self.path.exists();
         let kept = if is_there { self.sink.kept() } else { 0 };
         result.map_err(|cause| TrajectoryError::unwritten(&self.path, kept, cause))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_rate_that_is_no_whole_part_names_the_nearest_that_is() {
-        let refused = |time_step, fps| match frames_between(&Clock::new(time_step, 1), fps) {
-            Err(TrajectoryError::FrameRate { nearest, .. }) => nearest,
-            other => panic!("{other:?}"),
-        };
-        for (fps, every) in [(50.0, 1), (25.0, 2), (12.5, 4), (10.0, 5), (0.1, 500)] {
-            assert_eq!(frames_between(&Clock::default(), fps), Ok(every));
-        }
-        assert_eq!(refused(0.02, 11.0), 10.0);
-        assert_eq!(refused(0.02, 24.0), 25.0);
-        assert_eq!(refused(0.02, 1000.0), 50.0);
-        let third = refused(0.03, 10.0);
-        assert!((third - 100.0 / 9.0).abs() < 1e-12);
-        assert_eq!(frames_between(&Clock::new(0.03, 1), 11.111111), Ok(3));
-    }
-
-    #[test]
-    fn the_format_is_in_the_extension() {
-        let format = |name: &str| Format::of(Path::new(name));
-        assert_eq!(format("a/run.sqlite"), Ok(Format::Sqlite));
-        assert_eq!(format("run.DB"), Ok(Format::Sqlite));
-        assert_eq!(format("run.1.txt"), Ok(Format::Text));
-        assert_eq!(format("run.csv"), Ok(Format::Csv));
-        for name in ["run.h5", "run", "run.csv.gz", "csv"] {
-            assert!(format(name).is_err(), "{name}");
-        }
     }
 }

@@ -119,29 +119,12 @@ fn row(simulation: &Simulation, number: u64, i: usize) -> Row<'_> {
 
 /// The direction in which an agent faces; the x direction if it stands at its goal.
 fn orientation(position: Vector, velocity: Vector, goal: Vector) -> Vector {
-    let facing = if velocity.norm() < STANDING {
-        direction(goal - position)
-    } else {
-        direction(velocity)
+    let facing = match velocity.norm() < STANDING {
+        true => direction(goal - position),
+        false => direction(velocity),
     };
-    if facing == Vector::zeros() {
-        Vector::x()
-    } else {
-        facing
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn who_walks_faces_the_way_and_who_stands_the_goal() {
-        let (here, goal) = (Vector::new(1.0, 1.0), Vector::new(1.0, 4.0));
-        let walking = orientation(here, Vector::new(-0.5, 0.0), goal);
-        assert_eq!(walking, Vector::new(-1.0, 0.0));
-        let standing = orientation(here, Vector::new(-0.005, 0.0), goal);
-        assert_eq!(standing, Vector::new(0.0, 1.0));
-        assert_eq!(orientation(goal, Vector::zeros(), goal), Vector::x());
+    match facing == Vector::zeros() {
+        true => Vector::x(),
+        false => facing,
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use std::{fs, io};
 
-use rusqlite::{Connection, params};
+use rusqlite::{Connection, ToSql, params, params_from_iter};
 
 use super::area::WalkableArea;
 use super::error::Cause;
@@ -88,20 +88,11 @@ impl Sqlite {
         let mut insert = self.connection.prepare(insert)?;
         let frame = frame.cast_signed();
         for row in rows {
-            let Row {
-                id, pos_x, pos_y, ..
-            } = row;
-            let Row { ori_x, ori_y, .. } = row;
-            let Row {
-                density,
-                pressure,
-                speed,
-                mass,
-                ..
-            } = row;
-            insert.execute(params![
-                frame, id, pos_x, pos_y, ori_x, ori_y, density, pressure, speed, mass
-            ])?;
+            let place = [row.pos_x, row.pos_y, row.ori_x, row.ori_y];
+            let values = [row.density, row.pressure, row.speed, row.mass];
+            let ids: [&dyn ToSql; 2] = [&frame, &row.id];
+            let numbers = place.iter().chain(&values).map(|x| x as &dyn ToSql);
+            insert.execute(params_from_iter(ids.into_iter().chain(numbers)))?;
         }
         let insert = "INSERT INTO frame_data VALUES (?, ?)";
         self.connection.execute(insert, params![frame, GEOMETRY])?;

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::super::product::{Needs, Product};
 use super::save;
-use crate::analysis::statistics::Estimate;
+use crate::analysis::statistics::{Estimate, Range};
 use crate::lab::error::LabError;
 use crate::lab::sweep::{Combination, Gathered};
 use crate::output::colors::{ColorMap, Rgb};
@@ -38,25 +38,19 @@ struct Quantity {
 }
 
 const QUANTITIES: [Quantity; 3] = [
-    Quantity {
-        metric: "wave_speed_m_per_s",
-        label: "wave speed [m/s]",
-        step: 5.0,
-        digits: 1,
-    },
-    Quantity {
-        metric: "wave_amplitude_m_per_s",
-        label: "amplitude [m/s]",
-        step: 0.1,
-        digits: 2,
-    },
-    Quantity {
-        metric: "wave_reflection",
-        label: "reflected / arriving",
-        step: 0.1,
-        digits: 2,
-    },
+    quantity("wave_speed_m_per_s", "wave speed [m/s]", 5.0, 1),
+    quantity("wave_amplitude_m_per_s", "amplitude [m/s]", 0.1, 2),
+    quantity("wave_reflection", "reflected / arriving", 0.1, 2),
 ];
+
+const fn quantity(metric: &'static str, label: &'static str, step: f64, digits: usize) -> Quantity {
+    Quantity {
+        metric,
+        label,
+        step,
+        digits,
+    }
+}
 
 impl Quantity {
     /// The mean over seeds; `None` if fewer than two runs have a value.
@@ -67,19 +61,14 @@ impl Quantity {
 
     /// Round limits for the color range.
     fn range(&self, rows: &[Combination]) -> [f32; 2] {
-        let values = rows
-            .iter()
-            .filter_map(|row| self.estimate(row))
-            .map(|e| e.value);
-        let limits = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
-            (a.min(v), b.max(v))
-        });
-        let (least, most) = limits;
-        if least > most {
+        let estimates = rows.iter().filter_map(|row| self.estimate(row));
+        let values: Vec<f64> = estimates.map(|estimate| estimate.value).collect();
+        if values.is_empty() {
             return [0.0, 1.0];
         }
-        let lower = (least / self.step).floor();
-        let upper = (most / self.step).ceil().max(lower + 1.0);
+        let of = Range::of(&values);
+        let lower = (of.minimum / self.step).floor();
+        let upper = (of.maximum / self.step).ceil().max(lower + 1.0);
         [(self.step * lower) as f32, (self.step * upper) as f32]
     }
 }
@@ -110,10 +99,8 @@ fn sheet(study: &Gathered) -> Sheet {
             .to_owned(),
         columns: QUANTITIES.len(),
         panel_size: [170.0, 105.0],
-        shared_axes: false,
-        row_titles: Vec::new(),
-        bar: None,
         panels: panels.collect(),
+        ..Sheet::default()
     }
 }
 
@@ -137,11 +124,8 @@ fn panel(
     let digits = quantity.digits;
     for (k, (row, estimate)) in block.iter().zip(&estimates).enumerate() {
         let at = [(k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5];
-        let waves = row
-            .values(QUANTITIES[0].metric)
-            .into_iter()
-            .flatten()
-            .count();
+        let waves = row.values(QUANTITIES[0].metric);
+        let waves = waves.into_iter().flatten().count();
         let (text, color) = match estimate {
             None if waves > 1 => ("not clear".to_owned(), BLACK),
             None => ("no wave".to_owned(), BLACK),
@@ -163,6 +147,6 @@ fn panel(
             label: quantity.label.to_owned(),
             map,
         }),
-        legend: None,
+        ..Panel::default()
     }
 }

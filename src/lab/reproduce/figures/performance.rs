@@ -33,77 +33,55 @@ pub const PRODUCT: Product = Product {
 /// The paper's totals on six threads of a laptop with a Core i7-7920HQ (§6.4): agents, ms per frame.
 const PAPER: [[f64; 2]; 2] = [[10_000.0, 4.94], [30_000.0, 18.57]];
 
-/// The paper's name of a stage.
-fn task(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Sort => "1 sorting (paper: kd-tree)",
-        Stage::Neighbors => "2 neighbors",
-        Stage::PreferredVelocity => "3 preferred velocity",
-        Stage::DensityAndPressure => "4 density and pressure",
-        Stage::Acceleration => "5 acceleration",
-        Stage::Integration => "6 integration",
-        Stage::Packing => "packing",
-        Stage::Schedule => "entries and pushes",
-        Stage::Rvo => "velocity obstacles",
-        Stage::Removal => "removal",
-    }
-}
+/// The stages in the order of the legend, with the paper's names.
+const TASKS: [(Stage, &str); 10] = [
+    (Stage::Sort, "1 sorting (paper: kd-tree)"),
+    (Stage::Neighbors, "2 neighbors"),
+    (Stage::PreferredVelocity, "3 preferred velocity"),
+    (Stage::DensityAndPressure, "4 density and pressure"),
+    (Stage::Acceleration, "5 acceleration"),
+    (Stage::Integration, "6 integration"),
+    (Stage::Packing, "packing"),
+    (Stage::Schedule, "entries and pushes"),
+    (Stage::Rvo, "velocity obstacles"),
+    (Stage::Removal, "removal"),
+];
 
 /// The sheet from measurements in order of the number of agents; `machine` names the machine.
 fn sheet(times: &[StageTimes], machine: &str) -> Sheet {
-    let order = [
-        Stage::Sort,
-        Stage::Neighbors,
-        Stage::PreferredVelocity,
-        Stage::DensityAndPressure,
-        Stage::Acceleration,
-        Stage::Integration,
-        Stage::Packing,
-        Stage::Schedule,
-        Stage::Rvo,
-        Stage::Removal,
-    ];
     let mut marks = Vec::new();
     let agents = |time: &StageTimes| time.agents as f64;
-    for (stage, color) in order.into_iter().zip(LINES.into_iter().cycle()) {
+    let exact = |[x, y]: [f64; 2]| Point { x, y, error: 0.0 };
+    for ((stage, task), color) in TASKS.into_iter().zip(LINES.into_iter().cycle()) {
         let point = |time: &StageTimes| Some([agents(time), time.of_stage(stage)?]);
         let points: Vec<[f64; 2]> = times.iter().filter_map(point).collect();
         if !points.is_empty() {
-            let dots = points.iter().map(|&[x, y]| Point { x, y, error: 0.0 });
-            let dots = dots.collect();
-            marks.push(Mark::Line(points, Style::full(color, 1.2, task(stage))));
+            let dots = points.iter().copied().map(exact).collect();
+            marks.push(Mark::Line(points, Style::full(color, 1.2, task)));
             marks.push(Mark::Points(dots, Style::full(color, 1.8, "")));
         }
     }
     let total: Vec<[f64; 2]> = times.iter().map(|t| [agents(t), t.total()]).collect();
     marks.push(Mark::Line(total, Style::full(BLACK, 1.8, "total")));
-    let paper = PAPER.map(|[x, y]| Point { x, y, error: 0.0 });
-    let label = "total in the paper, 6 threads";
-    marks.push(Mark::Points(
-        paper.to_vec(),
-        Style::broken(BLACK, 3.5, label),
-    ));
-    let real_time = vec![[2_000.0, 20.0], [120_000.0, 20.0]];
-    marks.push(Mark::Line(
-        real_time,
-        Style::broken(LINES[6], 0.8, "real time (20 ms)"),
-    ));
+    let paper = Style::broken(BLACK, 3.5, "total in the paper, 6 threads");
+    marks.push(Mark::Points(PAPER.map(exact).to_vec(), paper));
+    let real_time = Style::broken(LINES[6], 0.8, "real time (20 ms)");
+    let ends = vec![[2_000.0, 20.0], [120_000.0, 20.0]];
+    marks.push(Mark::Line(ends, real_time));
     let panel = Panel {
         title: machine.to_owned(),
         x: Axis::log("agents", [2_000.0, 120_000.0]),
         y: Axis::log("time per frame [ms]", [0.005, 200.0]),
         marks,
-        bar: None,
         legend: Some(Corner::Beside),
+        ..Panel::default()
     };
     Sheet {
         title: "Fig. 11: frame time per task, concert".to_owned(),
         columns: 1,
         panel_size: [420.0, 300.0],
-        shared_axes: false,
-        row_titles: Vec::new(),
-        bar: None,
         panels: vec![panel],
+        ..Sheet::default()
     }
 }
 

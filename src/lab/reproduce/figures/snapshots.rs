@@ -10,51 +10,38 @@ use crate::runs::store::Store;
 use crate::scenario::measurements::Snapshot;
 
 /// Inferno up to 1 m/s: the push itself reaches 0.9 m/s.
-static CROWD_SPEED: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::inferno([0.0, 1.0]));
+static WAVE_SPEED: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::inferno([0.0, 1.0]));
 /// The color of the measured region's outline.
 const GREEN: [u8; 3] = [0, 158, 115];
 
 /// The meaning of the discs' colors (Fig. 3).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Coloring {
-    /// |v_i|.
-    Speed,
-    /// |v_i| in a crowd that hardly moves: the color range ends at the speed of its waves.
-    CrowdSpeed,
-    /// ρ_i.
-    Density,
+#[derive(Clone, Copy)]
+pub(super) struct Coloring {
+    label: &'static str,
+    map: fn() -> &'static ColorMap,
+    values: fn(&Snapshot) -> &[f64],
 }
 
-impl Coloring {
-    fn map(self) -> &'static ColorMap {
-        match self {
-            Self::Speed => &colors::SPEED,
-            Self::CrowdSpeed => &CROWD_SPEED,
-            Self::Density => &colors::DENSITY,
-        }
-    }
-
-    fn bar(self) -> ColorBar {
-        let label = match self {
-            Self::Speed | Self::CrowdSpeed => "speed [m/s]",
-            Self::Density => "density [P/m²]",
-        };
-        ColorBar {
-            label: label.to_owned(),
-            map: self.map().clone(),
-        }
-    }
-
-    fn values(self, snapshot: &Snapshot) -> &[f64] {
-        match self {
-            Self::Speed | Self::CrowdSpeed => &snapshot.speed,
-            Self::Density => &snapshot.density,
-        }
-    }
-}
+/// |v_i|.
+pub(super) const SPEED: Coloring = Coloring {
+    label: "speed [m/s]",
+    map: || &colors::SPEED,
+    values: |snapshot| &snapshot.speed,
+};
+/// |v_i| in a crowd that hardly moves: the color range ends at the speed of its waves.
+pub(super) const CROWD_SPEED: Coloring = Coloring {
+    map: || &WAVE_SPEED,
+    ..SPEED
+};
+/// ρ_i.
+pub(super) const DENSITY: Coloring = Coloring {
+    label: "density [P/m²]",
+    map: || &colors::DENSITY,
+    values: |snapshot| &snapshot.density,
+};
 
 /// A picture with a panel for each run, or with a row for each run and a panel for each time.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(super) struct Snapshots {
     /// The name of its files.
     pub name: &'static str,
@@ -94,6 +81,7 @@ impl Snapshots {
             return Err(LabError::Data(format!("{} has one study", self.name)));
         };
         let [min, max] = self.region;
+        let many = self.times.len() > 1;
         let (mut panels, mut row_titles) = (Vec::new(), Vec::new());
         for (k, (label, title)) in labels.iter().zip(titles).enumerate() {
             let (cell, result) = study.labeled(label)?;
@@ -101,14 +89,13 @@ impl Snapshots {
                 .case
                 .scenario()
                 .map_err(|error| LabError::of(*label, error))?;
-            let corners = |r: &crate::engine::math::Vector| [r.x, r.y];
             let walls = walls.scene.walls.obstacles().iter();
-            let walls = walls.map(|wall| wall.points().iter().map(corners).collect());
+            let walls = walls.map(|wall| wall.points().iter().map(|r| [r.x, r.y]).collect());
             let walls: Vec<Vec<[f64; 2]>> = walls.collect();
             // (a), (b), …
             let letter = char::from(b'a' + (k % 26) as u8);
             for &time in self.times {
-                let title = match (self.times.len() > 1, k) {
+                let title = match (many, k) {
                     (false, _) => format!("({letter}) {title}"),
                     (true, 0) => format!("t = {time} s"),
                     (true, _) => String::new(),
@@ -123,7 +110,7 @@ impl Snapshots {
                     })?;
                 panels.push(self.panel(title, &snapshot, &walls));
             }
-            row_titles.push(format!("({letter}) {title}"));
+            row_titles.extend(many.then(|| format!("({letter}) {title}")));
         }
         let sheet = Sheet {
             title: self.title.to_owned(),
@@ -133,39 +120,30 @@ impl Snapshots {
                 self.width * (max[1] - min[1]) / (max[0] - min[0]),
             ],
             shared_axes: true,
-            row_titles: if self.times.len() > 1 {
-                row_titles
-            } else {
-                Vec::new()
-            },
-            bar: Some(self.coloring.bar()),
+            row_titles,
+            bar: Some(ColorBar {
+                label: self.coloring.label.to_owned(),
+                map: (self.coloring.map)().clone(),
+            }),
             panels,
         };
         super::save(&sheet, store, self.name)
     }
 
     fn panel(&self, title: String, snapshot: &Snapshot, walls: &[Vec<[f64; 2]>]) -> Panel {
-        let map = self.coloring.map();
-        let values = self.coloring.values(snapshot).iter().enumerate();
+        let map = (self.coloring.map)();
+        let values = (self.coloring.values)(snapshot).iter().enumerate();
         let discs = values.map(|(i, &value)| Disc {
             center: [snapshot.x[i], snapshot.y[i]],
             radius: snapshot.radius[i],
             color: map.color(value as f32),
         });
         let mut marks = vec![Mark::Discs(discs.collect())];
-        marks.extend(
-            walls
-                .iter()
-                .map(|corners| Mark::Area(corners.clone(), GRAY)),
-        );
+        let walls = walls.iter().cloned();
+        marks.extend(walls.map(|corners| Mark::Area(corners, GRAY)));
         if let Some([[left, low], [right, high]]) = self.measured {
-            let outline = vec![
-                [left, low],
-                [right, low],
-                [right, high],
-                [left, high],
-                [left, low],
-            ];
+            let corners = [[left, low], [right, low], [right, high], [left, high]];
+            let outline = [&corners[..], &corners[..1]].concat();
             marks.push(Mark::Line(outline, Style::full(GREEN, 0.8, "")));
         }
         let [min, max] = self.region;
@@ -174,8 +152,7 @@ impl Snapshots {
             x: Axis::linear("x [m]", [min[0], max[0]]),
             y: Axis::linear("y [m]", [min[1], max[1]]),
             marks,
-            bar: None,
-            legend: None,
+            ..Panel::default()
         }
     }
 }

@@ -1,10 +1,10 @@
 //! An addition to Fig. 7: the wave over space and time for several k, and its speed against linear theory.
 
-use super::super::product::{Needs, Product};
+use super::super::product::Product;
 use super::save;
 use crate::analysis::sound;
 use crate::analysis::statistics::Estimate;
-use crate::analysis::wave::{self, SpaceTime, Wave};
+use crate::analysis::wave::{Ridge, Wave};
 use crate::lab::error::LabError;
 use crate::lab::sweep::Gathered;
 use crate::output::colors::ColorMap;
@@ -20,27 +20,22 @@ const REACH: f64 = 0.48;
 const FASTEST: f32 = 0.8;
 
 /// The diagrams.
-pub const PRODUCT: Product = Product {
-    name: "waves",
-    about: "space-time diagrams of the shockwave for five k, and its speed against linear theory",
-    in_all: true,
-    studies: &["shockwave"],
-    needs: Needs::Labeled(&LABELS),
-    write: |studies, store| {
+pub const PRODUCT: Product = super::shockwave(
+    "waves",
+    "space-time diagrams of the shockwave for five k, and its speed against linear theory",
+    &LABELS,
+    |studies, store| {
         let [study] = studies else {
-            return Err(LabError::Data(
-                "there is one study of the shockwave".to_owned(),
-            ));
+            let problem = "there is one study of the shockwave";
+            return Err(LabError::Data(problem.to_owned()));
         };
-        let runs = LABELS
-            .into_iter()
-            .zip(GAS_CONSTANTS)
-            .map(|(label, k)| Speed::of(study, label, k));
+        let runs = LABELS.into_iter().zip(GAS_CONSTANTS);
+        let runs = runs.map(|(label, k)| Speed::of(study, label, k));
         let runs: Vec<Speed> = runs.collect::<Result<_, _>>()?;
         store.write("waves.csv", &csv(&runs)?)?;
         save(&sheet(&runs), store, "waves")
     },
-};
+);
 
 /// The runs, by increasing k.
 const LABELS: [&str; 5] = ["k = 50", "k = 100", "baseline", "k = 400", "k = 800"];
@@ -90,27 +85,24 @@ impl Speed {
 /// The diagrams, and the speed against k as the last panel.
 fn sheet(speeds: &[Speed]) -> Sheet {
     let map = ColorMap::inferno([0.0, FASTEST]);
-    let diagrams = speeds
-        .iter()
-        .map(|speed| diagram(&speed.seen.diagram, speed, &map));
-    let mut panels: Vec<Panel> = diagrams.collect();
+    let mut panels: Vec<Panel> = speeds.iter().map(|speed| diagram(speed, &map)).collect();
     panels.push(against_gas_constant(speeds));
     Sheet {
         title: "The shockwave over place and time, and its speed against linear theory".to_owned(),
         columns: 3,
         panel_size: [215.0, 190.0],
-        shared_axes: false,
-        row_titles: Vec::new(),
         bar: Some(ColorBar {
             label: "mean speed, |y| ≤ 8 m [m/s]".to_owned(),
             map,
         }),
         panels,
+        ..Sheet::default()
     }
 }
 
 /// One run: the mean speed, the fitted crests, and the crest of linear theory.
-fn diagram(seen: &SpaceTime, speed: &Speed, map: &ColorMap) -> Panel {
+fn diagram(speed: &Speed, map: &ColorMap) -> Panel {
+    let seen = &speed.seen.diagram;
     let (first, last) = match seen.times[..] {
         [first, .., last] => (first, last),
         _ => (0.0, 1.0),
@@ -132,8 +124,8 @@ fn diagram(seen: &SpaceTime, speed: &Speed, map: &ColorMap) -> Panel {
         x: Axis::linear("x [m]", x),
         y: Axis::linear("t [s]", [first, last]),
         marks,
-        bar: None,
         legend: Some(Corner::UpperRight),
+        ..Panel::default()
     }
 }
 
@@ -150,37 +142,34 @@ fn summary(wave: &Wave) -> String {
 fn crests(wave: &Wave, speed: &Speed) -> Vec<Mark> {
     let run = speed.seen.run;
     let ends = [run.source, run.obstacle];
-    let line = |ridge: &wave::Ridge| ends.map(|x| [x, ridge.time_at(x)]).to_vec();
-    let fitted = Style::full(LINES[5], 1.0, "fitted");
-    let mut marks = vec![Mark::Line(line(&wave.arriving), fitted.clone())];
-    if let Some(returning) = &wave.returning {
-        let style = Style {
-            label: String::new(),
-            ..fitted
-        };
-        marks.push(Mark::Line(line(returning), style));
-    }
+    let line = |ridge: &Ridge| ends.map(|x| [x, ridge.time_at(x)]).to_vec();
+    let fitted = |label| Style::full(LINES[5], 1.0, label);
+    let mut marks = vec![Mark::Line(line(&wave.arriving), fitted("fitted"))];
+    let returning = wave.returning.iter();
+    marks.extend(returning.map(|ridge| Mark::Line(line(ridge), fitted(""))));
     if let Some(theory) = speed.with_contacts {
         let begin = wave.arriving.time_at(run.source);
         let crossing = (run.obstacle - run.source) / theory;
-        let there = [[run.source, begin], [run.obstacle, begin + crossing]];
-        let back = [there[1], [run.source, begin + 2.0 * crossing]];
+        let path = vec![
+            [run.source, begin],
+            [run.obstacle, begin + crossing],
+            [run.source, begin + 2.0 * crossing],
+        ];
         let style = Style::broken(LINES[2], 1.0, "theory, discs in contact");
-        marks.push(Mark::Line(vec![there[0], there[1], back[1]], style));
+        marks.push(Mark::Line(path, style));
     }
     marks
 }
 
+type Of = fn(&Wave) -> Option<Estimate>;
+const ARRIVING: Of = |wave| Some(wave.arriving.speed);
+const RETURNING: Of = |wave| Some(wave.returning.as_ref()?.speed);
+
 /// One line per k: the measured wave, and the speeds of linear theory.
 fn csv(speeds: &[Speed]) -> Result<Vec<u8>, LabError> {
-    type Of = fn(&Wave) -> Option<Estimate>;
     let estimates: [(&str, [&str; 2], Of); 4] = [
-        ("arriving", ["_m_per_s", "_error"], |wave| {
-            Some(wave.arriving.speed)
-        }),
-        ("returning", ["_m_per_s", "_error"], |wave| {
-            Some(wave.returning.as_ref()?.speed)
-        }),
+        ("arriving", ["_m_per_s", "_error"], ARRIVING),
+        ("returning", ["_m_per_s", "_error"], RETURNING),
         ("amplitude", ["_m_per_s", "_error"], |wave| {
             Some(wave.amplitude)
         }),
@@ -201,45 +190,33 @@ fn csv(speeds: &[Speed]) -> Result<Vec<u8>, LabError> {
 }
 
 fn against_gas_constant(speeds: &[Speed]) -> Panel {
-    let curve = |values: &dyn Fn(&Speed) -> Option<f64>| -> Vec<[f64; 2]> {
+    let curve = |values: fn(&Speed) -> Option<f64>, style| {
         let point = |speed: &Speed| Some([speed.gas_constant, values(speed)?]);
-        speeds.iter().filter_map(point).collect()
+        Mark::Line(speeds.iter().filter_map(point).collect(), style)
     };
-    let points = |estimate: &dyn Fn(&Wave) -> Option<Estimate>| -> Vec<Point> {
+    let points = |estimate: Of, style| {
         let point = |speed: &Speed| {
-            let estimate = estimate(speed.seen.wave.as_ref()?)?;
-            Some(Point {
-                x: speed.gas_constant,
-                y: estimate.value,
-                error: estimate.error,
-            })
+            let Estimate { value, error } = estimate(speed.seen.wave.as_ref()?)?;
+            let (x, y) = (speed.gas_constant, value);
+            Some(Point { x, y, error })
         };
-        speeds.iter().filter_map(point).collect()
+        Mark::Points(speeds.iter().filter_map(point).collect(), style)
     };
-    let there = points(&|wave| Some(wave.arriving.speed));
-    let back = points(&|wave| wave.returning.as_ref().map(|ridge| ridge.speed));
+    let touching = Style::broken(LINES[2], 1.0, "all discs touching");
+    let in_contact = Style::full(LINES[2], 1.0, "discs in contact");
     let marks = vec![
-        Mark::Line(
-            curve(&|speed| Some(speed.fluid)),
-            Style::broken(LINES[6], 1.0, "√(k/2)"),
-        ),
-        Mark::Line(
-            curve(&|speed| Some(speed.all_touching)),
-            Style::broken(LINES[2], 1.0, "all discs touching"),
-        ),
-        Mark::Line(
-            curve(&|speed| speed.with_contacts),
-            Style::full(LINES[2], 1.0, "discs in contact"),
-        ),
-        Mark::Points(there, Style::full(LINES[0], 2.4, "to the stage")),
-        Mark::Points(back, Style::broken(LINES[1], 2.4, "back")),
+        curve(|of| Some(of.fluid), Style::broken(LINES[6], 1.0, "√(k/2)")),
+        curve(|of| Some(of.all_touching), touching),
+        curve(|of| of.with_contacts, in_contact),
+        points(ARRIVING, Style::full(LINES[0], 2.4, "to the stage")),
+        points(RETURNING, Style::broken(LINES[1], 2.4, "back")),
     ];
     Panel {
         title: "speed against k, and linear theory".to_owned(),
         x: Axis::log("k", [40.0, 1000.0]),
         y: Axis::log("wave speed [m/s]", [4.0, 30.0]),
         marks,
-        bar: None,
         legend: Some(Corner::UpperLeft),
+        ..Panel::default()
     }
 }

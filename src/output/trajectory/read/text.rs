@@ -88,10 +88,9 @@ fn heed(
 fn named(line: &str, columns: &mut Columns, contents: &mut Contents) -> Result<bool, String> {
     let words = words(line);
     let names: Vec<&str> = words.iter().map(String::as_str).collect();
-    let Some(found) = Columns::named(&names) else {
+    let Some((found, unit)) = Columns::named(&names)? else {
         return Ok(false);
     };
-    let (found, unit) = found?;
     *columns = found;
     contents.unit = unit.or(contents.unit);
     Ok(true)
@@ -117,8 +116,8 @@ pub fn read_csv(path: &Path, file: impl Read, options: &ReadOptions) -> Result<T
     let names: Vec<&str> = header.iter().collect();
     let head = |problem: String| ReadError::line(path, 1, problem);
     let missing = || head("the first line must name the columns id, frame, x and y".to_owned());
-    let found = Columns::named(&names).ok_or_else(missing)?;
-    let (columns, unit) = found.map_err(head)?;
+    let found = Columns::named(&names).map_err(head)?;
+    let (columns, unit) = found.ok_or_else(missing)?;
     let mut contents = Contents {
         // The sandbox's own columns are in meters.
         unit: unit.or(names.contains(&"pos_x").then_some(Unit::Meter)),

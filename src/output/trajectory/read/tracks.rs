@@ -1,6 +1,7 @@
 //! The trajectories of all persons, frame by frame.
 
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::ops::Range;
 use std::path::Path;
 
@@ -63,7 +64,6 @@ pub struct Contents {
     pub fps: Option<f64>,
     pub unit: Option<Unit>,
     pub walkable: Vec<String>,
-    pub notes: Vec<String>,
     /// The word for an entry's position in the file: line or row.
     pub place: &'static str,
 }
@@ -91,10 +91,8 @@ pub struct Tracks {
     pub notes: Vec<String>,
     /// The first row of each frame, then the number of rows.
     starts: Vec<usize>,
-    /// Rows sorted by person, then by frame.
-    by_person: Vec<u32>,
-    /// The first index of each person in `by_person`, then the number of rows.
-    person_starts: Vec<usize>,
+    /// The rows of each person, by frame.
+    by_person: Vec<Vec<u32>>,
 }
 
 impl Tracks {
@@ -104,18 +102,23 @@ impl Tracks {
         mut contents: Contents,
         options: &ReadOptions,
     ) -> Result<Self, ReadError> {
-        let mut notes = std::mem::take(&mut contents.notes);
+        let mut notes = Vec::new();
         if contents.entries.is_empty() {
             return Err(ReadError::file(path, "it contains no persons"));
         }
         if u32::try_from(contents.entries.len()).is_err() {
-            return Err(ReadError::file(
-                path,
-                "more than 4,294,967,295 rows; split it",
-            ));
+            let problem = "more than 4,294,967,295 rows; split it";
+            return Err(ReadError::file(path, problem));
         }
-        let fps = frame_rate(path, &contents, options, &mut notes)?;
-        let unit = unit(&contents, options, &mut notes);
+        let fps = taken("fps", options.fps, contents.fps, &mut notes).ok_or_else(|| {
+            let problem = "it has no frame rate (a line like `# framerate: 25`); give --fps";
+            ReadError::file(path, problem)
+        })?;
+        let unit = taken("unit", options.unit, contents.unit, &mut notes);
+        if unit.is_none() {
+            let note = "no unit is given in the file (x/m or x/cm) or by --unit: meters are taken";
+            notes.push(note.to_owned());
+        }
         let meters = unit.unwrap_or(Unit::Meter).meters();
         let in_meters = |v: Vector| if meters == 1.0 { v } else { v * meters };
         let place = contents.place;
@@ -142,9 +145,11 @@ impl Tracks {
         ids.dedup();
         let number = |id: i64| ids.partition_point(|&other| other < id) as u32;
         let person: Vec<u32> = entries.par_iter().map(|entry| number(entry.id)).collect();
-        let masses = contents
-            .has_mass
-            .then(|| entries.iter().map(|entry| entry.mass).collect());
+        let mut by_person = vec![Vec::new(); ids.len()];
+        for (row, &p) in person.iter().enumerate() {
+            by_person[p as usize].push(row as u32);
+        }
+        let masses = entries.iter().filter(|_| contents.has_mass);
         let mut tracks = Self {
             fps,
             step: 1,
@@ -154,12 +159,11 @@ impl Tracks {
                 .iter()
                 .map(|entry| in_meters(entry.position))
                 .collect(),
-            mass: masses.unwrap_or_default(),
+            mass: masses.map(|entry| entry.mass).collect(),
             walkable: contents.walkable,
             notes: Vec::new(),
             starts: Vec::new(),
-            by_person: Vec::new(),
-            person_starts: Vec::new(),
+            by_person,
             ids,
         };
         for (row, entry) in entries.iter().enumerate() {
@@ -170,13 +174,19 @@ impl Tracks {
         }
         tracks.starts.push(entries.len());
         drop(entries);
-        tracks.list_by_person();
-        tracks.step = tracks.most_common_step();
+        let steps = tracks.steps();
+        tracks.step = tracks.most_common_step(&steps);
         if tracks.step != 1 {
             notes.push(format!("frames are numbered in steps of {}", tracks.step));
         }
-        if let Some(gaps) = tracks.gaps() {
-            notes.push(gaps);
+        let gaps = steps.into_iter().filter(|&(step, _)| step != tracks.step);
+        let (longest, gaps): (Vec<i64>, Vec<u64>) = gaps.unzip();
+        if let Some(&longest) = longest.last() {
+            notes.push(format!(
+                "{} gap(s) in which a person is missing, the longest {:.2} s; no motion is measured across",
+                gaps.iter().sum::<u64>(),
+                tracks.time(longest)
+            ));
         }
         let empty = tracks.span() - tracks.frames.len() as u64;
         if empty > 0 {
@@ -184,7 +194,7 @@ impl Tracks {
                 "{empty} frame(s) contain no persons; they count as empty"
             ));
         }
-        if contents.unit.is_none() && options.unit.is_none() && tracks.median_speed() > TOO_FAST {
+        if unit.is_none() && tracks.median_speed() > TOO_FAST {
             notes.push(format!(
                 "half of all steps are faster than {TOO_FAST} m/s; are these centimeters? then give --unit cm"
             ));
@@ -210,7 +220,7 @@ impl Tracks {
 
     /// The rows of person `p`, by frame.
     pub fn rows_of(&self, p: usize) -> &[u32] {
-        &self.by_person[self.person_starts[p]..self.person_starts[p + 1]]
+        &self.by_person[p]
     }
 
     /// The frame of a row.
@@ -241,24 +251,6 @@ impl Tracks {
         }
     }
 
-    fn list_by_person(&mut self) {
-        let mut starts = vec![0; self.ids.len() + 1];
-        for &p in &self.person {
-            starts[p as usize + 1] += 1;
-        }
-        for p in 0..self.ids.len() {
-            starts[p + 1] += starts[p];
-        }
-        let mut next = starts.clone();
-        self.by_person = vec![0; self.person.len()];
-        for (row, &p) in self.person.iter().enumerate() {
-            let place = &mut next[p as usize];
-            self.by_person[*place] = row as u32;
-            *place += 1;
-        }
-        self.person_starts = starts;
-    }
-
     /// Counts the differences between consecutive frames of the same person.
     fn steps(&self) -> BTreeMap<i64, u64> {
         let frame_of: Vec<i64> = (0..self.frames.len())
@@ -266,18 +258,15 @@ impl Tracks {
             .map(|k| self.frames[k])
             .collect();
         let mut steps = BTreeMap::new();
-        for p in 0..self.ids.len() {
-            for pair in self.rows_of(p).windows(2) {
-                let step = frame_of[pair[1] as usize] - frame_of[pair[0] as usize];
-                *steps.entry(step).or_insert(0) += 1;
-            }
+        for pair in self.by_person.iter().flat_map(|rows| rows.windows(2)) {
+            let step = frame_of[pair[1] as usize] - frame_of[pair[0] as usize];
+            *steps.entry(step).or_insert(0) += 1;
         }
         steps
     }
 
     /// The most common step, if it divides all differences between frames. Otherwise 1: a camera missed frames.
-    fn most_common_step(&self) -> i64 {
-        let steps = self.steps();
+    fn most_common_step(&self, steps: &BTreeMap<i64, u64>) -> i64 {
         let common = steps.iter().max_by_key(|&(step, count)| (count, -step));
         let common = common.map_or(1, |(&step, _)| step);
         let first = self.frames[0];
@@ -288,31 +277,14 @@ impl Tracks {
         if fits { common } else { 1 }
     }
 
-    /// A note about gaps in which persons are missing.
-    fn gaps(&self) -> Option<String> {
-        let steps = self.steps();
-        let gaps = steps.iter().filter(|(step, _)| **step != self.step);
-        let (count, longest) = gaps.fold((0, 0), |(count, longest), (&step, &times)| {
-            (count + times, step.max(longest))
-        });
-        (count > 0).then(|| {
-            format!(
-                "{count} gap(s) in which a person is missing, the longest {:.2} s; no motion is measured across",
-                self.time(longest)
-            )
-        })
-    }
-
     /// The median speed over all steps from a frame to the next, m/s; 0 without steps.
     fn median_speed(&self) -> f64 {
-        let mut speeds: Vec<f64> = Vec::new();
-        for p in 0..self.ids.len() {
-            let steps = self.rows_of(p).windows(2);
-            speeds.extend(steps.map(|pair| {
-                let [from, to] = [pair[0], pair[1]].map(|row| self.position[row as usize]);
-                (to - from).norm() / self.interval()
-            }));
-        }
+        let steps = self.by_person.iter().flat_map(|rows| rows.windows(2));
+        let speed = |pair: &[u32]| {
+            let [from, to] = [pair[0], pair[1]].map(|row| self.position[row as usize]);
+            (to - from).norm() / self.interval()
+        };
+        let mut speeds: Vec<f64> = steps.map(speed).collect();
         if speeds.is_empty() {
             return 0.0;
         }
@@ -321,42 +293,19 @@ impl Tracks {
     }
 }
 
-fn frame_rate(
-    path: &Path,
-    contents: &Contents,
-    options: &ReadOptions,
+/// The given value, which takes precedence over the file's own.
+fn taken<T: PartialEq + Copy + Display>(
+    option: &str,
+    given: Option<T>,
+    own: Option<T>,
     notes: &mut Vec<String>,
-) -> Result<f64, ReadError> {
-    match (options.fps, contents.fps) {
-        (Some(given), Some(own)) if given != own => {
-            notes.push(format!("--fps {given} is taken, not the file's own {own}"));
-            Ok(given)
-        }
-        (Some(fps), _) | (None, Some(fps)) => Ok(fps),
-        (None, None) => Err(ReadError::file(
-            path,
-            "it has no frame rate (a line like `# framerate: 25`); give --fps",
-        )),
+) -> Option<T> {
+    if let (Some(given), Some(own)) = (given, own)
+        && given != own
+    {
+        notes.push(format!(
+            "--{option} {given} is taken, not the file's own {own}"
+        ));
     }
-}
-
-fn unit(contents: &Contents, options: &ReadOptions, notes: &mut Vec<String>) -> Option<Unit> {
-    match (options.unit, contents.unit) {
-        (Some(given), Some(own)) if given != own => {
-            let name = |unit| if unit == Unit::Meter { "m" } else { "cm" };
-            let (given_name, own_name) = (name(given), name(own));
-            notes.push(format!(
-                "--unit {given_name} is taken, not the file's own {own_name}"
-            ));
-            Some(given)
-        }
-        (Some(unit), _) | (None, Some(unit)) => Some(unit),
-        (None, None) => {
-            notes.push(
-                "no unit is given in the file (x/m or x/cm) or by --unit: meters are taken"
-                    .to_owned(),
-            );
-            None
-        }
-    }
+    given.or(own)
 }

@@ -1,0 +1,130 @@
+//! The rows of Tables 1 and 2: the paper's beside ours.
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::comparison::{Band, Comparison};
+use super::published::{PublishedRow, Varied, written};
+use crate::lab::error::LabError;
+use crate::lab::sweep::Combination;
+use crate::output::table::{Columns, Table};
+use crate::runs::store::Store;
+
+/// A row of the paper beside ours.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// The profile's name (§5.5).
+    pub profile: String,
+    /// What distinguishes rows of the same profile in Table 1.
+    #[serde(flatten)]
+    pub varied: Option<Varied>,
+    /// Number of agents that left the room, in Table 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub evacuated: Option<Comparison>,
+    /// Mean of ρ_i, P/m².
+    pub density: Comparison,
+    /// Standard deviation of ρ_i, P/m².
+    pub deviation: Comparison,
+    /// Evacuees per second.
+    pub flow: Comparison,
+}
+
+/// A quantity of a row: its name, its unit, and our value beside the paper's.
+type Quantity<'a> = (&'static str, &'static str, &'a Comparison);
+
+impl Row {
+    /// Compares the results over seeds with a row of the paper. `metrics` and `bands` are those of density, its
+    /// deviation and flow.
+    pub(super) fn new(
+        paper: PublishedRow,
+        ours: &Combination,
+        metrics: [&str; 3],
+        bands: [Option<Band>; 3],
+    ) -> Self {
+        let values = |k: usize| ours.values(metrics[k]);
+        let evacuated = paper.evacuated;
+        Self {
+            profile: paper.profile,
+            varied: paper.varied,
+            evacuated: evacuated
+                .map(|paper| Comparison::new(paper, &ours.values("evacuated"), None)),
+            density: Comparison::new(paper.density, &values(0), bands[0]),
+            deviation: Comparison::new(paper.deviation, &values(1), bands[1]),
+            flow: Comparison::new(paper.flow, &values(2), bands[2]),
+        }
+    }
+
+    /// The compared quantities.
+    fn quantities(&self) -> Vec<Quantity<'_>> {
+        let evacuated = self.evacuated.iter().map(|of| ("evacuated", "agents", of));
+        let others = [
+            ("density", "P/m²", &self.density),
+            ("deviation", "P/m²", &self.deviation),
+            ("flow", "P/s", &self.flow),
+        ];
+        evacuated.chain(others).collect()
+    }
+
+    /// The quantities outside of their bands.
+    pub fn missed(&self) -> Vec<&'static str> {
+        let quantities = self.quantities().into_iter();
+        let missed = quantities.filter(|(_, _, compared)| compared.is_kept() == Some(false));
+        missed.map(|(name, ..)| name).collect()
+    }
+}
+
+/// Adds the paper's densities, deviations and flows, ours, and the differences.
+pub(super) fn compared<'r>(mut columns: Columns<'r, Row>) -> Columns<'r, Row> {
+    type Of = fn(&Row) -> &Comparison;
+    let quantities: [(&str, Of); 3] = [
+        ("density [P/m²]", |row| &row.density),
+        ("its deviation", |row| &row.deviation),
+        ("flow [P/s]", |row| &row.flow),
+    ];
+    for (head, of) in quantities {
+        columns = columns
+            .fixed(&format!("{head}: paper"), 2, |row| of(row).paper)
+            .column("ours", |row| of(row).ours_written())
+            .column("difference", |row| of(row).difference_written());
+    }
+    columns
+}
+
+/// A table with the column of the profile.
+pub(super) fn profiles(rows: &[Row]) -> Columns<'_, Row> {
+    Table::of(rows).column("profile", |row| written(&row.profile))
+}
+
+/// Writes a table in three formats; the CSV has a line per quantity.
+pub(super) fn write(
+    store: &Store,
+    name: &str,
+    markdown: &str,
+    rows: &[Row],
+    json: &Value,
+) -> Result<(), LabError> {
+    let with_row = |row| Row::quantities(row).into_iter().map(move |q| (row, q));
+    let quantities: Vec<(&Row, Quantity)> = rows.iter().flat_map(with_row).collect();
+    let varied = |row: &'_ Row| row.varied.clone();
+    let csv = Table::of(&quantities)
+        .column("profile", |(row, _)| row.profile.as_str())
+        .column("setting", |(row, _)| {
+            varied(row).map_or(String::new(), |of| of.setting)
+        })
+        .column("value", |(row, _)| varied(row).map(|of| of.value))
+        .column("quantity", |(_, (name, ..))| *name)
+        .column("unit", |(_, (_, unit, _))| *unit)
+        .column("paper", |(.., (.., of))| of.paper)
+        .spread("ours", 2, ["_mean", "_std"], |(.., (.., of))| of.ours)
+        .column("seeds_with_value", |(.., (.., of))| {
+            of.ours.map_or(0, |ours| ours.count)
+        })
+        .column("seeds", |(.., (.., of))| of.seeds)
+        .column("difference", |(.., (.., of))| of.difference())
+        .column("relative_difference", |(.., (.., of))| of.relative())
+        .column("kept", |(.., (.., of))| of.is_kept());
+    store.write(&format!("{name}.md"), markdown.as_bytes())?;
+    store.write(&format!("{name}.csv"), &csv.table().csv()?)?;
+    store.write(&format!("{name}.json"), format!("{json:#}\n").as_bytes())?;
+    Ok(())
+}
