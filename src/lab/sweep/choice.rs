@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+use super::MOST_CELLS;
 use super::cell::short;
 use super::entries::Entries;
-use super::{MOST_CELLS, problem};
 use crate::runs::case::Source;
 use crate::scenario::quote::shown;
 use crate::scenario::{Problem, SHIPPED, Setting, built_in, suggestion};
@@ -20,22 +20,11 @@ pub(super) const SCENARIO: &str = "scenario";
 pub(super) struct Root<'a> {
     /// The study's file, relative to `scenarios/` if it is built in.
     pub(super) path: &'a Path,
-    built_in: bool,
+    /// Is it built into the program, or on disk?
+    pub(super) built_in: bool,
 }
 
-impl<'a> Root<'a> {
-    /// A file on disk.
-    pub(super) fn file(path: &'a Path) -> Self {
-        let built_in = false;
-        Self { path, built_in }
-    }
-
-    /// A file that is built into the program.
-    pub(super) fn built_in(path: &'a Path) -> Self {
-        let built_in = true;
-        Self { path, built_in }
-    }
-
+impl Root<'_> {
     /// The scenario in this file, if it exists.
     fn scenario(&self, name: &str) -> Result<Source, PathBuf> {
         let path = self.path.parent().unwrap_or(Path::new("")).join(name);
@@ -70,26 +59,20 @@ pub(super) enum Meaning {
 }
 
 impl Choice {
-    /// Do both set the same thing?
-    pub(super) fn is_as(&self, other: &Self) -> bool {
-        match (&self.meaning, &other.meaning) {
-            (Meaning::Setting(own), Meaning::Setting(other)) => own.path() == other.path(),
-            (Meaning::Scenario(_), Meaning::Scenario(_)) => true,
-            _ => false,
+    /// The path of the setting; `None` for another scenario.
+    pub(super) fn path(&self) -> Option<&[String]> {
+        match &self.meaning {
+            Meaning::Setting(setting) => Some(setting.path()),
+            Meaning::Scenario(_) => None,
         }
     }
 }
 
 /// The content of an object, independent of the order of its keys.
 pub(super) fn said(choices: &[Choice]) -> BTreeSet<(Option<&[String]>, String)> {
-    let said = choices.iter().map(|choice| {
-        let path = match &choice.meaning {
-            Meaning::Setting(setting) => Some(setting.path()),
-            Meaning::Scenario(_) => None,
-        };
-        (path, choice.value.to_string())
-    });
-    said.collect()
+    let said = choices.iter();
+    said.map(|choice| (choice.path(), choice.value.to_string()))
+        .collect()
 }
 
 /// The settings of an object at `place`. Given a root, a scenario may be among them.
@@ -101,11 +84,9 @@ pub(super) fn choices(
     let mut choices: Vec<Choice> = Vec::new();
     for (key, value) in &entries.0 {
         let choice = choice(key, value, [place, &format!("{place}.{key}")], root)?;
-        if let Some(other) = choices.iter().find(|other| other.is_as(&choice)) {
-            return Err(problem(
-                choice.place,
-                format!("is the same as {}", shown(&other.key)),
-            ));
+        if let Some(other) = choices.iter().find(|other| other.path() == choice.path()) {
+            let reason = format!("is the same as {}", shown(&other.key));
+            return Err(Problem::new(choice.place, reason));
         }
         choices.push(choice);
     }
@@ -115,25 +96,22 @@ pub(super) fn choices(
 /// A key of the grid with its values.
 pub(super) fn axis(key: &str, values: &Value, root: Root) -> Result<Vec<Choice>, Problem> {
     let place = format!("grid.{key}");
-    let values = match values.as_array() {
-        None => return Err(problem(place, "must be a list of values")),
-        Some(values) if values.is_empty() => return Err(problem(place, "must not be empty")),
-        Some(values) => values,
+    let Some(values) = values.as_array() else {
+        return Err(Problem::new(place, "must be a list of values"));
     };
+    if values.is_empty() {
+        return Err(Problem::new(place, "must not be empty"));
+    }
     if values.len() > MOST_CELLS {
-        let reason = format!(
-            "has {} values; at most {MOST_CELLS} cells are allowed",
-            values.len()
-        );
-        return Err(problem(place, reason));
+        let count = values.len();
+        let reason = format!("has {count} values; at most {MOST_CELLS} cells are allowed");
+        return Err(Problem::new(place, reason));
     }
     let mut seen = HashSet::new();
-    if let Some(k) = values
-        .iter()
-        .position(|value| !seen.insert(value.to_string()))
-    {
+    let again = |value: &Value| !seen.insert(value.to_string());
+    if let Some(k) = values.iter().position(again) {
         let reason = format!("{} is given twice", short(&values[k]));
-        return Err(problem(format!("{place}[{k}]"), reason));
+        return Err(Problem::new(format!("{place}[{k}]"), reason));
     }
     let value = |(k, value)| choice(key, value, ["grid", &format!("{place}[{k}]")], Some(root));
     values.iter().enumerate().map(value).collect()
@@ -151,15 +129,18 @@ fn choice(
             Meaning::Scenario(source(name, place, root)?)
         }
         (Some(_), _) if key == SCENARIO => {
-            return Err(problem(place, "must be the name of a scenario, or a file"));
+            return Err(Problem::new(
+                place,
+                "must be the name of a scenario, or a file",
+            ));
         }
         (None, _) if key == SCENARIO => {
-            return Err(problem(place, "belongs at the top of the study"));
+            return Err(Problem::new(place, "belongs at the top of the study"));
         }
         _ => {
             let text = format!("{}={}", shown(place), short(value));
             let setting = Setting::new(key, value.clone(), text);
-            Meaning::Setting(setting.map_err(|error| problem(inside, error.to_string()))?)
+            Meaning::Setting(setting.map_err(|error| Problem::new(inside, error.to_string()))?)
         }
     };
     Ok(Choice {
@@ -187,5 +168,5 @@ pub(super) fn source(name: &str, place: &str, root: Root) -> Result<Source, Prob
         shown(&path.display().to_string()),
         suggestion(name, known),
     );
-    Err(problem(place, reason))
+    Err(Problem::new(place, reason))
 }

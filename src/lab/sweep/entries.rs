@@ -6,7 +6,6 @@ use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::Value;
 
 use super::cell::LABEL;
-use super::problem;
 use crate::scenario::Problem;
 
 /// Keys and values as written.
@@ -22,7 +21,7 @@ impl Entries {
         match self.0.iter().find(is_label) {
             None => Ok((None, others)),
             Some((_, Value::String(label))) => Ok((Some(label.clone()), others)),
-            Some(_) => Err(problem(format!("{place}.{LABEL}"), "must be text")),
+            Some(_) => Err(Problem::new(format!("{place}.{LABEL}"), "must be text")),
         }
     }
 }

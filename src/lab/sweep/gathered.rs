@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use serde_json::{Map, Value, json};
 
+use super::Study;
 use super::cell::Cell;
-use super::{Study, tables};
 use crate::analysis::statistics::MeanStd;
 use crate::lab::error::LabError;
 use crate::runs::case::RunResult;
@@ -79,13 +79,8 @@ impl<'a> Gathered<'a> {
 
     /// Number of cells that are finished, failed and missing.
     pub fn counts(&self) -> [usize; 3] {
-        let count = |name| {
-            self.states
-                .iter()
-                .filter(|state| state.name() == name)
-                .count()
-        };
-        ["finished", "failed", "missing"].map(count)
+        let names = || self.states.iter().map(State::name);
+        ["finished", "failed", "missing"].map(|name| names().filter(|&own| own == name).count())
     }
 
     /// Writes `NAME.csv`, `NAME-summary.csv` and `NAME-results.json` into the store's folder.
@@ -95,23 +90,10 @@ impl<'a> Gathered<'a> {
     pub fn write(&self, store: &Store) -> Result<Vec<PathBuf>, LabError> {
         let [csv, summary, json] = self.study.files();
         Ok(vec![
-            store.write(&csv, &tables::cells(self).csv()?)?,
+            store.write(&csv, &self.cells_csv()?)?,
             store.write(&summary, &self.summary_csv()?)?,
             store.write(&json, format!("{:#}\n", self.json()).as_bytes())?,
         ])
-    }
-
-    /// The means over seeds as CSV, one row per combination of settings.
-    ///
-    /// # Errors
-    /// The table cannot be written.
-    pub fn summary_csv(&self) -> Result<Vec<u8>, LabError> {
-        Ok(tables::summary(self).csv()?)
-    }
-
-    /// The means over seeds as a table for a terminal.
-    pub fn text(&self) -> String {
-        tables::text(self)
     }
 
     /// All results as one object.
@@ -134,17 +116,15 @@ impl<'a> Gathered<'a> {
         });
         let combinations = self.combinations();
         let means = combinations.iter().map(|combination| {
-            let named = names.iter().zip(&combination.means);
-            let entry = |mean: MeanStd| {
+            let entry = |mean: &MeanStd| {
                 json!({ "mean": mean.mean, "ci95": mean.interval_95(), "n": mean.count })
             };
-            let metrics: Map<String, Value> = named
-                .map(|(name, mean)| (name.clone(), mean.map_or(Value::Null, entry)))
-                .collect();
+            let entries = combination.means.iter();
+            let entries = entries.map(|mean| mean.as_ref().map_or(Value::Null, entry));
             json!({
                 "settings": combination.cells.first().map(settings),
                 "runs": combination.results.len(),
-                "means": metrics,
+                "means": names.iter().cloned().zip(entries).collect::<Map<_, _>>(),
             })
         });
         json!({
@@ -166,11 +146,12 @@ impl<'a> Gathered<'a> {
     /// The names of all numbers that are averaged over seeds.
     pub(super) fn numbers(&self) -> Vec<String> {
         let mut names = self.metrics();
-        for name in ["evacuated", "time_secs"] {
-            if names.iter().all(|known| known != name) {
-                names.push(name.to_owned());
-            }
-        }
+        let own = ["evacuated", "time_secs"].map(str::to_owned);
+        let new: Vec<String> = own
+            .into_iter()
+            .filter(|name| !names.contains(name))
+            .collect();
+        names.extend(new);
         names
     }
 
@@ -193,17 +174,7 @@ impl<'a> Gathered<'a> {
         };
         groups.map(combination).collect()
     }
-}
 
-impl Combination<'_> {
-    /// A metric of each finished cell, in the order of the seeds.
-    pub fn values(&self, metric: &str) -> Vec<Option<f64>> {
-        let results = self.results.iter();
-        results.map(|result| number(result, metric)).collect()
-    }
-}
-
-impl Gathered<'_> {
     /// The first cell with this label, and its result.
     ///
     /// # Errors
@@ -211,12 +182,20 @@ impl Gathered<'_> {
     pub fn labeled(&self, label: &str) -> Result<(&Cell, &RunResult), LabError> {
         let mut cells = self.study.cells.iter().zip(&self.states);
         let found = cells.find(|(cell, _)| cell.label() == Some(label));
-        found
-            .and_then(|(cell, state)| Some((cell, state.result()?)))
-            .ok_or_else(|| LabError::Missing {
-                case: format!("{}, {label}", self.study.name),
-                what: "result".to_owned(),
-            })
+        let missing = || LabError::Missing {
+            case: format!("{}, {label}", self.study.name),
+            what: "result".to_owned(),
+        };
+        let finished = found.and_then(|(cell, state)| Some((cell, state.result()?)));
+        finished.ok_or_else(missing)
+    }
+}
+
+impl Combination<'_> {
+    /// A metric of each finished cell, in the order of the seeds.
+    pub fn values(&self, metric: &str) -> Vec<Option<f64>> {
+        let results = self.results.iter();
+        results.map(|result| number(result, metric)).collect()
     }
 }
 

@@ -40,7 +40,7 @@ use crate::lab::error::LabError;
 use crate::runs::error::{RunError, StoreError};
 use crate::runs::job::{self, Listener, Tally};
 use crate::runs::store::Store;
-use crate::scenario::{Problem, ScenarioError};
+use crate::scenario::ScenarioError;
 
 /// Why a study is invalid.
 #[derive(Debug, thiserror::Error)]
@@ -85,11 +85,3 @@ pub fn run(
 
 /// Studies with more cells are rejected as mistakes.
 const MOST_CELLS: usize = 100_000;
-
-/// A problem at a place of the study's file.
-fn problem(path: impl Into<String>, reason: impl Into<String>) -> Problem {
-    Problem {
-        path: path.into(),
-        reason: reason.into(),
-    }
-}

@@ -5,11 +5,11 @@ use std::collections::HashMap;
 use serde::Deserialize;
 use serde_json::Value;
 
+use super::MOST_CELLS;
 use super::cell::{Cell, LABEL};
 use super::choice::{Choice, Meaning, Root, SCENARIO, axis, choices, said, source};
 use super::entries::Entries;
 use super::seeds::Seeds;
-use super::{MOST_CELLS, problem};
 use crate::runs::case::{Case, Source};
 use crate::runs::error::RunError;
 use crate::runs::memory::Memory;
@@ -56,10 +56,10 @@ impl Plan {
         let mut labels = vec![None];
         let rows: Vec<Vec<Choice>> = match &file.list {
             None => vec![Vec::new()],
-            Some(list) if list.is_empty() => return Err(problem("list", "must not be empty")),
+            Some(list) if list.is_empty() => return Err(Problem::new("list", "must not be empty")),
             Some(list) if list.len() > MOST_CELLS => {
                 let reason = format!("has {} cells; at most {MOST_CELLS} are allowed", list.len());
-                return Err(problem("list", reason));
+                return Err(Problem::new("list", reason));
             }
             Some(list) => {
                 labels.clear();
@@ -73,11 +73,8 @@ impl Plan {
                 rows
             }
         };
-        let grid = file
-            .grid
-            .0
-            .iter()
-            .map(|(key, values)| axis(key, values, root));
+        let grid = file.grid.0.iter();
+        let grid = grid.map(|(key, values)| axis(key, values, root));
         let grid = grid.collect::<Result<Vec<_>, _>>()?;
         let mut plan = Self {
             names: Vec::new(),
@@ -114,7 +111,7 @@ impl Plan {
         let count = sizes.map(|size| size as f64).product::<f64>();
         if count > MOST_CELLS as f64 {
             let reason = format!("makes {count} cells; at most {MOST_CELLS} are allowed");
-            return Err(problem("", reason));
+            return Err(Problem::new("", reason));
         }
         Ok(count as usize)
     }
@@ -125,42 +122,36 @@ impl Plan {
         for (k, row) in self.rows.iter().enumerate() {
             if let Some(other) = seen.insert(said(row), k) {
                 let reason = format!("is the same as list[{other}]");
-                return Err(problem(format!("list[{k}]"), reason));
+                return Err(Problem::new(format!("list[{k}]"), reason));
             }
         }
         let seed = self.seeds[0].as_ref();
         let refuse = |choice: &Choice, other: String| {
             let reason = format!("is also given by {}; give it in one of them", shown(&other));
-            Err(problem(&choice.place, reason))
+            Err(Problem::new(&choice.place, reason))
         };
         let axes: Vec<&Choice> = self.grid.iter().filter_map(|axis| axis.first()).collect();
         for (k, choice) in axes.iter().enumerate() {
             let axis = format!("grid.{}", choice.key);
             let rows = self.rows.iter().flatten();
             let others = self.fixed.iter().chain(rows);
-            if let Some(other) = others.into_iter().find(|other| other.is_as(choice)) {
+            if let Some(other) = others
+                .into_iter()
+                .find(|other| other.path() == choice.path())
+            {
                 return refuse(other, axis);
             }
-            if let Some(other) = axes[..k].iter().find(|other| other.is_as(choice)) {
-                return Err(problem(
-                    axis,
-                    format!("is the same as grid.{}", shown(&other.key)),
-                ));
+            if let Some(other) = axes[..k].iter().find(|other| other.path() == choice.path()) {
+                let reason = format!("is the same as grid.{}", shown(&other.key));
+                return Err(Problem::new(axis, reason));
             }
         }
-        let all = self
-            .fixed
-            .iter()
-            .chain(self.rows.iter().flatten())
-            .chain(axes);
-        for choice in all {
-            let own = matches!(&choice.meaning, Meaning::Setting(own)
-                if seed.is_some_and(|seed| seed.path() == own.path()));
-            if own {
-                return refuse(choice, "seeds".to_owned());
-            }
+        let rows = self.rows.iter().flatten();
+        let mut all = self.fixed.iter().chain(rows).chain(axes);
+        match seed.and_then(|seed| all.find(|choice| choice.path() == Some(seed.path()))) {
+            Some(choice) => refuse(choice, "seeds".to_owned()),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// The cell at `index`, counted from 0.
@@ -172,12 +163,8 @@ impl Plan {
             digit
         };
         let seed = self.seeds[digit(self.seeds.len())].clone();
-        let grid: Vec<&Choice> = self
-            .grid
-            .iter()
-            .rev()
-            .map(|axis| &axis[digit(axis.len())])
-            .collect();
+        let grid = self.grid.iter().rev();
+        let grid: Vec<&Choice> = grid.map(|axis| &axis[digit(axis.len())]).collect();
         let row = digit(self.rows.len());
         let (row, label) = (&self.rows[row], &self.labels[row]);
         let varied: Vec<&Choice> = row.iter().chain(grid.into_iter().rev()).collect();
@@ -212,12 +199,9 @@ fn varied_scenario(rows: &[Vec<Choice>], grid: &[Vec<Choice>]) -> Result<Source,
     };
     let in_every_row: Option<Vec<Source>> = rows.iter().map(|row| of(row)).collect();
     let found = in_every_row.and_then(|sources| sources.into_iter().next());
-    found
-        .or_else(|| grid.iter().find_map(|axis| of(axis)))
-        .ok_or_else(|| {
-            let reason = "is missing: the name of a scenario (see `sandbox list`), or a file";
-            problem(SCENARIO, reason)
-        })
+    let found = found.or_else(|| grid.iter().find_map(|axis| of(axis)));
+    let reason = "is missing: the name of a scenario (see `sandbox list`), or a file";
+    found.ok_or_else(|| Problem::new(SCENARIO, reason))
 }
 
 /// The settings that add these measurements to those of a scenario.
@@ -225,7 +209,7 @@ fn measurements(given: &[Value]) -> Result<Vec<Setting>, Problem> {
     let setting = |(k, value): (usize, &Value)| {
         let place = format!("measurements[{k}]");
         Setting::new("measurements.+", value.clone(), place.clone())
-            .map_err(|error| problem(place, error.to_string()))
+            .map_err(|error| Problem::new(place, error.to_string()))
     };
     given.iter().enumerate().map(setting).collect()
 }
@@ -236,15 +220,9 @@ fn seeds(given: Option<&Seeds>) -> Result<Vec<Option<Setting>>, Problem> {
     };
     let setting = |(k, seed): (usize, u64)| {
         let text = format!("seeds[{k}]={seed}");
-        let setting = Setting::new("seed", Value::from(seed), text);
-        setting
-            .map(Some)
-            .map_err(|error| problem("seeds", error.to_string()))
+        let setting = Setting::new("seed", Value::from(seed), text).map(Some);
+        setting.map_err(|error| Problem::new("seeds", error.to_string()))
     };
-    given
-        .all(MOST_CELLS)?
-        .into_iter()
-        .enumerate()
-        .map(setting)
-        .collect()
+    let seeds = given.all(MOST_CELLS)?.into_iter();
+    seeds.enumerate().map(setting).collect()
 }

@@ -3,9 +3,9 @@
 use std::collections::HashSet;
 use std::fmt;
 
+use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Unexpected, Visitor};
 
-use super::problem;
 use crate::scenario::Problem;
 
 /// The seeds as written.
@@ -20,26 +20,26 @@ pub(super) enum Seeds {
 impl Seeds {
     /// All seeds, after validation; at most `most` are allowed.
     pub(super) fn all(&self, most: usize) -> Result<Vec<u64>, Problem> {
-        match self {
-            Self::Count(0) => Err(problem("seeds", "must be at least 1")),
-            Self::Count(count) if *count > most as u64 => {
-                Err(problem("seeds", format!("must be at most {most}")))
+        let (count, least) = match self {
+            Self::Count(count) => (*count, "must be at least 1"),
+            Self::List(list) => (list.len() as u64, "must not be empty"),
+        };
+        if count == 0 {
+            return Err(Problem::new("seeds", least));
+        }
+        if count > most as u64 {
+            return Err(Problem::new("seeds", format!("must be at most {most}")));
+        }
+        let Self::List(list) = self else {
+            return Ok((1..=count).collect());
+        };
+        let mut seen = HashSet::new();
+        match list.iter().position(|seed| !seen.insert(seed)) {
+            Some(k) => {
+                let reason = format!("{} is given twice", list[k]);
+                Err(Problem::new(format!("seeds[{k}]"), reason))
             }
-            Self::Count(count) => Ok((1..=*count).collect()),
-            Self::List(list) if list.is_empty() => Err(problem("seeds", "must not be empty")),
-            Self::List(list) if list.len() > most => {
-                Err(problem("seeds", format!("must be at most {most}")))
-            }
-            Self::List(list) => {
-                let mut seen = HashSet::new();
-                match list.iter().position(|seed| !seen.insert(seed)) {
-                    Some(k) => Err(problem(
-                        format!("seeds[{k}]"),
-                        format!("{} is given twice", list[k]),
-                    )),
-                    None => Ok(list.clone()),
-                }
-            }
+            None => Ok(list.clone()),
         }
     }
 }
@@ -67,11 +67,7 @@ impl<'de> Visitor<'de> for SeedsVisitor {
         Err(E::invalid_value(Unexpected::Signed(count), &self))
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Seeds, A::Error> {
-        let mut list = Vec::new();
-        while let Some(seed) = items.next_element()? {
-            list.push(seed);
-        }
-        Ok(Seeds::List(list))
+    fn visit_seq<A: SeqAccess<'de>>(self, items: A) -> Result<Seeds, A::Error> {
+        Vec::deserialize(SeqAccessDeserializer::new(items)).map(Seeds::List)
     }
 }

@@ -6,11 +6,11 @@ use std::sync::{Mutex, PoisonError};
 
 use serde_json::Value;
 
+use super::StudyError;
 use super::cell::{Cell, LABEL};
 use super::choice::Root;
 use super::plan::{File, Plan};
 use super::seeds::Seeds;
-use super::{StudyError, problem};
 use crate::runs::error::{RunError, StoreError};
 use crate::runs::job::Job;
 use crate::runs::memory::Memory;
@@ -59,10 +59,8 @@ impl Study {
 
     /// The files that its scenarios are read from, without duplicates.
     pub fn inputs(&self) -> BTreeSet<&Path> {
-        self.cells
-            .iter()
-            .flat_map(|cell| cell.case.files())
-            .collect()
+        let cells = self.cells.iter();
+        cells.flat_map(|cell| cell.case.files()).collect()
     }
 
     /// The jobs of its wanted cells, in order.
@@ -81,7 +79,15 @@ impl Study {
             file: path.display().to_string(),
             reason: error.to_string(),
         })?;
-        Self::parse_within(&text, Root::file(path), None, memory)
+        Self::parse_within(
+            &text,
+            Root {
+                path,
+                built_in: false,
+            },
+            None,
+            memory,
+        )
     }
 
     /// Reads a study from a file, or the built-in one of this name if there is no such file.
@@ -112,7 +118,8 @@ impl Study {
             file: path.display().to_string(),
             reason: "no such study is built into the program".to_owned(),
         })?;
-        Self::parse_within(text, Root::built_in(&path), seeds, memory)
+        let (path, built_in) = (path.as_path(), true);
+        Self::parse_within(text, Root { path, built_in }, seeds, memory)
     }
 
     /// Reads a study from JSON. `path` is its name in messages; files that it refers to are relative to the folder of
@@ -121,7 +128,15 @@ impl Study {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn parse(text: &str, path: &Path) -> Result<Self, StudyError> {
-        Self::parse_within(text, Root::file(path), None, None)
+        Self::parse_within(
+            text,
+            Root {
+                path,
+                built_in: false,
+            },
+            None,
+            None,
+        )
     }
 
     fn parse_within(
@@ -194,13 +209,16 @@ fn check_name(name: &str) -> Result<(), Problem> {
          {LONGEST_NAME} bytes",
         shown(name)
     );
-    Err(problem("name", reason))
+    Err(Problem::new("name", reason))
 }
 
 /// Checks names and types.
 fn parse(text: &str) -> Result<File, Problem> {
     if !text.trim_start().starts_with('{') {
-        return Err(problem("", "must be an object, {…}, with a `scenario`"));
+        return Err(Problem::new(
+            "",
+            "must be an object, {…}, with a `scenario`",
+        ));
     }
     let mut deserializer = serde_json::Deserializer::from_str(text);
     serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
@@ -209,6 +227,6 @@ fn parse(text: &str) -> Result<File, Problem> {
         let place = format!(" at line {} column {}", said.line(), said.column());
         let said = said.to_string();
         let reason = in_plain_words(said.strip_suffix(&place).unwrap_or(&said));
-        problem(if path == "." { String::new() } else { path }, reason)
+        Problem::new(if path == "." { String::new() } else { path }, reason)
     })
 }

@@ -1,11 +1,13 @@
 //! A study as tables: all cells, and means over seeds.
 
+use serde_json::Value;
+
 use super::cell::{Cell, plain, short};
 use super::gathered::{Combination, Gathered, State};
 use super::{Shard, Study};
+use crate::lab::error::LabError;
 use crate::output::table::{self, Columns, Table};
 use crate::runs::case::RunResult;
-use crate::scenario::quote::shown;
 
 /// A column about the run itself.
 type Count = (&'static str, fn(&RunResult) -> table::Cell);
@@ -30,140 +32,130 @@ const COUNTS: [Count; 8] = [
     }),
 ];
 
-/// One row per cell.
-pub(super) fn cells(gathered: &Gathered) -> Table {
-    let rows: Vec<Row> = gathered.study.cells.iter().zip(&gathered.states).collect();
-    let metrics = gathered.metrics();
-    let mut columns = first_columns(gathered.study, &rows, &gathered.study.axes, false);
-    for name in &metrics {
-        columns = columns.column(name, |(_, state)| {
-            let metric = |result: &RunResult| result.summary.metrics.get(name).map(plain);
-            state
-                .result()
-                .and_then(metric)
-                .filter(|text| text != "null")
-        });
-    }
-    if metrics.iter().all(|name| name != "evacuated") {
-        columns = columns.column("evacuated", |(_, state)| {
-            state.result().map(|r| r.evacuated)
-        });
-    }
-    for (name, count) in COUNTS {
-        columns = columns.column(name, |(_, state)| state.result().map(count));
-    }
-    let error = |state: &State| match state {
-        State::Failed(message) => Some(message.clone()),
-        State::Finished(_) | State::Missing => None,
-    };
-    columns
-        .column("wall_secs", |(_, state)| {
-            state.result().map(|r| format!("{:.3}", r.wall_secs))
-        })
-        .column("error", |(_, state)| error(state))
-        .table()
-}
-
-/// One row per combination of settings: the means, half their 95 % confidence intervals, and the numbers of values.
-pub(super) fn summary(gathered: &Gathered) -> Table {
-    let rows = gathered.combinations();
-    let mut columns = with_axes(&rows, &gathered.study.axes, false);
-    for (k, name) in gathered.numbers().iter().enumerate() {
-        let mean = |row: &Combination| row.means[k];
-        columns = columns
-            .column(&format!("{name}_mean"), |row| {
-                mean(row).map(|mean| mean.mean)
-            })
-            .column(&format!("{name}_ci95"), |row| mean(row)?.interval_95())
-            .column(&format!("{name}_n"), |row| {
-                mean(row).map_or(0, |mean| mean.count)
-            });
-    }
-    columns.table()
-}
-
-/// The same for a terminal: mean ± half the confidence interval.
-pub(super) fn text(gathered: &Gathered) -> String {
-    let rows = gathered.combinations();
-    let mut columns = with_axes(&rows, &gathered.study.short_axes(), true);
-    for (k, name) in gathered.numbers().iter().enumerate() {
-        columns = columns.fixed(name, 3, |row| {
-            row.means[k].map(|mean| table::Cell::Spread(mean.mean, mean.interval_95()))
-        });
-    }
-    columns.table().text()
-}
+type Row<'a> = (&'a Cell, &'a State);
 
 impl Study {
     /// The names of the result files: one row per cell, means over seeds, and everything as JSON.
     pub fn files(&self) -> [String; 3] {
-        ["csv", "summary.csv", "results.json"].map(|end| match end {
-            "csv" => format!("{}.csv", self.name),
-            end => format!("{}-{end}", self.name),
-        })
+        [".csv", "-summary.csv", "-results.json"].map(|end| format!("{}{end}", self.name))
     }
 }
 
 impl Gathered<'_> {
+    /// All cells as CSV.
+    pub(super) fn cells_csv(&self) -> Result<Vec<u8>, LabError> {
+        let rows: Vec<Row> = self.study.cells.iter().zip(&self.states).collect();
+        let metrics = self.metrics();
+        let mut columns = self.first_columns(&rows, &self.study.axes, plain);
+        for name in &metrics {
+            columns = columns.column(name, |(_, state)| {
+                let metrics = &state.result()?.summary.metrics;
+                metrics
+                    .get(name)
+                    .filter(|value| !value.is_null())
+                    .map(plain)
+            });
+        }
+        if metrics.iter().all(|name| name != "evacuated") {
+            columns = columns.column("evacuated", |(_, state)| {
+                state.result().map(|r| r.evacuated)
+            });
+        }
+        for (name, count) in COUNTS {
+            columns = columns.column(name, |(_, state)| state.result().map(count));
+        }
+        let columns = columns
+            .column("wall_secs", |(_, state)| {
+                state.result().map(|r| format!("{:.3}", r.wall_secs))
+            })
+            .column("error", |(_, state)| match state {
+                State::Failed(message) => Some(message.clone()),
+                State::Finished(_) | State::Missing => None,
+            });
+        Ok(columns.table().csv()?)
+    }
+
+    /// The means over seeds as CSV, one row per combination of settings: half the 95 % confidence intervals and the
+    /// numbers of values.
+    ///
+    /// # Errors
+    /// The table cannot be written.
+    pub fn summary_csv(&self) -> Result<Vec<u8>, LabError> {
+        let rows = self.combinations();
+        let mut columns = combined(&rows, &self.study.axes, plain);
+        for (k, name) in self.numbers().iter().enumerate() {
+            let mean = |row: &Combination| row.means[k];
+            columns = columns
+                .column(&format!("{name}_mean"), |row| {
+                    mean(row).map(|mean| mean.mean)
+                })
+                .column(&format!("{name}_ci95"), |row| mean(row)?.interval_95())
+                .column(&format!("{name}_n"), |row| {
+                    mean(row).map_or(0, |mean| mean.count)
+                });
+        }
+        Ok(columns.table().csv()?)
+    }
+
+    /// The same for a terminal: mean ± half the confidence interval.
+    pub fn text(&self) -> String {
+        let rows = self.combinations();
+        let mut columns = combined(&rows, &self.study.short_axes(), short);
+        for (k, name) in self.numbers().iter().enumerate() {
+            columns = columns.fixed(name, 3, |row| {
+                row.means[k].map(|mean| table::Cell::Spread(mean.mean, mean.interval_95()))
+            });
+        }
+        columns.table().text()
+    }
+
     /// The cells of a shard with their states, for a terminal.
     pub fn list(&self, shard: Shard) -> String {
         let cells = self.study.cells.iter().zip(&self.states);
         let rows: Vec<Row> = cells.filter(|(cell, _)| shard.has(cell.number)).collect();
-        first_columns(self.study, &rows, &self.study.short_axes(), true)
-            .table()
-            .text()
+        let columns = self.first_columns(&rows, &self.study.short_axes(), short);
+        columns.table().text()
     }
-}
 
-type Row<'a> = (&'a Cell, &'a State);
-
-/// The number, the varied settings, the seed and the status.
-fn first_columns<'r>(
-    study: &Study,
-    rows: &'r [Row],
-    axes: &[String],
-    is_short: bool,
-) -> Columns<'r, Row<'r>> {
-    let mut columns = Table::of(rows).column("cell", |(cell, _)| cell.number.to_string());
-    for axis in axes {
-        columns = columns.column(&head(axis, is_short), |(cell, _)| {
-            value(cell, axis, is_short)
-        });
+    /// The number, the varied settings, the seed and the status.
+    fn first_columns<'r>(
+        &self,
+        rows: &'r [Row],
+        axes: &[String],
+        write: fn(&Value) -> String,
+    ) -> Columns<'r, Row<'r>> {
+        let columns = Table::of(rows).column("cell", |(cell, _)| cell.number.to_string());
+        let mut columns = with_axes(columns, axes, write, |(cell, _)| Some(cell));
+        if !self.study.varies_seed() {
+            columns = columns.column("seed", |(cell, _)| cell.case.seed.to_string());
+        }
+        columns.column("status", |(_, state)| state.name())
     }
-    if !study.varies_seed() {
-        columns = columns.column("seed", |(cell, _)| cell.case.seed.to_string());
-    }
-    columns.column("status", |(_, state)| state.name())
 }
 
 /// The varied settings and the number of finished runs.
-fn with_axes<'r>(
+fn combined<'r>(
     rows: &'r [Combination],
     axes: &[String],
-    is_short: bool,
+    write: fn(&Value) -> String,
 ) -> Columns<'r, Combination<'r>> {
-    let mut columns = Table::of(rows);
-    for axis in axes {
-        columns = columns.column(&head(axis, is_short), |row| {
-            row.cells
-                .first()
-                .map_or(String::new(), |cell| value(cell, axis, is_short))
-        });
-    }
+    let columns = with_axes(Table::of(rows), axes, write, |row| row.cells.first());
     columns.column("runs", |row| row.results.len())
 }
 
-/// The head of a setting's column; short for a terminal.
-fn head(axis: &str, is_short: bool) -> String {
-    if is_short {
-        shown(axis)
-    } else {
-        axis.to_owned()
+/// Adds the varied settings, with heads and values as `write` writes them; empty if a cell does not have the setting.
+fn with_axes<'r, R>(
+    mut columns: Columns<'r, R>,
+    axes: &[String],
+    write: fn(&Value) -> String,
+    cell: fn(&'r R) -> Option<&'r Cell>,
+) -> Columns<'r, R> {
+    for axis in axes {
+        let head = write(&Value::from(axis.as_str()));
+        columns = columns.column(&head, |row| {
+            let value = cell(row).and_then(|cell| cell.value(axis));
+            value.map_or(String::new(), write)
+        });
     }
-}
-
-/// The value of a varied setting, short for a terminal; empty if the cell does not have the setting.
-fn value(cell: &Cell, axis: &str, is_short: bool) -> String {
-    let write = if is_short { short } else { plain };
-    cell.value(axis).map_or(String::new(), write)
+    columns
 }

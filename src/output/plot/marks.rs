@@ -61,26 +61,24 @@ pub fn draw<DB: DrawingBackend>(mark: &Mark, panel: &Panel, chart: &mut Chart<DB
     } else {
         let area = BitMapBackend::with_buffer(&mut image, size).into_drawing_area();
         let (x, y) = (panel.x.clone(), panel.y.clone());
-        draw_shapes(
-            mark,
-            panel,
-            &mut ChartBuilder::on(&area).build_cartesian_2d(x, y)?,
-        )?;
+        let mut chart = ChartBuilder::on(&area).build_cartesian_2d(x, y)?;
+        draw_shapes(mark, panel, &mut chart)?;
     }
     chart.draw_series(BitMapElement::with_ref((0.0, 1.0), size, &image))?;
     Ok(())
 }
 
-/// Colors the pixels of discs. plotters' circles are too coarse for small discs: their radii are whole pixels.
+/// Colors the pixels of discs. plotters' circles are too coarse for small discs: their radii are whole pixels. Rows are
+/// equal in pairs, half a point high, because an SVG's image is compressed only where a row repeats the one above it.
 fn color_discs(discs: &[Disc], panel: &Panel, image: &mut RgbImage) {
     let (width, height) = image.dimensions();
     for (disc, (x, y)) in panel.shown(discs, |disc| disc.center) {
         let (x, y) = (x * f64::from(width), (1.0 - y) * f64::from(height));
         let r = disc.radius * panel.scale(width);
-        let span = |at: f64, end: u32| (at - r) as u32..((at + r) as u32 + 1).min(end);
+        let span = |at: f64, end: u32| (at - r - 1.0) as u32..((at + r) as u32 + 2).min(end);
         for row in span(y, height) {
             for column in span(x, width) {
-                if (f64::from(column) + 0.5 - x).hypot(f64::from(row) + 0.5 - y) <= r {
+                if (f64::from(column) + 0.5 - x).hypot(f64::from(row & !1) + 1.0 - y) <= r {
                     image.put_pixel(column, row, image::Rgb(disc.color));
                 }
             }

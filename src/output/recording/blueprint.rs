@@ -120,7 +120,7 @@ fn layout(
             .into();
         let shown = match opening {
             Opening::Whole(Some(focus)) => focus,
-            Opening::Whole(None) | Opening::Empty | Opening::Live => options.view,
+            _ => options.view,
         };
         add_properties(&mut properties, &forces, &shown, BACKGROUND);
         below.push(forces);
@@ -180,26 +180,19 @@ fn dim_colors() -> Visualizer {
 
 fn plots(content: Content) -> ContainerLike {
     let plot = |name: &str, origin: &str| TimeSeriesView::new(name).with_origin(origin).into();
-    let motion = Vertical::new([
-        plot("Density", "/stats/density"),
-        plot("Mean speed", "/stats/speed"),
-    ])
-    .with_name("Density and speed")
-    .into();
+    let both = |name: &str, plots: [ContainerLike; 2]| Vertical::new(plots).with_name(name).into();
+    let density = plot("Density", "/stats/density");
+    let motion = both(
+        "Density and speed",
+        [density, plot("Mean speed", "/stats/speed")],
+    );
+    let agents = plot("Agents", "/stats/crowd");
     if content == Content::Measurement {
-        return Tabs::new([motion, plot("Agents", "/stats/crowd")]).into();
+        return Tabs::new([motion, agents]).into();
     }
-    let pages: [ContainerLike; 3] = [
-        motion,
-        Vertical::new([
-            plot("Agents", "/stats/crowd"),
-            plot("Kinetic energy", "/stats/energy"),
-        ])
-        .with_name("Agents and energy")
-        .into(),
-        plot("Computing time", "/stats/time"),
-    ];
-    Tabs::new(pages).into()
+    let energy = plot("Kinetic energy", "/stats/energy");
+    let crowd = both("Agents and energy", [agents, energy]);
+    Tabs::new([motion, crowd, plot("Computing time", "/stats/time")]).into()
 }
 
 fn texts(content: Content) -> ContainerLike {
@@ -227,19 +220,20 @@ fn add_properties(
     let ContainerLike::View(view) = view else {
         return;
     };
-    let at = |name: String| view.blueprint_path().join(&EntityPath::from(name));
     // The picture is flipped: y up in meters is y down on the screen.
     let bounds = VisualBounds2D::new(Bounds(rerun::datatypes::Range2D {
         x_range: [shown.min.x, shown.max.x].into(),
         y_range: [-shown.max.y, -shown.min.y].into(),
     }));
-    properties.push((at("VisualBounds2D".to_owned()), Box::new(bounds)));
-    let background =
-        Background::new(BackgroundKind::SolidColor).with_color(Color::from_rgb(r, g, b));
-    properties.push((at("Background".to_owned()), Box::new(background)));
-    let obstacles = geometry::OBSTACLES;
-    properties.push((
-        at(format!("ViewContents/overrides/{obstacles}/visualizers")),
-        Box::new(EntityBehavior::new().with_interactive(false)),
-    ));
+    let background = Background::new(BackgroundKind::SolidColor);
+    let background = background.with_color(Color::from_rgb(r, g, b));
+    let obstacles = format!("ViewContents/overrides/{}/visualizers", geometry::OBSTACLES);
+    let silent = EntityBehavior::new().with_interactive(false);
+    let own: [(&str, Box<dyn AsComponents>); 3] = [
+        ("VisualBounds2D", Box::new(bounds)),
+        ("Background", Box::new(background)),
+        (&obstacles, Box::new(silent)),
+    ];
+    let path = view.blueprint_path();
+    properties.extend(own.map(|(name, value)| (path.join(&EntityPath::from(name)), value)));
 }

@@ -9,7 +9,7 @@ use super::product::{Needs, Product, Write};
 use crate::lab::error::LabError;
 use crate::output::plot::Sheet;
 use crate::runs::store::Store;
-use snapshots::{CROWD_SPEED, DENSITY, SPEED, Snapshots};
+use snapshots::{ALL, CROWD_SPEED, DENSITY, SPEED, Snapshots};
 
 pub use grid::PRODUCT as STUDY;
 pub use performance::PRODUCT as FIG11;
@@ -24,7 +24,7 @@ const EVACUATION: Snapshots = Snapshots {
     coloring: DENSITY,
     columns: 6,
     width: 132.0,
-    measured: None,
+    ..ALL
 };
 
 /// The crossing after 45 s, with the region that Table 2 measures.
@@ -37,6 +37,7 @@ const CROSSING: Snapshots = Snapshots {
     columns: 2,
     width: 330.0,
     measured: Some([[8.0, 4.0], [14.0, 12.0]]),
+    ..ALL
 };
 
 /// The shockwave at six times.
@@ -48,13 +49,22 @@ const SHOCKWAVE: Snapshots = Snapshots {
     coloring: CROWD_SPEED,
     columns: 6,
     width: 108.0,
-    measured: None,
+    labels: &[
+        "baseline",
+        "k = 100",
+        "k = 400",
+        "ρ⁰max = 4",
+        "ρ⁰max = 6",
+        "μ = 0",
+    ],
+    ..ALL
 };
 
 /// The same without SPH.
 const NO_SPH: Snapshots = Snapshots {
     name: "fig9",
     title: "Fig. 9: the shockwave without SPH, colored by speed",
+    labels: &["no SPH, Kᵃᵍ = 50", "no SPH, Kᵃᵍ = 1000"],
     ..SHOCKWAVE
 };
 
@@ -66,6 +76,8 @@ const REST_DENSITIES: Snapshots = Snapshots {
     region: [[44.0, -32.0], [110.0, 32.0]],
     columns: 2,
     width: 320.0,
+    labels: &["static ρ⁰ = 4", "ρ⁰max = 4"],
+    titles: &["static ρ⁰ = 4", "dynamic ρ⁰, 0 to 4"],
     ..SHOCKWAVE
 };
 
@@ -73,6 +85,8 @@ const REST_DENSITIES: Snapshots = Snapshots {
 const CONTACTS: Snapshots = Snapshots {
     name: "fig10",
     title: "Fig. 10: without and with contact at t = 150 s, colored by speed",
+    labels: &["Kᵃᵍ = 0", "baseline"],
+    titles: &["Kᵃᵍ = 0", "Kᵃᵍ = 50 (baseline)"],
     ..REST_DENSITIES
 };
 
@@ -83,7 +97,7 @@ pub const FIG5: Product = Product {
     in_all: true,
     studies: &["fig5"],
     needs: Needs::All,
-    write: |studies, store| EVACUATION.write_all(studies, store),
+    write: |studies, store| EVACUATION.write(studies, store),
 };
 
 /// Fig. 6.
@@ -91,7 +105,7 @@ pub const FIG6: Product = Product {
     name: "fig6",
     about: "the crossing after 45 s, by speed, six profiles",
     studies: &["fig6"],
-    write: |studies, store| CROSSING.write_all(studies, store),
+    write: |studies, store| CROSSING.write(studies, store),
     ..FIG5
 };
 
@@ -112,54 +126,36 @@ const fn shockwave(
     }
 }
 
-const FIG7_LABELS: &[&str] = &[
-    "baseline",
-    "k = 100",
-    "k = 400",
-    "ρ⁰max = 4",
-    "ρ⁰max = 6",
-    "μ = 0",
-];
-const FIG8_LABELS: &[&str] = &["static ρ⁰ = 4", "ρ⁰max = 4"];
-const FIG9_LABELS: &[&str] = &["no SPH, Kᵃᵍ = 50", "no SPH, Kᵃᵍ = 1000"];
-const FIG10_LABELS: &[&str] = &["Kᵃᵍ = 0", "baseline"];
-
 /// Fig. 7.
 pub const FIG7: Product = shockwave(
     "fig7",
     "the shockwave at six times, by speed, six variants of SPH",
-    FIG7_LABELS,
-    |studies, store| SHOCKWAVE.write(studies, FIG7_LABELS, FIG7_LABELS, store),
+    SHOCKWAVE.labels,
+    |studies, store| SHOCKWAVE.write(studies, store),
 );
 
 /// Fig. 8.
 pub const FIG8: Product = shockwave(
     "fig8",
     "the crowd before the push with a static and a dynamic rest density",
-    FIG8_LABELS,
-    |studies, store| {
-        let titles = [FIG8_LABELS[0], "dynamic ρ⁰, 0 to 4"];
-        REST_DENSITIES.write(studies, FIG8_LABELS, &titles, store)
-    },
+    REST_DENSITIES.labels,
+    |studies, store| REST_DENSITIES.write(studies, store),
 );
 
 /// Fig. 9.
 pub const FIG9: Product = shockwave(
     "fig9",
     "the same without SPH, two strengths of contact",
-    FIG9_LABELS,
-    |studies, store| NO_SPH.write(studies, FIG9_LABELS, FIG9_LABELS, store),
+    NO_SPH.labels,
+    |studies, store| NO_SPH.write(studies, store),
 );
 
 /// Fig. 10.
 pub const FIG10: Product = shockwave(
     "fig10",
     "the crowd before the push without contact between agents, and with",
-    FIG10_LABELS,
-    |studies, store| {
-        let titles = [FIG10_LABELS[0], "Kᵃᵍ = 50 (baseline)"];
-        CONTACTS.write(studies, FIG10_LABELS, &titles, store)
-    },
+    CONTACTS.labels,
+    |studies, store| CONTACTS.write(studies, store),
 );
 
 /// Writes a picture into the store's folder, and returns a line with the file names.

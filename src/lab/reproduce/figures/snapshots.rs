@@ -59,26 +59,40 @@ pub(super) struct Snapshots {
     pub width: f64,
     /// A region whose outline is drawn.
     pub measured: Option<[[f64; 2]; 2]>,
+    /// The runs by their labels; if empty, all of the study.
+    pub labels: &'static [&'static str],
+    /// Their titles, if they are not the labels.
+    pub titles: &'static [&'static str],
 }
 
-impl Snapshots {
-    /// Draws all runs of the study, with their labels as titles.
-    pub fn write_all(&self, studies: &[Gathered], store: &Store) -> Result<String, LabError> {
-        let cells = studies.iter().flat_map(|study| &study.study.cells);
-        let labels: Vec<&str> = cells.filter_map(|cell| cell.label()).collect();
-        self.write(studies, &labels, &labels, store)
-    }
+/// All runs of a study under their labels; the other fields are yet to be given.
+pub(super) const ALL: Snapshots = Snapshots {
+    name: "",
+    title: "",
+    times: &[],
+    region: [[0.0; 2]; 2],
+    coloring: SPEED,
+    columns: 1,
+    width: 0.0,
+    measured: None,
+    labels: &[],
+    titles: &[],
+};
 
-    /// Draws the runs with these labels under these titles.
-    pub fn write(
-        &self,
-        studies: &[Gathered],
-        labels: &[&str],
-        titles: &[&str],
-        store: &Store,
-    ) -> Result<String, LabError> {
+impl Snapshots {
+    /// Draws the runs of the study.
+    pub fn write(&self, studies: &[Gathered], store: &Store) -> Result<String, LabError> {
         let [study] = studies else {
             return Err(LabError::Data(format!("{} has one study", self.name)));
+        };
+        let mut labels = self.labels.to_vec();
+        if labels.is_empty() {
+            labels.extend(study.study.cells.iter().filter_map(|cell| cell.label()));
+        }
+        let titles = if self.titles.is_empty() {
+            labels.as_slice()
+        } else {
+            self.titles
         };
         let [min, max] = self.region;
         let many = self.times.len() > 1;
