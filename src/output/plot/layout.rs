@@ -94,8 +94,8 @@ fn part<DB: DrawingBackend>(area: &Area<DB>, corner: [f64; 2], size: [f64; 2]) -
     area.clone().shrink((x, y), (width, height))
 }
 
-/// Draws a sheet.
-pub fn draw<DB: DrawingBackend>(sheet: &Sheet, root: &Area<DB>) -> Drawn {
+/// Draws a sheet; crowds as pixels, `alike` rows of which are the same.
+pub fn draw<DB: DrawingBackend>(sheet: &Sheet, root: &Area<DB>, alike: u32) -> Drawn {
     let layout = Layout::new(sheet);
     let [width, height] = sheet.panel_size;
     let [right, foot] = layout.size.map(|length| f64::from(length) - MARGIN);
@@ -105,7 +105,7 @@ pub fn draw<DB: DrawingBackend>(sheet: &Sheet, root: &Area<DB>) -> Drawn {
         let left = only(k % layout.columns == 0 || !sheet.shared_axes, LEFT);
         let below = only(lowest || !sheet.shared_axes, BELOW);
         let area = part(root, [x - left, y], [left + width, height + below]);
-        draw_chart(panel, &area, [left, below, 0.0])?;
+        draw_chart(panel, &area, [left, below, 0.0], alike)?;
         part(root, [x, y - 12.0], [width, 12.0]).titled(&panel.title, font(LABEL))?;
         if let Some(bar) = &panel.bar {
             draw_bar(bar, &part(root, [x + width + GAP, y], [BAR, height]))?;
@@ -131,7 +131,12 @@ pub fn draw<DB: DrawingBackend>(sheet: &Sheet, root: &Area<DB>) -> Drawn {
 }
 
 /// Draws a panel's marks and axes, with so much space left, below and right of them for numbers.
-fn draw_chart<DB: DrawingBackend>(panel: &Panel, area: &Area<DB>, space: [f64; 3]) -> Drawn {
+fn draw_chart<DB: DrawingBackend>(
+    panel: &Panel,
+    area: &Area<DB>,
+    space: [f64; 3],
+    alike: u32,
+) -> Drawn {
     let [left, below, right] = space.map(units);
     let mut builder = ChartBuilder::on(area);
     builder.x_label_area_size(below).y_label_area_size(left);
@@ -144,7 +149,7 @@ fn draw_chart<DB: DrawingBackend>(panel: &Panel, area: &Area<DB>, space: [f64; 3
     );
     let mut chart = builder.build_cartesian_2d(x, y)?;
     for mark in &panel.marks {
-        marks::draw(mark, panel, &mut chart)?;
+        marks::draw(mark, panel, &mut chart, alike)?;
     }
     let line = marks::stroke(super::BLACK, RIM);
     let mut axes = chart.configure_mesh();
@@ -172,7 +177,7 @@ fn draw_bar<DB: DrawingBackend>(bar: &ColorBar, area: &Area<DB>) -> Drawn {
         })],
         ..Panel::default()
     };
-    draw_chart(&panel, area, [0.0, 0.0, BAR - BAR_WIDTH])
+    draw_chart(&panel, area, [0.0, 0.0, BAR - BAR_WIDTH], 1)
 }
 
 /// Draws the legend of a panel's labeled marks. It is a chart without axes, because plotters draws a chart's legend

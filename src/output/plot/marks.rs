@@ -44,8 +44,13 @@ pub fn line<C: Clone>(path: Vec<C>, style: &Style) -> DashedPathElement<IntoIter
     DashedPathElement::new(path, dash, units(DASH), stroke(style.color, style.width))
 }
 
-/// Draws one mark. Pixels cover earlier marks also where they are white.
-pub fn draw<DB: DrawingBackend>(mark: &Mark, panel: &Panel, chart: &mut Chart<DB>) -> Drawn {
+/// Draws one mark. Pixels cover earlier marks also where they are white; `alike` rows of those of discs are the same.
+pub fn draw<DB: DrawingBackend>(
+    mark: &Mark,
+    panel: &Panel,
+    chart: &mut Chart<DB>,
+    alike: u32,
+) -> Drawn {
     let shapes = match mark {
         Mark::Discs(discs) => panel.shown(discs, |disc| disc.center).len(),
         Mark::Cells(cells) => cells.values.len(),
@@ -57,7 +62,7 @@ pub fn draw<DB: DrawingBackend>(mark: &Mark, panel: &Panel, chart: &mut Chart<DB
     let size @ (width, height) = chart.plotting_area().dim_in_pixel();
     let mut image = RgbImage::from_pixel(width, height, image::Rgb([255; 3]));
     if let Mark::Discs(discs) = mark {
-        color_discs(discs, panel, &mut image);
+        color_discs(discs, panel, &mut image, alike);
     } else {
         let area = BitMapBackend::with_buffer(&mut image, size).into_drawing_area();
         let (x, y) = (panel.x.clone(), panel.y.clone());
@@ -68,9 +73,8 @@ pub fn draw<DB: DrawingBackend>(mark: &Mark, panel: &Panel, chart: &mut Chart<DB
     Ok(())
 }
 
-/// Colors the pixels of discs. plotters' circles are too coarse for small discs: their radii are whole pixels. Rows are
-/// equal in pairs, half a point high, because an SVG's image is compressed only where a row repeats the one above it.
-fn color_discs(discs: &[Disc], panel: &Panel, image: &mut RgbImage) {
+/// Colors the pixels of discs. plotters' circles are too coarse for small discs: their radii are whole pixels.
+fn color_discs(discs: &[Disc], panel: &Panel, image: &mut RgbImage, alike: u32) {
     let (width, height) = image.dimensions();
     for (disc, (x, y)) in panel.shown(discs, |disc| disc.center) {
         let (x, y) = (x * f64::from(width), (1.0 - y) * f64::from(height));
@@ -78,7 +82,8 @@ fn color_discs(discs: &[Disc], panel: &Panel, image: &mut RgbImage) {
         let span = |at: f64, end: u32| (at - r - 1.0) as u32..((at + r) as u32 + 2).min(end);
         for row in span(y, height) {
             for column in span(x, width) {
-                if (f64::from(column) + 0.5 - x).hypot(f64::from(row & !1) + 1.0 - y) <= r {
+                let middle = f64::from(row / alike * alike) + 0.5 * f64::from(alike);
+                if (f64::from(column) + 0.5 - x).hypot(middle - y) <= r {
                     image.put_pixel(column, row, image::Rgb(disc.color));
                 }
             }

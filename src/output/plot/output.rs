@@ -50,20 +50,19 @@ impl Sheet {
         let size @ [width, height] = points.map(|length| length * SCALE);
 
         let mut text = String::new();
-        self.draw(SVGBackend::with_string(&mut text, (width, height)))?;
-        let attributes =
-            |[width, height]: [u32; 2]| format!(r#"width="{width}" height="{height}""#);
+        // The encoder of images in an SVG only finds repetitions of the row above: pairs of rows halve its size.
+        self.draw(SVGBackend::with_string(&mut text, (width, height)), 2)?;
+        let attributes = |[x, y]: [u32; 2]| format!(r#"width="{x}" height="{y}""#);
         let text = text.replacen(&attributes(size), &attributes(points), 1);
         write(stem.with_extension("svg"), text.as_bytes())?;
 
         let mut image = RgbImage::new(width, height);
-        self.draw(BitMapBackend::with_buffer(&mut image, (width, height)))?;
+        self.draw(BitMapBackend::with_buffer(&mut image, (width, height)), 1)?;
         let [width, height] = points.map(|length| length * PNG_SCALE);
         let mut image = imageops::thumbnail(&image, width, height);
         // Five bits per channel, and white stays white: the difference is invisible and the file a third smaller.
-        image
-            .iter_mut()
-            .for_each(|value| *value = *value & 0xF8 | *value >> 5);
+        let values = image.iter_mut();
+        values.for_each(|value| *value = *value & 0xF8 | *value >> 5);
         let mut bytes = Vec::new();
         PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive)
             .write_image(&image, width, height, ColorType::Rgb8)
@@ -71,10 +70,10 @@ impl Sheet {
         write(stem.with_extension("png"), &bytes)
     }
 
-    fn draw<DB: DrawingBackend>(&self, backend: DB) -> Drawn {
+    fn draw<DB: DrawingBackend>(&self, backend: DB, alike: u32) -> Drawn {
         let root = backend.into_drawing_area();
         root.fill(&WHITE)?;
-        layout::draw(self, &root)?;
+        layout::draw(self, &root, alike)?;
         Ok(root.present()?)
     }
 }
