@@ -53,26 +53,22 @@ pub(super) struct Plan {
 impl Plan {
     pub(super) fn new(file: &File, root: Root) -> Result<Self, Problem> {
         let fixed = choices(&file.settings, "settings", None)?;
-        let mut labels = vec![None];
-        let rows: Vec<Vec<Choice>> = match &file.list {
-            None => vec![Vec::new()],
-            Some(list) if list.is_empty() => return Err(Problem::new("list", "must not be empty")),
-            Some(list) if list.len() > MOST_CELLS => {
-                let reason = format!("has {} cells; at most {MOST_CELLS} are allowed", list.len());
-                return Err(Problem::new("list", reason));
-            }
-            Some(list) => {
-                labels.clear();
-                let mut rows = Vec::with_capacity(list.len());
-                for (k, entries) in list.iter().enumerate() {
-                    let place = format!("list[{k}]");
-                    let (label, entries) = entries.split_label(&place)?;
-                    rows.push(choices(&entries, &place, Some(root))?);
-                    labels.push(label.map(|label| (LABEL.to_owned(), label.into())));
-                }
-                rows
-            }
-        };
+        let single = [Entries::default()];
+        let list = file.list.as_deref().unwrap_or(&single);
+        if list.is_empty() {
+            return Err(Problem::new("list", "must not be empty"));
+        }
+        if list.len() > MOST_CELLS {
+            let reason = format!("has {} cells; at most {MOST_CELLS} are allowed", list.len());
+            return Err(Problem::new("list", reason));
+        }
+        let (mut rows, mut labels) = (Vec::new(), Vec::new());
+        for (k, entries) in list.iter().enumerate() {
+            let place = format!("list[{k}]");
+            let (label, entries) = entries.split_label(&place)?;
+            rows.push(choices(&entries, &place, Some(root))?);
+            labels.push(label.map(|label| (LABEL.to_owned(), label.into())));
+        }
         let grid = file.grid.0.iter();
         let grid = grid.map(|(key, values)| axis(key, values, root));
         let grid = grid.collect::<Result<Vec<_>, _>>()?;
@@ -134,14 +130,12 @@ impl Plan {
         for (k, choice) in axes.iter().enumerate() {
             let axis = format!("grid.{}", choice.key);
             let rows = self.rows.iter().flatten();
-            let others = self.fixed.iter().chain(rows);
-            if let Some(other) = others
-                .into_iter()
-                .find(|other| other.path() == choice.path())
-            {
+            let mut others = self.fixed.iter().chain(rows);
+            let is_same = |other: &&Choice| other.path() == choice.path();
+            if let Some(other) = others.find(is_same) {
                 return refuse(other, axis);
             }
-            if let Some(other) = axes[..k].iter().find(|other| other.path() == choice.path()) {
+            if let Some(other) = axes[..k].iter().copied().find(is_same) {
                 let reason = format!("is the same as grid.{}", shown(&other.key));
                 return Err(Problem::new(axis, reason));
             }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::OnceLock;
 
 use serde_json::Value;
 
@@ -79,15 +79,8 @@ impl Study {
             file: path.display().to_string(),
             reason: error.to_string(),
         })?;
-        Self::parse_within(
-            &text,
-            Root {
-                path,
-                built_in: false,
-            },
-            None,
-            memory,
-        )
+        let built_in = false;
+        Self::parse_within(&text, Root { path, built_in }, None, memory)
     }
 
     /// Reads a study from a file, or the built-in one of this name if there is no such file.
@@ -128,15 +121,8 @@ impl Study {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn parse(text: &str, path: &Path) -> Result<Self, StudyError> {
-        Self::parse_within(
-            text,
-            Root {
-                path,
-                built_in: false,
-            },
-            None,
-            None,
-        )
+        let built_in = false;
+        Self::parse_within(text, Root { path, built_in }, None, None)
     }
 
     fn parse_within(
@@ -158,30 +144,28 @@ impl Study {
         let name = written.name.unwrap_or_else(|| stem.into_owned());
         check_name(&name).map_err(invalid)?;
         let shared = Memory::new(memory);
-        let cells = Mutex::new(Vec::with_capacity(plan.count));
+        let cells: Vec<_> = (0..plan.count).map(|_| OnceLock::new()).collect();
         // Not on rayon's threads: they could start another cell while they hold memory for the first.
         side_by_side(plan.count, |index| {
-            let cell = plan.cell(index, &shared);
-            let mut cells = cells.lock().unwrap_or_else(PoisonError::into_inner);
-            cells.push((index, cell));
+            cells[index].set(plan.cell(index, &shared)).ok();
             Ok::<(), StoreError>(())
         })?;
-        let mut cells = cells.into_inner().unwrap_or_else(PoisonError::into_inner);
-        cells.sort_by_key(|&(index, _)| index);
-        let failed = |(index, cell): (usize, Result<Cell, RunError>)| {
-            cell.map_err(|error| StudyError::Cell {
+        let cell = |(index, cell): (usize, OnceLock<Result<Cell, RunError>>)| {
+            let failed = |error| StudyError::Cell {
                 file: file.clone(),
                 cell: index + 1,
                 error,
-            })
+            };
+            cell.into_inner().map(|cell| cell.map_err(failed))
         };
+        let cells = cells.into_iter().enumerate().filter_map(cell);
         Ok(Self {
             name,
             document,
             memory,
             seeds: plan.seeds.len(),
             grid_axes: plan.grid.len(),
-            cells: cells.into_iter().map(failed).collect::<Result<_, _>>()?,
+            cells: cells.collect::<Result<_, _>>()?,
             axes: plan.names,
         })
     }

@@ -33,11 +33,8 @@ pub enum RecordingError {
         reason: String,
     },
     /// No viewer can be started.
-    #[error("cannot start a viewer: {reason}")]
-    NotSpawned {
-        /// The reason.
-        reason: String,
-    },
+    #[error("cannot start a viewer: {0}")]
+    NotSpawned(String),
     /// The viewer was closed or froze, or the connection broke. The recording's file, if any, is complete.
     #[error("the viewer at {address} went away before the run had ended: {reason}")]
     ViewerGone {

@@ -8,30 +8,18 @@ use super::debug::{DebugAgents, Open};
 use super::error::Cause;
 use super::geometry::xy;
 use crate::engine::boundary::WallMethod;
-use crate::engine::breakdown::WallTerm;
 use crate::engine::math::Vector;
 use crate::engine::profile::Term;
 use crate::engine::scene::Scene;
+use crate::output::colors::Rgb;
 
 /// With more debug agents than this, labels would hide everything; a click still shows an agent's id.
 const MOST_LABELS: usize = 40;
 
+const WHITE: Rgb = [255; 3];
+
 /// Length of an arrow in meters per m/s² of acceleration: 0.5 m for the goal force of an average person at rest.
 pub const METERS_PER_ACCELERATION: f64 = 0.2;
-
-/// What a layer shows.
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    Labels,
-    Kernels,
-    HiddenRegions,
-    Links,
-    NearestPoints,
-    RepresentativePoints,
-    /// A term of the breakdown.
-    Force(Term),
-    Total,
-}
 
 /// The color of a force's arrows, in words and as RGB.
 pub fn color(term: Term) -> (&'static str, [u8; 3]) {
@@ -48,111 +36,20 @@ pub fn color(term: Term) -> (&'static str, [u8; 3]) {
     }
 }
 
+/// The data of one frame, and its number of elements.
+type Data = (Box<dyn AsComponents>, usize);
+
 /// One entity under `world/debug`.
 pub struct Layer {
     entity: String,
-    kind: Kind,
-    color: Color,
-    /// Line width or point radius on the screen.
-    radius: Radius,
+    data: Box<dyn Fn(&[Open]) -> Data + Send>,
     shown: bool,
 }
 
-/// The layers that can have content in `scene`.
-pub fn layers(scene: &Scene, who: &DebugAgents) -> Vec<Layer> {
-    if *who == DebugAgents::None {
-        return Vec::new();
-    }
-    let mut layers = vec![
-        Layer::new(Kind::Labels, "agents", [255, 255, 255], 1.5),
-        Layer::new(Kind::Kernels, "kernels", [150, 160, 220], 0.6),
-    ];
-    let walls = !scene.walls.is_empty();
-    if walls {
-        layers.extend([
-            Layer::new(
-                Kind::HiddenRegions,
-                "walls/hidden_regions",
-                [220, 120, 200],
-                0.8,
-            ),
-            Layer::new(Kind::Links, "walls/links", [190, 110, 110], 0.4),
-            Layer::new(
-                Kind::NearestPoints,
-                "walls/nearest_points",
-                [255, 90, 80],
-                3.0,
-            ),
-        ]);
-    }
-    if walls && scene.wall_method == WallMethod::Representative {
-        let (kind, name) = (Kind::RepresentativePoints, "walls/representative_points");
-        layers.push(Layer::new(kind, name, [255, 190, 80], 3.0));
-    }
-    for term in Term::all().filter(|&term| acts(term, scene)) {
-        let name = format!("forces/{}", term.name());
-        layers.push(Layer::new(Kind::Force(term), &name, color(term).1, 1.2));
-    }
-    layers.push(Layer::new(
-        Kind::Total,
-        "forces/total",
-        [255, 255, 255],
-        1.6,
-    ));
-    layers
-}
-
-/// Does some profile of `scene` have this force?
-fn acts(term: Term, scene: &Scene) -> bool {
-    let mut steps = scene.groups.iter().flat_map(|group| group.blend.steps());
-    (!term.is_of_walls() || !scene.walls.is_empty()) && steps.any(|step| step.profile.has(term))
-}
-
 impl Layer {
-    fn new(kind: Kind, name: &str, [r, g, b]: [u8; 3], radius: f32) -> Self {
-        Self {
-            entity: format!("world/debug/{name}"),
-            kind,
-            color: Color::from_rgb(r, g, b),
-            radius: Radius::new_ui_points(radius),
-            shown: false,
-        }
-    }
-
-    /// Logs colors, widths and the drawing order.
-    pub fn log_style(&self, stream: &RecordingStream) -> Result<(), Cause> {
-        let (radii, colors) = ([self.radius], [self.color]);
-        let points = Points2D::update_fields()
-            .with_radii(radii)
-            .with_colors(colors)
-            .with_draw_order(12.0);
-        let arrows = Arrows2D::update_fields()
-            .with_radii(radii)
-            .with_colors(colors);
-        let style: Box<dyn AsComponents> = match self.kind {
-            Kind::Labels => Box::new(points.with_show_labels(true)),
-            Kind::NearestPoints | Kind::RepresentativePoints => Box::new(points),
-            Kind::Kernels => Box::new(
-                Ellipses2D::update_fields()
-                    .with_line_radii(radii)
-                    .with_colors(colors)
-                    .with_draw_order(10.0),
-            ),
-            Kind::HiddenRegions | Kind::Links => Box::new(
-                LineStrips2D::update_fields()
-                    .with_radii(radii)
-                    .with_colors(colors)
-                    .with_draw_order(11.0),
-            ),
-            Kind::Force(_) => Box::new(arrows.with_draw_order(13.0)),
-            Kind::Total => Box::new(arrows.with_draw_order(14.0)),
-        };
-        Ok(stream.log_static(self.entity.as_str(), style.as_ref())?)
-    }
-
     /// Logs one frame. A layer that has just become empty is logged as empty, so that it disappears from view.
     pub fn log(&mut self, stream: &RecordingStream, open: &[Open]) -> Result<(), Cause> {
-        let (data, count) = self.kind.data(open);
+        let (data, count) = (self.data)(open);
         if count > 0 || self.shown {
             stream.log(self.entity.as_str(), data.as_ref())?;
         }
@@ -161,60 +58,146 @@ impl Layer {
     }
 }
 
-impl Kind {
-    /// The data of one frame for all debug agents, and its number of elements.
-    fn data(self, open: &[Open]) -> (Box<dyn AsComponents>, usize) {
-        let positions = open.iter().map(|agent| xy(agent.position));
-        let walls = open.iter().flat_map(|agent| {
-            let walls = agent.breakdown.walls.iter();
-            walls.map(|term| (xy(agent.position), term))
-        });
-        match self {
-            Self::Labels => {
-                let readable = open.len() <= MOST_LABELS;
-                let labels = open.iter().filter(|_| readable);
-                let labels = labels.map(|agent| agent.breakdown.id.to_string());
-                let points = Points2D::update_fields().with_positions(positions);
-                (Box::new(points.with_labels(labels)), open.len())
-            }
-            Self::Kernels => {
-                let half_sizes = open.iter().map(|agent| [agent.support_radius as f32; 2]);
-                let circles = Ellipses2D::update_fields()
-                    .with_centers(positions)
-                    .with_half_sizes(half_sizes);
-                (Box::new(circles), open.len())
-            }
-            Self::HiddenRegions => {
-                let outlines = open.iter().flat_map(|agent| agent.hidden.iter().cloned());
-                strips(outlines.collect())
-            }
-            Self::Links => {
-                let link =
-                    |(from, term): ([f32; 2], &WallTerm)| vec![from, xy(term.nearest_point.into())];
-                strips(walls.map(link).collect())
-            }
-            Self::NearestPoints => dots(
-                walls
-                    .map(|(_, term)| xy(term.nearest_point.into()))
-                    .collect(),
-            ),
-            Self::RepresentativePoints => {
-                let found = walls.filter_map(|(_, term)| term.representative_point);
-                dots(found.map(|p| xy(p.into())).collect())
-            }
-            Self::Force(term) => arrows(open, |agent| agent.force(term)),
-            Self::Total => arrows(open, |agent| agent.breakdown.acceleration.into()),
-        }
+/// The layers that can have content in `scene`; their colors, widths and drawing order are logged.
+pub fn begin(
+    stream: &RecordingStream,
+    scene: &Scene,
+    who: &DebugAgents,
+) -> Result<Vec<Layer>, Cause> {
+    let mut layers = Vec::new();
+    if *who == DebugAgents::None {
+        return Ok(layers);
     }
+    let mut add = |name: &str, style: &dyn AsComponents, data| -> Result<(), Cause> {
+        let entity = format!("world/debug/{name}");
+        stream.log_static(entity.as_str(), style)?;
+        layers.push(Layer {
+            entity,
+            data,
+            shown: false,
+        });
+        Ok(())
+    };
+    let style = point_style(WHITE, 1.5).with_show_labels(true);
+    add("agents", &style, Box::new(labels))?;
+    let style = Ellipses2D::update_fields()
+        .with_line_radii([Radius::new_ui_points(0.6)])
+        .with_colors([Color::from_rgb(150, 160, 220)])
+        .with_draw_order(10.0);
+    add("kernels", &style, Box::new(kernels))?;
+    let walls = !scene.walls.is_empty();
+    if walls {
+        let style = line_style([220, 120, 200], 0.8);
+        add("walls/hidden_regions", &style, Box::new(hidden_regions))?;
+        let style = line_style([190, 110, 110], 0.4);
+        add("walls/links", &style, Box::new(links))?;
+        let style = point_style([255, 90, 80], 3.0);
+        add("walls/nearest_points", &style, Box::new(nearest_points))?;
+    }
+    if walls && scene.wall_method == WallMethod::Representative {
+        let (name, style) = (
+            "walls/representative_points",
+            point_style([255, 190, 80], 3.0),
+        );
+        add(name, &style, Box::new(representative_points))?;
+    }
+    for term in Term::all().filter(|&term| acts(term, scene)) {
+        let style = arrow_style(color(term).1, 1.2).with_draw_order(13.0);
+        let data = move |open: &[Open]| arrows(open, |agent| agent.force(term));
+        add(&format!("forces/{}", term.name()), &style, Box::new(data))?;
+    }
+    let style = arrow_style(WHITE, 1.6).with_draw_order(14.0);
+    let data = |open: &[Open]| arrows(open, |agent| agent.breakdown.acceleration.into());
+    add("forces/total", &style, Box::new(data))?;
+    Ok(layers)
 }
 
-fn strips(strips: Vec<Vec<[f32; 2]>>) -> (Box<dyn AsComponents>, usize) {
+/// Does some profile of `scene` have this force?
+fn acts(term: Term, scene: &Scene) -> bool {
+    let mut steps = scene.groups.iter().flat_map(|group| group.blend.steps());
+    (!term.is_of_walls() || !scene.walls.is_empty()) && steps.any(|step| step.profile.has(term))
+}
+
+fn point_style([r, g, b]: Rgb, radius: f32) -> Points2D {
+    Points2D::update_fields()
+        .with_radii([Radius::new_ui_points(radius)])
+        .with_colors([Color::from_rgb(r, g, b)])
+        .with_draw_order(12.0)
+}
+
+fn line_style([r, g, b]: Rgb, width: f32) -> LineStrips2D {
+    LineStrips2D::update_fields()
+        .with_radii([Radius::new_ui_points(width)])
+        .with_colors([Color::from_rgb(r, g, b)])
+        .with_draw_order(11.0)
+}
+
+fn arrow_style([r, g, b]: Rgb, width: f32) -> Arrows2D {
+    Arrows2D::update_fields()
+        .with_radii([Radius::new_ui_points(width)])
+        .with_colors([Color::from_rgb(r, g, b)])
+}
+
+fn positions(open: &[Open]) -> impl Iterator<Item = [f32; 2]> {
+    open.iter().map(|agent| xy(agent.position))
+}
+
+fn labels(open: &[Open]) -> Data {
+    let labels = open.iter().filter(|_| open.len() <= MOST_LABELS);
+    let labels = labels.map(|agent| agent.breakdown.id.to_string());
+    let points = Points2D::update_fields().with_positions(positions(open));
+    (Box::new(points.with_labels(labels)), open.len())
+}
+
+fn kernels(open: &[Open]) -> Data {
+    let half_sizes = open.iter().map(|agent| [agent.support_radius as f32; 2]);
+    let circles = Ellipses2D::update_fields()
+        .with_centers(positions(open))
+        .with_half_sizes(half_sizes);
+    (Box::new(circles), open.len())
+}
+
+fn hidden_regions(open: &[Open]) -> Data {
+    strips(open.iter().flat_map(|agent| agent.hidden.iter().cloned()))
+}
+
+/// The positions of agents, each with its nearest point on a wall and its representative point there.
+fn walls(open: &[Open]) -> impl Iterator<Item = ([f32; 2], [f32; 2], Option<[f32; 2]>)> {
+    open.iter().flat_map(|agent| {
+        let walls = agent.breakdown.walls.iter();
+        walls.map(|term| {
+            let representative = term.representative_point.map(|p| xy(p.into()));
+            (
+                xy(agent.position),
+                xy(term.nearest_point.into()),
+                representative,
+            )
+        })
+    })
+}
+
+/// Lines from each agent to its nearest point on each wall.
+fn links(open: &[Open]) -> Data {
+    strips(walls(open).map(|(from, to, _)| vec![from, to]))
+}
+
+fn nearest_points(open: &[Open]) -> Data {
+    dots(walls(open).map(|(_, nearest, _)| nearest))
+}
+
+fn representative_points(open: &[Open]) -> Data {
+    dots(walls(open).filter_map(|(.., representative)| representative))
+}
+
+fn strips(strips: impl Iterator<Item = Vec<[f32; 2]>>) -> Data {
+    let strips: Vec<_> = strips.collect();
     let count = strips.len();
     let lines = LineStrips2D::update_fields().with_strips(strips);
     (Box::new(lines), count)
 }
 
-fn dots(points: Vec<[f32; 2]>) -> (Box<dyn AsComponents>, usize) {
+fn dots(points: impl Iterator<Item = [f32; 2]>) -> Data {
+    let points: Vec<_> = points.collect();
     let count = points.len();
     let points = Points2D::update_fields().with_positions(points);
     (Box::new(points), count)

@@ -1,5 +1,7 @@
 //! A recording of measured frames.
 
+use rerun::RecordingStream;
+
 use super::blueprint::Content;
 use super::error::RecordingError;
 use super::output::{Destination, Output};
@@ -45,16 +47,12 @@ impl MeasuredRecorder {
             ..options.clone()
         };
         let output = Output::open(&to.into(), &options.title, options.title.clone())?;
-        let session = Session::begin(
-            output,
-            options,
-            Content::Measurement,
-            Vec::new(),
-            |stream, options| {
-                text::log_measurement(stream, options)?;
-                geometry::log_still(stream, walls.obstacles())
-            },
-        )?;
+        let log_own = |stream: &RecordingStream| {
+            text::log_measurement(stream, &options)?;
+            geometry::log_still(stream, walls.obstacles())?;
+            Ok(Vec::new())
+        };
+        let session = Session::begin(output, options.clone(), Content::Measurement, log_own)?;
         Ok(Self { session, radius })
     }
 

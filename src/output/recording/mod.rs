@@ -40,7 +40,7 @@ pub use viewer::{Address, AddressError, Viewer};
 use rerun::RecordingStream;
 
 use crate::engine::scene::Region;
-use crate::engine::simulation::{Event, Simulation};
+use crate::engine::simulation::Simulation;
 use blueprint::Content;
 use output::{APPLICATION, Output};
 use session::Session;
@@ -77,7 +77,8 @@ pub struct Recorder {
     opened: bool,
     /// Region of the debug view.
     focus: Option<Region>,
-    progress: Progress,
+    /// Number of events that were recorded or left out; `None` before the first frame.
+    events: Option<usize>,
 }
 
 impl Recorder {
@@ -93,17 +94,16 @@ impl Recorder {
         let id = format!("{}-seed{}", options.title, simulation.scene().seed);
         let output = Output::open(&to.into(), &options.title, id)?;
         let (scene, agents) = (simulation.scene(), simulation.frame().agents);
-        let layers = layers::layers(scene, &options.debug);
-        let options = options.clone();
-        let session = Session::begin(output, options, Content::Run, layers, |stream, options| {
+        let log_own = |stream: &RecordingStream| {
             text::log_run(stream, scene, options)?;
-            geometry::log(stream, scene, agents)
-        })?;
+            geometry::log(stream, scene, agents)?;
+            layers::begin(stream, scene, &options.debug)
+        };
         Ok(Self {
-            session,
+            session: Session::begin(output, options.clone(), Content::Run, log_own)?,
             opened: false,
             focus: None,
-            progress: Progress::default(),
+            events: None,
         })
     }
 
@@ -122,8 +122,15 @@ impl Recorder {
         let options = &mut self.session.options;
         let mut snapshot = Snapshot::of(simulation, &options.debug);
         snapshot.ms_per_frame = Some(ms_per_frame);
-        snapshot.evacuated = Some(self.progress.count_arrivals(simulation));
-        snapshot.events = self.progress.new_events(simulation);
+        let arrivals = simulation.outcome().arrivals.iter();
+        snapshot.evacuated = Some(arrivals.filter(|arrival| arrival.counted).count());
+        let (clock, events) = (simulation.frame().clock, simulation.events());
+        let before = self.events.replace(events.len());
+        let new = events[before.unwrap_or(0)..].iter();
+        // Events before a late start are left out: they would only stretch the time line.
+        let new = new.filter(|event| before.is_some() || event.frame == clock.frame());
+        let new = new.map(|event| (clock.time_at(event.frame), event.clone()));
+        snapshot.events = new.collect();
         snapshot.opens_here = !self.opened && snapshot.time >= options.opens_at;
         // A run may end before that time; the debug view then shows an agent that was present earlier.
         if snapshot.opens_here || self.focus.is_none() {
@@ -140,40 +147,6 @@ impl Recorder {
     /// Data could not be written, for example because the disk is full; or the viewer is gone or took no data for 2 s.
     pub fn finish(self) -> Result<(), RecordingError> {
         self.session.finish(self.focus)
-    }
-}
-
-/// How much of the simulation's reports has been recorded.
-#[derive(Default)]
-struct Progress {
-    started: bool,
-    events: usize,
-    arrivals: usize,
-    evacuated: usize,
-}
-
-impl Progress {
-    fn count_arrivals(&mut self, simulation: &Simulation) -> usize {
-        let arrivals = &simulation.outcome().arrivals;
-        let new = arrivals[self.arrivals..].iter();
-        self.evacuated += new.filter(|arrival| arrival.counted).count();
-        self.arrivals = arrivals.len();
-        self.evacuated
-    }
-
-    /// The events since the last recorded frame, with times. Events before a late start are left out: they would only
-    /// stretch the time line.
-    fn new_events(&mut self, simulation: &Simulation) -> Vec<(f64, Event)> {
-        let clock = simulation.frame().clock;
-        let events = simulation.events();
-        let new = events[self.events..]
-            .iter()
-            .filter(|event| self.started || event.frame == clock.frame())
-            .map(|event| (clock.time_at(event.frame), event.clone()))
-            .collect();
-        self.events = events.len();
-        self.started = true;
-        new
     }
 }
 

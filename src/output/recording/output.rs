@@ -76,7 +76,12 @@ impl Output {
             if let Some(sink) = sink {
                 sinks.push(Box::new(sink));
             }
-            let builder = RecordingStreamBuilder::new(APPLICATION).batcher_config(batches(is_live));
+            // The crowd's rows fill a chunk by size; all other rows are flushed after a fixed time.
+            let batches = ChunkBatcherConfig {
+                flush_tick: if is_live { VIEWER_TICK } else { FILE_TICK },
+                ..ChunkBatcherConfig::DEFAULT
+            };
+            let builder = RecordingStreamBuilder::new(APPLICATION).batcher_config(batches);
             // In a live viewer, a second run with the same id would become part of the first.
             let builder = if is_live {
                 builder
@@ -144,14 +149,6 @@ pub fn check_enabled() -> Result<(), RecordingError> {
     }
     let value = std::env::var("RERUN").unwrap_or_default();
     Err(RecordingError::SwitchedOff(value))
-}
-
-/// The crowd's rows fill a chunk by size; all other rows are flushed after a fixed time.
-fn batches(is_live: bool) -> ChunkBatcherConfig {
-    ChunkBatcherConfig {
-        flush_tick: if is_live { VIEWER_TICK } else { FILE_TICK },
-        ..ChunkBatcherConfig::DEFAULT
-    }
 }
 
 /// Checks that the file ends like a recording that was closed. Reads only its last bytes.

@@ -19,25 +19,21 @@ pub struct Session {
 }
 
 impl Session {
-    /// Logs the layout and the static data, of which `log_own` logs what depends on the content.
+    /// Logs the layout and the static data, of which `log_own` logs what depends on the content and returns the layers.
     pub fn begin(
         output: Output,
         options: RecordingOptions,
         content: Content,
-        layers: Vec<Layer>,
-        log_own: impl FnOnce(&RecordingStream, &RecordingOptions) -> Result<(), Cause>,
+        log_own: impl FnOnce(&RecordingStream) -> Result<Vec<Layer>, Cause>,
     ) -> Result<Self, RecordingError> {
-        let begin = |stream: &RecordingStream| {
+        let begin = |stream: &RecordingStream| -> Result<Writer, Cause> {
             let opening = match output.is_live() {
                 true => Opening::Live,
                 false => Opening::Empty,
             };
             blueprint::send(stream, &options, opening, content)?;
-            log_own(stream, &options)?;
+            let layers = log_own(stream)?;
             crowd::log_style(stream)?;
-            layers
-                .iter()
-                .try_for_each(|layer| layer.log_style(stream))?;
             stats::log_style(stream)?;
             stream.flush_blocking()?;
             Writer::start(stream.clone(), layers)

@@ -95,20 +95,16 @@ impl Viewer {
 
 /// Starts a viewer, unless one is already running.
 fn spawn() -> Result<Address, RecordingError> {
-    let viewer = rerun::spawn(&spawn_options()).map_err(|error| RecordingError::NotSpawned {
-        reason: match error {
-            SpawnError::Io(error) => error.to_string(),
-            SpawnError::ExecutableNotFound { .. } | SpawnError::ExecutableNotFoundInPath { .. } => {
-                "no program `rerun` was found; `pip install rerun-sdk==0.36.3` brings it".to_owned()
-            }
-        },
-    })?;
-    let address = format!("127.0.0.1:{}", viewer.port);
-    address
-        .parse()
-        .map_err(|error: AddressError| RecordingError::NotSpawned {
-            reason: error.to_string(),
-        })
+    let reason = |error| match error {
+        SpawnError::Io(error) => error.to_string(),
+        SpawnError::ExecutableNotFound { .. } | SpawnError::ExecutableNotFoundInPath { .. } => {
+            "no program `rerun` was found; `pip install rerun-sdk==0.36.3` brings it".to_owned()
+        }
+    };
+    let viewer = rerun::spawn(&spawn_options());
+    let viewer = viewer.map_err(|error| RecordingError::NotSpawned(reason(error)))?;
+    let address = format!("127.0.0.1:{}", viewer.port).parse();
+    address.map_err(|error: AddressError| RecordingError::NotSpawned(error.to_string()))
 }
 
 /// A new viewer listens only on this machine's loopback address; rerun's default is all addresses.
