@@ -37,6 +37,14 @@ pub enum LabError {
 }
 
 impl LabError {
+    /// The run `case` has no result called `what`.
+    pub fn missing(case: impl Into<String>, what: impl Into<String>) -> Self {
+        Self::Missing {
+            case: case.into(),
+            what: what.into(),
+        }
+    }
+
     /// The error of the run `case`.
     pub fn of(case: impl Into<String>, error: impl Into<RunError>) -> Self {
         Self::Run {

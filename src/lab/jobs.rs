@@ -18,13 +18,8 @@ pub fn results(
 ) -> Result<Vec<Value>, LabError> {
     finished(&job::run(jobs, store, None, listener)?)?;
     let result = |job: &Job| {
-        store
-            .result(&job.key)
-            .unwrap_or_default()
-            .ok_or_else(|| LabError::Missing {
-                case: job.name.clone(),
-                what: "result".to_owned(),
-            })
+        let result = store.result(&job.key).unwrap_or_default();
+        result.ok_or_else(|| LabError::missing(&job.name, "result"))
     };
     jobs.iter().map(result).collect()
 }

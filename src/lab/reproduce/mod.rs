@@ -17,7 +17,7 @@ mod text;
 
 pub use comparison::{Band, Comparison};
 pub use list::{PRODUCTS, reproduce};
-pub use product::{Needs, Product, Write};
+pub use product::{Needs, Product};
 pub use published::{Published, PublishedRow, Table, Varied, published};
 pub use ranking::{Ranked, Ranking, rankings};
 pub use row::Row;

@@ -17,11 +17,8 @@ pub struct Product {
     /// What it needs of them.
     pub needs: Needs,
     /// Writes its files into the store's folder, and returns a text about them.
-    pub write: Write,
+    pub write: fn(&[Gathered], &Store) -> Result<String, LabError>,
 }
-
-/// Writes the files of a product from its studies, and returns a text about them.
-pub type Write = fn(&[Gathered], &Store) -> Result<String, LabError>;
 
 /// What a product needs of its studies.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,6 +31,12 @@ pub enum Needs {
     Labeled(&'static [&'static str]),
     /// All cells, each alone on all threads, because their computing time is measured.
     Alone,
+}
+
+/// The only study of a product.
+pub(super) fn only<'a, 'b>(studies: &'a [Gathered<'b>]) -> Result<&'a Gathered<'b>, LabError> {
+    let problem = || LabError::Data("this table or figure has one study".to_owned());
+    studies.first().ok_or_else(problem)
 }
 
 impl Needs {

@@ -94,10 +94,8 @@ fn table(combinations: &[Combination]) -> String {
 
 /// The label of a combination.
 fn label<'a>(row: &Combination<'a>) -> &'a str {
-    row.cells
-        .first()
-        .and_then(|cell| cell.label())
-        .unwrap_or_default()
+    let cell = row.cells.first();
+    cell.and_then(|cell| cell.label()).unwrap_or_default()
 }
 
 /// The numbers of all seeds, or a single one if they are equal.
@@ -115,14 +113,10 @@ fn rankings(combinations: &[Combination]) -> Result<String, LabError> {
     let mut geometries = Vec::new();
     for rows in combinations.chunks(profiles) {
         let label = rows.first().map_or("", label);
-        let through = rows
-            .iter()
-            .flat_map(|row| row.values("uncounted"))
-            .flatten();
+        let through = rows.iter().flat_map(|row| row.values("uncounted"));
+        let through = through.flatten();
         geometries.push(Geometry {
-            name: label
-                .rsplit_once(": ")
-                .map_or(label, |(geometry, _)| geometry),
+            name: label.rsplit_once(": ").map_or(label, |(name, _)| name),
             table: table2::Table::new(rows)?,
             through: Range::of(&through.collect::<Vec<f64>>()),
         });

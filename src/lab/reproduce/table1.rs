@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::comparison::Band;
-use super::product::{Needs, Product};
+use super::product::{Needs, Product, only};
 use super::published::{PublishedRow, Varied, published};
 use super::row::{self, Row, compared, profiles};
 use crate::lab::error::LabError;
@@ -62,9 +62,7 @@ fn varied(Varied { setting, value }: &Varied) -> String {
 }
 
 fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
-    let [results] = studies else {
-        return Err(LabError::Data("Table 1 has one study".to_owned()));
-    };
+    let results = only(studies)?;
     let published = published()?;
     let rows = rows(results)?;
     let seeds = results.study.seeds;

@@ -182,10 +182,7 @@ impl<'a> Gathered<'a> {
     pub fn labeled(&self, label: &str) -> Result<(&Cell, &RunResult), LabError> {
         let mut cells = self.study.cells.iter().zip(&self.states);
         let found = cells.find(|(cell, _)| cell.label() == Some(label));
-        let missing = || LabError::Missing {
-            case: format!("{}, {label}", self.study.name),
-            what: "result".to_owned(),
-        };
+        let missing = || LabError::missing(format!("{}, {label}", self.study.name), "result");
         let finished = found.and_then(|(cell, state)| Some((cell, state.result()?)));
         finished.ok_or_else(missing)
     }

@@ -39,10 +39,13 @@ pub fn color(term: Term) -> (&'static str, [u8; 3]) {
 /// The data of one frame, and its number of elements.
 type Data = (Box<dyn AsComponents>, usize);
 
+/// Finds the data of a layer.
+type Find = Box<dyn Fn(&[Open]) -> Data + Send>;
+
 /// One entity under `world/debug`.
 pub struct Layer {
     entity: String,
-    data: Box<dyn Fn(&[Open]) -> Data + Send>,
+    data: Find,
     shown: bool,
 }
 
@@ -68,7 +71,7 @@ pub fn begin(
     if *who == DebugAgents::None {
         return Ok(layers);
     }
-    let mut add = |name: &str, style: &dyn AsComponents, data| -> Result<(), Cause> {
+    let mut add = |name: &str, style: &dyn AsComponents, data: Find| -> Result<(), Cause> {
         let entity = format!("world/debug/{name}");
         stream.log_static(entity.as_str(), style)?;
         layers.push(Layer {

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 use super::Row;
 use super::error::Cause;
-use crate::engine::geometry::AreaIndex;
+use crate::engine::geometry::{AreaIndex, Polygon};
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Goal, Region};
 use crate::engine::simulation::Simulation;
@@ -50,23 +50,18 @@ impl WalkableArea {
         let everything = everything.chain([&view.min, &view.max]);
         let [min, max] = bounds(everything.copied()).unwrap_or_default();
         let margin = Vector::new(MARGIN, MARGIN);
-        let (mut floors, mut bodies) = (Vec::new(), Rings::new());
-        for obstacle in obstacles {
-            let rings = obstacle.rings().map(<[Vector]>::to_vec);
-            if obstacle.is_unbounded() {
-                let reversed = |mut ring: Vec<Vector>| {
-                    ring.reverse();
-                    ring
-                };
-                floors.push(rings.map(reversed).collect());
-            } else {
-                bodies.extend(rings);
-            }
-        }
+        let (unbounded, bounded): (Vec<&Polygon>, Vec<&Polygon>) = obstacles
+            .iter()
+            .partition(|obstacle| obstacle.is_unbounded());
+        let reversed = |ring: &[Vector]| ring.iter().rev().copied().collect();
+        let floors = unbounded.iter();
+        let bodies = bounded.iter().flat_map(|obstacle| obstacle.rings());
         Self {
             bounds: [min - margin, max + margin],
-            floors,
-            obstacles: bodies,
+            floors: floors
+                .map(|floor| floor.rings().map(reversed).collect())
+                .collect(),
+            obstacles: bodies.map(<[Vector]>::to_vec).collect(),
             entries,
         }
     }

@@ -25,13 +25,8 @@ impl Lines {
     /// The text format of the Pedestrian Dynamics Data Archive. Readers take the first number after `framerate`, and
     /// the unit from `x/m`.
     pub fn text(mut file: File, fps: f64) -> io::Result<Self> {
-        let two_decimals = format!("{fps:.2}");
-        let is_exact = two_decimals.parse() == Ok(fps);
-        let fps = if is_exact {
-            two_decimals
-        } else {
-            fps.to_string()
-        };
+        let two_decimals = Some(format!("{fps:.2}")).filter(|text| text.parse() == Ok(fps));
+        let fps = two_decimals.unwrap_or_else(|| fps.to_string());
         let head = format!("# framerate: {fps}\n# id frame x/m y/m z/m\n");
         file.write_all(head.as_bytes())?;
         Ok(Self {

@@ -68,11 +68,9 @@ pub fn frames_between(clock: &Clock, fps: f64) -> Result<u64, TrajectoryError> {
     let rate = |every: f64| 1.0 / (every * clock.time_step());
     let below = (rate(1.0) / fps).floor().max(1.0);
     let off = |every: f64| (rate(every) - fps).abs();
-    let [every, other] = [below, below + 1.0];
-    let nearest = if off(every) <= off(other) {
-        every
-    } else {
-        other
+    let nearest = match off(below) <= off(below + 1.0) {
+        true => below,
+        false => below + 1.0,
     };
     if off(nearest) > 1e-6 * fps {
         return Err(TrajectoryError::FrameRate {

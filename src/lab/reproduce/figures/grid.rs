@@ -2,10 +2,9 @@
 
 use serde_json::Value;
 
-use super::super::product::{Needs, Product};
+use super::super::product::{Needs, Product, only};
 use super::save;
 use crate::analysis::statistics::{Estimate, Range};
-use crate::lab::error::LabError;
 use crate::lab::sweep::{Combination, Gathered};
 use crate::output::colors::{ColorMap, Rgb};
 use crate::output::plot::{Axis, BLACK, Cells, ColorBar, Mark, Panel, Sheet};
@@ -20,9 +19,7 @@ pub const PRODUCT: Product = Product {
     studies: &["wave_grid"],
     needs: Needs::All,
     write: |studies, store| {
-        let [study] = studies else {
-            return Err(LabError::Data("there is one study of waves".to_owned()));
-        };
+        let study = only(studies)?;
         store.write("study.csv", &study.summary_csv()?)?;
         save(&sheet(study), store, "study")
     },

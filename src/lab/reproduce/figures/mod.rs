@@ -5,7 +5,7 @@ mod performance;
 mod snapshots;
 mod waves;
 
-use super::product::{Needs, Product, Write};
+use super::product::{Needs, Product};
 use crate::lab::error::LabError;
 use crate::output::plot::Sheet;
 use crate::runs::store::Store;
@@ -19,6 +19,8 @@ pub use waves::PRODUCT as WAVES;
 const EVACUATION: Snapshots = Snapshots {
     name: "fig5",
     title: "Fig. 5: evacuation after 15 s, colored by density",
+    about: "the evacuation after 15 s, by density, 24 profiles",
+    studies: &["fig5"],
     times: &[15.0],
     region: [[8.0, -1.0], [23.0, 21.0]],
     coloring: DENSITY,
@@ -31,6 +33,8 @@ const EVACUATION: Snapshots = Snapshots {
 const CROSSING: Snapshots = Snapshots {
     name: "fig6",
     title: "Fig. 6: crossing and bottleneck after 45 s, colored by speed",
+    about: "the crossing after 45 s, by speed, six profiles",
+    studies: &["fig6"],
     times: &[45.0],
     region: [[-21.0, -5.0], [18.0, 21.0]],
     coloring: SPEED,
@@ -44,6 +48,8 @@ const CROSSING: Snapshots = Snapshots {
 const SHOCKWAVE: Snapshots = Snapshots {
     name: "fig7",
     title: "Fig. 7: the shockwave, colored by speed",
+    about: "the shockwave at six times, by speed, six variants of SPH",
+    studies: &["shockwave"],
     times: &[150.3, 151.0, 152.0, 153.0, 154.0, 156.0],
     region: [[44.0, -31.0], [92.0, 31.0]],
     coloring: CROWD_SPEED,
@@ -64,6 +70,7 @@ const SHOCKWAVE: Snapshots = Snapshots {
 const NO_SPH: Snapshots = Snapshots {
     name: "fig9",
     title: "Fig. 9: the shockwave without SPH, colored by speed",
+    about: "the same without SPH, two strengths of contact",
     labels: &["no SPH, Kᵃᵍ = 50", "no SPH, Kᵃᵍ = 1000"],
     ..SHOCKWAVE
 };
@@ -72,6 +79,7 @@ const NO_SPH: Snapshots = Snapshots {
 const REST_DENSITIES: Snapshots = Snapshots {
     name: "fig8",
     title: "Fig. 8: static and dynamic rest density at t = 150 s, colored by speed",
+    about: "the crowd before the push with a static and a dynamic rest density",
     times: &[150.0],
     region: [[44.0, -32.0], [110.0, 32.0]],
     columns: 2,
@@ -85,78 +93,51 @@ const REST_DENSITIES: Snapshots = Snapshots {
 const CONTACTS: Snapshots = Snapshots {
     name: "fig10",
     title: "Fig. 10: without and with contact at t = 150 s, colored by speed",
+    about: "the crowd before the push without contact between agents, and with",
     labels: &["Kᵃᵍ = 0", "baseline"],
     titles: &["Kᵃᵍ = 0", "Kᵃᵍ = 50 (baseline)"],
     ..REST_DENSITIES
 };
 
-/// Fig. 5.
-pub const FIG5: Product = Product {
-    name: "fig5",
-    about: "the evacuation after 15 s, by density, 24 profiles",
-    in_all: true,
-    studies: &["fig5"],
-    needs: Needs::All,
-    write: |studies, store| EVACUATION.write(studies, store),
-};
+/// All of them.
+const SNAPSHOTS: [Snapshots; 6] = [
+    EVACUATION,
+    CROSSING,
+    SHOCKWAVE,
+    REST_DENSITIES,
+    NO_SPH,
+    CONTACTS,
+];
 
-/// Fig. 6.
-pub const FIG6: Product = Product {
-    name: "fig6",
-    about: "the crossing after 45 s, by speed, six profiles",
-    studies: &["fig6"],
-    write: |studies, store| CROSSING.write(studies, store),
-    ..FIG5
-};
-
-/// A figure of some runs of the shockwave.
-const fn shockwave(
-    name: &'static str,
-    about: &'static str,
-    labels: &'static [&'static str],
-    write: Write,
-) -> Product {
+/// The figure that shows the `K`-th snapshots.
+const fn figure<const K: usize>() -> Product {
+    let Snapshots { labels, .. } = SNAPSHOTS[K];
     Product {
-        name,
-        about,
+        name: SNAPSHOTS[K].name,
+        about: SNAPSHOTS[K].about,
         in_all: true,
-        studies: &["shockwave"],
-        needs: Needs::Labeled(labels),
-        write,
+        studies: SNAPSHOTS[K].studies,
+        needs: if labels.is_empty() {
+            Needs::All
+        } else {
+            Needs::Labeled(labels)
+        },
+        write: |studies, store| SNAPSHOTS[K].write(studies, store),
     }
 }
 
+/// Fig. 5.
+pub const FIG5: Product = figure::<0>();
+/// Fig. 6.
+pub const FIG6: Product = figure::<1>();
 /// Fig. 7.
-pub const FIG7: Product = shockwave(
-    "fig7",
-    "the shockwave at six times, by speed, six variants of SPH",
-    SHOCKWAVE.labels,
-    |studies, store| SHOCKWAVE.write(studies, store),
-);
-
+pub const FIG7: Product = figure::<2>();
 /// Fig. 8.
-pub const FIG8: Product = shockwave(
-    "fig8",
-    "the crowd before the push with a static and a dynamic rest density",
-    REST_DENSITIES.labels,
-    |studies, store| REST_DENSITIES.write(studies, store),
-);
-
+pub const FIG8: Product = figure::<3>();
 /// Fig. 9.
-pub const FIG9: Product = shockwave(
-    "fig9",
-    "the same without SPH, two strengths of contact",
-    NO_SPH.labels,
-    |studies, store| NO_SPH.write(studies, store),
-);
-
+pub const FIG9: Product = figure::<4>();
 /// Fig. 10.
-pub const FIG10: Product = shockwave(
-    "fig10",
-    "the crowd before the push without contact between agents, and with",
-    CONTACTS.labels,
-    |studies, store| CONTACTS.write(studies, store),
-);
+pub const FIG10: Product = figure::<5>();
 
 /// Writes a picture into the store's folder, and returns a line with the file names.
 fn save(sheet: &Sheet, store: &Store, name: &str) -> Result<String, LabError> {

@@ -19,10 +19,7 @@ pub const PRODUCT: Product = Product {
         let cells = studies.iter().flat_map(|study| &study.states);
         let times = cells.map(|state| state.result()?.summary.data(FrameTime::NAME));
         let times: Option<Vec<StageTimes>> = times.collect();
-        let times = times.ok_or_else(|| LabError::Missing {
-            case: "fig11".to_owned(),
-            what: FrameTime::NAME.to_owned(),
-        })?;
+        let times = times.ok_or_else(|| LabError::missing("fig11", FrameTime::NAME))?;
         store.write("fig11.csv", &csv(&times)?)?;
         let threads = times.first().map_or(0, |time| time.threads);
         let machine = format!("{threads} threads of this machine");

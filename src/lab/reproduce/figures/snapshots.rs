@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use super::super::product::only;
 use crate::lab::error::LabError;
 use crate::lab::sweep::Gathered;
 use crate::output::colors::{self, ColorMap};
@@ -47,6 +48,10 @@ pub(super) struct Snapshots {
     pub name: &'static str,
     /// Its title.
     pub title: &'static str,
+    /// A description, in one line.
+    pub about: &'static str,
+    /// Its study.
+    pub studies: &'static [&'static str],
     /// The times of the snapshots, seconds.
     pub times: &'static [f64],
     /// The part of the plane that is shown: lower left and upper right corner, meters.
@@ -69,6 +74,8 @@ pub(super) struct Snapshots {
 pub(super) const ALL: Snapshots = Snapshots {
     name: "",
     title: "",
+    about: "",
+    studies: &[],
     times: &[],
     region: [[0.0; 2]; 2],
     coloring: SPEED,
@@ -82,9 +89,7 @@ pub(super) const ALL: Snapshots = Snapshots {
 impl Snapshots {
     /// Draws the runs of the study.
     pub fn write(&self, studies: &[Gathered], store: &Store) -> Result<String, LabError> {
-        let [study] = studies else {
-            return Err(LabError::Data(format!("{} has one study", self.name)));
-        };
+        let study = only(studies)?;
         let mut labels = self.labels.to_vec();
         if labels.is_empty() {
             labels.extend(study.study.cells.iter().filter_map(|cell| cell.label()));
@@ -99,10 +104,8 @@ impl Snapshots {
         let (mut panels, mut row_titles) = (Vec::new(), Vec::new());
         for (k, (label, title)) in labels.iter().zip(titles).enumerate() {
             let (cell, result) = study.labeled(label)?;
-            let walls = cell
-                .case
-                .scenario()
-                .map_err(|error| LabError::of(*label, error))?;
+            let walls = cell.case.scenario();
+            let walls = walls.map_err(|error| LabError::of(*label, error))?;
             let walls = walls.scene.walls.obstacles().iter();
             let walls = walls.map(|wall| wall.points().iter().map(|r| [r.x, r.y]).collect());
             let walls: Vec<Vec<[f64; 2]>> = walls.collect();
@@ -115,13 +118,8 @@ impl Snapshots {
                     (true, _) => String::new(),
                 };
                 let name = Snapshot::name(time);
-                let snapshot = result
-                    .summary
-                    .data(&name)
-                    .ok_or_else(|| LabError::Missing {
-                        case: (*label).to_owned(),
-                        what: name,
-                    })?;
+                let snapshot = result.summary.data(&name);
+                let snapshot = snapshot.ok_or_else(|| LabError::missing(*label, name))?;
                 panels.push(self.panel(title, &snapshot, &walls));
             }
             row_titles.extend(many.then(|| format!("({letter}) {title}")));

@@ -1,6 +1,6 @@
 //! An addition to Fig. 7: the wave over space and time for several k, and its speed against linear theory.
 
-use super::super::product::Product;
+use super::super::product::{Needs, Product, only};
 use super::save;
 use crate::analysis::sound;
 use crate::analysis::statistics::Estimate;
@@ -20,22 +20,21 @@ const REACH: f64 = 0.48;
 const FASTEST: f32 = 0.8;
 
 /// The diagrams.
-pub const PRODUCT: Product = super::shockwave(
-    "waves",
-    "space-time diagrams of the shockwave for five k, and its speed against linear theory",
-    &LABELS,
-    |studies, store| {
-        let [study] = studies else {
-            let problem = "there is one study of the shockwave";
-            return Err(LabError::Data(problem.to_owned()));
-        };
+pub const PRODUCT: Product = Product {
+    name: "waves",
+    about: "space-time diagrams of the shockwave for five k, and its speed against linear theory",
+    in_all: true,
+    studies: &["shockwave"],
+    needs: Needs::Labeled(&LABELS),
+    write: |studies, store| {
+        let study = only(studies)?;
         let runs = LABELS.into_iter().zip(GAS_CONSTANTS);
         let runs = runs.map(|(label, k)| Speed::of(study, label, k));
         let runs: Vec<Speed> = runs.collect::<Result<_, _>>()?;
         store.write("waves.csv", &csv(&runs)?)?;
         save(&sheet(&runs), store, "waves")
     },
-);
+};
 
 /// The runs, by increasing k.
 const LABELS: [&str; 5] = ["k = 50", "k = 100", "baseline", "k = 400", "k = 800"];
@@ -64,13 +63,8 @@ impl Speed {
     fn of(study: &Gathered, label: &str, gas_constant: f64) -> Result<Self, LabError> {
         let (_, result) = study.labeled(label)?;
         let with = |modulus| sound::speed_with_contacts(gas_constant, AGENT_STIFFNESS, modulus);
-        let seen = result
-            .summary
-            .data(WaveData::NAME)
-            .ok_or_else(|| LabError::Missing {
-                case: label.to_owned(),
-                what: "wave".to_owned(),
-            })?;
+        let seen = result.summary.data(WaveData::NAME);
+        let seen = seen.ok_or_else(|| LabError::missing(label, "wave"))?;
         Ok(Self {
             gas_constant,
             seen,
