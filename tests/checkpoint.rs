@@ -148,10 +148,11 @@ fn measurements_are_resumed_too() {
     let read = Checkpoint::read(&file).unwrap();
     assert!(read.is_of_this_engine());
     let scenario = read.scenario(&[]).unwrap();
-    let (again, measured) = read.resume(&scenario).unwrap();
-    assert_eq!(measured.results(&again), metrics.results(&simulation));
-    assert!(metrics.results(&simulation)[0].value.is_some());
-    assert_eq!(again.digest(), simulation.digest());
+    let again = read.resume(scenario).unwrap();
+    let measured = again.metrics.results(&again.simulation);
+    assert_eq!(measured, metrics.results(&simulation));
+    assert!(measured[0].value.is_some());
+    assert_eq!(again.simulation.digest(), simulation.digest());
 }
 
 #[test]
@@ -166,35 +167,24 @@ fn damaged_and_foreign_checkpoints_are_refused_with_the_reason() {
     let whole = fs::read(&file).unwrap();
     let refused = |bytes: &[u8]| {
         fs::write(&file, bytes).unwrap();
-        Checkpoint::read(&file).unwrap_err()
+        Checkpoint::read(&file).unwrap_err().to_string()
     };
     for length in [0, 5, 19, 22, 30, 60, whole.len() / 2, whole.len() - 1] {
         let error = refused(&whole[..length]);
-        let expected = matches!(
-            error,
-            CheckpointError::Damaged { .. } | CheckpointError::Foreign(_)
-        );
+        let expected = error.contains("is damaged: ") || error.ends_with("is not a checkpoint");
         assert!(expected, "{length}: {error}");
     }
     for place in [40, 100, whole.len() / 2, whole.len() - 1] {
         let mut changed = whole.clone();
         changed[place] ^= 1;
-        assert!(
-            matches!(refused(&changed), CheckpointError::Damaged { .. }),
-            "{place}"
-        );
+        assert!(refused(&changed).contains("is damaged: "), "{place}");
     }
     let mut newer = whole.clone();
     newer[19] = 99;
     assert!(
-        refused(&newer)
-            .to_string()
-            .ends_with("is a checkpoint of version 99; this program reads version 3")
+        refused(&newer).ends_with("is a checkpoint of version 99; this program reads version 3")
     );
-    assert!(matches!(
-        refused(b"{\"name\": \"x\"}"),
-        CheckpointError::Foreign(_)
-    ));
+    assert!(refused(b"{\"name\": \"x\"}").ends_with("is not a checkpoint"));
     let nowhere = Checkpoint::read(Path::new("/nowhere/c")).unwrap_err();
     assert!(
         nowhere

@@ -196,7 +196,7 @@ fn passengers_cross_the_station_and_its_checkpoint_needs_no_floor_plan() {
         .unwrap();
     let checkpoint = Checkpoint::read(&file).unwrap();
     let kept = checkpoint.scenario(&[]).unwrap();
-    let (mut resumed, _) = checkpoint.resume(&kept).unwrap();
+    let mut resumed = checkpoint.resume(kept).unwrap().simulation;
     common::run(&mut simulation, 2000);
     common::run(&mut resumed, 2000);
     assert_eq!(simulation.digest(), resumed.digest());

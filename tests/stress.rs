@@ -10,10 +10,10 @@ use sandbox::engine::agents::NewAgent;
 use sandbox::engine::breakdown::Breakdown;
 use sandbox::engine::simulation::{Fault, Simulation};
 use sandbox::lab::sweep::Study;
-use sandbox::runs::drive::{Then, drive, unless_over};
+use sandbox::runs::drive::{Observer, Run};
 use sandbox::runs::summary::Summary;
 use sandbox::scenario::catalog::{NAMES, Parameters};
-use sandbox::scenario::measurements::{Metrics, Watched};
+use sandbox::scenario::measurements::Watched;
 use sandbox::scenario::{Scenario, Setting};
 
 fn folder() -> PathBuf {
@@ -44,13 +44,9 @@ fn survives(name: &str, settings: &[&str]) -> Summary {
         r#"measurements.+={"evacuated": {}}"#,
     ];
     let scenario = scenario(name, &[settings, &measured].concat());
-    let mut simulation = Simulation::new(scenario.scene.clone()).unwrap();
-    let mut metrics = Metrics::new(&scenario.measurements, &mut simulation);
-    let driven = drive(&mut simulation, scenario.duration_secs, |simulation, _| {
-        metrics.observe(simulation);
-        Ok::<Then, Fault>(unless_over(simulation, &scenario))
-    });
-    let summary = Summary::of(&scenario, &simulation, &metrics);
+    let mut run = Run::new(scenario).unwrap();
+    let driven = run.drive::<Fault, dyn Observer<Fault>>(&mut [], || false);
+    let summary = Summary::of(&run);
     assert!(driven.is_ok(), "{name} {settings:?}: {driven:?}");
     for fault in ["agents_through_walls", "non_finite_frames"] {
         assert_eq!(

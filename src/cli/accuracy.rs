@@ -1,16 +1,12 @@
 //! `sandbox accuracy`: work-precision measurements.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use super::update::{check, update};
-use super::values::threads;
+use super::update::CaseOptions;
 use super::watch::Watch;
-use super::{Failure, say, use_threads};
+use super::{Failure, tell};
 use crate::lab::accuracy::{Plan, SCENES, Scene, WALLS, accuracy, knobs};
-use crate::runs::store::Store;
 
 #[derive(Args)]
 pub struct AccuracyOptions {
@@ -23,15 +19,8 @@ pub struct AccuracyOptions {
     /// Few values, seeds and repeats; takes less than a minute
     #[arg(long)]
     pub quick: bool,
-    /// Folder for the results; runs finished there are not repeated
-    #[arg(long, value_name = "DIR", default_value = "accuracy")]
-    pub out: PathBuf,
-    /// Also insert the tables into this file, between the lines <!-- NAME --> and <!-- /NAME -->
-    #[arg(long, value_name = "FILE.md")]
-    pub update: Option<PathBuf>,
-    /// Number of runs to compute at once, each on one thread [default: all cores]
-    #[arg(long, value_parser = threads)]
-    pub threads: Option<usize>,
+    #[command(flatten)]
+    pub cases: CaseOptions,
     /// Print one JSON object instead of text
     #[arg(long)]
     pub json: bool,
@@ -54,11 +43,7 @@ pub fn scenes() -> Vec<&'static str> {
 }
 
 pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
-    use_threads(options.threads)?;
-    if let Some(file) = &options.update {
-        check(file, &options.out)?;
-    }
-    let store = Store::open(&options.out)?;
+    let store = options.cases.store()?;
     let wanted = |name: &str| options.scene.is_empty() || options.scene.iter().any(|s| s == name);
     let in_time = |scene: &Scene| !(options.quick && scene.is_long && options.scene.is_empty());
     let scenes = SCENES
@@ -70,22 +55,8 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
         knobs: options.knob.clone(),
         quick: options.quick,
     };
-    let watch = Watch::new();
-    let report = accuracy(&plan, &store, &watch);
-    watch.ends();
-    let report = report?;
-    // Results are printed even if they cannot be saved.
-    let updated = options.update.as_ref().map_or(Ok(()), |file| {
-        let parts = report.parts();
-        let texts = parts
-            .iter()
-            .map(|(name, text)| (name.as_str(), text.as_str()));
-        update(file, texts)
-    });
-    if options.json {
-        say(format!("{}\n", report.json()))?;
-    } else {
-        say(report.text())?;
-    }
-    updated
+    let report = accuracy(&plan, &store, &Watch::new())?;
+    let said = tell(options.json, || report.json(), || report.text());
+    options.cases.update(report.parts())?;
+    said
 }

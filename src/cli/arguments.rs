@@ -8,7 +8,7 @@ use clap::{ArgGroup, Args};
 use super::values::{
     every_frames, frame_rate, id, positive_seconds, recording, seconds, seed, threads,
 };
-use crate::scenario::{Preset, SHIPPED};
+use crate::scenario::Preset;
 
 /// Options that change a scenario and how it is computed.
 #[derive(Args)]
@@ -162,21 +162,4 @@ pub struct InspectOptions {
     /// Also write this moment as a recording for the Rerun viewer
     #[arg(long, value_name = "FILE.rrd", value_parser = recording())]
     pub save: Option<PathBuf>,
-}
-
-/// The source of a scenario.
-pub enum Source {
-    Shipped(&'static str),
-    File(PathBuf),
-}
-
-impl Source {
-    /// The built-in scenario of that name, else a file.
-    pub fn named(text: &str) -> Self {
-        let names = SHIPPED.iter().map(|shipped| shipped.name);
-        match names.into_iter().find(|&name| name == text) {
-            Some(name) => Self::Shipped(name),
-            None => Self::File(PathBuf::from(text)),
-        }
-    }
 }

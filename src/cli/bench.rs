@@ -1,13 +1,13 @@
 //! `sandbox bench`: performance on this machine.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
 use super::values::{repeats, threads};
-use super::{Failure, say, talk, use_threads};
-use crate::lab::bench::{BENCHMARKS, Plan, Report, files};
+use super::{Failure, talk, tell, use_threads};
+use crate::lab::bench::{BENCHMARKS, Plan, files};
 use crate::runs::outputs::{Manner, Outputs};
 
 /// Examples of commands.
@@ -85,22 +85,12 @@ pub fn run(options: &BenchOptions) -> Result<(), Failure> {
         python: options.python.clone(),
     };
     let report = benchmark.measure(&plan, &|text| talk(&format!("{}: {text}", benchmark.name)))?;
-    // Results are printed even if they cannot be saved.
-    let saved = options
-        .out
-        .as_deref()
-        .map_or(Ok(()), |folder| save(&report, folder));
-    if options.json {
-        say(format!("{}\n", report.json()))?;
-    } else {
-        say(report.text())?;
-    }
-    saved
-}
-
-fn save(report: &Report, folder: &Path) -> Result<(), Failure> {
+    let said = tell(options.json, || report.json(), || report.text());
+    let Some(folder) = &options.out else {
+        return said;
+    };
     for path in report.save(folder)? {
         talk(&format!("note: {} written", path.display()));
     }
-    Ok(())
+    said
 }

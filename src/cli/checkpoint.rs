@@ -1,17 +1,19 @@
 //! Writing checkpoints during a run.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use super::arguments::CheckpointOptions;
 use super::{Failure, talk};
-use crate::engine::simulation::Simulation;
 use crate::runs::checkpoint::{Checkpoint, CheckpointError};
+use crate::runs::drive::{End, Observer, Run};
 use crate::scenario::Scenario;
-use crate::scenario::measurements::Metrics;
 
 /// The checkpoints of a run.
 pub struct Checkpoints {
-    file: Option<PathBuf>,
+    file: PathBuf,
+    /// The scenario to resume, if it is not that of the run.
+    scenario: Option<Scenario>,
     /// Frames between checkpoints.
     every: u64,
     /// The frame of the next checkpoint.
@@ -22,77 +24,62 @@ pub struct Checkpoints {
     failure: Option<CheckpointError>,
 }
 
-/// The position of a frame in a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Moment {
-    /// More frames follow.
-    Underway,
-    /// The last frame.
-    Last,
-    /// The last frame, because of a signal.
-    Interrupted,
-}
-
 impl Checkpoints {
-    /// Prepares the checkpoints; the first is due one interval after the current frame.
-    pub fn create(options: &CheckpointOptions, simulation: &mut Simulation) -> Self {
-        if options.checkpoint.is_some() {
-            // The resumed run may record densities, which this run might not need.
-            simulation.request_density_until(u64::MAX);
-        }
-        let clock = simulation.frame().clock;
+    /// Prepares the checkpoints, if requested; the first is due one interval after the current frame.
+    pub fn create(
+        options: &CheckpointOptions,
+        scenario: Option<Scenario>,
+        run: &mut Run,
+    ) -> Option<Self> {
+        let file = options.checkpoint.clone()?;
+        // The resumed run may record densities, which this run might not need.
+        run.simulation.request_density_until(u64::MAX);
+        let clock = run.simulation.frame().clock;
         let every = clock.frame_at(options.checkpoint_every).max(1);
-        Self {
-            file: options.checkpoint.clone(),
+        Some(Self {
+            file,
+            scenario,
             every,
             due: clock.frame() + every,
             kept: None,
             failure: None,
-        }
+        })
     }
+}
 
-    /// Writes a checkpoint of an evaluated frame if one is due, if a signal ends the run, or if the run ends without
-    /// any. A failure does not end the run: the next attempt may succeed.
-    pub fn write(
-        &mut self,
-        scenario: &Scenario,
-        simulation: &Simulation,
-        metrics: &Metrics,
-        moment: Moment,
-    ) {
-        let Some(path) = &self.file else {
-            return;
-        };
-        let clock = simulation.frame().clock;
+impl Observer<Failure> for Checkpoints {
+    /// Writes a checkpoint if one is due, if a signal ends the run, or if the run ends without any. A failure does not
+    /// end the run: the next attempt may succeed.
+    fn observe(&mut self, run: &Run, _: f64, then: ControlFlow<End>) -> Result<(), Failure> {
+        let clock = run.simulation.frame().clock;
         let is_due = clock.frame() >= self.due
-            || moment == Moment::Interrupted
-            || moment == Moment::Last && self.kept.is_none();
+            || then == ControlFlow::Break(End::Interrupted)
+            || then.is_break() && self.kept.is_none();
         if !is_due {
-            return;
+            return Ok(());
         }
         self.due = clock.frame() + self.every;
-        match Checkpoint::of(scenario, simulation, metrics).write(path) {
-            Ok(()) => {
-                self.kept = Some(clock.time());
-                self.failure = None;
-            }
-            Err(error) => {
-                if self.failure.is_none() {
-                    let time = clock.time();
-                    talk(&format!("note: at {time:.2} s: --checkpoint {error}"));
-                }
-                self.failure = Some(error);
-            }
+        let scenario = self.scenario.as_ref().unwrap_or(&run.scenario);
+        let written = Checkpoint::of(scenario, &run.simulation, &run.metrics).write(&self.file);
+        match &written {
+            Ok(()) => self.kept = Some(clock.time()),
+            Err(error) if self.failure.is_none() => talk(&format!(
+                "note: at {:.2} s: --checkpoint {error}",
+                clock.time()
+            )),
+            Err(_) => {}
         }
+        self.failure = written.err();
+        Ok(())
     }
 
     /// Fails if the last attempt failed; the message says which checkpoint is kept.
-    pub fn finish(self) -> Result<(), Failure> {
-        let (Some(path), Some(error)) = (&self.file, &self.failure) else {
+    fn finish(self: Box<Self>) -> Result<(), Failure> {
+        let Some(error) = &self.failure else {
             return Ok(());
         };
         let kept = match self.kept {
-            _ if !path.is_file() => "there is no checkpoint".to_owned(),
+            _ if !self.file.is_file() => "there is no checkpoint".to_owned(),
             Some(time) => format!("the checkpoint of {time:.2} s is kept"),
             None => "the file from before the run is kept".to_owned(),
         };

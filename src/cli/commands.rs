@@ -67,17 +67,24 @@ pub enum Command {
     Inspect(InspectOptions),
     /// Regenerate the paper's tables and figures (§6) and compare them with the published ones
     #[command(
-        after_help = format!("{}Example: sandbox reproduce table1 fig5 --seeds 3", reproduce::about())
+        after_help = format!("{}Example: sandbox reproduce table1 fig5 --seeds 3", reproduce::about()),
+        mut_arg("out", |out| out.required(false).default_value("reproduction"))
     )]
     Reproduce(reproduce::ReproduceOptions),
     /// Measure performance on this machine: a table, a JSON object, pictures
     #[command(after_help = format!("{}{}", bench::about(), bench::EXAMPLES))]
     Bench(bench::BenchOptions),
     /// Measure run time against error for each numerical choice: tables and work-precision diagrams
-    #[command(after_help = format!("{}Example: sandbox accuracy relaxed wall --knob integrator", accuracy::about()))]
+    #[command(
+        after_help = format!("{}Example: sandbox accuracy relaxed wall --knob integrator", accuracy::about()),
+        mut_arg("out", |out| out.required(false).default_value("accuracy"))
+    )]
     Accuracy(accuracy::AccuracyOptions),
     /// Run hard cases, map the largest stable time step, measure jitter
-    #[command(after_help = "Example: sandbox stress --quick")]
+    #[command(
+        after_help = "Example: sandbox stress --quick",
+        mut_arg("out", |out| out.required(false).default_value("stress"))
+    )]
     Stress(stress::StressOptions),
     /// Print the JSON Schema of scenario files, for completion and checks in editors
     #[command(after_help = SCHEMA_EXAMPLE)]

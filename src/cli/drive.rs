@@ -1,27 +1,25 @@
 //! Runs a scenario to its end, with a progress bar, output files and a report.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
-use super::arguments::{
-    OutputOptions, ProgramOptions, RecordOptions, ResumeOptions, RunOptions, Source,
-};
-use super::checkpoint::{Checkpoints, Moment};
+use super::arguments::{OutputOptions, ProgramOptions, RecordOptions, ResumeOptions, RunOptions};
+use super::checkpoint::Checkpoints;
 use super::interrupt::Interrupt;
-use super::output::{Output, check, laid_open};
-use super::report::Report;
-use super::trajectory::Trajectories;
-use super::{Failure, memory, say, scenario, setting, talk, use_threads};
+use super::output::{Recording, check, laid_open};
+use super::watch::bar;
+use super::{Failure, memory, report, scenario, setting, talk, tell, trajectory, use_threads};
 use crate::analysis::stability::{FITTED, Mode, Scheme};
 use crate::engine::clock::{Clock, SHORTEST_TIME_STEP};
 use crate::engine::scene::Scene;
 use crate::engine::simulation::{EventKind, Simulation};
 use crate::lab::machine::main_memory;
+use crate::runs::case::Source;
 use crate::runs::checkpoint::Checkpoint;
-use crate::runs::drive::{Then, drive, unless_over};
+use crate::runs::drive::{End, Observer, Run};
 use crate::runs::outputs::Outputs;
-use crate::scenario::measurements::Metrics;
 use crate::scenario::quote::shown;
 use crate::scenario::{Scenario, Setting, in_units};
 
@@ -31,24 +29,22 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     let writing = memory::of_writing(&options.output);
     let until = options.output.until.map(|secs| ("--until", secs));
     let mut outputs = Outputs::new(options.scene.program.force);
-    let scenario = scenario(source, &options.scene, until, writing, &mut outputs)?;
-    check(outputs, &options.output, &scenario)?;
-    warn_of_the_step(&scenario.scene);
-    let mut simulation = Simulation::new(scenario.scene.clone())?;
-    let metrics = Metrics::new(&scenario.measurements, &mut simulation);
+    let whole = scenario(source, &options.scene, until, writing, &mut outputs)?;
+    check(outputs, &options.output, &whole)?;
+    warn_of_the_step(&whole.scene);
+    let run = Run::new(whole)?;
     // A resumed run goes to the scenario's own end, if it can get there.
     let is_cut = until.is_some() && options.output.checkpoint.checkpoint.is_some();
     let resumable = is_cut.then(|| {
         let mut inputs = Outputs::new(true);
-        super::scenario(source, &options.scene, None, writing, &mut inputs).ok()
+        scenario(source, &options.scene, None, writing, &mut inputs).ok()
     });
-    let run = Run {
-        scenario,
-        resumable: resumable.flatten(),
-        simulation,
-        metrics,
-    };
-    run.go_on(&options.scene.program, &options.output)
+    go_on(
+        run,
+        resumable.flatten(),
+        &options.scene.program,
+        &options.output,
+    )
 }
 
 /// `sandbox resume`.
@@ -68,26 +64,15 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
         setting(&text).map(|setting| setting.typed_as(format!("--until {secs}")))
     });
     let until: Option<Setting> = until.transpose()?;
-    let file = options.file.display().to_string();
     let draft = checkpoint.draft(until.as_slice())?;
-    let need = *draft.need();
-    let writing = memory::of_writing(&options.output);
-    memory::check(&file, &need, writing)?;
-    let scenario = draft.scenario()?;
-    memory::check(&file, &need.with_lists(&scenario.scene), writing)?;
+    let (scenario, _) = draft.within(main_memory(), memory::of_writing(&options.output))?;
     let resumable = until.is_some().then(|| checkpoint.scenario(&[]).ok());
-    let (simulation, metrics) = checkpoint.resume(&scenario)?;
-    refuse_the_past(options, simulation.frame().clock)?;
+    let run = checkpoint.resume(scenario)?;
+    refuse_the_past(options, run.simulation.frame().clock)?;
     let mut outputs = Outputs::new(options.program.force);
     outputs.goes_on_with("the checkpoint", &options.file, "--checkpoint");
-    check(outputs, &options.output, &scenario)?;
-    let run = Run {
-        scenario,
-        resumable: resumable.flatten(),
-        simulation,
-        metrics,
-    };
-    run.go_on(&options.program, &options.output)
+    check(outputs, &options.output, &run.scenario)?;
+    go_on(run, resumable.flatten(), &options.program, &options.output)
 }
 
 /// Rejects an end before the checkpoint's time.
@@ -117,70 +102,47 @@ fn fits_into_memory(file: &Path) -> Result<(), Failure> {
     }
 }
 
-/// A run, from where its simulation is to its end.
-struct Run {
-    scenario: Scenario,
-    /// What checkpoints hold, where `--until` cuts the scenario short.
+/// Runs to the end. Checkpoints hold `resumable`, if `--until` cuts the scenario short.
+fn go_on(
+    mut run: Run,
     resumable: Option<Scenario>,
-    simulation: Simulation,
-    metrics: Metrics,
-}
-
-impl Run {
-    fn go_on(self, program: &ProgramOptions, options: &OutputOptions) -> Result<(), Failure> {
-        let Self {
-            scenario,
-            resumable,
-            mut simulation,
-            mut metrics,
-        } = self;
-        let scenario = &scenario;
-        let duration = scenario.duration_secs;
-        let last_frame = simulation.frame().clock.frame_at(duration);
-        let interrupt = Interrupt::listen().map_err(|error| Failure::Output(error.to_string()))?;
-        let resumable = resumable.as_ref().unwrap_or(scenario);
-        let mut checkpoints = Checkpoints::create(&options.checkpoint, &mut simulation);
-        let mut output = Output::create(&options.record, scenario, &mut simulation, &interrupt)?;
-        let mut trajectories =
-            Trajectories::create(&options.trajectory, scenario, &mut simulation)?;
-        let mut interrupted = None;
-        let progress = Progress::new(duration);
-
-        // On a thread of the pool, parallel work starts without handing it over to the pool first.
-        let driven = rayon::scope(|_| {
-            drive(&mut simulation, duration, |simulation, ms| {
-                metrics.observe(simulation);
-                progress.show(simulation);
-                output.log(simulation, ms)?;
-                trajectories.log(simulation)?;
-                let then = unless_over(simulation, scenario);
-                if then == Then::GoOn {
-                    interrupted = interrupt.exit_code();
-                }
-                let is_last = then == Then::Stop || simulation.frame().clock.frame() >= last_frame;
-                let moment = match interrupted {
-                    Some(_) => Moment::Interrupted,
-                    None if is_last => Moment::Last,
-                    None => Moment::Underway,
-                };
-                checkpoints.write(resumable, simulation, &metrics, moment);
-                Ok::<Then, Failure>(interrupted.map_or(then, |_| Then::Stop))
-            })
-        });
-        progress.finish();
-        // Close all files first, so that they are kept even if the run failed.
-        let (recorded, traced) = (output.finish(), trajectories.finish());
-        let saved = recorded.and(traced).and(checkpoints.finish());
-        driven.map_err(|failure| failure.laid_open(&mut simulation))?;
-        report_oddities(&simulation);
-        report_absent(&options.record, &simulation);
-        let report = Report::new(scenario, &simulation, &metrics, interrupted.is_some());
-        say(report.render(program.json))?;
-        saved?;
-        interrupted.map_or(Ok(()), |exit_code| {
-            let time = simulation.frame().clock.time();
+    program: &ProgramOptions,
+    options: &OutputOptions,
+) -> Result<(), Failure> {
+    let interrupt = Interrupt::listen().map_err(|error| Failure::Output(error.to_string()))?;
+    let checkpoints = Checkpoints::create(&options.checkpoint, resumable, &mut run);
+    let progress = Progress::new(run.scenario.duration_secs);
+    let mut observers: Vec<Box<dyn Observer<Failure> + Send>> = vec![Box::new(progress)];
+    if let Some(recording) = Recording::create(&options.record, &mut run, &interrupt)? {
+        observers.push(Box::new(recording));
+    }
+    for trajectory in trajectory::create(&options.trajectory, &mut run)? {
+        observers.push(Box::new(trajectory));
+    }
+    if let Some(checkpoints) = checkpoints {
+        observers.push(Box::new(checkpoints));
+    }
+    // On a thread of the pool, parallel work starts without handing it over to the pool first.
+    let interrupted = || interrupt.exit_code().is_some();
+    let driven = rayon::scope(|_| run.drive(&mut observers, interrupted));
+    // Close all files first, so that they are kept even if the run failed.
+    let finished: Vec<_> = observers.into_iter().map(Observer::finish).collect();
+    let end = driven.map_err(|failure| failure.laid_open(&mut run.simulation))?;
+    report_oddities(&run.simulation);
+    report_absent(&options.record, &run.simulation);
+    let interrupted = end == End::Interrupted;
+    tell(
+        program.json,
+        || report::json(&run, interrupted),
+        || report::text(&run, interrupted),
+    )?;
+    finished.into_iter().collect::<Result<(), _>>()?;
+    match interrupt.exit_code() {
+        Some(exit_code) if interrupted => {
+            let time = run.simulation.frame().clock.time();
             Err(Failure::Interrupted { time, exit_code })
-        })
+        }
+        _ => Ok(()),
     }
 }
 
@@ -259,31 +221,28 @@ fn report_absent(record: &RecordOptions, simulation: &Simulation) {
 }
 
 /// A progress bar on stderr, shown only if stderr is a terminal.
-pub struct Progress {
-    bar: ProgressBar,
-}
+pub struct Progress(ProgressBar);
 
 impl Progress {
     pub fn new(duration: f64) -> Self {
-        let bar = ProgressBar::new((duration * 10.0).ceil() as u64);
-        let template = "{bar:30} {msg}, {eta} left";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
-        }
-        Self { bar }
+        let length = (duration * 10.0).ceil() as u64;
+        Self(bar(length, "{bar:30} {msg}, {eta} left"))
     }
 
     pub fn show(&self, simulation: &Simulation) {
         let frame = simulation.frame();
-        if frame.clock.is_coarse() && !self.bar.is_hidden() {
+        if frame.clock.is_coarse() && !self.0.is_hidden() {
             let (time, agents) = (frame.clock.time(), frame.agents.len());
-            self.bar.set_position((time * 10.0) as u64);
-            self.bar
+            self.0.set_position((time * 10.0) as u64);
+            self.0
                 .set_message(format!("t = {time:.1} s, {agents} agents"));
         }
     }
+}
 
-    pub fn finish(&self) {
-        self.bar.finish_and_clear();
+impl Observer<Failure> for Progress {
+    fn observe(&mut self, run: &Run, _: f64, _: ControlFlow<End>) -> Result<(), Failure> {
+        self.show(&run.simulation);
+        Ok(())
     }
 }

@@ -2,13 +2,14 @@
 
 use serde_json::json;
 
-use super::arguments::{InspectOptions, Source};
+use super::arguments::InspectOptions;
 use super::drive::Progress;
 use super::output;
 use super::{Failure, memory, say, scenario as read, use_threads};
 use crate::engine::breakdown::Breakdown;
 use crate::engine::pairs::Precision;
 use crate::engine::simulation::Simulation;
+use crate::runs::case::Source;
 use crate::runs::outputs::{Manner, Outputs};
 
 pub fn run(options: &InspectOptions) -> Result<(), Failure> {
@@ -32,9 +33,7 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     // The rest density depends on the density's history, so every frame needs the density.
     simulation.request_density_until(u64::MAX);
-    let progress = Progress::new(options.at);
-    let went = rayon::scope(|_| go_to(options.at, &mut simulation, &progress));
-    progress.finish();
+    let went = rayon::scope(|_| go_to(options.at, &mut simulation));
     went.map_err(|failure| failure.laid_open(&mut simulation))?;
     let inspected = inspected(&simulation, options)?;
     if let Some(path) = &options.save {
@@ -67,7 +66,8 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
 
 /// Advances to the time `at` in seconds, even beyond the scenario's end; fails if no agents are left before. The state
 /// is that of a normal run; only the last frame is evaluated in double precision throughout.
-fn go_to(at: f64, simulation: &mut Simulation, progress: &Progress) -> Result<(), Failure> {
+fn go_to(at: f64, simulation: &mut Simulation) -> Result<(), Failure> {
+    let progress = Progress::new(at);
     let last = simulation.frame().clock.frame_at(at);
     while simulation.frame().clock.frame() < last {
         progress.show(simulation);

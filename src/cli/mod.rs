@@ -26,16 +26,18 @@ use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
+use serde_json::Value;
 
 use crate::engine::breakdown::Breakdown;
 use crate::engine::simulation::{Fault, Simulation};
 use crate::lab::error::LabError;
+use crate::lab::machine::main_memory;
+use crate::runs::case::Source;
 use crate::runs::error::StoreError;
 use crate::runs::outputs::{Outputs, OutputsError};
 use crate::scenario::floor_plan;
 use crate::scenario::quote::{printable, shown};
-use crate::scenario::{Draft, Scenario, ScenarioError, Setting, read_text, shipped_text};
-use arguments::Source;
+use crate::scenario::{Draft, Scenario, ScenarioError, Setting};
 use commands::{Arguments, Command};
 
 /// Why a command failed.
@@ -199,15 +201,8 @@ fn scenario(
         settings.extend(Setting::floor_plan(&plan, &text));
     }
     settings.extend(typed.into_iter().chain(last));
-    let (text, file) = match source {
-        Source::Shipped(name) => (shipped_text(name)?.to_owned(), format!("{name}.json")),
-        Source::File(path) => (read_text(path)?, path.display().to_string()),
-    };
-    let draft = Draft::read(&text, &file, &settings)?;
-    let need = *draft.need();
-    memory::check(&file, &need, writing)?;
-    let scenario = draft.scenario()?;
-    memory::check(&file, &need.with_lists(&scenario.scene), writing)?;
+    let (text, file) = source.text()?;
+    let (scenario, _) = Draft::read(&text, &file, &settings)?.within(main_memory(), writing)?;
     if let Source::File(path) = source {
         outputs.reads("the scenario", path);
     }
@@ -231,6 +226,18 @@ fn say(text: impl AsRef<[u8]>) -> Result<(), Failure> {
             Err(Failure::Output(format!("stdout: {error}")))
         }
         _ => Ok(()),
+    }
+}
+
+/// Writes results to stdout, as JSON or as text.
+fn tell(
+    as_json: bool,
+    json: impl FnOnce() -> Value,
+    text: impl FnOnce() -> String,
+) -> Result<(), Failure> {
+    match as_json {
+        true => say(format!("{}\n", json())),
+        false => say(text()),
     }
 }
 

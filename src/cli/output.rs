@@ -1,15 +1,17 @@
 //! The output files of a run: options, checks and the recording.
 
-use crate::engine::scene::Region;
-use crate::output::recording::{
-    self, DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer,
-};
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use super::arguments::{OutputOptions, RecordOptions};
 use super::interrupt::Interrupt;
+use super::values::region;
 use super::{Failure, talk, trajectory};
 use crate::engine::simulation::Simulation;
+use crate::output::recording::{
+    self, DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer,
+};
+use crate::runs::drive::{End, Observer, Run};
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::Scenario;
 
@@ -52,62 +54,55 @@ pub fn laid_open(record: &RecordOptions) -> Result<Option<Vec<u32>>, Failure> {
     })
 }
 
-/// The recording of a run, if there is one.
-pub struct Output {
-    recorder: Option<Recorder>,
+/// The recording of a run.
+pub struct Recording {
+    recorder: Recorder,
     every: u64,
     from: u64,
     /// Number of frames recorded so far.
     recorded: u64,
 }
 
-impl Output {
+impl Recording {
     /// Opens the recording, if one is requested.
     pub fn create(
         record: &RecordOptions,
-        scenario: &Scenario,
-        simulation: &mut Simulation,
+        run: &mut Run,
         interrupt: &Interrupt,
-    ) -> Result<Self, Failure> {
-        let debug = debug_agents(record, scenario)?;
-        let recorder = match destination(record, interrupt)? {
-            None => None,
-            Some(to) => {
-                simulation.request_density_until(u64::MAX);
-                let view = recording_options(scenario, debug, record.record_from);
-                Some(Recorder::create(to, simulation, &view)?)
-            }
+    ) -> Result<Option<Self>, Failure> {
+        let debug = debug_agents(record, &run.scenario)?;
+        let Some(to) = destination(record, interrupt)? else {
+            return Ok(None);
         };
-        Ok(Self {
-            recorder,
+        run.simulation.request_density_until(u64::MAX);
+        let view = recording_options(&run.scenario, debug, record.record_from);
+        Ok(Some(Self {
+            recorder: Recorder::create(to, &run.simulation, &view)?,
             every: record.record_every,
-            from: simulation.frame().clock.frame_at(record.record_from),
+            from: run.simulation.frame().clock.frame_at(record.record_from),
             recorded: 0,
-        })
+        }))
     }
+}
 
-    /// Records an evaluated frame if it is due.
-    pub fn log(&mut self, simulation: &Simulation, ms_per_frame: f64) -> Result<(), Failure> {
-        let frame = simulation.frame().clock.frame();
-        if let Some(recorder) = &mut self.recorder
-            && frame >= self.from
-            && frame.is_multiple_of(self.every)
-        {
-            recorder.log(simulation, ms_per_frame)?;
+impl Observer<Failure> for Recording {
+    fn observe(&mut self, run: &Run, ms: f64, _: ControlFlow<End>) -> Result<(), Failure> {
+        let frame = run.simulation.frame().clock.frame();
+        if frame >= self.from && frame.is_multiple_of(self.every) {
+            self.recorder.log(&run.simulation, ms)?;
             self.recorded += 1;
         }
         Ok(())
     }
 
-    /// Closes the recording.
-    pub fn finish(self) -> Result<(), Failure> {
-        if self.recorder.is_some() && self.recorded == 0 {
+    fn finish(self: Box<Self>) -> Result<(), Failure> {
+        if self.recorded == 0 {
             talk(
                 "note: no frame was recorded: the run ended before the first frame that --record-from and \
                  --record-every select",
             );
         }
-        match self.recorder.map_or(Ok(()), Recorder::finish) {
+        match self.recorder.finish() {
             // Closing the viewer is not an error.
             Err(gone @ RecordingError::ViewerGone { .. }) => {
                 talk(&format!("note: {gone}"));
@@ -183,11 +178,8 @@ fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> Reco
 
 fn debug_agents(record: &RecordOptions, scenario: &Scenario) -> Result<DebugAgents, Failure> {
     if let Some(text) = &record.debug_region {
-        return region(text).map(DebugAgents::Region).ok_or_else(|| {
-            Failure::Input(format!(
-                "--debug-region {text}: expected four numbers x0,y0,x1,y1 with x0 < x1 and y0 < y1"
-            ))
-        });
+        let region = region(text).map(DebugAgents::Region);
+        return region.map_err(|reason| Failure::Input(format!("--debug-region {text}: {reason}")));
     }
     if let Some(ids) = laid_open(record)? {
         if let Some(id) = ids.iter().find(|&&id| u64::from(id) >= scenario.entering) {
@@ -204,17 +196,6 @@ fn debug_agents(record: &RecordOptions, scenario: &Scenario) -> Result<DebugAgen
         Some("none") => DebugAgents::None,
         _ => DebugAgents::Ids(scenario.debug_agents.clone()),
     })
-}
-
-fn region(text: &str) -> Option<Region> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
-    match numbers.ok()?.as_slice() {
-        &[x0, y0, x1, y1] if x0 < x1 && y0 < y1 => Some(Region {
-            min: [x0, y0].into(),
-            max: [x1, y1].into(),
-        }),
-        _ => None,
-    }
 }
 
 impl From<RecordingError> for Failure {

@@ -1,16 +1,12 @@
 //! `sandbox reproduce`: the paper's tables and figures.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use super::update::{check, update};
-use super::values::threads;
+use super::update::CaseOptions;
 use super::watch::Watch;
-use super::{Failure, say, use_threads};
+use super::{Failure, say};
 use crate::lab::reproduce::{PRODUCTS, Product, reproduce};
-use crate::runs::store::Store;
 
 #[derive(Args)]
 pub struct ReproduceOptions {
@@ -20,15 +16,8 @@ pub struct ReproduceOptions {
     /// Number of seeds per row of a table: 1, 2, …
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub seeds: u64,
-    /// Folder for the results; cases finished there are not run again
-    #[arg(long, value_name = "DIR", default_value = "reproduction")]
-    pub out: PathBuf,
-    /// Also insert the text about each table into this file, between the lines <!-- NAME --> and <!-- /NAME -->
-    #[arg(long, value_name = "FILE.md")]
-    pub update: Option<PathBuf>,
-    /// Number of cases to compute at once, each on one thread [default: all cores]
-    #[arg(long, value_parser = threads)]
-    pub threads: Option<usize>,
+    #[command(flatten)]
+    pub cases: CaseOptions,
 }
 
 /// The name of all products with `in_all`.
@@ -59,25 +48,15 @@ pub fn about() -> String {
 }
 
 pub fn run(options: &ReproduceOptions) -> Result<(), Failure> {
-    use_threads(options.threads)?;
-    if let Some(file) = &options.update {
-        check(file, &options.out)?;
-    }
-    let store = Store::open(&options.out)?;
+    let store = options.cases.store()?;
     let wanted = |product: &&Product| {
         let named = options.what.iter().any(|name| name == product.name);
         named || product.in_all && options.what.iter().any(|name| name == ALL)
     };
     let products: Vec<&Product> = PRODUCTS.iter().filter(wanted).collect();
-    let watch = Watch::new();
-    let said = reproduce(&products, options.seeds, &store, &watch);
-    watch.ends();
-    let said = said?;
-    // Results are printed even if they cannot be saved.
-    let updated = options.update.as_ref().map_or(Ok(()), |file| {
-        let names = products.iter().map(|product| product.name);
-        update(file, names.zip(said.iter().map(String::as_str)))
-    });
-    said.iter().try_for_each(say)?;
-    updated
+    let texts = reproduce(&products, options.seeds, &store, &Watch::new())?;
+    let said = texts.iter().try_for_each(say);
+    let names = products.iter().map(|product| product.name);
+    options.cases.update(names.zip(&texts))?;
+    said
 }

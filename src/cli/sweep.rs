@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::watch::Watch;
-use super::{Failure, say, talk, use_threads};
+use super::{Failure, say, talk, tell, use_threads};
 use crate::lab::machine::main_memory;
 use crate::lab::sweep::{Gathered, Shard, State, Study, StudyError, run as run_shard};
 use crate::runs::job::Tally;
@@ -62,44 +62,31 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let computes = !options.list && !options.merge;
     let memory = computes.then(main_memory).flatten();
     let study = Study::open(&options.file, memory)?;
-    let folder = options
-        .out
-        .clone()
-        .unwrap_or_else(|| PathBuf::from(&study.name));
+    let folder = options.out.clone();
+    let folder = folder.unwrap_or_else(|| PathBuf::from(&study.name));
     let store = Store::at(&folder);
     if options.list {
         return list(&Gathered::of(&study, &store), options);
     }
-    if options.merge {
-        if !store.is_begun() {
-            let folder = folder.display();
-            let reason = format!("{folder}: contains no study; give its folder with --out");
-            return Err(Failure::Input(reason));
-        }
-        check_outputs(&study, &store, options)?;
-        return merge(&study, &store, options);
+    if options.merge && !store.is_begun() {
+        let folder = folder.display();
+        let reason = format!("{folder}: contains no study; give its folder with --out");
+        return Err(Failure::Input(reason));
     }
     check_outputs(&study, &store, options)?;
+    if options.merge {
+        return merge(&study, &store, options);
+    }
     let store = Store::open(&folder)?;
-    let watch = Watch::new();
     let shard = options.shard.unwrap_or(Shard::WHOLE);
-    let tally = run_shard(&study, shard, &store, &watch);
-    watch.ends();
-    let tally = tally?;
+    let tally = run_shard(&study, shard, &store, &Watch::new())?;
     if options.shard.is_none() {
         return merge(&study, &store, options);
     }
     say(told(&tally, shard, options.json))?;
-    let failed: Vec<String> = tally
-        .failed
-        .iter()
-        .map(|(cell, why)| format!("{cell}: {why}"))
-        .collect();
-    if failed.is_empty() {
-        Ok(())
-    } else {
-        Err(some_failed(&failed, tally.jobs))
-    }
+    let failed = tally.failed.iter();
+    let failed: Vec<_> = failed.map(|(cell, why)| format!("{cell}: {why}")).collect();
+    some_failed(&failed, tally.jobs)
 }
 
 /// Rejects results that cannot be written or would replace an input. In a folder that does not belong to a study,
@@ -139,43 +126,40 @@ fn merge(study: &Study, store: &Store, options: &SweepOptions) -> Result<(), Fai
     for path in gathered.write(store)? {
         talk(&format!("note: {} written", path.display()));
     }
-    if options.json {
-        say(format!("{}\n", gathered.json()))?;
-    } else {
-        say(gathered.text())?;
+    tell(options.json, || gathered.json(), || gathered.text())?;
+    let (mut missing, mut failed) = (Vec::new(), Vec::new());
+    for (cell, state) in study.cells.iter().zip(&gathered.states) {
+        match state {
+            State::Finished(_) => {}
+            State::Missing => missing.push(cell.number),
+            State::Failed(message) => failed.push(format!("{cell}: {message}")),
+        }
     }
-    let all = study.cells.iter().zip(&gathered.states);
-    let missing: Vec<usize> = all
-        .clone()
-        .filter(|(_, state)| **state == State::Missing)
-        .map(|(cell, _)| cell.number)
-        .collect();
-    let failed = all.filter_map(|(cell, state)| match state {
-        State::Failed(message) => Some(format!("{cell}: {message}")),
-        State::Finished(_) | State::Missing => None,
-    });
-    let failed: Vec<String> = failed.collect();
-    if !missing.is_empty() {
-        let (count, of) = (missing.len(), study.cells.len());
+    let (count, of) = (missing.len(), study.cells.len());
+    if count > 0 {
         let missing = ranges(&missing);
         talk(&format!(
             "note: {count} of {of} cells are missing: {missing}"
         ));
     }
-    match (failed.is_empty(), missing.is_empty()) {
-        (true, true) => Ok(()),
-        (true, false) => Err(Failure::Output(
+    some_failed(&failed, of)?;
+    if count > 0 {
+        return Err(Failure::Output(
             "the study is not finished; the tables have the finished cells (those of another version of the engine \
              do not count)"
                 .to_owned(),
-        )),
-        (false, _) => Err(some_failed(&failed, study.cells.len())),
+        ));
     }
+    Ok(())
 }
 
-fn some_failed(failed: &[String], of: usize) -> Failure {
+/// The error that cells failed, if some did.
+fn some_failed(failed: &[String], of: usize) -> Result<(), Failure> {
     /// Most failures to print: more would scroll the first ones off the screen.
     const MOST: usize = 5;
+    if failed.is_empty() {
+        return Ok(());
+    }
     let mut text = format!(
         "{} of {of} cells failed (run the same command to retry them):",
         failed.len()
@@ -186,26 +170,19 @@ fn some_failed(failed: &[String], of: usize) -> Failure {
     if failed.len() > MOST {
         text += &format!("\n  … and {} more", failed.len() - MOST);
     }
-    Failure::Output(text)
+    Err(Failure::Output(text))
 }
 
 fn told(tally: &Tally, shard: Shard, as_json: bool) -> String {
-    let Tally {
-        jobs: cells,
-        kept,
-        repeated,
-        finished,
-        by_others,
-        failed,
-    } = tally;
+    let (cells, repeated, finished) = (tally.jobs, tally.repeated, tally.finished);
+    let kept = tally.kept + tally.by_others;
     if as_json {
-        let failed = failed
-            .iter()
-            .map(|(cell, why)| json!({ "cell": cell, "error": why }));
+        let failed = tally.failed.iter();
+        let failed = failed.map(|(cell, why)| json!({ "cell": cell, "error": why }));
         let told = json!({
             "shard": shard.to_string(),
             "cells": cells,
-            "kept": kept + by_others,
+            "kept": kept,
             "repeated": repeated,
             "finished": finished,
             "failed": failed.collect::<Vec<_>>(),
@@ -216,10 +193,9 @@ fn told(tally: &Tally, shard: Shard, as_json: bool) -> String {
         0 => String::new(),
         repeated => format!(", {repeated} same as another cell"),
     };
+    let failed = tally.failed.len();
     format!(
-        "shard {shard}: {cells} cell(s); {finished} finished now, {} before, {} failed{repeated}\n",
-        kept + by_others,
-        failed.len()
+        "shard {shard}: {cells} cell(s); {finished} finished now, {kept} before, {failed} failed{repeated}\n"
     )
 }
 

@@ -1,9 +1,11 @@
 //! Trajectory files: options and checks.
 
+use std::ops::ControlFlow;
+
 use super::Failure;
 use super::arguments::TrajectoryOptions;
-use crate::engine::simulation::Simulation;
 use crate::output::trajectory::{Format, Trajectory, TrajectoryError, frames_between, journal};
+use crate::runs::drive::{End, Observer, Run};
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::Scenario;
 
@@ -29,34 +31,21 @@ pub fn add(
     Ok(())
 }
 
-/// The trajectory files of a run.
-pub struct Trajectories(Vec<Trajectory>);
+/// Opens the requested files.
+pub fn create(options: &TrajectoryOptions, run: &mut Run) -> Result<Vec<Trajectory>, Failure> {
+    let (view, fps) = (run.scenario.view.region, options.fps);
+    let files = options.files.iter();
+    let opened = files.map(|path| Trajectory::create(path, &mut run.simulation, view, fps));
+    Ok(opened.collect::<Result<_, _>>()?)
+}
 
-impl Trajectories {
-    /// Opens the requested files.
-    pub fn create(
-        options: &TrajectoryOptions,
-        scenario: &Scenario,
-        simulation: &mut Simulation,
-    ) -> Result<Self, Failure> {
-        let (view, fps) = (scenario.view.region, options.fps);
-        let files = options.files.iter();
-        let opened = files.map(|path| Trajectory::create(path, simulation, view, fps));
-        Ok(Self(opened.collect::<Result<_, _>>()?))
+impl Observer<Failure> for Trajectory {
+    fn observe(&mut self, run: &Run, _: f64, _: ControlFlow<End>) -> Result<(), Failure> {
+        Ok(self.log(&run.simulation)?)
     }
 
-    /// Adds an evaluated frame to the files in which it is due.
-    pub fn log(&mut self, simulation: &Simulation) -> Result<(), Failure> {
-        for trajectory in &mut self.0 {
-            trajectory.log(simulation)?;
-        }
-        Ok(())
-    }
-
-    /// Closes all files, even if one fails.
-    pub fn finish(self) -> Result<(), Failure> {
-        let finished: Vec<_> = self.0.into_iter().map(Trajectory::finish).collect();
-        Ok(finished.into_iter().collect::<Result<(), _>>()?)
+    fn finish(self: Box<Self>) -> Result<(), Failure> {
+        Ok(Self::finish(*self)?)
     }
 }
 

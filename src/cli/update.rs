@@ -1,46 +1,71 @@
-//! `--update`: inserts tables into a document at marked places.
+//! Options of commands that compute many cases, with `--update`, which inserts tables into a document.
 
 use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::Failure;
+use clap::Args;
+
+use super::values::threads;
+use super::{Failure, use_threads};
 use crate::lab::reproduce::put_between;
 use crate::runs::outputs::{Manner, Outputs, write_whole};
+use crate::runs::store::Store;
 use crate::scenario::input;
 
-/// Checks before a long computation that the file can be updated and that no result replaces it.
-pub fn check(file: &Path, out: &Path) -> Result<(), Failure> {
-    let place = fs::canonicalize(file).map_err(|error| failed(file, &error))?;
-    let mut outputs = Outputs::new(true);
-    outputs.writes("--update", file, Manner::Whole);
-    outputs.check()?;
-    let results = fs::canonicalize(out).ok();
-    if results.is_some() && place.parent() == results.as_deref() {
-        return Err(Failure::Input(format!(
-            "--update {}: lies in the folder of --out {}, whose files are replaced; give another folder",
-            file.display(),
-            out.display()
-        )));
-    }
-    Ok(())
+#[derive(Args)]
+pub struct CaseOptions {
+    /// Folder for the results; cases finished there are not run again
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Also insert the tables into this file, between the lines <!-- NAME --> and <!-- /NAME -->
+    #[arg(long, value_name = "FILE.md")]
+    pub update: Option<PathBuf>,
+    /// Number of cases to compute at once, each on one thread [default: all cores]
+    #[arg(long, value_parser = threads)]
+    pub threads: Option<usize>,
 }
 
-/// Inserts texts at the places of a file that are marked with their names.
-pub fn update<'a>(
-    file: &Path,
-    texts: impl Iterator<Item = (&'a str, &'a str)>,
-) -> Result<(), Failure> {
-    let put = || {
-        let mut document = input::text(file)?;
-        for (name, text) in texts {
-            if let Some(changed) = put_between(&document, name, text) {
-                document = changed;
+impl CaseOptions {
+    /// Opens the folder for the results, after a check that the document can be updated and that no result replaces it.
+    pub fn store(&self) -> Result<Store, Failure> {
+        use_threads(self.threads)?;
+        if let Some(file) = &self.update {
+            let place = fs::canonicalize(file).map_err(|error| failed(file, &error))?;
+            let mut outputs = Outputs::new(true);
+            outputs.writes("--update", file, Manner::Whole);
+            outputs.check()?;
+            let results = fs::canonicalize(&self.out).ok();
+            if results.is_some() && place.parent() == results.as_deref() {
+                return Err(Failure::Input(format!(
+                    "--update {}: lies in the folder of --out {}, whose files are replaced; give another folder",
+                    file.display(),
+                    self.out.display()
+                )));
             }
         }
-        write_whole(file, |whole| whole.write_all(document.as_bytes()))
-    };
-    put().map_err(|error| failed(file, &error))
+        Ok(Store::open(&self.out)?)
+    }
+
+    /// Inserts texts at the places of the document that are marked with their names.
+    pub fn update(
+        &self,
+        texts: impl IntoIterator<Item = (impl AsRef<str>, impl AsRef<str>)>,
+    ) -> Result<(), Failure> {
+        let Some(file) = &self.update else {
+            return Ok(());
+        };
+        let put = || {
+            let mut document = input::text(file)?;
+            for (name, text) in texts {
+                if let Some(changed) = put_between(&document, name.as_ref(), text.as_ref()) {
+                    document = changed;
+                }
+            }
+            write_whole(file, |whole| whole.write_all(document.as_bytes()))
+        };
+        put().map_err(|error| failed(file, &error))
+    }
 }
 
 fn failed(file: &Path, error: &io::Error) -> Failure {

@@ -3,10 +3,18 @@
 use std::io::IsTerminal;
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 
 use super::talk;
 use crate::runs::job::Listener;
+
+/// A progress bar on stderr, shown only if stderr is a terminal, until it is dropped.
+pub fn bar(length: u64, template: &str) -> ProgressBar {
+    let style = ProgressStyle::with_template(template);
+    let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+    let bar = ProgressBar::new(length).with_style(style);
+    bar.with_finish(ProgressFinish::AndClear)
+}
 
 /// A progress bar on stderr. If stderr is not a terminal, a line for every finished case instead.
 pub struct Watch {
@@ -16,20 +24,11 @@ pub struct Watch {
 
 impl Watch {
     pub fn new() -> Self {
-        let bar = ProgressBar::new(0);
         let template = "{bar:30} {percent} % of the work, {eta} left; {msg}";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
-        }
         Self {
-            bar,
+            bar: bar(0, template),
             lines: !std::io::stderr().is_terminal(),
         }
-    }
-
-    /// Removes the bar.
-    pub fn ends(&self) {
-        self.bar.finish_and_clear();
     }
 }
 

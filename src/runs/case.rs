@@ -1,18 +1,18 @@
 //! A case: one run of a scenario with settings, and its result.
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::drive::{Then, drive, unless_over};
+use super::drive::{End, Observer, Run};
 use super::error::RunError;
 use super::identity::Identity;
 use super::job::{Job, Progress};
 use super::memory::Memory;
 use super::summary::Summary;
-use crate::engine::simulation::{Fault, Simulation};
-use crate::scenario::measurements::Metrics;
+use crate::engine::simulation::Fault;
 use crate::scenario::quote::shown;
 use crate::scenario::{
     Draft, Need, SHIPPED, Scenario, ScenarioError, Setting, built_in, read_text, shipped_text,
@@ -36,8 +36,16 @@ impl Source {
         Some(Self::Shipped(found.name))
     }
 
+    /// The scenario of this name that ships with the program, else a file.
+    pub fn named(name: &str) -> Self {
+        Self::shipped(name).unwrap_or_else(|| Self::File(PathBuf::from(name)))
+    }
+
     /// The scenario's text, and the name of its file for messages.
-    fn text(&self) -> Result<(String, String), ScenarioError> {
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn text(&self) -> Result<(String, String), ScenarioError> {
         match self {
             Self::Shipped(name) => Ok((shipped_text(name)?.to_owned(), format!("{name}.json"))),
             Self::BuiltIn(path) => match built_in(path) {
@@ -88,14 +96,9 @@ impl Case {
     /// The scenario or a setting is invalid, or the case needs more memory than there is.
     pub fn new(source: Source, settings: Vec<Setting>, memory: &Memory) -> Result<Self, RunError> {
         let (text, file) = source.text()?;
-        let check = |need: &Need| need.check(&file, 0, memory.limit().unwrap_or(u64::MAX));
         let draft = Draft::read(&text, &file, &settings)?;
-        let need = *draft.need();
-        check(&need)?;
-        let _lent = memory.lend(need.bytes());
-        let scenario = draft.scenario()?;
-        let need = need.with_lists(&scenario.scene);
-        check(&need)?;
+        let _lent = memory.lend(draft.need().bytes());
+        let (scenario, need) = draft.within(memory.limit(), 0)?;
         Ok(Self {
             seed: scenario.seed,
             expected_secs: expected_secs(&scenario),
@@ -140,21 +143,23 @@ impl Case {
             return Err(RunError::Changed(shown(&scenario.name)));
         }
         let start = Instant::now();
-        let mut simulation = Simulation::new(scenario.scene.clone())?;
-        let mut metrics = Metrics::new(&scenario.measurements, &mut simulation);
-        let duration = scenario.duration_secs;
-        drive(&mut simulation, duration, |simulation, _| {
-            metrics.observe(simulation);
-            progress(simulation.frame().clock.time() / duration.max(f64::MIN_POSITIVE));
-            Ok::<Then, Fault>(unless_over(simulation, &scenario))
-        })?;
-        let arrivals = &simulation.outcome().arrivals;
+        let mut run = Run::new(scenario)?;
+        run.drive(&mut [Box::new(progress)], || false)?;
+        let arrivals = &run.simulation.outcome().arrivals;
         Ok(RunResult {
-            summary: Summary::of(&scenario, &simulation, &metrics),
+            summary: Summary::of(&run),
             evacuated: arrivals.iter().filter(|arrival| arrival.counted).count(),
-            remaining: simulation.frame().agents.len(),
+            remaining: run.simulation.frame().agents.len(),
             wall_secs: start.elapsed().as_secs_f64(),
         })
+    }
+}
+
+impl Observer<Fault> for Progress<'_> {
+    fn observe(&mut self, run: &Run, _: f64, _: ControlFlow<End>) -> Result<(), Fault> {
+        let duration = run.scenario.duration_secs.max(f64::MIN_POSITIVE);
+        self(run.simulation.frame().clock.time() / duration);
+        Ok(())
     }
 }
 

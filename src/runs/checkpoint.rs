@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::engine::simulation::{Simulation, State, StateError};
+use crate::runs::drive::Run;
 use crate::runs::outputs::write_whole;
 use crate::scenario::input;
 use crate::scenario::measurements::Metrics;
@@ -52,31 +53,12 @@ pub enum CheckpointError {
         /// The system's message.
         reason: String,
     },
-    /// The file cannot be read.
-    #[error("{}: cannot be read: {reason}", path.display())]
+    /// The file cannot be read, is not a checkpoint of this version, or is damaged.
+    #[error("{}: {reason}", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// The system's message.
-        reason: String,
-    },
-    /// The file is not a checkpoint.
-    #[error("{}: is not a checkpoint", .0.display())]
-    Foreign(PathBuf),
-    /// The checkpoint has another format version.
-    #[error("{}: is a checkpoint of version {found}; this program reads version {VERSION}", path.display())]
-    Version {
-        /// The file.
-        path: PathBuf,
-        /// Its version.
-        found: u32,
-    },
-    /// The file was changed or cut short.
-    #[error("{}: is damaged: {reason}", path.display())]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// How this was found.
+        /// What is wrong with it.
         reason: String,
     },
     /// The scenario is invalid with the new settings.
@@ -124,11 +106,15 @@ impl Checkpoint {
     ///
     /// # Errors
     /// The state does not match the scenario.
-    pub fn resume(self, scenario: &Scenario) -> Result<(Simulation, Metrics), CheckpointError> {
+    pub fn resume(self, scenario: Scenario) -> Result<Run, CheckpointError> {
         let mut simulation = Simulation::resumed(scenario.scene.clone(), self.state)?;
         let mut metrics = Metrics::new(&scenario.measurements, &mut simulation);
         metrics.resume(&self.seen);
-        Ok((simulation, metrics))
+        Ok(Run {
+            scenario,
+            simulation,
+            metrics,
+        })
     }
 
     /// Writes it atomically; follows symbolic links.
@@ -156,15 +142,12 @@ impl Checkpoint {
     /// # Errors
     /// The file cannot be read, is not a checkpoint of this version, or is damaged.
     pub fn read(path: &Path) -> Result<Self, CheckpointError> {
-        let unreadable = |error: io::Error| CheckpointError::Unreadable {
-            path: path.to_owned(),
-            reason: error.to_string(),
-        };
+        let unreadable = |error: io::Error| unreadable(path, format!("cannot be read: {error}"));
         let mut file = File::open(path).map_err(unreadable)?;
         let start = Read::by_ref(&mut file).take(MAGIC.len() as u64);
         let start = input::rest(start, LONGEST).map_err(unreadable)?;
         if start != MAGIC {
-            return Err(CheckpointError::Foreign(path.to_owned())); // without reading the rest, which may be long
+            return Self::parse(&start, path); // without reading the rest, which may be long
         }
         let bytes =
             input::rest(Read::chain(start.as_slice(), file), LONGEST).map_err(unreadable)?;
@@ -176,28 +159,26 @@ impl Checkpoint {
     /// # Errors
     /// The bytes are not a checkpoint of this version, or are damaged.
     pub fn parse(bytes: &[u8], path: &Path) -> Result<Self, CheckpointError> {
-        let damaged = |reason: &str| CheckpointError::Damaged {
-            path: path.to_owned(),
-            reason: reason.to_owned(),
-        };
+        let refused = |reason: &str| unreadable(path, reason.to_owned());
+        let cut_short = || refused("is damaged: cut short");
         let rest = bytes.strip_prefix(MAGIC);
-        let rest = rest.ok_or_else(|| CheckpointError::Foreign(path.to_owned()))?;
-        let (version, rest) = rest
-            .split_first_chunk()
-            .ok_or_else(|| damaged("cut short"))?;
+        let rest = rest.ok_or_else(|| refused("is not a checkpoint"))?;
+        let (version, rest) = rest.split_first_chunk().ok_or_else(cut_short)?;
         let version = u32::from_le_bytes(*version);
         if version != VERSION {
-            return Err(CheckpointError::Version {
-                path: path.to_owned(),
-                found: version,
-            });
+            return Err(refused(&format!(
+                "is a checkpoint of version {version}; this program reads version {VERSION}"
+            )));
         }
-        let (sum, payload) = rest
-            .split_first_chunk::<32>()
-            .ok_or_else(|| damaged("cut short"))?;
+        let (sum, payload) = rest.split_first_chunk::<32>().ok_or_else(cut_short)?;
         if Sha256::digest(payload).as_slice() != sum {
-            return Err(damaged("its checksum does not match"));
+            return Err(refused("is damaged: its checksum does not match"));
         }
-        postcard::from_bytes(payload).map_err(|error| damaged(&error.to_string()))
+        postcard::from_bytes(payload).map_err(|error| refused(&format!("is damaged: {error}")))
     }
+}
+
+fn unreadable(path: &Path, reason: String) -> CheckpointError {
+    let path = path.to_owned();
+    CheckpointError::Unreadable { path, reason }
 }

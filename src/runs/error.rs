@@ -1,17 +1,14 @@
 //! Why runs cannot be computed or their results stored.
 
 use crate::engine::simulation::Fault;
-use crate::scenario::{ScenarioError, TooLarge};
+use crate::scenario::ScenarioError;
 
 /// Why a run cannot be computed.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
-    /// Its scenario or a setting is invalid.
+    /// Its scenario or a setting is invalid, or needs more memory than there is.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
-    /// It needs more memory than there is.
-    #[error(transparent)]
-    TooLarge(#[from] TooLarge),
     /// The simulation failed.
     #[error(transparent)]
     Fault(#[from] Fault),

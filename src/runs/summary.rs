@@ -6,9 +6,8 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use crate::engine::simulation::Simulation;
-use crate::scenario::Scenario;
-use crate::scenario::measurements::{Metric, Metrics};
+use crate::runs::drive::Run;
+use crate::scenario::measurements::Metric;
 
 /// The results of a run, part of what `--json` reports.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -48,9 +47,10 @@ pub struct Summary {
 
 impl Summary {
     /// The summary of a finished run.
-    pub fn of(scenario: &Scenario, simulation: &Simulation, metrics: &Metrics) -> Self {
+    pub fn of(run: &Run) -> Self {
+        let (scenario, simulation) = (&run.scenario, &run.simulation);
         let (frame, outcome) = (simulation.frame(), simulation.outcome());
-        let measured = metrics.results(simulation).into_iter();
+        let measured = run.metrics.results(simulation).into_iter();
         Self {
             scenario: scenario.name.clone(),
             profile: scenario.profile_name.clone(),
@@ -62,15 +62,13 @@ impl Summary {
             time_secs: frame.clock.time(),
             agents: frame.agents.entered(),
             metrics: measured.map(|m| (m.name.clone(), value(&m))).collect(),
-            data: metrics.data().collect(),
+            data: run.metrics.data().collect(),
             contained_moves: outcome.contained_moves,
             clamped_speeds: outcome.clamped_speeds,
             displaced_agents: outcome.displaced.len(),
         }
     }
-}
 
-impl Summary {
     /// A metric by name; `None` if it is not measured or has no value.
     pub fn metric(&self, name: &str) -> Option<f64> {
         self.metrics.get(name)?.as_f64()

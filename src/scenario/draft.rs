@@ -70,6 +70,25 @@ impl Draft {
         let scenario = contents.scenario(Path::new(&origin.file));
         scenario.map_err(|problem| origin.blame(problem))
     }
+
+    /// The [`scenario`](Self::scenario) and the size of its run, if it fits into `there` bytes of memory (`None`: no
+    /// limit). Writing its outputs takes `output` bytes per agent.
+    ///
+    /// # Errors
+    /// It does not fit, or an error of [`scenario`](Self::scenario).
+    pub fn within(
+        self,
+        there: Option<u64>,
+        output: u64,
+    ) -> Result<(Scenario, Need), ScenarioError> {
+        let (file, need) = (self.origin.file.clone(), self.contents.need);
+        let check = |need: &Need| need.check(&file, output, there.unwrap_or(u64::MAX));
+        check(&need)?;
+        let scenario = self.scenario()?;
+        let need = need.with_lists(&scenario.scene);
+        check(&need)?;
+        Ok((scenario, need))
+    }
 }
 
 impl Origin {

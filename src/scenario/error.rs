@@ -41,6 +41,9 @@ pub enum ScenarioError {
         /// The place, relative to the setting's key, and the reason.
         problem: Problem,
     },
+    /// Its run needs more memory than the machine has.
+    #[error("{0}")]
+    TooLarge(String),
     /// There is no built-in scenario of this name.
     #[error(
         "unknown scenario `{}`; the built-in scenarios are {known}",

@@ -45,7 +45,7 @@ pub use draft::Draft;
 pub use error::{Problem, ScenarioError};
 #[cfg(feature = "program")]
 pub(crate) use error::{in_plain_words, suggestion};
-pub use need::{Need, TooLarge, in_units};
+pub use need::{Need, in_units};
 pub use preset::Preset;
 pub use schema::schema;
 pub use setting::{Setting, SettingError};

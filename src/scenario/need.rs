@@ -1,6 +1,6 @@
 //! How many agents enter a run and how much memory it takes, estimated before any agents are placed.
 
-use super::error::Problem;
+use super::error::{Problem, ScenarioError};
 use super::file::{File, Grid, TimeStep};
 use super::plan;
 use super::wall_lists;
@@ -32,11 +32,6 @@ const TEXT: u64 = 65;
 
 /// Memory per entry in the lists of walls near agents, bytes, with spare capacity: the lists grow in steps.
 const LISTED: u64 = 5;
-
-/// A run needs more memory than the machine has.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct TooLarge(String);
 
 /// Upper bounds on the size of a scenario's run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -82,7 +77,7 @@ impl Need {
     ///
     /// # Errors
     /// It does not fit; the message has the estimate.
-    pub fn check(&self, file: &str, output: u64, there: u64) -> Result<(), TooLarge> {
+    pub fn check(&self, file: &str, output: u64, there: u64) -> Result<(), ScenarioError> {
         let output = self.entering.saturating_mul(output);
         let estimate = self.bytes().saturating_add(output);
         if estimate <= there {
@@ -108,7 +103,7 @@ impl Need {
             true => "smaller avoidance_radius and support_radius, ",
             false => "",
         };
-        Err(TooLarge(format!(
+        Err(ScenarioError::TooLarge(format!(
             "{file}: {agents} agents{entering} and {} walls would take {} of memory{parts}, and this machine has \
              {}: use {smaller}fewer agents, a shorter run (--until) if they come from sources, or a larger machine",
             self.walls,

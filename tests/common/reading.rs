@@ -1,8 +1,7 @@
 //! Reads any text as a scenario and runs it for a few frames, for tests and for fuzzing.
 
-use sandbox::engine::simulation::{Fault, Simulation};
-use sandbox::runs::drive::{Then, drive};
-use sandbox::scenario::measurements::Metrics;
+use sandbox::engine::simulation::Fault;
+use sandbox::runs::drive::{Observer, Run};
 use sandbox::scenario::{Draft, Scenario, Setting};
 
 /// Scenarios with more agents than this are not run.
@@ -17,7 +16,7 @@ const MAX_CANDIDATES: u64 = 20_000;
 pub fn read(text: &str, settings: &[Setting]) -> u64 {
     let draft = Draft::read(text, "f.json", settings);
     let read = draft.and_then(|draft| Ok((*draft.need(), draft.scenario()?)));
-    let (need, scenario) = match read {
+    let (need, mut scenario) = match read {
         Ok(read) => read,
         Err(error) => {
             let said = error.to_string();
@@ -41,25 +40,19 @@ pub fn read(text: &str, settings: &[Setting]) -> u64 {
     {
         return need.initial;
     }
-    let measurements = scenario.measurements.clone();
-    let duration = scenario.duration_secs;
-    let Ok(mut simulation) = Simulation::new(scenario.scene) else {
+    let end = scenario.scene.clock.time_at(FRAMES);
+    scenario.duration_secs = scenario.duration_secs.min(end);
+    let Ok(mut run) = Run::new(scenario) else {
         return need.initial;
     };
-    let mut metrics = Metrics::new(&measurements, &mut simulation);
-    let driven = drive(&mut simulation, duration, |simulation, _| {
-        metrics.observe(simulation);
-        let frame = simulation.frame();
-        let over = frame.clock.frame() >= FRAMES;
-        Ok::<Then, Fault>(if over { Then::Stop } else { Then::GoOn })
-    });
-    let frame = simulation.frame();
+    let driven = run.drive::<Fault, dyn Observer<Fault>>(&mut [], || false);
+    let frame = run.simulation.frame();
     if driven.is_ok() {
         let finite = |p: &sandbox::engine::math::Vector| p.x.is_finite() && p.y.is_finite();
         assert!(frame.agents.position.iter().all(finite));
     }
     assert!(u64::from(frame.agents.entered()) <= need.entering);
-    for metric in metrics.results(&simulation) {
+    for metric in run.metrics.results(&run.simulation) {
         assert!(!metric.name.is_empty());
     }
     need.entering

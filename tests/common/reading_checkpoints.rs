@@ -30,18 +30,18 @@ pub fn read(bytes: &[u8]) -> bool {
         Ok(scenario) => scenario,
         Err(error) => return harmless(error.to_string()),
     };
-    let (mut simulation, mut metrics) = match checkpoint.resume(&scenario) {
-        Ok(resumed) => resumed,
+    let mut run = match checkpoint.resume(scenario) {
+        Ok(run) => run,
         Err(error) => return harmless(error.to_string()),
     };
     for _ in 0..FRAMES {
         // Numbers that are not finite are reported as a fault.
-        if simulation.step().is_err() {
+        if run.simulation.step().is_err() {
             return false;
         }
-        metrics.observe(&simulation);
+        run.metrics.observe(&run.simulation);
     }
-    let positions = &simulation.frame().agents.position;
+    let positions = &run.simulation.frame().agents.position;
     assert!(positions.iter().all(|p| p.x.is_finite() && p.y.is_finite()));
     true
 }

@@ -9,7 +9,7 @@ use crate::engine::scene::Region;
 use crate::lab::measure::Line;
 
 use super::super::arguments::ProgramOptions;
-use super::super::values::{frame_rate, positive_seconds};
+use super::super::values::{frame_rate, length, line, moment, positive_seconds, region};
 
 #[derive(Args)]
 pub struct MeasureOptions {
@@ -60,44 +60,4 @@ pub struct MeasureOptions {
     pub out: Option<PathBuf>,
     #[command(flatten)]
     pub program: ProgramOptions,
-}
-
-fn moment(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(value) if (-1e9..=1e9).contains(&value) => Ok(value),
-        _ => Err("not a time in seconds".to_owned()),
-    }
-}
-
-fn length(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(value) if (1e-3..=1e3).contains(&value) => Ok(value),
-        _ => Err("not a number between 0.001 and 1000".to_owned()),
-    }
-}
-
-fn four(text: &str) -> Option<[f64; 4]> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
-    let numbers: [f64; 4] = numbers.ok()?.try_into().ok()?;
-    numbers.iter().all(|n| n.is_finite()).then_some(numbers)
-}
-
-fn region(text: &str) -> Result<Region, String> {
-    match four(text) {
-        Some([x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok(Region {
-            min: [x0, y0].into(),
-            max: [x1, y1].into(),
-        }),
-        _ => Err("expected four numbers x0,y0,x1,y1 with x0 < x1 and y0 < y1".to_owned()),
-    }
-}
-
-fn line(text: &str) -> Result<Line, String> {
-    match four(text) {
-        Some([x0, y0, x1, y1]) if (x0, y0) != (x1, y1) => Ok(Line {
-            start: [x0, y0].into(),
-            end: [x1, y1].into(),
-        }),
-        _ => Err("expected four numbers x0,y0,x1,y1, the ends of a line".to_owned()),
-    }
 }

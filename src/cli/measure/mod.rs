@@ -6,10 +6,9 @@ pub use arguments::MeasureOptions;
 
 use std::path::{Path, PathBuf};
 
-use indicatif::{ProgressBar, ProgressStyle};
-
 use super::output::check_enabled;
-use super::{Failure, say, talk, use_threads};
+use super::watch::bar;
+use super::{Failure, talk, tell, use_threads};
 use crate::engine::boundary::WallMethod;
 use crate::lab::error::LabError;
 use crate::lab::measure::{
@@ -46,14 +45,15 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     if !recording.has_own_ids {
         talk("note: in the recording ids are replaced by numbers in their order, from 0");
     }
-    let progress = progress(tracks.len() as u64);
+    let template = "{bar:30} {pos} of {len} rows, {eta} left";
+    let progress = bar(tracks.len() as u64, template);
     let measured = measure(&tracks, &site, &what, |moments| {
         let rows: usize = moments.iter().map(|moment| moment.people.len()).sum();
         progress.inc(rows as u64);
         results.add(moments)?;
         Ok::<(), Failure>(recording.add(moments)?)
     });
-    progress.finish_and_clear();
+    drop(progress);
     let measured = measured?;
     results.finish(&measured)?;
     recording.finish()?;
@@ -65,10 +65,7 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
         measured: &measured,
     };
     talk(&format!("note: results are in {}", folder.display()));
-    if options.program.json {
-        return say(format!("{}\n", report.json()));
-    }
-    say(report.text())
+    tell(options.program.json, || report.json(), || report.text())
 }
 
 /// Rejects results that cannot be written or would replace an input.
@@ -182,16 +179,6 @@ fn report_oddities(measured: &Measured) {
                 crossings.across_gaps
             ));
         }
-    }
-}
-
-/// A progress bar of the measured rows, shown only if stderr is a terminal.
-fn progress(rows: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:30} {pos} of {len} rows, {eta} left");
-    let bar = ProgressBar::new(rows);
-    match style {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
     }
 }
 
