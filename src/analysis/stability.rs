@@ -107,7 +107,7 @@ const PRESSED_DRAG: f64 = 0.25;
 const EDGES_AT_A_CORNER: f64 = 2.0;
 
 /// The rates that determine the fastest modes of a crowd.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Mode {
     /// c/h of the pressure, 1/s.
     pub pressure: f64,
@@ -127,14 +127,7 @@ impl Mode {
     /// The largest rates over all profiles of a scene, for its smallest mass.
     pub fn of(scene: &Scene) -> Self {
         let mass = lightest(scene);
-        let mut mode = Self {
-            pressure: 0.0,
-            contact: 0.0,
-            other_springs: 0.0,
-            corner: 0.0,
-            viscosity: 0.0,
-            correction: 0.0,
-        };
+        let mut mode = Self::default();
         for group in &scene.groups {
             let sph = &group.blend.sph;
             let speed = sound::speed_of_fluid(sph.gas_constant);
@@ -161,18 +154,21 @@ impl Mode {
         let contact = profile.contact;
         let viscosity = profile.viscosity.map_or(0.0, |v| v.coefficient);
         let wall = contact.wall_stiffness.unwrap_or(0.0);
-        let (social, correction) = match profile.navigation {
-            Navigation::Goal(goal) => (0.0, goal.goal_scale / goal.relaxation_time / mass),
-            Navigation::Social(goal, social) => (
+        let social = match profile.navigation {
+            Navigation::Social(_, social) => {
                 social.agent_strength / social.agent_range.powi(2)
-                    + social.wall_strength / social.wall_range.powi(2),
-                goal.goal_scale / goal.relaxation_time / mass,
-            ),
-            Navigation::Rvo(_) => (0.0, 1.0 / PAPER_COARSE_STEP),
+                    + social.wall_strength / social.wall_range.powi(2)
+            }
+            Navigation::Goal(_) | Navigation::Rvo(_) => 0.0,
         };
-        self.contact = self
-            .contact
-            .max(contact.agent_stiffness.unwrap_or(0.0) / mass);
+        let correction = match profile.navigation {
+            Navigation::Goal(goal) | Navigation::Social(goal, _) => {
+                goal.goal_scale / goal.relaxation_time / mass
+            }
+            Navigation::Rvo(_) => 1.0 / PAPER_COARSE_STEP,
+        };
+        let agents = contact.agent_stiffness.unwrap_or(0.0);
+        self.contact = self.contact.max(agents / mass);
         self.other_springs = self.other_springs.max((wall + social) / mass);
         self.corner = self.corner.max(EDGES_AT_A_CORNER * wall / mass);
         self.viscosity = self.viscosity.max(viscosity);

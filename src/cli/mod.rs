@@ -32,6 +32,9 @@ use crate::engine::breakdown::Breakdown;
 use crate::engine::simulation::{Fault, Simulation};
 use crate::lab::error::LabError;
 use crate::lab::machine::main_memory;
+use crate::lab::measure::MeasureError;
+use crate::lab::sweep::StudyError;
+use crate::output::trajectory::read::ReadError;
 use crate::runs::case::Source;
 use crate::runs::error::StoreError;
 use crate::runs::outputs::{Outputs, OutputsError};
@@ -49,6 +52,15 @@ enum Failure {
     /// Another input is invalid: exit code 2.
     #[error("{0}")]
     Input(String),
+    /// Trajectories cannot be read: exit code 2.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// Trajectories cannot be measured as asked for: exit code 2.
+    #[error(transparent)]
+    Measure(#[from] MeasureError),
+    /// A study is invalid: exit code 2.
+    #[error(transparent)]
+    Study(#[from] StudyError),
     /// The simulation failed: exit code 1.
     #[error(transparent)]
     Fault(#[from] Fault),
@@ -76,22 +88,6 @@ enum Failure {
     },
 }
 
-impl From<StoreError> for Failure {
-    fn from(error: StoreError) -> Self {
-        LabError::from(error).into()
-    }
-}
-
-impl Failure {
-    fn exit_code(&self) -> u8 {
-        match self {
-            Self::Scenario(_) | Self::Input(_) => 2,
-            Self::Fault(_) | Self::LaidOpen { .. } | Self::Output(_) | Self::Reproduce(_) => 1,
-            Self::Interrupted { exit_code, .. } => *exit_code,
-        }
-    }
-}
-
 impl From<OutputsError> for Failure {
     fn from(error: OutputsError) -> Self {
         match error {
@@ -101,18 +97,29 @@ impl From<OutputsError> for Failure {
     }
 }
 
+impl From<StoreError> for Failure {
+    fn from(error: StoreError) -> Self {
+        LabError::from(error).into()
+    }
+}
+
 impl Failure {
+    fn exit_code(&self) -> u8 {
+        match self {
+            Self::Fault(_) | Self::LaidOpen { .. } | Self::Output(_) | Self::Reproduce(_) => 1,
+            Self::Interrupted { exit_code, .. } => *exit_code,
+            _ => 2,
+        }
+    }
+
     /// Adds the forces on the agent that caused a fault.
     fn laid_open(self, simulation: &mut Simulation) -> Self {
-        match self {
-            Self::Fault(fault) => match Breakdown::of_fault(simulation, &fault) {
-                Some(agent) => Self::LaidOpen {
-                    fault,
-                    agent: Box::new(agent),
-                },
-                None => Self::Fault(fault),
-            },
-            other => other,
+        let Self::Fault(fault) = self else {
+            return self;
+        };
+        match Breakdown::of_fault(simulation, &fault).map(Box::new) {
+            Some(agent) => Self::LaidOpen { fault, agent },
+            None => Self::Fault(fault),
         }
     }
 }

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::watch::Watch;
 use super::{Failure, say, talk, tell, use_threads};
 use crate::lab::machine::main_memory;
-use crate::lab::sweep::{Gathered, Shard, State, Study, StudyError, run as run_shard};
+use crate::lab::sweep::{Gathered, Shard, State, Study, run as run_shard};
 use crate::runs::job::Tally;
 use crate::runs::outputs::{Manner, Outputs};
 use crate::runs::store::Store;
@@ -213,21 +213,4 @@ fn ranges(numbers: &[usize]) -> String {
         false => format!("{first}–{last}"),
     });
     text.collect::<Vec<_>>().join(", ")
-}
-
-impl From<StudyError> for Failure {
-    fn from(error: StudyError) -> Self {
-        Self::Input(error.to_string())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_in_a_row_are_told_by_the_first_and_the_last() {
-        assert_eq!(ranges(&[1, 2, 3, 7, 9, 10]), "1–3, 7, 9–10");
-        assert_eq!(ranges(&[4]), "4");
-    }
 }

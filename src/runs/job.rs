@@ -1,9 +1,9 @@
 //! Jobs: pieces of work with a result. They run in parallel; finished results are stored, and not computed again.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use serde::Serialize;
@@ -135,37 +135,18 @@ pub fn run(
         listener,
         ends: Mutex::default(),
     };
-    let taken = Mutex::new(Vec::new());
-    let first_try = |todo: &Todo| {
-        if !context.run(todo, false)? {
-            taken
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .push(todo.place);
-        }
-        Ok::<(), StoreError>(())
-    };
-    side_by_side(beside.len(), |k| first_try(&beside[k]))?;
-    alone.iter().try_for_each(first_try)?;
-    let taken = taken.into_inner().unwrap_or_else(PoisonError::into_inner);
-    if !taken.is_empty() {
-        let count = taken.len();
+    side_by_side(beside.len(), |k| context.run(&beside[k], false))?;
+    alone.iter().try_for_each(|todo| context.run(todo, false))?;
+    let mut left: Vec<&Todo> = beside.iter().chain(&alone).collect();
+    left.retain(|todo| !context.ends().contains_key(&todo.place));
+    if !left.is_empty() {
+        let count = left.len();
         listener.notes(&format!(
             "waiting for {count} case(s) that another process computes"
         ));
     }
-    let left = beside
-        .iter()
-        .chain(&alone)
-        .filter(|todo| taken.contains(&todo.place));
-    let left: Vec<&Todo> = left.collect();
-    side_by_side(left.len(), |k| context.run(left[k], true).map(|_| ()))?;
-    let mut ends = context
-        .ends
-        .into_inner()
-        .unwrap_or_else(PoisonError::into_inner);
-    ends.sort_by_key(|(place, _)| *place);
-    for (place, end) in ends {
+    side_by_side(left.len(), |k| context.run(left[k], true))?;
+    for (place, end) in std::mem::take(&mut *context.ends()) {
         match end {
             End::Finished => tally.finished += 1,
             End::ByOthers => tally.by_others += 1,
@@ -214,16 +195,20 @@ struct Context<'a> {
     store: &'a Store,
     memory: Memory,
     listener: &'a dyn Listener,
-    /// The ends of jobs, with their places.
-    ends: Mutex<Vec<(usize, End)>>,
+    /// The ends of jobs, by their places.
+    ends: Mutex<BTreeMap<usize, End>>,
 }
 
 impl Context<'_> {
-    /// Computes a job and stores its result, unless another process has. False if another process is computing it and
-    /// `wait` is false.
-    fn run(&self, todo: &Todo, wait: bool) -> Result<bool, StoreError> {
+    fn ends(&self) -> MutexGuard<'_, BTreeMap<usize, End>> {
+        self.ends.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Computes a job and stores its result, unless another process has. It has no end if another process is computing
+    /// it and `wait` is false.
+    fn run(&self, todo: &Todo, wait: bool) -> Result<(), StoreError> {
         let Some(_claim) = self.store.claim(&todo.job.key, wait)? else {
-            return Ok(false);
+            return Ok(());
         };
         let end = match self.found(todo) {
             Some(end) => {
@@ -232,9 +217,8 @@ impl Context<'_> {
             }
             None => self.compute(todo)?,
         };
-        let mut ends = self.ends.lock().unwrap_or_else(PoisonError::into_inner);
-        ends.push((todo.place, end));
-        Ok(true)
+        self.ends().insert(todo.place, end);
+        Ok(())
     }
 
     /// What another process has left since this call began.
@@ -262,21 +246,18 @@ impl Context<'_> {
         let computed = caught(|| (job.work)(&mut tell));
         drop(lent);
         tell(1.0);
-        match computed {
-            Ok(result) => {
-                self.store.keep(&job.key, &job.name, &result)?;
-                self.listener
-                    .finishes(&job.name, start.elapsed().as_secs_f64());
+        let attempts = todo.attempts + 1;
+        let kept = computed.map_err(|message| Failure { message, attempts });
+        self.store.keep(&job.key, &job.name, &kept)?;
+        match kept {
+            Ok(_) => {
+                let seconds = start.elapsed().as_secs_f64();
+                self.listener.finishes(&job.name, seconds);
                 Ok(End::Finished)
             }
-            Err(message) => {
-                let failure = Failure {
-                    message,
-                    attempts: todo.attempts + 1,
-                };
-                self.store.keep_failure(&job.key, &job.name, &failure)?;
-                self.listener.fails(&job.name, &failure.message);
-                Ok(End::Failed(failure.message))
+            Err(Failure { message, .. }) => {
+                self.listener.fails(&job.name, &message);
+                Ok(End::Failed(message))
             }
         }
     }
@@ -289,17 +270,4 @@ fn caught<T>(work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
         let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
         Err(format!("panicked: {}", text.unwrap_or("no message")))
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_panic_is_a_failure_with_its_message() {
-        assert_eq!(caught(|| Ok(1)), Ok(1));
-        let number = 7;
-        let said = caught::<()>(|| panic!("cell {number}"));
-        assert_eq!(said, Err("panicked: cell 7".to_owned()));
-    }
 }

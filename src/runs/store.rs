@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 use super::error::StoreError;
 use super::identity::Identity;
@@ -128,7 +129,7 @@ impl Store {
         self.read(key, FAILED).unwrap_or_default()
     }
 
-    /// Stores a result.
+    /// Stores a result, or the failure of a job.
     ///
     /// # Errors
     /// It cannot be written.
@@ -136,24 +137,27 @@ impl Store {
         &self,
         key: &Identity,
         case: &str,
-        result: &impl Serialize,
+        result: &Result<Value, Failure>,
     ) -> Result<(), StoreError> {
-        self.put(key, case, FINISHED, result)?;
-        let _ = fs::remove_file(self.file(key, FAILED));
+        let failed = json!(result.as_ref().err());
+        let (kind, content) = match result {
+            Ok(result) => (FINISHED, result),
+            Err(_) => (FAILED, &failed),
+        };
+        let path = self.file(key, kind);
+        let kept = Kept {
+            key: key.clone(),
+            case: case.to_owned(),
+            content,
+        };
+        let written = write_whole(&path, |file| {
+            serde_json::to_writer(io::BufWriter::new(file), &kept).map_err(io::Error::from)
+        });
+        written.map_err(|error| self.unwritable(&path, &error))?;
+        if result.is_ok() {
+            let _ = fs::remove_file(self.file(key, FAILED));
+        }
         Ok(())
-    }
-
-    /// Stores a failure.
-    ///
-    /// # Errors
-    /// It cannot be written.
-    pub(super) fn keep_failure(
-        &self,
-        key: &Identity,
-        case: &str,
-        failure: &Failure,
-    ) -> Result<(), StoreError> {
-        self.put(key, case, FAILED, failure)
     }
 
     /// Claims a job; `None` if another process has claimed it and `wait` is false.
@@ -171,25 +175,6 @@ impl Store {
             return Ok(None);
         }
         Ok(Some(Claim { path, _file: file }))
-    }
-
-    fn put(
-        &self,
-        key: &Identity,
-        case: &str,
-        kind: &str,
-        content: &impl Serialize,
-    ) -> Result<(), StoreError> {
-        let path = self.file(key, kind);
-        let kept = Kept {
-            key: key.clone(),
-            case: case.to_owned(),
-            content,
-        };
-        let written = write_whole(&path, |file| {
-            serde_json::to_writer(io::BufWriter::new(file), &kept).map_err(io::Error::from)
-        });
-        written.map_err(|error| self.unwritable(&path, &error))
     }
 
     fn read<T: DeserializeOwned>(&self, key: &Identity, kind: &str) -> Result<Option<T>, String> {

@@ -1,7 +1,9 @@
 //! The seven profiles of §5.5, and custom profiles from parameters.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
 
 use crate::engine::density::SphParameters;
 use crate::engine::forces::contact::Contact;
@@ -41,10 +43,10 @@ pub enum NavigationKind {
     Rvo,
 }
 
-/// Parameters of a profile; `None` means the paper's value (§5.5). Where a text says that the paper's time step is too
+/// Parameters of a profile, finite; `None` means the paper's value (§5.5). Where a text says that the paper's time step is too
 /// long, Δt = 0.02 s is beyond the formula of `docs/stability.md`, and agents shake; `time_step_secs` `auto` finds the
 /// step.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Parameters {
     /// K^goal (Eq. 17): the strength of the goal force. Higher: agents push harder toward their goals. Above about 40
@@ -126,41 +128,30 @@ pub struct Parameters {
 }
 
 impl Parameters {
+    /// The values that are given, by name.
+    pub(super) fn given(&self) -> Map<String, Value> {
+        let Value::Object(mut values) = json!(self) else {
+            return Map::new();
+        };
+        values.retain(|_, value| !value.is_null());
+        values
+    }
+
+    /// The fields of `T` that are given; the others have the paper's values.
+    fn part<T: DeserializeOwned + Default>(&self) -> T {
+        from_values(self.given())
+    }
+
     /// These values, and those of `fallback` where these are `None`.
     pub fn or(&self, fallback: &Self) -> Self {
-        Self {
-            goal_scale: self.goal_scale.or(fallback.goal_scale),
-            relaxation_time: self.relaxation_time.or(fallback.relaxation_time),
-            agent_strength: self.agent_strength.or(fallback.agent_strength),
-            agent_range: self.agent_range.or(fallback.agent_range),
-            anticipation_time: self.anticipation_time.or(fallback.anticipation_time),
-            wall_strength: self.wall_strength.or(fallback.wall_strength),
-            wall_range: self.wall_range.or(fallback.wall_range),
-            avoidance_radius: self.avoidance_radius.or(fallback.avoidance_radius),
-            avoidance_tolerance: self.avoidance_tolerance.or(fallback.avoidance_tolerance),
-            collision_weight: self.collision_weight.or(fallback.collision_weight),
-            candidates: self.candidates.or(fallback.candidates),
-            viscosity: self.viscosity.or(fallback.viscosity),
-            agent_stiffness: self.agent_stiffness.or(fallback.agent_stiffness),
-            wall_stiffness: self.wall_stiffness.or(fallback.wall_stiffness),
-            support_radius: self.support_radius.or(fallback.support_radius),
-            gas_constant: self.gas_constant.or(fallback.gas_constant),
-            rest_density_min: self.rest_density_min.or(fallback.rest_density_min),
-            rest_density_max: self.rest_density_max.or(fallback.rest_density_max),
-            averaging_time: self.averaging_time.or(fallback.averaging_time),
-        }
+        let mut values = fallback.given();
+        values.extend(self.given());
+        from_values(values)
     }
 
     /// The SPH parameters that all profiles of a blend share.
     pub fn sph(&self) -> SphParameters {
-        let paper = SphParameters::default();
-        SphParameters {
-            support_radius: self.support_radius.unwrap_or(paper.support_radius),
-            gas_constant: self.gas_constant.unwrap_or(paper.gas_constant),
-            rest_density_min: self.rest_density_min.unwrap_or(paper.rest_density_min),
-            rest_density_max: self.rest_density_max.unwrap_or(paper.rest_density_max),
-            averaging_time: self.averaging_time.unwrap_or(paper.averaging_time),
-        }
+        self.part()
     }
 
     /// A profile with navigation `kind`, with or without SPH. Zero stiffness, k or μ switches the term off.
@@ -169,7 +160,11 @@ impl Parameters {
         let (agent_stiffness, wall_stiffness) = if sph { (50.0, 200.0) } else { (1000.0, 1000.0) };
         Profile {
             name: name.to_owned(),
-            navigation: self.navigation(kind),
+            navigation: match kind {
+                NavigationKind::Goal => Navigation::Goal(self.part()),
+                NavigationKind::Social => Navigation::Social(self.part(), self.part()),
+                NavigationKind::Rvo => Navigation::Rvo(self.part()),
+            },
             pressure: sph && self.sph().gas_constant != 0.0,
             viscosity: switch(self.viscosity.unwrap_or(0.0))
                 .filter(|_| sph)
@@ -180,40 +175,11 @@ impl Parameters {
             },
         }
     }
+}
 
-    fn navigation(&self, kind: NavigationKind) -> Navigation {
-        let goal = GoalForce::default();
-        let goal = GoalForce {
-            goal_scale: self.goal_scale.unwrap_or(goal.goal_scale),
-            relaxation_time: self.relaxation_time.unwrap_or(goal.relaxation_time),
-        };
-        match kind {
-            NavigationKind::Goal => Navigation::Goal(goal),
-            NavigationKind::Social => {
-                let paper = SocialForce::default();
-                let social = SocialForce {
-                    agent_strength: self.agent_strength.unwrap_or(paper.agent_strength),
-                    agent_range: self.agent_range.unwrap_or(paper.agent_range),
-                    anticipation_time: self.anticipation_time.unwrap_or(paper.anticipation_time),
-                    wall_strength: self.wall_strength.unwrap_or(paper.wall_strength),
-                    wall_range: self.wall_range.unwrap_or(paper.wall_range),
-                    avoidance_radius: self.avoidance_radius.unwrap_or(paper.avoidance_radius),
-                    avoidance_tolerance: self
-                        .avoidance_tolerance
-                        .unwrap_or(paper.avoidance_tolerance),
-                };
-                Navigation::Social(goal, social)
-            }
-            NavigationKind::Rvo => {
-                let paper = Rvo::default();
-                Navigation::Rvo(Rvo {
-                    collision_weight: self.collision_weight.unwrap_or(paper.collision_weight),
-                    candidates: self.candidates.unwrap_or(paper.candidates),
-                    avoidance_radius: self.avoidance_radius.unwrap_or(paper.avoidance_radius),
-                })
-            }
-        }
-    }
+/// Reads parameters from their values by name.
+pub(super) fn from_values<T: DeserializeOwned + Default>(values: Map<String, Value>) -> T {
+    serde_json::from_value(values.into()).unwrap_or_default()
 }
 
 /// A profile or blend of §5.5 with some parameters changed; `None` for an unknown name.
@@ -229,18 +195,13 @@ pub fn named(name: &str, parameters: &Parameters) -> Option<Result<Blend, BlendE
         return Some(Ok(Blend::single(first, parameters.sph())));
     };
     let profiles = [first, plain(second, parameters)?];
-    let steps = profiles
-        .into_iter()
-        .zip(BLEND_DENSITIES)
-        .map(|(profile, at_density)| BlendStep {
-            at_density,
-            profile,
-        });
-    Some(Blend::new(
-        name.to_owned(),
-        parameters.sph(),
-        steps.collect(),
-    ))
+    let steps = BLEND_DENSITIES.into_iter().zip(profiles);
+    let steps = steps.map(|(at_density, profile)| BlendStep {
+        at_density,
+        profile,
+    });
+    let name = name.to_owned();
+    Some(Blend::new(name, parameters.sph(), steps.collect()))
 }
 
 /// One of the five profiles of §5.5 that are not blends; `None` for other names.

@@ -12,7 +12,7 @@ use super::file::{self, DEFAULT_DURATION, DEFAULT_PROFILE, File, TimeStep};
 use super::need::Need;
 use super::profiles::{ProfileChoice, ProfileName};
 use super::range::{self, region};
-use super::{PlanFile, Scenario, Stop, View, measurements, plan, preset, profiles};
+use super::{PlanFile, Scenario, View, measurements, plan, preset, profiles};
 use crate::analysis::stability;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::engine::math::{Vector, bounds};
@@ -61,10 +61,9 @@ impl Contents {
         let keys = &self.keys;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let mut scene = empty_scene(keys)?;
-        let choice = keys.profile.clone();
-        let choice =
-            choice.unwrap_or_else(|| ProfileChoice::Named(ProfileName(DEFAULT_PROFILE.to_owned())));
-        let blend = profiles::blend(&choice, &keys.parameters).under("profile")?;
+        let default = ProfileChoice::Named(ProfileName(DEFAULT_PROFILE.to_owned()));
+        let choice = keys.profile.as_ref().unwrap_or(&default);
+        let blend = profiles::blend(choice, &keys.parameters).under("profile")?;
         Crowd::new(keys, &blend, &mut scene).enter()?;
         let duration_secs = duration(keys);
         crowding::check(keys, &scene, duration_secs)?;
@@ -78,10 +77,7 @@ impl Contents {
             description: keys.description.clone().unwrap_or_default(),
             seed: seed(keys),
             duration_secs,
-            stop: Stop {
-                when_empty: keys.stop.when_empty,
-                idle_secs: keys.stop.idle_secs,
-            },
+            stop: keys.stop.clone(),
             measurements: keys.measurements.clone(),
             view: view(keys.view.as_ref(), &scene).under("view")?,
             debug_agents: match &keys.debug_agents {
@@ -104,10 +100,10 @@ fn without_schema(document: &mut Value) -> Result<(), Problem> {
         .and_then(|document| document.remove("$schema"));
     match given {
         None | Some(Value::String(_)) => Ok(()),
-        Some(_) => Err(Problem::new(
-            "$schema",
-            "must be text, the location of the schema",
-        )),
+        Some(_) => {
+            let reason = "must be text, the location of the schema";
+            Err(Problem::new("$schema", reason))
+        }
     }
 }
 
@@ -195,22 +191,17 @@ fn pushes(events: &[file::Event]) -> Result<Vec<Push>, Problem> {
 }
 
 fn view(given: Option<&file::View>, scene: &Scene) -> Result<View, Problem> {
-    let Some(given) = given else {
-        return Ok(View {
-            region: surroundings(scene),
-            opens_at_secs: 0.0,
-        });
+    let region = match given {
+        Some(given) => region("region", given.region)?,
+        None => surroundings(scene),
     };
-    let region = region("region", given.region)?;
     if region.min.x == region.max.x || region.min.y == region.max.y {
-        return Err(Problem::new(
-            "region",
-            "encloses no area: its corners must differ in x and in y",
-        ));
+        let reason = "encloses no area: its corners must differ in x and in y";
+        return Err(Problem::new("region", reason));
     }
     Ok(View {
         region,
-        opens_at_secs: given.opens_at_secs,
+        opens_at_secs: given.map_or(0.0, |given| given.opens_at_secs),
     })
 }
 

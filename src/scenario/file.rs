@@ -275,9 +275,9 @@ pub(super) struct Event {
 }
 
 /// Conditions for stopping early.
-#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub(super) struct Stop {
+pub struct Stop {
     /// Stop when no agents are left and none will enter.
     pub when_empty: bool,
     /// Stop this long after the last counted arrival, or after the start, seconds. Default: never.

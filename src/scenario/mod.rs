@@ -45,6 +45,7 @@ pub use draft::Draft;
 pub use error::{Problem, ScenarioError};
 #[cfg(feature = "program")]
 pub(crate) use error::{in_plain_words, suggestion};
+pub use file::Stop;
 pub use need::{Need, in_units};
 pub use preset::Preset;
 pub use schema::schema;
@@ -92,15 +93,6 @@ pub struct Scenario {
     pub document: Value,
     /// The floor plan files that it names.
     pub files: Vec<PlanFile>,
-}
-
-/// When a run stops before its end.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Stop {
-    /// Stop when no agents are left and none will enter.
-    pub when_empty: bool,
-    /// Stop after this many seconds without a counted arrival, counted from the last arrival or the start.
-    pub idle_secs: Option<f64>,
 }
 
 /// The initial view of a recording.
@@ -162,11 +154,10 @@ pub fn shipped_text(name: &str) -> Result<&'static str, ScenarioError> {
 /// # Errors
 /// The file cannot be read, or is longer than 256 MiB.
 pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
-    let unreadable = |reason: String| ScenarioError::Unreadable {
+    input::text(path).map_err(|error| ScenarioError::Unreadable {
         file: path.display().to_string(),
-        reason,
-    };
-    input::text(path).map_err(|error| unreadable(unreadable_because(&error)))
+        reason: unreadable_because(&error),
+    })
 }
 
 /// The system's message about a file, with advice.

@@ -162,7 +162,7 @@ fn points(GivenRing(ring): &GivenRing) -> Result<Vec<[f64; 2]>, Problem> {
 /// Converts an error; its place becomes the path if it is an index.
 fn problem(error: FloorPlanError) -> Problem {
     match error {
-        FloorPlanError::Ring { place, reason } => Problem::new(place, reason),
+        FloorPlanError::Geometry { place, reason } => Problem::new(place, reason),
         FloorPlanError::EmptyGeometry(place) => Problem::new(place, "has no rings"),
         other => Problem::new("", other.to_string()),
     }

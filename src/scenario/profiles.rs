@@ -6,9 +6,12 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, Visitor};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::error::{Problem, Under, suggestion};
+use super::schema::names;
+use super::settings::plain as plain_value;
+use crate::engine::density::SphParameters;
 use crate::engine::profile::{Blend, BlendStep, Profile};
 use crate::scenario::catalog::{self, ALIASES, HIGHEST_DENSITY, NAMES, NavigationKind, Parameters};
 use crate::scenario::quote::shown;
@@ -233,42 +236,30 @@ fn step_profile(choice: &ProfileChoice, parameters: &Parameters) -> Result<Profi
     }
 }
 
-/// A field of the parameters.
-type Field = fn(&mut Parameters) -> &mut Option<f64>;
-
-/// The parameters of SPH, which all profiles of a blend share.
-const SHARED: [(&str, Field); 5] = [
-    ("support_radius", |p| &mut p.support_radius),
-    ("gas_constant", |p| &mut p.gas_constant),
-    ("rest_density_min", |p| &mut p.rest_density_min),
-    ("rest_density_max", |p| &mut p.rest_density_max),
-    ("averaging_time", |p| &mut p.averaging_time),
-];
-
 /// The SPH parameters given anywhere in a blend, which apply to all of it.
 fn shared_by(custom: &CustomProfile, steps: &[Step]) -> Result<Parameters, Problem> {
-    let mut shared = Parameters::default();
-    let of_steps = steps
-        .iter()
-        .enumerate()
-        .filter_map(|(k, step)| match &step.profile {
-            ProfileChoice::Custom(own) => Some((format!("blend[{k}].profile."), own.parameters)),
-            ProfileChoice::Named(_) => None,
-        });
+    let mut shared = Map::new();
+    let of_steps = steps.iter().enumerate().filter_map(|(k, step)| {
+        let ProfileChoice::Custom(own) = &step.profile else {
+            return None;
+        };
+        Some((format!("blend[{k}].profile."), own.parameters))
+    });
     let of_all = std::iter::once((String::new(), custom.parameters));
-    for (place, mut own) in of_all.chain(of_steps) {
-        for (key, field) in SHARED {
-            let (so_far, here) = (field(&mut shared), *field(&mut own));
-            if let (Some(before), Some(here)) = (*so_far, here)
-                && before != here
-            {
+    for (place, own) in of_all.chain(of_steps) {
+        let own = own.given();
+        for &key in names::<SphParameters>() {
+            let Some(here) = own.get(key) else { continue };
+            let before = shared.entry(key).or_insert_with(|| here.clone());
+            if before != here {
                 let reason = format!(
-                    "must be the same in all profiles of a blend: {here} here, {before} before; give it once"
+                    "must be the same in all profiles of a blend: {} here, {} before; give it once",
+                    plain_value(here),
+                    plain_value(before)
                 );
                 return Err(Problem::new(format!("{place}parameters.{key}"), reason));
             }
-            *so_far = so_far.or(here);
         }
     }
-    Ok(shared)
+    Ok(catalog::from_values(shared))
 }

@@ -60,7 +60,7 @@ pub(super) fn may_be_empty(key: &str) -> bool {
 }
 
 /// A value as `--set` takes it.
-fn plain(value: &Value) -> String {
+pub(super) fn plain(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
         Value::Number(number) => brief(number.as_f64().unwrap_or(f64::NAN)),

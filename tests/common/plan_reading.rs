@@ -48,10 +48,7 @@ fn perimeter(solid: &Polygon) -> f64 {
 fn check_place(text: &str, error: &FloorPlanError) {
     let said = error.to_string();
     assert!(!said.is_empty() && !said.contains("near ("), "{said}");
-    if !matches!(
-        error,
-        FloorPlanError::Ring { .. } | FloorPlanError::TooFar { .. }
-    ) {
+    if !matches!(error, FloorPlanError::Geometry { .. }) {
         return;
     }
     let is_number = |c: char| c.is_ascii_digit() || "+-.eE".contains(c);

@@ -12,10 +12,10 @@ use super::{Failure, talk, tell, use_threads};
 use crate::engine::boundary::WallMethod;
 use crate::lab::error::LabError;
 use crate::lab::measure::{
-    Behind, Kernel, MOST_HIDDEN, MeasureError, Measured, MomentRecorder, Options, Report, Results,
-    Site, check, files, measure, pictures, speed,
+    Behind, Kernel, MOST_HIDDEN, Measured, MomentRecorder, Options, Report, Results, Site, check,
+    files, measure, pictures, speed,
 };
-use crate::output::trajectory::read::{ReadError, ReadOptions, Tracks, Unit, read};
+use crate::output::trajectory::read::{ReadOptions, Tracks, Unit, read};
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::floor_plan::{self, FloorPlan};
 
@@ -179,17 +179,5 @@ fn report_oddities(measured: &Measured) {
                 crossings.across_gaps
             ));
         }
-    }
-}
-
-impl From<ReadError> for Failure {
-    fn from(error: ReadError) -> Self {
-        Self::Input(error.to_string())
-    }
-}
-
-impl From<MeasureError> for Failure {
-    fn from(error: MeasureError) -> Self {
-        Self::Input(error.to_string())
     }
 }

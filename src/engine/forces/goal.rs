@@ -6,7 +6,8 @@ use crate::engine::frame::Frame;
 use crate::engine::math::{Vector, direction};
 
 /// Parameters of Eq. 17.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
+#[serde(default)]
 pub struct GoalForce {
     /// K^goal.
     pub goal_scale: f64,

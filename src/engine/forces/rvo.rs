@@ -14,7 +14,8 @@ use crate::engine::math::{Vector, unit_vector};
 use crate::engine::random::{self, Purpose};
 
 /// Parameters of Eq. 20 and of its sampling.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
+#[serde(default)]
 pub struct Rvo {
     /// w, m: the weight of the time to collision.
     pub collision_weight: f64,

@@ -14,7 +14,8 @@ use crate::engine::pairs::{
 };
 
 /// Parameters of Eqs. 18 and 19 and of the field of view.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
+#[serde(default)]
 pub struct SocialForce {
     /// V₀.
     pub agent_strength: f64,

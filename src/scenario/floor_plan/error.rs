@@ -26,14 +26,6 @@ pub enum FloorPlanError {
         /// The parser's message, with the place.
         reason: String,
     },
-    /// A geometry of a type that has no area.
-    #[error("{}a {found} has no area; a floor plan consists of polygons", at(.place))]
-    NoPolygon {
-        /// Which feature or geometry.
-        place: String,
-        /// Its type.
-        found: &'static str,
-    },
     /// A geometry without coordinates.
     #[error("{}the geometry is empty; remove it", at(.0))]
     EmptyGeometry(String),
@@ -60,22 +52,9 @@ pub enum FloorPlanError {
     /// The obstacles fill the walkable area.
     #[error("the obstacles leave no room for a person")]
     NoRoom,
-    /// A point so far from the origin that lengths lose precision.
-    #[error(
-        "{}({x}, {y}) is out of range: x and y must be at least -1e6 and at most 1e6 m; move the plan \
-         closer to the origin", at(.place)
-    )]
-    TooFar {
-        /// Which feature or geometry.
-        place: String,
-        /// x, meters.
-        x: f64,
-        /// y, meters.
-        y: f64,
-    },
-    /// A ring is invalid.
+    /// A geometry is not a polygon, is too far from the origin, or has an invalid ring.
     #[error("{}{reason}", at(.place))]
-    Ring {
+    Geometry {
         /// Which feature, geometry and ring.
         place: String,
         /// The reason.
@@ -83,11 +62,20 @@ pub enum FloorPlanError {
     },
 }
 
+impl FloorPlanError {
+    /// The error of a geometry of a type that has no area.
+    pub(super) fn no_polygon(place: &str, found: &str) -> Self {
+        Self::Geometry {
+            place: place.to_owned(),
+            reason: format!("a {found} has no area; a floor plan consists of polygons"),
+        }
+    }
+}
+
 /// A place as the prefix of a message; empty if there is none.
 fn at(place: &str) -> String {
-    if place.is_empty() {
-        String::new()
-    } else {
-        format!("{}: ", shown(place))
+    match place {
+        "" => String::new(),
+        place => format!("{}: ", shown(place)),
     }
 }

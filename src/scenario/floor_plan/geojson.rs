@@ -94,10 +94,7 @@ fn collect(
         }
         other => other.type_name(),
     };
-    Err(FloorPlanError::NoPolygon {
-        place: place.to_owned(),
-        found,
-    })
+    Err(FloorPlanError::no_polygon(place, found))
 }
 
 fn shape(
@@ -109,7 +106,7 @@ fn shape(
     for (r, ring) in rings.iter().enumerate() {
         let point = |(k, position): (usize, &Position)| match position.as_slice() {
             [x, y, ..] => Ok([*x, *y]),
-            few => Err(FloorPlanError::Ring {
+            few => Err(FloorPlanError::Geometry {
                 place: part(&part(&place, "ring", r), "position", k),
                 reason: format!("has {} number(s); write [x, y]", few.len()),
             }),

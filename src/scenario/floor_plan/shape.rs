@@ -23,13 +23,12 @@ pub struct Shape {
 impl Shape {
     /// Checks each ring and, for obstacles, that the holes lie inside the outline.
     pub fn area(&self) -> Result<Area, FloorPlanError> {
-        let points = self.rings.iter().flatten();
-        if let Some(&[x, y]) = points
-            .clone()
-            .find(|p| p.iter().any(|x| x.abs() > FARTHEST))
-        {
-            let place = self.place.clone();
-            return Err(FloorPlanError::TooFar { place, x, y });
+        let is_far = |p: &&[f64; 2]| p.iter().any(|x| x.abs() > FARTHEST);
+        if let Some(&[x, y]) = self.rings.iter().flatten().find(is_far) {
+            return Err(self.wrong(&format!(
+                "({x}, {y}) is out of range: x and y must be at least -1e6 and at most 1e6 m; move the plan \
+                 closer to the origin"
+            )));
         }
         let mut rings = Vec::with_capacity(self.rings.len());
         for (k, points) in self.rings.iter().enumerate() {
@@ -56,7 +55,7 @@ impl Shape {
     }
 
     fn wrong(&self, reason: &str) -> FloorPlanError {
-        FloorPlanError::Ring {
+        FloorPlanError::Geometry {
             place: self.place.clone(),
             reason: reason.to_owned(),
         }

@@ -43,7 +43,7 @@ pub fn free(floors: &[Rings], bodies: &Rings) -> Result<Vec<Area>, FloorPlanErro
         let nearest = given().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let place = nearest.map_or(String::new(), |p| format!("near ({}, {})", p.x, p.y));
         let reason = error.to_string();
-        FloorPlanError::Ring { place, reason }
+        FloorPlanError::Geometry { place, reason }
     })
 }
 

@@ -122,10 +122,7 @@ fn collect(wkt: &Wkt<f64>, place: &str, shapes: &mut Vec<Shape>) -> Result<(), F
         Wkt::MultiPoint(_) => "MULTIPOINT",
         Wkt::MultiLineString(_) => "MULTILINESTRING",
     };
-    Err(FloorPlanError::NoPolygon {
-        place: place.to_owned(),
-        found,
-    })
+    Err(FloorPlanError::no_polygon(place, found))
 }
 
 /// The name of part `k` in messages, where it counts from 1.

@@ -82,10 +82,8 @@ impl Measure for FlowUntil {
         let clock = simulation.frame().clock;
         let due = clock.frame_at(self.until_secs).max(1);
         let end = clock.time_at(due);
-        let count = counted(simulation)
-            .iter()
-            .filter(|&&time| time <= end)
-            .count();
+        let counted = counted(simulation).into_iter();
+        let count = counted.filter(|&time| time <= end).count();
         vec![(clock.frame() >= due).then(|| count as f64 / end)]
     }
 }
@@ -140,9 +138,8 @@ impl Measure for Locked {
     }
 
     fn values(&self, (): &(), simulation: &Simulation) -> Vec<Option<f64>> {
-        vec![Some(f64::from(u8::from(
-            first(simulation, self.arrivals).is_none(),
-        )))]
+        let locked = first(simulation, self.arrivals).is_none();
+        vec![Some(f64::from(u8::from(locked)))]
     }
 }
 

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Due, Measure};
+use super::{Measure, is_due};
 use crate::engine::simulation::Simulation;
 use crate::scenario::file::LONGEST_TIME;
 
@@ -29,7 +29,7 @@ impl Measure for Closest {
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
-        if Due::new(simulation, self.from_secs, f64::MAX, EVERY_SECS).is_now(simulation) {
+        if is_due(simulation, [self.from_secs, f64::MAX], EVERY_SECS) {
             let now = closest(simulation);
             *seen = Some(seen.map_or(now, |before| before.min(now)));
         }

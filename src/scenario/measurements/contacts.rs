@@ -30,11 +30,9 @@ impl Measure for ContactsAt {
     }
 
     fn names(&self) -> Vec<(String, &'static str)> {
+        let per_agent = "contacts_per_agent".to_owned();
         let modulus = "contact_modulus_m2".to_owned();
-        vec![
-            ("contacts_per_agent".to_owned(), "contacts"),
-            (modulus, "m²"),
-        ]
+        vec![(per_agent, "contacts"), (modulus, "m²")]
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {

@@ -22,7 +22,7 @@ pub struct Density {
 }
 
 impl Measure for Density {
-    type Seen = Option<(f64, f64)>;
+    type Seen = [Option<f64>; 2];
 
     fn check(&self) -> Result<(), Problem> {
         self.region.map_or(Ok(()), |corners| {
@@ -35,9 +35,8 @@ impl Measure for Density {
         ["mean", "std"].map(name).into()
     }
 
-    fn begin(&self, simulation: &mut Simulation) {
-        let frame = simulation.frame().clock.frame_at(self.at_secs);
-        simulation.request_density_until(frame + 1);
+    fn needs_density_until(&self) -> Option<f64> {
+        Some(self.at_secs)
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
@@ -51,13 +50,11 @@ impl Measure for Density {
         let inside =
             positions.filter(|(_, position)| region.is_none_or(|r| r.contains(**position)));
         let densities: Vec<f64> = inside.map(|(density, _)| *density).collect();
-        *seen = MeanStd::of(&densities).map(|of| (of.mean, of.population_std()));
+        let found = MeanStd::of(&densities);
+        *seen = [found.map(|of| of.mean), found.map(|of| of.population_std())];
     }
 
     fn values(&self, seen: &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
-        vec![
-            seen.map(|(mean, _)| mean),
-            seen.map(|(_, deviation)| deviation),
-        ]
+        seen.to_vec()
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::Measure;
 use crate::engine::simulation::{Simulation, Stage};
@@ -60,10 +60,6 @@ impl Measure for FrameTime {
     /// At the first frame, at the last one, and the number of agents in that.
     type Seen = (Option<Spent>, Option<Spent>, usize);
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        Vec::new()
-    }
-
     fn observe(&self, (first, last, agents): &mut Self::Seen, simulation: &Simulation) {
         let frame = simulation.frame();
         let now = frame.clock.frame();
@@ -78,10 +74,6 @@ impl Measure for FrameTime {
         });
         *agents = frame.agents.len();
         *(if first.is_none() { first } else { last }) = spent;
-    }
-
-    fn values(&self, _: &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
-        Vec::new()
     }
 
     fn data(&self, (first, last, agents): &Self::Seen) -> Option<(String, Value)> {
@@ -102,6 +94,6 @@ impl Measure for FrameTime {
             threads: rayon::current_num_threads(),
             stages: Stage::ALL.iter().filter_map(ms).collect(),
         };
-        Some((name, serde_json::to_value(times).unwrap_or_default()))
+        Some((name, json!(times)))
     }
 }

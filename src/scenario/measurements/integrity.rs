@@ -37,15 +37,12 @@ impl Measure for Integrity {
     type Seen = Watched;
 
     fn names(&self) -> Vec<(String, &'static str)> {
-        let name = |(name, unit): (&str, _)| (name.to_owned(), unit);
-        [
-            ("agents_through_walls", "agents"),
-            ("non_finite_frames", "frames"),
-            ("highest_speed_m_per_s", "m/s"),
-            ("speed_at_end_m_per_s", "m/s"),
+        vec![
+            ("agents_through_walls".to_owned(), "agents"),
+            ("non_finite_frames".to_owned(), "frames"),
+            ("highest_speed_m_per_s".to_owned(), "m/s"),
+            ("speed_at_end_m_per_s".to_owned(), "m/s"),
         ]
-        .map(name)
-        .into()
     }
 
     fn observe(&self, seen: &mut Watched, simulation: &Simulation) {

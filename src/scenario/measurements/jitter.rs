@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Due, Measure};
+use super::{Measure, is_due};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::file::LONGEST_TIME;
@@ -39,10 +39,8 @@ impl Measure for Jitter {
 
     fn check(&self) -> Result<(), Problem> {
         if self.from_secs > self.to_secs {
-            return Err(Problem::new(
-                "jitter.to_secs",
-                "must not be before from_secs",
-            ));
+            let reason = "must not be before from_secs";
+            return Err(Problem::new("jitter.to_secs", reason));
         }
         Ok(())
     }
@@ -53,16 +51,15 @@ impl Measure for Jitter {
         ["", "_inside", "_rim"].map(name).into()
     }
 
-    fn begin(&self, simulation: &mut Simulation) {
-        let last = simulation.frame().clock.frame_at(self.to_secs);
-        simulation.request_density_until(last + 1);
+    fn needs_density_until(&self) -> Option<f64> {
+        Some(self.to_secs)
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
         let frame = simulation.frame();
         let density = &frame.fields.density;
         let mut sorted = density.clone();
-        if !Due::new(simulation, self.from_secs, self.to_secs, 0.0).is_now(simulation) {
+        if !is_due(simulation, [self.from_secs, self.to_secs], 0.0) {
             return;
         }
         sorted.sort_by(f64::total_cmp);

@@ -51,16 +51,22 @@ pub trait Measure: fmt::Debug + Clone + Send + Sync + 'static {
     }
 
     /// The names of its values and their units. They are unique in a scenario.
-    fn names(&self) -> Vec<(String, &'static str)>;
+    fn names(&self) -> Vec<(String, &'static str)> {
+        Vec::new()
+    }
 
-    /// Requests what it needs before the first frame, such as densities.
-    fn begin(&self, _simulation: &mut Simulation) {}
+    /// The time until which it needs densities, seconds.
+    fn needs_density_until(&self) -> Option<f64> {
+        None
+    }
 
     /// Observes an evaluated frame; called in every frame.
     fn observe(&self, _seen: &mut Self::Seen, _simulation: &Simulation) {}
 
     /// The values in the order of their names; `None` without agents or arrivals enough, or if the run ended too early.
-    fn values(&self, seen: &Self::Seen, simulation: &Simulation) -> Vec<Option<f64>>;
+    fn values(&self, _seen: &Self::Seen, _simulation: &Simulation) -> Vec<Option<f64>> {
+        Vec::new()
+    }
 
     /// Data beside the values, with a name that is unique in a scenario.
     fn data(&self, _seen: &Self::Seen) -> Option<(String, Value)> {
@@ -131,14 +137,6 @@ impl Measurement {
         let names = self.started().names().into_iter();
         names.map(|(name, _)| name).collect()
     }
-
-    /// Checks its keys.
-    ///
-    /// # Errors
-    /// A value is out of range.
-    pub(super) fn check(&self) -> Result<(), Problem> {
-        self.started().check()
-    }
 }
 
 /// A measured value.
@@ -158,10 +156,10 @@ pub struct Metrics(Vec<Box<dyn Running>>);
 impl Metrics {
     /// Prepares the measurements, and requests from `simulation` what they need.
     pub fn new(measurements: &[Measurement], simulation: &mut Simulation) -> Self {
-        let started = measurements.iter().map(Measurement::started);
-        let running: Vec<_> = started.collect();
-        for measurement in &running {
-            measurement.begin(simulation);
+        let running: Vec<_> = measurements.iter().map(Measurement::started).collect();
+        for until in running.iter().filter_map(|one| one.needs_density_until()) {
+            let last = simulation.frame().clock.frame_at(until);
+            simulation.request_density_until(last + 1);
         }
         Self(running)
     }
@@ -175,16 +173,12 @@ impl Metrics {
 
     /// The values measured so far.
     pub fn results(&self, simulation: &Simulation) -> Vec<Metric> {
-        let of = |measurement: &dyn Running| {
+        let metric = |((name, unit), value)| Metric { name, value, unit };
+        let measured = self.0.iter().flat_map(|measurement| {
             let named = measurement.names().into_iter();
-            let values = named.zip(measurement.values(simulation));
-            let metric = |((name, unit), value)| Metric { name, value, unit };
-            values.map(metric).collect::<Vec<_>>()
-        };
-        self.0
-            .iter()
-            .flat_map(|running| of(running.as_ref()))
-            .collect()
+            named.zip(measurement.values(simulation)).map(metric)
+        });
+        measured.collect()
     }
 
     /// The data of measurements that have more than values, by name.
@@ -194,10 +188,7 @@ impl Metrics {
 
     /// What each measurement has seen so far, as JSON.
     pub fn seen(&self) -> Vec<String> {
-        self.0
-            .iter()
-            .map(|measurement| measurement.seen().to_string())
-            .collect()
+        self.0.iter().map(|one| one.seen().to_string()).collect()
     }
 
     /// Restores what was [`seen`](Self::seen) before; what does not match is ignored.
@@ -212,7 +203,7 @@ impl Metrics {
 trait Running: Send + Sync {
     fn check(&self) -> Result<(), Problem>;
     fn names(&self) -> Vec<(String, &'static str)>;
-    fn begin(&self, simulation: &mut Simulation);
+    fn needs_density_until(&self) -> Option<f64>;
     fn observe(&mut self, simulation: &Simulation);
     fn values(&self, simulation: &Simulation) -> Vec<Option<f64>>;
     fn data(&self) -> Option<(String, Value)>;
@@ -245,8 +236,8 @@ impl<M: Measure> Running for Started<M> {
         self.keys.names()
     }
 
-    fn begin(&self, simulation: &mut Simulation) {
-        self.keys.begin(simulation);
+    fn needs_density_until(&self) -> Option<f64> {
+        self.keys.needs_density_until()
     }
 
     fn observe(&mut self, simulation: &Simulation) {
@@ -272,28 +263,14 @@ impl<M: Measure> Running for Started<M> {
     }
 }
 
-/// Frames that are due: from one time to another, at least this often.
-struct Due {
-    first: u64,
-    last: u64,
-    every: u64,
-}
-
-impl Due {
-    /// The frames from `from_secs` to `to_secs`, one each `every_secs` or each frame if that is longer.
-    fn new(simulation: &Simulation, from_secs: f64, to_secs: f64, every_secs: f64) -> Self {
-        let clock = simulation.frame().clock;
-        Self {
-            first: clock.frame_at(from_secs),
-            last: clock.frame_at(to_secs),
-            every: clock.frame_at(every_secs).max(1),
-        }
-    }
-
-    fn is_now(&self, simulation: &Simulation) -> bool {
-        let now = simulation.frame().clock.frame();
-        (self.first..=self.last).contains(&now) && (now - self.first).is_multiple_of(self.every)
-    }
+/// Is the current frame one of those between two times that are looked at: one each `every_secs`, or each frame if that
+/// is longer?
+fn is_due(simulation: &Simulation, times_secs: [f64; 2], every_secs: f64) -> bool {
+    let clock = simulation.frame().clock;
+    let [first, last] = times_secs.map(|time| clock.frame_at(time));
+    let every = clock.frame_at(every_secs).max(1);
+    let now = clock.frame();
+    (first..=last).contains(&now) && (now - first).is_multiple_of(every)
 }
 
 /// Checks the keys of all measurements, and that no two have the same names.
@@ -304,15 +281,14 @@ pub(super) fn check(given: &[Measurement]) -> Result<(), Problem> {
     let mut names = std::collections::BTreeSet::new();
     for (k, measurement) in given.iter().enumerate() {
         let place = format!("measurements[{k}]");
-        measurement.check().under(&place)?;
         let running = measurement.started();
+        running.check().under(&place)?;
         let data = running.data().map(|(name, _)| name);
         for name in measurement.names().into_iter().chain(data) {
-            if names.contains(&name) {
+            if let Some(name) = names.replace(name) {
                 let reason = format!("`{name}` is already measured; remove one");
                 return Err(Problem::new(place, reason));
             }
-            names.insert(name);
         }
     }
     Ok(())

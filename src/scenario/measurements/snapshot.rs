@@ -2,7 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::Measure;
 use crate::engine::simulation::Simulation;
@@ -61,13 +61,8 @@ impl Snapshot {
 impl Measure for SnapshotAt {
     type Seen = Option<Snapshot>;
 
-    fn names(&self) -> Vec<(String, &'static str)> {
-        Vec::new()
-    }
-
-    fn begin(&self, simulation: &mut Simulation) {
-        let frame = simulation.frame().clock.frame_at(self.at_secs);
-        simulation.request_density_until(frame + 1);
+    fn needs_density_until(&self) -> Option<f64> {
+        Some(self.at_secs)
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
@@ -77,12 +72,7 @@ impl Measure for SnapshotAt {
         }
     }
 
-    fn values(&self, _: &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
-        Vec::new()
-    }
-
     fn data(&self, seen: &Self::Seen) -> Option<(String, Value)> {
-        let snapshot = serde_json::to_value(seen).unwrap_or_default();
-        Some((Snapshot::name(self.at_secs), snapshot))
+        Some((Snapshot::name(self.at_secs), json!(seen)))
     }
 }

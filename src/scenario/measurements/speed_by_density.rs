@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Due, Measure};
+use super::{Measure, is_due};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::file::LONGEST_TIME;
@@ -37,13 +37,11 @@ impl Measure for SpeedByDensity {
     type Seen = Vec<Speeds>;
 
     fn check(&self) -> Result<(), Problem> {
-        match self.bins.is_sorted_by(|a, b| a < b) && !self.bins.is_empty() {
-            true => Ok(()),
-            false => Err(Problem::new(
-                "speed_by_density.bins",
-                "must be ascending densities",
-            )),
+        if self.bins.is_empty() || !self.bins.is_sorted_by(|a, b| a < b) {
+            let reason = "must be ascending densities";
+            return Err(Problem::new("speed_by_density.bins", reason));
         }
+        Ok(())
     }
 
     fn names(&self) -> Vec<(String, &'static str)> {
@@ -51,17 +49,15 @@ impl Measure for SpeedByDensity {
         self.bins.iter().map(name).collect()
     }
 
-    fn begin(&self, simulation: &mut Simulation) {
-        let last = simulation.frame().clock.frame_at(self.to_secs);
-        simulation.request_density_until(last + 1);
+    fn needs_density_until(&self) -> Option<f64> {
+        Some(self.to_secs)
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
         let frame = simulation.frame();
         let is_early = frame.clock.frame() < frame.clock.frame_at(self.from_secs);
         // Counted from the start of the run.
-        let due = Due::new(simulation, 0.0, self.to_secs, self.every_secs);
-        if is_early || !due.is_now(simulation) {
+        if is_early || !is_due(simulation, [0.0, self.to_secs], self.every_secs) {
             return;
         }
         seen.resize(self.bins.len(), Speeds::default());

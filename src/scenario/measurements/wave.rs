@@ -2,9 +2,9 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use super::{Due, Measure};
+use super::{Measure, is_due};
 use crate::analysis::wave::{self, Run, SpaceTime, Strip};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
@@ -97,32 +97,28 @@ impl Measure for Wave {
     }
 
     fn names(&self) -> Vec<(String, &'static str)> {
-        let name = |(name, unit): (&str, _)| (format!("wave_{name}"), unit);
-        [
-            ("speed_m_per_s", "m/s"),
-            ("amplitude_m_per_s", "m/s"),
-            ("reflection", ""),
+        vec![
+            ("wave_speed_m_per_s".to_owned(), "m/s"),
+            ("wave_amplitude_m_per_s".to_owned(), "m/s"),
+            ("wave_reflection".to_owned(), ""),
         ]
-        .map(name)
-        .into()
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
-        if Due::new(simulation, self.from_secs, self.to_secs, self.every_secs).is_now(simulation) {
+        if is_due(simulation, [self.from_secs, self.to_secs], self.every_secs) {
             let diagram = seen.get_or_insert_with(|| SpaceTime::new(self.strip()));
             diagram.observe(&simulation.frame());
         }
     }
 
     fn values(&self, seen: &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
-        let wave = seen
-            .as_ref()
-            .and_then(|diagram| wave::measure(diagram, &self.run()));
+        let diagram = seen.as_ref();
+        let wave = diagram.and_then(|diagram| wave::measure(diagram, &self.run()));
+        let reflection = wave.as_ref().and_then(|wave| wave.reflection);
         vec![
             wave.as_ref().map(|wave| wave.arriving.speed.value),
             wave.as_ref().map(|wave| wave.amplitude.value),
-            wave.and_then(|wave| wave.reflection)
-                .map(|reflection| reflection.value),
+            reflection.map(|reflection| reflection.value),
         ]
     }
 
@@ -132,9 +128,6 @@ impl Measure for Wave {
             wave: wave::measure(&diagram, &self.run()),
             diagram,
         });
-        Some((
-            WaveData::NAME.to_owned(),
-            serde_json::to_value(data).unwrap_or_default(),
-        ))
+        Some((WaveData::NAME.to_owned(), json!(data)))
     }
 }
