@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use sandbox::scenario::{Scenario, Setting};
+use sandbox::scenario::quote::{printable, shown};
+use sandbox::scenario::{Problem, Scenario, Setting, SettingError};
 use serde::Deserialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// A small scenario with one object of each kind; the tests break it.
 const WHOLE: &str = r#"{
@@ -187,4 +188,68 @@ fn a_missing_file_is_named() {
         error.to_string(),
         "unknown scenario `concerto`; the built-in scenarios are evacuation, crossing, concert, plaza"
     );
+}
+
+#[test]
+fn what_is_repeated_is_short_and_harmless() {
+    let long = "k".repeat(100_000);
+    let cut = format!("{}… (100000 characters)", "k".repeat(80));
+    for (document, expected) in [
+        (
+            json!({ &long: 1 }),
+            format!("{cut}: unknown key `{cut}`, expected one of `name`, "),
+        ),
+        (
+            json!({ "stop": { "a`, expected `\u{1b}": 1 } }),
+            "stop.a`, expected `\\u{1b}: unknown key `a`, expected `\\u{1b}`, expected ".to_owned(),
+        ),
+        (
+            json!({ "max_speed": long }),
+            format!("max_speed: invalid type: text \"{cut}\", expected a number"),
+        ),
+    ] {
+        let said = message(&document.to_string(), &[]);
+        let expected = format!("f.json: {expected}");
+        assert!(said.starts_with(&expected), "{said}");
+    }
+    let problem = Problem {
+        path: format!("a.\u{7}{long}"),
+        reason: "no".to_owned(),
+    };
+    let said = problem.to_string();
+    assert!(said.len() < 200 && said.starts_with("a.\\u{7}kkk"));
+}
+
+#[test]
+fn slips_of_the_finger_are_recognized() {
+    for (given, meant) in [
+        ("duration", "; did you mean `duration_secs`?"),
+        ("viscosty", "; did you mean `viscosity`?"),
+        ("colour", ""),
+        (&"k".repeat(90), ""),
+    ] {
+        let error = format!("{given}=1").parse::<Setting>().unwrap_err();
+        let SettingError::UnknownKey { suggestion, .. } = error else {
+            panic!("{error}");
+        };
+        assert_eq!(suggestion, meant, "{given}");
+    }
+}
+
+#[test]
+fn text_is_repeated_as_it_is_unless_it_is_long_or_a_terminal_obeys_it() {
+    for text in ["", "sf->sph", "Zürich 群", "\"a\" `b`"] {
+        assert_eq!(shown(text), text);
+    }
+    assert_eq!(shown("\u{1b}[31m\n\u{9b}"), "\\u{1b}[31m\\n\\u{9b}");
+    assert_eq!(shown("a\u{202e}b"), "a\\u{202e}b");
+    let long = "ä".repeat(100_000);
+    let expected = format!("{}… (100000 characters)", "ä".repeat(80));
+    assert_eq!(shown(&long), expected);
+    assert_eq!(shown(&"a".repeat(80)), "a".repeat(80));
+}
+
+#[test]
+fn lines_of_a_printable_text_stay_lines() {
+    assert_eq!(printable("a\n\u{7}b\r\n"), "a\n\\u{7}b\\r\n");
 }

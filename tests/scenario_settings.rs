@@ -4,7 +4,9 @@ use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::scene::{Integrator, Scene};
 use sandbox::runs::summary::Summary;
 use sandbox::scenario::catalog::{self, NAMES, Parameters};
-use sandbox::scenario::{Preset, Scenario, Setting, nested_settings, schema, settings};
+use sandbox::scenario::{
+    Preset, Scenario, Setting, SettingError, nested_settings, schema, settings,
+};
 use serde_json::{Value, json};
 
 /// The keys of parameters, as the program names them to somebody who gives an unknown one.
@@ -275,4 +277,81 @@ fn a_preset_fills_in_values_that_are_not_given() {
     let accurate = parse(&["preset=accurate", "wall_method=exact"]).scene;
     assert_eq!(accurate.integrator, Integrator::VelocityVerlet);
     assert_eq!(accurate.wall_method, WallMethod::Exact);
+}
+
+/// The document of a scenario with a setting; a message if the setting is refused.
+fn applied(text: &str, document: Value) -> Result<Value, String> {
+    let setting: Setting = text.parse().map_err(|e: SettingError| e.to_string())?;
+    let scenario = Scenario::parse(&document.to_string(), "f.json", &[setting]);
+    let document = scenario.map(|scenario| scenario.document);
+    document.map_err(|error| error.to_string())
+}
+
+#[test]
+fn parameters_go_where_the_file_keeps_them() {
+    let expected = json!({"parameters": {"viscosity": 5}});
+    assert_eq!(applied("viscosity=5", json!({})), Ok(expected.clone()));
+    assert_eq!(applied("parameters.viscosity=5", json!({})), Ok(expected));
+}
+
+#[test]
+fn values_are_json_and_otherwise_text() {
+    for (text, expected) in [
+        ("profile=sf->sph", json!({"profile": "sf->sph"})),
+        (
+            "profile={\"base\": \"sf\"}",
+            json!({"profile": {"base": "sf"}}),
+        ),
+        ("name=5", json!({"name": "5"})),
+        (
+            "stop.when_empty=true",
+            json!({"stop": {"when_empty": true}}),
+        ),
+    ] {
+        assert_eq!(applied(text, json!({})), Ok(expected), "{text}");
+    }
+}
+
+#[test]
+fn dots_lead_into_what_is_there() {
+    let source = json!({"min": [0, 5], "max": [0, 9], "columns": 1, "rows": 1, "every_secs": 1});
+    let document = || json!({"goal": [9, 9], "sources": [source], "profile": "sf"});
+    let changed = applied("sources.0.rows=50", document()).unwrap();
+    assert_eq!(changed["sources"][0]["rows"], 50);
+    for (text, reason) in [
+        (
+            "sources.1.rows=5",
+            "sources has no element `1`: there are 1, counted from 0",
+        ),
+        ("grids.0.rows=5", "the file has no `grids`"),
+        ("profile.base=sf", "profile is neither an object nor a list"),
+    ] {
+        let said = format!("--set {text}: {reason}");
+        assert_eq!(applied(text, document()), Err(said));
+    }
+}
+
+#[test]
+fn the_ends_belong_to_a_range_unless_it_is_open() {
+    for text in ["duration_secs=0", "duration_secs=1e7", "max_speed=100"] {
+        assert!(applied(text, json!({})).is_ok(), "{text}");
+    }
+    for text in [
+        "duration_secs=-1e-9",
+        "duration_secs=10000001",
+        "max_speed=0",
+        "max_speed=101",
+    ] {
+        let said = applied(text, json!({})).unwrap_err();
+        assert!(said.contains(": must be "), "{said}");
+    }
+}
+
+#[test]
+fn documents_read_as_json_does() {
+    let text = r#"{"view": {"region": [[-1, 0.5], [2, 1e3]], "opens_at_secs": 0}, "goal": null, "seed": 1,
+        "name": "x", "stop": {"when_empty": true}, "measurements": []}"#;
+    let scenario = Scenario::parse(text, "f", &[]).unwrap();
+    let expected: Value = serde_json::from_str(text).unwrap();
+    assert_eq!(scenario.document, expected);
 }

@@ -264,3 +264,16 @@ fn agents_with_equal_behavior_share_a_group_and_keep_their_own_values() {
     };
     assert_eq!(scenario.view.region, all);
 }
+
+#[test]
+fn what_is_written_reads_back_and_lists_of_numbers_stay_together() {
+    for shipped in SHIPPED {
+        let scenario = Scenario::shipped(shipped.name, &[]).unwrap();
+        let written = scenario.to_text();
+        let again = Scenario::parse(&written, "f", &[]).unwrap();
+        assert_eq!(again.document, scenario.document);
+        let is_number = |line: &str| line.trim().trim_end_matches(',').parse::<f64>().is_ok();
+        assert!(!written.lines().any(is_number));
+        assert!(written.lines().all(|line| line.chars().count() < 120));
+    }
+}

@@ -1,8 +1,10 @@
 //! The largest stable time step: the automatic step, and what happens beyond it.
 
 use crate::common::program;
-use sandbox::analysis::stability::{Constants, FITTED};
-use sandbox::lab::stress::{Cell, Condition, Detail, Limit, Rest, fit};
+use nalgebra::{Matrix3, Vector3};
+use sandbox::analysis::stability::{Constants, FITTED, Mode, Scheme, time_step};
+use sandbox::engine::scene::{Integrator, Scene};
+use sandbox::lab::stress::{Cell, Condition, Detail, Limit, Rest, Surroundings, fit};
 use sandbox::scenario::Scenario;
 
 #[test]
@@ -160,5 +162,108 @@ fn the_maps_have_every_crowd_once() {
             (detail.crowds().len(), detail.held_out.len()),
             (points, others)
         );
+    }
+}
+
+/// The linear map of one frame, acting on x, the velocity that forces see and the previous acceleration.
+fn frame(scheme: Scheme, omega_squared: f64, gamma: f64, dt: f64) -> Matrix3<f64> {
+    let moved = |x: f64, seen: f64, before: f64| {
+        let a = -omega_squared * x - gamma * seen;
+        let (way, velocity) = match scheme {
+            Scheme::SemiImplicit => (seen + a * dt, seen + a * dt),
+            Scheme::VelocityVerlet => {
+                let v = seen + 0.5 * dt * (a - before);
+                (v + 0.5 * dt * a, v + dt * a)
+            }
+        };
+        Vector3::new(x + way * dt, velocity, a)
+    };
+    let columns = [
+        moved(1.0, 0.0, 0.0),
+        moved(0.0, 1.0, 0.0),
+        moved(0.0, 0.0, 1.0),
+    ];
+    Matrix3::from_columns(&columns)
+}
+
+/// The spectral radius of the map of one frame, from the growth over 2⁴⁰ frames.
+fn growth(mut frames: Matrix3<f64>) -> f64 {
+    let (mut logarithm, mut count) = (0.0, 1.0);
+    for _ in 0..40 {
+        let norm = frames.norm();
+        logarithm += norm.ln() / count;
+        frames = (frames / norm).pow(2);
+        count *= 2.0;
+    }
+    logarithm.exp()
+}
+
+/// Rates of which only those of a corner are not zero: its spring and the friction in front of it.
+fn corner(omega_squared: f64, gamma: f64) -> Mode {
+    Mode {
+        corner: omega_squared,
+        correction: gamma,
+        ..Mode::default()
+    }
+}
+
+#[test]
+fn the_step_is_where_an_oscillator_begins_to_grow() {
+    for scheme in [Scheme::SemiImplicit, Scheme::VelocityVerlet] {
+        // All steps are shorter than the longest one allowed.
+        for (omega_squared, gamma) in [
+            (1e4, 0.0),
+            (1e4, 100.0),
+            (700.0, 2.0),
+            (700.0, 30.0),
+            (3.0, 90.0),
+            (0.0, 50.0),
+        ] {
+            let step = corner(omega_squared, gamma).largest_step(scheme, &FITTED);
+            let growth = |part: f64| growth(frame(scheme, omega_squared, gamma, part * step));
+            for part in 1..1000 {
+                let part = f64::from(part) / 1000.0;
+                assert!(
+                    growth(part) < 1.0 + 1e-9,
+                    "{scheme:?} {omega_squared} {gamma}"
+                );
+            }
+            assert!(
+                growth(1.001) > 1.0 + 1e-6,
+                "{scheme:?} {omega_squared} {gamma}"
+            );
+        }
+    }
+}
+
+#[test]
+fn only_integrators_with_a_formula_have_an_automatic_step() {
+    for integrator in Integrator::ALL {
+        let scene = Scene {
+            integrator,
+            ..Scene::default()
+        };
+        let scheme = Scheme::of(integrator);
+        let has_formula = !matches!(integrator, Integrator::ForwardEuler | Integrator::Midpoint);
+        assert_eq!(scheme.is_some(), has_formula);
+        assert_eq!(time_step(&scene).is_some(), has_formula);
+        assert!(scheme.is_none_or(|scheme| scheme.integrator() == integrator));
+    }
+}
+
+#[test]
+fn steps_are_rounded_down_to_three_digits() {
+    for (scheme, margin) in [
+        (Scheme::SemiImplicit, FITTED.margin),
+        (Scheme::VelocityVerlet, FITTED.verlet_margin),
+    ] {
+        assert_eq!(Mode::default().time_step(scheme), 0.1 * margin);
+        for k in 0..500 {
+            let mode = corner(1e3 * 1.03_f64.powi(k), f64::from(k));
+            let (step, exact) = (mode.time_step(scheme), mode.largest_step(scheme, &FITTED));
+            assert_eq!(format!("{step:.2e}").parse(), Ok(step));
+            let ratio = step / (margin * exact);
+            assert!(0.99 < ratio && ratio < 1.0 + 1e-9, "{step}: {ratio}");
+        }
     }
 }

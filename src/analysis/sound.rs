@@ -167,19 +167,3 @@ fn pressure_curvature(r: Vector, h: f64) -> f64 {
     let bend = 60.0 / (std::f64::consts::PI * h.powi(5)) * (h - distance).max(0.0);
     bend * along + slope / distance * (1.0 - along)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn derivatives_of_the_kernels_agree_with_differences() {
-        let (r, step) = (Vector::new(0.3, 0.2), Vector::new(1e-6, 0.0));
-        let gradient = |r| kernel::pressure_gradient(r, 1.0).x;
-        let difference = (gradient(r + step) - gradient(r - step)) / 2e-6;
-        assert!((pressure_curvature(r, 1.0) - difference).abs() < 1e-6);
-        let density = |r: Vector| kernel::density(r.norm_squared(), 1.0);
-        let difference = (density(r + step) - density(r - step)) / 2e-6;
-        assert!((density_gradient(r, 1.0).x - difference).abs() < 1e-6);
-    }
-}

@@ -152,27 +152,3 @@ impl<'de> Visitor<'de> for DocumentVisitor {
         Ok(Value::Object(object))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn documents_read_as_json_does() {
-        let text = r#"{"a": [1, -2, 0.5, "x", null, true, {"b": {}}]}"#;
-        let expected: Value = serde_json::from_str(text).unwrap();
-        assert_eq!(read(text, "f").unwrap(), expected);
-    }
-
-    #[test]
-    fn what_is_written_reads_back_and_lists_of_numbers_stay_together() {
-        for shipped in super::super::SHIPPED {
-            let document = read(shipped.text, "f").unwrap();
-            let written = write(&document);
-            assert_eq!(read(&written, "f").unwrap(), document);
-            let is_number = |line: &str| line.trim().trim_end_matches(',').parse::<f64>().is_ok();
-            assert!(!written.lines().any(is_number));
-            assert!(written.lines().all(|line| line.chars().count() < 120));
-        }
-    }
-}

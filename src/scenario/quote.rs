@@ -48,26 +48,3 @@ fn is_obeyed(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn text_is_repeated_as_it_is_unless_it_is_long_or_a_terminal_obeys_it() {
-        for text in ["", "sf->sph", "Zürich 群", "\"a\" `b`"] {
-            assert_eq!(shown(text), text);
-        }
-        assert_eq!(shown("\u{1b}[31m\n\u{9b}"), "\\u{1b}[31m\\n\\u{9b}");
-        assert_eq!(shown("a\u{202e}b"), "a\\u{202e}b");
-        let long = "ä".repeat(100_000);
-        let expected = format!("{}… (100000 characters)", "ä".repeat(80));
-        assert_eq!(shown(&long), expected);
-        assert_eq!(shown(&"a".repeat(80)), "a".repeat(80));
-    }
-
-    #[test]
-    fn lines_of_a_printable_text_stay_lines() {
-        assert_eq!(printable("a\n\u{7}b\r\n"), "a\n\\u{7}b\\r\n");
-    }
-}

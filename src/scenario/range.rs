@@ -202,20 +202,3 @@ pub(super) fn ordered(region: &Region) -> Result<(), String> {
         min.x, min.y, max.x, max.y
     ))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use serde_json::json;
-
-    #[test]
-    fn the_ends_belong_to_a_range_unless_it_is_open() {
-        let closed = Range::of(&json!({"minimum": 0, "maximum": 1}));
-        let open = Range::of(&json!({"exclusiveMinimum": 0, "maximum": 1}));
-        assert!(closed.check(0.0).is_ok() && closed.check(1.0).is_ok());
-        assert!(open.check(0.0).is_err() && open.check(1.0).is_ok());
-        assert!(closed.check(f64::NAN).is_err());
-        assert!(closed.check(f64::INFINITY).is_err());
-        assert_eq!(open.to_string(), "above 0 and at most 1");
-    }
-}

@@ -170,23 +170,3 @@ fn paused(times: &[f64], longest: f64) -> f64 {
     gaps.filter(|&gap| gap >= longest)
         .fold(0.0, |sum, gap| sum + gap)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn flow_counts_the_gaps_between_arrivals() {
-        let times: Vec<f64> = (0..10).map(|k| 5.0 + 0.5 * f64::from(k)).collect();
-        assert_eq!(flow(&times, 0.0), Some(2.0));
-        assert_eq!(flow(&times[..1], 0.0), None);
-        assert_eq!(flow(&[], 0.0), None);
-    }
-
-    #[test]
-    fn pauses_are_left_out_of_the_flow_between_them() {
-        let times = [0.0, 1.0, 4.0, 5.0];
-        assert_eq!(paused(&times, 2.0), 3.0);
-        assert_eq!(flow(&times, paused(&times, 2.0)), Some(1.5));
-    }
-}

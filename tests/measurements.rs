@@ -1,0 +1,121 @@
+//! Measurements of arrivals, and the independent observer of walls.
+
+use crate::common::{blend, person, polygon, scene, vector};
+use sandbox::engine::geometry::Polygon;
+use sandbox::engine::math::Vector;
+use sandbox::engine::simulation::{Fault, Simulation};
+use sandbox::runs::drive::{Observer, Run};
+use sandbox::runs::summary::Summary;
+use sandbox::scenario::Scenario;
+use sandbox::scenario::measurements::Watched;
+use serde_json::json;
+
+/// The times of four arrivals with gaps of about 1, 4 and 1 s, and the measurements that count `arrivals`.
+fn arrivals(arrivals: u32) -> (Vec<f64>, Summary) {
+    let walk = |(k, length): (usize, f64)| {
+        let y = 9.0 * k as f64;
+        json!({"position": [0, y], "goal": [length, y], "remove_within": 0.5})
+    };
+    let lengths = [3.0, 4.3, 9.5, 10.8].into_iter().enumerate();
+    let document = json!({
+        "profile": "sf", "duration_secs": 20, "agents": lengths.map(walk).collect::<Vec<_>>(),
+        "measurements": [
+            {"flow_of_first": {"arrivals": arrivals}}, {"locked": {"arrivals": arrivals}},
+            {"pauses": {"arrivals": arrivals, "longer_than_secs": 2}},
+        ],
+    });
+    let scenario = Scenario::parse(&document.to_string(), "f.json", &[]).unwrap();
+    let mut run = Run::new(scenario).unwrap();
+    run.drive::<Fault, dyn Observer<Fault>>(&mut [], || false)
+        .unwrap();
+    let arrived = run.simulation.outcome().arrivals.iter();
+    (arrived.map(|one| one.time).collect(), Summary::of(&run))
+}
+
+#[test]
+fn flow_counts_the_gaps_between_arrivals_and_pauses_are_left_out_between_them() {
+    let (times, summary) = arrivals(4);
+    let &[first, second, third, last] = times.as_slice() else {
+        panic!("{times:?}");
+    };
+    assert!(third - second > 3.0 && last - third < 2.0 && second - first < 2.0);
+    let metric = |name: &str, expected: f64| {
+        let found = summary.metric(name).unwrap();
+        assert!((found - expected).abs() < 1e-12, "{name}: {found}");
+    };
+    metric("flow_per_s", 3.0 / (last - first));
+    metric("pauses_secs", third - second);
+    let between = 3.0 / (last - first - (third - second));
+    metric("flow_between_pauses_per_s", between);
+    metric("locked", 0.0);
+}
+
+#[test]
+fn without_enough_arrivals_there_is_no_flow() {
+    let (_, summary) = arrivals(5);
+    for name in ["flow_per_s", "pauses_secs", "flow_between_pauses_per_s"] {
+        assert_eq!(summary.metric(name), None, "{name}");
+    }
+    assert_eq!(summary.metric("locked"), Some(1.0));
+}
+
+fn with_person(solids: Vec<Polygon>, place: Option<Vector>) -> Simulation {
+    let mut scene = scene(solids, blend("sph"));
+    scene.agents = place.into_iter().map(|p| person(p, p)).collect();
+    Simulation::new(scene).unwrap()
+}
+
+/// Does the observer see a person pass a wall who is first at `from`, if anywhere, and then at `to`? The second
+/// simulation has no walls, so that the person can be anywhere.
+fn is_seen(corners: &[[f64; 2]], from: Option<Vector>, to: Vector) -> bool {
+    let mut watched = Watched::default();
+    watched.observe(&with_person(vec![polygon(corners)], from));
+    let after = with_person(Vec::new(), Some(to));
+    watched.observe(&after);
+    watched.agents_through_walls(&after) == 1
+}
+
+#[test]
+fn a_path_through_a_thin_wall_is_seen_and_one_around_it_is_not() {
+    let wall = [[0.0, -5.0], [0.01, -5.0], [0.01, 5.0], [0.0, 5.0]];
+    for (from, to, seen) in [
+        ([-1.0, 0.0], [1.0, 0.1], true),
+        ([1.0, 0.0], [-1.0, 0.1], true),
+        ([-1e-6, 0.0], [0.005, 0.0], true),
+        ([-1.0, 5.1], [1.0, 5.1], false),
+        ([-1e-6, 0.0], [-1e-6, 3.0], false),
+        ([-90.0, 0.0], [-80.0, 0.0], false),
+    ] {
+        let found = is_seen(&wall, Some(from.into()), to.into());
+        assert_eq!(found, seen, "{from:?} {to:?}");
+    }
+}
+
+#[test]
+fn a_path_into_the_corner_between_two_edges_is_seen() {
+    let corner = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+    for k in 1..100 {
+        let from = vector(-0.01 * f64::from(k), -0.3);
+        assert!(is_seen(&corner, Some(from), -from), "{from:?}");
+    }
+}
+
+#[test]
+fn inside_is_what_the_polygon_says_wherever_it_is_not_the_rim() {
+    let horseshoe = [
+        [0.0, 0.0],
+        [9.0, 0.0],
+        [9.0, 9.0],
+        [6.0, 9.0],
+        [6.0, 3.0],
+        [3.0, 3.0],
+        [3.0, 9.0],
+        [0.0, 9.0],
+    ];
+    let solid = polygon(&horseshoe);
+    for k in 0..400 {
+        let p = vector(f64::from(k % 20), f64::from(k / 20)) * 0.53 - vector(0.3, 0.7);
+        assert_eq!(is_seen(&horseshoe, None, p), solid.contains(p), "{p:?}");
+    }
+    assert!(!is_seen(&horseshoe, None, vector(0.0, 4.0)));
+}
