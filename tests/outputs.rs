@@ -361,6 +361,6 @@ fn a_file_is_replaced_whole_or_not_at_all() {
     outputs.writes("--out", &folder.path().join("round"), Manner::Whole);
     assert!(matches!(
         outputs.check(),
-        Err(OutputsError::Unwritable { .. })
+        Err(OutputsError::Unwritable(..))
     ));
 }

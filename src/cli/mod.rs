@@ -91,7 +91,7 @@ enum Failure {
 impl From<OutputsError> for Failure {
     fn from(error: OutputsError) -> Self {
         match error {
-            OutputsError::Unwritable { .. } => Self::Output(error.to_string()),
+            OutputsError::Unwritable(..) => Self::Output(error.to_string()),
             error => Self::Input(error.to_string()),
         }
     }
@@ -260,10 +260,8 @@ const THREADS: [&str; 2] = ["RAYON_NUM_THREADS", "RAYON_RS_NUM_CPUS"];
 /// anything that may compute in parallel.
 fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
     let given = THREADS.into_iter().find_map(|name| {
-        Some((
-            name,
-            std::env::var(name).ok().filter(|text| !text.is_empty())?,
-        ))
+        let text = std::env::var(name).ok().filter(|text| !text.is_empty())?;
+        Some((name, text))
     });
     let (source, threads) = match (threads, given) {
         (Some(threads), _) => ("--threads", threads),

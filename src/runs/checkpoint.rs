@@ -13,6 +13,7 @@ use sha2::{Digest, Sha256};
 
 use crate::engine::simulation::{Simulation, State, StateError};
 use crate::runs::drive::Run;
+use crate::runs::identity::ENGINE;
 use crate::runs::outputs::write_whole;
 use crate::scenario::input;
 use crate::scenario::measurements::Metrics;
@@ -25,8 +26,6 @@ const VERSION: u32 = 3;
 /// Longest file that is read, bytes. Ten million agents, the most allowed, take 1 GB (99 bytes each, in the plaza),
 /// and the text of their scenario takes at most 256 MiB.
 const LONGEST: u64 = 1 << 32;
-/// Identifies the engine by a hash: a run may continue differently in another engine.
-const ENGINE: &str = env!("SANDBOX_ENGINE");
 
 /// A run that can be resumed.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -5,6 +5,8 @@
 
 pub mod drive;
 
+pub mod identity;
+
 pub mod outputs;
 
 pub mod checkpoint;
@@ -12,8 +14,6 @@ pub mod checkpoint;
 pub mod summary;
 
 pub mod error;
-
-pub mod identity;
 
 pub mod memory;
 

@@ -35,23 +35,12 @@ pub enum OutputsError {
     Shared(String, String),
     /// An option names an input file.
     #[error(
-        "{output} and {input} are the same file; an input is never replaced, not even with --force: write to another \
-         file"
+        "{0} and {1} are the same file; an input is never replaced, not even with --force: write to another file"
     )]
-    Input {
-        /// The option with its file.
-        output: String,
-        /// The input with its file.
-        input: String,
-    },
-    /// The file cannot be written.
-    #[error("{output}: cannot be written: {reason}")]
-    Unwritable {
-        /// The option with its file.
-        output: String,
-        /// The system's message.
-        reason: String,
-    },
+    Input(String, String),
+    /// The file cannot be written, with the system's message.
+    #[error("{0}: cannot be written: {1}")]
+    Unwritable(String, String),
 }
 
 /// All files that a command reads and writes.
@@ -131,10 +120,8 @@ impl Outputs {
         let mut existed = Vec::with_capacity(self.outputs.len());
         for output in &self.outputs {
             let tried = trial.attempt(output);
-            existed.push(tried.map_err(|error| OutputsError::Unwritable {
-                output: output.name(),
-                reason: error.to_string(),
-            })?);
+            let unwritable = |e: io::Error| OutputsError::Unwritable(output.name(), e.to_string());
+            existed.push(tried.map_err(unwritable)?);
         }
         // The trial files still exist, so every output has an identity.
         let files: Vec<_> = self.outputs.iter().map(|o| identity(&o.path)).collect();
@@ -149,10 +136,7 @@ impl Outputs {
             for (input, _) in self.inputs.iter().zip(&inputs).filter(|(_, f)| same(f)) {
                 goes_on = input.goes_on == Some(output.option);
                 if !goes_on {
-                    return Err(OutputsError::Input {
-                        output: output.name(),
-                        input: input.name.clone(),
-                    });
+                    return Err(OutputsError::Input(output.name(), input.name.clone()));
                 }
             }
             let is_folder = output.manner == Manner::Folder;
@@ -193,9 +177,8 @@ impl Trial {
                 return Ok(false);
             }
             (manner, Some(about)) => {
-                refuse_folder(&about)?;
+                refuse(&about, manner == Manner::Whole)?;
                 if manner == Manner::Whole {
-                    refuse_device(&about)?;
                     try_folder(folder_of(&fs::canonicalize(path)?))?;
                 }
                 // Opening a FIFO would wait for its reader.
@@ -243,8 +226,7 @@ pub fn write_whole(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>)
         Err(error) if error.kind() == ErrorKind::NotFound => None,
         about => {
             let about = about?;
-            refuse_folder(&about)?;
-            refuse_device(&about)?;
+            refuse(&about, true)?;
             Some(about.permissions())
         }
     };
@@ -299,21 +281,15 @@ pub fn folder_of(path: &Path) -> &Path {
     folder.unwrap_or(Path::new("."))
 }
 
-fn refuse_folder(about: &Metadata) -> io::Result<()> {
-    match about.is_dir() {
-        true => Err(io::Error::other("it is a folder")),
-        false => Ok(()),
-    }
-}
-
-/// Rejects anything but regular files: a rename would replace a device.
-fn refuse_device(about: &Metadata) -> io::Result<()> {
-    match about.is_file() {
-        true => Ok(()),
-        false => Err(io::Error::other(
-            "it is a device or a FIFO, and would be replaced by a file",
-        )),
-    }
+/// Rejects folders and, for a file that is replaced `whole`, anything but regular files: a rename would replace a
+/// device.
+fn refuse(about: &Metadata, whole: bool) -> io::Result<()> {
+    let reason = match about.is_dir() {
+        true => "it is a folder",
+        false if !whole || about.is_file() => return Ok(()),
+        false => "it is a device or a FIFO, and would be replaced by a file",
+    };
+    Err(io::Error::other(reason))
 }
 
 /// An identity that is equal for two paths to the same file. `None` for missing files, folders and character devices

@@ -60,21 +60,20 @@ fn check_type(schema: &Value, value: &Value) -> Result<(), Problem> {
         Map::<String, Value>::deserialize(value).err()
     } else if allows(schema, "number") {
         f64::deserialize(value).err()
-    } else if allows(schema, "array") && !value.is_array() && words_of(schema).is_some() {
-        let words = words_of(schema).unwrap_or_default();
-        return Err(Problem::new("", format!("must be {words}")));
     } else {
-        let length = schema.get("maxItems").and_then(Value::as_u64);
-        if length.is_some()
-            && value.as_array().map(|list| list.len() as u64) != length
-            && let Some(words) = words_of(schema)
-        {
-            return Err(Problem::new("", format!("must be {words}")));
-        }
-        None
+        let length = value.as_array().map(|list| list.len() as u64);
+        let right = match schema.get("maxItems").and_then(Value::as_u64) {
+            Some(most) => length == Some(most),
+            None => length.is_some() || !allows(schema, "array"),
+        };
+        return match words_of(schema).filter(|_| !right) {
+            Some(words) => Err(Problem::new("", format!("must be {words}"))),
+            None => Ok(()),
+        };
     };
-    let wrong = wrong.map(|error| Problem::new("", in_plain_words(&error.to_string())));
-    wrong.map_or(Ok(()), Err)
+    wrong.map_or(Ok(()), |error| {
+        Err(Problem::new("", in_plain_words(&error.to_string())))
+    })
 }
 
 /// The schema itself, or the alternative that is meant by `value`: the only one, the first that it fits, or the first

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use serde_json::{Map, Value};
+use serde_json::{Value, json};
 
 use super::document::present_name;
 use super::error::{Problem, ScenarioError, suggestion};
@@ -44,12 +44,8 @@ impl FromStr for Setting {
     fn from_str(text: &str) -> Result<Self, SettingError> {
         let (key, value) = text.split_once('=').ok_or(SettingError::NoValue)?;
         let key = key.trim();
-        let as_text = || Value::from(value.trim());
-        let value = if is_text(key) {
-            as_text()
-        } else {
-            serde_json::from_str(value).unwrap_or_else(|_| as_text())
-        };
+        let as_json = serde_json::from_str(value).ok().filter(|_| !is_text(key));
+        let value = as_json.unwrap_or_else(|| Value::from(value.trim()));
         Self::new(key, value, format!("--set {}", shown(text)))
     }
 }
@@ -114,16 +110,10 @@ impl Setting {
         let mut place = document;
         let mut path = String::new();
         for (depth, segment) in self.path.iter().enumerate() {
-            let begun = if depth + 1 == self.path.len() {
-                Some(Value::Null)
-            } else {
-                let may_begin = depth == 0 && may_be_empty(segment);
-                let is_list = self.path[depth + 1] == APPEND;
-                match (may_begin, is_list) {
-                    (_, true) => Some(Value::Array(Vec::new())),
-                    (true, false) => Some(Value::Object(Map::new())),
-                    (false, false) => None,
-                }
+            let begun = match self.path.get(depth + 1) {
+                None => Some(Value::Null),
+                Some(next) if next == APPEND => Some(json!([])),
+                Some(_) => (depth == 0 && may_be_empty(segment)).then(|| json!({})),
             };
             let added = place.as_array().map_or(0, Vec::len);
             place = inner(place, segment, begun, &path)?;

@@ -119,10 +119,7 @@ fn span(wall: &Wall, low: f64, high: f64) -> Option<[f64; 2]> {
         return None;
     }
     let rise = b.y - a.y;
-    let at = |y: f64| match rise > 0.0 {
-        true => a.x + (b.x - a.x) * ((y - a.y) / rise).clamp(0.0, 1.0),
-        false => a.x,
-    };
+    let at = |y: f64| a.x + (b.x - a.x) * ((y - a.y) / rise).clamp(0.0, 1.0);
     let ends = match rise > 0.0 {
         true => [at(low), at(high)],
         false => [a.x, b.x],

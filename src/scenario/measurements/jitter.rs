@@ -1,9 +1,9 @@
 //! Jitter: the kinetic energy of a crowd that should rest.
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
-use super::{Measure, is_due};
+use super::{Mean, Measure, is_due};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::file::LONGEST_TIME;
@@ -24,18 +24,9 @@ pub struct Jitter {
     to_secs: f64,
 }
 
-/// Sums over agents and frames: all, inside and rim.
-#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
-pub struct Energies([Sum; 3]);
-
-#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
-struct Sum {
-    energy: f64,
-    count: f64,
-}
-
 impl Measure for Jitter {
-    type Seen = Energies;
+    /// Over agents and frames: all, inside and rim.
+    type Seen = [Mean; 3];
 
     fn check(&self) -> Result<(), Problem> {
         if self.from_secs > self.to_secs {
@@ -70,14 +61,12 @@ impl Measure for Jitter {
         for ((mass, velocity), &density) in bodies.zip(density) {
             let part = if density >= dense { 1 } else { 2 };
             for k in [0, part] {
-                seen.0[k].energy += 0.5 * mass * velocity.norm_squared();
-                seen.0[k].count += 1.0;
+                seen[k].add(0.5 * mass * velocity.norm_squared());
             }
         }
     }
 
     fn values(&self, seen: &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
-        let mean = |sum: Sum| (sum.count > 0.0).then(|| sum.energy / sum.count);
-        seen.0.map(mean).into()
+        seen.map(Mean::value).into()
     }
 }

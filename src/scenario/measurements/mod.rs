@@ -114,21 +114,21 @@ impl Measurement {
     /// This measurement before the first frame.
     fn started(&self) -> Box<dyn Running> {
         match self {
-            Self::Density(keys) => Started::new(keys),
-            Self::FlowOfFirst(keys) => Started::new(keys),
-            Self::FlowUntil(keys) => Started::new(keys),
-            Self::Evacuated(keys) => Started::new(keys),
-            Self::Uncounted(keys) => Started::new(keys),
-            Self::Pauses(keys) => Started::new(keys),
-            Self::Locked(keys) => Started::new(keys),
-            Self::Snapshot(keys) => Started::new(keys),
-            Self::Wave(keys) => Started::new(keys),
-            Self::Contacts(keys) => Started::new(keys),
-            Self::Jitter(keys) => Started::new(keys),
-            Self::Closest(keys) => Started::new(keys),
-            Self::Integrity(keys) => Started::new(keys),
-            Self::SpeedByDensity(keys) => Started::new(keys),
-            Self::FrameTime(keys) => Started::new(keys),
+            Self::Density(keys) => started(keys),
+            Self::FlowOfFirst(keys) => started(keys),
+            Self::FlowUntil(keys) => started(keys),
+            Self::Evacuated(keys) => started(keys),
+            Self::Uncounted(keys) => started(keys),
+            Self::Pauses(keys) => started(keys),
+            Self::Locked(keys) => started(keys),
+            Self::Snapshot(keys) => started(keys),
+            Self::Wave(keys) => started(keys),
+            Self::Contacts(keys) => started(keys),
+            Self::Jitter(keys) => started(keys),
+            Self::Closest(keys) => started(keys),
+            Self::Integrity(keys) => started(keys),
+            Self::SpeedByDensity(keys) => started(keys),
+            Self::FrameTime(keys) => started(keys),
         }
     }
 
@@ -211,55 +211,64 @@ trait Running: Send + Sync {
     fn resume(&mut self, seen: &str);
 }
 
-/// A measurement with what it has seen.
-struct Started<M: Measure> {
-    keys: M,
-    seen: M::Seen,
+/// A measurement that has seen nothing yet.
+fn started<M: Measure>(keys: &M) -> Box<dyn Running> {
+    Box::new((keys.clone(), M::Seen::default()))
 }
 
-impl<M: Measure> Started<M> {
-    #[expect(clippy::new_ret_no_self, reason = "used as a trait object only")]
-    fn new(keys: &M) -> Box<dyn Running> {
-        Box::new(Self {
-            keys: keys.clone(),
-            seen: M::Seen::default(),
-        })
-    }
-}
-
-impl<M: Measure> Running for Started<M> {
+/// The keys of a measurement, and what it has seen.
+impl<M: Measure> Running for (M, M::Seen) {
     fn check(&self) -> Result<(), Problem> {
-        self.keys.check()
+        self.0.check()
     }
 
     fn names(&self) -> Vec<(String, &'static str)> {
-        self.keys.names()
+        self.0.names()
     }
 
     fn needs_density_until(&self) -> Option<f64> {
-        self.keys.needs_density_until()
+        self.0.needs_density_until()
     }
 
     fn observe(&mut self, simulation: &Simulation) {
-        self.keys.observe(&mut self.seen, simulation);
+        self.0.observe(&mut self.1, simulation);
     }
 
     fn values(&self, simulation: &Simulation) -> Vec<Option<f64>> {
-        self.keys.values(&self.seen, simulation)
+        self.0.values(&self.1, simulation)
     }
 
     fn data(&self) -> Option<(String, Value)> {
-        self.keys.data(&self.seen)
+        self.0.data(&self.1)
     }
 
     fn seen(&self) -> Value {
-        serde_json::to_value(&self.seen).unwrap_or_default()
+        serde_json::to_value(&self.1).unwrap_or_default()
     }
 
     fn resume(&mut self, seen: &str) {
         if let Ok(seen) = serde_json::from_str(seen) {
-            self.seen = seen;
+            self.1 = seen;
         }
+    }
+}
+
+/// The mean of values.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+pub struct Mean {
+    sum: f64,
+    count: f64,
+}
+
+impl Mean {
+    fn add(&mut self, value: f64) {
+        self.sum += value;
+        self.count += 1.0;
+    }
+
+    /// The mean; `None` without values.
+    fn value(self) -> Option<f64> {
+        (self.count > 0.0).then(|| self.sum / self.count)
     }
 }
 

@@ -1,9 +1,9 @@
 //! Mean speed by density: the fundamental diagram of the crowd's own densities.
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
-use super::{Measure, is_due};
+use super::{Mean, Measure, is_due};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::file::LONGEST_TIME;
@@ -26,15 +26,8 @@ pub struct SpeedByDensity {
     bins: Vec<f64>,
 }
 
-/// Sum and number of speeds.
-#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
-pub struct Speeds {
-    sum: f64,
-    count: f64,
-}
-
 impl Measure for SpeedByDensity {
-    type Seen = Vec<Speeds>;
+    type Seen = Vec<Mean>;
 
     fn check(&self) -> Result<(), Problem> {
         if self.bins.is_empty() || !self.bins.is_sorted_by(|a, b| a < b) {
@@ -60,21 +53,17 @@ impl Measure for SpeedByDensity {
         if is_early || !is_due(simulation, [0.0, self.to_secs], self.every_secs) {
             return;
         }
-        seen.resize(self.bins.len(), Speeds::default());
+        seen.resize(self.bins.len(), Mean::default());
         for (density, v) in frame.fields.density.iter().zip(&frame.agents.velocity) {
             let bin = self.bins.iter().rposition(|low| density >= low);
             if let Some(bin) = bin.filter(|&bin| density - self.bins[bin] < 1.0) {
-                seen[bin].sum += v.norm();
-                seen[bin].count += 1.0;
+                seen[bin].add(v.norm());
             }
         }
     }
 
     fn values(&self, seen: &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
-        let mean = |k| {
-            let speeds = seen.get(k).filter(|speeds: &&Speeds| speeds.count > 0.0)?;
-            Some(speeds.sum / speeds.count)
-        };
-        (0..self.bins.len()).map(mean).collect()
+        let bins = 0..self.bins.len();
+        bins.map(|k| seen.get(k)?.value()).collect()
     }
 }
