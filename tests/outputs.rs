@@ -359,8 +359,5 @@ fn a_file_is_replaced_whole_or_not_at_all() {
     symlink("round", folder.path().join("round")).unwrap();
     let mut outputs = Outputs::new(true);
     outputs.writes("--out", &folder.path().join("round"), Manner::Whole);
-    assert!(matches!(
-        outputs.check(),
-        Err(OutputsError::Unwritable(..))
-    ));
+    assert!(matches!(outputs.check(), Err(OutputsError::Unwritable(..))));
 }

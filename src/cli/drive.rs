@@ -8,7 +8,7 @@ use indicatif::ProgressBar;
 use super::arguments::{OutputOptions, ProgramOptions, RecordOptions, ResumeOptions, RunOptions};
 use super::checkpoint::Checkpoints;
 use super::interrupt::Interrupt;
-use super::output::{Recording, check, laid_open};
+use super::output::{Recording, check, ids};
 use super::watch::bar;
 use super::{Failure, memory, report, scenario, setting, talk, tell, trajectory, use_threads};
 use crate::analysis::stability::{FITTED, Mode, Scheme};
@@ -206,7 +206,8 @@ fn report_oddities(simulation: &Simulation) {
 /// Prints the agents of `--debug-agents` that never entered.
 fn report_absent(record: &RecordOptions, simulation: &Simulation) {
     let entered = simulation.frame().agents.entered();
-    let asked = laid_open(record).ok().flatten().unwrap_or_default();
+    let asked = record.debug_agents.as_deref().map(ids);
+    let asked = asked.and_then(Result::ok).unwrap_or_default();
     let absent: Vec<String> = asked
         .iter()
         .filter(|&&id| id >= entered)

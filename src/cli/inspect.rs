@@ -9,13 +9,14 @@ use super::{Failure, memory, say, scenario as read, use_threads};
 use crate::engine::breakdown::Breakdown;
 use crate::engine::pairs::Precision;
 use crate::engine::simulation::Simulation;
+use crate::output::recording::check_enabled;
 use crate::runs::case::Source;
 use crate::runs::outputs::{Manner, Outputs};
 
 pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     use_threads(options.scene.program.threads)?;
     if options.save.is_some() {
-        output::check_enabled()?;
+        check_enabled()?;
     }
     let source = Source::named(&options.scenario);
     let writing = memory::of_inspecting(options.save.is_some(), options.all);

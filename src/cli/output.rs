@@ -9,7 +9,7 @@ use super::values::region;
 use super::{Failure, talk, trajectory};
 use crate::engine::simulation::Simulation;
 use crate::output::recording::{
-    self, DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer,
+    DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer,
 };
 use crate::runs::drive::{End, Observer, Run};
 use crate::runs::outputs::{Manner, Outputs};
@@ -40,14 +40,10 @@ pub fn check(
     Ok(outputs.check()?)
 }
 
-/// The ids that `--debug-agents` lists; `None` without the option and for `all` and `none`.
-pub fn laid_open(record: &RecordOptions) -> Result<Option<Vec<u32>>, Failure> {
-    let text = match record.debug_agents.as_deref() {
-        None | Some("all" | "none") => return Ok(None),
-        Some(text) => text,
-    };
+/// The ids that `--debug-agents` lists.
+pub fn ids(text: &str) -> Result<Vec<u32>, Failure> {
     let ids: Result<Vec<u32>, _> = text.split(',').map(|id| id.trim().parse()).collect();
-    ids.map(Some).map_err(|_| {
+    ids.map_err(|_| {
         Failure::Input(format!(
             "--debug-agents {text}: expected ids separated by commas, all or none"
         ))
@@ -135,11 +131,6 @@ fn destination(
     }))
 }
 
-/// Fails if the environment disables recordings.
-pub fn check_enabled() -> Result<(), Failure> {
-    Ok(recording::check_enabled()?)
-}
-
 /// Records one evaluated frame, with the forces on some agents.
 pub fn save_moment(
     path: &Path,
@@ -181,21 +172,20 @@ fn debug_agents(record: &RecordOptions, scenario: &Scenario) -> Result<DebugAgen
         let region = region(text).map(DebugAgents::Region);
         return region.map_err(|reason| Failure::Input(format!("--debug-region {text}: {reason}")));
     }
-    if let Some(ids) = laid_open(record)? {
-        if let Some(id) = ids.iter().find(|&&id| u64::from(id) >= scenario.entering) {
-            let entering = scenario.entering;
-            return Err(Failure::Input(format!(
-                "--debug-agents {id}: never enters: {entering} agents enter until {} s, with ids from 0",
-                scenario.duration_secs
-            )));
-        }
-        return Ok(DebugAgents::Ids(ids));
+    let ids = match record.debug_agents.as_deref() {
+        None => return Ok(DebugAgents::Ids(scenario.debug_agents.clone())),
+        Some("all") => return Ok(DebugAgents::All),
+        Some("none") => return Ok(DebugAgents::None),
+        Some(text) => ids(text)?,
+    };
+    if let Some(id) = ids.iter().find(|&&id| u64::from(id) >= scenario.entering) {
+        let entering = scenario.entering;
+        return Err(Failure::Input(format!(
+            "--debug-agents {id}: never enters: {entering} agents enter until {} s, with ids from 0",
+            scenario.duration_secs
+        )));
     }
-    Ok(match record.debug_agents.as_deref() {
-        Some("all") => DebugAgents::All,
-        Some("none") => DebugAgents::None,
-        _ => DebugAgents::Ids(scenario.debug_agents.clone()),
-    })
+    Ok(DebugAgents::Ids(ids))
 }
 
 impl From<RecordingError> for Failure {

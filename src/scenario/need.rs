@@ -119,10 +119,21 @@ impl Need {
             walls: plan::walls(file),
             ..Self::default()
         };
-        let count = |need: &mut Self, place: &str, k: usize, agents: u64| {
+        let cells = |grid: &Grid| u64::from(grid.columns) * u64::from(grid.rows);
+        let last_entry = last_entry(file, clock, duration_secs);
+        let entering = |source| cells(source).saturating_mul(entries(source, last_entry));
+        let agents = file.agents.iter().map(|_| 1).enumerate();
+        let grids = file.grids.iter().map(cells).enumerate();
+        let sources = file.sources.iter().map(entering).enumerate();
+        let initial = agents.map(|one| ("agents", one));
+        let initial = initial.chain(grids.map(|one| ("grids", one)));
+        for (place, (k, agents)) in initial.chain(sources.map(|one| ("sources", one))) {
+            if place != "sources" {
+                need.initial = need.initial.saturating_add(agents);
+            }
             need.entering = need.entering.saturating_add(agents);
             if need.entering <= MOST_AGENTS {
-                return Ok(());
+                continue;
             }
             let agents = match need.entering {
                 countable @ ..1_000_000_000_000 => countable.to_string(),
@@ -133,22 +144,7 @@ impl Need {
                  memory; at most {MOST_AGENTS} are allowed: use fewer columns, rows or entries",
                 in_units(need.bytes()),
             );
-            Err(Problem::new(format!("{place}[{k}]"), reason))
-        };
-        for k in 0..file.agents.len() {
-            need.initial += 1;
-            count(&mut need, "agents", k, 1)?;
-        }
-        for (k, grid) in file.grids.iter().enumerate() {
-            let agents = u64::from(grid.columns) * u64::from(grid.rows);
-            need.initial = need.initial.saturating_add(agents);
-            count(&mut need, "grids", k, agents)?;
-        }
-        let last_entry = last_entry(file, clock, duration_secs);
-        for (k, source) in file.sources.iter().enumerate() {
-            let agents = u64::from(source.columns) * u64::from(source.rows);
-            let agents = agents.saturating_mul(entries(source, last_entry));
-            count(&mut need, "sources", k, agents)?;
+            return Err(Problem::new(format!("{place}[{k}]"), reason));
         }
         Ok(need)
     }

@@ -86,7 +86,9 @@ pub struct Wave {
 pub fn measure(diagram: &SpaceTime, run: &Run) -> Option<Wave> {
     let field = Field::new(diagram, run);
     let near = run.obstacle - OVERLAP;
-    let places = field.columns([run.source + FORMED, near]);
+    let measured = run.source + FORMED..=near;
+    let columns = field.columns.iter();
+    let places: Vec<&Column> = columns.filter(|(x, _)| measured.contains(x)).collect();
     let first = places.first()?.0;
     let begins = |slowness: f64| (run.start + slowness * (first - run.source), SETS_OUT);
     let arriving = field.ridge(&places, 1.0, SPEEDS, begins)?;
@@ -122,10 +124,12 @@ fn ratio(a: Estimate, b: Estimate) -> Estimate {
     }
 }
 
-/// The disturbance by bins; `None` for a bin that was ever empty.
+/// The place of a bin, and the disturbance there over time.
+type Column = (f64, Vec<f64>);
+
+/// The disturbance in all bins that were never empty.
 struct Field {
-    places: Vec<f64>,
-    series: Vec<Option<Vec<f64>>>,
+    columns: Vec<Column>,
     first_time: f64,
     time_step: f64,
     noise: f64,
@@ -133,36 +137,20 @@ struct Field {
 
 impl Field {
     fn new(diagram: &SpaceTime, run: &Run) -> Self {
-        let bins = 0..diagram.strip.bins();
-        let series: Vec<_> = bins
-            .clone()
-            .map(|bin| diagram.disturbance(bin, run.start))
-            .collect();
+        let columns = (0..diagram.strip.bins()).filter_map(|bin| {
+            let disturbance = diagram.disturbance(bin, run.start)?;
+            Some((diagram.strip.middle(bin), disturbance))
+        });
+        let columns: Vec<Column> = columns.collect();
         let before = diagram.times.iter().filter(|&&t| t < run.start).count();
-        let quiet: Vec<f64> = series
-            .iter()
-            .flatten()
-            .flat_map(|s| s[..before].iter().copied())
-            .collect();
-        let squares = quiet.iter().map(|v| v * v).sum::<f64>();
+        let quiet = columns.iter().flat_map(|(_, s)| &s[..before]);
+        let squares = quiet.clone().map(|v| v * v).sum::<f64>();
         Self {
-            places: bins.map(|bin| diagram.strip.middle(bin)).collect(),
-            series,
             first_time: diagram.times.first().copied().unwrap_or(0.0),
             time_step: diagram.time_step(),
-            noise: (squares / quiet.len().max(1) as f64).sqrt(),
+            noise: (squares / quiet.count().max(1) as f64).sqrt(),
+            columns,
         }
-    }
-
-    /// The bins between two places that were never empty.
-    fn columns(&self, [from, to]: [f64; 2]) -> Vec<(f64, &[f64])> {
-        let inside = |&(x, _): &(f64, &[f64])| (from..=to).contains(&x);
-        self.places
-            .iter()
-            .zip(&self.series)
-            .filter_map(|(&x, series)| Some((x, series.as_deref()?)))
-            .filter(inside)
-            .collect()
     }
 
     /// A series at `time`, interpolated linearly; 0 outside its times.
@@ -180,7 +168,7 @@ impl Field {
     /// the first place and the length of the interval to search, seconds.
     fn ridge(
         &self,
-        places: &[(f64, &[f64])],
+        places: &[&Column],
         sign: f64,
         speeds: [f64; 2],
         begins: impl Fn(f64) -> (f64, f64),
@@ -189,7 +177,7 @@ impl Field {
         let guess = self.brightest(places, sign, speeds, begins)?;
         let ridge: Vec<RidgePoint> = places
             .iter()
-            .filter_map(|&(x, series)| self.crest(x, series, sign, guess.at(x - first)))
+            .filter_map(|(x, series)| self.crest(*x, series, sign, guess.at(x - first)))
             .collect();
         // Most places must have a crest.
         if 2 * ridge.len() < places.len() || ridge.len() < 4 {
@@ -211,7 +199,7 @@ impl Field {
     /// The line with the greatest sum through the diagram (a slant stack); its x counts from the first place.
     fn brightest(
         &self,
-        places: &[(f64, &[f64])],
+        places: &[&Column],
         sign: f64,
         [slowest, fastest]: [f64; 2],
         begins: impl Fn(f64) -> (f64, f64),
@@ -227,7 +215,7 @@ impl Field {
                     slope: slowness,
                     offset: from + step as f64 * self.time_step,
                 };
-                let values = places.iter().map(|&(x, s)| self.at(s, line.at(x - first)));
+                let values = places.iter().map(|(x, s)| self.at(s, line.at(x - first)));
                 let sum = sign * values.sum::<f64>();
                 if best.is_none_or(|(most, _)| sum > most) {
                     best = Some((sum, line));

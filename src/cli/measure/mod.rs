@@ -6,7 +6,6 @@ pub use arguments::MeasureOptions;
 
 use std::path::{Path, PathBuf};
 
-use super::output::check_enabled;
 use super::watch::bar;
 use super::{Failure, talk, tell, use_threads};
 use crate::engine::boundary::WallMethod;
@@ -15,6 +14,7 @@ use crate::lab::measure::{
     Behind, Kernel, MOST_HIDDEN, Measured, MomentRecorder, Options, Report, Results, Site, check,
     files, measure, pictures, speed,
 };
+use crate::output::recording::check_enabled;
 use crate::output::trajectory::read::{ReadOptions, Tracks, Unit, read};
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::floor_plan::{self, FloorPlan};

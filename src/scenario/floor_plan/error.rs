@@ -62,16 +62,6 @@ pub enum FloorPlanError {
     },
 }
 
-impl FloorPlanError {
-    /// The error of a geometry of a type that has no area.
-    pub(super) fn no_polygon(place: &str, found: &str) -> Self {
-        Self::Geometry {
-            place: place.to_owned(),
-            reason: format!("a {found} has no area; a floor plan consists of polygons"),
-        }
-    }
-}
-
 /// A place as the prefix of a message; empty if there is none.
 fn at(place: &str) -> String {
     match place {

@@ -4,8 +4,8 @@ use geojson::{Feature, GeoJson, Geometry, GeometryValue, Position};
 use serde_json::Value;
 
 use super::error::FloorPlanError;
-use super::shape::Shape;
-use super::wkt::{IN_DEGREES, part};
+use super::shape::{self, Shape, part};
+use super::wkt::IN_DEGREES;
 
 /// The polygons of `text`.
 pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
@@ -69,32 +69,25 @@ fn collect(
     is_obstacle: bool,
     shapes: &mut Vec<Shape>,
 ) -> Result<(), FloorPlanError> {
-    let empty = || Err(FloorPlanError::EmptyGeometry(place.to_owned()));
-    let found = match &geometry.value {
-        GeometryValue::Polygon { coordinates } if coordinates.is_empty() => return empty(),
-        GeometryValue::Polygon { coordinates } => {
-            shapes.push(shape(coordinates, place.to_owned(), is_obstacle)?);
-            return Ok(());
-        }
-        GeometryValue::MultiPolygon { coordinates } if coordinates.is_empty() => return empty(),
+    parts(geometry).polygons(place, &mut |rings, place| {
+        shapes.push(shape(rings, place, is_obstacle)?);
+        Ok(())
+    })
+}
+
+fn parts(geometry: &Geometry) -> shape::Geometry<&[Vec<Position>]> {
+    match &geometry.value {
+        GeometryValue::Polygon { coordinates } => shape::Geometry::Polygon(coordinates),
         GeometryValue::MultiPolygon { coordinates } => {
-            for (k, rings) in coordinates.iter().enumerate() {
-                shapes.push(shape(rings, part(place, "polygon", k), is_obstacle)?);
-            }
-            return Ok(());
-        }
-        GeometryValue::GeometryCollection { geometries } if geometries.is_empty() => {
-            return empty();
+            let polygons = coordinates.iter().map(Vec::as_slice);
+            let polygons = polygons.map(shape::Geometry::Polygon);
+            shape::Geometry::Several("polygon", polygons.collect())
         }
         GeometryValue::GeometryCollection { geometries } => {
-            for (k, one) in geometries.iter().enumerate() {
-                collect(one, &part(place, "geometry", k), is_obstacle, shapes)?;
-            }
-            return Ok(());
+            shape::Geometry::Several("geometry", geometries.iter().map(parts).collect())
         }
-        other => other.type_name(),
-    };
-    Err(FloorPlanError::no_polygon(place, found))
+        other => shape::Geometry::Other(other.type_name()),
+    }
 }
 
 fn shape(
@@ -102,25 +95,22 @@ fn shape(
     place: String,
     is_obstacle: bool,
 ) -> Result<Shape, FloorPlanError> {
-    let mut points = Vec::with_capacity(rings.len());
-    for (r, ring) in rings.iter().enumerate() {
-        let point = |(k, position): (usize, &Position)| match position.as_slice() {
-            [x, y, ..] => Ok([*x, *y]),
-            few => Err(FloorPlanError::Geometry {
-                place: part(&part(&place, "ring", r), "position", k),
-                reason: format!("has {} number(s); write [x, y]", few.len()),
-            }),
-        };
-        points.push(
-            ring.iter()
-                .enumerate()
-                .map(point)
-                .collect::<Result<_, _>>()?,
-        );
-    }
+    let point = |r: usize, k: usize, position: &Position| match position.as_slice() {
+        [x, y, ..] => Ok([*x, *y]),
+        few => Err(FloorPlanError::Geometry {
+            place: part(&part(&place, "ring", r), "position", k),
+            reason: format!("has {} number(s); write [x, y]", few.len()),
+        }),
+    };
+    let ring = |(r, ring): (usize, &Vec<Position>)| {
+        let positions = ring.iter().enumerate();
+        positions.map(|(k, one)| point(r, k, one)).collect()
+    };
+    let rings = rings.iter().enumerate().map(ring);
+    let rings = rings.collect::<Result<_, _>>()?;
     Ok(Shape {
         place,
-        rings: points,
+        rings,
         is_obstacle,
     })
 }

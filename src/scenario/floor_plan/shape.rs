@@ -20,6 +20,46 @@ pub struct Shape {
     pub is_obstacle: bool,
 }
 
+/// A geometry of a file.
+pub enum Geometry<P> {
+    /// A polygon, as its format has it.
+    Polygon(P),
+    /// Several geometries, and the word for one of them.
+    Several(&'static str, Vec<Self>),
+    /// A geometry without area: the name of its type.
+    Other(&'static str),
+}
+
+impl<P> Geometry<P> {
+    /// Passes each polygon to `take`, with its place.
+    pub fn polygons(
+        self,
+        place: &str,
+        take: &mut dyn FnMut(P, String) -> Result<(), FloorPlanError>,
+    ) -> Result<(), FloorPlanError> {
+        match self {
+            Self::Polygon(polygon) => take(polygon, place.to_owned()),
+            Self::Several(_, parts) if parts.is_empty() => {
+                Err(FloorPlanError::EmptyGeometry(place.to_owned()))
+            }
+            Self::Several(kind, parts) => {
+                let mut parts = parts.into_iter().enumerate();
+                parts.try_for_each(|(k, one)| one.polygons(&part(place, kind, k), take))
+            }
+            Self::Other(found) => Err(FloorPlanError::Geometry {
+                place: place.to_owned(),
+                reason: format!("a {found} has no area; a floor plan consists of polygons"),
+            }),
+        }
+    }
+}
+
+/// The name of part `k` in messages, where it counts from 1.
+pub fn part(place: &str, kind: &str, k: usize) -> String {
+    let comma = if place.is_empty() { "" } else { ", " };
+    format!("{place}{comma}{kind} {}", k + 1)
+}
+
 impl Shape {
     /// Checks each ring and, for obstacles, that the holes lie inside the outline.
     pub fn area(&self) -> Result<Area, FloorPlanError> {
@@ -92,13 +132,9 @@ fn ring(points: &[[f64; 2]]) -> Result<Ring, String> {
 
 /// Removes points that repeat the previous one, and those at the end that repeat the first.
 fn distinct(points: impl Iterator<Item = Vector>) -> Vec<Vector> {
-    let mut kept: Vec<Vector> = Vec::new();
+    let mut kept: Vec<Vector> = points.collect();
     let same = |a: &Vector, b: &Vector| (a - b).norm() < SAME;
-    for p in points {
-        if kept.last().is_none_or(|last| !same(last, &p)) {
-            kept.push(p);
-        }
-    }
+    kept.dedup_by(|next, last| same(last, next));
     while kept.len() > 1 && kept.last().is_some_and(|last| same(last, &kept[0])) {
         kept.pop();
     }

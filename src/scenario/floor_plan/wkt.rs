@@ -6,7 +6,7 @@ use wkt::Wkt;
 use wkt::types::{Coord, Dimension, LineString, MultiPolygon, Polygon};
 
 use super::error::FloorPlanError;
-use super::shape::Shape;
+use super::shape::{Geometry, Shape};
 use crate::engine::geometry::Area;
 use crate::engine::math::Vector;
 
@@ -33,7 +33,10 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
             true => format!("line {line}"),
             false => String::new(),
         };
-        collect(&wkt, &place, &mut shapes)?;
+        geometry(&wkt).polygons(&place, &mut |polygon, place| {
+            shapes.push(shape(polygon, place));
+            Ok(())
+        })?;
     }
     Ok(shapes)
 }
@@ -91,57 +94,31 @@ fn without_srid(piece: &str) -> Result<&str, FloorPlanError> {
     Ok(geometry.trim())
 }
 
-fn collect(wkt: &Wkt<f64>, place: &str, shapes: &mut Vec<Shape>) -> Result<(), FloorPlanError> {
-    let found = match wkt {
-        Wkt::Polygon(polygon) => {
-            shapes.push(shape(polygon, place.to_owned())?);
-            return Ok(());
-        }
+fn geometry(wkt: &Wkt<f64>) -> Geometry<&Polygon<f64>> {
+    match wkt {
+        Wkt::Polygon(polygon) => Geometry::Polygon(polygon),
         Wkt::MultiPolygon(several) => {
-            let polygons = several.polygons();
-            if polygons.is_empty() {
-                return Err(FloorPlanError::EmptyGeometry(place.to_owned()));
-            }
-            for (k, polygon) in polygons.iter().enumerate() {
-                shapes.push(shape(polygon, part(place, "polygon", k))?);
-            }
-            return Ok(());
+            let polygons = several.polygons().iter();
+            Geometry::Several("polygon", polygons.map(Geometry::Polygon).collect())
         }
         Wkt::GeometryCollection(collection) => {
-            let geometries = collection.geometries();
-            if geometries.is_empty() {
-                return Err(FloorPlanError::EmptyGeometry(place.to_owned()));
-            }
-            for (k, geometry) in geometries.iter().enumerate() {
-                collect(geometry, &part(place, "geometry", k), shapes)?;
-            }
-            return Ok(());
+            let geometries = collection.geometries().iter();
+            Geometry::Several("geometry", geometries.map(geometry).collect())
         }
-        Wkt::Point(_) => "POINT",
-        Wkt::LineString(_) => "LINESTRING",
-        Wkt::MultiPoint(_) => "MULTIPOINT",
-        Wkt::MultiLineString(_) => "MULTILINESTRING",
-    };
-    Err(FloorPlanError::no_polygon(place, found))
-}
-
-/// The name of part `k` in messages, where it counts from 1.
-pub(super) fn part(place: &str, kind: &str, k: usize) -> String {
-    let comma = if place.is_empty() { "" } else { ", " };
-    format!("{place}{comma}{kind} {}", k + 1)
-}
-
-fn shape(polygon: &Polygon<f64>, place: String) -> Result<Shape, FloorPlanError> {
-    let points = |ring: &LineString<f64>| ring.coords().iter().map(|c| [c.x, c.y]).collect();
-    let rings: Vec<Vec<[f64; 2]>> = polygon.rings().iter().map(points).collect();
-    if rings.is_empty() {
-        return Err(FloorPlanError::EmptyGeometry(place));
+        Wkt::Point(_) => Geometry::Other("POINT"),
+        Wkt::LineString(_) => Geometry::Other("LINESTRING"),
+        Wkt::MultiPoint(_) => Geometry::Other("MULTIPOINT"),
+        Wkt::MultiLineString(_) => Geometry::Other("MULTILINESTRING"),
     }
-    Ok(Shape {
+}
+
+fn shape(polygon: &Polygon<f64>, place: String) -> Shape {
+    let points = |ring: &LineString<f64>| ring.coords().iter().map(|c| [c.x, c.y]).collect();
+    Shape {
         place,
-        rings,
+        rings: polygon.rings().iter().map(points).collect(),
         is_obstacle: false,
-    })
+    }
 }
 
 /// Areas as a `POLYGON`, or as a `MULTIPOLYGON` unless there is exactly one; holes are clockwise.
