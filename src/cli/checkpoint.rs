@@ -91,7 +91,6 @@ impl From<CheckpointError> for Failure {
     fn from(error: CheckpointError) -> Self {
         match error {
             CheckpointError::Unwritable { .. } => Self::Output(error.to_string()),
-            CheckpointError::Scenario(error) => Self::Scenario(error),
             error => Self::Input(error.to_string()),
         }
     }

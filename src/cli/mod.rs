@@ -108,7 +108,8 @@ impl Failure {
         match self {
             Self::Fault(_) | Self::LaidOpen { .. } | Self::Output(_) | Self::Reproduce(_) => 1,
             Self::Interrupted { exit_code, .. } => *exit_code,
-            _ => 2,
+            Self::Scenario(_) | Self::Input(_) => 2,
+            Self::Read(_) | Self::Measure(_) | Self::Study(_) => 2,
         }
     }
 

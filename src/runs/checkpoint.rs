@@ -60,9 +60,6 @@ pub enum CheckpointError {
         /// What is wrong with it.
         reason: String,
     },
-    /// The scenario is invalid with the new settings.
-    #[error(transparent)]
-    Scenario(#[from] ScenarioError),
     /// The state does not match the scenario.
     #[error(transparent)]
     State(#[from] StateError),

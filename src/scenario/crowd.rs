@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::error::{Problem, Under};
-use super::file::{self, File};
+use super::file::{self, Corners, File};
 use super::profiles::{self, ProfileChoice};
-use super::range;
+use super::range::region;
 use crate::engine::agents::NewAgent;
 use crate::engine::math::Vector;
 use crate::engine::placement::Grid;
@@ -130,15 +130,14 @@ impl<'a> Crowd<'a> {
 
     /// The grid and the goal of a grid or source.
     fn placed(&self, given: &file::Grid) -> Result<(Grid, Goal), Problem> {
+        let Region { min, max } = region("min", Corners([given.min, given.max]))?;
         let grid = Grid {
-            min: given.min.into(),
-            max: given.max.into(),
+            min,
+            max,
             columns: given.columns,
             rows: given.rows,
             jitter: given.jitter,
         };
-        let (min, max) = (grid.min, grid.max);
-        range::ordered(&Region { min, max }).map_err(|reason| Problem::new("min", reason))?;
         for (key, cells, extent) in [
             ("columns", grid.columns, max.x - min.x),
             ("rows", grid.rows, max.y - min.y),

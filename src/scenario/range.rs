@@ -8,6 +8,7 @@ use serde_json::{Map, Value};
 use super::error::{Problem, in_plain_words};
 use super::file::Corners;
 use super::schema::{allows, resolved, root, ways, words_of};
+use crate::engine::math::Vector;
 use crate::engine::scene::Region;
 
 /// Refuses numbers out of their ranges, empty names and missing keys, and values of the wrong type where serde would
@@ -182,22 +183,13 @@ pub(super) fn brief(value: f64) -> String {
 
 /// A region from its lower left and upper right corner, which must be in this order.
 pub(super) fn region(key: &str, Corners([min, max]): Corners) -> Result<Region, Problem> {
-    let region = Region {
-        min: min.into(),
-        max: max.into(),
-    };
-    ordered(&region).map_err(|reason| Problem::new(key, reason))?;
-    Ok(region)
-}
-
-/// Checks that `min` is not above or right of `max`.
-pub(super) fn ordered(region: &Region) -> Result<(), String> {
-    let (min, max) = (region.min, region.max);
+    let (min, max): (Vector, Vector) = (min.into(), max.into());
     if min.x <= max.x && min.y <= max.y {
-        return Ok(());
+        return Ok(Region { min, max });
     }
-    Err(format!(
+    let reason = format!(
         "the lower left corner comes first: ({}, {}) is not below and left of ({}, {})",
         min.x, min.y, max.x, max.y
-    ))
+    );
+    Err(Problem::new(key, reason))
 }

@@ -4,7 +4,7 @@ use geojson::{Feature, GeoJson, Geometry, GeometryValue, Position};
 use serde_json::Value;
 
 use super::error::FloorPlanError;
-use super::shape::{self, Shape, part};
+use super::shape::{Geometry as Parts, Shape, part};
 use super::wkt::IN_DEGREES;
 
 /// The polygons of `text`.
@@ -75,18 +75,18 @@ fn collect(
     })
 }
 
-fn parts(geometry: &Geometry) -> shape::Geometry<&[Vec<Position>]> {
+fn parts(geometry: &Geometry) -> Parts<&[Vec<Position>]> {
     match &geometry.value {
-        GeometryValue::Polygon { coordinates } => shape::Geometry::Polygon(coordinates),
+        GeometryValue::Polygon { coordinates } => Parts::Polygon(coordinates),
         GeometryValue::MultiPolygon { coordinates } => {
             let polygons = coordinates.iter().map(Vec::as_slice);
-            let polygons = polygons.map(shape::Geometry::Polygon);
-            shape::Geometry::Several("polygon", polygons.collect())
+            let polygons = polygons.map(Parts::Polygon);
+            Parts::Several("polygon", polygons.collect())
         }
         GeometryValue::GeometryCollection { geometries } => {
-            shape::Geometry::Several("geometry", geometries.iter().map(parts).collect())
+            Parts::Several("geometry", geometries.iter().map(parts).collect())
         }
-        other => shape::Geometry::Other(other.type_name()),
+        other => Parts::Other(other.type_name()),
     }
 }
 

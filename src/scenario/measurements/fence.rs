@@ -16,7 +16,6 @@ struct Edge {
     start: Vector,
     along: Vector,
     length: f64,
-    inward: Vector,
 }
 
 /// All edges of a scene, indexed by the square cells that their bounding boxes touch.
@@ -40,12 +39,10 @@ impl Fence {
             .map(|(start, end)| {
                 let length = (end - start).norm();
                 let along = (end - start) / length;
-                let inward = perpendicular(along);
                 Edge {
                     start,
                     along,
                     length,
-                    inward,
                 }
             })
             .collect();
@@ -77,19 +74,13 @@ impl Fence {
         let most = CELLS as f64;
         let range = |from: f64, to: f64| {
             let outside = to < 0.0 || from > most + 1.0;
-            let end = if outside {
-                0
-            } else {
-                to.min(most) as usize + 1
-            };
-            from.clamp(0.0, most) as usize..end
+            let first = from.clamp(0.0, most) as usize;
+            let end = to.min(most) as usize + 1;
+            first..if outside { 0 } else { end }
         };
         let (columns, rows) = (range(first.x, last.x), range(first.y, last.y));
-        rows.flat_map(move |row| {
-            columns
-                .clone()
-                .map(move |column| row * (CELLS + 1) + column)
-        })
+        let cell = |row, column| row * (CELLS + 1) + column;
+        rows.flat_map(move |row| columns.clone().map(move |column| cell(row, column)))
     }
 
     /// Does the straight path from `a` to `b` lead into an obstacle?
@@ -124,7 +115,8 @@ impl Edge {
 
     /// Does the path from `a` to `b` start on the free side and cross this edge?
     fn is_crossed(&self, a: Vector, b: Vector) -> bool {
-        let depth = |p: Vector| (p - self.start).dot(&self.inward) - TOLERANCE;
+        let inward = perpendicular(self.along);
+        let depth = |p: Vector| (p - self.start).dot(&inward) - TOLERANCE;
         let (before, after) = (depth(a), depth(b));
         if before > 0.0 || after <= 0.0 {
             return false;
