@@ -1,4 +1,4 @@
-//! Runs of scenarios: the drive loop ([`drive()`](drive::drive)), the files that a run may write ([`outputs`]),
+//! Runs of scenarios: the drive loop ([`Run::drive`](drive::Run::drive)), the files that a run may write ([`outputs`]),
 //! checkpoints, and summaries of results; and many runs: a [`Case`](case::Case) is one run with its
 //! [`Identity`](identity::Identity), a [`Job`](job::Job) is a piece of work whose result a [`Store`](store::Store)
 //! keeps.
