@@ -4,7 +4,7 @@ use crate::common::program;
 use nalgebra::{Matrix3, Vector3};
 use sandbox::analysis::stability::{Constants, FITTED, Mode, Scheme, time_step};
 use sandbox::engine::scene::{Integrator, Scene};
-use sandbox::lab::stress::{Cell, Condition, Detail, Limit, Rest, Surroundings, fit};
+use sandbox::lab::stress::{Cell, Condition, Detail, Limit, Rest, fit};
 use sandbox::scenario::Scenario;
 
 #[test]
