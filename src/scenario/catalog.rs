@@ -43,7 +43,7 @@ pub enum NavigationKind {
     Rvo,
 }
 
-/// Parameters of a profile, finite; `None` means the paper's value (§5.5). Where a text says that the paper's time step is too
+/// Parameters of a profile; `None` means the paper's value (§5.5). Where a text says that the paper's time step is too
 /// long, Δt = 0.02 s is beyond the formula of `docs/stability.md`, and agents shake; `time_step_secs` `auto` finds the
 /// step.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -128,7 +128,7 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// The values that are given, by name.
+    /// The values that are given, by name. Those that are not finite count as not given.
     pub(super) fn given(&self) -> Map<String, Value> {
         let Value::Object(mut values) = json!(self) else {
             return Map::new();

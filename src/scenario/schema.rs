@@ -40,7 +40,10 @@ fn tidy(schema: &mut Schema) {
     if let Some(Value::String(description)) = schema.get_mut("description") {
         *description = description.replace('\n', " ");
     }
-    let says_nothing = |default: &Value| *default == Value::Null || *default == json!([]);
+    let says_nothing = |default: &Value| match default {
+        Value::Object(keys) => keys.values().all(Value::is_null),
+        other => *other == Value::Null || *other == json!([]),
+    };
     if schema.get("default").is_some_and(says_nothing) {
         schema.remove("default");
     }
