@@ -21,19 +21,25 @@ const WHITE: Rgb = [255; 3];
 /// Length of an arrow in meters per m/s² of acceleration: 0.5 m for the goal force of an average person at rest.
 pub const METERS_PER_ACCELERATION: f64 = 0.2;
 
-/// The color of a force's arrows, in words and as RGB.
+/// The colors of terms in their order; the last ones are for terms to come.
+const COLORS: [(&str, [u8; 3]); 12] = [
+    ("green", [95, 211, 120]),
+    ("light blue", [86, 180, 233]),
+    ("blue", [70, 120, 255]),
+    ("cyan", [60, 220, 220]),
+    ("orange", [255, 150, 30]),
+    ("red", [255, 70, 60]),
+    ("purple", [170, 110, 255]),
+    ("yellow", [250, 230, 80]),
+    ("pink", [255, 120, 190]),
+    ("brown", [190, 130, 80]),
+    ("lime", [190, 240, 60]),
+    ("white", [240, 240, 240]),
+];
+
+/// The color of a term's arrows, in words and as RGB.
 pub fn color(term: Term) -> (&'static str, [u8; 3]) {
-    match term {
-        Term::Goal => ("green", [95, 211, 120]),
-        Term::SocialAgents => ("light blue", [86, 180, 233]),
-        Term::SocialWalls => ("blue", [70, 120, 255]),
-        Term::Rvo => ("cyan", [60, 220, 220]),
-        Term::PressureAgents => ("orange", [255, 150, 30]),
-        Term::PressureWalls => ("red", [255, 70, 60]),
-        Term::Viscosity => ("purple", [170, 110, 255]),
-        Term::ContactAgents => ("yellow", [250, 230, 80]),
-        Term::ContactWalls => ("pink", [255, 120, 190]),
-    }
+    COLORS[(term as usize).min(COLORS.len() - 1)]
 }
 
 /// The data of one frame, and its number of elements.
