@@ -91,9 +91,9 @@ pub struct Lattice {
     pub spacing: f64,
     /// D_i + D_j, meters.
     pub reach: f64,
-    /// k, ρ⁰max, h.
+    /// k, ρ⁰max and h are read.
     pub sph: SphParameters,
-    /// K^ag.
+    /// K^ag, 1/s².
     pub agent_stiffness: f64,
 }
 

@@ -37,7 +37,7 @@ pub struct Constants {
     pub pressure: f64,
     /// C₂: squared frequency of the fastest contact mode, in units of K/m.
     pub contact: f64,
-    /// C₃: drag in 1/s, divided by μ.
+    /// C₃: drag, 1/s, divided by μ.
     pub drag: f64,
     /// The fraction of the formula's step that `auto` takes with semi-implicit Euler.
     pub margin: f64,
@@ -117,7 +117,7 @@ pub struct Mode {
     pub other_springs: f64,
     /// Stiffness over mass of a corner, 1/s².
     pub corner: f64,
-    /// μ.
+    /// μ, 1/s.
     pub viscosity: f64,
     /// K^goal/(τ m), or 1/Δt_coarse for RVO, 1/s.
     pub correction: f64,

@@ -107,8 +107,8 @@ impl Estimate {
 
 /// The minimum, median and maximum of repeated measurements.
 ///
-/// Of times, the minimum is what the machine can do, the median what it usually does. If they are far apart, the machine
-/// was busy with other work.
+/// The minimum of times shows the machine without other load, the median its usual load. If they are far apart, the
+/// machine was busy with other work.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Range {
     /// The minimum.

@@ -54,7 +54,7 @@ impl Integrals {
         }
     }
 
-    /// Of a small piece with an area of `area` m² at `offset` = x − r_i.
+    /// The integrals over a small piece of `area` m² at `offset` = x − r_i, meters.
     pub fn of_piece(offset: Vector, area: f64, h: f64) -> Self {
         Self {
             area,
@@ -67,8 +67,7 @@ impl Integrals {
     ///
     /// Along a ray the kernels are polynomials, which Gaussian quadrature integrates exactly. Over the angle, the
     /// panels between corners, intersections with the rim and feet of perpendiculars are halved until the result
-    /// converges.
-    /// Obstacles must not overlap.
+    /// converges. Obstacles must not overlap.
     pub fn over(region: Region, walls: &Walls, r_i: Vector, h: f64, tolerance: f64) -> Self {
         let edges = Edges::around(walls, r_i, h);
         let ray = |angle: f64| edges.along_ray(region, angle);
@@ -179,7 +178,7 @@ impl Edges {
                 .map(|hit| hit.distance)
                 .reduce(f64::min)
                 .map_or(Integrals::none(), |from| self.outwards(ray, from)),
-            // Add all beyond an edge through which the ray enters, and subtract all beyond an edge where it leaves.
+            // Add the rest of the ray where it enters the region, and subtract the rest where it leaves.
             Region::Solid => {
                 let first = self.stands_in_solid.then(|| self.outwards(ray, 0.0));
                 let beyond = hits.map(|hit| {

@@ -37,9 +37,9 @@ pub struct Breakdown {
     pub mean_density: f64,
     /// ρ_i⁰, P/m².
     pub rest_density: f64,
-    /// p_i.
+    /// p_i, 1/s².
     pub pressure: f64,
-    /// a_i, the weighted sum of the terms of all profiles.
+    /// a_i: the weighted sum of the terms of all profiles, plus the forces from outside this crate.
     pub acceleration: [f64; 2],
     /// The active profiles with their weights.
     pub profiles: Vec<ProfileShare>,
@@ -161,7 +161,8 @@ impl Breakdown {
         Self::of(simulation, i)
     }
 
-    /// Σ weight × term over all profiles, and the forces from outside this crate; equals [`acceleration`](Self::acceleration) up to rounding.
+    /// Σ weight × term over all profiles, plus the forces from outside this crate. Equals
+    /// [`acceleration`](Self::acceleration) up to rounding.
     pub fn weighted_sum(&self) -> Vector {
         let own_forces = self.own_forces.iter();
         let profiles = self.profiles.iter();

@@ -23,7 +23,7 @@ use crate::engine::pairs::{
 pub struct SphParameters {
     /// h, meters (§5.2).
     pub support_radius: f64,
-    /// k (§5.5).
+    /// k, m²/s² (§5.5).
     pub gas_constant: f64,
     /// ρ⁰min, P/m² (§5.5).
     pub rest_density_min: f64,
@@ -57,8 +57,8 @@ impl SphParameters {
         mean_density.clamp(self.rest_density_min, self.rest_density_max)
     }
 
-    /// The density from walls (Eq. 10) and the moving average ρ̂ (Eq. 8), P/m². `hidden` is Σ_k ∫ W over P_k, and `kept`
-    /// is the average `time_step` seconds before; a newcomer has none.
+    /// The density from walls (Eq. 10) and the moving average ρ̂ (Eq. 8), P/m². `hidden` is Σ_k ∫ W over P_k. `kept` is
+    /// the average `time_step` seconds earlier; `None` for a newcomer.
     pub fn from_walls_and_mean(
         &self,
         from_agents: f64,
@@ -72,13 +72,13 @@ impl SphParameters {
         [from_walls, mean]
     }
 
-    /// Eq. 5.
+    /// Eq. 5: p_i, 1/s².
     pub fn pressure(&self, density: f64, rest_density: f64) -> f64 {
         self.gas_constant * (density - rest_density)
     }
 }
 
-/// ρ̂ of the previous frame, P/m²: the one that was `kept`, or, for a newcomer, its sum `from_agents` of Eq. 9.
+/// ρ̂ of the previous frame, P/m²: `kept` or, for a newcomer, the density `from_agents` alone (Eq. 9).
 pub fn mean_density_before(kept: Option<f64>, from_agents: f64) -> f64 {
     kept.unwrap_or(from_agents)
 }

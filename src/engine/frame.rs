@@ -20,7 +20,7 @@ pub struct Fields {
     pub mean_density: Vec<f64>,
     /// ρ_i⁰, P/m² (1B).
     pub rest_density: Vec<f64>,
-    /// p_i (1B).
+    /// p_i, 1/s² (1B).
     pub pressure: Vec<f64>,
     /// Σ_k ∫ ∇W over P_k, 1/m (1B). Times −p_i it is the pressure force of all walls.
     pub wall_gradient: Vec<Vector>,

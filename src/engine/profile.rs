@@ -278,7 +278,7 @@ impl Profile {
     }
 
     /// Passes `take` all terms of `agents` that do not depend on other agents: the field of [`Terms`], the agent and
-    /// the acceleration, m/s². SPH and contact terms of walls only for agents near walls.
+    /// the acceleration, m/s². Passes SPH and contact terms of walls only for agents near walls.
     #[inline]
     fn each_term(
         &self,

@@ -41,7 +41,7 @@ pub struct Simulation {
     density_until: u64,
 }
 
-/// What never changes.
+/// Parameters: fixed before the first frame.
 #[derive(Clone)]
 struct Fixed {
     scene: Scene,
@@ -50,7 +50,7 @@ struct Fixed {
     social_forces: Vec<SocialForce>,
 }
 
-/// What is integrated.
+/// State: with the parameters, it determines all later frames.
 #[derive(Clone)]
 struct Crowd {
     clock: Clock,
@@ -61,7 +61,7 @@ struct Crowd {
     changed: bool,
 }
 
-/// What is computed from both.
+/// Fields: computed from parameters and state in every frame.
 #[derive(Clone)]
 struct Derived {
     neighbors: Neighbors,
@@ -73,14 +73,14 @@ struct Derived {
     finite: bool,
 }
 
-/// What a step computes while it reads the frame; when it is complete, it is swapped with the frame's own.
+/// Results of a step that still reads the frame's previous ones; swapped with them when complete.
 #[derive(Clone, Default)]
 struct Buffers {
     avoidance: Vec<Option<Vector>>,
     acceleration: Vec<Vector>,
 }
 
-/// What has happened so far.
+/// Arrivals, stopped moves, clamped speeds and displaced agents so far.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// Agents that reached their goal and left, in order.
@@ -272,7 +272,7 @@ impl Simulation {
         self.fixed.change(&self.crowd.agents, i)
     }
 
-    /// What has happened so far.
+    /// Arrivals, stopped moves, clamped speeds and displaced agents so far.
     pub fn outcome(&self) -> &Outcome {
         &self.crowd.outcome
     }

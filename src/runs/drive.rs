@@ -26,18 +26,19 @@ pub enum End {
     Interrupted,
 }
 
-/// Sees every evaluated frame of a run.
+/// Observes every evaluated frame of a run: a progress bar, a recording, trajectories, checkpoints.
 pub trait Observer<E> {
-    /// Observes a frame: the previous one took `ms` milliseconds, and `then` tells whether another one follows.
+    /// Observes a frame: the previous one took `ms` milliseconds, and `then` says whether another frame follows or why
+    /// the run ends.
     ///
     /// # Errors
     /// The run cannot continue.
     fn observe(&mut self, run: &Run, ms: f64, then: ControlFlow<End>) -> Result<(), E>;
 
-    /// Ends after the last frame, or after an error.
+    /// Completes the output after the last frame, or after an error.
     ///
     /// # Errors
-    /// What was observed cannot be written.
+    /// The output cannot be written.
     fn finish(self: Box<Self>) -> Result<(), E> {
         Ok(())
     }
@@ -47,7 +48,7 @@ impl Run {
     /// A run from the first frame.
     ///
     /// # Errors
-    /// The first agents cannot enter.
+    /// An initial agent cannot enter.
     pub fn new(scenario: Scenario) -> Result<Self, Fault> {
         let mut simulation = Simulation::new(scenario.scene.clone())?;
         let metrics = Metrics::new(&scenario.measurements, &mut simulation);
@@ -58,7 +59,7 @@ impl Run {
         })
     }
 
-    /// Runs to the end of the scenario, or until `interrupted` says so.
+    /// Runs to the end of the scenario, or until `interrupted` returns true. Returns why the run ended.
     ///
     /// # Errors
     /// The simulation fails, or an observer does.

@@ -30,7 +30,7 @@ pub enum StoreError {
         /// The results that are stored nevertheless.
         kept: String,
     },
-    /// The machine gives no thread.
+    /// The system cannot start a thread.
     #[error("no thread can be started: {0}")]
     Threads(String),
 }

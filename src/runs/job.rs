@@ -17,9 +17,9 @@ use super::store::{Failure, Store};
 
 /// Receives progress reports; times are expected seconds on one core.
 pub trait Listener: Sync {
-    /// `jobs` jobs begin, which take `seconds` seconds; `kept` others are in the store.
+    /// `jobs` jobs begin, which are expected to take `seconds` seconds; the results of `kept` others are in the store.
     fn begins(&self, _jobs: usize, _kept: usize, _seconds: f64) {}
-    /// Another `seconds` of the expected time are done.
+    /// Jobs advanced by another `seconds` of their expected time.
     fn advances(&self, _seconds: f64) {}
     /// A job finished after `seconds` seconds.
     fn finishes(&self, _job: &str, _seconds: f64) {}
@@ -195,7 +195,7 @@ struct Context<'a> {
     store: &'a Store,
     memory: Memory,
     listener: &'a dyn Listener,
-    /// The ends of jobs, by their places.
+    /// The outcomes of jobs, by their places.
     ends: Mutex<BTreeMap<usize, End>>,
 }
 
@@ -204,8 +204,8 @@ impl Context<'_> {
         self.ends.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Computes a job and stores its result, unless another process has. It has no end if another process is computing
-    /// it and `wait` is false.
+    /// Computes a job and stores its result, unless another process has stored it. Leaves the job without an outcome if
+    /// another process is computing it and `wait` is false.
     fn run(&self, todo: &Todo, wait: bool) -> Result<(), StoreError> {
         let Some(_claim) = self.store.claim(&todo.job.key, wait)? else {
             return Ok(());
@@ -221,7 +221,7 @@ impl Context<'_> {
         Ok(())
     }
 
-    /// What another process has left since this call began.
+    /// The outcome that another process has stored since this call began.
     fn found(&self, todo: &Todo) -> Option<End> {
         let key = &todo.job.key;
         if let Ok(Some(_)) = self.store.result::<Value>(key) {

@@ -1,7 +1,7 @@
-//! Runs of scenarios: the drive loop ([`Run::drive`](drive::Run::drive)), the files that a run may write ([`outputs`]),
-//! checkpoints, and summaries of results; and many runs: a [`Case`](case::Case) is one run with its
-//! [`Identity`](identity::Identity), a [`Job`](job::Job) is a piece of work whose result a [`Store`](store::Store)
-//! keeps.
+//! Runs of scenarios: the drive loop ([`Run::drive`](drive::Run::drive)), the check of output files ([`outputs`]),
+//! checkpoints, and summaries of results. For many runs, a [`Case`](case::Case) is one run with its
+//! [`Identity`](identity::Identity), and a [`Job`](job::Job) is a piece of work whose result is kept in a
+//! [`Store`](store::Store).
 
 pub mod drive;
 

@@ -50,8 +50,8 @@ pub(crate) fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
     })
 }
 
-/// Writes a document as indented JSON. Values that fit on one line are written on one line; serde_json would give each
-/// number of a point a line.
+/// Writes a document as indented JSON. Values that fit on one line are written on one line; serde_json would write each
+/// number of a point on its own line.
 pub(super) fn write(value: &Value) -> String {
     /// Most characters in a line.
     const WIDTH: usize = 76;

@@ -18,7 +18,7 @@ pub struct Draft {
     origin: Origin,
 }
 
-/// Where a draft comes from: to tell whether the file or a setting is to blame for a problem.
+/// The file and the settings of a draft: error messages name the one that caused a problem.
 #[derive(Debug, Clone)]
 struct Origin {
     file: String,

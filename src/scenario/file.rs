@@ -1,6 +1,6 @@
 //! The keys of a scenario file. From these structs come the JSON Schema, the range checks, the keys of `--set` and
-//! their descriptions in `sandbox list --settings`: a key is said once, here. Those of profiles are in
-//! [`profiles`](super::profiles) and [`catalog`](super::catalog), those of measurements in
+//! their descriptions in `sandbox list --settings`: each key is described once, here. The keys of profiles are in
+//! [`profiles`](super::profiles) and [`catalog`](super::catalog), the keys of measurements in
 //! [`measurements`](super::measurements).
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};

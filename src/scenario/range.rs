@@ -11,8 +11,8 @@ use super::schema::{allows, resolved, root, ways, words_of};
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
 
-/// Refuses numbers out of their ranges, empty names and missing keys, and values of the wrong type where serde would
-/// accept them (the list of an object's values) or not name their place.
+/// Rejects numbers out of range, empty names, missing keys, and values of the wrong type that serde would accept (a
+/// list of values in place of an object) or would reject without naming their place.
 pub(super) fn check(document: &Value) -> Result<(), Problem> {
     check_value(root(), document)
 }
@@ -55,7 +55,7 @@ fn may_be_null(schema: &Value) -> bool {
     allows(schema, "null") || ways.any(|way| allows(way, "null"))
 }
 
-/// Refuses other values in place of objects, of numbers, and of lists with a fixed length and a name.
+/// Rejects values of another type in place of an object or a number, and in place of a described list of fixed length.
 fn check_type(schema: &Value, value: &Value) -> Result<(), Problem> {
     let wrong = if allows(schema, "object") && !value.is_object() {
         Map::<String, Value>::deserialize(value).err()
@@ -77,8 +77,8 @@ fn check_type(schema: &Value, value: &Value) -> Result<(), Problem> {
     })
 }
 
-/// The schema itself, or the alternative that is meant by `value`: the only one, the first that it fits, or the first
-/// list for a list.
+/// The schema itself or, if it has alternatives, the one that `value` is meant to match: the only one, else the first
+/// that it fits, else (for a list) the first that allows a list.
 fn chosen(schema: &'static Value, value: &Value) -> Option<&'static Value> {
     let schema = resolved(schema);
     let Some(all) = ways(schema) else {

@@ -14,9 +14,9 @@ const ON_THE_WALL: f64 = 1e-9;
 /// Stiffnesses of one profile; `None` disables that contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
-    /// K^ag.
+    /// K^ag, 1/s².
     pub agent_stiffness: Option<f64>,
-    /// K^obs.
+    /// K^obs, 1/s².
     pub wall_stiffness: Option<f64>,
 }
 

@@ -9,7 +9,7 @@ use crate::engine::math::{Vector, direction};
 #[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
 #[serde(default)]
 pub struct GoalForce {
-    /// K^goal.
+    /// K^goal, dimensionless.
     pub goal_scale: f64,
     /// τ, seconds.
     pub relaxation_time: f64,

@@ -35,7 +35,7 @@ impl Default for PairCoefficients {
     }
 }
 
-/// The sums that the profiles of a scene read; other sums may be skipped.
+/// Which sums the profiles of a scene read; other sums may be skipped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Wanted {
     /// Eq. 11.
@@ -59,7 +59,7 @@ impl Wanted {
         self.pressure || self.viscosity || self.contact
     }
 
-    /// The sums that either wants.
+    /// The sums that `self` or `other` contains.
     pub fn with(self, other: Self) -> Self {
         Self {
             pressure: self.pressure || other.pressure,
@@ -69,7 +69,7 @@ impl Wanted {
     }
 }
 
-/// The accelerations of the agents of block `b` by their near neighbors, m/s². Forces that are not wanted must have
+/// Accelerations of the agents of block `b` from their near neighbors, m/s². Forces that are not wanted must have
 /// coefficient 0: they may be skipped.
 pub fn accelerations(
     frame: &Frame,
@@ -91,7 +91,7 @@ pub fn accelerations(
     }));
 }
 
-/// The accelerations of agent `i` by its near neighbors, m/s²: by pressure, viscosity and contact.
+/// Accelerations of agent `i` from its near neighbors, m/s²: pressure, viscosity and contact.
 pub fn accelerations_of(frame: &Frame, i: usize, coefficients: &PairCoefficients) -> [Vector; 3] {
     let &PairCoefficients {
         pressure,

@@ -17,7 +17,7 @@ use crate::engine::random::{self, Purpose};
 #[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
 #[serde(default)]
 pub struct Rvo {
-    /// w, m: the weight of the time to collision.
+    /// w, meters: the weight of the time to collision.
     pub collision_weight: f64,
     /// Number of candidate velocities per coarse frame.
     pub candidates: u32,

@@ -17,13 +17,13 @@ use crate::engine::pairs::{
 #[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
 #[serde(default)]
 pub struct SocialForce {
-    /// V₀.
+    /// V₀, m²/s².
     pub agent_strength: f64,
     /// σ, meters.
     pub agent_range: f64,
     /// T, seconds.
     pub anticipation_time: f64,
-    /// U₀.
+    /// U₀, m²/s².
     pub wall_strength: f64,
     /// R, meters.
     pub wall_range: f64,
@@ -182,11 +182,11 @@ struct FromAgents<'a, R: Real, S: Simd> {
     /// Minus the speed, times the cosine of half the field of view.
     edge_of_view: Lanes<R, S>,
     unseen_weight: Lanes<R, S>,
-    /// In coordinate units².
+    /// The square of the avoidance radius, in coordinate units².
     radius_squared: Lanes<R, S>,
     /// −1/(√2 σ ln 2), per coordinate unit.
     falling: Lanes<R, S>,
-    /// The effect of the agent before, which is not summed yet.
+    /// The effect of the previous agent, which is not summed yet.
     last: Effect<R, S>,
     sum: [Lanes<R, S>; 2],
 }

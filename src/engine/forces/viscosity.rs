@@ -10,7 +10,7 @@ use crate::engine::pairs::{Columns, Lanes, Real, Simd, lanes_from, load, splat};
 /// The viscosity force of one profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viscosity {
-    /// μ, greater than 0.
+    /// μ, 1/s, greater than 0.
     pub coefficient: f64,
 }
 

@@ -137,7 +137,7 @@ impl Walls {
             .map(|(_, exit)| exit)
     }
 
-    /// Of all walls' points nearest to `p`, the nearest that is free, after its distance. Searches in growing
+    /// The nearest free point among the walls' points nearest to `p`, with its distance, meters. Searches in growing
     /// circles.
     fn free_foot(&self, p: Vector) -> Option<(f64, Vector)> {
         let mut reach = FIRST_REACH;
@@ -151,7 +151,8 @@ impl Walls {
             });
             let foot = self.nearest_free(p, feet.collect());
             let complete = found.len() == self.walls.len() || reach == f64::INFINITY;
-            // Points lie `CLEARANCE` in front of their walls, so a wall out of reach may have one that much nearer.
+            // Points lie `CLEARANCE` in front of their walls, so the point of a wall out of reach may be nearer by
+            // that.
             if complete || foot.is_some_and(|(distance, _)| distance < reach - CLEARANCE) {
                 return foot;
             }
@@ -178,7 +179,7 @@ impl Walls {
         corners
     }
 
-    /// Of the `exits` outside all obstacles, the nearest to `p`, after its distance in meters.
+    /// The nearest to `p` of the `exits` outside all obstacles, with its distance, meters.
     fn nearest_free(&self, p: Vector, exits: Vec<Vector>) -> Option<(f64, Vector)> {
         let distance = |exit: Vector| ((exit - p).norm(), exit);
         let mut exits: Vec<(f64, Vector)> = exits.into_iter().map(distance).collect();

@@ -41,14 +41,15 @@ struct Cluster {
 
 impl Clusters {
     /// Half the period of coordinates that may wrap, meters, for lists that reach `reach` meters: large enough that
-    /// wrapping makes no listed agent seem near. In x or y a listed agent is away by at most a cluster's width, the
-    /// reach, two cells of at most `reach` each, and two displacements since the sort: 6 `reach`, where 8 are allowed.
+    /// wrapping makes no listed agent seem near. Along x or y, the distance to a listed agent is at most the sum of a
+    /// cluster's width, the reach, two cells of at most `reach` each, and two displacements since the sort. This is 6
+    /// `reach`; 8 are allowed.
     pub fn extent(reach: f64) -> f64 {
         (WIDEST + 2.5) * reach
     }
 
-    /// Lists for each cluster, as runs of agents, all agents within `reach` meters of any of its members, and some
-    /// that are farther away. `grid` must have been laid over `positions`.
+    /// For each cluster, lists all agents within `reach` meters of any of its members, and some that are farther away,
+    /// as runs of agents. `grid` must have been laid over `positions`.
     pub fn rebuild(&mut self, grid: &Grid, positions: &[Vector], reach: f64) {
         let count = positions.len();
         self.blocks

@@ -122,8 +122,8 @@ impl Neighbors {
     }
 
     /// Coordinates may wrap with a period of twice this length, meters: wrapping makes no agent that a cluster reads
-    /// seem near. See [`Clusters::extent`]. For social forces an agent is away by at most a cluster's width, two
-    /// cells, the radius and two displacements since the sort.
+    /// seem near. See [`Clusters::extent`]. For social forces, the distance to an agent is at most the sum of a
+    /// cluster's width, two cells, the radius and two displacements since the sort.
     pub fn extent(&self) -> f64 {
         let far = |radius: f64| radius + 2.5 * self.reach + 2.0 * self.ranges.margin;
         let unlisted = 2.0 * (self.ranges.drift - self.ranges.margin);

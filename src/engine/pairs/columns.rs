@@ -14,7 +14,7 @@ pub struct Columns<R: Real> {
     pub bodies: Bodies<R>,
     /// m_j/ρ_j, m² (1B).
     pub volume: Vec<R>,
-    /// p_j (1B).
+    /// p_j, 1/s² (1B).
     pub pressure: Vec<R>,
 }
 
@@ -45,7 +45,7 @@ fn reset<T: Copy + Default>(column: &mut Vec<T>, agents: &Agents) {
 }
 
 impl<R: Real> Columns<R> {
-    /// Packs the bodies of all agents (see [`Bodies::take`]), and makes room for their volumes and pressures.
+    /// Packs the bodies of all agents (see [`Bodies::take`]), and resets their volumes and pressures to 0.
     pub fn take_bodies(&mut self, agents: &Agents, unit: f64, support: impl Fn(usize) -> f64) {
         self.bodies.take(agents, unit, support);
         reset(&mut self.volume, agents);
@@ -54,8 +54,8 @@ impl<R: Real> Columns<R> {
 }
 
 impl<R: Real> Bodies<R> {
-    /// Packs the bodies of all agents, and makes room for their motions. A coordinate unit is `unit` meters; `support`
-    /// returns the h of an agent in meters.
+    /// Packs the bodies of all agents, and resets their positions and velocities to 0. A coordinate unit is `unit`
+    /// meters; `support` returns the h of an agent in meters.
     pub fn take(&mut self, agents: &Agents, unit: f64, support: impl Fn(usize) -> f64) {
         self.unit = unit;
         reset(&mut self.x, agents);

@@ -3,10 +3,10 @@
 //!
 //! A dense scene spends nearly all of its time here. Agents that are close together (see
 //! [`Clusters`](crate::engine::neighbors::Clusters)) share their neighbors, so the sums of eight agents are computed
-//! together, from data packed in [`Columns`]. What is summed stands with its equation: a [`PairSum`] in
+//! together, from data packed in [`Columns`]. Each summand is defined with its equation, as a [`PairSum`] in
 //! [`density`](crate::engine::density) (Eq. 9), [`near`](crate::engine::forces::near) (Eqs. 7, 11 and 22) and
-//! [`social`](crate::engine::forces::social) (Eq. 18). Each agent is included in its own sums: it adds its own share to
-//! the density, and no force.
+//! [`social`](crate::engine::forces::social) (Eq. 18). Each agent is included in its own sums: it adds to its own
+//! density, but exerts no force on itself.
 
 mod columns;
 mod real;

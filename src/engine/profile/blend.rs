@@ -14,7 +14,7 @@ use crate::engine::neighbors::BLOCK;
 /// Largest number of profiles in a blend. Every group of agents has its own copy of them.
 const MOST_STEPS: usize = 16;
 
-/// A sequence {(Π^j, ρ^j)} of profiles in rising order of density, and the SPH parameters they share.
+/// A sequence {(Π^j, ρ^j)} of profiles in ascending order of density, and the SPH parameters they share.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blend {
     /// Name in reports.
@@ -93,7 +93,7 @@ impl Blend {
         }
     }
 
-    /// The profiles in rising order of density.
+    /// The profiles in ascending order of density.
     pub fn steps(&self) -> &[BlendStep] {
         &self.steps
     }

@@ -81,7 +81,7 @@ impl Source {
 }
 
 impl Simulation {
-    /// On coarse frames, lets agents in, and begins and ends pushes that are due.
+    /// On coarse frames: agents enter, and pushes begin and end, as they are due.
     pub(super) fn follow_schedule(&mut self) -> Result<(), Fault> {
         let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
         let nothing = scene.sources.is_empty() && scene.pushes.is_empty();

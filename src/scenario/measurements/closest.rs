@@ -7,7 +7,7 @@ use super::{Measure, is_due};
 use crate::engine::simulation::Simulation;
 use crate::scenario::file::LONGEST_TIME;
 
-/// Time between the frames that are looked at, seconds.
+/// Time between the frames that are measured, seconds.
 const EVERY_SECS: f64 = 0.1;
 
 /// The smallest distance between the centers of two agents as a part of D_i + D_j, at most 1, from a given time on, in

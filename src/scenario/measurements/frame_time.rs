@@ -57,7 +57,7 @@ impl FrameTime {
 }
 
 impl Measure for FrameTime {
-    /// At the first frame, at the last one, and the number of agents in that.
+    /// The times at the first and at the last frame, and the number of agents in the last one.
     type Seen = (Option<Spent>, Option<Spent>, usize);
 
     fn observe(&self, (first, last, agents): &mut Self::Seen, simulation: &Simulation) {

@@ -78,7 +78,7 @@ impl Watched {
             };
             self.through_walls.extend(passed.then_some(id));
         }
-        // Agents that have left made one more move before.
+        // Agents that have left made one more move, to their goal.
         for arrival in simulation.outcome().arrivals.iter().skip(self.arrivals) {
             let before = self.last[arrival.id as usize];
             let passed = before.is_some_and(|before| fence.is_crossed(before, arrival.position));

@@ -1,8 +1,8 @@
 //! Measurements of a run: what a scenario's `measurements` ask for.
 //!
 //! A measurement is one file: its keys, as a scenario gives them, and how it observes frames and finds its values
-//! ([`Measure`]). [`Measurement`] lists them all. Everything is due by frame, not by time, so that no time step
-//! misses it.
+//! ([`Measure`]). [`Measurement`] lists them all. Times are rounded to the nearest frame, so that every measurement is
+//! due at any time step.
 
 mod arrivals;
 mod closest;
@@ -63,7 +63,8 @@ pub trait Measure: fmt::Debug + Clone + Send + Sync + 'static {
     /// Observes an evaluated frame; called in every frame.
     fn observe(&self, _seen: &mut Self::Seen, _simulation: &Simulation) {}
 
-    /// The values in the order of their names; `None` without agents or arrivals enough, or if the run ended too early.
+    /// The values in the order of their names; `None` if there were no agents or too few arrivals, or if the run ended
+    /// too early.
     fn values(&self, _seen: &Self::Seen, _simulation: &Simulation) -> Vec<Option<f64>> {
         Vec::new()
     }
@@ -272,8 +273,8 @@ impl Mean {
     }
 }
 
-/// Is the current frame one of those between two times that are looked at: one each `every_secs`, or each frame if that
-/// is longer?
+/// Is the current frame due? Between two times, one frame per `every_secs` is due, or every frame if frames are longer
+/// than that.
 fn is_due(simulation: &Simulation, times_secs: [f64; 2], every_secs: f64) -> bool {
     let clock = simulation.frame().clock;
     let [first, last] = times_secs.map(|time| clock.frame_at(time));

@@ -64,8 +64,8 @@ struct Ring {
     len: usize,
 }
 
-/// Eight discs in single precision. Unused lanes hold a disc that is never certainly met. If it is perhaps met, it
-/// stands for disc 0, which is then checked once more.
+/// Eight discs in single precision. Unused lanes hold a dummy disc. No test finds it certainly met; if one finds it
+/// possibly met, disc 0 is checked once more.
 #[derive(Debug, Clone, Copy)]
 struct Eight {
     x: [f32; LANES],
@@ -188,7 +188,7 @@ impl Rings {
         let way = Way::new(simd, self, velocity, before, -ROUNDING);
         let members = &self.members[ring.start * LANES..];
         for (eight, members) in self.eights(ring).iter().zip(members.chunks(LANES)) {
-            // Not `simd_lt`: a NaN counts as perhaps met.
+            // Not `simd_lt`: a NaN counts as possibly met.
             let apart = way.lowest(simd, eight).simd_gt(splat(simd, 0.0));
             let mut met = !apart.to_bitmask() & ((1 << LANES) - 1);
             while met != 0 {
