@@ -32,7 +32,7 @@ impl Checkpoints {
         run: &mut Run,
     ) -> Option<Self> {
         let file = options.checkpoint.clone()?;
-        // The resumed run may record densities, which this run might not need.
+        // A resumed run may record densities even if this run does not need them.
         run.simulation.request_density_until(u64::MAX);
         let clock = run.simulation.frame().clock;
         let every = clock.frame_at(options.checkpoint_every).max(1);
@@ -48,8 +48,8 @@ impl Checkpoints {
 }
 
 impl Observer<Failure> for Checkpoints {
-    /// Writes a checkpoint if one is due, if a signal ends the run, or if the run ends without any. A failure does not
-    /// end the run: the next attempt may succeed.
+    /// Writes a checkpoint if one is due, if a signal ends the run, or if the run ends before its first checkpoint. A
+    /// failure does not end the run: the next attempt may succeed.
     fn observe(&mut self, run: &Run, _: f64, then: ControlFlow<End>) -> Result<(), Failure> {
         let clock = run.simulation.frame().clock;
         let is_due = clock.frame() >= self.due

@@ -33,7 +33,7 @@ pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
     check(outputs, &options.output, &whole)?;
     warn_of_the_step(&whole.scene);
     let run = Run::new(whole)?;
-    // A resumed run goes to the scenario's own end, if it can get there.
+    // A resumed run goes to the scenario's own end, if the whole scenario is valid.
     let is_cut = until.is_some() && options.output.checkpoint.checkpoint.is_some();
     let resumable = is_cut.then(|| {
         let mut inputs = Outputs::new(true);
@@ -102,7 +102,7 @@ fn fits_into_memory(file: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Runs to the end. Checkpoints hold `resumable`, if `--until` cuts the scenario short.
+/// Runs to the end. If `--until` cuts the scenario short, checkpoints hold the whole scenario, `resumable`.
 fn go_on(
     mut run: Run,
     resumable: Option<Scenario>,
@@ -203,7 +203,7 @@ fn report_oddities(simulation: &Simulation) {
     }
 }
 
-/// Prints the agents of `--debug-agents` that never entered.
+/// Prints which agents of `--debug-agents` never entered.
 fn report_absent(record: &RecordOptions, simulation: &Simulation) {
     let entered = simulation.frame().agents.entered();
     let asked = record.debug_agents.as_deref().map(ids);

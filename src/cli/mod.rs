@@ -160,8 +160,9 @@ fn run(command: Command) -> Result<(), Failure> {
     }
 }
 
-/// Reads a scenario and applies the settings of the command line. `until` is a new end with the flag that gives it.
-/// Writing the output files takes `writing` bytes of memory per agent. Adds the files that were read to `outputs`.
+/// Reads a scenario and applies the settings of the command line. `until` is the flag that sets another end, and the
+/// end in seconds. Writing the output files takes `writing` bytes of memory per agent. Adds the files that were read to
+/// `outputs`.
 fn scenario(
     source: &Source,
     scene: &arguments::SceneOptions,

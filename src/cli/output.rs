@@ -109,7 +109,7 @@ impl Observer<Failure> for Recording {
     }
 }
 
-/// Where the recording goes, if one is requested.
+/// The destination of the recording, if one is requested.
 fn destination(
     record: &RecordOptions,
     interrupt: &Interrupt,

@@ -153,7 +153,7 @@ fn merge(study: &Study, store: &Store, options: &SweepOptions) -> Result<(), Fai
     Ok(())
 }
 
-/// The error that cells failed, if some did.
+/// An error if some cells failed.
 fn some_failed(failed: &[String], of: usize) -> Result<(), Failure> {
     /// Most failures to print: more would scroll the first ones off the screen.
     const MOST: usize = 5;

@@ -1,4 +1,4 @@
-//! Jobs of which an experiment needs every result.
+//! Jobs for experiments that need every result.
 
 use serde::de::DeserializeOwned;
 use serde_json::Value;

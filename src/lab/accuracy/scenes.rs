@@ -36,7 +36,7 @@ pub struct Scene {
     pub kind: Kind,
     /// Do quick plans skip it unless it is named?
     pub is_long: bool,
-    /// If the scene begins when its scenario ends: the push that it begins with.
+    /// The push with which the scene begins, at the end of its scenario; `None` if it begins with the scenario itself.
     push: Option<Push>,
 }
 
@@ -62,7 +62,7 @@ const fn scene(name: &'static str, kind: Kind, is_long: bool, push: Option<Push>
     }
 }
 
-/// What a study says without its cells.
+/// The content of a study's file, without its cells.
 #[derive(Default, Deserialize)]
 struct Text {
     #[serde(borrow)]
@@ -105,8 +105,8 @@ impl Scene {
         self.text().list.into_iter().map(|entry| entry.label)
     }
 
-    /// The document that all points change: that of the study's first cell, which has default settings. Some crowds
-    /// come to rest first, and begin with a push.
+    /// The document that the settings of all points change: that of the study's first cell, which has default settings.
+    /// In scenes with a push, the crowd first comes to rest, and the document begins with the push.
     ///
     /// # Errors
     /// The scenario is invalid, or the crowd does not come to rest.
@@ -126,7 +126,7 @@ impl Scene {
     }
 }
 
-/// Sines of both coordinates, up to 0.3 m/s: a whirl whose walls are nearly at rest.
+/// Sines of both coordinates, up to 0.3 m/s: a whirl that is nearly at rest at the walls.
 fn whirl(r: Vector, size: Vector) -> Vector {
     let wave = |x: f64, length: f64| (TAU * x / length).sin();
     Vector::new(wave(r.y, size.y), -wave(r.x, size.x)) * 0.3
@@ -138,7 +138,7 @@ fn compression(r: Vector, size: Vector) -> Vector {
     Vector::new(0.8 * (-0.5 * along * along).exp(), 0.0)
 }
 
-/// A setting that is called `key=value`; an error if the key is unknown.
+/// The setting `key=value`; an error if the key is unknown.
 pub fn setting(key: &str, value: &Value) -> Result<Setting, LabError> {
     let text = value.as_str().map_or(value.to_string(), str::to_owned);
     Setting::new(key, value.clone(), format!("{key}={text}"))

@@ -1,8 +1,8 @@
 //! What is tried in a scene: values of the numerical choices ("knobs") that act in it.
 //!
-//! Every entry of the scene's study is a trial. Its label is `KNOB: CURVE`, where pictures join the points of a curve
-//! by a line, or just `KNOB`; ` (best)` marks the value with which the knob has no error of its own. Two entries are
-//! no trials: the first one, without settings, and `reference`, with which statistics are compared.
+//! Every entry of the scene's study is a trial, except the first one, which has no settings, and `reference`, with
+//! which statistics are compared. A trial's label is `KNOB` or `KNOB: CURVE`; pictures join the points of a curve by a
+//! line. ` (best)` marks the value with which the knob has no error of its own.
 
 use serde::{Serialize, Serializer};
 use serde_json::Value;
@@ -32,7 +32,7 @@ pub struct Trial {
     /// Are these the defaults?
     #[serde(rename = "default")]
     pub is_default: bool,
-    /// The knob's best settings, with all others at their defaults; `None` for a knob without.
+    /// The knob's best settings, with all others at their defaults; `None` for a knob without a best value.
     #[serde(skip)]
     pub best: Option<Vec<Setting>>,
     /// The index of the study's entry with its runs; defaults share those of the first entry.

@@ -13,7 +13,7 @@ use crate::output::plot::Sheet;
 use crate::output::table::Table;
 use crate::runs::store::Store;
 
-/// What a benchmark found.
+/// The results of a benchmark.
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Findings {
     /// The table for readers.
@@ -28,7 +28,7 @@ pub(super) struct Findings {
     pub sheet: Sheet,
 }
 
-/// The results of a benchmark, and their circumstances.
+/// The results of a benchmark, with the machine and the plan.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
     pub(super) benchmark: &'static str,

@@ -87,7 +87,7 @@ pub fn parts(
         from_people: from_people[i],
         hidden: hidden[i],
     };
-    // The ids are in the order of the positions.
+    // The ids count the positions in their given order.
     let mut order: Vec<usize> = (0..agents.len()).collect();
     order.sort_by_key(|&i| agents.id[i]);
     order.into_iter().map(of).collect()

@@ -127,7 +127,7 @@ pub struct Measured {
     pub crossings: Vec<Crossings>,
 }
 
-/// The measurement is impossible.
+/// Why a measurement is impossible.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeasureError {
     /// No frame is in the requested time.

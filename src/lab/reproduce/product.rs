@@ -1,4 +1,4 @@
-//! What a table or a figure is.
+//! Products: tables and figures.
 
 use crate::lab::error::LabError;
 use crate::lab::sweep::{Cell, Gathered, Study};
@@ -14,13 +14,13 @@ pub struct Product {
     pub in_all: bool,
     /// Its studies: files under `scenarios/studies/`, without their extension.
     pub studies: &'static [&'static str],
-    /// What it needs of them.
+    /// The cells that it needs.
     pub needs: Needs,
     /// Writes its files into the store's folder, and returns a text about them.
     pub write: fn(&[Gathered], &Store) -> Result<String, LabError>,
 }
 
-/// What a product needs of its studies.
+/// The cells that a product needs of its studies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Needs {
     /// All cells, with as many seeds as the user asks for.

@@ -1,4 +1,4 @@
-//! Questions about the tables: what walls, doorways, starts and guesses change in Tables 1 and 2. Each is a study.
+//! Questions about the tables: how walls, doorways, start positions and guesses change Tables 1 and 2. Each is a study.
 
 use serde_json::json;
 
@@ -107,7 +107,7 @@ fn evacuated(values: &[f64]) -> String {
     each.join(", ")
 }
 
-/// Which rankings of Table 2 hold in each geometry, and how many of the crossing stream get through.
+/// Which rankings of Table 2 hold in each geometry, and how many agents of the crossing stream get through.
 fn rankings(combinations: &[Combination]) -> Result<String, LabError> {
     let profiles = published()?.table2.rows.len();
     let mut geometries = Vec::new();
@@ -145,6 +145,6 @@ fn rankings(combinations: &[Combination]) -> Result<String, LabError> {
 struct Geometry<'a> {
     name: &'a str,
     table: table2::Table,
-    /// How many of the crossing stream get through, over profiles and seeds.
+    /// Number of agents of the crossing stream that get through, over profiles and seeds.
     through: Range,
 }

@@ -1,4 +1,4 @@
-//! The rows of Tables 1 and 2: the paper's beside ours.
+//! The rows of Tables 1 and 2: the paper's values beside ours.
 
 use serde::Serialize;
 use serde_json::Value;

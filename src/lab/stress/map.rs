@@ -1,5 +1,5 @@
-//! The points of the stability maps (`maps.json`): every k and ρ⁰max, every K^ag, every μ; and other points that test
-//! the maps' formula.
+//! The points of the stability maps (`maps.json`): every pair of k and ρ⁰max, every K^ag and every μ. Held-out points
+//! test the formula that is fitted to the maps.
 
 use serde::Deserialize;
 
@@ -9,13 +9,13 @@ use crate::lab::error::LabError;
 /// The points of the maps, and how closely their limits are searched for. Values are in increasing order.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Detail {
-    /// k.
+    /// k, m²/s².
     pub gas_constants: Vec<f64>,
     /// ρ⁰max, P/m².
     pub rest_densities: Vec<f64>,
-    /// K^ag.
+    /// K^ag, 1/s².
     pub stiffnesses: Vec<f64>,
-    /// μ.
+    /// μ, 1/s.
     pub viscosities: Vec<f64>,
     /// Crowds that the fit does not use: points between those of the maps, three points of the maps with other agents,
     /// and stiff gas with stiff contact and with viscosity.

@@ -1,5 +1,5 @@
 //! The limits of the model: hard cases in which no agent may pass through a wall, checked independently of the engine;
-//! maps of the largest time step at which a crowd comes to rest; and the motion that remains then.
+//! maps of the largest time step at which a crowd comes to rest; and the motion of crowds at rest.
 
 mod cell;
 mod condition;

@@ -42,13 +42,13 @@ const CLOSEST: f64 = 0.1;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Rest {
-    /// k.
+    /// k, m²/s².
     pub gas_constant: f64,
     /// ρ⁰max, P/m²; the density of the full room is a tenth higher.
     pub rest_density_max: f64,
-    /// K^ag.
+    /// K^ag, 1/s².
     pub agent_stiffness: f64,
-    /// μ.
+    /// μ, 1/s.
     pub viscosity: f64,
 }
 
@@ -89,13 +89,13 @@ impl Remains {
     }
 }
 
-/// What is seen of some crowds: sums over agents and frames of the last seconds, and all that goes wrong.
+/// Observations of some crowds: sums over agents and frames of the last seconds, and all failures.
 #[derive(Debug, Clone, Copy, Default)]
 struct Seen {
     agents: f64,
-    /// |v|², m²/s².
+    /// Sum of |v|², m²/s².
     squares: f64,
-    /// v · v of the previous frame, m²/s².
+    /// Sum of v(t) · v(t − Δt), m²/s².
     lasting: f64,
     closest: f64,
     escaped: usize,

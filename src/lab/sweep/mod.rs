@@ -12,7 +12,7 @@
 //! | `scenario` | the name of a shipped scenario, or the path of a file, relative to the study's folder |
 //! | `settings` | an object of settings for every cell: keys as for `--set`, values in JSON |
 //! | `measurements` | measurements in addition to those of the scenario |
-//! | `list` | a list of such objects, one for each cell; each may have a `label` for tables |
+//! | `list` | a list of objects of settings, one for each cell; each may have a `label` for tables |
 //! | `grid` | an object of settings, each with a list of values; all combinations are run |
 //! | `seeds` | the number of seeds (1, 2, …), or a list of seeds |
 //! | `name` | the name of the results; by default the file's name |

@@ -88,13 +88,13 @@ impl Layout {
     }
 }
 
-/// A part of an area from its upper left corner and its size, points.
+/// The part of an area with this upper left corner and this size, points.
 fn part<DB: DrawingBackend>(area: &Area<DB>, corner: [f64; 2], size: [f64; 2]) -> Area<DB> {
     let [(x, y), (width, height)] = [corner, size].map(|lengths| lengths.map(units).into());
     area.clone().shrink((x, y), (width, height))
 }
 
-/// Draws a sheet; crowds as pixels, `alike` rows of which are the same.
+/// Draws a sheet. Crowds are drawn as pixels, in groups of `alike` identical rows.
 pub fn draw<DB: DrawingBackend>(sheet: &Sheet, root: &Area<DB>, alike: u32) -> Drawn {
     let layout = Layout::new(sheet);
     let [width, height] = sheet.panel_size;
@@ -130,7 +130,7 @@ pub fn draw<DB: DrawingBackend>(sheet: &Sheet, root: &Area<DB>, alike: u32) -> D
     Ok(())
 }
 
-/// Draws a panel's marks and axes, with so much space left, below and right of them for numbers.
+/// Draws a panel's marks and axes. The given lengths are the space for numbers on the left, below and on the right.
 fn draw_chart<DB: DrawingBackend>(
     panel: &Panel,
     area: &Area<DB>,

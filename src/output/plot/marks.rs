@@ -44,7 +44,8 @@ pub fn line<C: Clone>(path: Vec<C>, style: &Style) -> DashedPathElement<IntoIter
     DashedPathElement::new(path, dash, units(DASH), stroke(style.color, style.width))
 }
 
-/// Draws one mark. Pixels cover earlier marks also where they are white; `alike` rows of those of discs are the same.
+/// Draws one mark. Pixels cover earlier marks even where they are white; those of discs are in groups of `alike`
+/// identical rows.
 pub fn draw<DB: DrawingBackend>(
     mark: &Mark,
     panel: &Panel,
@@ -155,8 +156,8 @@ fn is_inside(&(x, y): &Place) -> bool {
     inside.contains(&x) && inside.contains(&y)
 }
 
-/// A path with a further point wherever it crosses a side of the plotting area or its extension. plotters moves each
-/// point outside to the rim: this clips areas with such points, but bends other lines and areas that leave the panel.
+/// A path with additional points where it crosses a side of the plotting area or its extension. plotters moves points
+/// outside to the rim: with the additional points this clips the path, without them it would bend it.
 fn with_crossings(mut path: Vec<Place>) -> Vec<Place> {
     let [x, y]: [fn(Place) -> f64; 2] = [|place| place.0, |place| place.1];
     for (axis, limit) in [(x, 0.0), (x, 1.0), (y, 0.0), (y, 1.0)] {

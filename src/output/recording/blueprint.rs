@@ -37,7 +37,8 @@ pub enum Opening {
     /// The viewer follows the incoming data.
     Live,
     /// The recording is complete: a loop from `opens_at` plays. The debug view shows this region, or, if `None`, the
-    /// region of the crowd views. The layout is sent last, because the viewer cannot go to a time that it has not read.
+    /// region of the crowd views. The layout is sent last, because the viewer cannot jump to a time that it has not
+    /// read yet.
     Whole(Option<Region>),
 }
 

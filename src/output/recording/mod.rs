@@ -49,7 +49,7 @@ use snapshot::Snapshot;
 const FRAME: &str = "frame";
 const SIM_TIME: &str = "sim_time";
 
-/// What a recording says and shows in addition to the simulation itself.
+/// The texts and views of a recording, in addition to the simulation itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordingOptions {
     /// Its title in the viewer, for example the scenario's name.

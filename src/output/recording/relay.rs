@@ -9,22 +9,22 @@ use std::time::{Duration, Instant};
 /// Maximum number of queued items; the sender waits when the queue is full.
 const CAPACITY: usize = 100;
 
-/// The patience of an interrupted sender; shorter pauses of a receiver that works are common.
+/// How long an interrupted sender waits. A working receiver often pauses for less.
 const HURRY: Duration = Duration::from_millis(200);
-/// How often a waiting sender looks whether it was interrupted.
+/// Interval at which a waiting sender checks whether it was interrupted.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// The sender's side. If the receiver takes nothing for `patience` while a sender waits, the receiver is given up:
 /// later items are dropped without waiting.
 pub struct Relay<T> {
     patience: Duration,
-    /// Set once the sender is to wait no longer than [`HURRY`].
+    /// Once set, the sender waits no longer than [`HURRY`].
     interrupted: Arc<AtomicBool>,
-    /// The queue, and word of every item that was taken from it. `None` once it is closed or given up.
+    /// The queue, and a channel that reports every item taken from it. `None` once closed or given up.
     ends: Mutex<Option<(SyncSender<T>, Receiver<()>)>>,
 }
 
-/// The receiver's side. It has ended once this is dropped.
+/// The receiver's side. Dropping it ends the receiver.
 pub struct Items<T> {
     queue: Receiver<T>,
     taken: Sender<()>,

@@ -19,7 +19,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// Logs the layout and the static data, of which `log_own` logs what depends on the content and returns the layers.
+    /// Logs the layout and the static data. `log_own` logs the static data of this kind of recording, and returns its
+    /// layers.
     pub fn begin(
         output: Output,
         options: RecordingOptions,

@@ -2,7 +2,7 @@
 
 use crate::analysis::statistics::{Estimate, MeanStd};
 
-/// What a row has in a column.
+/// The content of a row in a column.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
     /// Words; left-aligned.

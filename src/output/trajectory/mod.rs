@@ -7,9 +7,10 @@
 //! | `.txt` | PedPy, the Pedestrian Dynamics Data Archive's tools | positions, in text |
 //! | `.csv` | everything | every quantity of every agent: the fields of [`Row`] |
 //!
-//! Frames are numbered 0, 1, 2, … at the file's own rate. Numbers are those of the evaluated frame, with all digits.
-//! An interrupted run leaves whole frames: a text file has each frame as soon as it is logged, a SQLite file all but
-//! those of the last second (a `-journal` file beside it belongs to it, and disappears when the file is opened).
+//! Frames are numbered 0, 1, 2, … at the file's own rate. Numbers are the values of the evaluated frame, with all
+//! digits. An interrupted run leaves whole frames: a text file has each frame as soon as it is logged, a SQLite file
+//! all but those of the last second (a `-journal` file beside it belongs to it, and disappears when the file is
+//! opened).
 
 mod area;
 mod error;

@@ -53,7 +53,7 @@ pub struct Row<'a> {
     pub mean_density: f64,
     /// ρ_i⁰, P/m².
     pub rest_density: f64,
-    /// p_i.
+    /// p_i, 1/s².
     pub pressure: f64,
     /// Σ_k ∫ ∇W over P_k, 1/m.
     pub wall_gradient_x: f64,

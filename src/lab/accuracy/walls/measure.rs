@@ -47,11 +47,11 @@ pub struct MethodReport {
     pub name: String,
     /// The region of the exact integrals that it is measured against.
     pub region: Region,
-    /// Of ∫ W.
+    /// Error of ∫ W.
     pub density: Error,
-    /// Of ∫ ∇W, as a vector.
+    /// Error of ∫ ∇W, as a vector.
     pub force: Error,
-    /// Of the force along an endless straight wall, which should be 0: the roughness of the wall.
+    /// Error of the force along an endless straight wall, which should be 0: the roughness of the wall.
     pub roughness: Option<Error>,
     /// Nanoseconds per evaluation, including the search for walls.
     pub ns: Range,
@@ -70,7 +70,7 @@ pub struct CaseReport {
     pub name: &'static str,
     /// The meaning of `along`.
     pub axis: &'static str,
-    /// Meters, place by place.
+    /// The x value of the curves, meters, place by place.
     pub along: Vec<f64>,
     /// ∫ W and |∫ ∇W| (1/m) over the hidden region.
     pub hidden: Vec<[f64; 2]>,

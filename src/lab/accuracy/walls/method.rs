@@ -88,6 +88,6 @@ impl Method {
     }
 }
 
-/// A method prepared for one case: the integrals over the walls for an agent at r_i, including the search for what is
-/// within reach, and memory in addition to the polygons, which a crowd needs anyway, bytes.
+/// A method prepared for one case: a function from r_i to the integrals over the walls, which includes the search for
+/// walls within reach; and the memory that it needs in addition to the polygons, bytes.
 pub type Prepared<'a> = (Box<dyn FnMut(Vector) -> Integrals + 'a>, usize);

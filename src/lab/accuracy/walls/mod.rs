@@ -1,11 +1,11 @@
 //! Walls in SPH: the density and force of each method of including them, compared with the exact integrals.
 //!
 //! For an agent at r_i the walls' density is ρ_i⁰ ∫ W and their force −p_i ∫ ∇W (Eqs. 10 and 12), over one of two
-//! [`Region`](crate::analysis::wall_integrals::Region)s: what the walls *hide* (the union of the paper's P_k, counted once), or the *solid* itself. The engine's
-//! methods integrate over the hidden region. Boundary particles and volume maps, which the paper argues against (§3.4)
-//! and which exist only here, integrate over the solid. Akinci's particles are an exception: their volumes make a solid
-//! body of every wall, so they count as a method for the hidden region. Each method is measured against its region. The
-//! difference between the two regions is reported separately.
+//! [`Region`](crate::analysis::wall_integrals::Region)s: the region that the walls *hide* (the union of the paper's
+//! P_k, counted once), or the *solid* itself. The engine's methods integrate over the hidden region. Boundary particles
+//! and volume maps, which the paper argues against (§3.4) and which exist only here, integrate over the solid. Akinci's
+//! particles are an exception: their volumes make a solid body of every wall, so they count as a method for the hidden
+//! region. Each method is measured against its region. The difference between the two regions is reported separately.
 
 mod case;
 mod map;

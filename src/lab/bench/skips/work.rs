@@ -59,8 +59,8 @@ impl Course {
         self.simulation.stages()
     }
 
-    /// Milliseconds per frame with the skip undone. Separate work takes the place of stages in the times of a course
-    /// with all skips, `base`.
+    /// Milliseconds per frame with the skip undone. If the work is separate, its time replaces that of some stages in
+    /// `base`, the times with all skips.
     pub fn ms_per_frame(&self, base: &StageTimes) -> f64 {
         match &self.undone {
             Some(Undone::Work(_, instead_of)) => {
