@@ -9,7 +9,7 @@ use sandbox::scenario::{
 };
 use serde_json::{Value, json};
 
-/// The keys of parameters, as the program names them to somebody who gives an unknown one.
+/// The keys of parameters, as the message about an unknown key lists them.
 fn parameter_keys() -> Vec<String> {
     known_keys("{\"parameters\": {\"?\": 0}}")
 }

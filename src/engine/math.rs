@@ -3,7 +3,7 @@
 /// A position, velocity or force in the plane.
 pub type Vector = nalgebra::Vector2<f64>;
 
-/// `v` turned by 90° counter-clockwise.
+/// `v` turned by 90° counterclockwise.
 pub fn perpendicular(v: Vector) -> Vector {
     Vector::new(-v.y, v.x)
 }

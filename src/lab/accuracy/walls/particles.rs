@@ -156,7 +156,7 @@ fn clipped(points: &[Vector], low: Vector, high: Vector) -> Vec<Vector> {
     })
 }
 
-/// Area in m² and centroid of the region that counter-clockwise outlines enclose, without the clockwise ones, by
+/// Area in m² and centroid of the region that counterclockwise outlines enclose, without the clockwise ones, by
 /// triangles from `origin`.
 fn area_and_middle(outlines: impl Iterator<Item = Vec<Vector>>, origin: Vector) -> (f64, Vector) {
     let (mut area, mut moment) = (0.0, Vector::zeros());
