@@ -65,7 +65,7 @@ fn with_person(solids: Vec<Polygon>, place: Option<Vector>) -> Simulation {
     Simulation::new(scene).unwrap()
 }
 
-/// Does the observer see a person pass a wall who is first at `from`, if anywhere, and then at `to`? The second
+/// Does the observer see an agent cross a wall between `from` (if it is given) and `to`? The second
 /// simulation has no walls, so that the person can be anywhere.
 fn is_seen(corners: &[[f64; 2]], from: Option<Vector>, to: Vector) -> bool {
     let mut watched = Watched::default();

@@ -123,7 +123,7 @@ fn no_dense_crowd_has_longer_lists_than_estimated() {
         (40, 1.0, 5000.0, 2.0),
     ] {
         let (scene, reach) = squares(count, side, span, support_radius);
-        // So many that agents times walls is above the limit below which it is the estimate.
+        // Agents times walls exceeds the limit up to which this product is the estimate.
         let agents = (1 << 20) / scene.walls.len() as u64 + 1;
         let bound = listed(&scene, agents);
         let mut rng = stream(4, Purpose::Placement, 0, 0);

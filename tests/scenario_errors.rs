@@ -225,7 +225,7 @@ fn slips_of_the_finger_are_recognized() {
     for (given, meant) in [
         ("duration", "; did you mean `duration_secs`?"),
         ("viscosty", "; did you mean `viscosity`?"),
-        ("colour", ""),
+        ("zebra", ""),
         (&"k".repeat(90), ""),
     ] {
         let error = format!("{given}=1").parse::<Setting>().unwrap_err();

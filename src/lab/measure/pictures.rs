@@ -164,7 +164,7 @@ fn counts(crossings: &[Crossings]) -> Sheet {
         Axis::linear("t [s]", [first, last]),
         Axis::linear("N", [0.0, 1.05 * most]),
     );
-    let mut panel = Panel::new("persons who have passed", x, y, marks);
+    let mut panel = Panel::new("crossings so far", x, y, marks);
     panel.legend = Some(Corner::UpperLeft);
     sheet(1, [330.0, 210.0], vec![panel])
 }
