@@ -42,3 +42,5 @@ mod sound;
 mod statistics;
 mod walls;
 mod wave;
+mod way_finding;
+mod ways;

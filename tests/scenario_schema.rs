@@ -17,7 +17,7 @@ fn whole() -> Value {
         "population_seed": 2, "behavior_seed": 3, "duration_secs": 5.5, "preset": "fast",
         "time_step_secs": "auto", "longest_step_secs": 0.05, "coarse_every": 3,
         "integrator": "velocity-verlet", "wall_method": "union", "precision": "double",
-        "neighbor_lists": "coarse", "preferred_speed": 1.4, "max_speed": 2, "goal": [5, 5],
+        "neighbor_lists": "coarse", "navigation": "straight", "min_passage_width": 0.3, "preferred_speed": 1.4, "max_speed": 2, "goal": [5, 5],
         "profile": {"name": "own", "blend": [
             {"at_density": 2, "profile": "sf"},
             {"at_density": 4, "profile": {"base": "sph", "parameters": {"viscosity": 1}}}

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
+use crate::engine::ways::{Route, Walker, Ways};
 
 /// D_i ∈ U[0.215, 0.265] m (§5.6).
 pub const RADIUS_RANGE: [f64; 2] = [0.215, 0.265];
@@ -46,7 +47,7 @@ impl NewAgent {
     }
 }
 
-/// The state of all agents. All arrays but the last two have the same length. An index is valid until agents are
+/// The state of all agents. All arrays but the last three have the same length. An index is valid until agents are
 /// next sorted or removed; an `id` never changes.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Agents {
@@ -76,6 +77,9 @@ pub struct Agents {
     /// The acceleration of the previous frame, m/s²; `None` for agents that entered since. Used by velocity Verlet
     /// only, otherwise empty.
     pub acceleration_before: Vec<Option<Vector>>,
+    /// The way that the agent follows, held until the next coarse frame; `None` for agents that entered since. Empty
+    /// in scenes without path maps.
+    pub route: Vec<Option<Route>>,
     next_id: u32,
 }
 
@@ -98,7 +102,11 @@ impl Agents {
     /// Do the lengths of all arrays agree with the number of agents?
     pub fn is_whole(&self) -> bool {
         let count = self.len();
-        let sometimes = [self.avoidance.len(), self.acceleration_before.len()];
+        let sometimes = [
+            self.avoidance.len(),
+            self.acceleration_before.len(),
+            self.route.len(),
+        ];
         let always = [
             self.position.len(),
             self.velocity.len(),
@@ -145,6 +153,25 @@ impl Agents {
         id
     }
 
+    /// Finds the ways of all agents in coarse frames, and of those that entered since in every frame. `seed` is that of
+    /// the population.
+    pub fn follow(&mut self, ways: &Ways, coarse: bool, seed: u64) {
+        self.route.resize(self.len(), None);
+        let (ids, positions, goals, radii) = (&self.id, &self.position, &self.goal, &self.radius);
+        let routes = self.route.par_iter_mut().enumerate();
+        routes.with_min_len(SOME).for_each(|(i, route)| {
+            if coarse || route.is_none() {
+                let walker = Walker {
+                    id: ids[i],
+                    position: positions[i],
+                    goal: goals[i],
+                    radius: radii[i],
+                };
+                *route = Some(ways.route(&walker, route.as_ref(), seed));
+            }
+        });
+    }
+
     /// Extends `avoidance` to all agents.
     pub fn make_room_for_avoidance(&mut self) {
         self.avoidance.resize(self.len(), None);
@@ -155,6 +182,10 @@ impl Agents {
         if !self.avoidance.is_empty() {
             self.make_room_for_avoidance(); // for agents that entered since
             arrange(&mut self.avoidance, order);
+        }
+        if !self.route.is_empty() {
+            self.route.resize(self.len(), None);
+            arrange(&mut self.route, order);
         }
         if !self.acceleration_before.is_empty() {
             self.acceleration_before.resize(self.len(), None);

@@ -43,6 +43,9 @@ pub struct Breakdown {
     pub acceleration: [f64; 2],
     /// The active profiles with their weights.
     pub profiles: Vec<ProfileShare>,
+    /// Its way around walls; `None` if it walks straight toward its goal.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub way: Option<WayLeft>,
     /// The forces from outside this crate.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub own_forces: Vec<OwnForce>,
@@ -62,6 +65,17 @@ pub struct ProfileShare {
     /// Its terms, not weighted.
     #[serde(serialize_with = "serialize_terms")]
     pub accelerations: Terms,
+}
+
+/// The rest of an agent's way.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct WayLeft {
+    /// The length of the shortest way to the goal, meters.
+    pub length: f64,
+    /// The next corner, or the goal, meters.
+    pub next: [f64; 2],
+    /// The direction in which the agent wants to walk.
+    pub heading: [f64; 2],
 }
 
 /// A force from outside this crate.
@@ -144,6 +158,7 @@ impl Breakdown {
             pressure: fields.pressure[i],
             acceleration: fields.acceleration[i].into(),
             profiles: profiles.collect(),
+            way: way_left(simulation, i),
             own_forces: own_forces.collect(),
             neighbors,
             walls: wall_terms(simulation, i),
@@ -172,6 +187,18 @@ impl Breakdown {
                 .map(|force| Vector::from(force.acceleration))
                 .sum::<Vector>()
     }
+}
+
+/// The rest of the way of agent `i`, if it has a path map.
+fn way_left(simulation: &Simulation, i: usize) -> Option<WayLeft> {
+    let (agents, ways) = (simulation.frame().agents, simulation.scene().ways.as_ref()?);
+    let route = agents.route.get(i)?.as_ref()?;
+    let (position, goal) = (agents.position[i], agents.goal[i]);
+    Some(WayLeft {
+        length: ways.way(position, goal)?.length,
+        next: ways.next(route).into(),
+        heading: ways.direction(route, position).into(),
+    })
 }
 
 fn wall_terms(simulation: &Simulation, i: usize) -> Vec<WallTerm> {

@@ -9,6 +9,8 @@ pub mod random;
 
 pub mod geometry;
 
+pub mod ways;
+
 pub mod kernel;
 
 pub mod clock;

@@ -13,6 +13,8 @@ pub enum Purpose {
     Placement = 1,
     /// Candidate velocities of RVO.
     Candidates = 2,
+    /// Clearance at corners.
+    Clearance = 3,
 }
 
 /// Base-2 logarithm of the 32-bit words reserved per frame: enough for eight million draws of 64 bits.

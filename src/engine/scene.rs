@@ -14,6 +14,7 @@ use crate::engine::neighbors::{ListPolicy, Ranges, SKIN};
 use crate::engine::pairs::Precision;
 use crate::engine::placement::Grid;
 use crate::engine::profile::{Blend, Override, Profile};
+use crate::engine::ways::Ways;
 
 /// How the state is advanced by one frame (§5).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -146,6 +147,8 @@ pub struct Scene {
     pub sources: Vec<Source>,
     /// Temporary changes of behavior.
     pub pushes: Vec<Push>,
+    /// Ways around walls; `None`: agents walk straight toward their goals, as in the paper.
+    pub ways: Option<Arc<Ways>>,
     /// Forces from outside this crate.
     pub own_forces: Vec<Arc<dyn Force>>,
 }
@@ -168,6 +171,7 @@ impl Default for Scene {
             agents: Vec::new(),
             sources: Vec::new(),
             pushes: Vec::new(),
+            ways: None,
             own_forces: Vec::new(),
         }
     }

@@ -12,7 +12,7 @@ use super::file::{self, DEFAULT_DURATION, DEFAULT_PROFILE, File, TimeStep};
 use super::need::Need;
 use super::profiles::{ProfileChoice, ProfileName};
 use super::range::{self, region};
-use super::{PlanFile, Scenario, View, measurements, plan, preset, profiles};
+use super::{PlanFile, Scenario, View, measurements, plan, preset, profiles, ways};
 use crate::analysis::stability;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::engine::math::{Vector, bounds};
@@ -69,6 +69,7 @@ impl Contents {
         crowding::check(keys, &scene, duration_secs)?;
         measurements::check(&keys.measurements)?;
         scene.pushes = pushes(&keys.events)?;
+        scene.ways = ways::ways(keys, &scene)?;
         if keys.time_step_secs == Some(TimeStep::Auto(file::Auto::Auto)) {
             scene.clock = automatic_clock(keys, &scene)?;
         }

@@ -11,6 +11,7 @@ use super::measurements::Measurement;
 use super::preset::Preset;
 use super::profiles::ProfileChoice;
 use super::schema::word;
+use super::ways::{PASSABLE, WayFinding};
 use crate::engine::boundary::WallMethod;
 use crate::engine::clock::{PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::engine::math::Vector;
@@ -88,6 +89,13 @@ pub(super) struct File {
     /// s_max (§5.6), m/s: the upper limit on speeds. Results report how often a speed was clamped to it.
     #[schemars(range(max = 100), extend("exclusiveMinimum" = 0, "default" = Scene::default().max_speed))]
     pub max_speed: Option<f64>,
+    /// How agents find their ways: `paths` around walls, or `straight` toward the goal, as in the paper, where agents
+    /// stop at walls. Without walls between, both are the same to the last bit.
+    #[schemars(schema_with = "word::<WayFinding>")]
+    pub navigation: WayFinding,
+    /// Narrower passages are closed for `paths`, meters. Lower: agents also take gaps in which they get stuck.
+    #[schemars(range(min = 0, max = 100), extend("default" = PASSABLE))]
+    pub min_passage_width: Option<f64>,
     /// The behavior of agents that name no profile of their own.
     #[schemars(extend("default" = DEFAULT_PROFILE))]
     pub profile: Option<ProfileChoice>,

@@ -38,6 +38,7 @@ mod setting;
 mod settings;
 mod shipped;
 mod wall_lists;
+mod ways;
 
 #[cfg(feature = "program")]
 pub(crate) use document::read as read_document;

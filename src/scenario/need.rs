@@ -46,6 +46,8 @@ pub struct Need {
     pub text: u64,
     /// Entries in the lists of walls near agents; 0 until [`with_lists`](Self::with_lists) sets it.
     pub listed: u64,
+    /// Bytes of path maps; 0 until [`with_lists`](Self::with_lists) sets it.
+    pub ways: u64,
 }
 
 impl Need {
@@ -59,15 +61,17 @@ impl Need {
             (self.walls, WALL),
             (self.text, TEXT),
             (self.listed, LISTED),
+            (self.ways, 1),
         ];
         let products = parts.map(|(count, bytes)| count.saturating_mul(bytes));
         products.into_iter().fold(PROGRAM, u64::saturating_add)
     }
 
-    /// The same need, with the lists of walls near agents for the ranges and walls of `scene`.
+    /// The same need, with the lists of walls near agents for the ranges and walls of `scene`, and its path maps.
     pub fn with_lists(self, scene: &Scene) -> Self {
         Self {
             listed: wall_lists::entries(scene, self.entering),
+            ways: scene.ways.as_ref().map_or(0, |ways| ways.bytes() as u64),
             ..self
         }
     }

@@ -29,6 +29,15 @@ impl Display for Breakdown {
             self.rest_density,
             self.pressure
         )?;
+        if let Some(way) = &self.way {
+            let (next, heading) = (vector(way.next), vector(way.heading));
+            writeln!(
+                f,
+                "  way: {:.2} m to its goal {}, next {next}, heading {heading}",
+                way.length,
+                vector(self.goal)
+            )?;
+        }
         self.write_accelerations(f)?;
         for wall in &self.walls {
             writeln!(

@@ -95,9 +95,26 @@ impl Simulation {
 
     /// Step 2.
     pub(super) fn update_preferred_velocity(&mut self) {
-        let (agents, speed) = (&self.crowd.agents, self.fixed.scene.preferred_speed);
+        let scene = &self.fixed.scene;
+        let (agents, speed) = (&mut self.crowd.agents, scene.preferred_speed);
         let preferred = &mut self.derived.fields.preferred_velocity;
         preferred.resize(agents.len(), Vector::zeros());
+        if let Some(ways) = &scene.ways {
+            let coarse = self.crowd.clock.is_coarse();
+            self.stages.time(Stage::PreferredVelocity, || {
+                agents.follow(ways, coarse, scene.seed);
+                let routes = agents.route.par_iter().zip(&agents.position);
+                let wishes = preferred
+                    .par_iter_mut()
+                    .zip(routes)
+                    .with_min_len(TASK * BLOCK);
+                wishes.for_each(|(v, (route, &r))| {
+                    let way = route.map(|route| ways.direction(&route, r));
+                    *v = way.unwrap_or_default() * speed;
+                });
+            });
+            return;
+        }
         self.stages.time(Stage::PreferredVelocity, || {
             let blocks = (
                 preferred.par_chunks_mut(BLOCK),

@@ -8,11 +8,11 @@ use std::collections::BTreeSet;
 
 use super::Row;
 use super::error::Cause;
-use crate::engine::geometry::{AreaIndex, Polygon};
+use crate::engine::geometry::AreaIndex;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Goal, Region};
 use crate::engine::simulation::Simulation;
-use crate::scenario::floor_plan::{Rings, free, to_wkt};
+use crate::scenario::floor_plan::{Rings, free, outlines, to_wkt};
 
 /// Margin around everything, meters.
 const MARGIN: f64 = 5.0;
@@ -50,18 +50,11 @@ impl WalkableArea {
         let everything = everything.chain([&view.min, &view.max]);
         let [min, max] = bounds(everything.copied()).unwrap_or_default();
         let margin = Vector::new(MARGIN, MARGIN);
-        let (unbounded, bounded): (Vec<&Polygon>, Vec<&Polygon>) = obstacles
-            .iter()
-            .partition(|obstacle| obstacle.is_unbounded());
-        let reversed = |ring: &[Vector]| ring.iter().rev().copied().collect();
-        let floors = unbounded.iter();
-        let bodies = bounded.iter().flat_map(|obstacle| obstacle.rings());
+        let (floors, obstacles) = outlines(obstacles);
         Self {
             bounds: [min - margin, max + margin],
-            floors: floors
-                .map(|floor| floor.rings().map(reversed).collect())
-                .collect(),
-            obstacles: bodies.map(<[Vector]>::to_vec).collect(),
+            floors,
+            obstacles,
             entries,
         }
     }

@@ -16,7 +16,7 @@ mod unite;
 mod wkt;
 
 pub use error::FloorPlanError;
-pub use unite::{Rings, free};
+pub use unite::{Rings, free, outlines};
 pub use wkt::to_wkt;
 
 use std::path::Path;

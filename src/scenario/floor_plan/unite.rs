@@ -6,7 +6,7 @@ use geo::{BooleanOps, Coord, LineString, MultiPolygon, Orient, Polygon};
 
 use super::error::FloorPlanError;
 use super::shape::SAME;
-use crate::engine::geometry::{Area, Ring, assemble};
+use crate::engine::geometry::{Area, Polygon as Solid, Ring, assemble};
 use crate::engine::math::{Vector, bounds};
 
 /// Largest distance between a computed and a given corner, relative to the whole extent: geo computes on a grid of
@@ -55,6 +55,19 @@ fn rings(areas: &[Area]) -> Rings {
         std::iter::once(area.exterior.points().to_vec()).chain(holes)
     });
     rings.collect()
+}
+
+/// The floors that unbounded obstacles enclose, and the rings of the bounded obstacles.
+pub fn outlines(obstacles: &[Solid]) -> (Vec<Rings>, Rings) {
+    let (unbounded, bounded): (Vec<&Solid>, Vec<&Solid>) = obstacles
+        .iter()
+        .partition(|obstacle| obstacle.is_unbounded());
+    let reversed = |ring: &[Vector]| ring.iter().rev().copied().collect();
+    let floors = unbounded
+        .iter()
+        .map(|floor| floor.rings().map(reversed).collect());
+    let bodies = bounded.iter().flat_map(|obstacle| obstacle.rings());
+    (floors.collect(), bodies.map(<[Vector]>::to_vec).collect())
 }
 
 fn to_geo(rings: &Rings) -> MultiPolygon {

@@ -1,0 +1,231 @@
+//! Corners of walls that shortest ways bend around.
+
+use std::f64::consts::PI;
+
+use serde::{Deserialize, Serialize};
+
+use super::mesh::Mesh;
+use crate::engine::math::Vector;
+
+/// Widens what a corner sees beyond the lines of its walls, radians, so that no position on such a line is lost by
+/// rounding. The shortest way never needs it.
+const MARGIN: f64 = 1e-6;
+
+/// How a way bends at a corner, seen from the way's end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Turn {
+    /// The corner's walls are on the right of the direction from the corner.
+    First,
+    /// The corner's walls are on the left of it.
+    Last,
+}
+
+impl Turn {
+    /// Both, in order.
+    pub const BOTH: [Self; 2] = [Self::First, Self::Last];
+
+    /// The other one: at its two ends, a way around a corner has different turns.
+    pub fn other(self) -> Self {
+        match self {
+            Self::First => Self::Last,
+            Self::Last => Self::First,
+        }
+    }
+}
+
+/// A corner with the turn of the ways that come to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Bend {
+    /// The number of the corner.
+    pub corner: u32,
+    /// How ways that come to it bend there.
+    pub turn: Turn,
+}
+
+impl Bend {
+    /// The number of this bend, if those of all corners are numbered in order.
+    pub fn index(self) -> usize {
+        2 * self.corner as usize + usize::from(self.turn == Turn::Last)
+    }
+
+    /// The bend with this number.
+    pub fn of_index(index: usize) -> Self {
+        Self {
+            corner: (index / 2) as u32,
+            turn: Turn::BOTH[index % 2],
+        }
+    }
+}
+
+/// A corner with more than 180° of floor around it. The triangles around it are its fan, counterclockwise from one
+/// wall to the other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Corner {
+    /// Its place, meters.
+    pub place: Vector,
+    /// The triangles of the fan, each with the number of this corner in it.
+    pub fan: Vec<(u32, usize)>,
+    /// The angles of the fan's sides from the first wall, radians: one more than triangles.
+    angles: Vec<f64>,
+    /// Half of the width of the narrowest way around it, meters.
+    pub room: f64,
+    /// The triangle of the fan in the middle between the walls.
+    middle: usize,
+    /// Is the fan wide enough from side k up to the middle?
+    clear: Vec<bool>,
+    /// Is triangle k of the fan wide enough between the side opposite to this corner and the next side in the
+    /// direction of the middle?
+    open: Vec<bool>,
+}
+
+impl Corner {
+    /// All corners of the mesh; ways narrower than `least_width` meters are closed.
+    pub fn all(mesh: &Mesh, least_width: f64) -> Vec<Self> {
+        let triangles = 0..mesh.triangles().len() as u32;
+        let places = triangles.flat_map(|t| [0, 1, 2].map(|k| (t, k)));
+        let starts = places.filter(|&(t, k)| mesh.triangle(t).across[k].is_none());
+        let corners = starts.filter_map(|(t, k)| Self::new(mesh, (t, k), least_width));
+        corners.collect()
+    }
+
+    fn new(mesh: &Mesh, start: (u32, usize), least_width: f64) -> Option<Self> {
+        let (mut fan, mut angles) = (Vec::new(), vec![0.0]);
+        let mut next = Some(start);
+        let mut total = 0.0;
+        while let Some((t, k)) = next {
+            let corners = mesh.corners(t);
+            let [a, b] = [1, 2].map(|n| corners[(k + n) % 3] - corners[k]);
+            total += a.perp(&b).atan2(a.dot(&b));
+            fan.push((t, k));
+            angles.push(total);
+            let side = (k + 2) % 3;
+            next = mesh.triangle(t).across[side].map(|other| {
+                let along = mesh.side_along(other, t);
+                (other, along)
+            });
+        }
+        if total <= PI + MARGIN {
+            return None;
+        }
+        let half = angles.partition_point(|&angle| angle <= 0.5 * total);
+        let middle = half.saturating_sub(1).min(fan.len() - 1);
+        let rooms = fan.iter().map(|&(t, k)| {
+            let (triangle, corners) = (mesh.triangle(t), mesh.corners(t));
+            let sides = [(k, k + 1), (k + 2, k + 2)].map(|(side, end)| {
+                let portal = triangle.across[side % 3].is_some();
+                let length = (corners[end % 3] - corners[k]).norm();
+                if portal { length } else { f64::INFINITY }
+            });
+            mesh.room(t, k, sides[0].min(sides[1]))
+        });
+        let rooms: Vec<f64> = rooms.collect();
+        let mut clear = vec![true; fan.len() + 1];
+        for k in (0..=middle).rev() {
+            clear[k] = clear[k + 1] && rooms[k] >= least_width;
+        }
+        for k in middle + 1..fan.len() {
+            clear[k + 1] = clear[k] && rooms[k] >= least_width;
+        }
+        let wide = |t: u32, k: usize| mesh.triangle(t).width[k % 3] >= least_width;
+        let open = fan.iter().enumerate().map(|(i, &(t, k))| {
+            let pivots = match i.cmp(&middle) {
+                std::cmp::Ordering::Less => &[2][..],
+                std::cmp::Ordering::Equal => &[1, 2],
+                std::cmp::Ordering::Greater => &[1],
+            };
+            pivots.iter().all(|n| wide(t, k + n))
+        });
+        let open = open.collect();
+        // No way leads through what is too narrow.
+        let passable = rooms.into_iter().filter(|&room| room >= least_width);
+        let room = 0.5 * passable.fold(f64::INFINITY, f64::min);
+        let place = mesh.corners(start.0)[start.1];
+        Some(Self {
+            place,
+            fan,
+            angles,
+            room,
+            middle,
+            clear,
+            open,
+        })
+    }
+
+    /// The end of side `i` of the fan, meters.
+    fn end(&self, mesh: &Mesh, i: usize) -> Vector {
+        match self.fan.get(i) {
+            Some(&(t, k)) => mesh.corners(t)[(k + 1) % 3],
+            None => {
+                let (t, k) = self.fan[self.fan.len() - 1];
+                mesh.corners(t)[(k + 2) % 3]
+            }
+        }
+    }
+
+    /// The angles between which ways end that make `turn`, radians.
+    fn sector(&self, turn: Turn) -> [f64; 2] {
+        let total = self.angles[self.fan.len()];
+        match turn {
+            Turn::First => [0.0, total - PI + MARGIN],
+            Turn::Last => [PI - MARGIN, total],
+        }
+    }
+
+    /// What this corner sees of triangle `i` of its fan for ways with `turn`: the ends on the right and on the left.
+    pub fn view(&self, mesh: &Mesh, i: usize, turn: Turn) -> Option<[Vector; 2]> {
+        let [low, high] = self.sector(turn);
+        let (from, to) = (self.angles[i], self.angles[i + 1]);
+        if from.max(low) >= to.min(high) || !self.is_clear(i, turn) {
+            return None;
+        }
+        let ray = |wall: Vector, turned: f64| {
+            let along = self.place - wall;
+            self.place + nalgebra::Rotation2::new(turned) * along
+        };
+        let right = match from >= low {
+            true => self.end(mesh, i),
+            false => ray(self.end(mesh, 0), -MARGIN),
+        };
+        let left = match to <= high {
+            true => self.end(mesh, i + 1),
+            false => ray(self.end(mesh, self.fan.len()), MARGIN),
+        };
+        Some([right, left])
+    }
+
+    /// Can a way along side `k` of the fan cross it and bend around this corner?
+    pub fn is_clear_from_side(&self, k: usize) -> bool {
+        self.clear[k]
+    }
+
+    /// Can a way from inside triangle `i` of the fan bend around this corner with `turn`?
+    pub fn is_clear(&self, i: usize, turn: Turn) -> bool {
+        match turn {
+            Turn::First => i > self.middle || self.clear[i + 1],
+            Turn::Last => i < self.middle || self.clear[i.max(self.middle + 1)],
+        }
+    }
+
+    /// Can it also come through the side opposite to this corner?
+    pub fn is_open(&self, i: usize) -> bool {
+        self.open[i]
+    }
+
+    /// The turn of a way that ends in the direction of `p`, which lies in triangle `i` of the fan or beyond its
+    /// opposite side. `None` if the shortest way does not bend here.
+    pub fn turn(&self, mesh: &Mesh, i: usize, p: Vector) -> Option<Turn> {
+        let (side, ray) = (self.end(mesh, i) - self.place, p - self.place);
+        let angle = self.angles[i] + side.perp(&ray).atan2(side.dot(&ray));
+        Turn::BOTH.into_iter().find(|&turn| {
+            let [low, high] = self.sector(turn);
+            (low - MARGIN..=high + MARGIN).contains(&angle)
+        })
+    }
+
+    /// The turn of a way that ends in the direction of `p`, seen in triangle `i`, if there is room for it. `through`:
+    /// it comes through the opposite side of this triangle.
+    pub fn admits(&self, mesh: &Mesh, i: usize, p: Vector, through: bool) -> Option<Turn> {
+        let turn = self.turn(mesh, i, p)?;
+        (self.is_clear(i, turn) && (!through || self.open[i])).then_some(turn)
+    }
+}

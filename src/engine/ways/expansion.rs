@@ -1,0 +1,124 @@
+//! Triangular expansion (Bungiu et al. 2014): everything that is visible from a point, or in one direction.
+
+use super::mesh::Mesh;
+use crate::engine::math::Vector;
+
+/// From where one looks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Eye {
+    /// From a point, meters.
+    Near(Vector),
+    /// From infinity, in this direction.
+    Far(Vector),
+}
+
+impl Eye {
+    /// Above 0 if `p` lies on the left of the ray from here through `through`.
+    #[inline]
+    pub fn side(&self, through: Vector, p: Vector) -> f64 {
+        match *self {
+            Self::Near(eye) => (through - eye).perp(&(p - eye)),
+            Self::Far(way) => way.perp(&(p - through)),
+        }
+    }
+}
+
+/// A cone, or a strip if its eye is far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// From where one looks.
+    pub eye: Eye,
+    /// A point on the right border.
+    pub right: Vector,
+    /// A point on the left border.
+    pub left: Vector,
+}
+
+impl View {
+    /// Does `p` lie in it, borders included? Only for points in front of the eye.
+    #[inline]
+    pub fn holds(&self, p: Vector) -> bool {
+        self.eye.side(self.right, p) >= 0.0 && self.eye.side(self.left, p) <= 0.0
+    }
+}
+
+impl View {
+    /// The part of it that leaves a triangle through the side from `r` to `l`, which lie on the right and on the left
+    /// as seen from inside.
+    pub fn through(&self, [r, l]: [Vector; 2]) -> Option<Self> {
+        let Self { eye, right, left } = *self;
+        let right = if eye.side(right, r) > 0.0 { r } else { right };
+        let left = if eye.side(left, l) < 0.0 { l } else { left };
+        let is_seen = eye.side(r, l) > 0.0 && eye.side(right, left) > 0.0;
+        is_seen.then_some(Self { eye, right, left })
+    }
+
+    /// Do all of `points` lie beyond the same border?
+    pub fn misses(&self, points: &[Vector]) -> bool {
+        points.iter().all(|&p| self.eye.side(self.right, p) < 0.0)
+            || points.iter().all(|&p| self.eye.side(self.left, p) > 0.0)
+    }
+}
+
+/// A view into a triangle.
+#[derive(Debug, Clone, Copy)]
+pub struct Sight {
+    /// The triangle.
+    pub triangle: u32,
+    /// The side through which it is seen.
+    pub side: usize,
+    /// What is seen of it.
+    pub view: View,
+}
+
+/// Follows `sights` to everything behind them, but through no way narrower than `least_width` meters. Calls
+/// `enter` for every triangle that is seen, and goes on behind it if that returns true; and calls `see` for every point opposite to the side through which its
+/// triangle is seen.
+pub fn expand(
+    mesh: &Mesh,
+    least_width: f64,
+    mut sights: Vec<Sight>,
+    mut enter: impl FnMut(&Sight) -> bool,
+    mut see: impl FnMut(u32, usize, Vector),
+) {
+    while let Some(sight) = sights.pop() {
+        let Sight {
+            triangle: t,
+            side,
+            view,
+        } = sight;
+        if !enter(&sight) {
+            continue;
+        }
+        let (triangle, corners) = (mesh.triangle(t), mesh.corners(t));
+        let (right_end, top) = ((side + 1) % 3, (side + 2) % 3);
+        let apex = corners[top];
+        let (a, b) = (
+            view.eye.side(view.right, apex),
+            view.eye.side(view.left, apex),
+        );
+        if a >= 0.0 && b <= 0.0 {
+            see(t, top, apex);
+        }
+        let mut go_on = |exit: usize, pivot: usize, view: View| {
+            if let Some(next) = triangle.across[exit]
+                && triangle.width[pivot] >= least_width
+            {
+                let side = mesh.side_along(next, t);
+                sights.push(Sight {
+                    triangle: next,
+                    side,
+                    view,
+                });
+            }
+        };
+        if a > 0.0 {
+            let left = if b <= 0.0 { apex } else { view.left };
+            go_on(right_end, right_end, View { left, ..view });
+        }
+        if b < 0.0 {
+            let right = if a >= 0.0 { apex } else { view.right };
+            go_on(top, side, View { right, ..view });
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! The floor as triangles. The only file that names spade.
+
+use std::collections::HashMap;
+
+use spade::handles::FixedFaceHandle;
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
+
+use super::WayError;
+use crate::engine::geometry::Area;
+use crate::engine::math::Vector;
+
+/// A triangle of the floor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Triangle {
+    /// Its corners as numbers of points, counterclockwise.
+    pub corners: [u32; 3],
+    /// What lies beyond the side from corner k to corner k + 1: a triangle, or a wall.
+    pub across: [Option<u32>; 3],
+    /// The width of the way around corner k, from one of its sides to the other, meters (Demyen and Buro 2006).
+    pub width: [f64; 3],
+}
+
+/// A constrained Delaunay triangulation of the areas that people walk in.
+#[derive(Debug, Clone)]
+pub struct Mesh {
+    points: Vec<Vector>,
+    triangles: Vec<Triangle>,
+}
+
+impl Mesh {
+    /// Triangulates areas that touch at points at most.
+    ///
+    /// # Errors
+    /// Edges that cross, or coordinates that the triangulation cannot represent.
+    pub fn new(areas: &[Area]) -> Result<Self, WayError> {
+        let (points, edges) = edges_of(areas);
+        let vertices = points.iter().map(|p| Point2::new(p.x, p.y)).collect();
+        let walls: Vec<[usize; 2]> = edges.iter().map(|e| e.map(|k| k as usize)).collect();
+        let mut crossing = None;
+        let triangulation = ConstrainedDelaunayTriangulation::<Point2<f64>>::try_bulk_load_cdt(
+            vertices,
+            walls,
+            |[k, _]| crossing = crossing.or(Some(k)),
+        )
+        .map_err(|error| WayError::Coordinates(error.to_string()))?;
+        if let Some(k) = crossing {
+            return Err(WayError::Crossing(points[k]));
+        }
+        let triangles = floor(&triangulation);
+        let mut mesh = Self { points, triangles };
+        mesh.measure();
+        Ok(mesh)
+    }
+
+    /// Point `k`, meters.
+    pub fn point(&self, k: u32) -> Vector {
+        self.points[k as usize]
+    }
+
+    /// The triangles.
+    pub fn triangles(&self) -> &[Triangle] {
+        &self.triangles
+    }
+
+    /// Triangle `t`.
+    pub fn triangle(&self, t: u32) -> &Triangle {
+        &self.triangles[t as usize]
+    }
+
+    /// The corners of triangle `t`, meters.
+    pub fn corners(&self, t: u32) -> [Vector; 3] {
+        self.triangle(t).corners.map(|k| self.point(k))
+    }
+
+    /// The side of triangle `other` that lies along triangle `t`.
+    pub fn side_along(&self, other: u32, t: u32) -> usize {
+        let across = &self.triangle(other).across;
+        across.iter().position(|&side| side == Some(t)).unwrap_or(0)
+    }
+
+    /// Does triangle `t` contain `p`, borders included?
+    pub fn contains(&self, t: u32, p: Vector) -> bool {
+        let corners = self.corners(t);
+        (0..3).all(|k| side(corners[k], corners[(k + 1) % 3], p) >= 0.0)
+    }
+
+    /// The distance from `p` to triangle `t`, meters; 0 inside.
+    pub fn distance(&self, t: u32, p: Vector) -> f64 {
+        if self.contains(t, p) {
+            return 0.0;
+        }
+        let corners = self.corners(t);
+        let sides = (0..3).map(|k| to_segment(p, corners[k], corners[(k + 1) % 3]));
+        sides.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Computes the widths of all triangles.
+    fn measure(&mut self) {
+        for t in 0..self.triangles.len() as u32 {
+            let widths = [0, 1, 2].map(|k| {
+                let (c, ends) = (
+                    self.corners(t)[k],
+                    [1, 2].map(|n| self.corners(t)[(k + n) % 3]),
+                );
+                let sides = ends.map(|end| (end - c).norm());
+                self.room(t, k, sides[0].min(sides[1]))
+            });
+            self.triangles[t as usize].width = widths;
+        }
+    }
+
+    /// The distance from corner k of triangle `t` to the nearest wall on the other side of the opposite side, at most
+    /// `most`, which is at most the distance to the ends of that side. A wall counts if its nearest point is not an
+    /// end: in a Delaunay triangulation no end is nearer than those of the triangle's sides (Demyen and Buro 2006).
+    pub fn room(&self, t: u32, k: usize, most: f64) -> f64 {
+        self.nearest_wall(t, k, most)
+            .map_or(most, |(distance, _)| distance)
+    }
+
+    /// The distance of [`room`](Self::room) and the nearest point of the wall; `None` if no wall is nearer than `most`.
+    fn nearest_wall(&self, t: u32, k: usize, most: f64) -> Option<(f64, Vector)> {
+        let c = self.corners(t)[k];
+        let mut found: Option<(f64, Vector)> = None;
+        let mut beyond = vec![(t, (k + 1) % 3)];
+        while let Some((t, side)) = beyond.pop() {
+            let corners = self.corners(t);
+            let (a, b) = (corners[side], corners[(side + 1) % 3]);
+            let is_between = (c - a).dot(&(b - a)) > 0.0 && (c - b).dot(&(a - b)) > 0.0;
+            let nearest = nearest_on(c, a, b);
+            let distance = (nearest - c).norm();
+            if !is_between || distance >= found.map_or(most, |(least, _)| least) {
+                continue;
+            }
+            match self.triangle(t).across[side] {
+                None => found = Some((distance, nearest)),
+                Some(next) => {
+                    let back = self.side_along(next, t);
+                    beyond.extend([1, 2].map(|n| (next, (back + n) % 3)));
+                }
+            }
+        }
+        found
+    }
+
+    /// The narrowest places in triangle `t` that are narrower than `least` meters: their ends on both walls.
+    pub fn gaps(&self, t: u32, least: f64) -> impl Iterator<Item = [Vector; 2]> {
+        let (corners, across) = (self.corners(t), self.triangle(t).across);
+        let beyond = (0..3).filter_map(move |k| {
+            let (distance, wall) = self.nearest_wall(t, k, least)?;
+            (distance < least).then_some([corners[k], wall])
+        });
+        let ends = move |side: usize| [corners[side], corners[(side + 1) % 3]];
+        let portals = (0..3).filter(move |&side| across[side].is_some()).map(ends);
+        beyond.chain(portals.filter(move |[a, b]| (b - a).norm() < least))
+    }
+}
+
+/// Above 0 if `p` lies on the left of the line from `a` to `b`, exactly opposite for the line from `b` to `a`.
+pub fn side(a: Vector, b: Vector, p: Vector) -> f64 {
+    if (a.x, a.y) <= (b.x, b.y) {
+        (b - a).perp(&(p - a))
+    } else {
+        -(a - b).perp(&(p - b))
+    }
+}
+
+/// The distance from `p` to a segment, meters.
+pub fn to_segment(p: Vector, a: Vector, b: Vector) -> f64 {
+    (nearest_on(p, a, b) - p).norm()
+}
+
+/// The point of a segment nearest to `p`.
+pub fn nearest_on(p: Vector, a: Vector, b: Vector) -> Vector {
+    let along = b - a;
+    let squared = along.norm_squared();
+    if squared == 0.0 {
+        return a;
+    }
+    a + along * ((p - a).dot(&along) / squared).clamp(0.0, 1.0)
+}
+
+/// The distinct corners of the areas, and their edges.
+fn edges_of(areas: &[Area]) -> (Vec<Vector>, Vec<[u32; 2]>) {
+    let (mut points, mut edges) = (Vec::new(), Vec::new());
+    let mut numbers = HashMap::new();
+    for ring in areas.iter().flat_map(Area::rings) {
+        let mut number = |p: &Vector| {
+            // + 0.0 turns −0 into 0.
+            let key = [p.x, p.y].map(|x| (x + 0.0).to_bits());
+            *numbers.entry(key).or_insert_with(|| {
+                points.push(*p);
+                points.len() as u32 - 1
+            })
+        };
+        let around: Vec<u32> = ring.points().iter().map(&mut number).collect();
+        let ends = around.iter().cycle().skip(1);
+        edges.extend(around.iter().zip(ends).map(|(&a, &b)| [a, b]));
+    }
+    (points, edges)
+}
+
+/// The triangles inside: those behind an odd number of walls from outside.
+fn floor(triangulation: &ConstrainedDelaunayTriangulation<Point2<f64>>) -> Vec<Triangle> {
+    const OUTSIDE: u32 = u32::MAX;
+    let mut inside: Vec<Option<bool>> = vec![None; triangulation.num_all_faces()];
+    let outer = triangulation.outer_face().fix();
+    inside[outer.index()] = Some(false);
+    let mut stack: Vec<(FixedFaceHandle<_>, bool)> = Vec::new();
+    for edge in triangulation.convex_hull() {
+        let is_wall = edge.is_constraint_edge();
+        let face = [edge.face().fix(), edge.rev().face().fix()];
+        let inner = face.into_iter().find(|face| *face != outer);
+        stack.extend(inner.map(|face| (face, is_wall)));
+    }
+    while let Some((face, is_inside)) = stack.pop() {
+        if inside[face.index()].replace(is_inside).is_some() {
+            continue;
+        }
+        let Some(face) = triangulation.face(face).as_inner() else {
+            continue;
+        };
+        for edge in face.adjacent_edges() {
+            let next = edge.rev().face().fix();
+            if inside[next.index()].is_none() {
+                stack.push((next, is_inside != edge.is_constraint_edge()));
+            }
+        }
+    }
+    let mut number = vec![OUTSIDE; triangulation.num_all_faces()];
+    let faces = || {
+        let faces = triangulation.inner_faces();
+        faces.filter(|face| inside[face.fix().index()] == Some(true))
+    };
+    for (k, face) in faces().enumerate() {
+        number[face.fix().index()] = k as u32;
+    }
+    let triangle = |face: spade::handles::FaceHandle<'_, _, _, _, _, _>| {
+        let edges = face.adjacent_edges();
+        Triangle {
+            corners: edges.map(|edge| edge.from().fix().index() as u32),
+            across: edges.map(|edge| {
+                let next = number[edge.rev().face().fix().index()];
+                (next != OUTSIDE && !edge.is_constraint_edge()).then_some(next)
+            }),
+            width: [0.0; 3],
+        }
+    };
+    faces().map(triangle).collect()
+}

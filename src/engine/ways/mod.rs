@@ -1,0 +1,42 @@
+//! Ways around walls: for each goal, a map that tells from a position alone where to go next.
+//!
+//! A [`Floor`] is a constrained Delaunay triangulation of the areas that people walk in, with the corners that shortest
+//! ways bend around and the ways between corners. A [`PathMap`] has the way to one goal from any position: the
+//! [`Next`] point or corner, and the length. It is exact for polygons with holes, shared by all agents with that
+//! goal, and needs no search per agent; an agent that is pushed somewhere else asks again. [`heading`] keeps clear of
+//! the corners on the way.
+
+mod corner;
+mod entries;
+mod expansion;
+mod floor;
+mod goal;
+mod grid;
+mod map;
+mod mesh;
+mod route;
+mod steer;
+
+pub use corner::{Bend, Corner, Turn};
+pub use floor::Floor;
+pub use goal::Goal;
+pub use map::{Next, PathMap, SLACK, Way};
+pub use mesh::{Mesh, Triangle, nearest_on};
+pub use route::{Route, Walker, Ways};
+pub use steer::heading;
+
+use crate::engine::math::Vector;
+
+/// Why ways cannot be computed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum WayError {
+    /// Two walls cross here.
+    #[error("walls cross near ({}, {})", .0.x, .0.y)]
+    Crossing(Vector),
+    /// A coordinate is too large or too small.
+    #[error("the floor plan has a coordinate that cannot be used: {0}")]
+    Coordinates(String),
+    /// This point of a goal lies in a wall or outside of the floor.
+    #[error("({}, {}) is not on the floor", .0.x, .0.y)]
+    NotOnFloor(Vector),
+}

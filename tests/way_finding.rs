@@ -1,0 +1,135 @@
+//! Crowds that find their ways around walls.
+
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::Scenario;
+use serde_json::{Value, json};
+
+/// A corridor of 2 m that turns by 90° twice and leads back, and a group of agents at its start.
+fn around_the_corner(agents: u32) -> Value {
+    json!({
+        "duration_secs": 60, "profile": "sph",
+        "walkable_area": [[[[0, 0], [12, 0], [12, 10], [0, 10], [0, 8], [10, 8], [10, 2], [0, 2]]]],
+        "grids": [{"name": "crowd", "min": [0.3, 0.3], "max": [6, 1.7], "columns": agents / 2, "rows": 2,
+                   "goal": [6, 9], "remove_within": 0.8}],
+        "stop": {"when_empty": true}
+    })
+}
+
+fn scenario(document: &Value, settings: &[&str]) -> Result<Scenario, String> {
+    let settings: Vec<_> = settings.iter().map(|text| text.parse().unwrap()).collect();
+    Scenario::parse(&document.to_string(), "f.json", &settings).map_err(|error| error.to_string())
+}
+
+/// The simulation after `secs` seconds.
+fn after(document: &Value, settings: &[&str], secs: f64) -> Simulation {
+    let scenario = scenario(document, settings).unwrap();
+    let mut simulation = Simulation::new(scenario.scene).unwrap();
+    go_on(&mut simulation, secs);
+    simulation
+}
+
+fn go_on(simulation: &mut Simulation, secs: f64) {
+    let last = simulation.frame().clock.frame_at(secs);
+    while simulation.frame().clock.frame() < last {
+        simulation.step().unwrap();
+    }
+}
+
+#[test]
+fn a_crowd_walks_around_a_corner() {
+    let paths = after(&around_the_corner(20), &[], 40.0);
+    assert_eq!(paths.outcome().arrivals.len(), 20);
+    assert_eq!(paths.outcome().displaced.len(), 0);
+    let straight = after(&around_the_corner(20), &["navigation=straight"], 40.0);
+    assert_eq!(straight.outcome().arrivals.len(), 0);
+}
+
+#[test]
+fn all_avoidance_models_find_the_way() {
+    for profile in ["sf", "rvo", "rvo->sph"] {
+        let setting = format!("profile={profile}");
+        let simulation = after(&around_the_corner(6), &[&setting], 40.0);
+        assert_eq!(simulation.outcome().arrivals.len(), 6, "{profile}");
+    }
+}
+
+#[test]
+fn without_walls_between_paths_change_no_bit() {
+    let open = json!({
+        "obstacles": [[[-1, -1], [20, -1], [20, 0], [-1, 0]]],
+        "grids": [{"min": [0, 1], "max": [5, 6], "columns": 5, "rows": 5, "jitter": 0.1, "goal": [30, 4]}]
+    });
+    let [paths, straight] = ["paths", "straight"].map(|way| {
+        let setting = format!("navigation={way}");
+        after(&open, &[&setting], 4.0).digest()
+    });
+    assert_eq!(paths, straight);
+}
+
+#[test]
+fn a_resumed_crowd_goes_on_to_the_same_bits_between_two_choices_of_ways() {
+    let document = around_the_corner(20);
+    let scene = scenario(&document, &[]).unwrap().scene;
+    let mut simulation = Simulation::new(scene.clone()).unwrap();
+    // 3.46 s is not a coarse frame.
+    go_on(&mut simulation, 3.46);
+    assert!(!simulation.frame().clock.is_coarse());
+    simulation.evaluate().unwrap();
+    let mut resumed = Simulation::resumed(scene, simulation.state()).unwrap();
+    for simulation in [&mut simulation, &mut resumed] {
+        go_on(simulation, 9.0);
+    }
+    assert_eq!(simulation.digest(), resumed.digest());
+}
+
+#[test]
+fn an_agent_pushed_into_another_room_takes_the_new_shortest_way() {
+    // Two doors lead from the left rooms to the right one.
+    let rooms = json!({
+        "walkable_area": [[
+            [[0, 0], [20, 0], [20, 10], [0, 10]],
+            [[0, 4.9], [10, 4.9], [10, 5.1], [0, 5.1]],
+            [[10, 1], [10.2, 1], [10.2, 9], [10, 9]]
+        ]],
+        "agents": [{"position": [2, 4], "goal": [18, 5]}]
+    });
+    let scenario = scenario(&rooms, &[]).unwrap();
+    let ways = scenario.scene.ways.as_ref().unwrap();
+    let goal = [18.0, 5.0].into();
+    let length = |y: f64| ways.way([2.0, y].into(), goal).unwrap().length;
+    assert!(
+        (length(4.0) - length(6.0)).abs() < 1e-9,
+        "both rooms have a door"
+    );
+    assert!(length(4.0) > 16.0);
+}
+
+#[test]
+fn goals_that_cannot_be_reached_are_refused_with_their_place() {
+    let refused = |change: &dyn Fn(&mut Value)| {
+        let mut document = around_the_corner(4);
+        change(&mut document);
+        scenario(&document, &[]).unwrap_err()
+    };
+    let in_wall = refused(&|document| document["grids"][0]["goal"] = json!([5, 5]));
+    assert!(
+        in_wall.contains("(5, 5), the goal of crowd, lies in an obstacle"),
+        "{in_wall}"
+    );
+    let closed = refused(&|document| {
+        document["obstacles"] = json!([[[8, -1], [8.5, -1], [8.5, 3], [8, 3]]]);
+    });
+    assert!(closed.contains("agents of crowd start"), "{closed}");
+    assert!(closed.contains("walls close it off"), "{closed}");
+    let narrow = refused(&|document| {
+        document["obstacles"] = json!([[[8, -1], [8.5, -1], [8.5, 1.7], [8, 1.7]]]);
+    });
+    assert!(
+        narrow.contains("narrower than `min_passage_width`, 0.4 m"),
+        "{narrow}"
+    );
+    let mut document = around_the_corner(4);
+    document["obstacles"] = json!([[[8, -1], [8.5, -1], [8.5, 1.7], [8, 1.7]]]);
+    assert!(scenario(&document, &["min_passage_width=0.2"]).is_ok());
+    assert!(scenario(&document, &["navigation=straight"]).is_ok());
+}
