@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::engine::agents::NewAgent;
+use crate::engine::agents::{Agents, NewAgent};
 use crate::engine::boundary::WallMethod;
 use crate::engine::clock::Clock;
 use crate::engine::forces::near::Wanted;
@@ -220,7 +220,13 @@ impl Scene {
                 .groups
                 .iter()
                 .any(|group| group.removal_radius.is_some()),
+            paces: false,
         }
+    }
+
+    /// The speed at which agent `i` wants to walk now, m/s.
+    pub fn pace(&self, _agents: &Agents, _i: usize) -> f64 {
+        self.preferred_speed
     }
 
     /// The distinct social forces of all profiles.
@@ -285,6 +291,8 @@ pub struct Needs {
     pub avoidance: Option<f64>,
     /// Some agents leave at their goal.
     pub removal: bool,
+    /// Agents have preferred speeds of their own, or do not walk all the time.
+    pub paces: bool,
 }
 
 impl Needs {
@@ -298,6 +306,7 @@ impl Needs {
             social: self.social || other.social,
             avoidance: radii.reduce(f64::max),
             removal: self.removal || other.removal,
+            paces: self.paces || other.paces,
         }
     }
 }

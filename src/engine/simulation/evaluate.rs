@@ -12,7 +12,7 @@ use crate::engine::forces::near::{self, PairCoefficients};
 use crate::engine::forces::rvo::Scratch;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::frame::{Frame, velocity_range};
-use crate::engine::math::{Vector, are_finite, numbers_are_finite};
+use crate::engine::math::{Vector, are_finite, direction, numbers_are_finite};
 use crate::engine::neighbors::{BLOCK, CLUSTER, ListPolicy, TASK};
 use crate::engine::pairs::each;
 use crate::engine::profile::{Blend, Override};
@@ -95,40 +95,28 @@ impl Simulation {
 
     /// Step 2.
     pub(super) fn update_preferred_velocity(&mut self) {
-        let scene = &self.fixed.scene;
-        let (agents, speed) = (&mut self.crowd.agents, scene.preferred_speed);
+        let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
         let preferred = &mut self.derived.fields.preferred_velocity;
-        preferred.resize(agents.len(), Vector::zeros());
-        if let Some(ways) = &scene.ways {
-            let coarse = self.crowd.clock.is_coarse();
-            self.stages.time(Stage::PreferredVelocity, || {
-                agents.follow(ways, coarse, scene.seed);
-                let routes = agents.route.par_iter().zip(&agents.position);
-                let wishes = preferred
-                    .par_iter_mut()
-                    .zip(routes)
-                    .with_min_len(TASK * BLOCK);
-                wishes.for_each(|(v, (route, &r))| {
-                    let way = route.map(|route| ways.direction(&route, r));
-                    *v = way.unwrap_or_default() * speed;
-                });
-            });
-            return;
-        }
+        preferred.resize(crowd.agents.len(), Vector::zeros());
         self.stages.time(Stage::PreferredVelocity, || {
-            let blocks = (
-                preferred.par_chunks_mut(BLOCK),
-                agents.position.par_chunks(BLOCK),
-                agents.goal.par_chunks(BLOCK),
-            );
-            blocks
-                .into_par_iter()
-                .with_min_len(TASK)
-                .for_each(|(preferred, positions, goals)| {
-                    for ((v, &r), &g) in preferred.iter_mut().zip(positions).zip(goals) {
-                        *v = goal::preferred_velocity(r, g, speed);
-                    }
-                });
+            if let Some(ways) = &scene.ways {
+                let coarse = crowd.clock.is_coarse();
+                crowd.agents.follow(ways, coarse, scene.seed);
+            }
+            let agents = &crowd.agents;
+            if !self.fixed.needs.paces && scene.ways.is_none() {
+                return straight_at(scene.preferred_speed, agents, preferred);
+            }
+            let wishes = preferred.par_iter_mut().with_min_len(TASK * BLOCK);
+            wishes.enumerate().for_each(|(i, wish)| {
+                let (position, goal) = (agents.position[i], agents.goal[i]);
+                let route = agents.route.get(i).and_then(Option::as_ref);
+                let toward = match (&scene.ways, route) {
+                    (Some(ways), Some(route)) => ways.direction(route, position),
+                    _ => direction(goal - position),
+                };
+                *wish = toward * scene.pace(agents, i);
+            });
         });
     }
 
@@ -246,6 +234,21 @@ impl Fixed {
             start = end;
         }
     }
+}
+
+/// The preferred velocities of agents that walk straight toward their goals at the same `speed`, m/s.
+fn straight_at(speed: f64, agents: &Agents, preferred: &mut [Vector]) {
+    let blocks = (
+        preferred.par_chunks_mut(BLOCK),
+        agents.position.par_chunks(BLOCK),
+        agents.goal.par_chunks(BLOCK),
+    );
+    let blocks = blocks.into_par_iter().with_min_len(TASK);
+    blocks.for_each(|(preferred, positions, goals)| {
+        for ((v, &r), &g) in preferred.iter_mut().zip(positions).zip(goals) {
+            *v = goal::preferred_velocity(r, g, speed);
+        }
+    });
 }
 
 fn block_is_finite(frame: &Frame, b: usize, acceleration: &[Vector]) -> bool {
