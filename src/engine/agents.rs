@@ -4,9 +4,10 @@ use rand::Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::engine::journeys::Trip;
 use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
-use crate::engine::ways::{Route, Walker, Ways};
+use crate::engine::ways::{Destination, Route, Walker, Ways};
 
 /// D_i ∈ U[0.215, 0.265] m (§5.6).
 pub const RADIUS_RANGE: [f64; 2] = [0.215, 0.265];
@@ -47,7 +48,7 @@ impl NewAgent {
     }
 }
 
-/// The state of all agents. All arrays but the last three have the same length. An index is valid until agents are
+/// The state of all agents. All arrays but the last five have the same length. An index is valid until agents are
 /// next sorted or removed; an `id` never changes.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Agents {
@@ -80,6 +81,12 @@ pub struct Agents {
     /// The way that the agent follows, held until the next coarse frame; `None` for agents that entered since. Empty
     /// in scenes without path maps.
     pub route: Vec<Option<Route>>,
+    /// How far the agent has come on its journey; `None` for agents without a journey, and for those that entered
+    /// since the last coarse frame. Empty in scenes without journeys.
+    pub trip: Vec<Option<Trip>>,
+    /// The factor of the zone where the agent is on its preferred speed; `None` for agents that entered since the last
+    /// coarse frame. Empty in scenes without zones.
+    pub zone: Vec<Option<f64>>,
     next_id: u32,
 }
 
@@ -106,6 +113,8 @@ impl Agents {
             self.avoidance.len(),
             self.acceleration_before.len(),
             self.route.len(),
+            self.trip.len(),
+            self.zone.len(),
         ];
         let always = [
             self.position.len(),
@@ -158,13 +167,17 @@ impl Agents {
     pub fn follow(&mut self, ways: &Ways, coarse: bool, seed: u64) {
         self.route.resize(self.len(), None);
         let (ids, positions, goals, radii) = (&self.id, &self.position, &self.goal, &self.radius);
+        let trips = &self.trip;
         let routes = self.route.par_iter_mut().enumerate();
         routes.with_min_len(SOME).for_each(|(i, route)| {
             if coarse || route.is_none() {
+                let trip = trips.get(i).and_then(Option::as_ref);
                 let walker = Walker {
                     id: ids[i],
                     position: positions[i],
-                    goal: goals[i],
+                    to: trip.map_or(Destination::Goal(goals[i]), |trip| {
+                        Destination::Place(trip.place)
+                    }),
                     radius: radii[i],
                 };
                 *route = Some(ways.route(&walker, route.as_ref(), seed));
@@ -190,6 +203,14 @@ impl Agents {
         if !self.acceleration_before.is_empty() {
             self.acceleration_before.resize(self.len(), None);
             arrange(&mut self.acceleration_before, order);
+        }
+        if !self.trip.is_empty() {
+            self.trip.resize(self.len(), None);
+            arrange(&mut self.trip, order);
+        }
+        if !self.zone.is_empty() {
+            self.zone.resize(self.len(), None);
+            arrange(&mut self.zone, order);
         }
         arrange(&mut self.id, order);
         arrange(&mut self.position, order);

@@ -193,9 +193,9 @@ impl Breakdown {
 fn way_left(simulation: &Simulation, i: usize) -> Option<WayLeft> {
     let (agents, ways) = (simulation.frame().agents, simulation.scene().ways.as_ref()?);
     let route = agents.route.get(i)?.as_ref()?;
-    let (position, goal) = (agents.position[i], agents.goal[i]);
+    let position = agents.position[i];
     Some(WayLeft {
-        length: ways.way(position, goal)?.length,
+        length: route.length(),
         next: ways.next(route).into(),
         heading: ways.direction(route, position).into(),
     })

@@ -11,6 +11,10 @@ pub mod geometry;
 
 pub mod ways;
 
+pub mod distribution;
+
+pub mod journeys;
+
 pub mod kernel;
 
 pub mod clock;

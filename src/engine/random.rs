@@ -15,6 +15,10 @@ pub enum Purpose {
     Candidates = 2,
     /// Clearance at corners.
     Clearance = 3,
+    /// Choices between places.
+    Choice = 4,
+    /// How long agents wait or are served.
+    Waiting = 5,
 }
 
 /// Base-2 logarithm of the 32-bit words reserved per frame: enough for eight million draws of 64 bits.

@@ -9,6 +9,7 @@ use crate::engine::forces::near::Wanted;
 use crate::engine::forces::own::Force;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::geometry::{Polygon, Walls};
+use crate::engine::journeys::Journeys;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::{ListPolicy, Ranges, SKIN};
 use crate::engine::pairs::Precision;
@@ -54,6 +55,8 @@ pub struct Group {
     pub removal_radius: Option<f64>,
     /// Do arrivals count as evacuated?
     pub counted: bool,
+    /// The number of the journey of its agents; `None`: each walks to its own goal.
+    pub journey: Option<u16>,
 }
 
 /// Goals of the agents of a grid or source.
@@ -147,6 +150,8 @@ pub struct Scene {
     pub sources: Vec<Source>,
     /// Temporary changes of behavior.
     pub pushes: Vec<Push>,
+    /// Places, journeys and zones.
+    pub journeys: Journeys,
     /// Ways around walls; `None`: agents walk straight toward their goals, as in the paper.
     pub ways: Option<Arc<Ways>>,
     /// Forces from outside this crate.
@@ -171,6 +176,7 @@ impl Default for Scene {
             agents: Vec::new(),
             sources: Vec::new(),
             pushes: Vec::new(),
+            journeys: Journeys::default(),
             ways: None,
             own_forces: Vec::new(),
         }
@@ -220,13 +226,14 @@ impl Scene {
                 .groups
                 .iter()
                 .any(|group| group.removal_radius.is_some()),
-            paces: false,
+            paces: !self.journeys.zones.is_empty(),
         }
     }
 
     /// The speed at which agent `i` wants to walk now, m/s.
-    pub fn pace(&self, _agents: &Agents, _i: usize) -> f64 {
-        self.preferred_speed
+    pub fn pace(&self, agents: &Agents, i: usize) -> f64 {
+        let factor = agents.zone.get(i).copied().flatten();
+        self.preferred_speed * factor.unwrap_or(1.0)
     }
 
     /// The distinct social forces of all profiles.

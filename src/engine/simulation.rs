@@ -1,15 +1,19 @@
 //! The loop (§4.1).
 
+mod choice;
 mod digest;
 mod evaluate;
 mod integrate;
+mod passing;
 mod schedule;
 mod stages;
 mod state;
+mod trips;
 
 pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};
 pub use state::{State, StateError};
+pub use trips::{PlaceState, Progress};
 
 use std::sync::LazyLock;
 
@@ -56,6 +60,7 @@ struct Crowd {
     clock: Clock,
     agents: Agents,
     schedule: schedule::Schedule,
+    progress: Progress,
     outcome: Outcome,
     /// Have agents entered or left since they were last sorted?
     changed: bool,
@@ -78,6 +83,8 @@ struct Derived {
 struct Buffers {
     avoidance: Vec<Option<Vector>>,
     acceleration: Vec<Vector>,
+    /// The positions before the move, in scenes with journeys.
+    before: Vec<Vector>,
 }
 
 /// Arrivals, stopped moves, clamped speeds and displaced agents so far.
@@ -104,6 +111,21 @@ pub struct Arrival {
     pub position: Vector,
     /// Does it count as evacuated?
     pub counted: bool,
+    /// The journey that ended here; `None` for agents that walked to a goal of their own.
+    pub trip: Option<TripEnd>,
+}
+
+/// The end of a journey at an exit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct TripEnd {
+    /// The number of the journey.
+    pub journey: u16,
+    /// The number of the exit among the places.
+    pub exit: u16,
+    /// When the agent entered, seconds.
+    pub entered: f64,
+    /// How long it waited in waiting areas and queues, seconds.
+    pub waited: f64,
 }
 
 /// Why a simulation cannot continue.
@@ -155,6 +177,7 @@ impl Simulation {
             clock: fixed.scene.clock,
             agents: Agents::default(),
             schedule: schedule::Schedule::default(),
+            progress: Progress::default(),
             outcome: Outcome::default(),
             changed: true,
         };
@@ -194,6 +217,7 @@ impl Simulation {
     pub fn evaluate(&mut self) -> Result<Frame<'_>, Fault> {
         if !self.derived.evaluated {
             self.follow_schedule()?; // entries and pushes, coarse
+            self.follow_journeys(); // coarse
             self.update_neighbors(); // 1
             self.pack();
             self.update_density_and_pressure(self.crowd.clock.time_step()); // 1B
@@ -285,6 +309,11 @@ impl Simulation {
     /// Entries, and beginnings and ends of pushes, so far.
     pub fn events(&self) -> &[Event] {
         self.crowd.schedule.events()
+    }
+
+    /// How many agents have begun each journey and passed each place.
+    pub fn progress(&self) -> &Progress {
+        &self.crowd.progress
     }
 
     /// Time spent per stage.

@@ -12,7 +12,7 @@ use super::file::{self, DEFAULT_DURATION, DEFAULT_PROFILE, File, TimeStep};
 use super::need::Need;
 use super::profiles::{ProfileChoice, ProfileName};
 use super::range::{self, region};
-use super::{PlanFile, Scenario, View, measurements, plan, preset, profiles, ways};
+use super::{PlanFile, Scenario, View, journeys, measurements, plan, preset, profiles, ways};
 use crate::analysis::stability;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::engine::math::{Vector, bounds};
@@ -64,6 +64,7 @@ impl Contents {
         let default = ProfileChoice::Named(ProfileName(DEFAULT_PROFILE.to_owned()));
         let choice = keys.profile.as_ref().unwrap_or(&default);
         let blend = profiles::blend(choice, &keys.parameters).under("profile")?;
+        scene.journeys = journeys::journeys(keys, &scene.walls)?;
         Crowd::new(keys, &blend, &mut scene).enter()?;
         let duration_secs = duration(keys);
         crowding::check(keys, &scene, duration_secs)?;
@@ -176,19 +177,31 @@ fn pushes(events: &[file::Event]) -> Result<Vec<Push>, Problem> {
     }
     let push = |(k, event): (usize, &file::Event)| {
         let place = format!("events[{k}]");
-        Ok(Push {
-            region: region("region", event.region).under(&place)?,
+        let given = (event.for_secs, event.region);
+        let changes = [&event.open, &event.close, &event.release];
+        let changes = changes.into_iter().flatten().count();
+        let (lasting, corners) = match (given, changes) {
+            ((Some(lasting), Some(corners)), 0) => (lasting, corners),
+            ((None, None), 1) => return Ok(None),
+            _ => {
+                let reason = "give one of `open`, `close` and `release`, or both `for_secs` and `region` of a push";
+                return Err(Problem::new(place, reason));
+            }
+        };
+        Ok(Some(Push {
+            region: region("region", corners).under(&place)?,
             name: event.name.clone().unwrap_or(place),
             at: event.at_secs,
-            lasting: event.for_secs,
+            lasting,
             change: Override {
                 goal_scale: event.goal_scale,
                 ignore_contact: event.ignore_contact,
                 ignore_sph: event.ignore_sph,
             },
-        })
+        }))
     };
-    events.iter().enumerate().map(push).collect()
+    let pushes = events.iter().enumerate().map(push);
+    pushes.filter_map(Result::transpose).collect()
 }
 
 fn view(given: Option<&file::View>, scene: &Scene) -> Result<View, Problem> {

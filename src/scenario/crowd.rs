@@ -2,9 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::error::{Problem, Under};
+use super::error::{Problem, Under, suggestion};
 use super::file::{self, Corners, File};
+use super::journeys::TO_NEAREST_EXIT;
 use super::profiles::{self, ProfileChoice};
+use super::quote::shown;
 use super::range::region;
 use crate::engine::agents::NewAgent;
 use crate::engine::math::Vector;
@@ -69,10 +71,14 @@ impl<'a> Crowd<'a> {
             );
             return Err(Problem::new("velocity", reason));
         }
-        let goal = agent
-            .goal
-            .map_or_else(|| self.default_goal(), |goal| Ok(goal.into()))?;
+        let journey = self.journey(agent.journey.as_deref(), agent.goal.is_some())?;
+        let goal = match (agent.goal, journey) {
+            (Some(goal), _) => goal.into(),
+            (None, Some(_)) => agent.position.into(),
+            (None, None) => self.default_goal()?,
+        };
         let group = self.shared_group(Behavior {
+            journey,
             profile: agent.profile.as_ref(),
             remove_within: agent.remove_within,
             counted: agent.counted,
@@ -149,7 +155,11 @@ impl<'a> Crowd<'a> {
                 return Err(Problem::new(key, reason));
             }
         }
+        let has_goal = given.goal.is_some() || given.goal_offset.is_some();
+        let journey = self.journey(given.journey.as_deref(), has_goal)?;
         let goal = match (given.goal, given.goal_offset) {
+            // Each place of a journey becomes the goal in its turn.
+            (None, None) if journey.is_some() => Goal::Offset(Vector::zeros()),
             (Some(_), Some(_)) => {
                 let reason = "either `goal` or `goal_offset`, not both";
                 return Err(Problem::new("goal_offset", reason));
@@ -161,8 +171,35 @@ impl<'a> Crowd<'a> {
         Ok((grid, goal))
     }
 
+    /// The journey of agents that name `given`; `None` if they walk to a goal.
+    fn journey(&self, given: Option<&str>, has_goal: bool) -> Result<Option<u16>, Problem> {
+        let journeys = &self.scene.journeys.journeys;
+        let number = |name: &str| {
+            let found = journeys.iter().position(|journey| journey.name == name);
+            found.map(|k| k as u16)
+        };
+        match given {
+            Some(_) if has_goal => {
+                let reason = "either a goal or a `journey`, not both";
+                Err(Problem::new("journey", reason))
+            }
+            Some(name) => match number(name) {
+                Some(journey) => Ok(Some(journey)),
+                None => {
+                    let known = journeys.iter().map(|journey| journey.name.as_str());
+                    let near = suggestion(name, known);
+                    let reason = format!("there is no journey named `{}`{near}", shown(name));
+                    Err(Problem::new("journey", reason))
+                }
+            },
+            None if has_goal || self.file.goal.is_some() => Ok(None),
+            None => Ok(number(TO_NEAREST_EXIT)),
+        }
+    }
+
     fn default_goal(&self) -> Result<Vector, Problem> {
-        let reason = "no goal: set `goal` here or at the top of the file";
+        let reason =
+            "no goal: set `goal` or `journey` here, `goal` at the top of the file, or add `exits`";
         let goal = self.file.goal.ok_or_else(|| Problem::new("", reason))?;
         Ok(goal.into())
     }
@@ -180,7 +217,9 @@ impl<'a> Crowd<'a> {
 
     /// The group of the agents of a grid or source.
     fn grid_group(&mut self, given: &file::Grid, place: &str) -> Result<u16, Problem> {
+        let has_goal = given.goal.is_some() || given.goal_offset.is_some();
         let behavior = Behavior {
+            journey: self.journey(given.journey.as_deref(), has_goal)?,
             profile: given.profile.as_ref(),
             remove_within: given.remove_within,
             counted: given.counted,
@@ -214,6 +253,7 @@ impl<'a> Crowd<'a> {
             blend,
             removal_radius: behavior.remove_within,
             counted: behavior.counted.unwrap_or(true),
+            journey: behavior.journey,
         }))
     }
 }
@@ -221,6 +261,7 @@ impl<'a> Crowd<'a> {
 /// The keys that decide on an agent's group.
 #[derive(Debug, Clone, Copy)]
 struct Behavior<'a> {
+    journey: Option<u16>,
     profile: Option<&'a ProfileChoice>,
     remove_within: Option<f64>,
     counted: Option<bool>,

@@ -8,6 +8,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::measurements::Measurement;
+use super::places::{Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
 use super::preset::Preset;
 use super::profiles::ProfileChoice;
 use super::schema::word;
@@ -111,6 +112,18 @@ pub(super) struct File {
     pub obstacles: Vec<Obstacle>,
     /// The goal of agents that have none of their own.
     pub goal: Option<Point>,
+    /// Lines at which people leave. People without goal and journey walk to the nearest one.
+    pub exits: Vec<Exit>,
+    /// Lines and disks on people's ways.
+    pub waypoints: Vec<Waypoint>,
+    /// Areas in which people wait.
+    pub waiting_areas: Vec<WaitingArea>,
+    /// Queues.
+    pub queues: Vec<Queue>,
+    /// What people do one after the other.
+    pub journeys: Vec<Journey>,
+    /// Areas in which people walk slower or faster, such as stairs.
+    pub zones: Vec<Zone>,
     /// Single agents.
     pub agents: Vec<Agent>,
     /// Agents that stand on grids at the start.
@@ -119,7 +132,8 @@ pub(super) struct File {
     /// Agents that enter on grids repeatedly.
     #[schemars(schema_with = "sources")]
     pub sources: Vec<Grid>,
-    /// Pushes: agents that are in a region at one moment behave differently for a while.
+    /// Changes at given times: exits open and close, waiting areas are released, and pushes, in which agents that are
+    /// in a region at one moment behave differently for a while.
     pub events: Vec<Event>,
     /// Values to report.
     pub measurements: Vec<Measurement>,
@@ -192,6 +206,8 @@ pub(super) struct Agent {
     pub mass: Option<f64>,
     /// The goal. Default: the scenario's goal.
     pub goal: Option<Point>,
+    /// Instead of `goal`: the name of the journey.
+    pub journey: Option<String>,
     /// ρ̂ (Eq. 8) of the previous frame, P/m². Default: the density from agents alone in its first frame.
     #[schemars(range(min = 0, max = HIGHEST_DENSITY))]
     pub mean_density: Option<f64>,
@@ -230,6 +246,8 @@ pub(super) struct Grid {
     pub goal: Option<Point>,
     /// Instead of `goal`: the goal relative to each agent's start.
     pub goal_offset: Option<Point>,
+    /// Instead of `goal`: the name of the journey.
+    pub journey: Option<String>,
     /// The behavior. Default: the scenario's profile.
     pub profile: Option<ProfileChoice>,
     /// Agents leave within this distance of their goal, meters. Default: they stay.
@@ -256,7 +274,8 @@ impl Grid {
     }
 }
 
-/// A push: agents in a region behave differently for a while.
+/// A change at a given time: an exit opens or closes, a waiting area is released, or agents in a region behave
+/// differently for a while.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Event {
@@ -266,11 +285,17 @@ pub(super) struct Event {
     /// The time at which it begins, seconds; it acts from the next coarse frame.
     #[schemars(range(min = 0, max = LONGEST_TIME))]
     pub at_secs: f64,
-    /// The duration, seconds.
+    /// The name of an exit that opens.
+    pub open: Option<String>,
+    /// The name of an exit that closes.
+    pub close: Option<String>,
+    /// The name of a waiting area: from then on, nobody waits there.
+    pub release: Option<String>,
+    /// Of a push: the duration, seconds.
     #[schemars(range(min = 0, max = LONGEST_TIME))]
-    pub for_secs: f64,
-    /// Agents that are here when it begins take part.
-    pub region: Corners,
+    pub for_secs: Option<f64>,
+    /// Of a push: agents that are here when it begins take part.
+    pub region: Option<Corners>,
     /// K^goal (Eq. 17) of these agents. Default: unchanged.
     #[schemars(range(min = 0, max = STRONGEST))]
     pub goal_scale: Option<f64>,

@@ -9,6 +9,7 @@ use super::error::{Problem, Under};
 use super::file::{File, Obstacle, Point, Ring as GivenRing};
 use super::setting::Setting;
 use crate::engine::geometry::{Area, Polygon, Ring};
+use crate::engine::math::{Vector, direction, perpendicular};
 use crate::scenario::floor_plan::{self, FloorPlan, FloorPlanError};
 use crate::scenario::quote::shown;
 
@@ -117,19 +118,71 @@ pub(super) fn solids(file: &File) -> Result<Vec<Polygon>, Problem> {
         solids.push(obstacle(given).under(&format!("{OBSTACLES}[{k}]"))?);
     }
     if let Some(polygons) = &file.walkable_area {
-        solids.extend(walls_round(polygons).under(WALKABLE_AREA)?);
+        let exits = file.exits.iter().map(|exit| exit.line.map(Vector::from));
+        let exits: Vec<[Vector; 2]> = exits.collect();
+        solids.extend(walls_round(polygons, &exits).under(WALKABLE_AREA)?);
     }
     Ok(solids)
 }
 
-fn walls_round(polygons: &[Vec<GivenRing>]) -> Result<Vec<Polygon>, Problem> {
+/// The solid around `polygons`, open behind the lines of exits.
+fn walls_round(
+    polygons: &[Vec<GivenRing>],
+    exits: &[[Vector; 2]],
+) -> Result<Vec<Polygon>, Problem> {
     let mut given = Vec::with_capacity(polygons.len());
     for (k, polygon) in polygons.iter().enumerate() {
         given.push(rings(polygon).under(&format!("[{k}]"))?);
     }
-    let plan = FloorPlan::walkable(&given).map_err(problem)?;
+    let mut plan = FloorPlan::walkable(&given).map_err(problem)?;
+    let openings = exits
+        .iter()
+        .filter_map(|&line| opening(&plan.walkable, line));
+    let openings: Vec<_> = openings.map(|ring| vec![ring]).collect();
+    if !openings.is_empty() {
+        given.extend(openings);
+        plan = FloorPlan::walkable(&given).map_err(problem)?;
+    }
     plan.solids()
         .map_err(|error| Problem::new("", error.to_string()))
+}
+
+/// People need this much room behind the line of an exit to cross it, meters.
+const ROOM_BEHIND: f64 = 0.5;
+/// The floor behind the line of an exit on the edge of the walkable area is this long, meters: people who come to the
+/// line do not avoid the wall at its end.
+const BEHIND: f64 = 3.0;
+/// That floor begins this far before the line, meters, so that rounding leaves no gap between.
+const OVERLAP: f64 = 0.01;
+
+/// The floor behind the line of an exit that lies on the edge of the walkable area; `None` if there is room to cross the
+/// line. Where another room lies behind, the floor ends there.
+fn opening(walkable: &[Area], [a, b]: [Vector; 2]) -> Option<Vec<[f64; 2]>> {
+    const STEPS: u32 = 300;
+    let middle = (a + b) * 0.5;
+    let is_floor = |p: Vector| walkable.iter().any(|area| area.contains(p));
+    let room = |way: Vector, length: f64| {
+        let steps = (1..=STEPS).map(|k| length * f64::from(k) / f64::from(STEPS));
+        let mut places = steps.map(|step| (step, is_floor(middle + way * step)));
+        places.find(|(_, is_floor)| !is_floor).map(|(step, _)| step)
+    };
+    let normal = perpendicular(direction(b - a));
+    let out = [normal, -normal]
+        .into_iter()
+        .find(|way| room(*way, ROOM_BEHIND).is_some())?;
+    if room(-out, ROOM_BEHIND).is_some() {
+        return None; // walls on both sides: the line is not at a floor, which is refused later
+    }
+    let wall = room(out, ROOM_BEHIND)?;
+    let steps = (1..=STEPS).map(|k| wall + (BEHIND - wall) * f64::from(k) / f64::from(STEPS));
+    let mut behind = steps.filter(|step| is_floor(middle + out * *step));
+    let depth = behind.next().unwrap_or(BEHIND);
+    let corners = [(a, -OVERLAP), (b, -OVERLAP), (b, depth), (a, depth)];
+    Some(
+        corners
+            .map(|(end, step)| (end + out * step).into())
+            .to_vec(),
+    )
 }
 
 fn obstacle(given: &Obstacle) -> Result<Polygon, Problem> {

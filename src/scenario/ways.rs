@@ -8,9 +8,12 @@ use serde::{Deserialize, Serialize};
 use super::error::Problem;
 use super::file::File;
 use super::floor_plan::{Rings, free, outlines};
+use super::quote::shown;
+use crate::engine::geometry::Area;
+use crate::engine::journeys::{Choice, JourneyStage, Place};
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Goal, Scene};
-use crate::engine::ways::{Floor, WayError, Ways};
+use crate::engine::ways::{Destination, Floor, Goal as WayGoal, WayError, Ways};
 
 /// How agents find their ways.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -30,32 +33,74 @@ const MARGIN: f64 = 5.0;
 /// The most goals with a path map.
 const MOST_GOALS: usize = 1000;
 
-/// Where an agent starts, where it wants to go, and what it is called in messages.
-struct Trip {
-    start: Vector,
-    goal: Vector,
+/// Where an agent starts, where it wants to go first, and what it is called in messages.
+struct Start {
+    place: Vector,
     name: String,
-    /// Do several agents have this goal?
-    shared: bool,
+    to: To,
+}
+
+/// Where an agent wants to go first.
+#[derive(Clone, Copy, PartialEq)]
+enum To {
+    /// A goal. `shared`: several agents have it.
+    Goal { goal: Vector, shared: bool },
+    /// The first stage of a journey.
+    Journey(u16),
 }
 
 /// The path maps of a scene that is otherwise complete; `None` if agents walk straight.
 pub(super) fn ways(keys: &File, scene: &Scene) -> Result<Option<Arc<Ways>>, Problem> {
-    if keys.navigation == WayFinding::Straight || scene.walls.is_empty() {
+    let has_journeys = scene.groups.iter().any(|group| group.journey.is_some());
+    if keys.navigation == WayFinding::Straight {
+        let reason = "`straight` leads to goals only; journeys and exits need `paths`";
+        return match has_journeys {
+            true => Err(Problem::new("navigation", reason)),
+            false => Ok(None),
+        };
+    }
+    if scene.walls.is_empty() && !has_journeys {
         return Ok(None);
     }
-    let trips = trips(scene);
-    let is_blocked = |trip: &&Trip| {
-        let (from, to) = (trip.start, trip.goal);
-        let near = scene.walls.near_any(&[from, to], 0.0);
-        scene.walls.first_crossing(from, to, &near).is_some()
+    let starts = starts(scene);
+    let goals = goals(scene, &starts)?;
+    let places = if has_journeys {
+        &scene.journeys.places[..]
+    } else {
+        &[]
     };
-    let blocked: Vec<&Trip> = trips.iter().filter(is_blocked).collect();
-    let shared = trips.iter().filter(|trip| trip.shared);
+    let prepared = Prepared {
+        scene,
+        starts: &starts,
+        places,
+        goals: &goals,
+        width: keys.min_passage_width.unwrap_or(PASSABLE),
+    };
+    let ways = prepared.ways(prepared.width)?;
+    prepared.check_goals(&ways)?;
+    prepared.check_journeys(&ways)?;
+    Ok(Some(Arc::new(ways)))
+}
+
+/// The goals that need path maps: those of several agents, and those behind walls.
+fn goals(scene: &Scene, starts: &[Start]) -> Result<Vec<Vector>, Problem> {
     let mut seen = BTreeSet::new();
-    let bits = |p: &Vector| [p.x, p.y].map(f64::to_bits);
-    let goals = shared.chain(blocked.iter().copied()).map(|trip| trip.goal);
-    let goals: Vec<Vector> = goals.filter(|goal| seen.insert(bits(goal))).collect();
+    let mut goals = Vec::new();
+    for start in starts {
+        let To::Goal { goal, shared } = start.to else {
+            continue;
+        };
+        let is_blocked = || {
+            let near = scene.walls.near_any(&[start.place, goal], 0.0);
+            scene
+                .walls
+                .first_crossing(start.place, goal, &near)
+                .is_some()
+        };
+        if (shared || is_blocked()) && seen.insert([goal.x, goal.y].map(f64::to_bits)) {
+            goals.push(goal);
+        }
+    }
     if goals.len() > MOST_GOALS {
         let reason = format!(
             "walls stand between agents and more than {MOST_GOALS} different goals; give agents a common goal, or set \
@@ -63,49 +108,141 @@ pub(super) fn ways(keys: &File, scene: &Scene) -> Result<Option<Arc<Ways>>, Prob
         );
         return Err(Problem::new("goal", reason));
     }
-    let width = keys.min_passage_width.unwrap_or(PASSABLE);
-    let prepare = |width: f64| -> Result<Ways, Problem> {
-        let floor = Floor::new(&areas(scene, &trips)?, width).map_err(unusable)?;
-        Ways::new(floor, goals.clone()).map_err(|error| match error {
-            WayError::NotOnFloor(goal) => {
-                let of = trips.iter().find(|trip| trip.goal == goal);
-                let of = of.map_or("", |trip| trip.name.as_str());
-                let reason = format!(
-                    "({}, {}), the goal of {of}, lies in an obstacle or outside of the walkable area; move it onto the \
-                     floor, or set `navigation` to `straight`",
-                    goal.x, goal.y
-                );
-                Problem::new("goal", reason)
-            }
+    Ok(goals)
+}
+
+/// What ways are computed from.
+struct Prepared<'a> {
+    scene: &'a Scene,
+    starts: &'a [Start],
+    places: &'a [Place],
+    goals: &'a [Vector],
+    /// Narrower passages are closed, meters.
+    width: f64,
+}
+
+impl Prepared<'_> {
+    /// The ways through passages of at least `width` meters.
+    fn ways(&self, width: f64) -> Result<Ways, Problem> {
+        let floor = Floor::new(&areas(self.scene, self.starts)?, width).map_err(unusable)?;
+        let places: Vec<_> = self.places.iter().map(Place::goals).collect();
+        Ways::new(floor, &places, self.goals.to_vec()).map_err(|error| match error {
+            WayError::NotOnFloor(point) => self.not_on_floor(point),
             error => unusable(error),
         })
-    };
-    let ways = prepare(width)?;
-    let mapped = |trip: &&Trip| seen.contains(&bits(&trip.goal));
-    let stuck = trips
-        .iter()
-        .filter(mapped)
-        .find(|trip| !ways.is_open(trip.start, trip.goal));
-    if let Some(Trip {
-        start, goal, name, ..
-    }) = stuck
-    {
-        let open = prepare(0.0)?.is_open(*start, *goal);
-        let reason = if open {
-            format!(
-                "every way there has a passage narrower than `min_passage_width`, {width} m; widen it, or lower that"
-            )
-        } else {
-            "walls close it off; open them, or move the goal or the agent".to_owned()
+    }
+
+    fn not_on_floor(&self, point: Vector) -> Problem {
+        let lies = "lies in an obstacle or outside of the walkable area; move it onto the floor";
+        let has_point = |place: &&Place| {
+            place.goals().iter().any(|goal| match *goal {
+                WayGoal::Point(p) => p == point,
+                WayGoal::Line([a, _]) => a == point,
+            })
+        };
+        if let Some(place) = self.places.iter().find(has_point) {
+            return Problem::new("", format!("`{}` {lies}", shown(&place.name)));
+        }
+        let is_goal = |start: &&Start| matches!(start.to, To::Goal { goal, .. } if goal == point);
+        let of = self.starts.iter().find(is_goal);
+        let of = of.map_or("", |start| start.name.as_str());
+        let reason = format!(
+            "({}, {}), the goal of {of}, {lies}, or set `navigation` to `straight`",
+            point.x, point.y
+        );
+        Problem::new("goal", reason)
+    }
+
+    /// Checks that all agents can reach their goals.
+    fn check_goals(&self, ways: &Ways) -> Result<(), Problem> {
+        for start in self.starts {
+            let To::Goal { goal, .. } = start.to else {
+                continue;
+            };
+            let to = Destination::Goal(goal);
+            if self.goals.contains(&goal) && !ways.is_open(start.place, to) {
+                let reason = format!(
+                    "no way leads from ({}, {}), where agents of {} start, to their goal ({}, {}): {}; or set \
+                     `navigation` to `straight`",
+                    start.place.x,
+                    start.place.y,
+                    start.name,
+                    goal.x,
+                    goal.y,
+                    self.why_closed(start.place, to)?,
+                );
+                return Err(Problem::new("goal", reason));
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that all agents can reach the places of the first stage of their journey, and from there those of the
+    /// next stages.
+    fn check_journeys(&self, ways: &Ways) -> Result<(), Problem> {
+        let journeys = &self.scene.journeys;
+        let mut used = BTreeSet::new();
+        for start in self.starts {
+            if let To::Journey(journey) = start.to {
+                used.insert(journey);
+                let stage = &journeys.journeys[usize::from(journey)].stages[0];
+                let from = format!(
+                    "({}, {}), where agents of {} start",
+                    start.place.x, start.place.y, start.name
+                );
+                self.check_stage(ways, (start.place, &from), stage, journey)?;
+            }
+        }
+        for journey in used {
+            for pair in journeys.journeys[usize::from(journey)].stages.windows(2) {
+                for &place in &pair[0].places {
+                    let place = &self.places[usize::from(place)];
+                    let point = place.nearest_point(Vector::zeros());
+                    let from = format!("`{}`", shown(&place.name));
+                    self.check_stage(ways, (point, &from), &pair[1], journey)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that from a point, which messages call `from`, agents reach a place of `stage`; all of its places if they
+    /// choose without looking at the way.
+    fn check_stage(
+        &self,
+        ways: &Ways,
+        (point, from): (Vector, &str),
+        stage: &JourneyStage,
+        journey: u16,
+    ) -> Result<(), Problem> {
+        let is_open = |place: &&u16| ways.is_open(point, Destination::Place(**place));
+        let looks = matches!(stage.choice, Choice::Nearest | Choice::Quickest);
+        if looks && stage.places.iter().any(|place| is_open(&place)) {
+            return Ok(());
+        }
+        let Some(&closed) = stage.places.iter().find(|place| !is_open(place)) else {
+            return Ok(());
         };
         let reason = format!(
-            "no way leads from ({}, {}), where agents of {name} start, to their goal ({}, {}): {reason}; or set \
-             `navigation` to `straight`",
-            start.x, start.y, goal.x, goal.y
+            "of `{}`: no way leads from {from} to `{}`: {}",
+            shown(&self.scene.journeys.journeys[usize::from(journey)].name),
+            shown(&self.places[usize::from(closed)].name),
+            self.why_closed(point, Destination::Place(closed))?,
         );
-        return Err(Problem::new("goal", reason));
+        Err(Problem::new("journeys", reason))
     }
-    Ok(Some(Arc::new(ways)))
+
+    /// Why no way leads to a destination, and what to do.
+    fn why_closed(&self, from: Vector, to: Destination) -> Result<String, Problem> {
+        let is_open = self.ways(0.0)?.is_open(from, to);
+        Ok(match is_open {
+            true => format!(
+                "every way there has a passage narrower than `min_passage_width`, {} m; widen it, or lower that",
+                self.width
+            ),
+            false => "walls close it off; open them, or move one of the two".to_owned(),
+        })
+    }
 }
 
 fn unusable(error: WayError) -> Problem {
@@ -114,45 +251,56 @@ fn unusable(error: WayError) -> Problem {
     Problem::new("walkable_area", reason)
 }
 
-/// The trips of all agents that start or enter, with the places to which agents in obstacles are moved.
-fn trips(scene: &Scene) -> Vec<Trip> {
-    let place = |p: Vector| {
+/// The starts of all agents that enter, with the places to which agents in obstacles are moved.
+fn starts(scene: &Scene) -> Vec<Start> {
+    let free = |p: Vector| {
         let inside = scene.walls.obstacle_at(p).is_some();
         let free = inside.then(|| scene.walls.free_point_near(p)).flatten();
         free.unwrap_or(p)
     };
-    let name = |group: u16| scene.groups[usize::from(group)].name.clone();
-    let mut trips: Vec<Trip> = Vec::new();
-    for agent in &scene.agents {
-        let shared = trips.last().is_some_and(|last| last.goal == agent.goal);
-        trips.push(Trip {
-            start: place(agent.position),
-            goal: agent.goal,
-            name: name(agent.group),
-            shared,
+    let mut starts: Vec<Start> = Vec::new();
+    let mut add = |place: Vector, group: u16, goal: Vector, shared: bool| {
+        let group = &scene.groups[usize::from(group)];
+        starts.push(Start {
+            place: free(place),
+            name: group.name.clone(),
+            to: match group.journey {
+                Some(journey) => To::Journey(journey),
+                None => To::Goal { goal, shared },
+            },
         });
+    };
+    let mut last = None;
+    for agent in &scene.agents {
+        let shared = last.replace(agent.goal) == Some(agent.goal);
+        add(agent.position, agent.group, agent.goal, shared);
     }
     for source in &scene.sources {
-        let starts = source.grid.positions(scene.seed, 0);
-        trips.extend(starts.map(|start| Trip {
-            start: place(start),
-            goal: match source.goal {
-                Goal::Point(goal) => goal,
-                Goal::Offset(offset) => start + offset,
-            },
-            name: source.name.clone(),
-            shared: matches!(source.goal, Goal::Point(_)),
-        }));
+        for start in source.grid.positions(scene.seed, 0) {
+            let (goal, shared) = match source.goal {
+                Goal::Point(goal) => (goal, true),
+                Goal::Offset(offset) => (start + offset, false),
+            };
+            add(start, source.group, goal, shared);
+        }
     }
-    trips
+    starts
 }
 
 /// The floor: the walkable area, or a rectangle around everything, without obstacles.
-fn areas(scene: &Scene, trips: &[Trip]) -> Result<Vec<crate::engine::geometry::Area>, Problem> {
+fn areas(scene: &Scene, starts: &[Start]) -> Result<Vec<Area>, Problem> {
     let (floors, bodies) = outlines(scene.walls.obstacles());
     let corners = scene.walls.iter().map(|wall| wall.start);
-    let ends = trips.iter().flat_map(|trip| [trip.start, trip.goal]);
-    let [low, high] = bounds(corners.chain(ends)).unwrap_or_default();
+    let ends = starts.iter().flat_map(|start| match start.to {
+        To::Goal { goal, .. } => [start.place, goal],
+        To::Journey(_) => [start.place; 2],
+    });
+    let places = scene.journeys.places.iter().flat_map(Place::goals);
+    let places = places.flat_map(|goal| match goal {
+        WayGoal::Point(p) => [p; 2],
+        WayGoal::Line(ends) => ends,
+    });
+    let [low, high] = bounds(corners.chain(ends).chain(places)).unwrap_or_default();
     let margin = Vector::repeat(MARGIN);
     let (low, high) = (low - margin, high + margin);
     let rectangle = vec![

@@ -12,7 +12,7 @@ use crate::engine::forces::near::{self, PairCoefficients};
 use crate::engine::forces::rvo::Scratch;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::frame::{Frame, velocity_range};
-use crate::engine::math::{Vector, are_finite, direction, numbers_are_finite};
+use crate::engine::math::{Vector, are_finite, clamp_length, direction, numbers_are_finite};
 use crate::engine::neighbors::{BLOCK, CLUSTER, ListPolicy, TASK};
 use crate::engine::pairs::each;
 use crate::engine::profile::{Blend, Override};
@@ -110,12 +110,18 @@ impl Simulation {
             let wishes = preferred.par_iter_mut().with_min_len(TASK * BLOCK);
             wishes.enumerate().for_each(|(i, wish)| {
                 let (position, goal) = (agents.position[i], agents.goal[i]);
+                let pace = scene.pace(agents, i);
+                let trip = agents.trip.get(i).and_then(Option::as_ref);
+                if let Some(place) = trip.and_then(|trip| trip.hold) {
+                    *wish = clamp_length((place - position) / ARRIVAL_TIME, pace);
+                    return;
+                }
                 let route = agents.route.get(i).and_then(Option::as_ref);
                 let toward = match (&scene.ways, route) {
                     (Some(ways), Some(route)) => ways.direction(route, position),
                     _ => direction(goal - position),
                 };
-                *wish = toward * scene.pace(agents, i);
+                *wish = toward * pace;
             });
         });
     }
@@ -235,6 +241,9 @@ impl Fixed {
         }
     }
 }
+
+/// Agents slow down this many seconds before they reach the spot where they wait.
+const ARRIVAL_TIME: f64 = 1.0;
 
 /// The preferred velocities of agents that walk straight toward their goals at the same `speed`, m/s.
 fn straight_at(speed: f64, agents: &Agents, preferred: &mut [Vector]) {

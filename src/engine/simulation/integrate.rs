@@ -17,6 +17,7 @@ impl Simulation {
         self.evaluate()?;
         self.check()?;
         let dt = self.crowd.clock.time_step();
+        self.keep_positions();
         match self.fixed.scene.integrator {
             Integrator::SemiImplicit => {
                 self.keep_mean_density();
@@ -37,6 +38,7 @@ impl Simulation {
         }
         self.crowd.clock.advance();
         self.derived.evaluated = false;
+        self.pass_lines();
         if self.fixed.needs.removal {
             let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
             self.stages
@@ -196,6 +198,7 @@ impl Crowd {
             time: self.clock.time(),
             position: agents.position[i],
             counted: group(i).counted,
+            trip: None,
         });
         let first = self.outcome.arrivals.len();
         self.outcome.arrivals.extend(arrivals);

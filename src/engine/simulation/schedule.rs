@@ -28,6 +28,12 @@ pub enum EventKind {
     PushBegan(usize),
     /// A push ended.
     PushEnded,
+    /// An exit opened.
+    Opened,
+    /// An exit closed.
+    Closed,
+    /// From now on, no agent waits in a waiting area.
+    Released,
 }
 
 /// Progress of the sources and pushes of a scene.
@@ -63,7 +69,7 @@ impl Schedule {
             && self.pushing.iter().all(known)
     }
 
-    fn note(&mut self, frame: u64, name: &str, kind: EventKind) {
+    pub(super) fn note(&mut self, frame: u64, name: &str, kind: EventKind) {
         self.events.push(Event {
             frame,
             name: name.to_owned(),

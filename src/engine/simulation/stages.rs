@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 pub enum Stage {
     /// Entries and pushes, coarse.
     Schedule,
+    /// Stages of journeys: choices, waiting and queues, coarse; and lines that agents cross.
+    Journeys,
     /// Sorting agents into cells (the paper builds a kd-tree), when neighbor lists are rebuilt.
     Sort,
     /// Listing near agents and walls, when neighbor lists are rebuilt.
@@ -29,8 +31,9 @@ pub enum Stage {
 
 impl Stage {
     /// All stages in the order of the loop.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Schedule,
+        Self::Journeys,
         Self::Sort,
         Self::Neighbors,
         Self::Packing,
@@ -46,6 +49,7 @@ impl Stage {
     pub fn name(self) -> &'static str {
         match self {
             Self::Schedule => "schedule",
+            Self::Journeys => "journeys",
             Self::Sort => "sort",
             Self::Neighbors => "neighbors",
             Self::Packing => "packing",

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::schedule::Schedule;
-use super::{Outcome, Simulation};
+use super::trips;
+use super::{Outcome, Progress, Simulation};
 use crate::engine::agents::Agents;
 use crate::engine::math::Vector;
 use crate::engine::scene::Scene;
@@ -21,6 +22,7 @@ pub struct State {
     /// Have agents entered or left since?
     crowd_changed: bool,
     schedule: Schedule,
+    progress: Progress,
     outcome: Outcome,
     /// Was the density computed in this frame?
     has_density: bool,
@@ -41,6 +43,7 @@ impl Simulation {
             sorted_at: self.derived.neighbors.sorted_at().to_vec(),
             crowd_changed: crowd.changed,
             schedule: crowd.schedule.clone(),
+            progress: crowd.progress.clone(),
             outcome: crowd.outcome.clone(),
             has_density: !self.derived.fields.density.is_empty(),
         }
@@ -61,6 +64,7 @@ impl Simulation {
         crowd.clock.go_to(state.frame);
         crowd.agents = state.agents;
         crowd.schedule = state.schedule;
+        crowd.progress = state.progress;
         crowd.outcome = state.outcome;
         crowd.changed = state.crowd_changed;
         if !state.crowd_changed {
@@ -100,7 +104,13 @@ impl State {
         let mut pushes = agents.push.iter().flatten().map(|&push| usize::from(push));
         let known = groups.all(|group| group < scene.groups.len())
             && pushes.all(|push| push < scene.pushes.len())
-            && self.schedule.fits(scene);
+            && self.schedule.fits(scene)
+            && self.progress.fits(scene)
+            && agents
+                .trip
+                .iter()
+                .flatten()
+                .all(|trip| trips::fits(trip, scene));
         let listed = self.crowd_changed || self.sorted_at.len() == agents.len();
         (agents.is_whole() && known && listed)
             .then_some(())

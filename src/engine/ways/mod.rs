@@ -21,8 +21,8 @@ pub use corner::{Bend, Corner, Turn};
 pub use floor::Floor;
 pub use goal::Goal;
 pub use map::{Next, PathMap, SLACK, Way};
-pub use mesh::{Mesh, Triangle, nearest_on};
-pub use route::{Route, Walker, Ways};
+pub use mesh::{Mesh, Triangle, nearest_on, side};
+pub use route::{Destination, Route, Walker, Ways};
 pub use steer::heading;
 
 use crate::engine::math::Vector;

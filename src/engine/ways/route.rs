@@ -15,13 +15,27 @@ use crate::engine::random::{self, Purpose};
 /// Agents keep this distance from corners in addition to their radius, drawn for each agent, meters.
 const CLEARANCE: [f64; 2] = [0.05, 0.6];
 
-/// Path maps to the goals of a scene.
+/// Lines are shortened by this at both ends, so that bodies fit between the ends, meters.
+const LINE_MARGIN: f64 = 0.25;
+
+/// Path maps to the places and goals of a scene.
 #[derive(Debug, Clone)]
 pub struct Ways {
     /// The floor on which all of them lie.
     pub floor: Floor,
+    /// The number of places; their maps come first.
+    places: usize,
     goals: Vec<Vector>,
     maps: Vec<PathMap>,
+}
+
+/// What an agent walks to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Destination {
+    /// A point, meters.
+    Goal(Vector),
+    /// The place with this number.
+    Place(u16),
 }
 
 /// The way that an agent follows.
@@ -31,6 +45,8 @@ pub struct Route {
     map: Option<u16>,
     /// What comes next.
     next: Next,
+    /// The length of the way, meters; infinite without a path map.
+    length: f64,
     /// The distance that the agent keeps from corners, meters.
     clearance: f64,
 }
@@ -42,36 +58,44 @@ pub struct Walker {
     pub id: u32,
     /// Its position, meters.
     pub position: Vector,
-    /// Its goal, meters.
-    pub goal: Vector,
+    /// Where it wants to go.
+    pub to: Destination,
     /// Its radius, meters.
     pub radius: f64,
 }
 
 impl Ways {
-    /// Path maps to `goals`, points on the floor.
+    /// Path maps to `places`, each of which may have several lines and points, and to `goals`, points on the floor.
     ///
     /// # Errors
-    /// A goal is not on the floor.
-    pub fn new(floor: Floor, goals: Vec<Vector>) -> Result<Self, WayError> {
-        let map = |&goal: &Vector| PathMap::new(&floor, &[Goal::Point(goal)], 0.0);
-        let maps = goals.iter().map(map).collect::<Result<_, _>>()?;
-        Ok(Self { floor, goals, maps })
+    /// A goal, or all of a place, is not on the floor.
+    pub fn new(floor: Floor, places: &[Vec<Goal>], goals: Vec<Vector>) -> Result<Self, WayError> {
+        let points: Vec<[Goal; 1]> = goals.iter().map(|&goal| [Goal::Point(goal)]).collect();
+        let all = places.iter().map(Vec::as_slice);
+        let all = all.chain(points.iter().map(|goal| &goal[..]));
+        let maps = all.map(|goals| PathMap::new(&floor, goals, LINE_MARGIN));
+        let maps = maps.collect::<Result<_, _>>()?;
+        Ok(Self {
+            floor,
+            places: places.len(),
+            goals,
+            maps,
+        })
     }
 
-    /// The way from `p` to `goal`; `None` if there is none, or no map of this goal.
-    pub fn way(&self, p: Vector, goal: Vector) -> Option<Way> {
-        let map = self.map_to(goal)?;
+    /// The way from `p` to a destination; `None` if there is none, or no map of it.
+    pub fn way(&self, p: Vector, to: Destination) -> Option<Way> {
+        let map = self.map_to(to)?;
         self.from(usize::from(map), p, None)
     }
 
-    /// Does a way lead from `p` to `goal` that is nowhere narrower than the floor's least width?
-    pub fn is_open(&self, p: Vector, goal: Vector) -> bool {
+    /// Does a way lead from `p` to a destination that is nowhere narrower than the floor's least width?
+    pub fn is_open(&self, p: Vector, to: Destination) -> bool {
         let floor = &self.floor;
-        let Some(way) = self.way(p, goal) else {
+        let Some(way) = self.way(p, to) else {
             return false;
         };
-        let to = match way.next {
+        let next = match way.next {
             Next::Goal(point) => point,
             Next::Corner { bend, .. } => floor.place(bend),
             Next::Out(_) => return false,
@@ -80,14 +104,17 @@ impl Ways {
             return false;
         };
         let crosses = |[a, b]: [Vector; 2]| {
-            side(a, b, p) * side(a, b, to) < 0.0 && side(p, to, a) * side(p, to, b) < 0.0
+            side(a, b, p) * side(a, b, next) < 0.0 && side(p, next, a) * side(p, next, b) < 0.0
         };
         !floor.mesh.gaps(here, floor.least_width).any(crosses)
     }
 
-    fn map_to(&self, goal: Vector) -> Option<u16> {
-        let map = self.goals.iter().position(|&other| other == goal);
-        map.map(|map| map as u16)
+    fn map_to(&self, to: Destination) -> Option<u16> {
+        let map = match to {
+            Destination::Place(place) => return Some(place),
+            Destination::Goal(goal) => self.goals.iter().position(|&other| other == goal),
+        };
+        map.map(|map| (self.places + map) as u16)
     }
 
     fn from(&self, map: usize, p: Vector, held: Option<&Next>) -> Option<Way> {
@@ -102,14 +129,20 @@ impl Ways {
             let [low, high] = CLEARANCE;
             let mut random = random::stream(seed, Purpose::Clearance, walker.id, 0);
             Route {
-                map: self.map_to(walker.goal),
-                next: Next::Goal(walker.goal),
+                map: self.map_to(walker.to),
+                next: Next::Goal(walker.position),
+                length: f64::INFINITY,
                 clearance: walker.radius + random.random_range(low..=high),
             }
         });
-        if let Some(map) = route.map {
-            let way = self.from(usize::from(map), walker.position, Some(&route.next));
-            route.next = way.map_or(Next::Goal(walker.goal), |way| way.next);
+        let way = route
+            .map
+            .and_then(|map| self.from(usize::from(map), walker.position, Some(&route.next)));
+        match (way, walker.to) {
+            (Some(way), _) => (route.next, route.length) = (way.next, way.length),
+            (None, Destination::Goal(goal)) => route.next = Next::Goal(goal),
+            // Without a way, the agent stays.
+            (None, Destination::Place(_)) => route.next = Next::Goal(walker.position),
         }
         route
     }
@@ -143,5 +176,10 @@ impl Route {
     /// What comes next.
     pub fn next(&self) -> Next {
         self.next
+    }
+
+    /// The length of the way when it was last found, meters; infinite without a path map.
+    pub fn length(&self) -> f64 {
+        self.length
     }
 }

@@ -1,0 +1,110 @@
+//! Journeys: the places that agents visit one after the other, and how they choose between places.
+
+mod place;
+mod trip;
+
+pub use place::{Exit, Kind, Place, Queue, WaitingArea};
+pub use trip::{Status, Trip};
+
+use crate::engine::geometry::Ring;
+use crate::engine::math::Vector;
+
+/// The places and journeys of a scene.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Journeys {
+    /// All places, numbered in this order.
+    pub places: Vec<Place>,
+    /// The journeys, numbered in this order.
+    pub journeys: Vec<Journey>,
+    /// Changes of places, by time.
+    pub changes: Vec<Change>,
+    /// Areas in which agents walk slower or faster.
+    pub zones: Vec<Zone>,
+}
+
+/// What agents do one after the other. A journey that does not end at an exit ends where its last stage ends; its
+/// agents stay there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Journey {
+    /// Name in reports.
+    pub name: String,
+    /// Its stages, at least one.
+    pub stages: Vec<JourneyStage>,
+}
+
+/// A stage of a journey: a visit to one of some places.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JourneyStage {
+    /// How an agent chooses.
+    pub choice: Choice,
+    /// The numbers of the places, at least one.
+    pub places: Vec<u16>,
+}
+
+/// How an agent chooses between places.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Choice {
+    /// The one with the shortest way.
+    Nearest,
+    /// The one that the agent expects to pass first.
+    Quickest,
+    /// At random, with these weights.
+    Shares(Vec<f64>),
+    /// The one that the fewest agents are bound for.
+    Fewest,
+}
+
+/// A change of a place at a given time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Change {
+    /// When, seconds.
+    pub at: f64,
+    /// The number of the place.
+    pub place: u16,
+    /// What happens.
+    pub kind: ChangeKind,
+}
+
+/// What happens to a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ChangeKind {
+    /// An exit opens.
+    Open,
+    /// An exit closes: no agent can cross its line.
+    Close,
+    /// From now on, no agent waits here.
+    Release,
+}
+
+/// An area in which agents walk slower or faster.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Zone {
+    /// Name in reports.
+    pub name: String,
+    /// Where, corners in meters.
+    pub area: Ring,
+    /// The preferred speed is multiplied by this.
+    pub speed_factor: f64,
+}
+
+impl Journeys {
+    /// The factor on the preferred speed at `p`: the least of all zones there.
+    pub fn speed_factor(&self, p: Vector) -> f64 {
+        let here = self.zones.iter().filter(|zone| zone.area.contains(p));
+        let factors = here.map(|zone| zone.speed_factor);
+        factors.reduce(f64::min).unwrap_or(1.0)
+    }
+
+    /// Does some agent choose the quickest place?
+    pub fn has_quickest(&self) -> bool {
+        let mut stages = self.journeys.iter().flat_map(|journey| &journey.stages);
+        stages.any(|stage| stage.choice == Choice::Quickest)
+    }
+}
+
+impl Journey {
+    /// Stage `k`; after the last stage, the last one.
+    pub fn stage(&self, k: u16) -> &JourneyStage {
+        &self.stages[usize::from(k).min(self.stages.len() - 1)]
+    }
+}

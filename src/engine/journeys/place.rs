@@ -1,0 +1,156 @@
+//! Places that agents visit: exits, waypoints, waiting areas and queues.
+
+use crate::engine::distribution::Distribution;
+use crate::engine::geometry::Ring;
+use crate::engine::math::{Vector, direction};
+use crate::engine::ways::{Goal, nearest_on};
+
+/// A place that agents visit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Place {
+    /// Name in reports.
+    pub name: String,
+    /// What it is.
+    pub kind: Kind,
+}
+
+/// What a place is.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Kind {
+    /// Agents leave here.
+    Exit(Exit),
+    /// A line that agents cross, ends in meters.
+    Line([Vector; 2]),
+    /// A disk that agents enter.
+    Disk {
+        /// Its center, meters.
+        at: Vector,
+        /// Its radius, meters.
+        within: f64,
+    },
+    /// Agents wait here.
+    Waiting(WaitingArea),
+    /// Agents queue here.
+    Queue(Queue),
+}
+
+/// A line at which agents leave.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Exit {
+    /// Its ends, meters.
+    pub line: [Vector; 2],
+    /// The most agents that pass it per second; `None`: no limit.
+    pub most_per_sec: Option<f64>,
+}
+
+/// An area in which agents wait.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WaitingArea {
+    /// Where, corners in meters.
+    pub area: Ring,
+    /// Spots to stand, the first ones taken first, meters.
+    pub spots: Vec<Vector>,
+    /// Until when, seconds; `None`: no given time.
+    pub until: Option<f64>,
+    /// How long after its arrival an agent goes on, seconds; `None`: never.
+    pub lasting: Option<Distribution>,
+}
+
+/// A queue.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Queue {
+    /// The line on which agents stand, from the front, meters.
+    pub path: Vec<Vector>,
+    /// The distance between agents, meters.
+    pub spacing: f64,
+    /// How many agents are served at a time.
+    pub servers: u32,
+    /// How long an agent is served, seconds.
+    pub service: Distribution,
+}
+
+impl Place {
+    /// What agents walk to, for a path map.
+    pub fn goals(&self) -> Vec<Goal> {
+        match &self.kind {
+            Kind::Exit(Exit { line, .. }) | Kind::Line(line) => vec![Goal::Line(*line)],
+            Kind::Disk { at, .. } => vec![Goal::Point(*at)],
+            Kind::Waiting(waiting) => {
+                let corners = waiting.area.points();
+                let ends = corners.iter().cycle().skip(1);
+                let sides = corners.iter().zip(ends);
+                sides.map(|(&a, &b)| Goal::Line([a, b])).collect()
+            }
+            Kind::Queue(queue) => queue.path.iter().map(|&p| Goal::Point(p)).collect(),
+        }
+    }
+
+    /// The point of the place nearest to `p`, meters.
+    pub fn nearest_point(&self, p: Vector) -> Vector {
+        match &self.kind {
+            Kind::Exit(Exit { line: [a, b], .. }) | Kind::Line([a, b]) => nearest_on(p, *a, *b),
+            Kind::Disk { at, .. } => *at,
+            Kind::Waiting(waiting) if waiting.area.contains(p) => p,
+            Kind::Waiting(waiting) => {
+                let corners = waiting.area.points();
+                let ends = corners.iter().cycle().skip(1);
+                let points = corners.iter().zip(ends).map(|(&a, &b)| nearest_on(p, a, b));
+                nearest(points, p)
+            }
+            Kind::Queue(queue) => nearest(queue.path.iter().copied(), p),
+        }
+    }
+
+    /// The line that agents cross, if it has one.
+    pub fn line(&self) -> Option<[Vector; 2]> {
+        match self.kind {
+            Kind::Exit(Exit { line, .. }) | Kind::Line(line) => Some(line),
+            _ => None,
+        }
+    }
+
+    /// Does an agent that has come here leave?
+    pub fn is_exit(&self) -> bool {
+        matches!(self.kind, Kind::Exit(_))
+    }
+}
+
+fn nearest(points: impl Iterator<Item = Vector>, p: Vector) -> Vector {
+    let distance = |q: &Vector| (q - p).norm_squared();
+    let least = points.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    least.unwrap_or(p)
+}
+
+impl Queue {
+    /// Where the agent with `ahead` agents before it stands, meters. Beyond the end of the path, the queue goes on in
+    /// the same direction.
+    pub fn spot(&self, ahead: usize) -> Vector {
+        let mut left = ahead as f64 * self.spacing;
+        let mut end = [self.path[0]; 2];
+        for pair in self.path.windows(2) {
+            let (a, b) = (pair[0], pair[1]);
+            let length = (b - a).norm();
+            if left <= length {
+                return a + direction(b - a) * left;
+            }
+            left -= length;
+            end = [a, b];
+        }
+        end[1] + direction(end[1] - end[0]) * left
+    }
+
+    /// The corner of the path that comes next for an agent that stands near corner `k` and walks to the spot behind
+    /// `ahead` agents.
+    pub fn next_corner(&self, k: usize, ahead: usize) -> usize {
+        let behind = ahead as f64 * self.spacing;
+        let mut length = 0.0;
+        let sides = self.path.windows(2).map(|pair| (pair[1] - pair[0]).norm());
+        let before = sides.take(k).sum::<f64>();
+        length += before;
+        if behind > length {
+            (k + 1).min(self.path.len() - 1)
+        } else {
+            k.saturating_sub(1)
+        }
+    }
+}

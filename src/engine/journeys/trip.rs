@@ -1,0 +1,55 @@
+//! How far an agent has come on its journey.
+
+use serde::{Deserialize, Serialize};
+
+use crate::engine::math::Vector;
+
+/// How far an agent has come on its journey.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Trip {
+    /// The number of its journey.
+    pub journey: u16,
+    /// The current stage, from 0.
+    pub stage: u16,
+    /// The place that it has chosen for this stage.
+    pub place: u16,
+    /// What it does.
+    pub status: Status,
+    /// Where it stands or wants to stand, meters; `None` while it walks to its place.
+    pub hold: Option<Vector>,
+    /// The frame in which it chooses between places again.
+    pub chooses_at: u64,
+    /// How often it has chosen.
+    pub choices: u32,
+    /// When it entered, seconds.
+    pub entered: f64,
+    /// How long it has waited in waiting areas and queues, seconds.
+    pub waited: f64,
+}
+
+/// What an agent on a journey does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Status {
+    /// It walks to its place.
+    Walking,
+    /// It waits in a waiting area.
+    Waiting {
+        /// The number of its spot.
+        spot: u32,
+        /// The frame in which it arrived.
+        since: u64,
+        /// The frame in which it goes on, if nothing releases it earlier.
+        until: u64,
+    },
+    /// It stands in a queue.
+    Queued {
+        /// Agents with lower numbers are ahead.
+        ticket: u32,
+        /// The frame in which it arrived.
+        since: u64,
+        /// The frame in which it has been served, once it is being served.
+        until: Option<u64>,
+    },
+    /// It has ended its journey and stays.
+    Finished,
+}

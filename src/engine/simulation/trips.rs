@@ -1,0 +1,429 @@
+//! Journeys: in coarse frames agents begin them, reach waypoints, wait, queue and go on.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::choice::{self, Chooser};
+use super::{Crowd, EventKind, Simulation, Stage};
+use crate::engine::clock::Clock;
+use crate::engine::journeys::{ChangeKind, Kind, Queue, Status, Trip, WaitingArea};
+use crate::engine::math::Vector;
+use crate::engine::neighbors::{BLOCK, TASK};
+use crate::engine::random::{self, Purpose};
+use crate::engine::scene::Scene;
+
+/// Agents this near to the end of a queue join it, meters.
+const JOINING: f64 = 1.0;
+
+/// How many agents have begun each journey, and the state of each place.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Progress {
+    /// The number of agents that have begun each journey.
+    pub begun: Vec<u32>,
+    /// The state of each place.
+    pub places: Vec<PlaceState>,
+    /// The number of changes of places so far.
+    changes: usize,
+}
+
+/// The state of a place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlaceState {
+    /// Can agents pass the exit? Do agents wait in the waiting area?
+    pub open: bool,
+    /// The number of agents that have chosen it and have not yet passed it.
+    pub bound: u32,
+    /// The number of agents that have passed it.
+    pub passed: u32,
+    /// The total time that agents have waited here, seconds.
+    pub waited: f64,
+    /// The frames in which agents passed it during the last seconds.
+    pub(super) recent: Vec<u64>,
+    /// When the next agent may pass, seconds.
+    pub(super) ready: f64,
+    /// Agents bound for it: `nearer[k]` of them are nearer than k half meters.
+    pub(super) nearer: Vec<u32>,
+    /// The number of tickets given out for its queue.
+    tickets: u32,
+    /// Which spots of the waiting area are taken.
+    taken: Vec<bool>,
+}
+
+impl Default for PlaceState {
+    fn default() -> Self {
+        Self {
+            open: true,
+            bound: 0,
+            passed: 0,
+            waited: 0.0,
+            recent: Vec::new(),
+            ready: 0.0,
+            nearer: Vec::new(),
+            tickets: 0,
+            taken: Vec::new(),
+        }
+    }
+}
+
+impl Progress {
+    /// Does this progress fit `scene`?
+    pub(super) fn fits(&self, scene: &Scene) -> bool {
+        let journeys = &scene.journeys;
+        let is_new = self.places.is_empty() && self.begun.is_empty();
+        let counts = (self.places.len(), self.begun.len());
+        self.changes <= journeys.changes.len()
+            && (is_new || counts == (journeys.places.len(), journeys.journeys.len()))
+    }
+}
+
+/// Does this trip fit `scene`?
+pub(super) fn fits(trip: &Trip, scene: &Scene) -> bool {
+    let journeys = &scene.journeys;
+    usize::from(trip.journey) < journeys.journeys.len()
+        && usize::from(trip.place) < journeys.places.len()
+}
+
+impl Simulation {
+    /// In coarse frames: agents begin journeys, choose places, reach them, wait, queue and go on.
+    pub(super) fn follow_journeys(&mut self) {
+        let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
+        if !crowd.clock.is_coarse() {
+            return;
+        }
+        if !scene.journeys.zones.is_empty() {
+            let agents = &mut crowd.agents;
+            let positions = agents.position.par_iter().with_min_len(TASK * BLOCK);
+            let factors = positions.map(|&p| Some(scene.journeys.speed_factor(p)));
+            factors.collect_into_vec(&mut agents.zone);
+        }
+        if !scene.journeys.journeys.is_empty() {
+            self.stages
+                .time(Stage::Journeys, || crowd.follow_journeys(scene));
+        }
+    }
+}
+
+impl Crowd {
+    fn follow_journeys(&mut self, scene: &Scene) {
+        let journeys = &scene.journeys;
+        let progress = &mut self.progress;
+        progress.begun.resize(journeys.journeys.len(), 0);
+        let places = journeys.places.len();
+        progress.places.resize_with(places, PlaceState::default);
+        self.change_places(scene);
+        choice::count(self, scene);
+        self.agents.trip.resize(self.agents.len(), None);
+        for i in self.where_due(|crowd, i| crowd.has_to_begin(scene, i)) {
+            self.begin(scene, i);
+        }
+        self.serve_queues(scene);
+        for i in self.where_due(|crowd, i| crowd.needs_attention(scene, i)) {
+            self.attend(scene, i);
+        }
+    }
+
+    /// The agents for which `is_due` holds, in order of their ids, so that their order in memory does not matter.
+    fn where_due(&self, is_due: impl Fn(&Self, usize) -> bool + Sync) -> Vec<usize> {
+        let all = (0..self.agents.len()).into_par_iter();
+        let due = all.with_min_len(TASK * BLOCK).filter(|&i| is_due(self, i));
+        let mut due: Vec<usize> = due.collect();
+        due.sort_unstable_by_key(|&i| self.agents.id[i]);
+        due
+    }
+
+    fn change_places(&mut self, scene: &Scene) {
+        let frame = self.clock.frame();
+        while let Some(change) = scene.journeys.changes.get(self.progress.changes) {
+            if self.clock.coarse_frame_at(change.at) > frame {
+                return;
+            }
+            self.progress.changes += 1;
+            let state = &mut self.progress.places[usize::from(change.place)];
+            state.open = change.kind == ChangeKind::Open;
+            for trip in self.agents.trip.iter_mut().flatten() {
+                if trip.place == change.place && trip.status == Status::Walking {
+                    trip.chooses_at = trip.chooses_at.min(frame);
+                }
+            }
+            let name = &scene.journeys.places[usize::from(change.place)].name;
+            let kind = match change.kind {
+                ChangeKind::Open => EventKind::Opened,
+                ChangeKind::Close => EventKind::Closed,
+                ChangeKind::Release => EventKind::Released,
+            };
+            self.schedule.note(frame, name, kind);
+        }
+    }
+
+    fn has_to_begin(&self, scene: &Scene, i: usize) -> bool {
+        let group = usize::from(self.agents.group[i]);
+        self.agents.trip[i].is_none() && scene.groups[group].journey.is_some()
+    }
+
+    fn begin(&mut self, scene: &Scene, i: usize) {
+        let group = usize::from(self.agents.group[i]);
+        let Some(journey) = scene.groups[group].journey else {
+            return;
+        };
+        self.progress.begun[usize::from(journey)] += 1;
+        self.agents.trip[i] = Some(Trip {
+            journey,
+            stage: 0,
+            place: 0,
+            status: Status::Finished,
+            hold: None,
+            chooses_at: u64::MAX,
+            choices: 0,
+            entered: self.clock.time(),
+            waited: 0.0,
+        });
+        self.choose(scene, i);
+    }
+
+    /// Chooses a place of the current stage.
+    fn choose(&mut self, scene: &Scene, i: usize) {
+        let Some(mut trip) = self.agents.trip[i] else {
+            return;
+        };
+        let chooser = Chooser {
+            scene,
+            crowd: self,
+            agent: i,
+        };
+        let before = (trip.status == Status::Walking).then_some(trip.place);
+        let (place, chooses_at) = chooser.choose(&trip, before);
+        trip.chooses_at = chooses_at;
+        trip.choices += 1;
+        if before != Some(place) {
+            if let Some(before) = before {
+                self.progress.places[usize::from(before)].bound -= 1;
+            }
+            self.progress.places[usize::from(place)].bound += 1;
+            trip.place = place;
+            trip.status = Status::Walking;
+            trip.hold = None;
+            if let Some(route) = self.agents.route.get_mut(i) {
+                *route = None;
+            }
+            let place = &scene.journeys.places[usize::from(place)];
+            self.agents.goal[i] = place.nearest_point(self.agents.position[i]);
+        }
+        self.agents.trip[i] = Some(trip);
+    }
+
+    /// Ends the current stage of agent `i`, which has passed its place, and begins the next one.
+    pub(super) fn go_on(&mut self, scene: &Scene, i: usize) {
+        let Some(trip) = &mut self.agents.trip[i] else {
+            return;
+        };
+        let state = &mut self.progress.places[usize::from(trip.place)];
+        state.bound -= 1;
+        state.passed += 1;
+        state.recent.push(self.clock.frame());
+        let stages = &scene.journeys.journeys[usize::from(trip.journey)].stages;
+        trip.status = Status::Finished;
+        trip.chooses_at = u64::MAX;
+        if usize::from(trip.stage) + 1 < stages.len() {
+            trip.stage += 1;
+            self.choose(scene, i);
+        } else {
+            trip.hold = trip.hold.or(Some(self.agents.position[i]));
+        }
+    }
+
+    fn needs_attention(&self, scene: &Scene, i: usize) -> bool {
+        let Some(trip) = &self.agents.trip[i] else {
+            return false;
+        };
+        let frame = self.clock.frame();
+        let position = self.agents.position[i];
+        let is_open = self.progress.places[usize::from(trip.place)].open;
+        match trip.status {
+            Status::Walking => {
+                trip.chooses_at <= frame
+                    || match &scene.journeys.places[usize::from(trip.place)].kind {
+                        Kind::Exit(_) | Kind::Line(_) => false,
+                        Kind::Disk { at, within } => (position - at).norm() <= *within,
+                        Kind::Waiting(waiting) => waiting.area.contains(position),
+                        Kind::Queue(_) => true,
+                    }
+            }
+            Status::Waiting { until, .. } => until <= frame || !is_open,
+            Status::Queued { .. } | Status::Finished => false,
+        }
+    }
+
+    fn attend(&mut self, scene: &Scene, i: usize) {
+        let Some(trip) = self.agents.trip[i] else {
+            return;
+        };
+        let position = self.agents.position[i];
+        match (
+            &scene.journeys.places[usize::from(trip.place)].kind,
+            trip.status,
+        ) {
+            (_, Status::Waiting { spot, since, .. }) => self.end_wait(scene, i, spot, since),
+            (Kind::Disk { at, within }, _) if (position - at).norm() <= *within => {
+                self.go_on(scene, i);
+            }
+            (Kind::Waiting(waiting), _) if waiting.area.contains(position) => {
+                self.begin_wait(scene, i, waiting);
+            }
+            (Kind::Queue(queue), _) => self.approach(scene, i, queue),
+            _ => {}
+        }
+        let frame = self.clock.frame();
+        let trip = self.agents.trip[i].as_ref();
+        if trip.is_some_and(|trip| trip.status == Status::Walking && trip.chooses_at <= frame) {
+            self.choose(scene, i);
+        }
+    }
+
+    fn begin_wait(&mut self, scene: &Scene, i: usize, waiting: &WaitingArea) {
+        let Some(trip) = &mut self.agents.trip[i] else {
+            return;
+        };
+        let state = &mut self.progress.places[usize::from(trip.place)];
+        let now = self.clock.time();
+        let lasting = waiting
+            .lasting
+            .as_ref()
+            .map(|lasting| now + lasting.draw(&mut stage_stream(scene, self.agents.id[i], trip)));
+        let until = [waiting.until, lasting]
+            .into_iter()
+            .flatten()
+            .reduce(f64::min);
+        if !state.open || until.is_some_and(|until| until <= now) {
+            self.go_on(scene, i);
+            return;
+        }
+        let spot = state.taken.iter().position(|&taken| !taken);
+        let spot = spot.unwrap_or(state.taken.len());
+        state.taken.resize(state.taken.len().max(spot + 1), true);
+        state.taken[spot] = true;
+        // Where more agents wait than there are spots, the others stay where they are.
+        trip.hold = waiting.spots.get(spot).copied();
+        trip.hold = trip.hold.or(Some(self.agents.position[i]));
+        self.agents.goal[i] = trip.hold.unwrap_or(self.agents.goal[i]);
+        trip.status = Status::Waiting {
+            spot: spot as u32,
+            since: self.clock.frame(),
+            until: until.map_or(u64::MAX, |until| self.clock.coarse_frame_at(until)),
+        };
+    }
+
+    fn end_wait(&mut self, scene: &Scene, i: usize, spot: u32, since: u64) {
+        let Some(trip) = &self.agents.trip[i] else {
+            return;
+        };
+        let state = &mut self.progress.places[usize::from(trip.place)];
+        state.taken[spot as usize] = false;
+        self.count_wait(i, since);
+        self.go_on(scene, i);
+    }
+
+    fn count_wait(&mut self, i: usize, since: u64) {
+        if let Some(trip) = &mut self.agents.trip[i] {
+            let waited = time_since(&self.clock, since);
+            trip.waited += waited;
+            self.progress.places[usize::from(trip.place)].waited += waited;
+        }
+    }
+
+    /// Agent `i` walks to the end of a queue, and joins it there.
+    fn approach(&mut self, scene: &Scene, i: usize, queue: &Queue) {
+        let position = self.agents.position[i];
+        let Some(trip) = &mut self.agents.trip[i] else {
+            return;
+        };
+        let place = trip.place;
+        let state = &mut self.progress.places[usize::from(place)];
+        let waiting = (state.tickets - state.passed) as usize;
+        let end = queue.spot(waiting);
+        if (end - position).norm() <= JOINING.max(queue.spacing) {
+            trip.status = Status::Queued {
+                ticket: state.tickets,
+                since: self.clock.frame(),
+                until: None,
+            };
+            trip.chooses_at = u64::MAX;
+            state.tickets += 1;
+            trip.hold = Some(end);
+            self.agents.goal[i] = end;
+            return;
+        }
+        // Straight to the end of the queue where nothing stands between; else along its path.
+        let sees = |p: Vector| {
+            let near = scene.walls.near_any(&[position, p], 0.0);
+            scene.walls.first_crossing(position, p, &near).is_none()
+        };
+        let near = |p: &&Vector| (*p - position).norm() <= JOINING;
+        trip.hold = if sees(end) {
+            Some(end)
+        } else {
+            let here = queue.path.iter().position(|p| near(&p));
+            here.map(|k| queue.path[queue.next_corner(k, waiting)])
+        };
+    }
+
+    /// Agents in queues move up, are served and go on.
+    fn serve_queues(&mut self, scene: &Scene) {
+        let frame = self.clock.frame();
+        for (place, kind) in scene.journeys.places.iter().enumerate() {
+            let Kind::Queue(queue) = &kind.kind else {
+                continue;
+            };
+            let ticket = |trip: &Trip| match trip.status {
+                Status::Queued { ticket, .. } if usize::from(trip.place) == place => Some(ticket),
+                _ => None,
+            };
+            let trips = self.agents.trip.iter().enumerate();
+            let queued = trips.filter_map(|(i, trip)| Some((ticket(trip.as_ref()?)?, i)));
+            let mut queued: Vec<(u32, usize)> = queued.collect();
+            queued.sort_unstable();
+            for (ahead, (_, i)) in queued.into_iter().enumerate() {
+                let (id, position) = (self.agents.id[i], self.agents.position[i]);
+                let Some(trip) = &mut self.agents.trip[i] else {
+                    continue;
+                };
+                let spot = queue.spot(ahead);
+                trip.hold = Some(spot);
+                self.agents.goal[i] = spot;
+                let Status::Queued {
+                    ticket,
+                    since,
+                    until,
+                } = trip.status
+                else {
+                    continue;
+                };
+                let is_there = (position - spot).norm() <= JOINING;
+                let until = match until {
+                    None if ahead < queue.servers as usize && is_there => {
+                        let lasting = queue.service.draw(&mut stage_stream(scene, id, trip));
+                        Some(self.clock.coarse_frame_at(self.clock.time() + lasting))
+                    }
+                    until => until,
+                };
+                trip.status = Status::Queued {
+                    ticket,
+                    since,
+                    until,
+                };
+                if until.is_some_and(|until| until <= frame) {
+                    self.count_wait(i, since);
+                    self.go_on(scene, i);
+                }
+            }
+        }
+    }
+}
+
+/// The random numbers of one stage of one agent.
+fn stage_stream(scene: &Scene, id: u32, trip: &Trip) -> impl rand::Rng + use<> {
+    random::stream(scene.seed, Purpose::Waiting, id, u64::from(trip.stage))
+}
+
+fn time_since(clock: &Clock, frame: u64) -> f64 {
+    clock.time() - clock.time_at(frame)
+}

@@ -1,0 +1,369 @@
+//! Exits, waypoints, waiting areas, queues, journeys and zones of a file → those of a scene.
+
+use std::collections::BTreeMap;
+
+use super::crowd::MOST_NUMBERED;
+use super::error::{Problem, Under, suggestion};
+use super::file::{self, File, Point, Ring as GivenRing};
+use super::places::{self, Stage};
+use super::quote::shown;
+use crate::engine::geometry::{Ring, Walls};
+use crate::engine::journeys::{
+    Change, ChangeKind, Choice, Exit, Journey, JourneyStage, Journeys, Kind, Place, Queue,
+    WaitingArea, Zone,
+};
+use crate::engine::math::{Vector, bounds};
+
+/// The name of the journey of people without goal and journey in scenarios with exits.
+pub(super) const TO_NEAREST_EXIT: &str = "nearest exit";
+/// Shorter lines are an error, meters.
+const SHORTEST_LINE: f64 = 0.3;
+/// Default distance between people in a queue, meters.
+const SPACING: f64 = 0.5;
+/// Default radius of a waypoint, meters.
+const WITHIN: f64 = 0.5;
+
+/// The places, journeys and zones of a file, among `walls`.
+pub(super) fn journeys(keys: &File, walls: &Walls) -> Result<Journeys, Problem> {
+    let mut found = Found {
+        walls,
+        journeys: Journeys::default(),
+        numbers: BTreeMap::new(),
+    };
+    found.add_places(keys)?;
+    for (k, given) in keys.journeys.iter().enumerate() {
+        found.add_journey(given).under(&format!("journeys[{k}]"))?;
+    }
+    let exits = keys.exits.iter().map(|exit| found.numbers[&exit.name]);
+    let exits: Vec<u16> = exits.collect();
+    if !exits.is_empty() {
+        found.journeys.journeys.push(Journey {
+            name: TO_NEAREST_EXIT.to_owned(),
+            stages: vec![JourneyStage {
+                choice: Choice::Nearest,
+                places: exits,
+            }],
+        });
+    }
+    for (k, given) in keys.zones.iter().enumerate() {
+        let name = format!("zones[{k}]");
+        found.journeys.zones.push(Zone {
+            area: ring(&given.area).under(&format!("{name}.area"))?,
+            name: given.name.clone().unwrap_or(name),
+            speed_factor: given.speed_factor,
+        });
+    }
+    found.add_changes(keys)?;
+    Ok(found.journeys)
+}
+
+/// Places and journeys so far.
+struct Found<'a> {
+    walls: &'a Walls,
+    journeys: Journeys,
+    /// The number of each place by its name.
+    numbers: BTreeMap<String, u16>,
+}
+
+impl Found<'_> {
+    fn add_places(&mut self, keys: &File) -> Result<(), Problem> {
+        for (k, given) in keys.exits.iter().enumerate() {
+            let exit = exit(given);
+            self.add("exits", k, &given.name, exit)?;
+        }
+        for (k, given) in keys.waypoints.iter().enumerate() {
+            self.add("waypoints", k, &given.name, waypoint(given))?;
+        }
+        for (k, given) in keys.waiting_areas.iter().enumerate() {
+            let kind = self.waiting_area(given);
+            self.add("waiting_areas", k, &given.name, kind)?;
+        }
+        for (k, given) in keys.queues.iter().enumerate() {
+            self.add("queues", k, &given.name, queue(given))?;
+        }
+        Ok(())
+    }
+
+    fn add(
+        &mut self,
+        list: &str,
+        k: usize,
+        name: &str,
+        kind: Result<Kind, Problem>,
+    ) -> Result<(), Problem> {
+        let place = format!("{list}[{k}]");
+        let number = self.journeys.places.len();
+        if number >= MOST_NUMBERED {
+            let reason = format!("more than {MOST_NUMBERED} places");
+            return Err(Problem::new(place, reason));
+        }
+        if self
+            .numbers
+            .insert(name.to_owned(), number as u16)
+            .is_some()
+        {
+            let reason = format!("there are two places named `{}`; rename one", shown(name));
+            return Err(Problem::new(format!("{place}.name"), reason));
+        }
+        self.journeys.places.push(Place {
+            name: name.to_owned(),
+            kind: kind.under(&place)?,
+        });
+        Ok(())
+    }
+
+    fn number(&self, name: &str) -> Result<u16, Problem> {
+        self.numbers.get(name).copied().ok_or_else(|| {
+            let known = self.numbers.keys().map(String::as_str);
+            let near = suggestion(name, known.clone());
+            let known: Vec<String> = known.map(|name| format!("`{name}`")).collect();
+            let known = match known.as_slice() {
+                [] => "; the scenario has no exits, waypoints, waiting areas or queues".to_owned(),
+                names if near.is_empty() => format!("; there are {}", names.join(", ")),
+                _ => String::new(),
+            };
+            let reason = format!("there is no place named `{}`{near}{known}", shown(name));
+            Problem::new("", reason)
+        })
+    }
+
+    fn waiting_area(&self, given: &places::WaitingArea) -> Result<Kind, Problem> {
+        let area = ring(&given.area).under("area")?;
+        let lasting = given.for_secs.as_ref().map(|secs| secs.distribution());
+        let lasting = lasting.transpose().under("for_secs")?;
+        Ok(Kind::Waiting(WaitingArea {
+            spots: spots(&area, self.walls, given.facing.map(Into::into)),
+            area,
+            until: given.until_secs,
+            lasting,
+        }))
+    }
+
+    fn add_journey(&mut self, given: &places::Journey) -> Result<(), Problem> {
+        let is_known = |journey: &Journey| journey.name == given.name;
+        if self.journeys.journeys.iter().any(is_known) || given.name == TO_NEAREST_EXIT {
+            let reason = format!(
+                "there are two journeys named `{}`; rename one",
+                shown(&given.name)
+            );
+            return Err(Problem::new("name", reason));
+        }
+        let stages = given.stages.iter().enumerate();
+        let stages = stages.map(|(k, stage)| self.stage(stage).under(&format!("stages[{k}]")));
+        let stages: Vec<JourneyStage> = stages.collect::<Result<_, _>>()?;
+        let is_exit = |&place: &u16| self.journeys.places[usize::from(place)].is_exit();
+        let early = stages.split_last().and_then(|(_, before)| {
+            before
+                .iter()
+                .position(|stage| stage.places.iter().any(is_exit))
+        });
+        if let Some(k) = early {
+            let reason = "people leave at an exit, so it must be in the last stage";
+            return Err(Problem::new(format!("stages[{k}]"), reason));
+        }
+        self.journeys.journeys.push(Journey {
+            name: given.name.clone(),
+            stages,
+        });
+        Ok(())
+    }
+
+    fn stage(&self, given: &Stage) -> Result<JourneyStage, Problem> {
+        let choice = match given {
+            Stage::Place(name) => {
+                return Ok(JourneyStage {
+                    choice: Choice::Nearest,
+                    places: vec![self.number(name)?],
+                });
+            }
+            Stage::Choice(choice) => choice,
+        };
+        let places::Choice {
+            nearest,
+            quickest,
+            fewest,
+            shares,
+        } = choice;
+        let lists = [
+            (Choice::Nearest, "nearest", nearest),
+            (Choice::Quickest, "quickest", quickest),
+            (Choice::Fewest, "fewest", fewest),
+        ];
+        let mut given = lists.into_iter().filter_map(|(choice, key, names)| {
+            let names = names.as_ref()?;
+            Some((choice, key, names.iter().collect::<Vec<_>>()))
+        });
+        let shares = shares.as_ref().map(|shares| {
+            let weights = shares.values().copied().collect();
+            (Choice::Shares(weights), "shares", shares.keys().collect())
+        });
+        let (Some((choice, key, names)), None) = (given.next().or(shares), given.next()) else {
+            let reason = "give one of `nearest`, `quickest`, `fewest` and `shares`";
+            return Err(Problem::new("", reason));
+        };
+        if let Choice::Shares(weights) = &choice
+            && weights.iter().sum::<f64>() <= 0.0
+        {
+            let reason = "the weights must have a sum above 0";
+            return Err(Problem::new(key, reason));
+        }
+        let mut places: Vec<u16> = Vec::new();
+        for (k, name) in names.into_iter().enumerate() {
+            let place = format!("{key}[{k}]");
+            let number = self.number(name).under(&place)?;
+            if places.contains(&number) {
+                let reason = format!("`{}` is listed twice; remove one", shown(name));
+                return Err(Problem::new(place, reason));
+            }
+            places.push(number);
+        }
+        Ok(JourneyStage { choice, places })
+    }
+
+    /// The changes of places by closing times and events.
+    fn add_changes(&mut self, keys: &File) -> Result<(), Problem> {
+        let mut changes = Vec::new();
+        for (k, exit) in keys.exits.iter().enumerate() {
+            let place = self.numbers[&exit.name];
+            for (n, &[from, until]) in exit.closed_secs.iter().enumerate() {
+                if until <= from {
+                    let reason = format!("it ends at {until} s, before it begins at {from} s");
+                    return Err(Problem::new(format!("exits[{k}].closed_secs[{n}]"), reason));
+                }
+                let kinds = [(from, ChangeKind::Close), (until, ChangeKind::Open)];
+                changes.extend(kinds.map(|(at, kind)| Change { at, place, kind }));
+            }
+        }
+        for (k, event) in keys.events.iter().enumerate() {
+            if let Some(change) = self.change(event).under(&format!("events[{k}]"))? {
+                changes.push(change);
+            }
+        }
+        changes.sort_by(|a, b| a.at.total_cmp(&b.at));
+        self.journeys.changes = changes;
+        Ok(())
+    }
+
+    fn change(&self, event: &file::Event) -> Result<Option<Change>, Problem> {
+        let given = [
+            ("open", &event.open, ChangeKind::Open),
+            ("close", &event.close, ChangeKind::Close),
+            ("release", &event.release, ChangeKind::Release),
+        ];
+        let mut given = given.into_iter().filter(|(_, name, _)| name.is_some());
+        let Some((key, Some(name), kind)) = given.next() else {
+            return Ok(None);
+        };
+        let place = self.number(name).under(key)?;
+        let (fits, wanted) = match (&self.journeys.places[usize::from(place)].kind, kind) {
+            (Kind::Waiting(_), _) => (kind == ChangeKind::Release, "a waiting area"),
+            (Kind::Exit(_), _) => (kind != ChangeKind::Release, "an exit"),
+            (Kind::Queue(_), _) => (false, "a queue"),
+            (Kind::Line(_) | Kind::Disk { .. }, _) => (false, "a waypoint"),
+        };
+        if !fits {
+            let reason = format!(
+                "`{}` is {wanted}; exits can open and close, and waiting areas can be released",
+                shown(name)
+            );
+            return Err(Problem::new(key, reason));
+        }
+        Ok(Some(Change {
+            at: event.at_secs,
+            place,
+            kind,
+        }))
+    }
+}
+
+fn exit(given: &places::Exit) -> Result<Kind, Problem> {
+    Ok(Kind::Exit(Exit {
+        line: line(&given.line).under("line")?,
+        most_per_sec: given.most_per_sec,
+    }))
+}
+
+fn waypoint(given: &places::Waypoint) -> Result<Kind, Problem> {
+    match (given.line, given.at) {
+        (Some(ends), None) if given.within.is_none() => Ok(Kind::Line(line(&ends).under("line")?)),
+        (None, Some(at)) => Ok(Kind::Disk {
+            at: at.into(),
+            within: given.within.unwrap_or(WITHIN),
+        }),
+        _ => {
+            let reason = "give either `line`, or `at` and perhaps `within`";
+            Err(Problem::new("", reason))
+        }
+    }
+}
+
+fn queue(given: &places::Queue) -> Result<Kind, Problem> {
+    let path: Vec<Vector> = given.path.iter().map(|&p| p.into()).collect();
+    if let Some(k) = path.windows(2).position(|pair| pair[0] == pair[1]) {
+        let reason = "the same point as the next one; remove one";
+        return Err(Problem::new(format!("path[{k}]"), reason));
+    }
+    let service = given.service_secs.distribution().under("service_secs")?;
+    Ok(Kind::Queue(Queue {
+        path,
+        spacing: given.spacing.unwrap_or(SPACING),
+        servers: given.servers.unwrap_or(1),
+        service,
+    }))
+}
+
+fn line(given: &[Point; 2]) -> Result<[Vector; 2], Problem> {
+    let [a, b] = given.map(Vector::from);
+    let length = (b - a).norm();
+    if length < SHORTEST_LINE {
+        let reason = format!("{length} m long; no person fits through less than {SHORTEST_LINE} m");
+        return Err(Problem::new("", reason));
+    }
+    Ok([a, b])
+}
+
+pub(super) fn ring(GivenRing(given): &GivenRing) -> Result<Ring, Problem> {
+    let points = given.iter().map(|&p| p.into()).collect();
+    Ring::new(points).map_err(|error| Problem::new("", error.to_string()))
+}
+
+/// The first spots are taken at this density, P/m²; more between them if these are taken.
+const LOOSE: f64 = 1.5;
+/// The densest spots, P/m².
+const DENSEST: f64 = 6.0;
+/// The most spots of an area.
+const MOST_SPOTS: f64 = 100_000.0;
+/// Spots keep this distance from walls, meters.
+const FROM_WALLS: f64 = 0.3;
+
+/// Spots in an area, the first ones to take first: points of a sequence that fills the area evenly however many of
+/// them are taken, and those nearest to `facing` before others of the same density.
+fn spots(area: &Ring, walls: &Walls, facing: Option<Vector>) -> Vec<Vector> {
+    let [low, high] = bounds(area.points().iter().copied()).unwrap_or_default();
+    let extent = high - low;
+    let covered = extent.x * extent.y;
+    let most = (DENSEST * covered).min(MOST_SPOTS);
+    // The R2 sequence: multiples of the inverse powers of the plastic number.
+    const PLASTIC: f64 = 1.324_717_957_244_746;
+    let step = Vector::new(1.0 / PLASTIC, 1.0 / (PLASTIC * PLASTIC));
+    let point = |k: f64| {
+        let part = (step * k).map(|x| (x + 0.5).fract());
+        low + extent.component_mul(&part)
+    };
+    let is_free = |p: &Vector| {
+        let mut near = Vec::new();
+        walls.near(*p, FROM_WALLS, &mut near);
+        let reach = |&k: &u32| (walls.wall(k).nearest_point(*p).point - p).norm() < FROM_WALLS;
+        area.contains(*p) && walls.obstacle_at(*p).is_none() && !near.iter().any(reach)
+    };
+    let all = (0..most as u32).map(|k| point(f64::from(k)));
+    let mut spots: Vec<Vector> = all.filter(is_free).collect();
+    if let Some(facing) = facing {
+        let block = (LOOSE * area.area()).ceil().max(1.0) as usize;
+        for spots in spots.chunks_mut(block) {
+            let distance = |p: &Vector| (p - facing).norm();
+            spots.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        }
+    }
+    spots
+}
