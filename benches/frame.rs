@@ -24,10 +24,11 @@ fn crowd(count: u32, profile: &str) -> Simulation {
     };
     let mut scene = Scene::default();
     let group = scene.add_group(Group {
-        name: "crowd".to_owned(),
-        blend: catalog::named(profile, &parameters).unwrap().unwrap(),
-        removal_radius: None,
         counted: false,
+        ..Group::new(
+            "crowd",
+            catalog::named(profile, &parameters).unwrap().unwrap(),
+        )
     });
     let places = grid.positions(1, 0);
     scene.agents = places.map(|p| NewAgent::at(p, p, group)).collect();

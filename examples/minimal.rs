@@ -14,10 +14,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let pillar = Polygon::new(corners.map(Vector::from).to_vec())?;
     let mut scene = Scene::with_obstacles(vec![pillar]);
     let group = scene.add_group(Group {
-        name: "visitors".to_owned(),
-        blend: catalog::named("sph", &Parameters::default()).ok_or("no such profile")??,
         removal_radius: Some(0.5),
-        counted: true,
+        ..Group::new(
+            "visitors",
+            catalog::named("sph", &Parameters::default()).ok_or("no such profile")??,
+        )
     });
     let grid = Grid {
         min: Vector::new(0.0, 0.0),

@@ -37,10 +37,11 @@ impl Force for Slope {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut scene = Scene::default();
     let group = scene.add_group(Group {
-        name: "walkers".to_owned(),
-        blend: catalog::named("sph", &Parameters::default()).ok_or("no such profile")??,
         removal_radius: Some(0.5),
-        counted: true,
+        ..Group::new(
+            "walkers",
+            catalog::named("sph", &Parameters::default()).ok_or("no such profile")??,
+        )
     });
     let goal = Vector::new(30.0, 0.0);
     scene.agents = vec![NewAgent::at(Vector::zeros(), goal, group)];

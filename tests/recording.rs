@@ -22,12 +22,13 @@ const CROWD: &str = "/world/agents";
 fn scene(profile: &str) -> Scene {
     let mut scene = Scene::with_obstacles(vec![rectangle([-1.0, 8.0], [-1.0, 0.0])]);
     let group = scene.add_group(Group {
-        name: "people".to_owned(),
-        blend: catalog::named(profile, &Parameters::default())
-            .unwrap()
-            .unwrap(),
         removal_radius: Some(0.5),
-        counted: true,
+        ..Group::new(
+            "people",
+            catalog::named(profile, &Parameters::default())
+                .unwrap()
+                .unwrap(),
+        )
     });
     for k in 0..49 {
         let (column, row) = (f64::from(k % 7), f64::from(k / 7));

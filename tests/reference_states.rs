@@ -75,12 +75,13 @@ fn evaluated(state: &State) -> Simulation {
         ..Parameters::default()
     };
     let group = scene.add_group(Group {
-        name: "all".to_owned(),
-        blend: catalog::named(&state.profile, &parameters)
-            .unwrap()
-            .unwrap(),
-        removal_radius: None,
         counted: false,
+        ..Group::new(
+            "all",
+            catalog::named(&state.profile, &parameters)
+                .unwrap()
+                .unwrap(),
+        )
     });
     scene.agents = state
         .agents

@@ -279,12 +279,7 @@ fn each_group_uses_its_own_parameters() {
         ..Parameters::default()
     };
     let mut scene = scene(vec![], blend("sf"));
-    let group = scene.add_group(Group {
-        name: "strong".to_owned(),
-        blend: blend_with("sf", &strong),
-        removal_radius: None,
-        counted: true,
-    });
+    let group = scene.add_group(Group::new("strong", blend_with("sf", &strong)));
     scene.agents = vec![
         walker(vector(0.0, 0.0), vector(0.0, 0.0), vector(9.0, 0.0)),
         NewAgent {

@@ -59,6 +59,19 @@ pub struct Group {
     pub journey: Option<u16>,
 }
 
+impl Group {
+    /// Agents that never leave, without a journey.
+    pub fn new(name: &str, blend: Blend) -> Self {
+        Self {
+            name: name.to_owned(),
+            blend,
+            removal_radius: None,
+            counted: true,
+            journey: None,
+        }
+    }
+}
+
 /// Goals of the agents of a grid or source.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Goal {

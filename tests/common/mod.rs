@@ -80,12 +80,7 @@ pub fn blend_with(name: &str, parameters: &Parameters) -> Blend {
 pub fn scene(obstacles: Vec<Polygon>, blend: Blend) -> Scene {
     let mut scene = Scene::with_obstacles(obstacles);
     scene.precision = Precision::Double;
-    scene.add_group(Group {
-        name: "all".to_owned(),
-        blend,
-        removal_radius: None,
-        counted: true,
-    });
+    scene.add_group(Group::new("all", blend));
     scene
 }
 

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{Arrival, Crowd, Simulation, Stage, TripEnd};
-use crate::engine::journeys::{Kind, Status};
+use crate::engine::journeys::{Kind, Place, Status};
 use crate::engine::math::{Vector, direction, perpendicular};
 use crate::engine::neighbors::{BLOCK, TASK};
 use crate::engine::scene::Scene;
@@ -20,6 +20,30 @@ struct Crossing {
     line: [Vector; 2],
     /// The part of the move before the line.
     part: f64,
+}
+
+/// The surroundings of a line: after a move across the line, an agent is here.
+struct Line {
+    low: Vector,
+    high: Vector,
+}
+
+impl Line {
+    fn all(scene: &Scene) -> Vec<Self> {
+        let longest_step = scene.max_speed * scene.clock.time_step();
+        let margin = Vector::repeat(longest_step * (1.0 + 1e-9));
+        let lines = scene.journeys.places.iter().filter_map(Place::line);
+        let around = lines.map(|[a, b]| Self {
+            low: a.inf(&b) - margin,
+            high: a.sup(&b) + margin,
+        });
+        around.collect()
+    }
+
+    #[inline]
+    fn is_near(&self, p: Vector) -> bool {
+        (p.x >= self.low.x) & (p.x <= self.high.x) & (p.y >= self.low.y) & (p.y <= self.high.y)
+    }
 }
 
 impl Simulation {
@@ -51,22 +75,26 @@ impl Simulation {
 impl Crowd {
     /// All moves across lines, in the order in which they happened.
     fn crossings(&self, scene: &Scene, before: &[Vector]) -> Vec<Crossing> {
+        let lines = Line::all(scene);
         let closed: Vec<u16> = (0..scene.journeys.places.len() as u16)
             .filter(|&place| self.is_closed(scene, place))
             .collect();
         let agents = &self.agents;
         let crossing = |agent: usize| {
+            let to = agents.position[agent];
+            if !lines.iter().any(|line| line.is_near(to)) {
+                return None;
+            }
             let trip = agents.trip.get(agent).and_then(Option::as_ref);
             let trip = trip.filter(|trip| trip.status == Status::Walking);
             let own = trip.map_or(&[][..], |trip| {
                 let journey = &scene.journeys.journeys[usize::from(trip.journey)];
                 &journey.stage(trip.stage).places
             });
-            let [from, to] = [before[agent], agents.position[agent]];
             let crossings = own.iter().chain(&closed).filter_map(|&place| {
                 let place = usize::from(place);
                 let line = scene.journeys.places[place].line()?;
-                let part = crossed([from, to], line)?;
+                let part = crossed([before[agent], to], line)?;
                 Some(Crossing {
                     agent,
                     place,
@@ -81,11 +109,8 @@ impl Crowd {
             .with_min_len(TASK * BLOCK)
             .filter_map(crossing)
             .collect();
-        let key = |crossing: &Crossing| (crossing.part, agents.id[crossing.agent]);
-        found.sort_by(|a, b| {
-            let (a, b) = (key(a), key(b));
-            a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
-        });
+        let id = |crossing: &Crossing| agents.id[crossing.agent];
+        found.sort_by(|a, b| a.part.total_cmp(&b.part).then(id(a).cmp(&id(b))));
         found
     }
 

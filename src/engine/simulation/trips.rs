@@ -368,53 +368,59 @@ impl Crowd {
 
     /// Agents in queues move up, are served and go on.
     fn serve_queues(&mut self, scene: &Scene) {
-        let frame = self.clock.frame();
-        for (place, kind) in scene.journeys.places.iter().enumerate() {
-            let Kind::Queue(queue) = &kind.kind else {
-                continue;
+        let trips = self.agents.trip.iter().enumerate();
+        let queued = trips.filter_map(|(i, trip)| {
+            let trip = trip.as_ref()?;
+            let Status::Queued { ticket, .. } = trip.status else {
+                return None;
             };
-            let ticket = |trip: &Trip| match trip.status {
-                Status::Queued { ticket, .. } if usize::from(trip.place) == place => Some(ticket),
-                _ => None,
-            };
-            let trips = self.agents.trip.iter().enumerate();
-            let queued = trips.filter_map(|(i, trip)| Some((ticket(trip.as_ref()?)?, i)));
-            let mut queued: Vec<(u32, usize)> = queued.collect();
-            queued.sort_unstable();
-            for (ahead, (_, i)) in queued.into_iter().enumerate() {
-                let (id, position) = (self.agents.id[i], self.agents.position[i]);
-                let Some(trip) = &mut self.agents.trip[i] else {
-                    continue;
-                };
-                let spot = queue.spot(ahead);
-                trip.hold = Some(spot);
-                self.agents.goal[i] = spot;
-                let Status::Queued {
-                    ticket,
-                    since,
-                    until,
-                } = trip.status
-                else {
-                    continue;
-                };
-                let is_there = (position - spot).norm() <= JOINING;
-                let until = match until {
-                    None if ahead < queue.servers as usize && is_there => {
-                        let lasting = queue.service.draw(&mut stage_stream(scene, id, trip));
-                        Some(self.clock.coarse_frame_at(self.clock.time() + lasting))
-                    }
-                    until => until,
-                };
-                trip.status = Status::Queued {
-                    ticket,
-                    since,
-                    until,
-                };
-                if until.is_some_and(|until| until <= frame) {
-                    self.count_wait(i, since);
-                    self.go_on(scene, i);
+            Some((trip.place, ticket, i))
+        });
+        let mut queued: Vec<(u16, u32, usize)> = queued.collect();
+        queued.sort_unstable();
+        for one_queue in queued.chunk_by(|a, b| a.0 == b.0) {
+            let place = &scene.journeys.places[usize::from(one_queue[0].0)];
+            if let Kind::Queue(queue) = &place.kind {
+                for (ahead, &(.., i)) in one_queue.iter().enumerate() {
+                    self.serve(scene, queue, ahead, i);
                 }
             }
+        }
+    }
+
+    /// Moves agent `i`, which has `ahead` agents before it, up in its queue, and serves it at the front.
+    fn serve(&mut self, scene: &Scene, queue: &Queue, ahead: usize, i: usize) {
+        let (id, position) = (self.agents.id[i], self.agents.position[i]);
+        let Some(trip) = &mut self.agents.trip[i] else {
+            return;
+        };
+        let Status::Queued {
+            ticket,
+            since,
+            until,
+        } = trip.status
+        else {
+            return;
+        };
+        let spot = queue.spot(ahead);
+        trip.hold = Some(spot);
+        self.agents.goal[i] = spot;
+        let is_there = (position - spot).norm() <= JOINING;
+        let until = match until {
+            None if ahead < queue.servers as usize && is_there => {
+                let lasting = queue.service.draw(&mut stage_stream(scene, id, trip));
+                Some(self.clock.coarse_frame_at(self.clock.time() + lasting))
+            }
+            until => until,
+        };
+        trip.status = Status::Queued {
+            ticket,
+            since,
+            until,
+        };
+        if until.is_some_and(|until| until <= self.clock.frame()) {
+            self.count_wait(i, since);
+            self.go_on(scene, i);
         }
     }
 }

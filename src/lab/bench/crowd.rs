@@ -68,10 +68,8 @@ impl Crowd {
         let blend = catalog::named(self.profile, &self.parameters).ok_or_else(unknown)?;
         let mut scene = Scene::default();
         let group = scene.add_group(Group {
-            name: "crowd".to_owned(),
-            blend: blend.map_err(|_| unknown())?,
-            removal_radius: None,
             counted: false,
+            ..Group::new("crowd", blend.map_err(|_| unknown())?)
         });
         let ahead = if self.streams { AHEAD } else { 0.0 };
         let agent = |(k, place): (usize, Vector)| {

@@ -123,6 +123,7 @@ pub fn everything() -> Needs {
         social: true,
         avoidance: Some(AVOIDANCE),
         removal: true,
+        paces: true,
     }
 }
 

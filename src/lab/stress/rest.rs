@@ -163,10 +163,8 @@ impl Rest {
         scene.preferred_speed = 0.0;
         let profile = parameters.profile("sph", NavigationKind::Goal, true);
         let group = scene.add_group(Group {
-            name: "crowd".to_owned(),
-            blend: Blend::single(profile, parameters.sph()),
-            removal_radius: None,
             counted: false,
+            ..Group::new("crowd", Blend::single(profile, parameters.sph()))
         });
         let grid = Grid {
             min: Vector::zeros(),

@@ -80,6 +80,9 @@ pub fn log_events(stream: &RecordingStream, events: &[(f64, Event)]) -> Result<(
                 let text = format!("{name}: {count} agents begin to push");
                 (text, TextLogLevel::WARN)
             }
+            EventKind::Opened => (format!("{name} opens"), TextLogLevel::INFO),
+            EventKind::Closed => (format!("{name} closes"), TextLogLevel::WARN),
+            EventKind::Released => (format!("{name}: agents wait no longer"), TextLogLevel::INFO),
             EventKind::PushEnded => (format!("{name}: the push is over"), TextLogLevel::WARN),
         };
         set_time(stream, event.frame.cast_signed(), *time);
