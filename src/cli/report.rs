@@ -2,8 +2,9 @@
 
 use serde_json::{Map, Value, json};
 
+use crate::output::table::Table;
 use crate::runs::drive::Run;
-use crate::runs::summary::{Summary, value};
+use crate::runs::summary::{JourneyResult, PlaceResult, Summary, value};
 use crate::scenario::quote::shown;
 
 /// The summary, with threads and run times.
@@ -41,6 +42,7 @@ pub fn text(run: &Run, interrupted: bool) -> String {
         };
         text += &format!("  {:<24} {value:>10} {}\n", metric.name, metric.unit);
     }
+    text += &journeys(run);
     let threads = rayon::current_num_threads();
     let [ms, real_time_factor] = speed(run);
     text += &format!(
@@ -50,6 +52,33 @@ pub fn text(run: &Run, interrupted: bool) -> String {
         text += &format!("  {:<24} {ms:>10.4} ms\n", stage.name());
     }
     text
+}
+
+/// Tables of the journeys and places; empty without journeys.
+fn journeys(run: &Run) -> String {
+    let journeys = JourneyResult::all(&run.simulation);
+    let places = PlaceResult::all(&run.simulation);
+    if journeys.is_empty() {
+        return String::new();
+    }
+    let journeys = Table::of(&journeys)
+        .column("journey", |row| shown(&row.name))
+        .column("started", |row| row.left.started)
+        .column("left", |row| row.left.finished)
+        .fixed("mean s", 1, |row| row.left.mean_secs)
+        .fixed("50 % at s", 1, |row| row.left.t50_secs)
+        .fixed("95 %", 1, |row| row.left.t95_secs)
+        .fixed("all", 1, |row| row.left.t100_secs)
+        .fixed("waited s", 1, |row| row.left.waited_secs);
+    let places = Table::of(&places)
+        .column("place", |row| shown(&row.name))
+        .column("kind", |row| row.kind.as_str())
+        .column("passed", |row| row.passed)
+        .fixed("share %", 1, |row| row.share.map(|share| 100.0 * share))
+        .fixed("first s", 1, |row| row.from_to_secs.map(|[first, _]| first))
+        .fixed("last s", 1, |row| row.from_to_secs.map(|[_, last]| last))
+        .fixed("waited s", 1, |row| row.waited_secs);
+    format!("{}\n{}\n", journeys.table().text(), places.table().text())
 }
 
 /// Milliseconds per frame without output files, and the simulated time divided by the run time.

@@ -6,8 +6,11 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use crate::engine::journeys::Kind;
+use crate::engine::journeys::Place;
+use crate::engine::simulation::{PlaceState, Simulation};
 use crate::runs::drive::Run;
-use crate::scenario::measurements::Metric;
+use crate::scenario::measurements::{Left, Metric};
 
 /// The results of a run, part of what `--json` reports.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -37,6 +40,12 @@ pub struct Summary {
     /// Data of measurements that have more than values, such as snapshots, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub data: BTreeMap<String, Value>,
+    /// The journeys that agents have begun.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub journeys: Vec<JourneyResult>,
+    /// The places of these journeys: exits, waypoints, waiting areas and queues.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub places: Vec<PlaceResult>,
     /// Moves that were stopped at a wall that they would have crossed.
     pub contained_moves: u64,
     /// How many times a speed was clamped to `max_speed`.
@@ -63,6 +72,8 @@ impl Summary {
             agents: frame.agents.entered(),
             metrics: measured.map(|m| (m.name.clone(), value(&m))).collect(),
             data: run.metrics.data().collect(),
+            journeys: JourneyResult::all(simulation),
+            places: PlaceResult::all(simulation),
             contained_moves: outcome.contained_moves,
             clamped_speeds: outcome.clamped_speeds,
             displaced_agents: outcome.displaced.len(),
@@ -77,6 +88,80 @@ impl Summary {
     /// Data by name; `None` if they are not measured, have another form, or the run ended before them.
     pub fn data<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
         T::deserialize(self.data.get(name)?).ok()
+    }
+}
+
+/// The results of a journey.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct JourneyResult {
+    /// The name of the journey.
+    pub name: String,
+    /// How its agents have left.
+    #[serde(flatten)]
+    pub left: Left,
+}
+
+impl JourneyResult {
+    /// The results of all journeys that agents have begun.
+    pub fn all(simulation: &Simulation) -> Vec<Self> {
+        let journeys = simulation.scene().journeys.journeys.iter().enumerate();
+        let results = journeys.map(|(k, journey)| Self {
+            name: journey.name.clone(),
+            left: Left::of(simulation, Some(k as u16)),
+        });
+        results.filter(|result| result.left.started > 0).collect()
+    }
+}
+
+/// The results of a place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlaceResult {
+    /// The name of the place.
+    pub name: String,
+    /// `exit`, `waypoint`, `waiting area` or `queue`.
+    pub kind: String,
+    /// The number of agents that have passed it.
+    pub passed: u32,
+    /// Of an exit: the share of all agents that have left at exits.
+    pub share: Option<f64>,
+    /// The time of the first and the last agent that left here, seconds; `None` if it is no exit.
+    pub from_to_secs: Option<[f64; 2]>,
+    /// Of waiting areas and queues: the mean time that agents waited, seconds.
+    pub waited_secs: Option<f64>,
+}
+
+impl PlaceResult {
+    /// The results of all places; empty if no agent has begun a journey.
+    pub fn all(simulation: &Simulation) -> Vec<Self> {
+        let progress = simulation.progress();
+        if progress.begun.iter().all(|&count| count == 0) {
+            return Vec::new();
+        }
+        let places = &simulation.scene().journeys.places;
+        let arrivals = &simulation.outcome().arrivals;
+        let states = places.iter().zip(&progress.places).enumerate();
+        let result = |(k, (place, state)): (usize, (&Place, &PlaceState))| {
+            let trips = arrivals.iter().filter_map(|a| Some((a.time, a.trip?.exit)));
+            let all = trips.clone().count();
+            let here = trips.filter(|&(_, exit)| usize::from(exit) == k);
+            let times: Vec<f64> = here.map(|(time, _)| time).collect();
+            let passed = f64::from(state.passed);
+            let (kind, waits) = match place.kind {
+                Kind::Exit(_) => ("exit", false),
+                Kind::Line(_) | Kind::Disk { .. } => ("waypoint", false),
+                Kind::Waiting(_) => ("waiting area", true),
+                Kind::Queue(_) => ("queue", true),
+            };
+            Self {
+                name: place.name.clone(),
+                kind: kind.to_owned(),
+                passed: state.passed,
+                share: (place.is_exit() && all > 0).then(|| times.len() as f64 / all as f64),
+                from_to_secs: times.first().zip(times.last()).map(|(&a, &b)| [a, b]),
+                waited_secs: (waits && state.passed > 0).then(|| state.waited / passed),
+            }
+        };
+        states.map(result).collect()
     }
 }
 

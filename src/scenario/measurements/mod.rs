@@ -8,6 +8,7 @@ mod arrivals;
 mod closest;
 mod contacts;
 mod density;
+mod egress;
 mod fence;
 mod frame_time;
 mod integrity;
@@ -27,6 +28,7 @@ pub use arrivals::{Evacuated, FlowOfFirst, FlowUntil, Locked, Pauses, Uncounted}
 pub use closest::{Closest, closest};
 pub use contacts::ContactsAt;
 pub use density::Density;
+pub use egress::{Egress, Left};
 pub use frame_time::{FrameTime, StageTimes};
 pub use integrity::{Integrity, Watched};
 pub use jitter::Jitter;
@@ -85,6 +87,8 @@ pub enum Measurement {
     FlowOfFirst(FlowOfFirst),
     /// Flow of the arrivals until a given time.
     FlowUntil(FlowUntil),
+    /// How long people on journeys take to leave.
+    Egress(Egress),
     /// Number of counted arrivals.
     Evacuated(Evacuated),
     /// Number of arrivals that are not counted.
@@ -118,6 +122,7 @@ impl Measurement {
             Self::Density(keys) => started(keys),
             Self::FlowOfFirst(keys) => started(keys),
             Self::FlowUntil(keys) => started(keys),
+            Self::Egress(keys) => started(keys),
             Self::Evacuated(keys) => started(keys),
             Self::Uncounted(keys) => started(keys),
             Self::Pauses(keys) => started(keys),
