@@ -217,7 +217,7 @@ fn each_foreign_crate_is_used_in_one_place() {
         ("sysinfo", "lab/machine"),
         ("statrs", "analysis/statistics"),
         ("rustsim_crowd", "lab/bench"),
-        ("geo", "scenario/floor_plan"),
+        ("i_overlay", "scenario/floor_plan"),
     ] {
         assert_eq!(strays(krate, &[home]), Vec::<String>::new());
     }

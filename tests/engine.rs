@@ -12,6 +12,7 @@ mod convergence;
 mod determinism;
 mod enclosures;
 mod floor_plan;
+mod floor_plan_areas;
 mod floor_plan_pieces;
 mod floor_plan_robustness;
 mod floor_plan_unions;

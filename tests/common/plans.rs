@@ -33,7 +33,7 @@ pub fn multipolygon(polygons: &[Vec<Ring>]) -> String {
 }
 
 /// The edges of a ring.
-fn edges(ring: &Ring) -> impl Iterator<Item = [Vector; 2]> {
+pub fn edges(ring: &Ring) -> impl Iterator<Item = [Vector; 2]> {
     let ends = ring.iter().cycle().skip(1);
     ring.iter()
         .zip(ends)

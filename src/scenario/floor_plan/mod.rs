@@ -9,6 +9,7 @@
 //! are united, and obstacles are subtracted, so the result does not depend on how a plan is cut into pieces.
 //! Orientation, third coordinates, a closing point and repeated points do not matter.
 
+mod boundary;
 mod error;
 mod geojson;
 mod shape;

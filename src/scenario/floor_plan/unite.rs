@@ -1,16 +1,21 @@
 //! The union of areas minus the union of obstacles.
+//!
+//! i_overlay computes the winding numbers on both sides of every edge. Its own rings are not used: where areas touch
+//! at several points, it takes some outlines for holes.
 
-use geo::bool_ops::FillRule;
-use geo::orient::Direction;
-use geo::{BooleanOps, Coord, LineString, MultiPolygon, Orient, Polygon};
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::float::overlay::FloatOverlay;
+use i_overlay::i_float::int::point::IntPoint;
+use i_overlay::vector::edge::{CLIP_LEFT, CLIP_RIGHT, SUBJ_LEFT, SUBJ_RIGHT, VectorEdge};
 
+use super::boundary::{self, Edge, Point};
 use super::error::FloorPlanError;
 use super::shape::SAME;
 use crate::engine::geometry::{Area, Polygon as Solid, Ring, assemble};
 use crate::engine::math::{Vector, bounds};
 
-/// Largest distance between a computed and a given corner, relative to the whole extent: geo computes on a grid of
-/// about 2⁻³⁰ of it.
+/// Largest distance between a computed and a given corner, relative to the whole extent: i_overlay computes on a grid
+/// of about 2⁻³⁰ of it.
 const ROUNDING: f64 = 1.0 / (1 << 28) as f64;
 
 /// Closed outlines. A point is inside if its winding number is positive.
@@ -25,26 +30,26 @@ pub fn without(areas: &[Area], obstacles: &[Area]) -> Result<Vec<Area>, FloorPla
 /// near a given point are that point, to the last bit.
 ///
 /// # Errors
-/// Rings that cross each other in the result; no input is known that causes this.
+/// Rings that cross each other in the result, or do not close; no input is known that causes this.
 pub fn free(floors: &[Rings], bodies: &Rings) -> Result<Vec<Area>, FloorPlanError> {
     let Some((first, others)) = floors.split_first() else {
         return Ok(Vec::new());
     };
-    let mut free = to_geo(first).difference_with_fill_rule(&to_geo(bodies), FillRule::Positive);
-    for floor in others {
-        let so_far = to_geo(&oriented(&free));
-        free = so_far.intersection_with_fill_rule(&to_geo(floor), FillRule::Positive);
-    }
     let given = || floors.iter().chain([bodies]).flatten().flatten().copied();
-    let [low, high] = bounds(given()).unwrap_or_default();
-    let tolerance = SAME.max((high - low).max() * ROUNDING);
-    assemble(&oriented(&free), given(), tolerance).map_err(|(error, ring)| {
-        let distance = |p: &Vector| (p - ring[0]).norm();
+    let wrong = |at: Vector, reason: String| {
+        let distance = |p: &Vector| (p - at).norm();
         let nearest = given().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let place = nearest.map_or(String::new(), |p| format!("near ({}, {})", p.x, p.y));
-        let reason = error.to_string();
         FloorPlanError::Geometry { place, reason }
-    })
+    };
+    let unclosed = |at| wrong(at, "the boundary does not close".to_owned());
+    let mut free = overlay(first, bodies, |floor, body| floor && !body).map_err(unclosed)?;
+    for floor in others {
+        free = overlay(&free, floor, |one, other| one && other).map_err(unclosed)?;
+    }
+    let [low, high] = bounds(given()).unwrap_or_default();
+    let tolerance = SAME.max((high - low).max() * ROUNDING);
+    assemble(&free, given(), tolerance).map_err(|(error, ring)| wrong(ring[0], error.to_string()))
 }
 
 /// The rings of `areas`: outlines counterclockwise, holes clockwise.
@@ -70,26 +75,41 @@ pub fn outlines(obstacles: &[Solid]) -> (Vec<Rings>, Rings) {
     (floors.collect(), bodies.map(<[Vector]>::to_vec).collect())
 }
 
-fn to_geo(rings: &Rings) -> MultiPolygon {
-    let line =
-        |ring: &Vec<Vector>| LineString::from_iter(ring.iter().map(|p| Coord { x: p.x, y: p.y }));
-    let polygons = rings
-        .iter()
-        .map(|ring| Polygon::new(line(ring), Vec::new()));
-    polygons.collect()
-}
-
-/// The rings of geo's result: outlines counterclockwise, holes clockwise. geo itself gives holes that touch their
-/// outline the outline's orientation.
-fn oriented(area: &MultiPolygon) -> Rings {
-    let ring = |line: &LineString| {
-        let open = &line.0[..line.0.len().saturating_sub(1)];
-        open.iter().map(|c| Vector::new(c.x, c.y)).collect()
+/// The boundary of the points that are free, with them on the left. A point is free depending on whether it is inside
+/// `subject` and inside `clip`.
+///
+/// # Errors
+/// A point of a boundary that does not close.
+fn overlay(
+    subject: &Rings,
+    clip: &Rings,
+    is_free: impl Fn(bool, bool) -> bool,
+) -> Result<Rings, Vector> {
+    let paths = |rings: &Rings| -> Vec<Vec<[f64; 2]>> {
+        let path = |ring: &Vec<Vector>| ring.iter().map(|&p| p.into()).collect();
+        rings.iter().map(path).collect()
     };
-    let oriented = area.orient(Direction::Default);
-    let rings = oriented.iter().flat_map(|polygon| {
-        let holes = polygon.interiors().iter();
-        std::iter::once(polygon.exterior()).chain(holes).map(ring)
-    });
-    rings.collect()
+    let mut overlay = FloatOverlay::with_subj_and_clip(&paths(subject), &paths(clip));
+    let Some(found) = overlay.build_graph_view(FillRule::Positive) else {
+        return Ok(Vec::new());
+    };
+    let directed = |VectorEdge { a, b, fill }: VectorEdge| {
+        let inside = |side: u8| fill & side != 0;
+        let left = is_free(inside(SUBJ_LEFT), inside(CLIP_LEFT));
+        let right = is_free(inside(SUBJ_RIGHT), inside(CLIP_RIGHT));
+        let [a, b] = [a, b].map(|p| [p.x, p.y].map(i64::from));
+        match (left, right) {
+            (true, false) => Some(Edge { from: a, to: b }),
+            (false, true) => Some(Edge { from: b, to: a }),
+            _ => None,
+        }
+    };
+    let edges = found.graph.extract_separate_vectors().into_iter();
+    let place = |[x, y]: Point| {
+        let p = IntPoint::new(x as i32, y as i32);
+        Vector::from(found.adapter.int_to_float(&p))
+    };
+    let rings = boundary::rings(edges.filter_map(directed).collect()).map_err(place)?;
+    let ring = |points: Vec<Point>| points.into_iter().map(place).collect();
+    Ok(rings.into_iter().map(ring).collect())
 }
