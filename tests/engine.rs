@@ -19,6 +19,7 @@ mod floor_plan_unions;
 mod forces;
 mod geometry;
 mod geometry_robustness;
+mod journeys;
 mod kernel;
 mod math;
 mod measurements;

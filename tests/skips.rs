@@ -65,6 +65,7 @@ fn needs_follow_from_the_profiles() {
         social: false,
         avoidance: None,
         removal: false,
+        paces: false,
     };
     assert_eq!(needs("sph"), goal_only);
     let wide = Needs {

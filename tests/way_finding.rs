@@ -1,8 +1,10 @@
 //! Crowds that find their ways around walls.
 
 use sandbox::engine::simulation::Simulation;
-use sandbox::scenario::Scenario;
+use sandbox::engine::ways::Destination;
 use serde_json::{Value, json};
+
+use crate::common::simulated::{after, go_on, scenario};
 
 /// A corridor of 2 m that turns by 90° twice and leads back, and a group of agents at its start.
 fn around_the_corner(agents: u32) -> Value {
@@ -13,26 +15,6 @@ fn around_the_corner(agents: u32) -> Value {
                    "goal": [6, 9], "remove_within": 0.8}],
         "stop": {"when_empty": true}
     })
-}
-
-fn scenario(document: &Value, settings: &[&str]) -> Result<Scenario, String> {
-    let settings: Vec<_> = settings.iter().map(|text| text.parse().unwrap()).collect();
-    Scenario::parse(&document.to_string(), "f.json", &settings).map_err(|error| error.to_string())
-}
-
-/// The simulation after `secs` seconds.
-fn after(document: &Value, settings: &[&str], secs: f64) -> Simulation {
-    let scenario = scenario(document, settings).unwrap();
-    let mut simulation = Simulation::new(scenario.scene).unwrap();
-    go_on(&mut simulation, secs);
-    simulation
-}
-
-fn go_on(simulation: &mut Simulation, secs: f64) {
-    let last = simulation.frame().clock.frame_at(secs);
-    while simulation.frame().clock.frame() < last {
-        simulation.step().unwrap();
-    }
 }
 
 #[test]
@@ -95,7 +77,7 @@ fn an_agent_pushed_into_another_room_takes_the_new_shortest_way() {
     });
     let scenario = scenario(&rooms, &[]).unwrap();
     let ways = scenario.scene.ways.as_ref().unwrap();
-    let goal = [18.0, 5.0].into();
+    let goal = Destination::Goal([18.0, 5.0].into());
     let length = |y: f64| ways.way([2.0, y].into(), goal).unwrap().length;
     assert!(
         (length(4.0) - length(6.0)).abs() < 1e-9,

@@ -332,7 +332,7 @@ const LOOSE: f64 = 1.5;
 /// The densest spots, P/m².
 const DENSEST: f64 = 6.0;
 /// The most spots of an area.
-const MOST_SPOTS: f64 = 100_000.0;
+const MOST_SPOTS: f64 = 20_000.0;
 /// Spots keep this distance from walls, meters.
 const FROM_WALLS: f64 = 0.3;
 

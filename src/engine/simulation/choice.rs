@@ -16,10 +16,14 @@ const QUICKEST_EVERY: [f64; 2] = [2.0, 5.0];
 const CLEARLY_QUICKER: f64 = 0.8;
 /// The flow through a place is observed over this time, seconds.
 const OBSERVED: f64 = 10.0;
-/// The expected flow through an exit where none was observed, P/(m s): about what Weidmann (1993) gives.
+/// The least flow that agents expect through an exit, P/(m s): about what Weidmann (1993) gives.
 const FLOW_PER_METER: f64 = 1.3;
-/// The fewest agents by which a flow is observed.
+/// Within this distance, meters, this many agents make a crowd before an exit; then its flow is what it lets through.
+const CROWD: (f64, u32) = (2.0, 4);
+/// So many passes after the first one make a flow.
 const FEWEST_OBSERVED: usize = 5;
+/// The least flow that agents expect from observation, P/s.
+const LEAST_FLOW: f64 = 0.1;
 /// The width of the classes of distances in which agents are counted, meters.
 const BIN: f64 = 0.5;
 /// Farther agents are counted as this far, meters.
@@ -103,7 +107,7 @@ impl Chooser<'_> {
     }
 
     /// The length of the way to a place, meters; infinite if there is none.
-    fn length(&self, place: u16) -> f64 {
+    pub(super) fn length(&self, place: u16) -> f64 {
         let position = self.crowd.agents.position[self.agent];
         let ways = self.scene.ways.as_ref();
         let way = ways.and_then(|ways| ways.way(position, Destination::Place(place)));
@@ -128,22 +132,42 @@ impl Chooser<'_> {
         (length / speed).max(passing) + onward / speed
     }
 
-    /// The flow through a place, P/s: observed if enough agents have passed, else expected.
+    /// The flow that an agent expects through a place, P/s. Through an exit with a crowd before it, that is the flow
+    /// observed there. An exit without a crowd could let more through than it does: there it is the flow per meter
+    /// observed at the best exit.
     fn flow(&self, place: &Place, state: &PlaceState) -> f64 {
-        let expected = match &place.kind {
-            Kind::Exit(exit) => {
-                let width = (exit.line[1] - exit.line[0]).norm();
-                let most = exit.most_per_sec.unwrap_or(f64::INFINITY);
-                (FLOW_PER_METER * width).min(most)
-            }
-            Kind::Line([a, b]) => FLOW_PER_METER * (b - a).norm(),
-            Kind::Queue(queue) => f64::from(queue.servers) / queue.service.mean(),
-            Kind::Disk { .. } | Kind::Waiting(_) => f64::INFINITY,
+        let most = match &place.kind {
+            Kind::Exit(exit) => exit.most_per_sec.unwrap_or(f64::INFINITY),
+            Kind::Line(_) => f64::INFINITY,
+            Kind::Queue(queue) => return f64::from(queue.servers) / queue.service.mean(),
+            Kind::Disk { .. } | Kind::Waiting(_) => return f64::INFINITY,
         };
-        let is_observed = state.recent.len() >= FEWEST_OBSERVED && expected.is_finite();
-        let observed = state.recent.len() as f64 / OBSERVED.min(self.crowd.clock.time());
-        if is_observed { observed } else { expected }
+        let (near, crowd) = CROWD;
+        if state.nearer_than(near) >= crowd
+            && let Some(flow) = self.observed(state)
+        {
+            return flow.max(LEAST_FLOW);
+        }
+        let places = self.scene.journeys.places.iter();
+        let states = places.zip(&self.crowd.progress.places);
+        let flows = states.filter_map(|(place, state)| Some(self.observed(state)? / width(place)?));
+        let per_meter = flows.fold(FLOW_PER_METER, f64::max);
+        width(place).map_or(most, |width| (per_meter * width).min(most))
     }
+
+    /// The flow through a place since the first of the agents that passed it during the last seconds, P/s; `None` if
+    /// these were too few.
+    fn observed(&self, state: &PlaceState) -> Option<f64> {
+        let clock = &self.crowd.clock;
+        let others = state.recent.len().checked_sub(1)?;
+        let since = clock.time() - clock.time_at(state.recent[0]);
+        (others >= FEWEST_OBSERVED && since > 0.0).then(|| others as f64 / since)
+    }
+}
+
+/// The length of the line of a place, meters.
+fn width(place: &Place) -> Option<f64> {
+    place.line().map(|[a, b]| (b - a).norm())
 }
 
 /// The place with the least value; `before` unless another one is `better` than it.
@@ -163,6 +187,20 @@ fn best(
 }
 
 impl PlaceState {
+    /// Counts an agent that has come to be bound for this place from `length` meters away, or no longer is.
+    pub(super) fn count(&mut self, length: f64, comes: bool) {
+        let bin = (length.min(FARTHEST_BIN) / BIN) as usize;
+        let last = self.nearer.last().copied().unwrap_or(0);
+        self.nearer.resize(self.nearer.len().max(bin + 2), last);
+        for count in &mut self.nearer[bin + 1..] {
+            *count = if comes {
+                *count + 1
+            } else {
+                count.saturating_sub(1)
+            };
+        }
+    }
+
     /// The number of agents bound for this place that are nearer to it than `length` meters.
     fn nearer_than(&self, length: f64) -> u32 {
         let last = self.nearer.last().copied().unwrap_or(0);

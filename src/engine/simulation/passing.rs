@@ -136,7 +136,8 @@ impl Crowd {
                 continue;
             }
             if let Some(rate) = exit.most_per_sec {
-                state.ready = state.ready.max(now - 1.0 / rate) + 1.0 / rate;
+                // What a frame is too late is not lost.
+                state.ready = state.ready.max(now - self.clock.time_step()) + 1.0 / rate;
             }
             self.take_place(i, crossing.place);
             leaving.push(i);

@@ -65,6 +65,25 @@ impl Default for PlaceState {
     }
 }
 
+impl PlaceState {
+    /// Takes the first free one of `spots`, or the free one nearest to a point; beyond the last spot if none is free.
+    fn free_spot(&mut self, spots: &[Vector], near: Option<Vector>) -> usize {
+        self.taken.resize(self.taken.len().max(spots.len()), false);
+        let mut free = (0..spots.len()).filter(|&k| !self.taken[k]);
+        let spot = match near {
+            None => free.next(),
+            Some(p) => {
+                let distance = |&k: &usize| (spots[k] - p).norm_squared();
+                free.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+            }
+        };
+        let spot = spot.unwrap_or(spots.len());
+        self.taken.resize(self.taken.len().max(spot + 1), true);
+        self.taken[spot] = true;
+        spot
+    }
+}
+
 impl Progress {
     /// Does this progress fit `scene`?
     pub(super) fn fits(&self, scene: &Scene) -> bool {
@@ -195,10 +214,24 @@ impl Crowd {
         trip.chooses_at = chooses_at;
         trip.choices += 1;
         if before != Some(place) {
-            if let Some(before) = before {
-                self.progress.places[usize::from(before)].bound -= 1;
+            let changes = before.map(|before| (before, false)).into_iter();
+            let changes = changes.chain([(place, true)]);
+            // The next agents to choose see this choice.
+            let lengths = scene.journeys.has_quickest().then(|| {
+                let lengths = changes.clone().map(|(place, _)| chooser.length(place));
+                lengths.collect::<Vec<f64>>()
+            });
+            for (k, (place, comes)) in changes.enumerate() {
+                let state = &mut self.progress.places[usize::from(place)];
+                state.bound = if comes {
+                    state.bound + 1
+                } else {
+                    state.bound - 1
+                };
+                if let Some(lengths) = &lengths {
+                    state.count(lengths[k], comes);
+                }
             }
-            self.progress.places[usize::from(place)].bound += 1;
             trip.place = place;
             trip.status = Status::Walking;
             trip.hold = None;
@@ -297,14 +330,14 @@ impl Crowd {
             self.go_on(scene, i);
             return;
         }
-        let spot = state.taken.iter().position(|&taken| !taken);
-        let spot = spot.unwrap_or(state.taken.len());
-        state.taken.resize(state.taken.len().max(spot + 1), true);
-        state.taken[spot] = true;
-        // Where more agents wait than there are spots, the others stay where they are.
-        trip.hold = waiting.spots.get(spot).copied();
-        trip.hold = trip.hold.or(Some(self.agents.position[i]));
-        self.agents.goal[i] = trip.hold.unwrap_or(self.agents.goal[i]);
+        let position = self.agents.position[i];
+        let starts_here = trip.entered >= now;
+        let spot = state.free_spot(&waiting.spots, starts_here.then_some(position));
+        // Agents that start here, and those for which there is no spot, stay where they are.
+        let given = waiting.spots.get(spot).filter(|_| !starts_here);
+        let hold = given.copied().unwrap_or(position);
+        trip.hold = Some(hold);
+        self.agents.goal[i] = hold;
         trip.status = Status::Waiting {
             spot: spot as u32,
             since: self.clock.frame(),
