@@ -136,7 +136,9 @@ fn neighbors(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("neighbors");
     group.throughput(Throughput::Elements(u64::from(AGENTS)));
     let simulation = evaluated(&Crowd::concert(AGENTS), Precision::Mixed);
-    let ranges = simulation.scene().ranges(simulation.needs());
+    let ranges = simulation
+        .scene()
+        .ranges(simulation.needs(), simulation.frame().agents);
     let mut agents = simulation.frame().agents.clone();
     let mut neighbors = Neighbors::default();
     group.bench_function("sort", |bencher| {

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::program;
-use crate::common::{blend, block, room, scene, vector};
+use crate::common::{blend, block, go_to, on_threads, room, scene, vector};
 use sandbox::engine::neighbors::ListPolicy;
 use sandbox::engine::pairs::Precision;
 use sandbox::engine::placement::Grid;
@@ -53,18 +53,6 @@ fn busy_room(profile: &str) -> Scene {
         },
     }];
     scene
-}
-
-fn go_to(simulation: &mut Simulation, frame: u64) {
-    while simulation.frame().clock.frame() < frame {
-        simulation.step().unwrap();
-    }
-    simulation.evaluate().unwrap();
-}
-
-fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.unwrap().install(work)
 }
 
 /// Saves and resumes a run at each frame of `stops`, each time on another number of threads. Returns the digests at
@@ -182,7 +170,7 @@ fn damaged_and_foreign_checkpoints_are_refused_with_the_reason() {
     let mut newer = whole.clone();
     newer[19] = 99;
     assert!(
-        refused(&newer).ends_with("is a checkpoint of version 99; this program reads version 4")
+        refused(&newer).ends_with("is a checkpoint of version 99; this program reads version 5")
     );
     assert!(refused(b"{\"name\": \"x\"}").ends_with("is not a checkpoint"));
     let nowhere = Checkpoint::read(Path::new("/nowhere/c")).unwrap_err();

@@ -1,6 +1,8 @@
 //! Tests of the model, the numerics and the parsing of scenarios, in one program: linking one per file would take
 //! longer than running them.
 
+#![recursion_limit = "256"] // a scenario with every key, in `json!`
+
 mod common;
 
 mod architecture;
@@ -9,7 +11,9 @@ mod bodies;
 mod conservation;
 mod containment;
 mod convergence;
+mod crowds;
 mod determinism;
+mod distributions;
 mod enclosures;
 mod floor_plan;
 mod floor_plan_areas;

@@ -2,6 +2,7 @@
 
 use crate::common::{blend_with, polygon, scene};
 use rand::Rng;
+use sandbox::engine::agents::Agents;
 use sandbox::engine::geometry::Polygon;
 use sandbox::engine::random::{Purpose, stream};
 use sandbox::engine::scene::Scene;
@@ -93,7 +94,7 @@ fn squares(count: usize, side: f64, span: f64, support_radius: f64) -> (Scene, f
         ..Parameters::default()
     };
     let scene = scene(solids, blend_with("sph", &parameters));
-    let ranges = scene.ranges(&scene.needs());
+    let ranges = scene.ranges(&scene.needs(), &Agents::default());
     (scene, ranges.support + ranges.drift)
 }
 

@@ -88,7 +88,7 @@ fn coarse_lists_miss_no_wall_however_rarely_they_are_rebuilt() {
 #[test]
 fn lists_for_the_midpoint_method_cover_half_a_step_ahead() {
     let finest = streams(ListPolicy::Complete, Integrator::Midpoint, 0.08);
-    let ranges = finest.scene().ranges(finest.needs());
+    let ranges = finest.scene().ranges(finest.needs(), finest.frame().agents);
     let half_a_move = 0.5 * finest.scene().max_speed * 0.08;
     assert!(ranges.margin >= 0.5 * sandbox::engine::neighbors::SKIN + half_a_move);
 }

@@ -27,12 +27,18 @@ fn whole() -> Value {
         "obstacles": [[[0, 0], [1, 0], [1, 1]], [[[3, 1], [5, 1], [5, 3]], [[4, 1.5], [4.5, 1.5], [4.5, 2]]]],
         "agents": [
             {"position": [2, 1], "velocity": [1, 0], "radius": 0.2, "mass": 1, "goal": [8, 1],
-             "mean_density": 2, "profile": {"navigation": "rvo", "sph": false}, "remove_within": 1,
+             "mean_density": 2, "preferred_speed": 1.3, "premovement_secs": 2, "profile": {"navigation": "rvo", "sph": false}, "remove_within": 1,
              "counted": false},
             {"position": [3, 1], "profile": null}
         ],
         "grids": [{"name": "g", "min": [7, 3], "max": [8, 4], "columns": 2, "rows": 2, "jitter": 0.1,
-                   "goal_offset": [1, 0], "profile": "rvo->sph", "remove_within": 0.5, "counted": true}],
+                   "goal_offset": [1, 0], "preferred_speed": "weidmann_age", "radius": {"values": [[0.2, 1]]},
+                   "premovement_secs": {"exponential": {"mean": 2, "min": 1, "max": 9}}, "profile": "rvo->sph", "remove_within": 0.5, "counted": true}],
+        "crowds": [{"name": "c", "area": [[[6.5, 1], [8.5, 1], [8.5, 3], [6.5, 3]], [[7, 2], [8, 2], [8, 2.5]]],
+                    "number": 4, "spacing": "grid", "goal": [8, 8], "profile": "sph", "remove_within": 0.5,
+                    "counted": true, "preferred_speed": {"normal": {"mean": 1.34, "std": 0.2, "min": 1, "max": 2}},
+                    "radius": {"uniform": [0.2, 0.22]},
+                    "premovement_secs": {"lognormal": {"mean": 2, "std": 1, "min": 1, "max": 9}}}],
         "sources": [{"name": "s", "min": [7, 2], "max": [8, 2], "columns": 2, "rows": 1, "goal": [1, 0],
                      "start_secs": 1, "every_secs": 1, "times": 3}],
         "events": [{"name": "e", "at_secs": 1, "for_secs": 1, "region": [[0, 0], [5, 5]], "goal_scale": 3,
@@ -114,6 +120,9 @@ fn every_object_has_the_keys_that_the_parser_knows() {
         ("/profile/blend/0", "/$defs/Step"),
         ("/agents/0", "/$defs/Agent"),
         ("/grids/0", "/properties/grids/items"),
+        ("/crowds/0", "/$defs/Crowd"),
+        ("/crowds/0/preferred_speed/normal", "/$defs/Normal"),
+        ("/crowds/0/premovement_secs/lognormal", "/$defs/Lognormal"),
         ("/sources/0", "/properties/sources/items"),
         ("/events/0", "/$defs/Event"),
         ("/measurements/0/density", "/$defs/Density"),
@@ -188,7 +197,7 @@ fn every_enum_has_the_words_that_the_parser_knows() {
 }
 
 /// Messages about rules that no schema can express: relations between values, and geometry.
-const RELATIONS: [&str; 22] = [
+const RELATIONS: &[&str] = &[
     "lower left corner comes first",
     "too many",
     "is already measured",
@@ -211,6 +220,17 @@ const RELATIONS: [&str; 22] = [
     "floating point `1.8446744073709552e+19`", // an integer for a schema
     "profiles in one blend",
     "no free point is near",
+    "needs either `",
+    "do not fit",
+    "lies in obstacles",
+    "two rings cross",
+    "the smaller number comes first",
+    "is not between",
+    "one in a million",
+    "is not below max",
+    "needs at least one value",
+    "a weight must",
+    "is for `preferred_speed` only",
 ];
 
 #[test]

@@ -49,9 +49,15 @@ fn every_key_of_a_file_and_every_parameter_is_documented_once() {
 #[test]
 fn the_keys_of_nested_objects_are_documented() {
     let nested = nested_settings();
-    for (list, required) in [("agents", 1), ("grids", 4), ("sources", 5), ("events", 3)] {
+    for (list, required) in [
+        ("agents", 1),
+        ("grids", 4),
+        ("crowds", 1),
+        ("sources", 5),
+        ("events", 3),
+    ] {
         let first = json!({"?": 0, "position": [0, 0], "min": [0, 0], "max": [0, 0], "columns": 1, "rows": 1,
-            "every_secs": 1, "at_secs": 0, "for_secs": 0, "region": [[0, 0], [0, 0]]});
+            "every_secs": 1, "area": [[0, 0], [9, 0], [9, 9]], "at_secs": 0, "for_secs": 0, "region": [[0, 0], [0, 0]]});
         let documented = &nested.iter().find(|(name, _)| name == list).unwrap().1;
         let documented: Vec<&str> = documented.split(", ").collect();
         let optional = documented.iter().filter(|key| key.ends_with('?'));
@@ -75,6 +81,11 @@ fn the_keys_of_nested_objects_are_documented() {
              jitter, closest, integrity, speed_by_density or frame_time",
         ),
         ("measurements.density", "at_secs, region?"),
+        (
+            "grids.preferred_speed",
+            "one of uniform, normal, lognormal, weibull, gamma, exponential, values or weidmann_age",
+        ),
+        ("grids.preferred_speed.normal", "mean, std, max?, min?"),
         ("stop", "idle_secs?, when_empty?"),
         ("view", "region, opens_at_secs?"),
         (

@@ -2,6 +2,7 @@
 
 use crate::common;
 use crate::common::{blend, blend_with, block, person, rectangle, room, scene, vector};
+use sandbox::engine::agents::Agents;
 use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::forces::near::Wanted;
 use sandbox::engine::profile::Blend;
@@ -142,9 +143,15 @@ fn agents_without_forces_still_walk() {
 #[test]
 fn without_avoidance_no_neighbors_within_five_meters_are_searched() {
     let scene = crowd(blend("sph")).scene().clone();
-    assert_eq!(scene.ranges(&scene.needs()).avoidance, None);
+    assert_eq!(
+        scene.ranges(&scene.needs(), &Agents::default()).avoidance,
+        None
+    );
     let scene = crowd(blend("sf")).scene().clone();
-    assert_eq!(scene.ranges(&scene.needs()).avoidance, Some(5.0));
+    assert_eq!(
+        scene.ranges(&scene.needs(), &Agents::default()).avoidance,
+        Some(5.0)
+    );
 }
 
 #[test]

@@ -209,15 +209,27 @@ fn three_digits(value: f64) -> f64 {
     format!("{rounded:.2e}").parse().unwrap_or(rounded)
 }
 
+/// The share of drawn radii that may be smaller than assumed: a normal distribution has no smallest radius.
+const RARE: f64 = 1e-6;
+
 /// The smallest mass that an agent of the scene has or may be assigned.
 fn lightest(scene: &Scene) -> f64 {
     let of_radius = |radius: f64| (radius / REFERENCE_RADIUS).powi(2);
     let drawn = of_radius(RADIUS_RANGE[0]);
+    let of_groups = scene.groups.iter().map(|group| match &group.traits.radius {
+        Some(radius) => of_radius(radius.quantile(RARE)),
+        None => drawn,
+    });
+    let of_groups: Vec<f64> = of_groups.collect();
+    let of_group = |group: u16| of_groups[usize::from(group)];
     let given = scene.agents.iter().map(|agent| {
         let radius = agent.radius.map(of_radius);
-        agent.mass.or(radius).unwrap_or(drawn)
+        agent
+            .mass
+            .or(radius)
+            .unwrap_or_else(|| of_group(agent.group))
     });
-    let entering = (!scene.sources.is_empty()).then_some(drawn);
+    let entering = scene.sources.iter().map(|source| of_group(source.group));
     given.chain(entering).reduce(f64::min).unwrap_or(drawn)
 }
 

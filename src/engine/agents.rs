@@ -29,6 +29,10 @@ pub struct NewAgent {
     pub mass: Option<f64>,
     /// ρ̂ of the previous frame, P/m²; if `None`, the density from agents alone in its first frame.
     pub mean_density: Option<f64>,
+    /// s_pref, m/s; the scene's if `None`.
+    pub preferred_speed: Option<f64>,
+    /// Time until it walks, seconds; 0 if `None`.
+    pub premovement: Option<f64>,
     /// Its [`Group`](crate::engine::scene::Group).
     pub group: u16,
 }
@@ -43,12 +47,14 @@ impl NewAgent {
             radius: None,
             mass: None,
             mean_density: None,
+            preferred_speed: None,
+            premovement: None,
             group,
         }
     }
 }
 
-/// The state of all agents. All arrays but the last five have the same length. An index is valid until agents are
+/// The state of all agents. All arrays up to `push` have the same length. An index is valid until agents are
 /// next sorted or removed; an `id` never changes.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Agents {
@@ -87,6 +93,12 @@ pub struct Agents {
     /// The factor of the zone where the agent is on its preferred speed; `None` for agents that entered since the last
     /// coarse frame. Empty in scenes without zones.
     pub zone: Vec<Option<f64>>,
+    /// s_pref, m/s. Empty while all agents have the scene's.
+    pub preferred_speed: Vec<f64>,
+    /// s_max, m/s. Empty while all agents have the scene's.
+    pub max_speed: Vec<f64>,
+    /// The time from which the agent walks, seconds. Empty while no agent had to wait.
+    pub walks_from: Vec<f64>,
     next_id: u32,
 }
 
@@ -127,7 +139,14 @@ impl Agents {
             self.group.len(),
             self.push.len(),
         ];
-        always.iter().all(|&len| len == count) && sometimes.iter().all(|&len| len <= count)
+        let all_or_none = [
+            self.preferred_speed.len(),
+            self.max_speed.len(),
+            self.walks_from.len(),
+        ];
+        always.iter().all(|&len| len == count)
+            && sometimes.iter().all(|&len| len <= count)
+            && all_or_none.iter().all(|&len| len == count || len == 0)
     }
 
     /// The current index of agent `id`; `None` if it has left.
@@ -144,10 +163,7 @@ impl Agents {
     pub fn enter(&mut self, new: NewAgent, seed: u64) -> u32 {
         let id = self.next_id;
         self.next_id += 1;
-        let radius = new.radius.unwrap_or_else(|| {
-            let [low, high] = RADIUS_RANGE;
-            random::stream(seed, Purpose::Body, id, 0).random_range(low..=high)
-        });
+        let radius = new.radius.unwrap_or_else(|| radius_of(seed, id));
         self.id.push(id);
         self.position.push(new.position);
         self.velocity.push(new.velocity);
@@ -160,6 +176,33 @@ impl Agents {
         self.group.push(new.group);
         self.push.push(None);
         id
+    }
+
+    /// Sets s_pref and s_max of the agent that entered last, m/s; `scene` has those of agents without their own.
+    pub fn set_speeds(&mut self, own: Option<[f64; 2]>, scene: [f64; 2]) {
+        let [preferred, max] = own.unwrap_or(scene);
+        set_last(
+            &mut self.preferred_speed,
+            self.id.len(),
+            preferred,
+            scene[0],
+        );
+        set_last(&mut self.max_speed, self.id.len(), max, scene[1]);
+    }
+
+    /// Sets the time in seconds from which the agent that entered last walks; `None`: from its entry.
+    pub fn set_start(&mut self, walks_from: Option<f64>) {
+        set_last(
+            &mut self.walks_from,
+            self.id.len(),
+            walks_from.unwrap_or(0.0),
+            0.0,
+        );
+    }
+
+    /// Do all agents walk at the scene's preferred speed, all the time?
+    pub fn walk_alike(&self) -> bool {
+        self.preferred_speed.is_empty() && self.walks_from.is_empty()
     }
 
     /// Finds the ways of all agents in coarse frames, and of those that entered since in every frame. `seed` is that of
@@ -212,6 +255,15 @@ impl Agents {
             self.zone.resize(self.len(), None);
             arrange(&mut self.zone, order);
         }
+        for values in [
+            &mut self.preferred_speed,
+            &mut self.max_speed,
+            &mut self.walks_from,
+        ] {
+            if !values.is_empty() {
+                arrange(values, order);
+            }
+        }
         arrange(&mut self.id, order);
         arrange(&mut self.position, order);
         arrange(&mut self.velocity, order);
@@ -222,6 +274,20 @@ impl Agents {
         arrange(&mut self.newcomer, order);
         arrange(&mut self.group, order);
         arrange(&mut self.push, order);
+    }
+}
+
+/// D_i of agent `id`, if neither it nor its group has another, meters. `seed` is that of the population.
+pub fn radius_of(seed: u64, id: u32) -> f64 {
+    let [low, high] = RADIUS_RANGE;
+    random::stream(seed, Purpose::Body, id, 0).random_range(low..=high)
+}
+
+/// Appends the value of agent `count - 1` to an array that is empty while all agents have the value `usual`.
+fn set_last(values: &mut Vec<f64>, count: usize, value: f64, usual: f64) {
+    if value != usual || !values.is_empty() {
+        values.resize(count - 1, usual);
+        values.push(value);
     }
 }
 

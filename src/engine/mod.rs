@@ -7,11 +7,11 @@ pub mod math;
 
 pub mod random;
 
+pub mod distribution;
+
 pub mod geometry;
 
 pub mod ways;
-
-pub mod distribution;
 
 pub mod journeys;
 
@@ -20,6 +20,8 @@ pub mod kernel;
 pub mod clock;
 
 pub mod agents;
+
+pub mod traits;
 
 pub mod neighbors;
 
@@ -36,6 +38,8 @@ pub mod forces;
 pub mod profile;
 
 pub mod placement;
+
+pub mod packing;
 
 pub mod scene;
 

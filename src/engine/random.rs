@@ -19,6 +19,12 @@ pub enum Purpose {
     Choice = 4,
     /// How long agents wait or are served.
     Waiting = 5,
+    /// Preferred speed of an agent.
+    Speed = 10,
+    /// Time before an agent starts to walk.
+    Premovement = 11,
+    /// Places of a crowd.
+    Crowd = 12,
 }
 
 /// Base-2 logarithm of the 32-bit words reserved per frame: enough for eight million draws of 64 bits.

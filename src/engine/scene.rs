@@ -15,6 +15,7 @@ use crate::engine::neighbors::{ListPolicy, Ranges, SKIN};
 use crate::engine::pairs::Precision;
 use crate::engine::placement::Grid;
 use crate::engine::profile::{Blend, Override, Profile};
+use crate::engine::traits::Traits;
 use crate::engine::ways::Ways;
 
 /// How the state is advanced by one frame (§5).
@@ -57,6 +58,8 @@ pub struct Group {
     pub counted: bool,
     /// The number of the journey of its agents; `None`: each walks to its own goal.
     pub journey: Option<u16>,
+    /// What is drawn for each of its agents.
+    pub traits: Traits,
 }
 
 impl Group {
@@ -68,6 +71,7 @@ impl Group {
             removal_radius: None,
             counted: true,
             journey: None,
+            traits: Traits::default(),
         }
     }
 }
@@ -116,6 +120,10 @@ pub struct Push {
     pub change: Override,
 }
 
+/// The lowest s_max of agents with a preferred speed of their own, m/s: also agents that walk slowly or stand can be
+/// pushed.
+pub const SLOWEST_MAX_SPEED: f64 = 0.5;
+
 /// An axis-aligned rectangle, borders included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Region {
@@ -153,6 +161,8 @@ pub struct Scene {
     pub preferred_speed: f64,
     /// s_max, m/s (§5.6).
     pub max_speed: f64,
+    /// s_max of agents with a preferred speed of their own, divided by that speed; `None`: they have the scene's s_max.
+    pub max_speed_ratio: Option<f64>,
     /// The obstacles and their walls.
     pub walls: Walls,
     /// Groups by index.
@@ -184,6 +194,7 @@ impl Default for Scene {
             neighbor_lists: ListPolicy::default(),
             preferred_speed: 1.4,
             max_speed: 1.8,
+            max_speed_ratio: Some(1.8 / 1.4),
             walls: Walls::new(Vec::new()),
             groups: Vec::new(),
             agents: Vec::new(),
@@ -243,10 +254,34 @@ impl Scene {
         }
     }
 
-    /// The speed at which agent `i` wants to walk now, m/s.
-    pub fn pace(&self, agents: &Agents, i: usize) -> f64 {
+    /// The speed at which agent `i` wants to walk at `time` seconds, m/s.
+    pub fn pace(&self, agents: &Agents, i: usize, time: f64) -> f64 {
+        if agents.walks_from.get(i).is_some_and(|&from| time < from) {
+            return 0.0;
+        }
+        let own = agents.preferred_speed.get(i);
         let factor = agents.zone.get(i).copied().flatten();
-        self.preferred_speed * factor.unwrap_or(1.0)
+        own.copied().unwrap_or(self.preferred_speed) * factor.unwrap_or(1.0)
+    }
+
+    /// s_pref and s_max of an agent with this preferred speed of its own, m/s.
+    pub fn own_speeds(&self, preferred: f64) -> [f64; 2] {
+        let ratio = self.max_speed_ratio;
+        let most = ratio.map_or(self.max_speed, |ratio| {
+            (preferred * ratio).max(SLOWEST_MAX_SPEED)
+        });
+        [preferred, most]
+    }
+
+    /// s_max of agent `i`, m/s.
+    pub fn max_speed(&self, agents: &Agents, i: usize) -> f64 {
+        agents.max_speed.get(i).copied().unwrap_or(self.max_speed)
+    }
+
+    /// The largest s_max of all agents, m/s.
+    fn highest_speed(&self, agents: &Agents) -> f64 {
+        let own = agents.max_speed.iter().copied().reduce(f64::max);
+        own.unwrap_or(self.max_speed)
     }
 
     /// The distinct social forces of all profiles.
@@ -261,14 +296,14 @@ impl Scene {
         different
     }
 
-    /// The ranges of the neighbor search.
-    pub fn ranges(&self, needs: &Needs) -> Ranges {
+    /// The ranges of the neighbor search for these agents.
+    pub fn ranges(&self, needs: &Needs, agents: &Agents) -> Ranges {
         let support = self
             .groups
             .iter()
             .map(|group| group.blend.sph.support_radius)
             .fold(0.0, f64::max);
-        let longest_step = self.max_speed * self.clock.time_step();
+        let longest_step = self.highest_speed(agents) * self.clock.time_step();
         let ahead = match self.integrator {
             Integrator::Midpoint => 0.5 * longest_step, // forces are also evaluated half a step ahead
             _ => 0.0,

@@ -139,8 +139,16 @@ fn empty_scene(keys: &File) -> Result<Scene, Problem> {
         neighbor_lists: keys.neighbor_lists,
         preferred_speed: keys.preferred_speed.unwrap_or(paper.preferred_speed),
         max_speed: keys.max_speed.unwrap_or(paper.max_speed),
+        max_speed_ratio: max_speed_ratio(keys, &paper),
         ..Scene::with_obstacles(plan::solids(keys)?)
     })
+}
+
+/// s_max / s_pref of agents with a preferred speed of their own; `None` if the file gives s_max.
+fn max_speed_ratio(keys: &File, paper: &Scene) -> Option<f64> {
+    let preferred = keys.preferred_speed.filter(|&speed| speed > 0.0);
+    let ratio = paper.max_speed / preferred.unwrap_or(paper.preferred_speed);
+    keys.max_speed.is_none().then_some(ratio)
 }
 
 fn clock(keys: &File, time_step: f64) -> Clock {

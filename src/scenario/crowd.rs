@@ -1,7 +1,8 @@
-//! Agents, grids and sources of a file → groups, agents and sources of a scene.
+//! Agents, grids, crowds and sources of a file → groups, agents and sources of a scene.
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::distribution::traits;
 use super::error::{Problem, Under, suggestion};
 use super::file::{self, Corners, File};
 use super::journeys::TO_NEAREST_EXIT;
@@ -10,9 +11,11 @@ use super::quote::shown;
 use super::range::region;
 use crate::engine::agents::NewAgent;
 use crate::engine::math::Vector;
+use crate::engine::packing::Body;
 use crate::engine::placement::Grid;
 use crate::engine::profile::Blend;
 use crate::engine::scene::{Goal, Group, Region, Scene, Source};
+use crate::engine::traits::Traits;
 
 /// Most groups or pushes: their numbers have 16 bits.
 pub(super) const MOST_NUMBERED: usize = u16::MAX as usize;
@@ -25,13 +28,15 @@ const ROUNDING: f64 = 1e-9;
 
 /// Adds the agents to a scene.
 pub(super) struct Crowd<'a> {
-    file: &'a File,
+    pub file: &'a File,
     default: &'a Blend,
-    scene: &'a mut Scene,
+    pub scene: &'a mut Scene,
     /// Groups of single agents, by behavior.
     shared: BTreeMap<String, u16>,
     /// The different profiles defined in full.
     custom: BTreeSet<String>,
+    /// The bodies of the first agents of the scene, as far as they have been needed.
+    pub bodies: Vec<Body>,
 }
 
 impl<'a> Crowd<'a> {
@@ -43,10 +48,11 @@ impl<'a> Crowd<'a> {
             scene,
             shared: BTreeMap::new(),
             custom: BTreeSet::new(),
+            bodies: Vec::new(),
         }
     }
 
-    /// Adds single agents, then grids, then sources. Their number has been checked.
+    /// Adds single agents, grids, crowds, then sources. Their number has been checked.
     pub(super) fn enter(mut self) -> Result<(), Problem> {
         for (k, agent) in self.file.agents.iter().enumerate() {
             self.agent(agent).under(&format!("agents[{k}]"))?;
@@ -54,6 +60,10 @@ impl<'a> Crowd<'a> {
         for (k, grid) in self.file.grids.iter().enumerate() {
             let name = format!("grids[{k}]");
             self.grid(grid, &name).under(&name)?;
+        }
+        for (k, crowd) in self.file.crowds.iter().enumerate() {
+            let name = format!("crowds[{k}]");
+            self.crowd(crowd, k as u32, &name).under(&name)?;
         }
         for (k, source) in self.file.sources.iter().enumerate() {
             let name = format!("sources[{k}]");
@@ -64,7 +74,9 @@ impl<'a> Crowd<'a> {
 
     fn agent(&mut self, agent: &file::Agent) -> Result<(), Problem> {
         let [x, y] = agent.velocity.unwrap_or_default();
-        let (speed, most) = (x.hypot(y), self.scene.max_speed);
+        let own = agent.preferred_speed;
+        let own = own.map(|speed| self.scene.own_speeds(speed)[1]);
+        let (speed, most) = (x.hypot(y), own.unwrap_or(self.scene.max_speed));
         if speed > most * (1.0 + ROUNDING) {
             let reason = format!(
                 "the speed {speed} m/s is above max_speed {most}; lower it, or raise max_speed"
@@ -88,6 +100,8 @@ impl<'a> Crowd<'a> {
             radius: agent.radius,
             mass: agent.mass,
             mean_density: agent.mean_density,
+            preferred_speed: agent.preferred_speed,
+            premovement: agent.premovement_secs,
             ..NewAgent::at(agent.position.into(), goal, group)
         });
         Ok(())
@@ -172,7 +186,7 @@ impl<'a> Crowd<'a> {
     }
 
     /// The journey of agents that name `given`; `None` if they walk to a goal.
-    fn journey(&self, given: Option<&str>, has_goal: bool) -> Result<Option<u16>, Problem> {
+    pub(super) fn journey(&self, given: Option<&str>, has_goal: bool) -> Result<Option<u16>, Problem> {
         let journeys = &self.scene.journeys.journeys;
         let number = |name: &str| {
             let found = journeys.iter().position(|journey| journey.name == name);
@@ -197,7 +211,7 @@ impl<'a> Crowd<'a> {
         }
     }
 
-    fn default_goal(&self) -> Result<Vector, Problem> {
+    pub(super) fn default_goal(&self) -> Result<Vector, Problem> {
         let reason =
             "no goal: set `goal` or `journey` here, `goal` at the top of the file, or add `exits`";
         let goal = self.file.goal.ok_or_else(|| Problem::new("", reason))?;
@@ -210,7 +224,7 @@ impl<'a> Crowd<'a> {
         if let Some(&group) = self.shared.get(&key) {
             return Ok(group);
         }
-        let group = self.group("agents", behavior)?;
+        let group = self.group("agents", behavior, Traits::default())?;
         self.shared.insert(key, group);
         Ok(group)
     }
@@ -224,10 +238,22 @@ impl<'a> Crowd<'a> {
             remove_within: given.remove_within,
             counted: given.counted,
         };
-        self.group(given.name.as_deref().unwrap_or(place), behavior)
+        let draws = [
+            &given.preferred_speed,
+            &given.radius,
+            &given.premovement_secs,
+        ];
+        let name = given.name.as_deref().unwrap_or(place);
+        self.group(name, behavior, traits(draws)?)
     }
 
-    fn group(&mut self, name: &str, behavior: Behavior) -> Result<u16, Problem> {
+    /// Adds a group.
+    pub(super) fn group(
+        &mut self,
+        name: &str,
+        behavior: Behavior,
+        traits: Traits,
+    ) -> Result<u16, Problem> {
         if self.scene.groups.len() >= MOST_NUMBERED {
             let reason = format!(
                 "more than {MOST_NUMBERED} groups of agents; put several into one grid or source, or give \
@@ -254,15 +280,16 @@ impl<'a> Crowd<'a> {
             removal_radius: behavior.remove_within,
             counted: behavior.counted.unwrap_or(true),
             journey: behavior.journey,
+            traits,
         }))
     }
 }
 
 /// The keys that decide on an agent's group.
 #[derive(Debug, Clone, Copy)]
-struct Behavior<'a> {
-    journey: Option<u16>,
-    profile: Option<&'a ProfileChoice>,
-    remove_within: Option<f64>,
-    counted: Option<bool>,
+pub(super) struct Behavior<'a> {
+    pub journey: Option<u16>,
+    pub profile: Option<&'a ProfileChoice>,
+    pub remove_within: Option<f64>,
+    pub counted: Option<bool>,
 }

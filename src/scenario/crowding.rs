@@ -84,7 +84,7 @@ fn place_of(file: &File, id: usize) -> String {
             return format!("grids[{k}]");
         }
     }
-    String::new()
+    "crowds".to_owned()
 }
 
 /// The first of `points` in an overcrowded square meter, and the number of points there.

@@ -177,7 +177,7 @@ fn around_the_given(said: &str) -> (&str, &str, &str) {
 }
 
 /// Phrases of serde and serde_json with their replacements.
-const WORDS: [(&str, &str); 22] = [
+const WORDS: [(&str, &str); 24] = [
     ("expected f64", "expected a number"),
     ("expected u32", "expected a whole number from 0 to 2^32 - 1"),
     ("expected u64", "expected a whole number from 0 to 2^64 - 1"),
@@ -186,6 +186,11 @@ const WORDS: [(&str, &str); 22] = [
         "expected fewer elements in array",
         "expected fewer elements in the list",
     ),
+    (
+        "expected fewer elements in map",
+        "expected an object with exactly one key",
+    ),
+    ("expected enum", "expected an object with exactly one key"),
     ("expected a sequence", "expected a list"),
     ("expected a map", "expected an object"),
     ("expected a boolean", "expected true or false"),

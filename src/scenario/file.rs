@@ -7,6 +7,8 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
+use super::crowds::Crowd;
+use super::distribution::{self, Draw};
 use super::measurements::Measurement;
 use super::places::{Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
 use super::preset::Preset;
@@ -28,7 +30,7 @@ pub(super) const DEFAULT_PROFILE: &str = "sph";
 /// The longest time, seconds.
 pub(super) const LONGEST_TIME: f64 = 1e7;
 /// The largest coordinate, meters. Beyond this, walls and contacts lose precision.
-const FARTHEST: f64 = 1e6;
+pub(super) const FARTHEST: f64 = 1e6;
 
 /// A scenario for `sandbox run`.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
@@ -129,6 +131,8 @@ pub(super) struct File {
     /// Agents that stand on grids at the start.
     #[schemars(schema_with = "grids")]
     pub grids: Vec<Grid>,
+    /// Agents that stand anywhere in an area at the start.
+    pub crowds: Vec<Crowd>,
     /// Agents that enter on grids repeatedly.
     #[schemars(schema_with = "sources")]
     pub sources: Vec<Grid>,
@@ -204,6 +208,12 @@ pub(super) struct Agent {
     /// m_i, 1 for an average person. Lighter agents need shorter time steps. Default: (D_i / 0.24)².
     #[schemars(range(min = 1e-6, max = 1e6))]
     pub mass: Option<f64>,
+    /// s_pref, m/s. Default: the scenario's `preferred_speed`.
+    #[schemars(range(min = 0, max = 100))]
+    pub preferred_speed: Option<f64>,
+    /// The time until the agent walks, seconds. Default: 0.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
+    pub premovement_secs: Option<f64>,
     /// The goal. Default: the scenario's goal.
     pub goal: Option<Point>,
     /// Instead of `goal`: the name of the journey.
@@ -256,6 +266,18 @@ pub(super) struct Grid {
     /// Whether arrivals count as evacuated.
     #[schemars(extend("default" = true))]
     pub counted: Option<bool>,
+    /// s_pref, m/s: a number, or a distribution to draw from for each agent. Default: the scenario's `preferred_speed`.
+    #[serde(default)]
+    #[schemars(schema_with = "distribution::speed")]
+    pub preferred_speed: Option<Draw>,
+    /// D_i, meters: a number, or a distribution. Default: uniform from 0.215 to 0.265 (§5.6).
+    #[serde(default)]
+    #[schemars(schema_with = "distribution::radius")]
+    pub radius: Option<Draw>,
+    /// The time from its entry until an agent walks, seconds: a number, or a distribution. Default: 0.
+    #[serde(default)]
+    #[schemars(schema_with = "distribution::wait")]
+    pub premovement_secs: Option<Draw>,
     /// The time of the first entry, seconds.
     #[schemars(range(min = 0, max = LONGEST_TIME), extend("default" = 0))]
     pub start_secs: Option<f64>,

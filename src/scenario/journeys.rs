@@ -129,7 +129,7 @@ impl Found<'_> {
 
     fn waiting_area(&self, given: &places::WaitingArea) -> Result<Kind, Problem> {
         let area = ring(&given.area).under("area")?;
-        let lasting = given.for_secs.as_ref().map(|secs| secs.distribution());
+        let lasting = given.for_secs.as_ref().map(|secs| secs.times());
         let lasting = lasting.transpose().under("for_secs")?;
         Ok(Kind::Waiting(WaitingArea {
             spots: spots(&area, self.walls, given.facing.map(Into::into)),
@@ -303,11 +303,12 @@ fn queue(given: &places::Queue) -> Result<Kind, Problem> {
         let reason = "the same point as the next one; remove one";
         return Err(Problem::new(format!("path[{k}]"), reason));
     }
-    let service = given.service_secs.distribution().under("service_secs")?;
+    let service = given.service_secs.times().under("service_secs")?;
     Ok(Kind::Queue(Queue {
         path,
         spacing: given.spacing.unwrap_or(SPACING),
         servers: given.servers.unwrap_or(1),
+        mean_service: service.mean(),
         service,
     }))
 }

@@ -1,5 +1,6 @@
 //! How many agents enter a run and how much memory it takes, estimated before any agents are placed.
 
+use super::crowds::Crowd;
 use super::error::{Problem, ScenarioError};
 use super::file::{File, Grid, TimeStep};
 use super::plan;
@@ -127,10 +128,12 @@ impl Need {
         let last_entry = last_entry(file, clock, duration_secs);
         let entering = |source| cells(source).saturating_mul(entries(source, last_entry));
         let agents = file.agents.iter().map(|_| 1).enumerate();
+        let crowds = file.crowds.iter().map(Crowd::most).enumerate();
         let grids = file.grids.iter().map(cells).enumerate();
         let sources = file.sources.iter().map(entering).enumerate();
         let initial = agents.map(|one| ("agents", one));
         let initial = initial.chain(grids.map(|one| ("grids", one)));
+        let initial = initial.chain(crowds.map(|one| ("crowds", one)));
         for (place, (k, agents)) in initial.chain(sources.map(|one| ("sources", one))) {
             if place != "sources" {
                 need.initial = need.initial.saturating_add(agents);
@@ -145,8 +148,12 @@ impl Need {
             };
             let reason = format!(
                 "too many: with these, {agents} agents enter within {duration_secs} s, which takes {} of \
-                 memory; at most {MOST_AGENTS} are allowed: use fewer columns, rows or entries",
+                 memory; at most {MOST_AGENTS} are allowed: use fewer {}",
                 in_units(need.bytes()),
+                match place {
+                    "crowds" => "agents",
+                    _ => "columns, rows or entries",
+                },
             );
             return Err(Problem::new(format!("{place}[{k}]"), reason));
         }

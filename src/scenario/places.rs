@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::distribution::Amount;
+use super::distribution::{self, Draw};
 use super::file::{LONGEST_TIME, Point, Ring};
 
 /// A line at which people leave.
@@ -57,7 +57,9 @@ pub(super) struct WaitingArea {
     #[schemars(range(min = 0, max = LONGEST_TIME))]
     pub until_secs: Option<f64>,
     /// How long each waits, seconds.
-    pub for_secs: Option<Amount>,
+    #[serde(default)]
+    #[schemars(schema_with = "distribution::wait")]
+    pub for_secs: Option<Draw>,
 }
 
 /// A queue.
@@ -77,7 +79,8 @@ pub(super) struct Queue {
     #[schemars(range(min = 1), extend("default" = 1))]
     pub servers: Option<u32>,
     /// How long each is served, seconds.
-    pub service_secs: Amount,
+    #[schemars(schema_with = "distribution::wait")]
+    pub service_secs: Draw,
 }
 
 /// What people do one after the other.

@@ -185,6 +185,15 @@ fn opening(walkable: &[Area], [a, b]: [Vector; 2]) -> Option<Vec<[f64; 2]>> {
     )
 }
 
+/// An area from its outline and holes.
+pub(super) fn area(given: &[GivenRing]) -> Result<Area, Problem> {
+    let area = FloorPlan::obstacle(&rings(given)?).map_err(problem)?;
+    match Polygon::filling(area.clone()) {
+        Ok(_) => Ok(area),
+        Err(error) => Err(Problem::new("", error.to_string())),
+    }
+}
+
 fn obstacle(given: &Obstacle) -> Result<Polygon, Problem> {
     let polygon = match given {
         Obstacle::Ring(ring) => Polygon::new(points(ring)?.into_iter().map(Into::into).collect()),

@@ -1,5 +1,6 @@
 //! An upper bound on the size of the lists of walls near agents, without building the lists.
 
+use crate::engine::agents::Agents;
 use crate::engine::geometry::{Wall, Walls};
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::Scene;
@@ -17,7 +18,7 @@ const DENSEST: f64 = 20.0;
 ///
 /// Agents move, so the bound packs them as densely as possible where the lists are longest.
 pub(super) fn entries(scene: &Scene, agents: u64) -> u64 {
-    let ranges = scene.ranges(&scene.needs());
+    let ranges = scene.ranges(&scene.needs(), &Agents::default());
     let radii = scene.agents.iter().filter_map(|agent| agent.radius);
     let widest = radii.fold(ranges.support.max(ranges.longest_step), f64::max);
     let reaches = [Some(widest), ranges.avoidance];

@@ -127,6 +127,19 @@ pub fn run(simulation: &mut Simulation, frames: u64) {
     }
 }
 
+/// Runs to `frame` and evaluates it.
+pub fn go_to(simulation: &mut Simulation, frame: u64) {
+    while simulation.frame().clock.frame() < frame {
+        simulation.step().unwrap();
+    }
+    simulation.evaluate().unwrap();
+}
+
+pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.unwrap().install(work)
+}
+
 /// The breakdown of agent `id` in an evaluated frame.
 pub fn breakdown(simulation: &Simulation, id: u32) -> Breakdown {
     let i = simulation.frame().agents.index_of(id).unwrap();

@@ -67,6 +67,8 @@ pub struct Queue {
     pub servers: u32,
     /// How long an agent is served, seconds.
     pub service: Distribution,
+    /// Its mean, seconds.
+    pub mean_service: f64,
 }
 
 impl Place {

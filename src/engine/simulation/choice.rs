@@ -139,7 +139,7 @@ impl Chooser<'_> {
         let most = match &place.kind {
             Kind::Exit(exit) => exit.most_per_sec.unwrap_or(f64::INFINITY),
             Kind::Line(_) => f64::INFINITY,
-            Kind::Queue(queue) => return f64::from(queue.servers) / queue.service.mean(),
+            Kind::Queue(queue) => return f64::from(queue.servers) / queue.mean_service,
             Kind::Disk { .. } | Kind::Waiting(_) => return f64::INFINITY,
         };
         let (near, crowd) = CROWD;

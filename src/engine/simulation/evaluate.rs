@@ -46,7 +46,7 @@ impl Simulation {
     /// Sorts the agents into cells, and lists the walls near them.
     pub(super) fn sort_agents(&mut self) {
         let (fixed, crowd, derived) = (&self.fixed, &mut self.crowd, &mut self.derived);
-        let ranges = fixed.scene.ranges(&fixed.needs);
+        let ranges = fixed.scene.ranges(&fixed.needs, &crowd.agents);
         let neighbors = &mut derived.neighbors;
         self.stages
             .time(Stage::Sort, || neighbors.sort(&mut crowd.agents, ranges));
@@ -104,13 +104,15 @@ impl Simulation {
                 crowd.agents.follow(ways, coarse, scene.seed);
             }
             let agents = &crowd.agents;
-            if !self.fixed.needs.paces && scene.ways.is_none() {
+            let alike = !self.fixed.needs.paces && agents.walk_alike();
+            if alike && scene.ways.is_none() {
                 return straight_at(scene.preferred_speed, agents, preferred);
             }
+            let time = crowd.clock.time();
             let wishes = preferred.par_iter_mut().with_min_len(TASK * BLOCK);
             wishes.enumerate().for_each(|(i, wish)| {
                 let (position, goal) = (agents.position[i], agents.goal[i]);
-                let pace = scene.pace(agents, i);
+                let pace = scene.pace(agents, i, time);
                 let trip = agents.trip.get(i).and_then(Option::as_ref);
                 if let Some(place) = trip.and_then(|trip| trip.hold) {
                     *wish = clamp_length((place - position) / ARRIVAL_TIME, pace);
@@ -142,7 +144,7 @@ impl Simulation {
                 let blend = fixed.blend(agents, i);
                 let rvo = blend.rvo().filter(|_| blend.rvo_acts(&frame, i));
                 let held = held.filter(|_| !frame.clock.is_coarse());
-                let max_speed = fixed.scene.max_speed;
+                let max_speed = fixed.scene.max_speed(agents, i);
                 *chosen = rvo.map(|rvo| {
                     held.unwrap_or_else(|| rvo.acceleration(&frame, i, max_speed, scratch))
                 });

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::{Arrival, Crowd, Fault, Simulation, Stage};
+use crate::engine::geometry::Walls;
 use crate::engine::math::{Vector, clamp_length, is_finite};
 use crate::engine::neighbors::{BLOCK, TASK};
 use crate::engine::scene::{Integrator, Scene};
@@ -117,6 +118,7 @@ impl Simulation {
         motion: impl Fn(usize, Vector, Vector) -> Motion + Sync,
     ) -> Moves {
         let (scene, agents) = (&self.fixed.scene, &mut self.crowd.agents);
+        let (walls, max_speeds) = (&scene.walls, &agents.max_speed);
         let neighbors = &self.derived.neighbors;
         let blocks = (
             agents.position.par_chunks_mut(BLOCK),
@@ -134,10 +136,16 @@ impl Simulation {
                 let states = positions.iter_mut().zip(velocities);
                 let states = states.zip(accelerations).zip(sorted_at);
                 for (k, (((position, velocity), &acceleration), start)) in states.enumerate() {
-                    let walls = walled.next_if(|&(i, _)| i == from + k);
-                    let walls = walls.map_or(&[][..], |(_, walls)| walls);
+                    let near = walled.next_if(|&(i, _)| i == from + k);
+                    let near = near.map_or(&[][..], |(_, near)| near);
+                    let most = max_speeds.get(from + k).copied();
+                    let limits = Limits {
+                        speed: most.unwrap_or(scene.max_speed),
+                        walls,
+                        near,
+                    };
                     let motion = motion(from + k, *velocity, acceleration);
-                    moves.make(scene, walls, dt, motion, position, velocity);
+                    moves.make(&limits, dt, motion, position, velocity);
                     moves.farthest = moves.farthest.max((*position - start).norm_squared());
                 }
                 moves
@@ -216,6 +224,15 @@ struct Motion {
     velocity: Vector,
 }
 
+/// What limits a move.
+struct Limits<'a> {
+    /// s_max, m/s.
+    speed: f64,
+    walls: &'a Walls,
+    /// The walls that may be in reach.
+    near: &'a [u32],
+}
+
 /// Statistics of moves.
 #[derive(Default)]
 struct Moves {
@@ -232,25 +249,24 @@ impl Moves {
     #[inline]
     fn make(
         &mut self,
-        scene: &Scene,
-        walls: &[u32],
+        limits: &Limits,
         dt: f64,
         motion: Motion,
         position: &mut Vector,
         velocity: &mut Vector,
     ) {
         let start = *position;
-        *velocity = clamp_length(motion.velocity, scene.max_speed);
+        *velocity = clamp_length(motion.velocity, limits.speed);
         self.clamped += u64::from(*velocity != motion.velocity);
-        let target = start + clamp_length(motion.way, scene.max_speed) * dt;
-        if walls.is_empty() {
+        let target = start + clamp_length(motion.way, limits.speed) * dt;
+        if limits.near.is_empty() {
             *position = target;
             return;
         }
-        let stopped = scene.walls.stop(start, target, walls);
+        let stopped = limits.walls.stop(start, target, limits.near);
         *position = stopped.map_or(target, |(point, _)| point);
         if let Some((_, wall)) = stopped {
-            let normal = scene.walls.wall(wall).normal;
+            let normal = limits.walls.wall(wall).normal;
             *velocity -= normal * velocity.dot(&normal).min(0.0);
             self.contained += 1;
         }

@@ -135,12 +135,19 @@ impl Crowd {
     /// Lets one agent in. An agent inside an obstacle is moved to a free point nearby.
     pub(super) fn enter(&mut self, scene: &Scene, mut new: NewAgent) -> Result<(), Fault> {
         let agent = self.agents.entered();
+        let traits = &scene.groups[usize::from(new.group)].traits;
+        new = traits.drawn(new, scene.seed, agent);
         if let Some(obstacle) = scene.walls.obstacle_at(new.position) {
             let free = scene.walls.free_point_near(new.position);
             new.position = free.ok_or(Fault::NoFreePoint { agent, obstacle })?;
             self.outcome.displaced.push((agent, obstacle));
         }
         self.agents.enter(new, scene.seed);
+        let usual = [scene.preferred_speed, scene.max_speed];
+        let own = new.preferred_speed.map(|speed| scene.own_speeds(speed));
+        self.agents.set_speeds(own, usual);
+        let walks_from = new.premovement.map(|wait| self.clock.time() + wait);
+        self.agents.set_start(walks_from);
         self.changed = true;
         Ok(())
     }

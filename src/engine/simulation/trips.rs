@@ -1,5 +1,7 @@
 //! Journeys: in coarse frames agents begin them, reach waypoints, wait, queue and go on.
 
+use rand::Rng;
+use rand::distr::Open01;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -321,7 +323,7 @@ impl Crowd {
         let lasting = waiting
             .lasting
             .as_ref()
-            .map(|lasting| now + lasting.draw(&mut stage_stream(scene, self.agents.id[i], trip)));
+            .map(|lasting| now + lasting.quantile(stage_share(scene, self.agents.id[i], trip)));
         let until = [waiting.until, lasting]
             .into_iter()
             .flatten()
@@ -441,7 +443,7 @@ impl Crowd {
         let is_there = (position - spot).norm() <= JOINING;
         let until = match until {
             None if ahead < queue.servers as usize && is_there => {
-                let lasting = queue.service.draw(&mut stage_stream(scene, id, trip));
+                let lasting = queue.service.quantile(stage_share(scene, id, trip));
                 Some(self.clock.coarse_frame_at(self.clock.time() + lasting))
             }
             until => until,
@@ -458,9 +460,10 @@ impl Crowd {
     }
 }
 
-/// The random numbers of one stage of one agent.
-fn stage_stream(scene: &Scene, id: u32, trip: &Trip) -> impl rand::Rng + use<> {
-    random::stream(scene.seed, Purpose::Waiting, id, u64::from(trip.stage))
+/// A random number between 0 and 1 for one stage of one agent.
+fn stage_share(scene: &Scene, id: u32, trip: &Trip) -> f64 {
+    let stage = u64::from(trip.stage);
+    random::stream(scene.seed, Purpose::Waiting, id, stage).sample(Open01)
 }
 
 fn time_since(clock: &Clock, frame: u64) -> f64 {

@@ -90,12 +90,12 @@ pub fn rvo_by_blend(simulation: &Simulation) -> Result<Work, &'static str> {
         if !frame.clock.is_coarse() {
             return 0.0;
         }
-        let max_speed = simulation.scene().max_speed;
         let choose = |scratch: &mut Scratch, i: usize| {
             let blend = simulation.blend(i);
             if let Some(rvo) = blend.rvo()
                 && !blend.rvo_acts(&frame, i)
             {
+                let max_speed = simulation.scene().max_speed(frame.agents, i);
                 black_box(rvo.acceleration(&frame, i, max_speed, scratch));
             }
         };
@@ -114,7 +114,8 @@ pub fn lists(coarse: bool) -> Work {
         }
         let mut agents = frame.agents.clone();
         seconds(|| {
-            neighbors.sort(&mut agents, scene.ranges(needs));
+            let ranges = scene.ranges(needs, &agents);
+            neighbors.sort(&mut agents, ranges);
             neighbors.list_walls(&agents, frame.walls);
             if needs.pairs.any() || needs.social || needs.density {
                 neighbors.list_agents();
@@ -139,7 +140,7 @@ pub fn walls_one_by_one(simulation: &Simulation) -> Result<Work, &'static str> {
         if frame.neighbors.sorted_at() != agents.position {
             return 0.0;
         }
-        let ranges = simulation.scene().ranges(simulation.needs());
+        let ranges = simulation.scene().ranges(simulation.needs(), agents);
         let least = ranges.support.max(ranges.longest_step);
         let mut neighbors = frame.neighbors.clone();
         let by_blocks = seconds(|| neighbors.list_walls(agents, walls));

@@ -1,0 +1,219 @@
+//! Places for bodies that do not overlap: at random or on a lattice, in an area, clear of walls and of other bodies.
+//!
+//! [`scattered`] throws darts, with a minimum distance between bodies that begins as large as their number allows and
+//! shrinks when no place is left. Throws go only to cells that may still have room; after some throws, the cells are
+//! quartered, and those without room are dropped (Ebeida et al. 2012, A simple algorithm for maximal Poisson-disk
+//! sampling in high dimensions). So the last free places are found, too. Everything is computed in one order on one
+//! thread from one stream of random numbers.
+
+mod cells;
+mod taken;
+
+use rand::Rng;
+
+use crate::engine::geometry::{Area, AreaIndex, Polygon, Walls};
+use crate::engine::math::{Vector, bounds};
+use cells::Cells;
+use taken::Taken;
+
+/// A disc.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    /// Its center, meters.
+    pub place: Vector,
+    /// Its radius, meters.
+    pub radius: f64,
+}
+
+/// The first distance between bodies, in units of the square root of the area per body. Throws at random cannot place
+/// discs of this diameter more densely than at 0.83.
+const FIRST_SPACING: f64 = 0.75;
+/// The factor by which the distance shrinks when no place is left.
+const SHRINKAGE: f64 = 0.85;
+/// Throws per cell between two quarterings.
+const THROWS: usize = 4;
+/// The most quarterings at one distance.
+const QUARTERINGS: usize = 6;
+/// The factor by which the pitch of a lattice shrinks while it has too few sites.
+const TIGHTER: f64 = 0.985;
+/// Bodies keep this distance in addition, meters: far above the rounding of coordinates up to 10⁶ m.
+const ROUNDING: f64 = 1e-9;
+/// The part of the bodies found to fit that [`scattered`] reports as fitting: fewer bodies have other radii.
+const SURE: f64 = 0.98;
+
+/// Where the centers of bodies may be: in some areas, clear of walls.
+pub struct Space<'a> {
+    areas: &'a [Area],
+    index: AreaIndex<'a>,
+    /// The borders of the areas.
+    borders: Walls,
+    walls: &'a Walls,
+}
+
+impl<'a> Space<'a> {
+    /// The space in `areas`, which lie outside of the obstacles of `walls`.
+    pub fn new(areas: &'a [Area], walls: &'a Walls) -> Self {
+        let around = Polygon::enclosing(areas.to_vec());
+        Self {
+            areas,
+            index: AreaIndex::new(areas),
+            borders: Walls::new(around.into_iter().collect()),
+            walls,
+        }
+    }
+
+    /// The corners of the box around it.
+    fn bounds(&self) -> [Vector; 2] {
+        let corners = self.areas.iter().flat_map(|area| area.exterior.points());
+        bounds(corners.copied()).unwrap_or_default()
+    }
+
+    fn size(&self) -> f64 {
+        self.areas.iter().map(Area::area).sum()
+    }
+
+    fn contains(&self, p: Vector) -> bool {
+        !self.index.around(p).is_empty()
+    }
+
+    /// Is there room for a body of this radius? `near` is a buffer.
+    fn has_room(&self, p: Vector, radius: f64, near: &mut Vec<u32>) -> bool {
+        near.clear();
+        self.walls.near(p, radius + ROUNDING, near);
+        near.is_empty() && self.contains(p)
+    }
+}
+
+/// Random places for bodies of these `radii`, in their order, evenly spread and clear of the bodies `others`.
+///
+/// # Errors
+/// They do not fit: the number that does, about.
+pub fn scattered(
+    space: &Space,
+    others: &[Body],
+    radii: &[f64],
+    random: &mut impl Rng,
+) -> Result<Vec<Vector>, usize> {
+    // Large bodies first: small ones find places between them.
+    let mut order: Vec<usize> = (0..radii.len()).collect();
+    order.sort_by(|&a, &b| radii[b].total_cmp(&radii[a]));
+    let sorted: Vec<f64> = order.iter().map(|&k| radii[k]).collect();
+    let smallest = sorted.last().copied().unwrap_or_default();
+    let mut spacing = FIRST_SPACING * (space.size() / sorted.len().max(1) as f64).sqrt();
+    let mut throwing = Throwing::new(space, others, &sorted);
+    while spacing > 2.0 * smallest && throwing.is_incomplete() {
+        throwing.fill(spacing, random);
+        spacing *= SHRINKAGE;
+    }
+    if throwing.is_incomplete() {
+        throwing.fill(0.0, random);
+    }
+    if throwing.is_incomplete() {
+        // Bodies that are far apart waste room: begin again.
+        throwing = Throwing::new(space, others, &sorted);
+        throwing.fill(0.0, random);
+    }
+    if throwing.is_incomplete() {
+        return Err((throwing.places.len() as f64 * SURE) as usize);
+    }
+    let mut places = vec![Vector::zeros(); radii.len()];
+    for (&k, place) in order.iter().zip(throwing.places) {
+        places[k] = place;
+    }
+    Ok(places)
+}
+
+/// Bodies that are being placed, one after another.
+struct Throwing<'a> {
+    space: &'a Space<'a>,
+    radii: &'a [f64],
+    taken: Taken,
+    /// The places of the first bodies.
+    places: Vec<Vector>,
+}
+
+impl<'a> Throwing<'a> {
+    fn new(space: &'a Space<'a>, others: &[Body], radii: &'a [f64]) -> Self {
+        Self {
+            space,
+            radii,
+            taken: Taken::new(space.bounds(), others, radii),
+            places: Vec::with_capacity(radii.len()),
+        }
+    }
+
+    fn is_incomplete(&self) -> bool {
+        self.places.len() < self.radii.len()
+    }
+
+    /// Places bodies at least `spacing` meters from each other until all are placed or no place is left.
+    fn fill(&mut self, spacing: f64, random: &mut impl Rng) {
+        let smallest = self.radii.last().copied().unwrap_or_default();
+        let side = spacing.max(2.0 * smallest) * std::f64::consts::FRAC_1_SQRT_2;
+        self.taken.set_spacing(spacing);
+        let mut cells = Cells::covering(self.space, &self.taken, smallest, side);
+        let mut near = Vec::new();
+        for _ in 0..QUARTERINGS {
+            for _ in 0..THROWS * cells.len() {
+                let Some(&radius) = self.radii.get(self.places.len()) else {
+                    return;
+                };
+                if cells.len() == 0 {
+                    return;
+                }
+                let k = random.random_range(0..cells.len());
+                let place = cells.point_in(k, random);
+                let fits = self.taken.has_room(place, radius)
+                    && self.space.has_room(place, radius, &mut near);
+                if fits {
+                    self.taken.add(Body { place, radius });
+                    self.places.push(place);
+                    cells.remove(k);
+                }
+            }
+            cells.quarter(self.space, &self.taken, smallest);
+        }
+    }
+}
+
+/// Places on a triangular lattice, as wide as possible, clear of the bodies `others`.
+///
+/// # Errors
+/// They do not fit: the number that does.
+pub fn lattice(space: &Space, others: &[Body], radii: &[f64]) -> Result<Vec<Vector>, usize> {
+    let widest = radii.iter().copied().fold(0.0, f64::max);
+    let taken = Taken::new(space.bounds(), others, radii);
+    let closest = 2.0 * (widest + ROUNDING);
+    let per_body = space.size() / radii.len().max(1) as f64;
+    let mut pitch = (per_body * 2.0 / 3_f64.sqrt()).sqrt().max(closest);
+    let sites = loop {
+        let sites = sites(space, &taken, widest, pitch);
+        if sites.len() >= radii.len() {
+            break sites;
+        }
+        if pitch <= closest {
+            return Err(sites.len());
+        }
+        pitch = (pitch * TIGHTER).max(closest);
+    };
+    // Leaves out sites at even distances.
+    let chosen = (0..radii.len()).map(|k| sites[k * sites.len() / radii.len()]);
+    Ok(chosen.collect())
+}
+
+/// The sites of a triangular lattice, row by row, that have room for bodies of this radius.
+fn sites(space: &Space, taken: &Taken, radius: f64, pitch: f64) -> Vec<Vector> {
+    let [low, high] = space.bounds();
+    let rise = pitch * 0.75_f64.sqrt();
+    let rows = ((high.y - low.y) / rise) as u32;
+    let columns = ((high.x - low.x) / pitch) as u32;
+    let row = |row: u32| {
+        let shift = if row % 2 == 0 { 0.25 } else { 0.75 };
+        let y = low.y + rise * (f64::from(row) + 0.5);
+        (0..=columns).map(move |column| Vector::new(low.x + pitch * (f64::from(column) + shift), y))
+    };
+    let mut near = Vec::new();
+    let sites = (0..=rows).flat_map(row);
+    let free = |&p: &Vector| taken.has_room(p, radius) && space.has_room(p, radius, &mut near);
+    sites.filter(free).collect()
+}

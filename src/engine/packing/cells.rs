@@ -1,0 +1,75 @@
+//! Cells in which there may be room for bodies.
+
+use rand::Rng;
+
+use super::Space;
+use super::taken::Taken;
+use crate::engine::math::Vector;
+
+/// The most cells: cells without room are dropped by then.
+const MOST: usize = 1 << 24;
+
+/// Square cells of one size.
+pub struct Cells {
+    centers: Vec<Vector>,
+    side: f64,
+}
+
+impl Cells {
+    /// Cells with sides of at most `side` meters that cover all room for bodies of this radius.
+    pub fn covering(space: &Space, taken: &Taken, radius: f64, side: f64) -> Self {
+        let [low, high] = space.bounds();
+        let mut cells = Self {
+            centers: vec![0.5 * (low + high)],
+            side: (high - low).max(),
+        };
+        while cells.side > side && cells.quarter(space, taken, radius) {}
+        cells
+    }
+
+    pub fn len(&self) -> usize {
+        self.centers.len()
+    }
+
+    pub fn remove(&mut self, k: usize) {
+        self.centers.swap_remove(k);
+    }
+
+    /// A random point in cell `k`.
+    pub fn point_in(&self, k: usize, random: &mut impl Rng) -> Vector {
+        let mut along = || self.side * (random.random::<f64>() - 0.5);
+        self.centers[k] + Vector::new(along(), along())
+    }
+
+    /// Quarters all cells and drops those without room for a body of this radius. Returns false, without quartering,
+    /// if there are too many cells.
+    pub fn quarter(&mut self, space: &Space, taken: &Taken, radius: f64) -> bool {
+        if self.centers.len() > MOST / 4 {
+            return false;
+        }
+        self.side *= 0.5;
+        let quarter = 0.5 * self.side;
+        let half = self.side * std::f64::consts::FRAC_1_SQRT_2;
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
+        let quarters = self.centers.iter().flat_map(|&center| {
+            corners.map(|(x, y): (f64, f64)| center + Vector::new(x, y) * quarter)
+        });
+        let mut near = Vec::new();
+        let may_have_room = |&center: &Vector| {
+            if taken.covers(center, half, radius) {
+                return false;
+            }
+            near.clear();
+            if radius > half {
+                space.walls.near(center, radius - half, &mut near);
+            }
+            if !near.is_empty() {
+                return false;
+            }
+            space.borders.near(center, half, &mut near);
+            !near.is_empty() || space.contains(center)
+        };
+        self.centers = quarters.filter(may_have_room).collect();
+        true
+    }
+}

@@ -1,0 +1,205 @@
+//! Crowds: agents that stand anywhere in an area at the start.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::catalog::HIGHEST_DENSITY;
+use super::crowd::{Behavior, Crowd as Building};
+use super::distribution::{self, Draw, traits};
+use super::error::{Problem, Under};
+use super::file::{Point, Ring};
+use super::floor_plan::{free, outlines};
+use super::plan;
+use super::profiles::ProfileChoice;
+use super::schema::word;
+use crate::engine::agents::NewAgent;
+use crate::engine::geometry::{Area, Ring as Outline};
+use crate::engine::math::Vector;
+use crate::engine::packing::{self, Body, Space};
+use crate::engine::random::{self, Purpose};
+
+/// How the agents of a crowd are placed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Spacing {
+    /// At random, as far from each other as their number allows.
+    #[default]
+    Random,
+    /// On a triangular lattice.
+    Grid,
+}
+
+/// Agents that stand in an area at the start: `number` or `density` says how many.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Crowd {
+    /// The name in reports. Default: its place in the file.
+    #[schemars(length(min = 1))]
+    pub name: Option<String>,
+    /// Where they stand, corners in meters: one ring, or a list of rings (the outline, then the holes). Walls and
+    /// obstacles in it are left out.
+    pub area: Place,
+    /// The number of agents.
+    #[schemars(range(min = 1))]
+    pub number: Option<u32>,
+    /// Instead of `number`: agents per square meter of the free part of the area.
+    #[schemars(range(max = HIGHEST_DENSITY), extend("exclusiveMinimum" = 0))]
+    pub density: Option<f64>,
+    /// `random` places, as far from each other as the number allows, or a triangular `grid`, which packs agents more
+    /// densely. Bodies never overlap.
+    #[serde(default)]
+    #[schemars(schema_with = "word::<Spacing>")]
+    pub spacing: Spacing,
+    /// The goal. Default: the scenario's goal.
+    pub goal: Option<Point>,
+    /// Instead of `goal`: the name of the journey.
+    pub journey: Option<String>,
+    /// The behavior. Default: the scenario's profile.
+    pub profile: Option<ProfileChoice>,
+    /// Agents leave within this distance of their goal, meters. Default: they stay.
+    #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
+    pub remove_within: Option<f64>,
+    /// Whether arrivals count as evacuated.
+    #[schemars(extend("default" = true))]
+    pub counted: Option<bool>,
+    /// s_pref, m/s: a number, or a distribution to draw from for each agent. Default: the scenario's `preferred_speed`.
+    #[serde(default)]
+    #[schemars(schema_with = "distribution::speed")]
+    pub preferred_speed: Option<Draw>,
+    /// D_i, meters: a number, or a distribution. Default: uniform from 0.215 to 0.265 (§5.6).
+    #[serde(default)]
+    #[schemars(schema_with = "distribution::radius")]
+    pub radius: Option<Draw>,
+    /// The time from its entry until an agent walks, seconds: a number, or a distribution. Default: 0.
+    #[serde(default)]
+    #[schemars(schema_with = "distribution::wait")]
+    pub premovement_secs: Option<Draw>,
+}
+
+/// An area: its corners, or its rings
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub(super) enum Place {
+    Ring(Ring),
+    Rings(#[schemars(length(min = 1))] Vec<Ring>),
+}
+
+impl Crowd {
+    /// An upper bound on its number of agents: the area may have holes and contain obstacles.
+    pub(super) fn most(&self) -> u64 {
+        let outline = match &self.area {
+            Place::Ring(ring) => Some(ring),
+            Place::Rings(rings) => rings.first(),
+        };
+        let corners: Vec<Vector> = outline.map_or(Vec::new(), |Ring(corners)| {
+            corners.iter().map(|&corner| corner.into()).collect()
+        });
+        let ends = corners.iter().cycle().skip(1);
+        let twice: f64 = corners.iter().zip(ends).map(|(a, b)| a.perp(b)).sum();
+        let dense = self.density.unwrap_or(0.0) * 0.5 * twice.abs();
+        // The cast saturates.
+        self.number.map_or(dense.ceil() as u64, u64::from)
+    }
+}
+
+impl Building<'_> {
+    /// Adds the agents of crowd `index`.
+    pub(super) fn crowd(&mut self, given: &Crowd, index: u32, place: &str) -> Result<(), Problem> {
+        let areas = self.free_area(&given.area).under("area")?;
+        let size: f64 = areas.iter().map(Area::area).sum();
+        let number = match (given.number, given.density) {
+            (Some(number), None) => number as usize,
+            (None, Some(density)) => (density * size).round() as usize,
+            _ => return Err(Problem::new("", "needs either `number` or `density`")),
+        };
+        let draws = [
+            &given.preferred_speed,
+            &given.radius,
+            &given.premovement_secs,
+        ];
+        let traits = traits(draws)?;
+        let journey = self.journey(given.journey.as_deref(), given.goal.is_some())?;
+        // Each place of a journey becomes the goal in its turn.
+        let goal = match (given.goal, journey) {
+            (Some(goal), _) => Some(goal.into()),
+            (None, Some(_)) => None,
+            (None, None) => Some(self.default_goal()?),
+        };
+        let (seed, first) = (self.scene.seed, self.scene.agents.len() as u32);
+        let radii = (first..).take(number).map(|id| traits.radius_of(seed, id));
+        let radii: Vec<f64> = radii.collect();
+        self.note_bodies();
+        let space = Space::new(&areas, &self.scene.walls);
+        let places = match given.spacing {
+            Spacing::Random => {
+                let mut random = random::stream(seed, Purpose::Crowd, index, 0);
+                packing::scattered(&space, &self.bodies, &radii, &mut random)
+            }
+            Spacing::Grid => packing::lattice(&space, &self.bodies, &radii),
+        };
+        let places = places.map_err(|fitting| {
+            let (at, advice) = match given.spacing {
+                Spacing::Random => ("at random places ", ", or set `spacing` to `grid`"),
+                Spacing::Grid => ("", ""),
+            };
+            let reason = format!(
+                "{number} agents do not fit: about {fitting} stand {at}side by side in the free {size:.1} m² of the \
+                 area; use fewer, a larger area or a smaller `radius`{advice}"
+            );
+            Problem::new("", reason)
+        })?;
+        let behavior = Behavior {
+            journey,
+            profile: given.profile.as_ref(),
+            remove_within: given.remove_within,
+            counted: given.counted,
+        };
+        let group = self.group(given.name.as_deref().unwrap_or(place), behavior, traits)?;
+        let agents = places.into_iter().zip(radii);
+        self.scene
+            .agents
+            .extend(agents.map(|(place, radius)| NewAgent {
+                radius: Some(radius),
+                ..NewAgent::at(place, goal.unwrap_or(place), group)
+            }));
+        Ok(())
+    }
+
+    /// The part of an area outside of all obstacles and inside of the walkable area.
+    fn free_area(&self, given: &Place) -> Result<Vec<Area>, Problem> {
+        let rings = match given {
+            Place::Ring(ring) => std::slice::from_ref(ring),
+            Place::Rings(rings) => rings,
+        };
+        let area = plan::area(rings)?;
+        let backwards = |ring: &Outline| ring.points().iter().rev().copied().collect();
+        let mut own: Vec<Vec<Vector>> = area.holes.iter().map(backwards).collect();
+        own.insert(0, area.exterior.points().to_vec());
+        let (mut floors, bodies) = outlines(self.scene.walls.obstacles());
+        floors.insert(0, own);
+        let areas = free(&floors, &bodies).map_err(|error| Problem::new("", error.to_string()))?;
+        match areas.is_empty() {
+            false => Ok(areas),
+            true => {
+                let reason =
+                    "lies in obstacles or outside of the walkable area; move it onto the floor";
+                Err(Problem::new("", reason))
+            }
+        }
+    }
+
+    /// Notes the bodies of the agents that have been added since.
+    fn note_bodies(&mut self) {
+        let scene = &self.scene;
+        let new = scene.agents.iter().enumerate().skip(self.bodies.len());
+        self.bodies.extend(new.map(|(id, agent)| {
+            let traits = &scene.groups[usize::from(agent.group)].traits;
+            Body {
+                place: agent.position,
+                radius: agent
+                    .radius
+                    .unwrap_or_else(|| traits.radius_of(scene.seed, id as u32)),
+            }
+        }));
+    }
+}
