@@ -15,6 +15,7 @@ mod crowds;
 mod determinism;
 mod distributions;
 mod enclosures;
+mod entrances;
 mod floor_plan;
 mod floor_plan_areas;
 mod floor_plan_pieces;

@@ -40,9 +40,9 @@ fn what_is_larger_than_the_machine_is_refused_with_the_estimate_and_the_fix() {
         NEED.check("f.json", 100, 256_000_000)
             .unwrap_err()
             .to_string(),
-        "f.json: 1000000 agents (600000 of them from sources) and 12 walls would take 723 MB of memory \
+        "f.json: 1000000 agents (600000 of them from sources and entrances) and 12 walls would take 723 MB of memory \
          (100 MB of it to write files), and this machine has 256 MB: use fewer agents, a shorter run \
-         (--until) if they come from sources, or a larger machine"
+         (--until) if they enter later, or a larger machine"
     );
 }
 

@@ -87,13 +87,11 @@ fn evaluated(state: &State) -> Simulation {
         .agents
         .iter()
         .map(|agent| NewAgent {
-            position: agent.position.into(),
             velocity: agent.velocity.into(),
-            goal: agent.goal.into(),
             radius: Some(agent.radius),
             mass: Some(agent.mass),
             mean_density: Some(agent.mean_density),
-            group,
+            ..NewAgent::at(agent.position.into(), agent.goal.into(), group)
         })
         .collect();
     let mut simulation = Simulation::new(scene).unwrap();

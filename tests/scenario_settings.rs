@@ -54,10 +54,11 @@ fn the_keys_of_nested_objects_are_documented() {
         ("grids", 4),
         ("crowds", 1),
         ("sources", 5),
+        ("entrances", 1),
         ("events", 3),
     ] {
         let first = json!({"?": 0, "position": [0, 0], "min": [0, 0], "max": [0, 0], "columns": 1, "rows": 1,
-            "every_secs": 1, "area": [[0, 0], [9, 0], [9, 9]], "at_secs": 0, "for_secs": 0, "region": [[0, 0], [0, 0]]});
+            "every_secs": 1, "line": [[0, 0], [0, 9]], "area": [[0, 0], [9, 0], [9, 9]], "at_secs": 0, "for_secs": 0, "region": [[0, 0], [0, 0]]});
         let documented = &nested.iter().find(|(name, _)| name == list).unwrap().1;
         let documented: Vec<&str> = documented.split(", ").collect();
         let optional = documented.iter().filter(|key| key.ends_with('?'));

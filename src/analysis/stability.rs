@@ -229,7 +229,9 @@ fn lightest(scene: &Scene) -> f64 {
             .or(radius)
             .unwrap_or_else(|| of_group(agent.group))
     });
-    let entering = scene.sources.iter().map(|source| of_group(source.group));
+    let sources = scene.sources.iter().map(|source| source.group);
+    let entrances = scene.entrances.iter().map(|entrance| entrance.group);
+    let entering = sources.chain(entrances).map(of_group);
     given.chain(entering).reduce(f64::min).unwrap_or(drawn)
 }
 

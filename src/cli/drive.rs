@@ -168,7 +168,8 @@ fn warn_of_the_step(scene: &Scene) {
     }
 }
 
-/// Prints notes on displaced agents, stopped moves, clamped speeds and pushes without agents.
+/// Prints notes on displaced agents, stopped moves, clamped speeds, agents that waited for room and pushes without
+/// agents.
 fn report_oddities(simulation: &Simulation) {
     let outcome = simulation.outcome();
     if !outcome.displaced.is_empty() {
@@ -189,8 +190,23 @@ fn report_oddities(simulation: &Simulation) {
         let frame = simulation.frame();
         let (count, most) = (outcome.clamped_speeds, simulation.scene().max_speed);
         let frames = frame.clock.frame();
+        let most = match frame.agents.max_speed.is_empty() {
+            true => format!("{most} m/s"),
+            false => "the agents' largest speeds".to_owned(),
+        };
         talk(&format!(
-            "note: speeds were clamped to {most} m/s {count} time(s) in {frames} frames"
+            "note: speeds were clamped to {most} {count} time(s) in {frames} frames"
+        ));
+    }
+    for backlog in simulation.backlogs().filter(|one| one.largest > 0) {
+        let time = simulation.frame().clock.time_at(backlog.largest_frame);
+        let (name, largest) = (shown(backlog.name), backlog.largest);
+        let rest = match backlog.waiting {
+            0 => String::new(),
+            waiting => format!("; {waiting} still wait"),
+        };
+        talk(&format!(
+            "note: up to {largest} agent(s) waited for room at \"{name}\" (first at {time:.1} s){rest}"
         ));
     }
     for event in simulation.events() {

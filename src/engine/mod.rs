@@ -41,6 +41,8 @@ pub mod placement;
 
 pub mod packing;
 
+pub mod entrance;
+
 pub mod scene;
 
 pub mod simulation;

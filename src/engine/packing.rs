@@ -208,7 +208,7 @@ fn sites(space: &Space, taken: &Taken, radius: f64, pitch: f64) -> Vec<Vector> {
     let rows = ((high.y - low.y) / rise) as u32;
     let columns = ((high.x - low.x) / pitch) as u32;
     let row = |row: u32| {
-        let shift = if row % 2 == 0 { 0.25 } else { 0.75 };
+        let shift = if row.is_multiple_of(2) { 0.25 } else { 0.75 };
         let y = low.y + rise * (f64::from(row) + 0.5);
         (0..=columns).map(move |column| Vector::new(low.x + pitch * (f64::from(column) + shift), y))
     };

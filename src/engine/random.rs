@@ -25,6 +25,10 @@ pub enum Purpose {
     Premovement = 11,
     /// Places of a crowd.
     Crowd = 12,
+    /// Times at which agents arrive at an entrance.
+    Arrival = 13,
+    /// Place at which an agent comes through an entrance.
+    Entry = 14,
 }
 
 /// Base-2 logarithm of the 32-bit words reserved per frame: enough for eight million draws of 64 bits.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::engine::agents::{Agents, NewAgent};
 use crate::engine::boundary::WallMethod;
 use crate::engine::clock::Clock;
+use crate::engine::entrance::Entrance;
 use crate::engine::forces::near::Wanted;
 use crate::engine::forces::own::Force;
 use crate::engine::forces::social::SocialForce;
@@ -171,6 +172,8 @@ pub struct Scene {
     pub agents: Vec<NewAgent>,
     /// Agents that enter later.
     pub sources: Vec<Source>,
+    /// Lines through which agents come in later.
+    pub entrances: Vec<Entrance>,
     /// Temporary changes of behavior.
     pub pushes: Vec<Push>,
     /// Places, journeys and zones.
@@ -199,6 +202,7 @@ impl Default for Scene {
             groups: Vec::new(),
             agents: Vec::new(),
             sources: Vec::new(),
+            entrances: Vec::new(),
             pushes: Vec::new(),
             journeys: Journeys::default(),
             ways: None,

@@ -2,6 +2,7 @@
 
 mod choice;
 mod digest;
+mod entrances;
 mod evaluate;
 mod integrate;
 mod passing;
@@ -10,6 +11,7 @@ mod stages;
 mod state;
 mod trips;
 
+pub use entrances::Backlog;
 pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};
 pub use state::{State, StateError};
@@ -314,6 +316,11 @@ impl Simulation {
     /// How many agents have begun each journey and passed each place.
     pub fn progress(&self) -> &Progress {
         &self.crowd.progress
+    }
+
+    /// The agents that wait for room, entrance by entrance.
+    pub fn backlogs(&self) -> impl Iterator<Item = Backlog<'_>> {
+        self.crowd.schedule.backlogs(&self.fixed.scene)
     }
 
     /// Time spent per stage.

@@ -180,6 +180,9 @@ fn expected_secs(scenario: &Scenario) -> f64 {
                 .times
                 .map_or(times, |most| times.min(f64::from(most)))
     });
+    let through = scene.entrances.iter();
+    let through = through.map(|entrance| entrance.arrivals.about(scenario.duration_secs));
+    let entering = entering.chain(through);
     // Agents that enter during the run are present for half of it on average.
     let agents = scene.agents.len() as f64 + 0.5 * entering.sum::<f64>();
     let needs = scene.needs();

@@ -6,9 +6,8 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use crate::engine::journeys::Kind;
-use crate::engine::journeys::Place;
-use crate::engine::simulation::{PlaceState, Simulation};
+use crate::engine::journeys::{Kind, Place};
+use crate::engine::simulation::{self, PlaceState, Simulation};
 use crate::runs::drive::Run;
 use crate::scenario::measurements::{Left, Metric};
 
@@ -50,8 +49,24 @@ pub struct Summary {
     pub contained_moves: u64,
     /// How many times a speed was clamped to `max_speed`.
     pub clamped_speeds: u64,
+    /// The agents that waited for room, entrance by entrance.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub backlogs: Vec<Backlog>,
     /// Agents that would have entered inside an obstacle and were moved.
     pub displaced_agents: usize,
+}
+
+/// The agents that waited for room at an entrance.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Backlog {
+    /// The name of the entrance.
+    pub entrance: String,
+    /// The most agents that waited at once.
+    pub largest: u32,
+    /// When so many waited first, seconds.
+    pub largest_at_secs: f64,
+    /// Agents that still wait at the end.
+    pub at_end: u32,
 }
 
 impl Summary {
@@ -59,6 +74,12 @@ impl Summary {
     pub fn of(run: &Run) -> Self {
         let (scenario, simulation) = (&run.scenario, &run.simulation);
         let (frame, outcome) = (simulation.frame(), simulation.outcome());
+        let backlog = |of: simulation::Backlog| Backlog {
+            entrance: of.name.to_owned(),
+            largest: of.largest,
+            largest_at_secs: frame.clock.time_at(of.largest_frame),
+            at_end: of.waiting,
+        };
         let measured = run.metrics.results(simulation).into_iter();
         Self {
             scenario: scenario.name.clone(),
@@ -76,6 +97,7 @@ impl Summary {
             places: PlaceResult::all(simulation),
             contained_moves: outcome.contained_moves,
             clamped_speeds: outcome.clamped_speeds,
+            backlogs: simulation.backlogs().map(backlog).collect(),
             displaced_agents: outcome.displaced.len(),
         }
     }

@@ -227,7 +227,7 @@ fn view(given: Option<&file::View>, scene: &Scene) -> Result<View, Problem> {
     })
 }
 
-/// The bounding box of walls, agents, goals and sources, with a margin.
+/// The bounding box of walls, agents, goals, sources and entrances, with a margin.
 fn surroundings(scene: &Scene) -> Region {
     let corners = scene.walls.iter().map(|wall| wall.start);
     let agents = scene
@@ -238,8 +238,10 @@ fn surroundings(scene: &Scene) -> Region {
         .sources
         .iter()
         .flat_map(|source| [source.grid.min, source.grid.max]);
+    let lines = scene.entrances.iter();
+    let lines = lines.flat_map(|entrance| [entrance.line[0], entrance.line[1], entrance.goal]);
     let margin = Vector::new(DEFAULT_MARGIN, DEFAULT_MARGIN);
-    let [low, high] = bounds(corners.chain(agents).chain(sources)).unwrap_or_default();
+    let [low, high] = bounds(corners.chain(agents).chain(sources).chain(lines)).unwrap_or_default();
     Region {
         min: low - margin,
         max: high + margin,

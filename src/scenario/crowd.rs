@@ -1,4 +1,4 @@
-//! Agents, grids, crowds and sources of a file → groups, agents and sources of a scene.
+//! Agents, grids, crowds, sources and entrances of a file → groups, agents, sources and entrances of a scene.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -52,7 +52,7 @@ impl<'a> Crowd<'a> {
         }
     }
 
-    /// Adds single agents, grids, crowds, then sources. Their number has been checked.
+    /// Adds single agents, grids, crowds, sources, then entrances. Their number has been checked.
     pub(super) fn enter(mut self) -> Result<(), Problem> {
         for (k, agent) in self.file.agents.iter().enumerate() {
             self.agent(agent).under(&format!("agents[{k}]"))?;
@@ -68,6 +68,10 @@ impl<'a> Crowd<'a> {
         for (k, source) in self.file.sources.iter().enumerate() {
             let name = format!("sources[{k}]");
             self.source(source, &name).under(&name)?;
+        }
+        for (k, entrance) in self.file.entrances.iter().enumerate() {
+            let name = format!("entrances[{k}]");
+            self.entrance(entrance, &name).under(&name)?;
         }
         Ok(())
     }
@@ -186,7 +190,11 @@ impl<'a> Crowd<'a> {
     }
 
     /// The journey of agents that name `given`; `None` if they walk to a goal.
-    pub(super) fn journey(&self, given: Option<&str>, has_goal: bool) -> Result<Option<u16>, Problem> {
+    pub(super) fn journey(
+        &self,
+        given: Option<&str>,
+        has_goal: bool,
+    ) -> Result<Option<u16>, Problem> {
         let journeys = &self.scene.journeys.journeys;
         let number = |name: &str| {
             let found = journeys.iter().position(|journey| journey.name == name);

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use super::crowds::Crowd;
 use super::distribution::{self, Draw};
+use super::entrances::Entrance;
 use super::measurements::Measurement;
 use super::places::{Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
 use super::preset::Preset;
@@ -136,6 +137,8 @@ pub(super) struct File {
     /// Agents that enter on grids repeatedly.
     #[schemars(schema_with = "sources")]
     pub sources: Vec<Grid>,
+    /// Lines through which agents come in, each where there is room.
+    pub entrances: Vec<Entrance>,
     /// Changes at given times: exits open and close, waiting areas are released, and pushes, in which agents that are
     /// in a region at one moment behave differently for a while.
     pub events: Vec<Event>,

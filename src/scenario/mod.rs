@@ -9,7 +9,7 @@
 //!
 //! An agent is removed within `remove_within` meters of its goal, or never if the key is missing. Its arrival
 //! counts as evacuated unless `counted` is false. Top-level `parameters` override those of the profiles. Ids count
-//! from 0 in order of entry: agents, grids, crowds, then sources as their agents enter.
+//! from 0 in order of entry: agents, grids, crowds, then sources and entrances as their agents enter.
 
 pub mod quote;
 
@@ -28,6 +28,7 @@ mod crowds;
 mod distribution;
 mod document;
 mod draft;
+mod entrances;
 mod error;
 mod file;
 mod journeys;

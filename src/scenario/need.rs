@@ -1,6 +1,7 @@
 //! How many agents enter a run and how much memory it takes, estimated before any agents are placed.
 
 use super::crowds::Crowd;
+use super::entrances::Entrance;
 use super::error::{Problem, ScenarioError};
 use super::file::{File, Grid, TimeStep};
 use super::plan;
@@ -91,7 +92,7 @@ impl Need {
         let (later, agents) = (self.entering - self.initial, self.entering);
         let entering = match later {
             0 => String::new(),
-            later => format!(" ({later} of them from sources)"),
+            later => format!(" ({later} of them from sources and entrances)"),
         };
         let listed = self.listed.saturating_mul(LISTED);
         let parts = [
@@ -110,7 +111,7 @@ impl Need {
         };
         Err(ScenarioError::TooLarge(format!(
             "{file}: {agents} agents{entering} and {} walls would take {} of memory{parts}, and this machine has \
-             {}: use {smaller}fewer agents, a shorter run (--until) if they come from sources, or a larger machine",
+             {}: use {smaller}fewer agents, a shorter run (--until) if they enter later, or a larger machine",
             self.walls,
             in_units(estimate),
             in_units(there),
@@ -131,11 +132,15 @@ impl Need {
         let crowds = file.crowds.iter().map(Crowd::most).enumerate();
         let grids = file.grids.iter().map(cells).enumerate();
         let sources = file.sources.iter().map(entering).enumerate();
+        let through = |entrance: &Entrance| entrance.most(last_entry);
+        let entrances = file.entrances.iter().map(through).enumerate();
         let initial = agents.map(|one| ("agents", one));
         let initial = initial.chain(grids.map(|one| ("grids", one)));
         let initial = initial.chain(crowds.map(|one| ("crowds", one)));
-        for (place, (k, agents)) in initial.chain(sources.map(|one| ("sources", one))) {
-            if place != "sources" {
+        let later = sources.map(|one| ("sources", one));
+        let later = later.chain(entrances.map(|one| ("entrances", one)));
+        for (place, (k, agents)) in initial.chain(later) {
+            if !["sources", "entrances"].contains(&place) {
                 need.initial = need.initial.saturating_add(agents);
             }
             need.entering = need.entering.saturating_add(agents);
@@ -152,6 +157,7 @@ impl Need {
                 in_units(need.bytes()),
                 match place {
                     "crowds" => "agents",
+                    "entrances" => "agents per second, or a lower `number`",
                     _ => "columns, rows or entries",
                 },
             );

@@ -118,24 +118,26 @@ pub(super) fn solids(file: &File) -> Result<Vec<Polygon>, Problem> {
         solids.push(obstacle(given).under(&format!("{OBSTACLES}[{k}]"))?);
     }
     if let Some(polygons) = &file.walkable_area {
-        let exits = file.exits.iter().map(|exit| exit.line.map(Vector::from));
-        let exits: Vec<[Vector; 2]> = exits.collect();
-        solids.extend(walls_round(polygons, &exits).under(WALKABLE_AREA)?);
+        let exits = file.exits.iter().map(|exit| exit.line);
+        let entrances = file.entrances.iter().map(|entrance| entrance.line.0);
+        let doors = exits.chain(entrances).map(|line| line.map(Vector::from));
+        let doors: Vec<[Vector; 2]> = doors.collect();
+        solids.extend(walls_round(polygons, &doors).under(WALKABLE_AREA)?);
     }
     Ok(solids)
 }
 
-/// The solid around `polygons`, open behind the lines of exits.
+/// The solid around `polygons`, open behind the lines of exits and entrances.
 fn walls_round(
     polygons: &[Vec<GivenRing>],
-    exits: &[[Vector; 2]],
+    doors: &[[Vector; 2]],
 ) -> Result<Vec<Polygon>, Problem> {
     let mut given = Vec::with_capacity(polygons.len());
     for (k, polygon) in polygons.iter().enumerate() {
         given.push(rings(polygon).under(&format!("[{k}]"))?);
     }
     let mut plan = FloorPlan::walkable(&given).map_err(problem)?;
-    let openings = exits
+    let openings = doors
         .iter()
         .filter_map(|&line| opening(&plan.walkable, line));
     let openings: Vec<_> = openings.map(|ring| vec![ring]).collect();
@@ -155,7 +157,7 @@ const BEHIND: f64 = 3.0;
 /// That floor begins this far before the line, meters, so that rounding leaves no gap between.
 const OVERLAP: f64 = 0.01;
 
-/// The floor behind the line of an exit that lies on the edge of the walkable area; `None` if there is room to cross the
+/// The floor behind the line of an exit or entrance that lies on the edge of the walkable area; `None` if there is room to cross the
 /// line. Where another room lies behind, the floor ends there.
 fn opening(walkable: &[Area], [a, b]: [Vector; 2]) -> Option<Vec<[f64; 2]>> {
     const STEPS: u32 = 300;

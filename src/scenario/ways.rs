@@ -9,6 +9,7 @@ use super::error::Problem;
 use super::file::File;
 use super::floor_plan::{Rings, free, outlines};
 use super::quote::shown;
+use crate::engine::agents::RADIUS_RANGE;
 use crate::engine::geometry::Area;
 use crate::engine::journeys::{Choice, JourneyStage, Place};
 use crate::engine::math::{Vector, bounds};
@@ -282,6 +283,14 @@ fn starts(scene: &Scene) -> Vec<Start> {
                 Goal::Offset(offset) => (start + offset, false),
             };
             add(start, source.group, goal, shared);
+        }
+    }
+    for entrance in &scene.entrances {
+        let nobody = std::iter::empty();
+        let parts = entrance.free(RADIUS_RANGE[0], &scene.walls, nobody);
+        for [from, to] in parts {
+            let middle = entrance.at(0.5 * (from + to));
+            add(middle, entrance.group, entrance.goal, true);
         }
     }
     starts

@@ -1,4 +1,4 @@
-//! Sources and pushes: scheduled changes of the crowd, on coarse frames only.
+//! Sources, entrances and pushes: scheduled changes of the crowd, on coarse frames only.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,6 +6,7 @@ use crate::engine::agents::NewAgent;
 use crate::engine::clock::Clock;
 use crate::engine::scene::{Goal, Push, Scene, Source};
 
+use super::entrances::{Backlog, Gate};
 use super::{Crowd, Fault, Simulation, Stage};
 
 /// A scheduled event.
@@ -36,11 +37,13 @@ pub enum EventKind {
     Released,
 }
 
-/// Progress of the sources and pushes of a scene.
+/// Progress of the sources, entrances and pushes of a scene.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Schedule {
     /// Number of entries so far, per source.
     entries: Vec<u32>,
+    /// Progress at each entrance.
+    pub(super) gates: Vec<Gate>,
     /// Active pushes: index of the push and frame of its end.
     pushing: Vec<(u16, u64)>,
     /// Has each push of the scene begun?
@@ -54,10 +57,24 @@ impl Schedule {
     }
 
     pub(super) fn expects_agents(&self, scene: &Scene) -> bool {
-        scene.sources.iter().enumerate().any(|(s, source)| {
+        let mut sources = scene.sources.iter().enumerate();
+        let from_sources = sources.any(|(s, source)| {
             let entries = self.entries.get(s).copied().unwrap_or(0);
             source.times.is_none_or(|times| entries < times)
-        })
+        });
+        let mut gates = self.gates_of(scene).enumerate();
+        from_sources || gates.any(|(k, gate)| gate.expects_agents(scene, k))
+    }
+
+    /// Progress at each entrance of the scene.
+    fn gates_of(&self, scene: &Scene) -> impl Iterator<Item = Gate> {
+        let gates = (0..scene.entrances.len()).map(|k| self.gates.get(k));
+        gates.map(|gate| gate.copied().unwrap_or_default())
+    }
+
+    pub(super) fn backlogs<'a>(&self, scene: &'a Scene) -> impl Iterator<Item = Backlog<'a>> {
+        let gates = self.gates_of(scene).zip(&scene.entrances);
+        gates.map(|(gate, entrance)| gate.backlog(entrance))
     }
 
     /// Does this progress fit `scene`?
@@ -65,6 +82,8 @@ impl Schedule {
         let (sources, pushes) = (scene.sources.len(), scene.pushes.len());
         let known = |&(push, _): &(u16, u64)| usize::from(push) < pushes;
         self.entries.len() <= sources
+            && self.gates.len() <= scene.entrances.len()
+            && self.gates.iter().all(Gate::is_sound)
             && self.begun.len() <= pushes
             && self.pushing.iter().all(known)
     }
@@ -91,6 +110,7 @@ impl Simulation {
     pub(super) fn follow_schedule(&mut self) -> Result<(), Fault> {
         let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
         let nothing = scene.sources.is_empty() && scene.pushes.is_empty();
+        let nothing = nothing && scene.entrances.is_empty();
         if nothing || !crowd.clock.is_coarse() {
             return Ok(());
         }
@@ -99,6 +119,11 @@ impl Simulation {
             crowd.schedule.begun.resize(scene.pushes.len(), false);
             for (s, source) in scene.sources.iter().enumerate() {
                 crowd.follow_source(scene, s, source)?;
+            }
+            let gates = &mut crowd.schedule.gates;
+            gates.resize(scene.entrances.len(), Gate::default());
+            for k in 0..scene.entrances.len() {
+                crowd.follow_entrance(scene, k)?;
             }
             crowd.end_pushes(scene);
             for (p, push) in scene.pushes.iter().enumerate() {

@@ -188,6 +188,9 @@ fn goals(scene: &Scene, agents: &Agents) -> Vec<(Vector, BTreeSet<u16>)> {
         };
         goals.into_iter().map(|goal| (goal, source.group))
     });
+    let through = scene.entrances.iter();
+    let through = through.map(|entrance| (entrance.goal, entrance.group));
+    let entering = entering.chain(through);
     let millimeters = |x: f64| (x * 1000.0).round() as i64;
     let mut different = BTreeMap::new();
     for (goal, group) in own.chain(entering) {

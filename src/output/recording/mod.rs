@@ -97,6 +97,7 @@ impl Recorder {
         let log_own = |stream: &RecordingStream| {
             text::log_run(stream, scene, options)?;
             geometry::log(stream, scene, agents)?;
+            stats::log_entrances(stream, scene)?;
             layers::begin(stream, scene, &options.debug)
         };
         Ok(Self {

@@ -26,6 +26,8 @@ pub struct Snapshot {
     pub pressures: Vec<f32>,
     /// Counted arrivals so far; `None` for measured data.
     pub evacuated: Option<usize>,
+    /// How many agents wait at each entrance.
+    pub waiting: Vec<u32>,
     /// Events since the last snapshot, each with its time.
     pub events: Vec<(f64, Event)>,
     /// The debug agents.
@@ -53,6 +55,7 @@ impl Snapshot {
             rest_densities: numbers(&fields.rest_density),
             pressures: numbers(&fields.pressure),
             open: debug.open(simulation),
+            waiting: simulation.backlogs().map(|one| one.waiting).collect(),
             ..Self::default()
         }
     }

@@ -6,6 +6,7 @@ use super::error::Cause;
 use super::set_time;
 use super::snapshot::Snapshot;
 use crate::analysis::statistics::MeanStd;
+use crate::engine::scene::Scene;
 use crate::engine::simulation::{Event, EventKind};
 
 /// The time series: entity, name in the plot, and color.
@@ -32,6 +33,21 @@ pub fn log_style(stream: &RecordingStream) -> Result<(), Cause> {
         stream.log_static(format!("stats/{entity}"), &style)?;
     }
     Ok(())
+}
+
+/// Logs the names of the time series of agents that wait at entrances.
+pub fn log_entrances(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
+    for (k, entrance) in scene.entrances.iter().enumerate() {
+        let name = format!("waiting at {}", entrance.name);
+        let style = SeriesLines::new().with_names([name]).with_widths([1.5]);
+        stream.log_static(waiting(k), &style)?;
+    }
+    Ok(())
+}
+
+/// The entity of the time series of agents that wait at entrance `k`.
+fn waiting(k: usize) -> String {
+    format!("stats/crowd/waiting/{k}")
 }
 
 /// Logs the values of one frame. If it is the frame to show first, it is marked in the log of events; a click on the
@@ -61,6 +77,9 @@ pub fn log(stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
         if let Some(value) = value {
             stream.log(format!("stats/{entity}"), &Scalars::single(value))?;
         }
+    }
+    for (k, &count) in snapshot.waiting.iter().enumerate() {
+        stream.log(waiting(k), &Scalars::single(f64::from(count)))?;
     }
     if snapshot.opens_here {
         log_line(stream, "Look here first.".to_owned(), TextLogLevel::INFO)?;

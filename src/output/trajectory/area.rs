@@ -44,6 +44,10 @@ impl WalkableArea {
             }));
             entries.extend(positions.into_iter().map(entry));
         }
+        for entrance in &scene.entrances {
+            goals.push(entrance.goal);
+            goals.extend(entrance.line);
+        }
         let obstacles = scene.walls.obstacles();
         let corners = obstacles.iter().flat_map(|obstacle| obstacle.points());
         let everything = entries.iter().chain(&goals).chain(corners);
