@@ -281,3 +281,87 @@ fn a_journey_is_the_same_to_the_last_bit_on_any_number_of_threads_and_after_a_ch
         assert_eq!(resumed.digest(), whole, "resumed at {secs} s");
     }
 }
+
+#[test]
+fn places_and_journeys_that_cannot_work_are_refused_with_place_and_fix() {
+    let base = || {
+        with(|room| {
+            room["journeys"] = json!([{"name": "out", "stages": ["east"]}]);
+            room["grids"][0]["journey"] = json!("out");
+        })
+    };
+    let refused = |pointer: &str, put: Value, message: &str| {
+        let mut document = base();
+        *document.pointer_mut(pointer).unwrap() = put;
+        let error = scenario(&document, &[]).unwrap_err();
+        assert!(error.contains(message), "{error}");
+    };
+    refused(
+        "/journeys/0/stages/0",
+        json!("eest"),
+        "journeys[0].stages[0]: there is no place named `eest`; did you mean `east`?",
+    );
+    refused(
+        "/journeys/0/stages/0",
+        json!({"nearest": ["east", "east"]}),
+        "nearest[1]: `east` is listed twice",
+    );
+    refused(
+        "/journeys/0/stages/0",
+        json!({"shares": {"east": 0}}),
+        "the weights must have a sum above 0",
+    );
+    refused(
+        "/journeys/0/stages/0",
+        json!({"nearest": ["east"], "fewest": ["west"]}),
+        "give one of `nearest`",
+    );
+    refused(
+        "/journeys/0/stages",
+        json!(["east", "west"]),
+        "stages[0]: people leave at an exit, so it must be in the last stage",
+    );
+    refused(
+        "/grids/0/journey",
+        json!("aut"),
+        "there is no journey named `aut`; did you mean `out`?",
+    );
+    refused(
+        "/exits/1/name",
+        json!("east"),
+        "exits[1].name: there are two places named `east`",
+    );
+    refused(
+        "/exits/0/line",
+        json!([[20, 4], [20, 4.1]]),
+        "no person fits through",
+    );
+    refused(
+        "/exits/0/line",
+        json!([[40, 4], [40, 6]]),
+        "`east` lies in an obstacle or outside of the walkable area",
+    );
+    refused(
+        "/exits/0",
+        json!({"name": "east", "line": [[20, 4], [20, 6]], "closed_secs": [[9, 3]]}),
+        "exits[0].closed_secs[0]: it ends at 3 s",
+    );
+    let with_wall = |gap: f64| {
+        let mut document = base();
+        document["obstacles"] = json!([[[16, 0], [17, 0], [17, 10.0 - gap], [16, 10.0 - gap]]]);
+        scenario(&document, &[]).map(drop)
+    };
+    assert_eq!(with_wall(1.0), Ok(()));
+    let closed = with_wall(0.0).unwrap_err();
+    assert!(closed.contains("journeys: of `out`: no way leads from (6.5, 2.6), where agents of grids[0] start, to `east`: walls close it off"), "{closed}");
+    let narrow = with_wall(0.3).unwrap_err();
+    assert!(
+        narrow.contains("narrower than `min_passage_width`, 0.4 m"),
+        "{narrow}"
+    );
+    let straight = scenario(&base(), &["navigation=straight"]).unwrap_err();
+    assert!(
+        straight.contains("journeys and exits need `paths`"),
+        "{straight}"
+    );
+}

@@ -210,6 +210,7 @@ const RELATIONS: &[&str] = &[
     "would stand at one point",
     "encloses no area",
     "is listed twice",
+    "give one of ",
     "no goal",
     "either `goal` or `goal_offset`",
     "remove one",

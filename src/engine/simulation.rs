@@ -6,6 +6,7 @@ mod entrances;
 mod evaluate;
 mod integrate;
 mod passing;
+mod queues;
 mod schedule;
 mod stages;
 mod state;
