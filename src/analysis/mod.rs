@@ -1,5 +1,6 @@
 //! Analysis: statistics over values, space-time diagrams and the speed of waves in them, linear theory (the speed of
-//! sound in a crowd and the largest stable time step), and integrals over walls by quadrature. It uses only the engine.
+//! sound in a crowd and the largest stable time step), integrals over walls by
+//! quadrature, and the ways to a destination on a grid. It uses only the engine.
 
 pub mod statistics;
 
@@ -10,3 +11,5 @@ pub mod sound;
 pub mod stability;
 
 pub mod wall_integrals;
+
+pub mod way_field;

@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{ArgGroup, Args};
 
 use super::values::{
-    every_frames, frame_rate, id, positive_seconds, recording, seconds, seed, threads,
+    every_frames, frame_rate, id, picture, positive_seconds, recording, seconds, seed, threads,
 };
 use crate::scenario::Preset;
 
@@ -162,4 +162,22 @@ pub struct InspectOptions {
     /// Also write this moment as a recording for the Rerun viewer
     #[arg(long, value_name = "FILE.rrd", value_parser = recording())]
     pub save: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct DrawOptions {
+    /// A built-in scenario or a scenario file
+    #[arg(value_name = "SCENARIO_OR_FILE")]
+    pub scenario: String,
+    #[command(flatten)]
+    pub scene: SceneOptions,
+    /// The picture [default: the scenario's name with .svg, in the working directory]
+    #[arg(long, value_name = "FILE.svg|FILE.png", value_parser = picture())]
+    pub out: Option<PathBuf>,
+    /// The moment, seconds; at 0 no agent has moved yet
+    #[arg(long, value_name = "SECS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = seconds)]
+    pub at: f64,
+    /// Show the ways to an exit, waypoint, waiting area or queue, or to a point; may be repeated
+    #[arg(long, value_name = "PLACE|X,Y", allow_hyphen_values = true)]
+    pub paths: Vec<String>,
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
-use super::arguments::{InspectOptions, ResumeOptions, RunOptions};
+use super::arguments::{DrawOptions, InspectOptions, ResumeOptions, RunOptions};
 use super::{accuracy, bench, measure, reproduce, stress, sweep};
 
 const EXAMPLES: &str = "\
@@ -17,6 +17,7 @@ Examples:
   sandbox run my_station.json --until 60 --threads 2 --json
   sandbox run my_station.json --geometry station.geojson
   sandbox inspect evacuation --agent 17 --at 15 --json
+  sandbox draw my_station.json --paths 'east exit' --out ways.png
   sandbox sweep study.json --threads 2
   sandbox bench scaling --largest 100000
   sandbox list --settings";
@@ -65,6 +66,9 @@ pub enum Command {
     /// Print every force on single agents at one moment
     #[command(after_help = "Example: sandbox inspect evacuation --agent 17 --at 15 --json")]
     Inspect(InspectOptions),
+    /// Draw a scene, or the ways to a place, without a recording
+    #[command(after_help = "Example: sandbox draw scenarios/station.json --out station.png")]
+    Draw(DrawOptions),
     /// Regenerate the paper's tables and figures (§6) and compare them with the published ones
     #[command(
         after_help = format!("{}Example: sandbox reproduce table1 fig5 --seeds 3", reproduce::about()),

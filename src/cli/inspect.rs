@@ -3,30 +3,31 @@
 use serde_json::json;
 
 use super::arguments::InspectOptions;
-use super::drive::Progress;
-use super::output;
-use super::{Failure, memory, say, scenario as read, use_threads};
+use super::moment::Moment;
+use super::{Failure, memory, moment, output, say, use_threads};
 use crate::engine::breakdown::Breakdown;
-use crate::engine::pairs::Precision;
 use crate::engine::simulation::Simulation;
 use crate::output::recording::check_enabled;
-use crate::runs::case::Source;
 use crate::runs::outputs::{Manner, Outputs};
+
+impl InspectOptions {
+    fn moment(&self) -> Moment<'_> {
+        Moment {
+            scenario: &self.scenario,
+            scene: &self.scene,
+            at: self.at,
+        }
+    }
+}
 
 pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     use_threads(options.scene.program.threads)?;
     if options.save.is_some() {
         check_enabled()?;
     }
-    let source = Source::named(&options.scenario);
     let writing = memory::of_inspecting(options.save.is_some(), options.all);
     let mut outputs = Outputs::new(options.scene.program.force);
-    let mut scenario = read(&source, &options.scene, None, writing, &mut outputs)?;
-    if options.at > scenario.duration_secs {
-        // Extend the scenario, so that sources continue until then.
-        let at = Some(("--at", options.at));
-        scenario = read(&source, &options.scene, at, writing, &mut outputs)?;
-    }
+    let scenario = moment::scenario(&options.moment(), writing, &mut outputs)?;
     if let Some(path) = &options.save {
         outputs.writes("--save", path, Manner::InPlace);
     }
@@ -34,7 +35,7 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     // The rest density depends on the density's history, so every frame needs the density.
     simulation.request_density_until(u64::MAX);
-    let went = rayon::scope(|_| go_to(options.at, &mut simulation));
+    let went = rayon::scope(|_| moment::go_to(options.at, &mut simulation));
     went.map_err(|failure| failure.laid_open(&mut simulation))?;
     let inspected = inspected(&simulation, options)?;
     if let Some(path) = &options.save {
@@ -63,26 +64,6 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
         )),
         false => Ok(()),
     }
-}
-
-/// Advances to the time `at` in seconds, even beyond the scenario's end; fails if no agents are left before. The state
-/// is that of a normal run; only the last frame is evaluated in double precision throughout.
-fn go_to(at: f64, simulation: &mut Simulation) -> Result<(), Failure> {
-    let progress = Progress::new(at);
-    let last = simulation.frame().clock.frame_at(at);
-    while simulation.frame().clock.frame() < last {
-        progress.show(simulation);
-        simulation.step()?;
-        if simulation.frame().agents.is_empty() && !simulation.expects_agents() {
-            let time = simulation.frame().clock.time();
-            return Err(Failure::Input(format!(
-                "--at {at}: no agents are left at that time: the last one leaves at {time:.2} s"
-            )));
-        }
-    }
-    simulation.set_precision(Precision::Double);
-    simulation.evaluate()?;
-    Ok(())
 }
 
 /// Ids and indices of the requested agents.

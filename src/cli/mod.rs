@@ -5,6 +5,7 @@ mod arguments;
 mod bench;
 mod checkpoint;
 mod commands;
+mod draw;
 mod drive;
 mod inspect;
 mod interrupt;
@@ -12,6 +13,7 @@ mod list;
 mod manual;
 mod measure;
 mod memory;
+mod moment;
 mod output;
 mod report;
 mod reproduce;
@@ -147,6 +149,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Run { file, options } => drive::run(&Source::File(file), &options),
         Command::Resume(options) => drive::resume(&options),
         Command::Inspect(options) => inspect::run(&options),
+        Command::Draw(options) => draw::run(&options),
         Command::Reproduce(options) => reproduce::run(&options),
         Command::Bench(options) => bench::run(&options),
         Command::Accuracy(options) => accuracy::run(&options),

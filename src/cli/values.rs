@@ -98,3 +98,18 @@ pub fn recording() -> impl TypedValueParser<Value = PathBuf> {
         _ => Err("a recording's name must end in .rrd"),
     })
 }
+
+/// A path with the extension of a picture.
+pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| {
+        let extension = path.extension().unwrap_or_default();
+        let known = ["svg", "png"].iter();
+        match known
+            .into_iter()
+            .any(|known| extension.eq_ignore_ascii_case(known))
+        {
+            true => Ok(path),
+            false => Err("a picture's name must end in .svg or .png"),
+        }
+    })
+}

@@ -1,13 +1,16 @@
 //! The acceleration of one agent, term by term, computed with the engine's force functions on the frozen frame.
 
 mod text;
+mod visit;
+
+pub use visit::{Alternative, Doing, Times, Visit, Why};
 
 use serde::Serialize;
 
 use crate::engine::boundary::WallShare;
 use crate::engine::density::mean_density_before;
 use crate::engine::forces::pressure;
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, direction};
 use crate::engine::profile::Terms;
 use crate::engine::simulation::{Fault, Simulation};
 
@@ -46,6 +49,9 @@ pub struct Breakdown {
     /// Its way around walls; `None` if it walks straight toward its goal.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub way: Option<WayLeft>,
+    /// The place that it visits; `None` without a journey.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub visit: Option<Visit>,
     /// The forces from outside this crate.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub own_forces: Vec<OwnForce>,
@@ -68,14 +74,16 @@ pub struct ProfileShare {
 }
 
 /// The rest of an agent's way.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WayLeft {
-    /// The length of the shortest way to the goal, meters.
-    pub length: f64,
-    /// The next corner, or the goal, meters.
+    /// Its length, meters; `None` if the agent has no path map and walks straight.
+    pub length: Option<f64>,
+    /// The next corner, or the end, meters.
     pub next: [f64; 2],
     /// The direction in which the agent wants to walk.
     pub heading: [f64; 2],
+    /// The corners on the way in order, then its end, meters.
+    pub corners: Vec<[f64; 2]>,
 }
 
 /// A force from outside this crate.
@@ -159,6 +167,7 @@ impl Breakdown {
             acceleration: fields.acceleration[i].into(),
             profiles: profiles.collect(),
             way: way_left(simulation, i),
+            visit: Visit::of(simulation, i),
             own_forces: own_forces.collect(),
             neighbors,
             walls: wall_terms(simulation, i),
@@ -189,15 +198,27 @@ impl Breakdown {
     }
 }
 
-/// The rest of the way of agent `i`, if it has a path map.
+/// The rest of the way of agent `i`, if the scene has path maps: to its spot if it stands in a queue or waits, else to
+/// its place or goal.
 fn way_left(simulation: &Simulation, i: usize) -> Option<WayLeft> {
     let (agents, ways) = (simulation.frame().agents, simulation.scene().ways.as_ref()?);
     let route = agents.route.get(i)?.as_ref()?;
     let position = agents.position[i];
+    let trip = agents.trip.get(i).and_then(Option::as_ref);
+    if let Some(spot) = trip.and_then(|trip| trip.hold) {
+        return Some(WayLeft {
+            length: Some((spot - position).norm()),
+            next: spot.into(),
+            heading: direction(spot - position).into(),
+            corners: vec![spot.into()],
+        });
+    }
+    let corners = ways.course_of(route).into_iter().map(Into::into);
     Some(WayLeft {
-        length: route.length(),
+        length: Some(route.length()).filter(|length| length.is_finite()),
         next: ways.next(route).into(),
         heading: ways.direction(route, position).into(),
+        corners: corners.collect(),
     })
 }
 

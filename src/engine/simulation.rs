@@ -13,6 +13,7 @@ mod state;
 mod trips;
 
 pub use entrances::Backlog;
+pub use choice::{Decision, Expected, Prospect, Reason};
 pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};
 pub use state::{State, StateError};
@@ -26,11 +27,13 @@ use crate::engine::agents::Agents;
 use crate::engine::clock::Clock;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::frame::{Fields, Frame};
+use crate::engine::journeys::Status;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::Neighbors;
 use crate::engine::pairs::{Packed, Precision};
 use crate::engine::profile::{Blend, Override};
 use crate::engine::scene::{Needs, Scene};
+use choice::Chooser;
 
 /// A crowd in a scene, simulated frame by frame.
 ///
@@ -322,6 +325,17 @@ impl Simulation {
     /// The agents that wait for room, entrance by entrance.
     pub fn backlogs(&self) -> impl Iterator<Item = Backlog<'_>> {
         self.crowd.schedule.backlogs(&self.fixed.scene)
+    }
+
+    /// What agent `i` would decide about the place of its stage now; `None` if it does not walk to a place.
+    pub fn decision(&self, i: usize) -> Option<Decision> {
+        let trip = self.crowd.agents.trip.get(i)?.as_ref()?;
+        let chooser = Chooser {
+            scene: &self.fixed.scene,
+            crowd: &self.crowd,
+            agent: i,
+        };
+        (trip.status == Status::Walking).then(|| chooser.decide(trip, Some(trip.place)))
     }
 
     /// Time spent per stage.

@@ -21,6 +21,8 @@ const STEPS: usize = 64;
 pub struct ColorMap {
     colors: [Rgb; STEPS],
     range: [f32; 2],
+    /// The number of bands of equal color.
+    bands: Option<u32>,
 }
 
 impl ColorMap {
@@ -32,6 +34,29 @@ impl ColorMap {
         Self {
             colors: std::array::from_fn(color),
             range,
+            bands: None,
+        }
+    }
+
+    /// Light yellow to blue, in this many bands of equal color: for pictures with dark lines and text on them.
+    pub fn pale(range: [f32; 2], bands: u32) -> Self {
+        let whole = preset::yl_gn_bu();
+        let part = colorgrad::GradientBuilder::new()
+            .colors(&[0.0, 0.15, 0.3, 0.45, 0.6].map(|at| whole.at(at)))
+            .build::<colorgrad::LinearGradient>();
+        let map = part.map_or_else(|_| Self::new(&whole, range), |part| Self::new(&part, range));
+        Self {
+            bands: Some(bands.max(1)),
+            ..map
+        }
+    }
+
+    /// One color for all values.
+    pub fn plain(color: Rgb) -> Self {
+        Self {
+            colors: [color; STEPS],
+            range: [0.0, 1.0],
+            bands: None,
         }
     }
 
@@ -49,8 +74,20 @@ impl ColorMap {
     pub fn color(&self, value: f32) -> Rgb {
         let [first, last] = self.range;
         let part = (value - first) / (last - first);
+        let part = match self.bands {
+            Some(bands) => {
+                let band = (part * bands as f32).floor().clamp(0.0, bands as f32 - 1.0);
+                (band + 0.5) / bands as f32
+            }
+            None => part,
+        };
         // `as` saturates and maps NaN to the first color.
         self.colors[((part * (STEPS - 1) as f32 + 0.5) as usize).min(STEPS - 1)]
+    }
+
+    /// The number of bands of equal color, if it has bands.
+    pub fn bands(&self) -> Option<u32> {
+        self.bands
     }
 
     /// The values of the first and the last color.

@@ -5,8 +5,12 @@ pub mod table;
 
 pub mod colors;
 
+pub mod scenery;
+
 pub mod recording;
 
 pub mod trajectory;
 
 pub mod plot;
+
+pub mod picture;

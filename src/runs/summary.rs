@@ -168,15 +168,10 @@ impl PlaceResult {
             let here = trips.filter(|&(_, exit)| usize::from(exit) == k);
             let times: Vec<f64> = here.map(|(time, _)| time).collect();
             let passed = f64::from(state.passed);
-            let (kind, waits) = match place.kind {
-                Kind::Exit(_) => ("exit", false),
-                Kind::Line(_) | Kind::Disk { .. } => ("waypoint", false),
-                Kind::Waiting(_) => ("waiting area", true),
-                Kind::Queue(_) => ("queue", true),
-            };
+            let waits = matches!(place.kind, Kind::Waiting(_) | Kind::Queue(_));
             Self {
                 name: place.name.clone(),
-                kind: kind.to_owned(),
+                kind: place.kind.name().to_owned(),
                 passed: state.passed,
                 share: (place.is_exit() && all > 0).then(|| times.len() as f64 / all as f64),
                 from_to_secs: times.first().zip(times.last()).map(|(&a, &b)| [a, b]),

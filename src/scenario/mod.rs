@@ -58,6 +58,7 @@ pub use schema::schema;
 pub use setting::{Setting, SettingError};
 pub use settings::{SettingDoc, nested_settings, settings};
 pub use shipped::{SHIPPED, Shipped, built_in};
+pub use ways::WayFinding;
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};

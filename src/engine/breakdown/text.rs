@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::Breakdown;
+use super::{Alternative, Breakdown, Doing};
 
 fn vector([x, y]: [f64; 2]) -> String {
     format!("({x:>10.4}, {y:>10.4})")
@@ -29,15 +29,8 @@ impl Display for Breakdown {
             self.rest_density,
             self.pressure
         )?;
-        if let Some(way) = &self.way {
-            let (next, heading) = (vector(way.next), vector(way.heading));
-            writeln!(
-                f,
-                "  way: {:.2} m to its goal {}, next {next}, heading {heading}",
-                way.length,
-                vector(self.goal)
-            )?;
-        }
+        self.write_way(f)?;
+        self.write_visit(f)?;
         self.write_accelerations(f)?;
         for wall in &self.walls {
             writeln!(
@@ -57,6 +50,72 @@ impl Display for Breakdown {
 }
 
 impl Breakdown {
+    fn write_way(&self, f: &mut Formatter) -> fmt::Result {
+        let Some(way) = &self.way else {
+            return Ok(());
+        };
+        let end = way.corners.last().copied().unwrap_or(way.next);
+        let length = match way.length {
+            Some(length) => format!("{length:.2} m"),
+            None => "straight".to_owned(),
+        };
+        writeln!(
+            f,
+            "  way: {length} to {}, over {} corner(s); next {}, heading {}",
+            vector(end),
+            way.corners.len().saturating_sub(1),
+            vector(way.next),
+            vector(way.heading)
+        )
+    }
+
+    fn write_visit(&self, f: &mut Formatter) -> fmt::Result {
+        let Some(visit) = &self.visit else {
+            return Ok(());
+        };
+        let doing = match &visit.doing {
+            Doing::Walking => format!("walks to `{}`", visit.place),
+            Doing::Waiting {
+                since_secs,
+                until_secs,
+            } => {
+                let until = until_secs.map_or("it is released".to_owned(), |t| format!("{t:.2} s"));
+                let place = &visit.place;
+                format!("waits in `{place}` since {since_secs:.2} s until {until}")
+            }
+            Doing::Queued { since_secs, ahead } => {
+                let place = &visit.place;
+                format!("stands in `{place}` since {since_secs:.2} s with {ahead} ahead")
+            }
+            Doing::Served {
+                since_secs,
+                until_secs,
+            } => {
+                let place = &visit.place;
+                format!(
+                    "is served at `{place}` until {until_secs:.2} s, there since {since_secs:.2} s"
+                )
+            }
+            Doing::Finished => format!("has ended its journey at `{}`", visit.place),
+        };
+        let (journey, stage, stages) = (&visit.journey, visit.stage, visit.stages);
+        let waited = visit.waited_secs;
+        writeln!(
+            f,
+            "  journey `{journey}`, stage {stage} of {stages}: {doing}; waited {waited:.2} s before"
+        )?;
+        let Some(why) = &visit.why else {
+            return Ok(());
+        };
+        for alternative in &why.alternatives {
+            writeln!(f, "    {alternative}")?;
+        }
+        let again = why.looks_again_secs;
+        let again = again.map_or(String::new(), |t| format!("; looks again at {t:.2} s"));
+        let (choice, reason) = (&why.choice, why.reason);
+        writeln!(f, "    now it would choose `{choice}`: {reason}{again}")
+    }
+
     fn write_accelerations(&self, f: &mut Formatter) -> fmt::Result {
         for share in &self.profiles {
             let (name, weight) = (&share.name, share.weight);
@@ -72,5 +131,34 @@ impl Breakdown {
         }
         let total = vector(self.acceleration);
         writeln!(f, "    {:<18} {total}", "total (weighted)")
+    }
+}
+
+impl Display for Alternative {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        write!(f, "`{}`: ", self.place)?;
+        if !self.open {
+            write!(f, "closed, ")?;
+        }
+        match self.length {
+            Some(length) => write!(f, "{length:.2} m")?,
+            None => write!(f, "no way")?,
+        }
+        write!(f, ", {} agent(s) bound for it", self.bound)?;
+        if let Some(weight) = self.weight {
+            write!(f, ", weight {weight}")?;
+        }
+        let Some(times) = &self.expected else {
+            return Ok(());
+        };
+        write!(f, ", {} of them nearer", times.ahead)?;
+        if let Some(flow) = times.flow_per_sec {
+            write!(f, " at {flow:.2} P/s")?;
+        }
+        write!(
+            f,
+            "; walking {:.1} s or waiting {:.1} s, onward {:.1} s: {:.1} s",
+            times.walking_secs, times.waiting_secs, times.onward_secs, times.total_secs
+        )
     }
 }

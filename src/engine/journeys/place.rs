@@ -71,6 +71,18 @@ pub struct Queue {
     pub mean_service: f64,
 }
 
+impl Kind {
+    /// Its name in reports.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Exit(_) => "exit",
+            Self::Line(_) | Self::Disk { .. } => "waypoint",
+            Self::Waiting(_) => "waiting area",
+            Self::Queue(_) => "queue",
+        }
+    }
+}
+
 impl Place {
     /// What agents walk to, for a path map.
     pub fn goals(&self) -> Vec<Goal> {

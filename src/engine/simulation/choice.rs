@@ -3,7 +3,7 @@
 use rand::Rng;
 
 use super::{Crowd, PlaceState};
-use crate::engine::journeys::{Choice, JourneyStage, Kind, Place, Status, Trip};
+use crate::engine::journeys::{Choice, Journey, JourneyStage, Kind, Place, Status, Trip};
 use crate::engine::random::{self, Purpose};
 use crate::engine::scene::Scene;
 use crate::engine::ways::{Destination, SLACK};
@@ -37,72 +37,215 @@ pub(super) struct Chooser<'a> {
     pub(super) agent: usize,
 }
 
+/// A place of an agent's stage, as the agent sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prospect {
+    /// The number of the place.
+    pub place: u16,
+    /// Is it anything but a closed exit?
+    pub open: bool,
+    /// The length of the way there, meters; infinite if there is none.
+    pub length: f64,
+    /// The number of agents that are bound for it.
+    pub bound: u32,
+    /// Of a stage with shares: its weight.
+    pub weight: Option<f64>,
+    /// Of a stage of which agents choose the quickest place: what the agent expects.
+    pub expected: Option<Expected>,
+}
+
+/// The times that an agent expects until it has passed a place and walked to its next stage.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Expected {
+    /// Walking to the place, seconds.
+    pub walking: f64,
+    /// Agents bound for the place that are nearer to it.
+    pub ahead: u32,
+    /// The flow through the place, P/s.
+    pub flow: f64,
+    /// Until these agents have passed, seconds.
+    pub waiting: f64,
+    /// Walking from the place to the next stage, seconds.
+    pub onward: f64,
+}
+
+impl Expected {
+    /// All together, seconds: the crowd ahead passes while the agent walks.
+    pub fn total(&self) -> f64 {
+        self.walking.max(self.waiting) + self.onward
+    }
+}
+
+/// What an agent decides about the place of its stage.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Decision {
+    /// The place.
+    pub place: u16,
+    /// Why this one.
+    pub reason: Reason,
+    /// All places of the stage, in its order.
+    pub prospects: Vec<Prospect>,
+}
+
+/// Why an agent chooses a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reason {
+    /// The stage has no other place that is open.
+    Only,
+    /// The shortest way.
+    Nearest,
+    /// The least expected time.
+    Quickest,
+    /// It already walks there, and no other way is shorter by the slack.
+    NotClearlyNearer,
+    /// It already walks there, and no other place is expected to be clearly quicker.
+    NotClearlyQuicker,
+    /// It was drawn at random.
+    Drawn,
+    /// The fewest agents were bound for it when the agent chose.
+    Fewest,
+}
+
 impl Chooser<'_> {
     /// The place for the current stage of `trip`, and the frame in which the agent chooses again. `before` is the place
     /// that it walks to.
     pub(super) fn choose(&self, trip: &Trip, before: Option<u16>) -> (u16, u64) {
-        let journey = &self.scene.journeys.journeys[usize::from(trip.journey)];
-        let stage = journey.stage(trip.stage);
-        let state = |place: u16| &self.crowd.progress.places[usize::from(place)];
-        let is_open = |&place: &u16| {
-            let is_exit = self.scene.journeys.places[usize::from(place)].is_exit();
-            !is_exit || state(place).open
-        };
-        let mut open: Vec<u16> = stage.places.iter().copied().filter(is_open).collect();
-        if open.is_empty() {
-            open.clone_from(&stage.places);
-        }
-        let before = before.filter(|place| open.contains(place));
+        let decision = self.decide(trip, before);
         let clock = &self.crowd.clock;
-        let id = self.crowd.agents.id[self.agent];
-        let seed = self.scene.seed;
-        let mut random = random::stream(seed, Purpose::Choice, id, u64::from(trip.choices));
         let again = |secs: f64| clock.coarse_frame_at(clock.time() + secs);
-        match &stage.choice {
+        let is_kept = before.is_some_and(|before| self.candidates(trip).contains(&before));
+        let chooses_at = match self.stage(trip).choice {
+            Choice::Nearest if self.stage(trip).places.len() == 1 => u64::MAX,
+            Choice::Nearest if is_kept => again(NEAREST_EVERY),
+            // The first time at random, so that not all agents look in the same frame.
+            Choice::Nearest => again(self.random(trip).random_range(0.0..NEAREST_EVERY) + 1e-9),
+            Choice::Quickest => {
+                let [least, most] = QUICKEST_EVERY;
+                again(self.random(trip).random_range(least..most))
+            }
+            Choice::Shares(_) | Choice::Fewest => u64::MAX,
+        };
+        (decision.place, chooses_at)
+    }
+
+    /// Decides between the places of the current stage of `trip`. `before` is the place that the agent walks to.
+    pub(super) fn decide(&self, trip: &Trip, before: Option<u16>) -> Decision {
+        let stage = self.stage(trip);
+        let open = self.candidates(trip);
+        let before = before.filter(|place| open.contains(place));
+        let prospects: Vec<Prospect> = stage.places.iter().map(|&p| self.see(trip, p)).collect();
+        let of = |place: u16| prospects.iter().find(|prospect| prospect.place == place);
+        let (place, reason) = match &stage.choice {
             Choice::Nearest => {
-                let place = best(
-                    &open,
-                    before,
-                    |p| self.length(p),
-                    |new, old| new < old - SLACK,
-                );
-                // The first time at random, so that not all agents look in the same frame.
-                let wait = match before {
-                    None => random.random_range(0.0..NEAREST_EVERY) + 1e-9,
-                    Some(_) => NEAREST_EVERY,
-                };
-                (
-                    place,
-                    if stage.places.len() > 1 {
-                        again(wait)
-                    } else {
-                        u64::MAX
-                    },
-                )
+                let length = |place| of(place).map_or(f64::INFINITY, |prospect| prospect.length);
+                let is_shorter = |new, old| new < old - SLACK;
+                match best(&open, before, length, is_shorter) {
+                    (place, true) => (place, Reason::NotClearlyNearer),
+                    (place, false) => (place, Reason::Nearest),
+                }
             }
             Choice::Quickest => {
-                let onward = journey.stages.get(usize::from(trip.stage) + 1);
-                let time = |place| self.time(place, onward);
-                let place = best(&open, before, time, |new, old| new < CLEARLY_QUICKER * old);
-                let [least, most] = QUICKEST_EVERY;
-                (place, again(random.random_range(least..most)))
+                let expected = |place| of(place).and_then(|prospect| prospect.expected);
+                let time = |place| expected(place).map_or(f64::INFINITY, |e| e.total());
+                let is_quicker = |new, old| new < CLEARLY_QUICKER * old;
+                match best(&open, before, time, is_quicker) {
+                    (place, true) => (place, Reason::NotClearlyQuicker),
+                    (place, false) => (place, Reason::Quickest),
+                }
             }
             Choice::Shares(weights) => {
-                let places = stage.places.iter().zip(weights);
-                let open: Vec<_> = places.filter(|(place, _)| open.contains(place)).collect();
-                let total: f64 = open.iter().map(|(_, weight)| **weight).sum();
-                let mut left = random.random_range(0.0..1.0) * total;
-                let chosen = open.iter().find(|(_, weight)| {
-                    left -= **weight;
-                    left < 0.0
-                });
-                let chosen = chosen.or(open.last()).map(|(place, _)| **place);
-                (before.or(chosen).unwrap_or(stage.places[0]), u64::MAX)
+                let drawn = || self.draw(trip, &open, weights);
+                (before.unwrap_or_else(drawn), Reason::Drawn)
             }
             Choice::Fewest => {
-                let fewest = open.iter().copied().min_by_key(|&place| state(place).bound);
-                (before.or(fewest).unwrap_or(stage.places[0]), u64::MAX)
+                let bound = |place: u16| self.crowd.progress.places[usize::from(place)].bound;
+                let fewest = open.iter().copied().min_by_key(|&place| bound(place));
+                let place = before.or(fewest).unwrap_or(stage.places[0]);
+                (place, Reason::Fewest)
             }
+        };
+        let reason = if open.len() == 1 {
+            Reason::Only
+        } else {
+            reason
+        };
+        Decision {
+            place,
+            reason,
+            prospects,
+        }
+    }
+
+    fn journey(&self, trip: &Trip) -> &Journey {
+        &self.scene.journeys.journeys[usize::from(trip.journey)]
+    }
+
+    fn stage(&self, trip: &Trip) -> &JourneyStage {
+        self.journey(trip).stage(trip.stage)
+    }
+
+    /// The places of the stage that are not closed; all of them if all are closed.
+    fn candidates(&self, trip: &Trip) -> Vec<u16> {
+        let places = &self.stage(trip).places;
+        let open = places.iter().copied().filter(|&place| self.is_open(place));
+        let open: Vec<u16> = open.collect();
+        if open.is_empty() {
+            places.clone()
+        } else {
+            open
+        }
+    }
+
+    fn is_open(&self, place: u16) -> bool {
+        let is_exit = self.scene.journeys.places[usize::from(place)].is_exit();
+        !is_exit || self.crowd.progress.places[usize::from(place)].open
+    }
+
+    /// The random numbers of this choice.
+    fn random(&self, trip: &Trip) -> impl Rng + use<> {
+        let id = self.crowd.agents.id[self.agent];
+        random::stream(
+            self.scene.seed,
+            Purpose::Choice,
+            id,
+            u64::from(trip.choices),
+        )
+    }
+
+    /// A place of `open` at random.
+    fn draw(&self, trip: &Trip, open: &[u16], weights: &[f64]) -> u16 {
+        let stage = self.stage(trip);
+        let places = stage.places.iter().zip(weights);
+        let open: Vec<_> = places.filter(|(place, _)| open.contains(place)).collect();
+        let total: f64 = open.iter().map(|(_, weight)| **weight).sum();
+        let mut left = self.random(trip).random_range(0.0..1.0) * total;
+        let chosen = open.iter().find(|(_, weight)| {
+            left -= **weight;
+            left < 0.0
+        });
+        let chosen = chosen.or(open.last()).map(|(place, _)| **place);
+        chosen.unwrap_or(stage.places[0])
+    }
+
+    /// A place of the current stage of `trip`, as the agent sees it.
+    fn see(&self, trip: &Trip, place: u16) -> Prospect {
+        let stage = self.stage(trip);
+        let length = self.length(place);
+        let k = stage.places.iter().position(|&other| other == place);
+        let onward = self.journey(trip).stages.get(usize::from(trip.stage) + 1);
+        Prospect {
+            place,
+            open: self.is_open(place),
+            length,
+            bound: self.crowd.progress.places[usize::from(place)].bound,
+            weight: match (&stage.choice, k) {
+                (Choice::Shares(weights), Some(k)) => weights.get(k).copied(),
+                _ => None,
+            },
+            expected: match stage.choice {
+                Choice::Quickest => Some(self.expect(place, length, onward)),
+                _ => None,
+            },
         }
     }
 
@@ -114,14 +257,13 @@ impl Chooser<'_> {
         way.map_or(f64::INFINITY, |way| way.length)
     }
 
-    /// The expected time to pass a place and to walk to the next stage from there, seconds.
-    fn time(&self, place: u16, onward: Option<&JourneyStage>) -> f64 {
-        let length = self.length(place);
+    /// What the agent expects of a place to which its way has this length, meters, and of the way to the next stage.
+    fn expect(&self, place: u16, length: f64, onward: Option<&JourneyStage>) -> Expected {
         let speed = self.scene.preferred_speed.max(f64::MIN_POSITIVE);
         let state = &self.crowd.progress.places[usize::from(place)];
         let definition = &self.scene.journeys.places[usize::from(place)];
         let ahead = state.nearer_than(length);
-        let passing = f64::from(ahead) / self.flow(definition, state);
+        let flow = self.flow(definition, state);
         let onward = onward.map_or(0.0, |stage| {
             let from = definition.nearest_point(self.crowd.agents.position[self.agent]);
             let ways = self.scene.ways.as_ref();
@@ -129,7 +271,13 @@ impl Chooser<'_> {
             let lengths = stage.places.iter().filter_map(way).map(|way| way.length);
             lengths.reduce(f64::min).unwrap_or(0.0)
         });
-        (length / speed).max(passing) + onward / speed
+        Expected {
+            walking: length / speed,
+            ahead,
+            flow,
+            waiting: f64::from(ahead) / flow,
+            onward: onward / speed,
+        }
     }
 
     /// The flow that an agent expects through a place, P/s. Through an exit with a crowd before it, that is the flow
@@ -170,19 +318,20 @@ fn width(place: &Place) -> Option<f64> {
     place.line().map(|[a, b]| (b - a).norm())
 }
 
-/// The place with the least value; `before` unless another one is `better` than it.
+/// The place with the least value; `before` unless another one is `better` than it. Also returns whether `before` is
+/// kept though another one has the least value.
 fn best(
     places: &[u16],
     before: Option<u16>,
     value: impl Fn(u16) -> f64,
     better: impl Fn(f64, f64) -> bool,
-) -> u16 {
+) -> (u16, bool) {
     let values = places.iter().map(|&place| (place, value(place)));
     let least = values.min_by(|a, b| a.1.total_cmp(&b.1));
     let (place, least) = least.unwrap_or((places[0], f64::INFINITY));
     match before {
-        Some(before) if !better(least, value(before)) => before,
-        _ => place,
+        Some(before) if !better(least, value(before)) => (before, before != place),
+        _ => (place, false),
     }
 }
 

@@ -230,6 +230,21 @@ impl PathMap {
         })
     }
 
+    /// The bend after `bend` on the way; `None` if the way from there leads straight to the goal.
+    pub fn after(&self, bend: Bend) -> Option<Bend> {
+        self.after[bend.index()]
+    }
+
+    /// Where ways end that bend around this corner last, meters.
+    pub fn end_after(&self, floor: &Floor, bend: Bend) -> Option<Vector> {
+        let corner = &floor.corners[bend.corner as usize];
+        let around = corner.fan.iter().flat_map(|&(t, _)| self.entries(t));
+        let seen = around.filter(|entry| entry.bend().is_none() && entry.view.holds(corner.place));
+        let ends = seen.map(|entry| entry.from(floor, corner.place));
+        let nearest = ends.min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.map(|(_, way)| corner.place + way)
+    }
+
     /// The memory that it takes, bytes.
     pub fn bytes(&self) -> usize {
         self.entries.capacity() * size_of::<Entry>()

@@ -111,7 +111,9 @@ impl Ways {
 
     fn map_to(&self, to: Destination) -> Option<u16> {
         let map = match to {
-            Destination::Place(place) => return Some(place),
+            Destination::Place(place) => {
+                return (usize::from(place) < self.places).then_some(place);
+            }
             Destination::Goal(goal) => self.goals.iter().position(|&other| other == goal),
         };
         map.map(|map| (self.places + map) as u16)
@@ -156,7 +158,57 @@ impl Ways {
     }
 }
 
+/// The most points of a course: far more than any way has corners.
+const MOST_POINTS: usize = 10_000;
+
 impl Ways {
+    /// Is there a path map to this destination?
+    pub fn leads_to(&self, to: Destination) -> bool {
+        self.map_to(to).is_some()
+    }
+
+    /// The goals that have a path map, meters.
+    pub fn goals(&self) -> &[Vector] {
+        &self.goals
+    }
+
+    /// The points that the shortest way from `p` leads over, meters: its corners in order, then its end. Empty if
+    /// there is no way.
+    pub fn course(&self, p: Vector, to: Destination) -> Vec<Vector> {
+        let first = self.map_to(to).zip(self.way(p, to));
+        first.map_or(Vec::new(), |(map, way)| self.points(map, way.next))
+    }
+
+    /// The points that the rest of a route leads over, as in [`course`](Self::course).
+    pub fn course_of(&self, route: &Route) -> Vec<Vector> {
+        match route.map {
+            Some(map) => self.points(map, route.next),
+            None => vec![self.next(route)],
+        }
+    }
+
+    fn points(&self, map: u16, first: Next) -> Vec<Vector> {
+        let (number, map) = (usize::from(map), &self.maps[usize::from(map)]);
+        let (mut points, mut next) = (Vec::new(), Some(first));
+        while let Some(now) = next.take_if(|_| points.len() < MOST_POINTS) {
+            match now {
+                Next::Goal(point) => points.push(point),
+                Next::Corner { bend, .. } => {
+                    let bends = std::iter::successors(Some(bend), |bend| map.after(*bend));
+                    let bends: Vec<_> = bends.take(MOST_POINTS).collect();
+                    points.extend(bends.iter().map(|&bend| self.floor.place(bend)));
+                    let last = bends.last();
+                    points.extend(last.and_then(|&bend| map.end_after(&self.floor, bend)));
+                }
+                Next::Out(point) => {
+                    points.push(point);
+                    next = self.from(number, point, None).map(|way| way.next);
+                }
+            }
+        }
+        points
+    }
+
     /// The point that an agent on `route` walks to next, meters: a corner or its goal.
     pub fn next(&self, route: &Route) -> Vector {
         match route.next {

@@ -163,16 +163,16 @@ fn draw_chart<DB: DrawingBackend>(
 
 /// Draws a color bar: a chart of its colors with its axis on the right.
 fn draw_bar<DB: DrawingBackend>(bar: &ColorBar, area: &Area<DB>) -> Drawn {
-    const STEPS: u32 = 64;
+    let steps = bar.map.bands().unwrap_or(64);
     let [first, last] = bar.map.range().map(f64::from);
-    let value = |step| first + (last - first) * (f64::from(step) + 0.5) / f64::from(STEPS);
+    let value = |step| first + (last - first) * (f64::from(step) + 0.5) / f64::from(steps);
     let panel = Panel {
         x: Axis::linear("", [0.0, 1.0]),
         y: Axis::linear(&bar.label, [first, last]),
         marks: vec![Mark::Cells(Cells {
             extent: [[0.0, first], [1.0, last]],
             columns: 1,
-            values: (0..STEPS).map(value).map(Some).collect(),
+            values: (0..steps).map(value).map(Some).collect(),
             map: bar.map.clone(),
         })],
         ..Panel::default()

@@ -5,16 +5,18 @@ use std::vec::IntoIter;
 use image::RgbImage;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::layout::{Chart, centered, font, units};
 use super::output::Drawn;
-use super::{Disc, Mark, Panel, Style};
+use super::{Cells, Disc, LABEL_SIZE, Label, Mark, Panel, Style};
 use crate::output::colors::Rgb;
 
 /// More discs or cells than this are drawn as pixels: as separate shapes, they would make an SVG too large for
 /// most viewers.
 const MOST_SHAPES: usize = 2000;
 const DASH: f64 = 3.0; // length of a dash and of the gap after it, points
+const RIM: f64 = 0.7; // width of the white rim of labels, points
 const ERROR_BAR: f64 = 0.8; // width of its lines, points
 
 /// Right and up, from 0 to 1 inside of the plotting area.
@@ -52,26 +54,70 @@ pub fn draw<DB: DrawingBackend>(
     chart: &mut Chart<DB>,
     alike: u32,
 ) -> Drawn {
-    let shapes = match mark {
-        Mark::Discs(discs) => panel.shown(discs, |disc| disc.center).len(),
-        Mark::Cells(cells) => cells.values.len(),
-        _ => 0,
-    };
-    if shapes <= MOST_SHAPES {
+    if shapes(mark, panel) <= MOST_SHAPES {
         return draw_shapes(mark, panel, chart);
     }
     let size @ (width, height) = chart.plotting_area().dim_in_pixel();
     let mut image = RgbImage::from_pixel(width, height, image::Rgb([255; 3]));
-    if let Mark::Discs(discs) = mark {
-        color_discs(discs, panel, &mut image, alike);
-    } else {
-        let area = BitMapBackend::with_buffer(&mut image, size).into_drawing_area();
-        let (x, y) = (panel.x.clone(), panel.y.clone());
-        let mut chart = ChartBuilder::on(&area).build_cartesian_2d(x, y)?;
-        draw_shapes(mark, panel, &mut chart)?;
+    let marks = match mark {
+        Mark::Group(marks) => marks,
+        mark => std::slice::from_ref(mark),
+    };
+    for mark in marks {
+        match mark {
+            Mark::Discs(discs) => color_discs(discs, panel, &mut image, alike),
+            Mark::Cells(cells) => color_cells(cells, panel, &mut image),
+            mark => {
+                let area = BitMapBackend::with_buffer(&mut image, size).into_drawing_area();
+                let (x, y) = (panel.x.clone(), panel.y.clone());
+                let mut chart = ChartBuilder::on(&area).build_cartesian_2d(x, y)?;
+                draw_shapes(mark, panel, &mut chart)?;
+            }
+        }
     }
     chart.draw_series(BitMapElement::with_ref((0.0, 1.0), size, &image))?;
     Ok(())
+}
+
+/// The number of shapes of a mark that may have many.
+fn shapes(mark: &Mark, panel: &Panel) -> usize {
+    match mark {
+        Mark::Discs(discs) => panel.shown(discs, |disc| disc.center).len(),
+        Mark::Cells(cells) => cells.values.len(),
+        Mark::Group(marks) => marks.iter().map(|mark| shapes(mark, panel)).sum(),
+        _ => 0,
+    }
+}
+
+/// Colors the pixels of cells that have a value.
+fn color_cells(cells: &Cells, panel: &Panel, image: &mut RgbImage) {
+    let (width, height) = image.dimensions();
+    let rows = cells.values.len() / cells.columns.max(1);
+    let [low, high] = cells.extent.map(|corner| panel.place(corner));
+    let index = |at: f64, low: f64, high: f64, count: usize| {
+        let part = (at - low) / (high - low);
+        (0.0..1.0)
+            .contains(&part)
+            .then(|| (part * count as f64) as usize)
+    };
+    let column = |x: u32| {
+        let at = (f64::from(x) + 0.5) / f64::from(width);
+        index(at, low.0, high.0, cells.columns)
+    };
+    let columns: Vec<Option<usize>> = (0..width).map(column).collect();
+    for y in 0..height {
+        let at = 1.0 - (f64::from(y) + 0.5) / f64::from(height);
+        let Some(row) = index(at, low.1, high.1, rows) else {
+            continue;
+        };
+        for (x, column) in columns.iter().enumerate() {
+            let value = column.and_then(|column| cells.values[row * cells.columns + column]);
+            if let Some(value) = value {
+                let color = cells.map.color(value as f32);
+                image.put_pixel(x as u32, y, image::Rgb(color));
+            }
+        }
+    }
 }
 
 /// Colors the pixels of discs. plotters' circles are too coarse for small discs: their radii are whole pixels.
@@ -143,10 +189,60 @@ fn draw_shapes<DB: DrawingBackend>(mark: &Mark, panel: &Panel, chart: &mut Chart
                 Some(Rectangle::new(corners, look))
             }))?;
         }
+        Mark::Label(label) => draw_label(label, panel, chart)?,
+        Mark::Group(marks) => {
+            for mark in marks {
+                draw_shapes(mark, panel, chart)?;
+            }
+        }
         Mark::Text(at, text, [r, g, b]) => {
-            let style = centered(font(7.0).color(&RGBColor(*r, *g, *b)));
+            let style = centered(font(LABEL_SIZE).color(&RGBColor(*r, *g, *b)));
             chart.draw_series([Text::new(text.clone(), panel.place(*at), style)])?;
         }
+    }
+    Ok(())
+}
+
+/// Draws the text in white around its place, then in its color.
+fn draw_label<DB: DrawingBackend>(label: &Label, panel: &Panel, chart: &mut Chart<DB>) -> Drawn {
+    let [h, v] = label.side;
+    let position = Pos::new(
+        match h {
+            -1 => HPos::Right,
+            0 => HPos::Center,
+            _ => HPos::Left,
+        },
+        match v {
+            -1 => VPos::Top,
+            0 => VPos::Center,
+            _ => VPos::Bottom,
+        },
+    );
+    let [r, g, b] = label.color;
+    let (x, y) = panel.place(label.at);
+    let (width, height) = chart.plotting_area().dim_in_pixel();
+    let rim = f64::from(units(RIM));
+    let around = [
+        (-1.0, -1.0),
+        (1.0, -1.0),
+        (-1.0, 1.0),
+        (1.0, 1.0),
+        (0.0, 0.0),
+    ];
+    for (right, up) in around {
+        let color = if (right, up) == (0.0, 0.0) {
+            RGBColor(r, g, b)
+        } else {
+            WHITE
+        };
+        let style = TextStyle::from(font(LABEL_SIZE))
+            .color(&color)
+            .pos(position);
+        let at = (
+            x + right * rim / f64::from(width),
+            y + up * rim / f64::from(height),
+        );
+        chart.draw_series([Text::new(label.text.clone(), at, style)])?;
     }
     Ok(())
 }

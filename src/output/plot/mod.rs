@@ -170,6 +170,22 @@ pub struct Cells {
     pub map: ColorMap,
 }
 
+/// Text with a white rim, readable on any background.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Label {
+    /// The point that it belongs to, axis units.
+    pub at: [f64; 2],
+    /// Where it is: −1, 0 or 1 for left of the point, centered, right of it; and for below, centered, above.
+    pub side: [i8; 2],
+    /// The text.
+    pub text: String,
+    /// Its color.
+    pub color: Rgb,
+}
+
+/// The size of labels, points.
+pub const LABEL_SIZE: f64 = 7.0;
+
 /// A mark in a panel, in axis units.
 #[derive(Debug, Clone)]
 pub enum Mark {
@@ -185,6 +201,10 @@ pub enum Mark {
     Cells(Cells),
     /// Text, centered at a position.
     Text([f64; 2], String, Rgb),
+    /// Text beside a point.
+    Label(Label),
+    /// Marks that become one image if they have many shapes.
+    Group(Vec<Mark>),
 }
 
 impl Mark {

@@ -43,19 +43,43 @@ impl Sheet {
     /// # Errors
     /// The sheet cannot be drawn or a file cannot be written.
     pub fn save(&self, stem: &Path) -> Result<(), PlotError> {
+        self.save_as(&stem.with_extension("svg"))?;
+        self.save_as(&stem.with_extension("png"))
+    }
+
+    /// Writes one file: a PNG if its name ends in .png, else an SVG.
+    ///
+    /// # Errors
+    /// The sheet cannot be drawn or the file cannot be written.
+    pub fn save_as(&self, path: &Path) -> Result<(), PlotError> {
         // A font of our own makes pictures the same on every machine. Without it, drawing text is an error.
         let regular = dejavu::sans::regular();
         let _ = plotters::style::register_font("sans-serif", FontStyle::Normal, regular);
+        let is_png = path
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("png"));
+        let bytes = if is_png { self.png()? } else { self.svg()? };
+        std::fs::write(path, bytes).map_err(|reason| PlotError::Writing {
+            path: path.to_owned(),
+            reason,
+        })
+    }
+
+    fn svg(&self) -> Result<Vec<u8>, PlotError> {
         let points = Layout::new(self).size;
         let size @ [width, height] = points.map(|length| length * SCALE);
-
         let mut text = String::new();
         // The encoder of images in an SVG only finds repetitions of the row above: pairs of rows halve its size.
         self.draw(SVGBackend::with_string(&mut text, (width, height)), 2)?;
         let attributes = |[x, y]: [u32; 2]| format!(r#"width="{x}" height="{y}""#);
-        let text = text.replacen(&attributes(size), &attributes(points), 1);
-        write(stem.with_extension("svg"), text.as_bytes())?;
+        Ok(text
+            .replacen(&attributes(size), &attributes(points), 1)
+            .into_bytes())
+    }
 
+    fn png(&self) -> Result<Vec<u8>, PlotError> {
+        let points = Layout::new(self).size;
+        let [width, height] = points.map(|length| length * SCALE);
         let mut image = RgbImage::new(width, height);
         self.draw(BitMapBackend::with_buffer(&mut image, (width, height)), 1)?;
         let [width, height] = points.map(|length| length * PNG_SCALE);
@@ -67,7 +91,7 @@ impl Sheet {
         PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive)
             .write_image(&image, width, height, ColorType::Rgb8)
             .map_err(|error| PlotError::Drawing(error.to_string()))?;
-        write(stem.with_extension("png"), &bytes)
+        Ok(bytes)
     }
 
     fn draw<DB: DrawingBackend>(&self, backend: DB, alike: u32) -> Drawn {
@@ -76,8 +100,4 @@ impl Sheet {
         layout::draw(self, &root, alike)?;
         Ok(root.present()?)
     }
-}
-
-fn write(path: PathBuf, bytes: &[u8]) -> Drawn {
-    std::fs::write(&path, bytes).map_err(|reason| PlotError::Writing { path, reason })
 }

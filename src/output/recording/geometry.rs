@@ -1,7 +1,5 @@
 //! Static geometry: walls, obstacles and goals, logged once.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use rerun::components::ImageFormat;
 use rerun::{
     AnnotationContext, AsComponents, ChannelDatatype, Color, ColorModel, LineStrips2D, Points2D,
@@ -12,7 +10,8 @@ use super::error::Cause;
 use crate::engine::agents::Agents;
 use crate::engine::geometry::Polygon;
 use crate::engine::math::{Vector, bounds};
-use crate::engine::scene::{Goal, Scene};
+use crate::engine::scene::Scene;
+use crate::output::scenery;
 
 /// The filled obstacles: an image below everything else.
 pub const OBSTACLES: &str = "world/geometry/obstacles";
@@ -22,8 +21,7 @@ const RASTER_SIDE: f64 = 1024.0;
 const RASTER_CELL: f64 = 0.05;
 /// Margin around the floor in which an unbounded obstacle is shown, meters.
 const SOLID_MARGIN: f64 = 1.0;
-/// Maximum number of goals shown; up to `NAMED_GOALS` goals also get labels.
-const GOALS: usize = 200;
+/// Up to this many goals get labels.
 const NAMED_GOALS: usize = 8;
 
 const WALL: Color = Color(Rgba32::from_rgb(214, 214, 222));
@@ -137,7 +135,7 @@ impl Raster {
 }
 
 fn log_goals(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result<(), Cause> {
-    let goals = goals(scene, agents);
+    let goals = scenery::goals(scene, agents);
     if goals.is_empty() {
         return Ok(());
     }
@@ -146,59 +144,9 @@ fn log_goals(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result
         .with_colors([GOAL])
         .with_draw_order(6.0);
     if goals.len() <= NAMED_GOALS {
-        points = points.with_labels(labels(scene, &goals));
+        points = points.with_labels(scenery::goal_labels(scene, &goals));
     }
     Ok(stream.log_static("world/geometry/goals", &points)?)
-}
-
-/// One label for all goals of the same groups, at the first of these goals.
-fn labels(scene: &Scene, goals: &[(Vector, BTreeSet<u16>)]) -> Vec<String> {
-    let mut named = BTreeSet::new();
-    let label = |(_, groups): &(Vector, BTreeSet<u16>)| match named.insert(groups.clone()) {
-        true => label(scene, groups),
-        false => String::new(),
-    };
-    goals.iter().map(label).collect()
-}
-
-/// The label of a goal.
-fn label(scene: &Scene, of: &BTreeSet<u16>) -> String {
-    if of.len() == scene.groups.len() {
-        return "goal".to_owned();
-    }
-    let groups = of
-        .iter()
-        .filter_map(|&group| scene.groups.get(usize::from(group)));
-    let names: BTreeSet<&str> = groups.map(|group| group.name.as_str()).collect();
-    format!("goal of {}", Vec::from_iter(names).join(", "))
-}
-
-/// The distinct goals of agents and sources, each with its groups. A source with a goal per agent contributes the
-/// goals of its first entry.
-fn goals(scene: &Scene, agents: &Agents) -> Vec<(Vector, BTreeSet<u16>)> {
-    let own = agents.goal.iter().zip(&agents.group);
-    let own = own.map(|(&goal, &group)| (goal, group));
-    let entering = scene.sources.iter().flat_map(|source| {
-        let goals: Vec<Vector> = match source.goal {
-            Goal::Point(goal) => vec![goal],
-            Goal::Offset(offset) => {
-                let starts = source.grid.positions(scene.seed, 0).take(GOALS);
-                starts.map(|start| start + offset).collect()
-            }
-        };
-        goals.into_iter().map(|goal| (goal, source.group))
-    });
-    let through = scene.entrances.iter();
-    let through = through.map(|entrance| (entrance.goal, entrance.group));
-    let entering = entering.chain(through);
-    let millimeters = |x: f64| (x * 1000.0).round() as i64;
-    let mut different = BTreeMap::new();
-    for (goal, group) in own.chain(entering) {
-        let place = (millimeters(goal.x), millimeters(goal.y));
-        let (_, groups) = different.entry(place).or_insert((goal, BTreeSet::new()));
-        groups.insert(group);
-    }
-    different.into_values().take(GOALS).collect()
 }
 
 pub fn xy(v: Vector) -> [f32; 2] {

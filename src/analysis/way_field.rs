@@ -1,0 +1,117 @@
+//! The shortest ways to one destination, sampled on a grid of square cells.
+
+use rayon::prelude::*;
+
+use crate::engine::math::Vector;
+use crate::engine::ways::{Destination, Next, Way, Ways};
+
+/// Square cells in rows from the lower left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    /// The lower left corner, meters.
+    pub min: Vector,
+    /// The side of a cell, meters.
+    pub cell: f64,
+    /// Cells per row.
+    pub columns: usize,
+    /// The number of rows.
+    pub rows: usize,
+}
+
+impl Grid {
+    /// Covers a rectangle with cells of this size, meters.
+    pub fn over([min, max]: [Vector; 2], cell: f64) -> Self {
+        let [columns, rows] =
+            [max.x - min.x, max.y - min.y].map(|length| (length / cell).ceil().max(1.0) as usize);
+        Self {
+            min,
+            cell,
+            columns,
+            rows,
+        }
+    }
+
+    /// The center of cell `k`, meters.
+    pub fn center(&self, k: usize) -> Vector {
+        let (column, row) = (k % self.columns, k / self.columns);
+        self.min + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell
+    }
+
+    /// The number of cells.
+    pub fn len(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// Are there no cells?
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// The ways from the centers of cells.
+#[derive(Debug, Clone)]
+pub struct WayField {
+    /// The cells.
+    pub grid: Grid,
+    /// The length of the way from each cell, meters; `None` outside of the floor and where no way leads.
+    pub lengths: Vec<Option<f64>>,
+    /// What comes first on the way from each cell: equal numbers for the same corner.
+    next: Vec<u32>,
+}
+
+/// The numbers of what comes first, if it is no corner.
+const NOTHING: u32 = u32::MAX;
+const GOAL: u32 = u32::MAX - 1;
+const OUT: u32 = u32::MAX - 2;
+
+impl WayField {
+    /// The ways to a destination that has a path map.
+    pub fn new(ways: &Ways, to: Destination, grid: Grid) -> Self {
+        let from = |k: usize| {
+            let p = grid.center(k);
+            let on_floor = ways.floor.locate(p).is_some();
+            let way = on_floor.then(|| ways.way(p, to)).flatten();
+            (way.map(|way| way.length), way.map_or(NOTHING, number))
+        };
+        let cells = (0..grid.len()).into_par_iter().with_min_len(1024);
+        let (lengths, next) = cells.map(from).unzip();
+        Self {
+            grid,
+            lengths,
+            next,
+        }
+    }
+
+    /// The longest way, meters; 0 if there is none.
+    pub fn longest(&self) -> f64 {
+        let lengths = self.lengths.iter().copied().flatten();
+        lengths.fold(0.0, f64::max)
+    }
+
+    /// Does another corner come first in the cell on the right of cell `k` or above it?
+    pub fn is_border(&self, k: usize) -> bool {
+        let differs = |other: usize| {
+            let next = self.next.get(other).copied().unwrap_or(NOTHING);
+            next != NOTHING && next != self.next[k]
+        };
+        let is_last = (k + 1).is_multiple_of(self.grid.columns);
+        self.next[k] != NOTHING && ((!is_last && differs(k + 1)) || differs(k + self.grid.columns))
+    }
+
+    /// The numbers of the corners that come first somewhere.
+    pub fn corners(&self) -> Vec<u32> {
+        let corners = self.next.iter().copied().filter(|&next| next < OUT);
+        let mut corners: Vec<u32> = corners.map(|bend| bend / 2).collect();
+        corners.sort_unstable();
+        corners.dedup();
+        corners
+    }
+}
+
+fn number(way: Way) -> u32 {
+    match way.next {
+        Next::Goal(_) => GOAL,
+        Next::Out(_) => OUT,
+        Next::Corner { bend, .. } => bend.index() as u32,
+    }
+}

@@ -1,0 +1,144 @@
+//! `sandbox draw`: a picture of a scene.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde_json::json;
+
+use super::arguments::DrawOptions;
+use super::moment::{self, Moment};
+use super::{Failure, tell, use_threads};
+use crate::engine::math::Vector;
+use crate::engine::simulation::Simulation;
+use crate::engine::ways::{Destination, Ways};
+use crate::output::picture::{Paths, Picture};
+use crate::output::plot::PlotError;
+use crate::runs::outputs::{Manner, Outputs};
+use crate::scenario::quote::shown;
+use crate::scenario::{Scenario, WayFinding, suggestion};
+
+pub fn run(options: &DrawOptions) -> Result<(), Failure> {
+    let program = &options.scene.program;
+    use_threads(program.threads)?;
+    let mut outputs = Outputs::new(program.force);
+    let moment = Moment {
+        scenario: &options.scenario,
+        scene: &options.scene,
+        at: options.at,
+    };
+    let scenario = moment::scenario(&moment, 0, &mut outputs)?;
+    let out = options
+        .out
+        .clone()
+        .unwrap_or_else(|| own_name(&options.scenario));
+    outputs.writes("--out", &out, Manner::InPlace);
+    outputs.check()?;
+    let paths = options.paths.iter().map(|text| paths(text, &scenario));
+    let paths = paths.collect::<Result<Vec<_>, _>>()?;
+    let mut simulation = Simulation::new(scenario.scene.clone())?;
+    let went = rayon::scope(|_| moment::go_to(options.at, &mut simulation));
+    went.map_err(|failure| failure.laid_open(&mut simulation))?;
+    let picture = Picture {
+        title: scenario.name.clone(),
+        simulation: &simulation,
+        view: scenario.view.region,
+        paths,
+    };
+    picture.save(&out)?;
+    let (clock, count) = (simulation.frame().clock, simulation.frame().agents.len());
+    let (file, time) = (out.display().to_string(), clock.time());
+    tell(
+        program.json,
+        || json!({"file": file, "time_secs": time, "agents": count}),
+        || format!("{file}: {count} agents at {time:.2} s\n"),
+    )
+}
+
+/// The name of the picture of a scenario, in the working directory.
+fn own_name(scenario: &str) -> PathBuf {
+    let stem = Path::new(scenario).file_stem().unwrap_or_default();
+    Path::new(stem).with_added_extension("svg")
+}
+
+impl From<PlotError> for Failure {
+    fn from(error: PlotError) -> Self {
+        Self::Output(error.to_string())
+    }
+}
+
+/// The ways to the place or point that `text` names.
+fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
+    let refused = |reason: String| Failure::Input(format!("--paths {}: {reason}", shown(text)));
+    let scene = &scenario.scene;
+    let places = &scene.journeys.places;
+    let place = places.iter().position(|place| place.name == text);
+    let point = point(text);
+    if place.is_none() && point.is_none() {
+        return Err(refused(unknown(text, scenario)));
+    }
+    let Some(ways) = &scene.ways else {
+        let straight = scenario.document["navigation"] == json!(WayFinding::Straight);
+        let reason = match straight {
+            true => "`navigation` is `straight`, so agents follow no ways; set it to `paths`",
+            false => "the scenario has neither walls nor journeys, so agents walk straight",
+        };
+        return Err(refused(reason.to_owned()));
+    };
+    let (name, to, goals) = match (place, point) {
+        (Some(k), _) => {
+            let name = format!("{} {}", places[k].kind.name(), places[k].name);
+            (name, Destination::Place(k as u16), vec![places[k].goals()])
+        }
+        (None, point) => {
+            let point = point.unwrap_or_default();
+            let name = format!("({}, {})", point.x, point.y);
+            (name, Destination::Goal(point), Vec::new())
+        }
+    };
+    let place = place.map(|k| k as u16);
+    if ways.leads_to(to) {
+        let ways = Arc::clone(ways);
+        return Ok(Paths {
+            name,
+            ways,
+            to,
+            place,
+        });
+    }
+    // No agent goes there, so the scene has no path map to it.
+    let extra = Ways::new(ways.floor.clone(), &goals, point.into_iter().collect());
+    let extra = extra.map_err(|error| refused(format!("{error}; give a point that is")))?;
+    let to = match place {
+        Some(_) => Destination::Place(0),
+        None => to,
+    };
+    let ways = Arc::new(extra);
+    Ok(Paths {
+        name,
+        ways,
+        to,
+        place,
+    })
+}
+
+/// Two numbers separated by a comma.
+fn point(text: &str) -> Option<Vector> {
+    let (x, y) = text.split_once(',')?;
+    let [x, y] = [x, y].map(|number| number.trim().parse::<f64>().ok());
+    let point = Vector::new(x?, y?);
+    (point.x.is_finite() && point.y.is_finite()).then_some(point)
+}
+
+fn unknown(text: &str, scenario: &Scenario) -> String {
+    let names = || {
+        let places = scenario.scene.journeys.places.iter();
+        places.map(|place| place.name.as_str())
+    };
+    let near = suggestion(text, names());
+    let known: Vec<String> = names().map(|name| format!("`{}`", shown(name))).collect();
+    let known = match known.as_slice() {
+        [] => "the scenario has no places; give a point as X,Y".to_owned(),
+        known => format!("there are {}, or give a point as X,Y", known.join(", ")),
+    };
+    format!("no such place{near}; {known}")
+}

@@ -1,0 +1,212 @@
+//! What an agent on a journey does, where, and why there.
+
+use serde::Serialize;
+
+use crate::engine::journeys::{Status, Trip};
+use crate::engine::simulation::{Decision, Prospect, Reason, Simulation};
+
+/// The place that an agent on a journey visits.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Visit {
+    /// The name of its journey.
+    pub journey: String,
+    /// The current stage, from 1.
+    pub stage: usize,
+    /// The number of stages.
+    pub stages: usize,
+    /// The name of the place.
+    pub place: String,
+    /// What the agent does.
+    #[serde(flatten)]
+    pub doing: Doing,
+    /// How long it has waited in waiting areas and queues before, seconds.
+    pub waited_secs: f64,
+    /// Why it walks to this place; `None` unless it walks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<Why>,
+}
+
+/// What an agent on a journey does.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "status", rename_all = "snake_case")]
+pub enum Doing {
+    /// It walks to its place.
+    Walking,
+    /// It waits in a waiting area.
+    Waiting {
+        /// Since when, seconds.
+        since_secs: f64,
+        /// Until when at most, seconds; `None`: until it is released.
+        until_secs: Option<f64>,
+    },
+    /// It stands in a queue.
+    Queued {
+        /// Since when, seconds.
+        since_secs: f64,
+        /// The number of agents ahead of it.
+        ahead: usize,
+    },
+    /// It is at the front of a queue and is being served.
+    Served {
+        /// Since when it has been in the queue, seconds.
+        since_secs: f64,
+        /// When it goes on, seconds.
+        until_secs: f64,
+    },
+    /// It has ended its journey and stays.
+    Finished,
+}
+
+/// Why an agent walks to its place: what it would decide if it looked now.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Why {
+    /// The place that it would choose now.
+    pub choice: String,
+    /// The reason, in words.
+    pub reason: &'static str,
+    /// When it looks again, seconds; `None`: never.
+    pub looks_again_secs: Option<f64>,
+    /// All places of the stage.
+    pub alternatives: Vec<Alternative>,
+}
+
+/// A place that the agent could choose.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Alternative {
+    /// The name of the place.
+    pub place: String,
+    /// Is it anything but a closed exit?
+    pub open: bool,
+    /// The length of the way there, meters; `None` if there is none.
+    pub length: Option<f64>,
+    /// The number of agents that are bound for it.
+    pub bound: u32,
+    /// Of a stage with shares: its weight.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub weight: Option<f64>,
+    /// Of `quickest`: what the agent expects.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub expected: Option<Times>,
+}
+
+/// The times that an agent expects.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Times {
+    /// Walking to the place, seconds.
+    pub walking_secs: f64,
+    /// Agents bound for the place that are nearer to it.
+    pub ahead: u32,
+    /// The flow through the place, P/s; `None` if it is unlimited.
+    pub flow_per_sec: Option<f64>,
+    /// Until these agents have passed, seconds.
+    pub waiting_secs: f64,
+    /// Walking from the place to the next stage, seconds.
+    pub onward_secs: f64,
+    /// The longer of walking and waiting, and the way onward, seconds.
+    pub total_secs: f64,
+}
+
+impl Visit {
+    /// The visit of agent `i`; `None` if it has no journey or has not begun it.
+    pub(super) fn of(simulation: &Simulation, i: usize) -> Option<Self> {
+        let trip = simulation.frame().agents.trip.get(i)?.as_ref()?;
+        let journeys = &simulation.scene().journeys;
+        let journey = journeys.journeys.get(usize::from(trip.journey))?;
+        let decision = simulation.decision(i);
+        Some(Self {
+            journey: journey.name.clone(),
+            stage: usize::from(trip.stage) + 1,
+            stages: journey.stages.len(),
+            place: name(simulation, trip.place),
+            doing: doing(simulation, trip),
+            waited_secs: trip.waited,
+            why: decision.map(|decision| Why::of(simulation, trip, &decision)),
+        })
+    }
+}
+
+fn name(simulation: &Simulation, place: u16) -> String {
+    let places = &simulation.scene().journeys.places;
+    let place = places.get(usize::from(place));
+    place.map_or(String::new(), |place| place.name.clone())
+}
+
+fn doing(simulation: &Simulation, trip: &Trip) -> Doing {
+    let frame = simulation.frame();
+    let secs = |frame_number: u64| frame.clock.time_at(frame_number);
+    match trip.status {
+        Status::Walking => Doing::Walking,
+        Status::Waiting { since, until, .. } => Doing::Waiting {
+            since_secs: secs(since),
+            until_secs: (until < u64::MAX).then(|| secs(until)),
+        },
+        Status::Queued {
+            since,
+            until: Some(until),
+            ..
+        } => Doing::Served {
+            since_secs: secs(since),
+            until_secs: secs(until),
+        },
+        Status::Queued { ticket, since, .. } => {
+            let others = frame.agents.trip.iter().flatten();
+            let is_ahead = |other: &&Trip| match other.status {
+                Status::Queued { ticket: first, .. } => other.place == trip.place && first < ticket,
+                _ => false,
+            };
+            Doing::Queued {
+                since_secs: secs(since),
+                ahead: others.filter(is_ahead).count(),
+            }
+        }
+        Status::Finished => Doing::Finished,
+    }
+}
+
+impl Why {
+    fn of(simulation: &Simulation, trip: &Trip, decision: &Decision) -> Self {
+        let clock = simulation.frame().clock;
+        let again = Some(trip.chooses_at).filter(|&frame| frame < u64::MAX);
+        let prospects = decision.prospects.iter();
+        Self {
+            choice: name(simulation, decision.place),
+            reason: in_words(decision.reason),
+            looks_again_secs: again.map(|frame| clock.time_at(frame)),
+            alternatives: prospects
+                .map(|prospect| Alternative::of(simulation, prospect))
+                .collect(),
+        }
+    }
+}
+
+fn in_words(reason: Reason) -> &'static str {
+    match reason {
+        Reason::Only => "no other place is open",
+        Reason::Nearest => "the shortest way",
+        Reason::Quickest => "the least expected time",
+        Reason::NotClearlyNearer => "kept: no way is shorter by 0.5 m",
+        Reason::NotClearlyQuicker => "kept: no place takes less than 80 % of its time",
+        Reason::Drawn => "drawn at random",
+        Reason::Fewest => "the fewest agents were bound for it",
+    }
+}
+
+impl Alternative {
+    fn of(simulation: &Simulation, prospect: &Prospect) -> Self {
+        Self {
+            place: name(simulation, prospect.place),
+            open: prospect.open,
+            length: Some(prospect.length).filter(|length| length.is_finite()),
+            bound: prospect.bound,
+            weight: prospect.weight,
+            expected: prospect.expected.map(|expected| Times {
+                walking_secs: expected.walking,
+                ahead: expected.ahead,
+                flow_per_sec: Some(expected.flow).filter(|flow| flow.is_finite()),
+                waiting_secs: expected.waiting,
+                onward_secs: expected.onward,
+                total_secs: expected.total(),
+            }),
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! The ways to one destination: lengths as bands of color, the cells of the path map, and the ways of some agents.
+
+use std::sync::Arc;
+
+use super::{Frame, xy};
+use crate::analysis::way_field::{Grid, WayField};
+use crate::engine::math::{Vector, direction, perpendicular};
+use crate::engine::simulation::Simulation;
+use crate::engine::ways::{Destination, Ways};
+use crate::output::colors::{ColorMap, Rgb};
+use crate::output::plot::{BLACK, Cells, ColorBar, Mark, Style};
+
+/// The side of a cell of the field, points.
+const CELL: f64 = 0.5;
+/// About this many bands.
+const BANDS: f64 = 12.0;
+/// The color of the borders of the path map's cells.
+pub const BORDER: Rgb = [120, 60, 130];
+/// The number of agents whose ways are shown.
+const WAYS: usize = 12;
+/// Agents are chosen among this many.
+const CANDIDATES: usize = 2000;
+/// The distance between arrows, points.
+const ARROWS: f64 = 34.0;
+/// The color of arrows.
+const ARROW: Rgb = [90, 110, 120];
+
+/// Ways to show.
+pub struct Paths {
+    /// The name of the destination.
+    pub name: String,
+    /// The ways.
+    pub ways: Arc<Ways>,
+    /// The destination, to which they have a path map.
+    pub to: Destination,
+    /// The number of the place in the scene, if it is one.
+    pub place: Option<u16>,
+}
+
+/// The marks of some ways.
+pub struct Drawn {
+    pub title: String,
+    pub field: Vec<Mark>,
+    pub lines: Vec<Mark>,
+    pub bar: ColorBar,
+}
+
+impl Paths {
+    pub(super) fn draw(&self, simulation: &Simulation, frame: &Frame) -> Drawn {
+        let grid = Grid::over([frame.min, frame.max], frame.meters(CELL));
+        let field = WayField::new(&self.ways, self.to, grid);
+        let longest = field.longest().max(1e-3);
+        let width = nice(longest / BANDS);
+        let bands = (longest / width).ceil().max(1.0);
+        let map = ColorMap::pale([0.0, (bands * width) as f32], bands as u32);
+        let size = Vector::new(grid.columns as f64, grid.rows as f64) * grid.cell;
+        let cells = |values, map| {
+            Mark::Cells(Cells {
+                extent: [xy(grid.min), xy(grid.min + size)],
+                columns: grid.columns,
+                values,
+                map,
+            })
+        };
+        let borders = (0..grid.len()).map(|k| field.is_border(k).then_some(0.0));
+        let borders = cells(borders.collect(), ColorMap::plain(BORDER));
+        let corners = field.corners();
+        let corners = corners
+            .iter()
+            .map(|&c| self.ways.floor.corners[c as usize].place);
+        let corners = Mark::dots(corners.map(xy), Style::full(BORDER, 1.7, ""));
+        let mut lines = self.arrows(frame);
+        let starts = self.starts(simulation);
+        lines.extend(starts.iter().flat_map(|&start| self.way(start, frame)));
+        lines.push(corners);
+        Drawn {
+            title: format!("Ways to {}", self.name),
+            field: vec![cells(field.lengths, map.clone()), borders],
+            lines,
+            bar: ColorBar {
+                label: "length of the shortest way [m]".to_owned(),
+                map,
+            },
+        }
+    }
+
+    /// Some agents far from each other: those that want to go there, else any; without agents, where agents enter.
+    fn starts(&self, simulation: &Simulation) -> Vec<Vector> {
+        let (agents, scene) = (simulation.frame().agents, simulation.scene());
+        let wants = |i: &usize| match (self.place, self.to) {
+            (Some(place), _) => {
+                let trip = agents.trip.get(*i).and_then(Option::as_ref);
+                trip.is_some_and(|trip| trip.place == place)
+            }
+            (None, Destination::Goal(goal)) => agents.goal[*i] == goal,
+            (None, Destination::Place(_)) => false,
+        };
+        let mut order: Vec<usize> = (0..agents.len()).collect();
+        order.sort_unstable_by_key(|&i| agents.id[i]);
+        let bound: Vec<usize> = order.iter().copied().filter(wants).collect();
+        let chosen = if bound.is_empty() { order } else { bound };
+        let entries = scene.sources.iter();
+        let entries = entries.flat_map(|source| source.grid.positions(scene.seed, 0).take(50));
+        let every = chosen.len().div_ceil(CANDIDATES).max(1);
+        let chosen = chosen.iter().step_by(every);
+        let mut from: Vec<Vector> = chosen.map(|&i| agents.position[i]).collect();
+        if from.is_empty() {
+            from.extend(entries);
+        }
+        far_apart(&from)
+    }
+
+    /// The way of one agent, with an arrowhead at its end.
+    fn way(&self, start: Vector, frame: &Frame) -> Vec<Mark> {
+        let mut points = vec![start];
+        points.extend(self.ways.course(start, self.to));
+        let last = points
+            .windows(2)
+            .rfind(|pair| (pair[1] - pair[0]).norm() > 0.0);
+        let head = last.map(|pair| head([pair[0], pair[1]], frame.meters(5.0), BLACK));
+        let line = Mark::Line(
+            points.into_iter().map(xy).collect(),
+            Style::full(BLACK, 0.9, ""),
+        );
+        let start = Mark::dots([xy(start)], Style::full(BLACK, 1.8, ""));
+        [line, start].into_iter().chain(head).collect()
+    }
+
+    /// Arrows in the direction of the next corner, at the points of a grid.
+    fn arrows(&self, frame: &Frame) -> Vec<Mark> {
+        let grid = Grid::over([frame.min, frame.max], frame.meters(ARROWS));
+        let on_floor = (0..grid.len()).map(|k| grid.center(k));
+        let on_floor = on_floor.filter(|&p| self.ways.floor.locate(p).is_some());
+        let arrow = |p: Vector| {
+            let next = *self.ways.course(p, self.to).first()?;
+            let reach = frame.meters(11.0);
+            let along = direction(next - p) * reach.min((next - p).norm());
+            let ends = [p, p + along];
+            let line = Mark::Line(ends.map(xy).to_vec(), Style::full(ARROW, 0.6, ""));
+            Some([line, head(ends, frame.meters(3.2), ARROW)])
+        };
+        on_floor.filter_map(arrow).flatten().collect()
+    }
+}
+
+/// The head of an arrow.
+fn head([from, to]: [Vector; 2], length: f64, color: Rgb) -> Mark {
+    let along = direction(to - from) * length;
+    let aside = perpendicular(along) * 0.4;
+    Mark::Area(
+        [to, to - along + aside, to - along - aside]
+            .map(xy)
+            .to_vec(),
+        color,
+    )
+}
+
+/// Up to [`WAYS`] of some points, each as far from those before as possible.
+fn far_apart(points: &[Vector]) -> Vec<Vector> {
+    let mut chosen: Vec<Vector> = points.first().copied().into_iter().collect();
+    while chosen.len() < WAYS.min(points.len()) {
+        let distance = |p: &Vector| {
+            let distances = chosen.iter().map(|other| (p - other).norm_squared());
+            distances.fold(f64::INFINITY, f64::min)
+        };
+        let next = points
+            .iter()
+            .max_by(|a, b| distance(a).total_cmp(&distance(b)));
+        chosen.extend(next);
+    }
+    chosen
+}
+
+/// 1, 2 or 5 times a power of ten, at least `least`.
+pub fn nice(least: f64) -> f64 {
+    let decade = 10_f64.powf(least.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade);
+    steps
+        .into_iter()
+        .find(|step| *step >= least)
+        .unwrap_or(least)
+}

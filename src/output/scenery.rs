@@ -1,0 +1,174 @@
+//! What pictures and recordings show of places, zones and goals: colors, outlines and names.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::engine::agents::Agents;
+use crate::engine::geometry::Ring;
+use crate::engine::journeys::{Kind, Place, Queue, Status, Trip, Zone};
+use crate::engine::math::{Vector, bounds, direction, perpendicular};
+use crate::engine::scene::{Goal, Scene};
+use crate::output::colors::Rgb;
+
+/// The color of zones.
+pub const ZONE: Rgb = [213, 94, 0];
+/// The color of agents that walk.
+pub const WALKING: Rgb = [70, 76, 92];
+/// The color of agents without a journey, and of those that have ended it.
+pub const NO_STAGE: Rgb = [150, 150, 156];
+/// The colors of the stages of a journey, in words and as RGB; they repeat after the last one.
+pub const STAGES: [(&str, Rgb); 6] = [
+    ("blue", [70, 140, 240]),
+    ("orange", [230, 159, 0]),
+    ("green", [40, 190, 130]),
+    ("pink", [224, 121, 177]),
+    ("yellow", [240, 228, 66]),
+    ("red", [230, 90, 50]),
+];
+/// The most spots of a queue that are shown.
+const MOST_SPOTS: usize = 500;
+/// The corners of a circle.
+const CIRCLE: u32 = 48;
+/// The most goals that are shown.
+const GOALS: usize = 200;
+
+/// The color of a place of this kind.
+pub fn color(kind: &Kind) -> Rgb {
+    match kind {
+        Kind::Exit(_) => [0, 158, 115],
+        Kind::Line(_) | Kind::Disk { .. } => [0, 114, 178],
+        Kind::Waiting(_) => [230, 159, 0],
+        Kind::Queue(_) => [204, 121, 167],
+    }
+}
+
+/// The color of an agent by its stage.
+pub fn stage_color(trip: Option<&Trip>) -> Rgb {
+    match trip {
+        Some(trip) if trip.status != Status::Finished => {
+            STAGES[usize::from(trip.stage) % STAGES.len()].1
+        }
+        _ => NO_STAGE,
+    }
+}
+
+/// The lines of a place: its line, its outline (closed), or the path of a queue.
+pub fn lines(place: &Place) -> Vec<Vector> {
+    match &place.kind {
+        Kind::Exit(exit) => exit.line.to_vec(),
+        Kind::Line(line) => line.to_vec(),
+        Kind::Disk { at, within } => {
+            let turns =
+                (0..=CIRCLE).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(CIRCLE));
+            turns
+                .map(|turn| at + Vector::new(turn.cos(), turn.sin()) * *within)
+                .collect()
+        }
+        Kind::Waiting(waiting) => closed(&waiting.area),
+        Kind::Queue(queue) => queue.path.clone(),
+    }
+}
+
+/// The corners of a ring, the first one again at the end.
+pub fn closed(ring: &Ring) -> Vec<Vector> {
+    let corners = ring.points();
+    corners.iter().chain(corners.first()).copied().collect()
+}
+
+/// The spots on the path of a queue.
+pub fn spots(queue: &Queue) -> Vec<Vector> {
+    let sides = queue.path.windows(2).map(|pair| (pair[1] - pair[0]).norm());
+    let count = (sides.sum::<f64>() / queue.spacing + 1e-9) as usize + 1;
+    (0..count.min(MOST_SPOTS))
+        .map(|ahead| queue.spot(ahead))
+        .collect()
+}
+
+/// The name of a zone with its factor.
+pub fn zone_name(zone: &Zone) -> String {
+    format!("{}: speed × {}", zone.name, zone.speed_factor)
+}
+
+/// Parallel lines that fill a ring, this far apart, meters.
+pub fn hatching(ring: &Ring, apart: f64) -> Vec<[Vector; 2]> {
+    let across = direction(Vector::new(1.0, -1.0));
+    let along = perpendicular(across);
+    let corners = ring.points();
+    let places = corners
+        .iter()
+        .map(|p| Vector::new(p.dot(&across), p.dot(&along)));
+    let [low, high] = bounds(places).unwrap_or_default();
+    let mut lines = Vec::new();
+    let mut at = (low.x / apart).ceil() * apart;
+    while at < high.x {
+        let ends = corners.iter().cycle().skip(1);
+        let edges = corners.iter().zip(ends);
+        let crossing = edges.filter_map(|(a, b)| {
+            let [from, to] = [a, b].map(|p| p.dot(&across) - at);
+            let crosses = (from > 0.0) != (to > 0.0);
+            crosses.then(|| (a + (b - a) * (from / (from - to))).dot(&along))
+        });
+        let mut crossings: Vec<f64> = crossing.collect();
+        crossings.sort_by(f64::total_cmp);
+        let inside = crossings.chunks_exact(2);
+        lines.extend(inside.map(|ends| [ends[0], ends[1]].map(|end| across * at + along * end)));
+        at += apart;
+    }
+    lines
+}
+
+/// A goal, and the groups whose agents want to go there.
+pub type GoalOf = (Vector, BTreeSet<u16>);
+
+/// The distinct goals of agents and sources without journeys, each with its groups. A source with a goal per agent
+/// contributes the goals of its first entry.
+pub fn goals(scene: &Scene, agents: &Agents) -> Vec<GoalOf> {
+    let own = agents.goal.iter().zip(&agents.group);
+    let own = own.map(|(&goal, &group)| (goal, group));
+    let entering = scene.sources.iter().flat_map(|source| {
+        let goals: Vec<Vector> = match source.goal {
+            Goal::Point(goal) => vec![goal],
+            Goal::Offset(offset) => {
+                let starts = source.grid.positions(scene.seed, 0).take(GOALS);
+                starts.map(|start| start + offset).collect()
+            }
+        };
+        goals.into_iter().map(|goal| (goal, source.group))
+    });
+    let through = scene.entrances.iter();
+    let through = through.map(|entrance| (entrance.goal, entrance.group));
+    let entering = entering.chain(through);
+    let millimeters = |x: f64| (x * 1000.0).round() as i64;
+    let mut different = BTreeMap::new();
+    for (goal, group) in own.chain(entering) {
+        let of = scene.groups.get(usize::from(group));
+        if of.is_some_and(|group| group.journey.is_some()) {
+            continue;
+        }
+        let place = (millimeters(goal.x), millimeters(goal.y));
+        let (_, groups) = different.entry(place).or_insert((goal, BTreeSet::new()));
+        groups.insert(group);
+    }
+    different.into_values().take(GOALS).collect()
+}
+
+/// One label for all goals of the same groups, at the first of these goals.
+pub fn goal_labels(scene: &Scene, goals: &[GoalOf]) -> Vec<String> {
+    let mut named = BTreeSet::new();
+    let label = |(_, groups): &GoalOf| match named.insert(groups.clone()) {
+        true => goal_label(scene, groups),
+        false => String::new(),
+    };
+    goals.iter().map(label).collect()
+}
+
+/// The label of a goal.
+fn goal_label(scene: &Scene, of: &BTreeSet<u16>) -> String {
+    if of.len() == scene.groups.len() {
+        return "goal".to_owned();
+    }
+    let groups = of
+        .iter()
+        .filter_map(|&group| scene.groups.get(usize::from(group)));
+    let names: BTreeSet<&str> = groups.map(|group| group.name.as_str()).collect();
+    format!("goal of {}", Vec::from_iter(names).join(", "))
+}
