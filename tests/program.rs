@@ -4,6 +4,7 @@ mod common;
 
 mod accuracy;
 mod accuracy_walls;
+mod backlogs;
 mod bad_days;
 mod bench;
 mod checkpoint;

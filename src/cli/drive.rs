@@ -190,9 +190,11 @@ fn report_oddities(simulation: &Simulation) {
         let frame = simulation.frame();
         let (count, most) = (outcome.clamped_speeds, simulation.scene().max_speed);
         let frames = frame.clock.frame();
-        let most = match frame.agents.max_speed.is_empty() {
-            true => format!("{most} m/s"),
-            false => "the agents' largest speeds".to_owned(),
+        let mut groups = simulation.scene().groups.iter();
+        let differ = groups.any(|group| group.traits.preferred_speed.is_some());
+        let most = match differ {
+            true => "the agents' largest speeds".to_owned(),
+            false => format!("{most} m/s"),
         };
         talk(&format!(
             "note: speeds were clamped to {most} {count} time(s) in {frames} frames"

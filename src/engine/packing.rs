@@ -36,6 +36,8 @@ const THROWS: usize = 4;
 const QUARTERINGS: usize = 6;
 /// The factor by which the pitch of a lattice shrinks while it has too few sites.
 const TIGHTER: f64 = 0.985;
+/// The most pitches along the side of a cell in which sites are tried.
+const MOST_PITCHES: f64 = 4.0;
 /// Bodies keep this distance in addition, meters: far above the rounding of coordinates up to 10⁶ m.
 const ROUNDING: f64 = 1e-9;
 /// The part of the bodies found to fit that [`scattered`] reports as fitting: fewer bodies have other radii.
@@ -151,7 +153,8 @@ impl<'a> Throwing<'a> {
         let smallest = self.radii.last().copied().unwrap_or_default();
         let side = spacing.max(2.0 * smallest) * std::f64::consts::FRAC_1_SQRT_2;
         self.taken.set_spacing(spacing);
-        let mut cells = Cells::covering(self.space, &self.taken, smallest, side);
+        let bodies = (self.radii.len(), smallest);
+        let mut cells = Cells::covering(self.space, &self.taken, bodies, side);
         let mut near = Vec::new();
         for _ in 0..QUARTERINGS {
             for _ in 0..THROWS * cells.len() {
@@ -171,7 +174,9 @@ impl<'a> Throwing<'a> {
                     cells.remove(k);
                 }
             }
-            cells.quarter(self.space, &self.taken, smallest);
+            if !cells.quarter(self.space, &self.taken, smallest) {
+                return;
+            }
         }
     }
 }
@@ -187,7 +192,7 @@ pub fn lattice(space: &Space, others: &[Body], radii: &[f64]) -> Result<Vec<Vect
     let per_body = space.size() / radii.len().max(1) as f64;
     let mut pitch = (per_body * 2.0 / 3_f64.sqrt()).sqrt().max(closest);
     let sites = loop {
-        let sites = sites(space, &taken, widest, pitch);
+        let sites = sites(space, &taken, (radii.len(), widest), pitch);
         if sites.len() >= radii.len() {
             break sites;
         }
@@ -202,18 +207,34 @@ pub fn lattice(space: &Space, others: &[Body], radii: &[f64]) -> Result<Vec<Vect
 }
 
 /// The sites of a triangular lattice, row by row, that have room for bodies of this radius.
-fn sites(space: &Space, taken: &Taken, radius: f64, pitch: f64) -> Vec<Vector> {
-    let [low, high] = space.bounds();
-    let rise = pitch * 0.75_f64.sqrt();
-    let rows = ((high.y - low.y) / rise) as u32;
-    let columns = ((high.x - low.x) / pitch) as u32;
-    let row = |row: u32| {
-        let shift = if row.is_multiple_of(2) { 0.25 } else { 0.75 };
-        let y = low.y + rise * (f64::from(row) + 0.5);
-        (0..=columns).map(move |column| Vector::new(low.x + pitch * (f64::from(column) + shift), y))
+fn sites(space: &Space, taken: &Taken, bodies: (usize, f64), pitch: f64) -> Vec<Vector> {
+    let cells = Cells::covering(space, taken, bodies, pitch);
+    if cells.side() > MOST_PITCHES * pitch {
+        return Vec::new(); // more sites than could be tried, and hardly any with room
+    }
+    let ([low, _], rise) = (space.bounds(), pitch * 0.75_f64.sqrt());
+    let half = Vector::repeat(0.5 * cells.side());
+    let mut sites: Vec<[i64; 2]> = Vec::new();
+    for center in cells.centers() {
+        let (from, to) = (center - half - low, center + half - low);
+        for row in (from.y / rise - 0.5).ceil() as i64..(to.y / rise + 0.5).ceil() as i64 {
+            let columns = [from.x, to.x].map(|x| (x / pitch - shift(row)).ceil() as i64);
+            sites.extend((columns[0]..columns[1]).map(|column| [row, column]));
+        }
+    }
+    sites.sort_unstable();
+    sites.dedup();
+    let place = |[row, column]: [i64; 2]| {
+        let (x, y) = (column as f64 + shift(row), row as f64 + 0.5);
+        low + Vector::new(pitch * x, rise * y)
     };
     let mut near = Vec::new();
-    let sites = (0..=rows).flat_map(row);
-    let free = |&p: &Vector| taken.has_room(p, radius) && space.has_room(p, radius, &mut near);
-    sites.filter(free).collect()
+    let has_room =
+        |&p: &Vector| taken.has_room(p, bodies.1) && space.has_room(p, bodies.1, &mut near);
+    sites.into_iter().map(place).filter(has_room).collect()
+}
+
+/// The first site of a row, in pitches from the left.
+fn shift(row: i64) -> f64 {
+    0.25 + 0.5 * (row.rem_euclid(2) as f64)
 }

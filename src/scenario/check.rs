@@ -74,6 +74,9 @@ impl Contents {
         if keys.time_step_secs == Some(TimeStep::Auto(file::Auto::Auto)) {
             scene.clock = automatic_clock(keys, &scene)?;
         }
+        let placed = scene.agents.len() as u64;
+        let fewer = self.need.initial.saturating_sub(placed); // crowds with a density
+        let entering = self.need.entering - fewer;
         Ok(Scenario {
             name: keys.name.clone().unwrap_or_else(|| stem.into_owned()),
             description: keys.description.clone().unwrap_or_default(),
@@ -84,9 +87,9 @@ impl Contents {
             view: view(keys.view.as_ref(), &scene).under("view")?,
             debug_agents: match &keys.debug_agents {
                 Some(ids) => without_repetition(ids)?,
-                None => spread(self.need.entering),
+                None => spread(entering),
             },
-            entering: self.need.entering,
+            entering,
             profile_name: blend.name,
             document: self.document,
             files: self.plans,

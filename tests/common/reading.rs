@@ -28,11 +28,11 @@ pub fn read(text: &str, settings: &[Setting]) -> u64 {
         }
     };
     // The estimate of its needs is an upper bound.
-    assert_eq!(need.initial, scenario.scene.agents.len() as u64);
+    assert!(need.initial >= scenario.scene.agents.len() as u64);
     // Repeated corners are dropped. Walkable areas that overlap have additional corners.
     let walls = scenario.scene.walls.len() as u64;
     assert!(walls <= need.walls || scenario.document.get("walkable_area").is_some());
-    assert_eq!(need.entering, scenario.entering);
+    assert!(need.entering >= scenario.entering);
     // Writing and reading the scenario gives the same document.
     let again = Scenario::parse(&scenario.to_text(), "f.json", &[]).unwrap();
     assert_eq!(again.document, scenario.document);

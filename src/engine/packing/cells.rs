@@ -6,22 +6,32 @@ use super::Space;
 use super::taken::Taken;
 use crate::engine::math::Vector;
 
-/// The most cells: cells without room are dropped by then.
-const MOST: usize = 1 << 24;
+/// The most cells: so many, and so many per body. An area with so little room for its extent that it needs more is not
+/// searched completely.
+const MOST: usize = 1 << 14;
+const MOST_PER_BODY: usize = 16;
 
 /// Square cells of one size.
 pub struct Cells {
     centers: Vec<Vector>,
     side: f64,
+    most: usize,
 }
 
 impl Cells {
-    /// Cells with sides of at most `side` meters that cover all room for bodies of this radius.
-    pub fn covering(space: &Space, taken: &Taken, radius: f64, side: f64) -> Self {
+    /// Cells that cover all room for `bodies` bodies of this radius, with sides of at most `side` meters unless that
+    /// takes too many cells.
+    pub fn covering(
+        space: &Space,
+        taken: &Taken,
+        (bodies, radius): (usize, f64),
+        side: f64,
+    ) -> Self {
         let [low, high] = space.bounds();
         let mut cells = Self {
             centers: vec![0.5 * (low + high)],
             side: (high - low).max(),
+            most: MOST + MOST_PER_BODY * bodies,
         };
         while cells.side > side && cells.quarter(space, taken, radius) {}
         cells
@@ -29,6 +39,15 @@ impl Cells {
 
     pub fn len(&self) -> usize {
         self.centers.len()
+    }
+
+    /// The length of the sides, meters.
+    pub fn side(&self) -> f64 {
+        self.side
+    }
+
+    pub fn centers(&self) -> &[Vector] {
+        &self.centers
     }
 
     pub fn remove(&mut self, k: usize) {
@@ -44,7 +63,7 @@ impl Cells {
     /// Quarters all cells and drops those without room for a body of this radius. Returns false, without quartering,
     /// if there are too many cells.
     pub fn quarter(&mut self, space: &Space, taken: &Taken, radius: f64) -> bool {
-        if self.centers.len() > MOST / 4 {
+        if self.centers.len() > self.most / 4 {
             return false;
         }
         self.side *= 0.5;
