@@ -11,7 +11,7 @@ mod taken;
 
 use rand::Rng;
 
-use crate::engine::geometry::{Area, AreaIndex, Polygon, Walls};
+use crate::engine::geometry::{Area, AreaIndex, Polygon, Wall, Walls};
 use crate::engine::math::{Vector, bounds};
 use cells::Cells;
 use taken::Taken;
@@ -62,6 +62,15 @@ impl<'a> Space<'a> {
             borders: Walls::new(around.into_iter().collect()),
             walls,
         }
+    }
+
+    /// An upper bound on the bodies of this radius that fit: discs cover at most 0.907 of an area, and reach out of this
+    /// space by their radius.
+    pub fn capacity(&self, radius: f64) -> usize {
+        let outlines = self.borders.iter().map(Wall::length).sum::<f64>();
+        let disc = std::f64::consts::PI * radius * radius;
+        let reached = self.size() + outlines * radius + disc * self.areas.len() as f64;
+        (0.907 * reached / disc) as usize + 1
     }
 
     /// The corners of the box around it.

@@ -12,11 +12,14 @@ use super::floor_plan::{free, outlines};
 use super::plan;
 use super::profiles::ProfileChoice;
 use super::schema::word;
-use crate::engine::agents::NewAgent;
+use crate::engine::agents::{NewAgent, RADIUS_RANGE};
 use crate::engine::geometry::{Area, Ring as Outline};
 use crate::engine::math::Vector;
 use crate::engine::packing::{self, Body, Space};
 use crate::engine::random::{self, Purpose};
+
+/// The share of radii that may be smaller than assumed.
+const RARE: f64 = 1e-6;
 
 /// How the agents of a crowd are placed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -126,10 +129,14 @@ impl Building<'_> {
             (None, None) => Some(self.default_goal()?),
         };
         let (seed, first) = (self.scene.seed, self.scene.agents.len() as u32);
-        let radii = (first..).take(number).map(|id| traits.radius_of(seed, id));
-        let radii: Vec<f64> = radii.collect();
         self.note_bodies();
         let space = Space::new(&areas, &self.scene.walls);
+        let least = traits.radius.as_ref();
+        let least = least.map_or(RADIUS_RANGE[0], |radius| radius.quantile(RARE));
+        // A few of too many agents are enough to find out how many fit.
+        let tried = number.min(space.capacity(least));
+        let radii = (first..).take(tried).map(|id| traits.radius_of(seed, id));
+        let radii: Vec<f64> = radii.collect();
         let places = match given.spacing {
             Spacing::Random => {
                 let mut random = random::stream(seed, Purpose::Crowd, index, 0);
@@ -137,7 +144,11 @@ impl Building<'_> {
             }
             Spacing::Grid => packing::lattice(&space, &self.bodies, &radii),
         };
-        let places = places.map_err(|fitting| {
+        let all = |places: Vec<Vector>| match tried < number {
+            true => Err(tried),
+            false => Ok(places),
+        };
+        let places = places.and_then(all).map_err(|fitting| {
             let (at, advice) = match given.spacing {
                 Spacing::Random => ("at random places ", ", or set `spacing` to `grid`"),
                 Spacing::Grid => ("", ""),

@@ -15,6 +15,7 @@ const MAX_CANDIDATES: u64 = 20_000;
 /// number of agents that may have been created.
 pub fn read(text: &str, settings: &[Setting]) -> u64 {
     let draft = Draft::read(text, "f.json", settings);
+    let placed = draft.as_ref().map_or(0, |draft| draft.need().initial);
     let read = draft.and_then(|draft| Ok((*draft.need(), draft.scenario()?)));
     let (need, mut scenario) = match read {
         Ok(read) => read,
@@ -24,7 +25,7 @@ pub fn read(text: &str, settings: &[Setting]) -> u64 {
                 said.starts_with("f.json") || said.starts_with("--set "),
                 "{said}"
             );
-            return 0;
+            return placed;
         }
     };
     // The estimate of its needs is an upper bound.
