@@ -283,7 +283,7 @@ impl Scene {
     }
 
     /// The largest s_max of all agents, m/s.
-    fn highest_speed(&self, agents: &Agents) -> f64 {
+    pub fn highest_speed(&self, agents: &Agents) -> f64 {
         let own = agents.max_speed.iter().copied().reduce(f64::max);
         own.unwrap_or(self.max_speed)
     }

@@ -12,8 +12,8 @@ mod stages;
 mod state;
 mod trips;
 
-pub use entrances::Backlog;
 pub use choice::{Decision, Expected, Prospect, Reason};
+pub use entrances::Backlog;
 pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};
 pub use state::{State, StateError};

@@ -259,7 +259,9 @@ impl Chooser<'_> {
 
     /// What the agent expects of a place to which its way has this length, meters, and of the way to the next stage.
     fn expect(&self, place: u16, length: f64, onward: Option<&JourneyStage>) -> Expected {
-        let speed = self.scene.preferred_speed.max(f64::MIN_POSITIVE);
+        let own = self.crowd.agents.preferred_speed.get(self.agent);
+        let speed = own.copied().unwrap_or(self.scene.preferred_speed);
+        let speed = speed.max(f64::MIN_POSITIVE);
         let state = &self.crowd.progress.places[usize::from(place)];
         let definition = &self.scene.journeys.places[usize::from(place)];
         let ahead = state.nearer_than(length);

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::{Arrival, Crowd, Simulation, Stage, TripEnd};
+use crate::engine::agents::Agents;
 use crate::engine::journeys::{Kind, Place, Status};
 use crate::engine::math::{Vector, direction, perpendicular};
 use crate::engine::neighbors::{BLOCK, TASK};
@@ -29,8 +30,8 @@ struct Line {
 }
 
 impl Line {
-    fn all(scene: &Scene) -> Vec<Self> {
-        let longest_step = scene.max_speed * scene.clock.time_step();
+    fn all(scene: &Scene, agents: &Agents) -> Vec<Self> {
+        let longest_step = scene.highest_speed(agents) * scene.clock.time_step();
         let margin = Vector::repeat(longest_step * (1.0 + 1e-9));
         let lines = scene.journeys.places.iter().filter_map(Place::line);
         let around = lines.map(|[a, b]| Self {
@@ -75,7 +76,7 @@ impl Simulation {
 impl Crowd {
     /// All moves across lines, in the order in which they happened.
     fn crossings(&self, scene: &Scene, before: &[Vector]) -> Vec<Crossing> {
-        let lines = Line::all(scene);
+        let lines = Line::all(scene, &self.agents);
         let closed: Vec<u16> = (0..scene.journeys.places.len() as u16)
             .filter(|&place| self.is_closed(scene, place))
             .collect();
