@@ -225,7 +225,7 @@ impl Prepared<'_> {
             return Ok(());
         };
         let reason = format!(
-            "of `{}`: no way leads from {from} to `{}`: {}",
+            "of `{}`: no way leads from {from}, to `{}`: {}",
             shown(&self.scene.journeys.journeys[usize::from(journey)].name),
             shown(&self.places[usize::from(closed)].name),
             self.why_closed(point, Destination::Place(closed))?,
