@@ -4,12 +4,16 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
+use super::expansion::Border;
 use super::mesh::Mesh;
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, direction, perpendicular};
 
 /// Widens what a corner sees beyond the lines of its walls, radians, so that no position on such a line is lost by
 /// rounding. The shortest way never needs it.
 const MARGIN: f64 = 1e-6;
+/// The distance from the corner of a point that stands for a direction, meters. No wall ends there: it must not be
+/// close to agents that turn around the corner.
+const FAR: f64 = 1000.0;
 
 /// How a way bends at a corner, seen from the way's end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,6 +34,18 @@ impl Turn {
             Self::First => Self::Last,
             Self::Last => Self::First,
         }
+    }
+
+    /// A point in the direction of `along` from a corner, turned a little so that no position in this direction is
+    /// lost: on the border of the positions from which ways with this turn bend at the corner and go on from it against
+    /// `along`.
+    #[inline]
+    pub fn beyond(self, corner: Vector, along: Vector) -> Vector {
+        let margin = match self {
+            Self::First => MARGIN,
+            Self::Last => -MARGIN,
+        };
+        corner + along + perpendicular(along) * margin
     }
 }
 
@@ -67,15 +83,17 @@ pub struct Corner {
     pub fan: Vec<(u32, usize)>,
     /// The angles of the fan's sides from the first wall, radians: one more than triangles.
     angles: Vec<f64>,
+    /// For each turn, a point on the border of what is seen beyond the corner's other wall, meters.
+    pub rays: [Vector; 2],
     /// Half of the width of the narrowest way around it, meters.
     pub room: f64,
     /// The triangle of the fan in the middle between the walls.
     middle: usize,
     /// Is the fan wide enough from side k up to the middle?
     clear: Vec<bool>,
-    /// Is triangle k of the fan wide enough between the side opposite to this corner and the next side in the
-    /// direction of the middle?
-    open: Vec<bool>,
+    /// For each turn: is triangle k of the fan wide enough between the side opposite to this corner and the side of the
+    /// fan that ways with this turn cross?
+    open: Vec<[bool; 2]>,
 }
 
 impl Corner {
@@ -126,40 +144,51 @@ impl Corner {
         for k in middle + 1..fan.len() {
             clear[k + 1] = clear[k] && rooms[k] >= least_width;
         }
-        let wide = |t: u32, k: usize| mesh.triangle(t).width[k % 3] >= least_width;
-        let open = fan.iter().enumerate().map(|(i, &(t, k))| {
-            let pivots = match i.cmp(&middle) {
-                std::cmp::Ordering::Less => &[2][..],
-                std::cmp::Ordering::Equal => &[1, 2],
-                std::cmp::Ordering::Greater => &[1],
-            };
-            pivots.iter().all(|n| wide(t, k + n))
+        let open = fan.iter().map(|&(t, k)| {
+            let width = mesh.triangle(t).width;
+            // The way goes on through the next side of the fan, or comes from there.
+            [2, 1].map(|n| width[(k + n) % 3] >= least_width)
         });
         let open = open.collect();
         // No way leads through what is too narrow.
         let passable = rooms.into_iter().filter(|&room| room >= least_width);
         let room = 0.5 * passable.fold(f64::INFINITY, f64::min);
         let place = mesh.corners(start.0)[start.1];
-        Some(Self {
+        let mut corner = Self {
             place,
             fan,
             angles,
+            rays: [place; 2],
             room,
             middle,
             clear,
             open,
-        })
+        };
+        let ends = [corner.fan.len(), 0].map(|i| corner.end(mesh, i).at);
+        let ray = |k: usize| Turn::BOTH[k].beyond(place, direction(place - ends[k]) * FAR);
+        corner.rays = [ray(0), ray(1)];
+        Some(corner)
     }
 
-    /// The end of side `i` of the fan, meters.
-    fn end(&self, mesh: &Mesh, i: usize) -> Vector {
-        match self.fan.get(i) {
-            Some(&(t, k)) => mesh.corners(t)[(k + 1) % 3],
+    /// The memory that it takes, bytes.
+    pub fn bytes(&self) -> usize {
+        size_of::<Self>()
+            + self.fan.capacity() * size_of::<(u32, usize)>()
+            + self.angles.capacity() * size_of::<f64>()
+            + self.clear.capacity()
+            + 2 * self.open.capacity()
+    }
+
+    /// The end of side `i` of the fan.
+    fn end(&self, mesh: &Mesh, i: usize) -> Border {
+        let (t, k) = match self.fan.get(i) {
+            Some(&(t, k)) => (t, (k + 1) % 3),
             None => {
                 let (t, k) = self.fan[self.fan.len() - 1];
-                mesh.corners(t)[(k + 2) % 3]
+                (t, (k + 2) % 3)
             }
-        }
+        };
+        mesh.border(t, k)
     }
 
     /// The angles between which ways end that make `turn`, radians.
@@ -171,24 +200,26 @@ impl Corner {
         }
     }
 
-    /// What this corner sees of triangle `i` of its fan for ways with `turn`: the ends on the right and on the left.
-    pub fn view(&self, mesh: &Mesh, i: usize, turn: Turn) -> Option<[Vector; 2]> {
+    /// What this corner, number `bend.corner`, sees of triangle `i` of its fan for ways with the turn of `bend`: the
+    /// borders on the right and on the left.
+    pub fn view(&self, mesh: &Mesh, i: usize, bend: Bend) -> Option<[Border; 2]> {
+        let turn = bend.turn;
         let [low, high] = self.sector(turn);
         let (from, to) = (self.angles[i], self.angles[i + 1]);
         if from.max(low) >= to.min(high) || !self.is_clear(i, turn) {
             return None;
         }
-        let ray = |wall: Vector, turned: f64| {
-            let along = self.place - wall;
-            self.place + nalgebra::Rotation2::new(turned) * along
+        let ray = || Border {
+            at: self.rays[usize::from(turn == Turn::Last)],
+            number: (mesh.points().len() + bend.index()) as u32,
         };
         let right = match from >= low {
             true => self.end(mesh, i),
-            false => ray(self.end(mesh, 0), -MARGIN),
+            false => ray(),
         };
         let left = match to <= high {
             true => self.end(mesh, i + 1),
-            false => ray(self.end(mesh, self.fan.len()), MARGIN),
+            false => ray(),
         };
         Some([right, left])
     }
@@ -207,14 +238,14 @@ impl Corner {
     }
 
     /// Can it also come through the side opposite to this corner?
-    pub fn is_open(&self, i: usize) -> bool {
-        self.open[i]
+    pub fn is_open(&self, i: usize, turn: Turn) -> bool {
+        self.open[i][usize::from(turn == Turn::Last)]
     }
 
     /// The turn of a way that ends in the direction of `p`, which lies in triangle `i` of the fan or beyond its
     /// opposite side. `None` if the shortest way does not bend here.
     pub fn turn(&self, mesh: &Mesh, i: usize, p: Vector) -> Option<Turn> {
-        let (side, ray) = (self.end(mesh, i) - self.place, p - self.place);
+        let (side, ray) = (self.end(mesh, i).at - self.place, p - self.place);
         let angle = self.angles[i] + side.perp(&ray).atan2(side.dot(&ray));
         Turn::BOTH.into_iter().find(|&turn| {
             let [low, high] = self.sector(turn);
@@ -226,6 +257,6 @@ impl Corner {
     /// it comes through the opposite side of this triangle.
     pub fn admits(&self, mesh: &Mesh, i: usize, p: Vector, through: bool) -> Option<Turn> {
         let turn = self.turn(mesh, i, p)?;
-        (self.is_clear(i, turn) && (!through || self.open[i])).then_some(turn)
+        (self.is_clear(i, turn) && (!through || self.is_open(i, turn))).then_some(turn)
     }
 }

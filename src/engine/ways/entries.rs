@@ -1,144 +1,133 @@
-//! The targets that the best ways from a triangle go straight to.
+//! The targets that shortest ways from a triangle can go straight to.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::corner::Bend;
+use super::corner::{Bend, Turn};
 use super::expansion::View;
 use super::floor::Floor;
-use super::goal::Seen;
-use super::map::SLACK;
-use super::mesh::{nearest_on, side, to_segment};
+use super::mesh::{side, to_segment};
+use super::region::{Candidate, best};
+use super::targets::{Entry, Source, Targets};
 use crate::engine::math::Vector;
 
-/// What an entry leads to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Target {
-    /// A corner.
-    Corner(Bend),
-    /// A point of the goal, meters.
-    Point(Vector),
-    /// The nearest point of a line of the goal, meters.
-    Line([Vector; 2]),
-}
+/// Ways whose lengths differ by less than this are not told apart, meters.
+pub const TIE: f64 = 1e-9;
+/// Triangles with more entries are pruned early, to save memory.
+const MANY: u32 = 100;
 
-/// A target that the best way from some part of a triangle goes straight to.
-#[derive(Debug, Clone, Copy)]
-pub struct Entry {
-    /// The target.
-    pub target: Target,
-    /// The part of the triangle.
-    pub view: View,
-    /// The length of the way from the target on, meters.
-    rest: f64,
-}
-
-impl Entry {
-    /// The corner, if it is one.
-    pub fn bend(&self) -> Option<Bend> {
-        match self.target {
-            Target::Corner(bend) => Some(bend),
-            Target::Point(_) | Target::Line(_) => None,
-        }
-    }
-
-    /// The length of the way from `p` over this target, and the straight part of it, meters.
-    pub fn from(&self, floor: &Floor, p: Vector) -> (f64, Vector) {
-        let to = match self.target {
-            Target::Corner(bend) => floor.place(bend),
-            Target::Point(point) => point,
-            Target::Line([a, b]) => nearest_on(p, a, b),
-        };
-        (self.rest + (to - p).norm(), to - p)
-    }
-}
-
-/// For each triangle, the entries that can be the best somewhere in it, or longer by at most [`SLACK`].
+/// All entries that can be the best somewhere in their triangle.
 pub struct Entries<'a> {
     floor: &'a Floor,
-    /// The entries of each triangle, and the least length of a way over each from anywhere in the triangle, meters.
-    found: Vec<Vec<(f64, Entry)>>,
+    targets: &'a Targets,
+    /// The entries of each triangle.
+    found: Vec<Vec<Entry>>,
+    /// With so many entries, those of a triangle are pruned.
+    many: Vec<u32>,
     /// For each triangle, a length that the best way from anywhere in it does not exceed, meters.
     most: Vec<f64>,
 }
 
 impl<'a> Entries<'a> {
-    /// The entries of all triangles for goals that are `seen`, and the bend after each bend.
-    pub fn new(floor: &'a Floor, seen: Seen) -> (Self, Vec<Option<Bend>>) {
+    /// The entries of all triangles for sources with some `views`.
+    pub fn new(floor: &'a Floor, targets: &'a Targets, views: Vec<(u32, u32, View)>) -> Self {
         let count = floor.mesh.triangles().len();
         let mut entries = Self {
             floor,
+            targets,
             found: vec![Vec::new(); count],
+            many: vec![MANY; count],
             most: vec![f64::INFINITY; count],
         };
-        for (t, target, view) in seen.views {
-            entries.add(
-                t,
-                Entry {
-                    target,
-                    view,
-                    rest: 0.0,
-                },
-            );
+        for (t, target, view) in views {
+            entries.add(t, target, &view);
         }
-        let mut from_bend = seen.from_bend;
-        let after = spread(floor, &mut from_bend);
         // The nearest first: they bound the lengths of most ways, and views of other corners end early.
-        let mut bends: Vec<usize> = (0..from_bend.len())
-            .filter(|&bend| from_bend[bend].is_finite())
-            .collect();
-        bends.sort_by(|&a, &b| from_bend[a].total_cmp(&from_bend[b]));
-        for bend in bends {
-            let (target, rest) = (Target::Corner(Bend::of_index(bend)), from_bend[bend]);
+        let rest = &targets.rest;
+        let reached = (0..rest.len()).filter(|&bend| rest[bend].is_finite());
+        let mut bends: Vec<usize> = reached.collect();
+        bends.sort_by(|&a, &b| rest[a].total_cmp(&rest[b]));
+        for number in bends {
+            let bend = Bend::of_index(number);
+            let beyond = targets.beyond(floor, bend);
             let enter = |t: u32, view: &View| {
-                entries.add(
-                    t,
-                    Entry {
-                        target,
-                        view: *view,
-                        rest,
-                    },
-                )
+                let bends = match bend.turn {
+                    Turn::First => view.eye.side(beyond, view.right.at) <= 0.0,
+                    Turn::Last => view.eye.side(beyond, view.left.at) >= 0.0,
+                };
+                bends && entries.add(t, number as u32, view)
             };
-            floor.look_from(Bend::of_index(bend), enter, |_, _, _| ());
+            floor.look_from(bend, enter, |_, _, _| ());
         }
-        (entries, after)
+        entries
     }
 
-    /// Adds an entry to triangle `t`. False if it cannot be the best anywhere in it; then it cannot be the best behind
-    /// the triangle either.
-    fn add(&mut self, t: u32, entry: Entry) -> bool {
+    /// Adds a target to triangle `t`. False if it cannot be the best anywhere in it, and so not behind it either: the
+    /// better way goes on as well, unless the triangle is too narrow for that.
+    fn add(&mut self, t: u32, target: u32, view: &View) -> bool {
         let corners = self.floor.mesh.corners(t);
-        let (nearest, farthest) = match entry.target {
-            Target::Corner(bend) => from_point(self.floor.place(bend), corners),
-            Target::Point(point) => from_point(point, corners),
-            Target::Line([a, b]) => {
+        let (nearest, farthest) = match self.targets.source(target) {
+            None => from_point(self.floor.place(Bend::of_index(target as usize)), corners),
+            Some(&Source::Point { point, .. }) => from_point(point, corners),
+            Some(&Source::Line { ends: [a, b], .. }) => {
                 let along = (b - a).normalize();
                 let [x, y, z] = corners.map(|p| along.perp(&(p - a)));
                 let (low, high) = (x.min(y).min(z), x.max(y).max(z));
                 (low.max(-high).max(0.0), high.max(-low))
             }
         };
+        let rest = self.targets.rest(target);
         let most = &mut self.most[t as usize];
-        let least = entry.rest + nearest;
-        if least > *most + SLACK {
-            return false;
+        let least = rest + nearest;
+        if least > *most + TIE {
+            return !self.floor.is_wide(t);
         }
-        if corners.iter().all(|&p| entry.view.holds(p)) {
-            *most = most.min(entry.rest + farthest);
+        let entry = Entry {
+            target,
+            borders: [view.right.number, view.left.number],
+        };
+        if rest + farthest < *most {
+            let targets = self.targets;
+            if corners
+                .iter()
+                .all(|&p| targets.holds(self.floor, entry, p, 0.0))
+            {
+                *most = rest + farthest;
+            }
         }
-        self.found[t as usize].push((least, entry));
+        let t = t as usize;
+        self.found[t].push(entry);
+        if self.found[t].len() >= self.many[t] as usize {
+            self.prune(t);
+        }
         true
     }
 
     /// The entries of all triangles in order.
     pub fn of_triangles(self) -> impl Iterator<Item = Vec<Entry>> {
-        let most = self.most.into_iter();
-        self.found.into_iter().zip(most).map(|(mut found, most)| {
-            found.retain(|(least, _)| *least <= most + SLACK);
-            found.sort_by(|a, b| a.0.total_cmp(&b.0));
-            found.into_iter().map(|(_, entry)| entry).collect()
-        })
+        self.found.into_iter()
+    }
+
+    /// Drops entries of triangle `t` that can be the best nowhere in it.
+    fn prune(&mut self, t: usize) {
+        let (floor, targets, found) = (self.floor, self.targets, &mut self.found[t]);
+        let candidates = found
+            .iter()
+            .map(|&entry| Candidate::new(floor, targets, entry));
+        let candidates: Vec<Candidate> = candidates.collect();
+        let all: Vec<&Candidate> = candidates.iter().collect();
+        let left = best(&all, floor.mesh.corners(t as u32));
+        *found = left.into_iter().map(|candidate| candidate.entry).collect();
+        self.many[t] = MANY.max(2 * found.len() as u32);
+    }
+
+    /// The memory that it takes, bytes.
+    pub fn bytes(&self) -> usize {
+        let found = self.found.iter().map(Vec::capacity).sum::<usize>();
+        found * size_of::<Entry>()
+            + self.found.capacity() * size_of::<Vec<Entry>>()
+            + self.most.capacity() * size_of::<f64>()
+            + self.many.capacity() * size_of::<u32>()
     }
 }
 
@@ -152,37 +141,31 @@ fn from_point(point: Vector, corners: [Vector; 3]) -> (f64, f64) {
     } else {
         sides.fold(f64::INFINITY, f64::min)
     };
-    let farthest = corners
-        .iter()
-        .map(|c| (c - point).norm())
-        .fold(0.0, f64::max);
-    (nearest, farthest)
+    let distances = corners.iter().map(|c| (c - point).norm());
+    (nearest, distances.fold(0.0, f64::max))
 }
 
-/// Dijkstra's algorithm from the bends that see the goal. Returns the bend after each.
-fn spread(floor: &Floor, from_bend: &mut [f64]) -> Vec<Option<Bend>> {
-    let mut after = vec![None; from_bend.len()];
+/// Finds the lengths of the ways from all bends by Dijkstra's algorithm, from those that see the goal.
+pub fn spread(floor: &Floor, targets: &mut Targets) {
+    let Targets { rest, next, .. } = targets;
     // Lengths from 0 are ordered as their bits are.
-    let seen = from_bend
-        .iter()
-        .enumerate()
-        .filter(|(_, rest)| rest.is_finite());
-    let mut next: BinaryHeap<Reverse<(u64, usize)>> = seen
+    let reached = rest.iter().enumerate().filter(|(_, rest)| rest.is_finite());
+    let mut queue: BinaryHeap<Reverse<(u64, usize)>> = reached
         .map(|(bend, rest)| Reverse((rest.to_bits(), bend)))
         .collect();
-    while let Some(Reverse((bits, bend))) = next.pop() {
-        let length = from_bend[bend];
+    while let Some(Reverse((bits, bend))) = queue.pop() {
+        let length = rest[bend];
         if bits != length.to_bits() {
             continue;
         }
-        for &(before, way) in &floor.ways[bend] {
-            let longer = length + way;
-            if longer < from_bend[before.index()] {
-                from_bend[before.index()] = longer;
-                after[before.index()] = Some(Bend::of_index(bend));
-                next.push(Reverse((longer.to_bits(), before.index())));
+        let place = floor.place(Bend::of_index(bend));
+        for before in floor.before(bend) {
+            let way = (floor.place(Bend::of_index(before)) - place).norm();
+            if length + way < rest[before] {
+                rest[before] = length + way;
+                next[before] = bend as u32;
+                queue.push(Reverse((rest[before].to_bits(), before)));
             }
         }
     }
-    after
 }

@@ -21,6 +21,24 @@ impl Eye {
             Self::Far(way) => way.perp(&(p - through)),
         }
     }
+
+    /// How much [`side`](Self::side) changes per meter.
+    pub fn scale(&self, through: Vector) -> f64 {
+        match *self {
+            Self::Near(eye) => (through - eye).norm(),
+            Self::Far(way) => way.norm(),
+        }
+    }
+}
+
+/// A point on the border of what is seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Border {
+    /// The point, meters.
+    pub at: Vector,
+    /// Its number: first come the points of the mesh, then those of [`Floor::border`](super::floor::Floor::border),
+    /// then those of a path map.
+    pub number: u32,
 }
 
 /// A cone, or a strip if its eye is far.
@@ -28,35 +46,31 @@ impl Eye {
 pub struct View {
     /// From where one looks.
     pub eye: Eye,
-    /// A point on the right border.
-    pub right: Vector,
-    /// A point on the left border.
-    pub left: Vector,
+    /// The right border.
+    pub right: Border,
+    /// The left border.
+    pub left: Border,
 }
 
 impl View {
     /// Does `p` lie in it, borders included? Only for points in front of the eye.
     #[inline]
     pub fn holds(&self, p: Vector) -> bool {
-        self.eye.side(self.right, p) >= 0.0 && self.eye.side(self.left, p) <= 0.0
+        self.eye.side(self.right.at, p) >= 0.0 && self.eye.side(self.left.at, p) <= 0.0
     }
-}
 
-impl View {
     /// The part of it that leaves a triangle through the side from `r` to `l`, which lie on the right and on the left
     /// as seen from inside.
-    pub fn through(&self, [r, l]: [Vector; 2]) -> Option<Self> {
+    pub fn through(&self, [r, l]: [Border; 2]) -> Option<Self> {
         let Self { eye, right, left } = *self;
-        let right = if eye.side(right, r) > 0.0 { r } else { right };
-        let left = if eye.side(left, l) < 0.0 { l } else { left };
-        let is_seen = eye.side(r, l) > 0.0 && eye.side(right, left) > 0.0;
-        is_seen.then_some(Self { eye, right, left })
-    }
-
-    /// Do all of `points` lie beyond the same border?
-    pub fn misses(&self, points: &[Vector]) -> bool {
-        points.iter().all(|&p| self.eye.side(self.right, p) < 0.0)
-            || points.iter().all(|&p| self.eye.side(self.left, p) > 0.0)
+        let is_left_of = |a: Border, b: Border| eye.side(b.at, a.at) > 0.0;
+        let new_right = if is_left_of(r, right) { r } else { right };
+        let new_left = if is_left_of(left, l) { l } else { left };
+        (is_left_of(l, r) && is_left_of(new_left, new_right)).then_some(Self {
+            eye,
+            right: new_right,
+            left: new_left,
+        })
     }
 }
 
@@ -72,8 +86,8 @@ pub struct Sight {
 }
 
 /// Follows `sights` to everything behind them, but through no way narrower than `least_width` meters. Calls
-/// `enter` for every triangle that is seen, and goes on behind it if that returns true; and calls `see` for every point opposite to the side through which its
-/// triangle is seen.
+/// `enter` for every triangle that is seen, and goes on behind it if that returns true; and calls `see` for every point
+/// opposite to the side through which its triangle is seen.
 pub fn expand(
     mesh: &Mesh,
     least_width: f64,
@@ -92,13 +106,16 @@ pub fn expand(
         }
         let (triangle, corners) = (mesh.triangle(t), mesh.corners(t));
         let (right_end, top) = ((side + 1) % 3, (side + 2) % 3);
-        let apex = corners[top];
+        let apex = Border {
+            at: corners[top],
+            number: triangle.corners[top],
+        };
         let (a, b) = (
-            view.eye.side(view.right, apex),
-            view.eye.side(view.left, apex),
+            view.eye.side(view.right.at, apex.at),
+            view.eye.side(view.left.at, apex.at),
         );
         if a >= 0.0 && b <= 0.0 {
-            see(t, top, apex);
+            see(t, top, apex.at);
         }
         let mut go_on = |exit: usize, pivot: usize, view: View| {
             if let Some(next) = triangle.across[exit]

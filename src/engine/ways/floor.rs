@@ -23,15 +23,13 @@ pub struct Floor {
     pub least_width: f64,
     /// The corner at each corner of each triangle, with the triangle's place in the corner's fan.
     pub at: Vec<[Option<(u32, u32)>; 3]>,
-    /// The straight ways to each bend: the bends that they come from, with the distances in meters.
-    pub ways: Vec<Vec<(Bend, f64)>>,
+    /// The straight ways to bend b come from the bends with the numbers `ways[starts[b]..starts[b + 1]]`.
+    ways: Vec<u32>,
+    starts: Vec<u32>,
 }
 
 /// A straight way between two corners. The turn of each is that of a way that ends at the other.
-struct StraightWay {
-    ends: [Bend; 2],
-    length: f64,
-}
+type StraightWay = [Bend; 2];
 
 impl Floor {
     /// Prepares areas that touch at points at most; ways narrower than `least_width` meters are closed.
@@ -48,63 +46,97 @@ impl Floor {
             }
         }
         let mut floor = Self {
-            ways: vec![Vec::new(); 2 * corners.len()],
+            ways: Vec::new(),
+            starts: vec![0],
             grid: Grid::over(&mesh),
             mesh,
             corners,
             least_width,
             at,
         };
-        let all = (0..floor.corners.len() as u32).into_par_iter();
-        let seen: Vec<Vec<StraightWay>> = all.map(|c| floor.look_around(c)).collect();
-        for StraightWay {
-            ends: [a, b],
-            length,
-        } in seen.into_iter().flatten()
-        {
-            // A way that goes on to b came to a from the other side.
-            let before = |bend: Bend| Bend {
-                turn: bend.turn.other(),
-                ..bend
-            };
-            floor.ways[b.index()].push((before(a), length));
-            floor.ways[a.index()].push((before(b), length));
-        }
-        for ways in &mut floor.ways {
-            ways.sort_by_key(|(bend, _)| bend.index());
-            ways.dedup_by_key(|(bend, _)| *bend);
-        }
+        floor.find_ways();
         Ok(floor)
+    }
+
+    /// Finds the straight ways between all corners.
+    fn find_ways(&mut self) {
+        let all = (0..self.corners.len() as u32).into_par_iter();
+        let found: Vec<Vec<StraightWay>> = all.map(|c| self.look_around(c)).collect();
+        // A way that goes on to b came to a from the other side.
+        let before = |bend: Bend| Bend {
+            turn: bend.turn.other(),
+            ..bend
+        };
+        let both = |&[a, b]: &StraightWay| [[b, before(a)], [a, before(b)]];
+        let ways = found.iter().flatten().flat_map(both);
+        let mut ways: Vec<[u32; 2]> = ways.map(|way| way.map(|b| b.index() as u32)).collect();
+        drop(found);
+        ways.sort_unstable();
+        ways.dedup();
+        for bend in 0..2 * self.corners.len() as u32 {
+            let before = ways.partition_point(|&[to, _]| to <= bend);
+            self.starts.push(before as u32);
+        }
+        self.ways = ways.into_iter().map(|[_, from]| from).collect();
+    }
+
+    /// The bends from which straight ways lead to `bend`, which then go on as ways do that bend there.
+    pub fn before(&self, bend: usize) -> impl Iterator<Item = usize> {
+        let [from, to] = [bend, bend + 1].map(|b| self.starts[b] as usize);
+        self.ways[from..to].iter().map(|&before| before as usize)
     }
 
     /// The memory that it takes, bytes.
     pub fn bytes(&self) -> usize {
-        let ways = self.ways.iter().map(Vec::capacity).sum::<usize>();
-        let fan = |corner: &Corner| 40 * corner.fan.capacity() + size_of::<Corner>();
-        ways * size_of::<(Bend, f64)>()
-            + self.ways.len() * size_of::<Vec<u32>>()
+        let corners = self.corners.iter().map(Corner::bytes);
+        (self.ways.capacity() + self.starts.capacity()) * size_of::<u32>()
             + self.grid.bytes()
-            + size_of_val(self.mesh.triangles())
+            + self.mesh.bytes()
             + self.at.capacity() * size_of::<[Option<(u32, u32)>; 3]>()
-            + self.corners.iter().map(fan).sum::<usize>()
+            + corners.sum::<usize>()
+    }
+
+    /// The number of the borders of all views from points: the points of the mesh, and a ray for each bend.
+    pub fn borders(&self) -> usize {
+        self.mesh.points().len() + 2 * self.corners.len()
+    }
+
+    /// A point on border `number`, meters.
+    pub fn border(&self, number: u32) -> Vector {
+        let points = self.mesh.points();
+        match points.get(number as usize) {
+            Some(&point) => point,
+            None => {
+                let bend = number as usize - points.len();
+                self.corners[bend / 2].rays[bend % 2]
+            }
+        }
     }
 
     /// The place of a bend's corner, meters.
+    #[inline]
     pub fn place(&self, bend: Bend) -> Vector {
         self.corners[bend.corner as usize].place
     }
 
     /// A triangle that contains `p`; `None` outside of the floor.
     pub fn locate(&self, p: Vector) -> Option<u32> {
-        let mut near = self.grid.triangles(self.grid.cell(p)).iter().copied();
+        let mut near = self.grid.triangles(p).iter().copied();
         near.find(|&t| self.mesh.contains(t, p))
     }
 
     /// The triangle nearest to a point, such as one in a wall.
     pub fn nearest(&self, p: Vector) -> Option<u32> {
-        let all = 0..self.mesh.triangles().len() as u32;
-        let distance = |t: u32| self.mesh.distance(t, p);
-        all.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+        self.grid.nearest(&self.mesh, p)
+    }
+
+    /// Is triangle `t` wide enough around each of its corners between two openings?
+    pub fn is_wide(&self, t: u32) -> bool {
+        let triangle = self.mesh.triangle(t);
+        (0..3).all(|k| {
+            let is_closed = |side: usize| triangle.across[side % 3].is_none();
+            is_closed(k) || is_closed(k + 2) || triangle.width[k] >= self.least_width
+        })
     }
 
     /// The straight ways from corner `c` to corners with higher numbers.
@@ -116,7 +148,7 @@ impl Floor {
         }
         for turn in Turn::BOTH {
             let bend = Bend { corner: c, turn };
-            let see = |t: u32, k: usize, apex: Vector| {
+            let see = |t: u32, k: usize, _: Vector| {
                 if let Some((other, i)) = self.at[t as usize][k]
                     && other > c
                     && let away = &self.corners[other as usize]
@@ -129,10 +161,7 @@ impl Floor {
                             turn,
                         },
                     ];
-                    ways.push(StraightWay {
-                        ends,
-                        length: (apex - corner.place).norm(),
-                    });
+                    ways.push(ends);
                 }
             };
             self.look_from(bend, |_, _| true, see);
@@ -151,7 +180,7 @@ impl Floor {
         let (mesh, corner) = (&self.mesh, &self.corners[bend.corner as usize]);
         let mut sights = Vec::new();
         for (i, &(t, k)) in corner.fan.iter().enumerate() {
-            let Some([right, left]) = corner.view(mesh, i, bend.turn) else {
+            let Some([right, left]) = corner.view(mesh, i, bend) else {
                 continue;
             };
             let view = View {
@@ -161,7 +190,7 @@ impl Floor {
             };
             let side = (k + 1) % 3;
             if enter(t, &view)
-                && corner.is_open(i)
+                && corner.is_open(i, bend.turn)
                 && let Some(next) = mesh.triangle(t).across[side]
             {
                 let side = mesh.side_along(next, t);
@@ -209,19 +238,7 @@ impl Floor {
                     && away.is_clear(j, there)
             };
             if is_passable {
-                found.push(StraightWay {
-                    ends: [
-                        Bend {
-                            corner: c,
-                            turn: here,
-                        },
-                        Bend {
-                            corner: other,
-                            turn: there,
-                        },
-                    ],
-                    length: (away.place - corner.place).norm(),
-                });
+                found.push([(c, here), (other, there)].map(|(corner, turn)| Bend { corner, turn }));
             }
         }
     }

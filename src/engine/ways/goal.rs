@@ -2,10 +2,10 @@
 
 use super::WayError;
 use super::corner::Bend;
-use super::entries::Target;
-use super::expansion::{Eye, Sight, View, expand};
+use super::expansion::{Border, Eye, Sight, View, expand};
 use super::floor::Floor;
-use super::mesh::{nearest_on, side};
+use super::mesh::side;
+use super::targets::{Source, Targets};
 use crate::engine::math::{Vector, perpendicular};
 
 /// Where agents want to go.
@@ -19,10 +19,10 @@ pub enum Goal {
 
 /// What sees some goals.
 pub struct Seen {
-    /// The parts of triangles from which agents go straight to a goal.
-    pub views: Vec<(u32, Target, View)>,
-    /// The length of the way from each bend, meters; infinite for bends that do not see a goal.
-    pub from_bend: Vec<f64>,
+    /// The parts of the goals, and the lengths of the ways from bends, infinite for bends that do not see a goal.
+    pub targets: Targets,
+    /// The parts of triangles from which agents go straight to a part of a goal: triangle, number of the target, view.
+    pub views: Vec<(u32, u32, View)>,
 }
 
 impl Seen {
@@ -31,9 +31,14 @@ impl Seen {
     /// # Errors
     /// A goal is not on the floor.
     pub fn new(floor: &Floor, goals: &[Goal], margin: f64) -> Result<Self, WayError> {
+        let bends = 2 * floor.corners.len();
         let mut seen = Self {
+            targets: Targets {
+                rest: vec![f64::INFINITY; bends],
+                next: vec![0; bends],
+                ..Targets::default()
+            },
             views: Vec::new(),
-            from_bend: vec![f64::INFINITY; 2 * floor.corners.len()],
         };
         for goal in goals {
             match *goal {
@@ -58,21 +63,41 @@ impl Seen {
         Ok(seen)
     }
 
+    /// Adds a part of a goal; returns its number.
+    fn add(&mut self, source: Source) -> u32 {
+        let targets = &mut self.targets;
+        targets.sources.push(source);
+        (targets.rest.len() + targets.sources.len() - 1) as u32
+    }
+
+    /// Follows `sights` from part `target` of the goal.
+    fn follow(&mut self, floor: &Floor, target: u32, sights: Vec<Sight>) {
+        let Self { views, targets } = self;
+        let enter = |sight: &Sight| {
+            views.push((sight.triangle, target, sight.view));
+            true
+        };
+        let see = |t: u32, k: usize, _: Vector| meet(floor, (t, k), target, true, targets);
+        expand(&floor.mesh, floor.least_width, sights, enter, see);
+    }
+
     /// Adds everything that sees a point of the goal; `None` if it is not on the floor.
     fn look_from(&mut self, floor: &Floor, point: Vector) -> Option<()> {
-        let Self { views, from_bend } = self;
         let mesh = &floor.mesh;
         let t = floor.locate(point)?;
         let corners = mesh.corners(t);
         // From a point on a side, a view through this side would have no right and left border.
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-        let eye = Eye::Near(point + (middle - point) * INSIDE);
-        let target = Target::Point(point);
+        let eye = point + (middle - point) * INSIDE;
+        let target = self.add(Source::Point { point, eye });
         let mut sights = Vec::new();
         for side in 0..3 {
-            let (right, left) = (corners[side], corners[(side + 1) % 3]);
-            let view = View { eye, right, left };
-            views.push((t, target, view));
+            let view = View {
+                eye: Eye::Near(eye),
+                right: mesh.border(t, side),
+                left: mesh.border(t, (side + 1) % 3),
+            };
+            self.views.push((t, target, view));
             if let Some(next) = mesh.triangle(t).across[side] {
                 let side = mesh.side_along(next, t);
                 sights.push(Sight {
@@ -81,40 +106,31 @@ impl Seen {
                     view,
                 });
             }
-            meet(floor, (t, side), point, false, from_bend);
+            meet(floor, (t, side), target, false, &mut self.targets);
         }
-        let enter = |sight: &Sight| {
-            views.push((sight.triangle, target, sight.view));
-            true
-        };
-        let see = |t, k, _| meet(floor, (t, k), point, true, from_bend);
-        expand(mesh, floor.least_width, sights, enter, see);
+        self.follow(floor, target, sights);
         Some(())
     }
 
     /// Adds everything from which the nearest point of the goal's line lies between its ends.
     fn look_across(&mut self, floor: &Floor, [a, b]: [Vector; 2]) {
-        let Self { views, from_bend } = self;
         let mesh = &floor.mesh;
-        let target = Target::Line([a, b]);
-        let mut meet = |t: u32, k: usize, through: bool| {
-            let nearest = nearest_on(mesh.corners(t)[k], a, b);
-            meet(floor, (t, k), nearest, through, from_bend);
-        };
-        for t in 0..mesh.triangles().len() as u32 {
-            let corners = mesh.corners(t);
-            let Some(piece) = clipped([a, b], corners) else {
-                continue;
-            };
-            for way in [perpendicular(b - a), -perpendicular(b - a)] {
-                let view = looking(way, piece);
-                views.push((t, target, view));
+        for away in [perpendicular(b - a), -perpendicular(b - a)] {
+            let ends = [a, b];
+            let target = self.add(Source::Line { ends, away });
+            for t in 0..mesh.triangles().len() as u32 {
+                let corners = mesh.corners(t);
+                let Some(piece) = clipped([a, b], corners) else {
+                    continue;
+                };
+                let view = self.looking(floor, away, piece);
+                self.views.push((t, target, view));
                 for k in (0..3).filter(|&k| view.holds(corners[k])) {
-                    meet(t, k, false);
+                    meet(floor, (t, k), target, false, &mut self.targets);
                 }
                 let sights = (0..3).filter_map(|side| {
                     let next = mesh.triangle(t).across[side]?;
-                    let ends = [corners[side], corners[(side + 1) % 3]];
+                    let ends = [mesh.border(t, side), mesh.border(t, (side + 1) % 3)];
                     let view = view.through(ends)?;
                     let side = mesh.side_along(next, t);
                     Some(Sight {
@@ -123,44 +139,50 @@ impl Seen {
                         view,
                     })
                 });
-                let enter = |sight: &Sight| {
-                    views.push((sight.triangle, target, sight.view));
-                    true
-                };
-                let see = |t, k, _| meet(t, k, true);
-                expand(mesh, floor.least_width, sights.collect(), enter, see);
+                self.follow(floor, target, sights.collect());
             }
         }
+    }
+
+    /// The view from a part of a line in the direction `away`.
+    fn looking(&mut self, floor: &Floor, away: Vector, [a, b]: [Vector; 2]) -> View {
+        let ends = if away.perp(&(b - a)) > 0.0 {
+            [a, b]
+        } else {
+            [b, a]
+        };
+        let [right, left] = ends.map(|at| {
+            let borders = &mut self.targets.borders;
+            let number = (floor.borders() + borders.len()) as u32;
+            borders.push(at);
+            Border { at, number }
+        });
+        let eye = Eye::Far(away);
+        View { eye, right, left }
     }
 }
 
 /// How far the eye of a point moves to the inside of its triangle, as a part of the distance to its middle.
 const INSIDE: f64 = 1e-7;
 
-/// Notes that the corner of the floor at corner k of triangle `t` sees `point` of the goal.
-fn meet(floor: &Floor, (t, k): (u32, usize), point: Vector, through: bool, from_bend: &mut [f64]) {
+/// Notes that the corner of the floor at corner k of triangle `t` sees part `target` of the goal, `through` the opposite
+/// side of the triangle or not.
+fn meet(floor: &Floor, (t, k): (u32, usize), target: u32, through: bool, targets: &mut Targets) {
     if let Some((c, i)) = floor.at[t as usize][k] {
         let corner = &floor.corners[c as usize];
+        let point = targets.nearest(floor, target, corner.place);
         if let Some(turn) = corner.admits(&floor.mesh, i as usize, point, through) {
             let bend = Bend {
                 corner: c,
                 turn: turn.other(),
             };
-            let rest = &mut from_bend[bend.index()];
-            *rest = rest.min((corner.place - point).norm());
+            let length = (corner.place - point).norm();
+            if length < targets.rest[bend.index()] {
+                targets.rest[bend.index()] = length;
+                targets.next[bend.index()] = target;
+            }
         }
     }
-}
-
-/// The view from a part of a line in the direction `way`.
-fn looking(way: Vector, [a, b]: [Vector; 2]) -> View {
-    let eye = Eye::Far(way);
-    let [right, left] = if way.perp(&(b - a)) > 0.0 {
-        [a, b]
-    } else {
-        [b, a]
-    };
-    View { eye, right, left }
 }
 
 /// The part of a segment in a triangle; `None` if it is empty or a point.

@@ -1,114 +1,229 @@
-//! Square cells over the floor, with the triangles that reach into each.
+//! Cells over the floor, with the triangles that reach into each. A cell with many triangles has cells of its own, so
+//! that few triangles are near any point, on floors far larger than their rooms too.
+
+use std::collections::VecDeque;
 
 use super::mesh::{Mesh, side};
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, bounds};
 
-/// The side of a cell, meters, on floors that do not have too many.
-const CELL: f64 = 0.5;
-/// The most cells: on a floor with few triangles, and on any floor.
-const FEW_CELLS: usize = 500;
-const MOST_CELLS: usize = 200_000;
-/// The most cells per triangle.
-const PER_TRIANGLE: usize = 10;
+/// Cells with more triangles are divided.
+const MANY: usize = 10;
+/// Cells are divided as long as their lists hold no more than this many entries per triangle.
+const PER_TRIANGLE: usize = 12;
+/// The smallest cells, meters.
+const SMALLEST: f64 = 0.01;
+/// Triangles this near to a cell are listed in it, so that none is lost by rounding, meters.
+const MARGIN: f64 = 1e-6;
 
-/// The cells, in rows from the lower left.
+/// Equal cells that cover a rectangle, in rows from the lower left.
+#[derive(Debug, Clone)]
+struct Block {
+    low: Vector,
+    /// The sides of a cell, meters.
+    size: Vector,
+    columns: u32,
+    rows: u32,
+    /// The number of the first cell.
+    first: u32,
+}
+
+/// What a cell holds.
+#[derive(Debug, Clone, Copy)]
+enum Cell {
+    /// Triangles, as a part of the list.
+    Few { start: u32, count: u32 },
+    /// Cells: this block.
+    Many(u32),
+}
+
+/// The blocks of cells, the first of which covers the whole floor.
 #[derive(Debug, Clone)]
 pub struct Grid {
-    low: Vector,
-    size: f64,
-    columns: usize,
-    rows: usize,
-    /// The distance of a cell's corners from its center, meters.
-    pub radius: f64,
-    /// The triangles that reach into cell c are `triangles[starts[c]..starts[c + 1]]`.
-    starts: Vec<u32>,
+    blocks: Vec<Block>,
+    cells: Vec<Cell>,
     triangles: Vec<u32>,
+}
+
+impl Block {
+    /// A block over a rectangle with about `count` cells, which are nearly square.
+    fn over([low, high]: [Vector; 2], count: usize, first: usize) -> Self {
+        let extent = (high - low).sup(&Vector::repeat(SMALLEST));
+        let side = (extent.x * extent.y / count as f64).sqrt().max(SMALLEST);
+        // A rectangle can be far longer than wide.
+        let number = |x: f64| ((x / side).ceil() as usize).clamp(1, count);
+        let [columns, rows] = [extent.x, extent.y].map(number);
+        Self {
+            low,
+            size: Vector::new(extent.x / columns as f64, extent.y / rows as f64),
+            columns: columns as u32,
+            rows: rows as u32,
+            first: first as u32,
+        }
+    }
+
+    /// Column and row of a point, clamped to the block.
+    #[inline]
+    fn place(&self, p: Vector) -> [u32; 2] {
+        let place = (p - self.low).component_div(&self.size);
+        [
+            (place.x as u32).min(self.columns - 1),
+            (place.y as u32).min(self.rows - 1),
+        ]
+    }
+
+    /// The numbers of columns and rows.
+    fn count(&self) -> Vector {
+        Vector::new(f64::from(self.columns), f64::from(self.rows))
+    }
+
+    /// The numbers of the cells that a rectangle reaches into, with their rectangles.
+    fn cells(&self, [low, high]: [Vector; 2]) -> impl Iterator<Item = (usize, [Vector; 2])> {
+        let ([x0, y0], [x1, y1]) = (self.place(low), self.place(high));
+        (y0..=y1).flat_map(move |y| {
+            (x0..=x1).map(move |x| {
+                let cell = self.first + y * self.columns + x;
+                let at = |x: u32, y: u32| {
+                    let steps = Vector::new(f64::from(x), f64::from(y));
+                    self.low + self.size.component_mul(&steps)
+                };
+                (cell as usize, [at(x, y), at(x + 1, y + 1)])
+            })
+        })
+    }
 }
 
 impl Grid {
     /// Covers a mesh.
     pub fn over(mesh: &Mesh) -> Self {
-        let triangles = 0..mesh.triangles().len() as u32;
-        let points = triangles.clone().flat_map(|t| mesh.corners(t));
-        let none = [f64::INFINITY, f64::NEG_INFINITY].map(Vector::repeat);
-        let [low, high] = points.fold(none, |[low, high], p| [low.inf(&p), high.sup(&p)]);
-        let extent = high - low;
-        let most = FEW_CELLS.max(PER_TRIANGLE * mesh.triangles().len());
-        let most = most.min(MOST_CELLS) as f64;
-        let size = CELL.max((extent.x * extent.y / most).sqrt());
-        // A floor can be far longer than wide.
-        let size = size.max(extent.max() / most);
-        let [columns, rows] = [extent.x, extent.y].map(|x| (x / size).floor() as usize + 1);
         let mut grid = Self {
-            low,
-            size,
-            columns,
-            rows,
-            radius: 0.5_f64.sqrt() * size,
-            starts: vec![0],
+            blocks: Vec::new(),
+            cells: Vec::new(),
             triangles: Vec::new(),
         };
-        let mut found = vec![Vec::new(); columns * rows];
-        for t in triangles {
-            let [a, b, c] = mesh.corners(t);
-            let ends = [a.inf(&b).inf(&c), a.sup(&b).sup(&c)];
-            let [[x0, y0], [x1, y1]] = ends.map(|p| grid.place(p));
-            for cell in (y0..=y1).flat_map(|y| (x0..=x1).map(move |x| y * columns + x)) {
-                let corners = grid.corners(cell);
-                let is_beyond = |(a, b)| corners.iter().all(|&p| side(a, b, p) < 0.0);
-                if ![(a, b), (b, c), (c, a)].into_iter().any(is_beyond) {
-                    found[cell].push(t);
-                }
+        let all: Vec<u32> = (0..mesh.triangles().len() as u32).collect();
+        let most = PER_TRIANGLE * all.len();
+        let mut listed = all.len();
+        let around = bounds(mesh.points().iter().copied()).unwrap_or_default();
+        let first = grid.add(around, all.len());
+        let mut waiting = VecDeque::from([(first, all)]);
+        while let Some((block, triangles)) = waiting.pop_front() {
+            for (cell, around, found) in grid.divide(mesh, block, &triangles) {
+                listed += found.len();
+                let is_small = (around[1] - around[0]).max() <= SMALLEST;
+                grid.cells[cell] = if found.len() <= MANY || listed > most || is_small {
+                    let start = grid.triangles.len() as u32;
+                    let count = found.len() as u32;
+                    grid.triangles.extend(found);
+                    Cell::Few { start, count }
+                } else {
+                    let block = grid.add(around, found.len());
+                    waiting.push_back((block, found));
+                    Cell::Many(block as u32)
+                };
             }
-        }
-        for triangles in found {
-            grid.triangles.extend(triangles);
-            grid.starts.push(grid.triangles.len() as u32);
         }
         grid
     }
 
-    /// The triangles that reach into a cell.
-    pub fn triangles(&self, cell: usize) -> &[u32] {
-        let [from, to] = [cell, cell + 1].map(|cell| self.starts[cell] as usize);
-        &self.triangles[from..to]
+    /// Adds a block of empty cells over a rectangle with `triangles` triangles.
+    fn add(&mut self, around: [Vector; 2], triangles: usize) -> usize {
+        let block = Block::over(around, triangles.max(1), self.cells.len());
+        let cells = block.columns as usize * block.rows as usize;
+        let none = Cell::Few { start: 0, count: 0 };
+        self.cells.resize(self.cells.len() + cells, none);
+        self.blocks.push(block);
+        self.blocks.len() - 1
+    }
+
+    /// The cells of a block with their rectangles and those of `triangles` that reach into them.
+    fn divide(
+        &self,
+        mesh: &Mesh,
+        block: usize,
+        triangles: &[u32],
+    ) -> Vec<(usize, [Vector; 2], Vec<u32>)> {
+        let block = &self.blocks[block];
+        let mut pairs = Vec::new();
+        for &t in triangles {
+            let [a, b, c] = mesh.corners(t);
+            let margin = Vector::repeat(MARGIN);
+            let ends = [a.inf(&b).inf(&c) - margin, a.sup(&b).sup(&c) + margin];
+            for (cell, [low, high]) in block.cells(ends) {
+                let (low, high) = (low - margin, high + margin);
+                let corners = [
+                    low,
+                    Vector::new(high.x, low.y),
+                    high,
+                    Vector::new(low.x, high.y),
+                ];
+                let is_beyond = |(a, b)| corners.iter().all(|&p| side(a, b, p) < 0.0);
+                if ![(a, b), (b, c), (c, a)].into_iter().any(is_beyond) {
+                    pairs.push((cell as u32, t));
+                }
+            }
+        }
+        pairs.sort_unstable();
+        let all = block.cells([
+            block.low,
+            block.low + block.size.component_mul(&block.count()),
+        ]);
+        all.map(|(cell, around)| {
+            let [from, to] =
+                [0, 1].map(|k| pairs.partition_point(|pair| (pair.0 as usize) < cell + k));
+            let found = pairs[from..to].iter().map(|pair| pair.1).collect();
+            (cell, around, found)
+        })
+        .collect()
+    }
+
+    /// The triangles near a point; outside of the grid those of the nearest cell.
+    #[inline]
+    pub fn triangles(&self, p: Vector) -> &[u32] {
+        let mut block = &self.blocks[0];
+        loop {
+            let [x, y] = block.place(p);
+            match self.cells[(block.first + y * block.columns + x) as usize] {
+                Cell::Few { start, count } => {
+                    return &self.triangles[start as usize..][..count as usize];
+                }
+                Cell::Many(next) => block = &self.blocks[next as usize],
+            }
+        }
+    }
+
+    /// The triangle nearest to `p`, of those the one with the least number.
+    pub fn nearest(&self, mesh: &Mesh, p: Vector) -> Option<u32> {
+        let whole = &self.blocks[0];
+        let high = whole.low + whole.size.component_mul(&whole.count());
+        let outside = (p - p.sup(&whole.low).inf(&high)).norm();
+        let farthest = outside + (high - whole.low).norm();
+        let mut within = outside + SMALLEST;
+        loop {
+            let (mut found, mut waiting) = (Vec::new(), vec![0]);
+            let around = [p.add_scalar(-within), p.add_scalar(within)];
+            while let Some(block) = waiting.pop() {
+                for (cell, _) in self.blocks[block].cells(around) {
+                    match self.cells[cell] {
+                        Cell::Few { start, count } => found
+                            .extend_from_slice(&self.triangles[start as usize..][..count as usize]),
+                        Cell::Many(next) => waiting.push(next as usize),
+                    }
+                }
+            }
+            let distances = found.into_iter().map(|t| (mesh.distance(t, p), t));
+            let nearest = distances.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            match nearest {
+                Some((distance, t)) if distance <= within || within >= farthest => return Some(t),
+                None if within >= farthest => return None,
+                _ => within *= 2.0,
+            }
+        }
     }
 
     /// The memory that it takes, bytes.
     pub fn bytes(&self) -> usize {
-        (self.starts.capacity() + self.triangles.capacity()) * size_of::<u32>()
-    }
-
-    /// Column and row of a point, clamped to the grid.
-    fn place(&self, p: Vector) -> [usize; 2] {
-        let place = (p - self.low) / self.size;
-        [
-            (place.x as usize).min(self.columns - 1),
-            (place.y as usize).min(self.rows - 1),
-        ]
-    }
-
-    /// The cell of a point; outside of the grid the nearest.
-    pub fn cell(&self, p: Vector) -> usize {
-        let [x, y] = self.place(p);
-        y * self.columns + x
-    }
-
-    /// The number of cells.
-    pub fn cells(&self) -> usize {
-        self.starts.len() - 1
-    }
-
-    /// The center of a cell, meters.
-    pub fn center(&self, cell: usize) -> Vector {
-        let (x, y) = (cell % self.columns, cell / self.columns);
-        self.low + Vector::new(x as f64 + 0.5, y as f64 + 0.5) * self.size
-    }
-
-    /// The corners of a cell, meters.
-    pub fn corners(&self, cell: usize) -> [Vector; 4] {
-        let half = 0.5 * self.size;
-        [(-half, -half), (half, -half), (half, half), (-half, half)]
-            .map(|(x, y)| self.center(cell) + Vector::new(x, y))
+        self.blocks.capacity() * size_of::<Block>()
+            + self.cells.capacity() * size_of::<Cell>()
+            + self.triangles.capacity() * size_of::<u32>()
     }
 }

@@ -2,17 +2,18 @@
 
 use std::collections::VecDeque;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::WayError;
 use super::corner::{Bend, Turn};
-use super::entries::{Entries, Entry, Target};
-use super::expansion::View;
+use super::entries::{Entries, spread};
+use super::expansion::Eye;
 use super::floor::Floor;
 use super::goal::{Goal, Seen};
-use super::mesh::nearest_on;
-use crate::engine::math::{Vector, direction};
+use super::parts::Parts;
+use super::region::{Candidate, Region};
+use super::targets::{Entry, Targets};
+use crate::engine::math::Vector;
 
 /// An agent keeps its way until another one is shorter by this, meters: no agent wavers between two ways.
 pub const SLACK: f64 = 0.5;
@@ -55,17 +56,12 @@ pub struct Way {
 /// For one goal, the way from any position.
 #[derive(Debug, Clone)]
 pub struct PathMap {
-    /// The entries of triangle t are `starts[t]..starts[t + 1]`, by `least`.
-    starts: Vec<u32>,
-    entries: Vec<Entry>,
-    /// Triangles and entries: those that can be the best in cell c of the floor's grid are
-    /// `near[cells[c]..cells[c + 1]]`.
-    near: Vec<(u32, u32)>,
-    cells: Vec<u32>,
-    /// From triangles without entries: the next triangle, and the length of the way out.
-    out: Vec<Option<(u32, f64)>>,
-    /// The bend after each.
-    after: Vec<Option<Bend>>,
+    targets: Targets,
+    parts: Parts,
+    /// From triangles without entries, in order: the next triangle, and the length of the way out.
+    out: Vec<(u32, u32, f64)>,
+    /// The memory that building it took in addition, bytes.
+    building: usize,
 }
 
 impl PathMap {
@@ -74,145 +70,132 @@ impl PathMap {
     /// # Errors
     /// A goal is not on the floor.
     pub fn new(floor: &Floor, goals: &[Goal], margin: f64) -> Result<Self, WayError> {
-        let (entries, after) = Entries::new(floor, Seen::new(floor, goals, margin)?);
+        let mut seen = Seen::new(floor, goals, margin)?;
+        spread(floor, &mut seen.targets);
+        let Seen { targets, views } = seen;
+        let entries = Entries::new(floor, &targets, views);
+        let building = entries.bytes();
+        let parts = Parts::new(floor, &targets, entries.of_triangles());
         let mut map = Self {
-            starts: vec![0],
-            entries: Vec::new(),
-            near: Vec::new(),
-            cells: vec![0],
-            out: vec![None; floor.mesh.triangles().len()],
-            after,
+            targets,
+            parts,
+            out: Vec::new(),
+            building,
         };
-        for entries in entries.of_triangles() {
-            map.entries.extend(entries);
-            map.starts.push(map.entries.len() as u32);
-        }
         map.find_ways_out(floor);
-        map.fill_cells(floor);
         Ok(map)
-    }
-
-    /// Finds the entries that can be the best, cell by cell.
-    fn fill_cells(&mut self, floor: &Floor) {
-        let grid = &floor.grid;
-        let fill = |cell: usize| {
-            let (center, corners) = (grid.center(cell), grid.corners(cell));
-            let mut found = Vec::new();
-            for &t in grid.triangles(cell) {
-                let entries = self.entries(t);
-                let whole = entries
-                    .iter()
-                    .filter(|e| corners.iter().all(|&p| e.view.holds(p)));
-                let best = whole
-                    .map(|entry| entry.from(floor, center))
-                    .min_by(|a, b| a.0.total_cmp(&b.0));
-                let first = self.starts[t as usize];
-                let can_win = (first..).zip(entries).filter(|(_, entry)| {
-                    let is_longer = best.is_some_and(|(least, best)| {
-                        let (length, way) = entry.from(floor, center);
-                        length - least > SLACK + grid.radius * most_change(way, best, grid.radius)
-                    });
-                    !entry.view.misses(&corners) && !is_longer
-                });
-                found.extend(can_win.map(|(k, _)| (t, k)));
-            }
-            found
-        };
-        let cells: Vec<Vec<_>> = (0..grid.cells()).into_par_iter().map(fill).collect();
-        for cell in cells {
-            self.near.extend(cell);
-            self.cells.push(self.near.len() as u32);
-        }
-    }
-
-    fn entries(&self, t: u32) -> &[Entry] {
-        let [from, to] = [t, t + 1].map(|t| self.starts[t as usize] as usize);
-        &self.entries[from..to]
     }
 
     /// Finds ways out of triangles without entries, through any opening.
     fn find_ways_out(&mut self, floor: &Floor) {
-        let count = self.out.len() as u32;
-        let mut queue: VecDeque<u32> = (0..count)
-            .filter(|&t| !self.entries(t).is_empty())
-            .collect();
+        let count = floor.mesh.triangles().len() as u32;
+        let is_empty = |t: u32| self.parts.is_empty(t);
+        if !(0..count).any(is_empty) {
+            return;
+        }
+        let mut out: Vec<Option<(u32, f64)>> = vec![None; count as usize];
+        let mut queue: VecDeque<u32> = (0..count).filter(|&t| !is_empty(t)).collect();
         while let Some(t) = queue.pop_front() {
-            let triangle = floor.mesh.triangle(t);
-            let length = self.out[t as usize].map_or(0.0, |(_, length)| length);
-            for next in triangle.across.into_iter().flatten() {
-                if self.out[next as usize].is_none() && self.entries(next).is_empty() {
-                    self.out[next as usize] = Some((t, length + 1.0));
+            let length = out[t as usize].map_or(0.0, |(_, length)| length);
+            for next in floor.mesh.triangle(t).across.into_iter().flatten() {
+                if out[next as usize].is_none() && is_empty(next) {
+                    out[next as usize] = Some((t, length + 1.0));
                     queue.push_back(next);
                 }
             }
         }
+        let found = (0..).zip(out);
+        let found = found.filter_map(|(t, out)| out.map(|(next, length)| (t, next, length)));
+        self.out = found.collect();
     }
 
     /// The way from `p`, which lies in triangle `t`. `None` if the goal cannot be reached from there. An agent that
     /// walks toward `held` goes on until this corner is behind it or another way is shorter by [`SLACK`].
     pub fn way(&self, floor: &Floor, p: Vector, t: u32, held: Option<Bend>) -> Option<Way> {
-        let mut best: Option<(f64, &Entry)> = None;
-        let mut kept: Option<(f64, &Entry)> = None;
-        let cell = floor.grid.cell(p);
-        let [from, to] = [cell, cell + 1].map(|cell| self.cells[cell] as usize);
-        let here = self.near[from..to]
-            .iter()
-            .filter(|(triangle, _)| *triangle == t);
-        for entry in here.map(|&(_, k)| &self.entries[k as usize]) {
-            if entry.view.holds(p) {
-                let (length, _) = entry.from(floor, p);
-                if best.is_none_or(|(least, _)| length < least) {
-                    best = Some((length, entry));
-                }
-                if entry.bend().is_some_and(|bend| Some(bend) == held) {
-                    kept = Some((length, entry));
-                }
+        let best = self.best(floor, (p, t), 0.0);
+        // Rounding can leave gaps between regions.
+        let best = best.or_else(|| self.best(floor, (p, t), GAP));
+        let Some((length, entry)) = best else {
+            return self
+                .way_in(floor, p, t)
+                .or_else(|| self.way_out(floor, p, t));
+        };
+        let Some(bend) = self.targets.bend(entry.target) else {
+            let next = Next::Goal(self.targets.nearest(floor, entry.target, p));
+            return Some(Way { length, next });
+        };
+        let other = held.filter(|&held| held != bend);
+        let kept = other.and_then(|held| self.kept(floor, (p, t), held, length));
+        kept.or_else(|| {
+            let borders = entry.borders.map(|b| self.targets.border(floor, b));
+            let next = toward(bend, borders);
+            Some(Way { length, next })
+        })
+    }
+
+    /// The shortest way from `p` in triangle `t` over an entry that holds there or within `margin` meters.
+    #[inline]
+    fn best(&self, floor: &Floor, (p, t): (Vector, u32), margin: f64) -> Option<(f64, Entry)> {
+        let mut best: Option<(f64, Entry)> = None;
+        for entry in self.parts.at(floor, p, t) {
+            let length = self.targets.length(floor, entry.target, p);
+            let is_shorter = best.is_none_or(|(least, _)| length < least);
+            if is_shorter && self.targets.holds(floor, entry, p, margin) {
+                best = Some((length, entry));
             }
         }
-        let is_other_way = |(least, entry): (f64, &Entry)| {
-            kept.filter(|(length, _)| {
-                *length <= least + SLACK && !self.is_behind(held, entry.bend())
-            })
+        best
+    }
+
+    /// The way over `held` from `p` in triangle `t`, if it goes straight there, bends there, and is longer than `least`
+    /// by at most [`SLACK`].
+    fn kept(&self, floor: &Floor, (p, t): (Vector, u32), held: Bend, least: f64) -> Option<Way> {
+        let length = self.targets.length(floor, held.index() as u32, p);
+        let eye = Eye::Near(floor.place(held));
+        let beyond = eye.side(self.targets.beyond(floor, held), p);
+        let bends = match held.turn {
+            Turn::First => beyond <= 0.0,
+            Turn::Last => beyond >= 0.0,
         };
-        if let Some((length, entry)) = best.and_then(is_other_way).or(best) {
-            let next = match entry.target {
-                Target::Corner(bend) => {
-                    let View { right, left, .. } = entry.view;
-                    let borders = match bend.turn {
-                        Turn::First => [right, left],
-                        Turn::Last => [left, right],
-                    };
-                    Next::Corner { bend, borders }
-                }
-                Target::Point(point) => Next::Goal(point),
-                Target::Line([a, b]) => Next::Goal(nearest_on(p, a, b)),
+        if length > least + SLACK || !bends {
+            return None;
+        }
+        let view = floor.sight(p, t, held)?;
+        let next = toward(held, [view.right.at, view.left.at]);
+        Some(Way { length, next })
+    }
+
+    /// The way from a position in triangle `t` from which no target is seen, but from another part of the triangle.
+    fn way_in(&self, floor: &Floor, p: Vector, t: u32) -> Option<Way> {
+        let mut best: Option<Way> = None;
+        self.parts.each(floor, t, |corners, entry| {
+            let candidate = Candidate::new(floor, &self.targets, entry);
+            let Some(region) = Region::new(corners, &candidate) else {
+                return;
             };
-            return Some(Way { length, next });
-        }
-        self.way_out(floor, p, t)
+            let point = region.center;
+            let rest = self.targets.length(floor, entry.target, point);
+            let length = (point - p).norm() + rest;
+            if best.is_none_or(|best| length < best.length) {
+                let next = Next::Out(point);
+                best = Some(Way { length, next });
+            }
+        });
+        best
     }
 
-    /// Does the way over bend `held` lead over `next` (or, if that is none, straight to the goal) later on?
-    fn is_behind(&self, held: Option<Bend>, next: Option<Bend>) -> bool {
-        let after = |bend: &Bend| self.after[bend.index()];
-        let mut way = std::iter::successors(held, after).skip(1);
-        match next {
-            Some(next) => way.any(|bend| bend == next),
-            None => true,
-        }
-    }
-
-    /// The way from a position from which no entry is visible: through the middle of an opening of its triangle.
+    /// The way from a triangle without entries: through the middle of an opening.
     fn way_out(&self, floor: &Floor, p: Vector, t: u32) -> Option<Way> {
-        let (next, extra) = self.out[t as usize]?;
+        let place = self.out.binary_search_by_key(&t, |out| out.0).ok()?;
+        let (_, next, extra) = self.out[place];
         let corners = floor.mesh.corners(t);
         let side = floor.mesh.side_along(t, next);
         let opening = (corners[side] + corners[(side + 1) % 3]) * 0.5;
         let [a, b, c] = floor.mesh.corners(next);
         let beyond = (a + b + c) / 3.0;
-        let rest = match self.entries(next) {
-            [] => extra,
-            _ => self
+        let rest = match self.parts.is_empty(next) {
+            true => extra,
+            false => self
                 .way(floor, beyond, next, None)
                 .map_or(extra, |way| way.length),
         };
@@ -232,41 +215,46 @@ impl PathMap {
 
     /// The bend after `bend` on the way; `None` if the way from there leads straight to the goal.
     pub fn after(&self, bend: Bend) -> Option<Bend> {
-        self.after[bend.index()]
+        self.targets.bend(self.targets.next[bend.index()])
     }
 
     /// Where ways end that bend around this corner last, meters.
     pub fn end_after(&self, floor: &Floor, bend: Bend) -> Option<Vector> {
-        let corner = &floor.corners[bend.corner as usize];
-        let around = corner.fan.iter().flat_map(|&(t, _)| self.entries(t));
-        let seen = around.filter(|entry| entry.bend().is_none() && entry.view.holds(corner.place));
-        let ends = seen.map(|entry| entry.from(floor, corner.place));
-        let nearest = ends.min_by(|a, b| a.0.total_cmp(&b.0));
-        nearest.map(|(_, way)| corner.place + way)
+        let next = self.targets.next[bend.index()];
+        self.targets.source(next)?;
+        Some(self.targets.nearest(floor, next, floor.place(bend)))
+    }
+
+    /// Does a way bend around a corner from anywhere?
+    pub fn bends(&self) -> bool {
+        let mut entries = self.parts.all();
+        entries.any(|entry| self.targets.bend(entry.target).is_some())
+    }
+
+    /// The memory that building it took in addition, bytes.
+    pub fn building_bytes(&self) -> usize {
+        self.building
     }
 
     /// The memory that it takes, bytes.
     pub fn bytes(&self) -> usize {
-        self.entries.capacity() * size_of::<Entry>()
-            + self.near.capacity() * size_of::<(u32, u32)>()
-            + (self.starts.capacity() + self.cells.capacity()) * size_of::<u32>()
-            + self.out.capacity() * size_of::<Option<(u32, f64)>>()
-            + self.after.capacity() * size_of::<Option<Bend>>()
+        self.targets.bytes()
+            + self.parts.bytes()
+            + self.out.capacity() * size_of::<(u32, u32, f64)>()
     }
 }
 
+/// A corner comes next. `borders`: what it sees, on the right and on the left.
+fn toward(bend: Bend, [right, left]: [Vector; 2]) -> Next {
+    let borders = match bend.turn {
+        Turn::First => [right, left],
+        Turn::Last => [left, right],
+    };
+    Next::Corner { bend, borders }
+}
+
+/// Regions reach this far where there are gaps between them, meters.
+const GAP: f64 = 1e-6;
+
 /// An agent this near to the middle of an opening is in it, meters.
 const IN_OPENING: f64 = 0.05;
-
-/// How much the difference between the lengths of two straight ways can change at most per meter within `radius`.
-fn most_change(a: Vector, b: Vector, radius: f64) -> f64 {
-    let bend = |way: Vector| {
-        let length = way.norm();
-        if length > radius {
-            radius / (length - radius)
-        } else {
-            2.0
-        }
-    };
-    ((direction(a) - direction(b)).norm() + bend(a) + bend(b)).min(2.0)
-}

@@ -6,6 +6,7 @@ use spade::handles::FixedFaceHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::WayError;
+use super::expansion::Border;
 use crate::engine::geometry::Area;
 use crate::engine::math::Vector;
 
@@ -57,6 +58,20 @@ impl Mesh {
         self.points[k as usize]
     }
 
+    /// All points, meters.
+    pub fn points(&self) -> &[Vector] {
+        &self.points
+    }
+
+    /// Corner k of triangle `t`, as a border of what is seen.
+    pub fn border(&self, t: u32, k: usize) -> Border {
+        let number = self.triangle(t).corners[k];
+        Border {
+            at: self.point(number),
+            number,
+        }
+    }
+
     /// The triangles.
     pub fn triangles(&self) -> &[Triangle] {
         &self.triangles
@@ -70,6 +85,12 @@ impl Mesh {
     /// The corners of triangle `t`, meters.
     pub fn corners(&self, t: u32) -> [Vector; 3] {
         self.triangle(t).corners.map(|k| self.point(k))
+    }
+
+    /// The memory that it takes, bytes.
+    pub fn bytes(&self) -> usize {
+        self.points.capacity() * size_of::<Vector>()
+            + self.triangles.capacity() * size_of::<Triangle>()
     }
 
     /// The side of triangle `other` that lies along triangle `t`.

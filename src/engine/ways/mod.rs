@@ -14,8 +14,12 @@ mod goal;
 mod grid;
 mod map;
 mod mesh;
+mod parts;
+mod region;
 mod route;
+mod sight;
 mod steer;
+mod targets;
 
 pub use corner::{Bend, Corner, Turn};
 pub use floor::Floor;

@@ -217,10 +217,11 @@ impl Ways {
         }
     }
 
-    /// The memory of the floor and the maps, bytes.
+    /// The memory of the floor and the maps, and of building the largest, bytes.
     pub fn bytes(&self) -> usize {
         let maps = self.maps.iter().map(PathMap::bytes);
-        self.floor.bytes() + maps.sum::<usize>()
+        let building = self.maps.iter().map(PathMap::building_bytes).max();
+        self.floor.bytes() + maps.sum::<usize>() + building.unwrap_or_default()
     }
 }
 

@@ -1,0 +1,198 @@
+//! Which entries can be the best where: triangles with many of them are halved until few are left.
+
+use rayon::prelude::*;
+
+use super::floor::Floor;
+use super::region::{Candidate, Corners, best};
+use super::targets::{Entry, Targets};
+use crate::engine::math::Vector;
+
+/// Parts with more entries are halved if that pays.
+const FEW: usize = 8;
+/// Halving pays if it does not repeat the entries of a triangle more often than this.
+const REPEATS: usize = 2;
+/// To find out which entries can be the best, parts are halved down to this length of the longest side, meters, but not
+/// more often than this.
+const LEAST_SIZE: f64 = 0.3;
+const MOST_HALVINGS: u32 = 12;
+/// Triangles that are divided at once.
+const CHUNK: usize = 1024;
+
+/// Marks the last entry of a part.
+const LAST: u32 = 1 << 31;
+/// Marks parts that are halved.
+const HALVED: u32 = 1 << 31;
+/// A part without entries.
+const NONE: u32 = HALVED - 1;
+
+/// The parts of all triangles.
+#[derive(Debug, Clone, Default)]
+pub struct Parts {
+    /// First those that are whole triangles, then the halves in pairs: the number of the first entry, or `HALVED` and
+    /// the number of the first half.
+    parts: Vec<u32>,
+    /// The entries of each part in the order of their targets; the last is marked.
+    entries: Vec<Entry>,
+}
+
+/// The two halves of a part, on the left and on the right of the line from the middle of its longest side to the
+/// opposite corner.
+fn halves([a, b, c]: Corners) -> [Corners; 2] {
+    let [ab, bc, ca] = [b - a, c - b, a - c].map(|side| side.norm_squared());
+    let [a, b, c] = if ab >= bc && ab >= ca {
+        [a, b, c]
+    } else if bc >= ca {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    };
+    let middle = (a + b) * 0.5;
+    [[a, middle, c], [middle, b, c]]
+}
+
+/// A part with its halves, while parts are found.
+struct Part {
+    /// The entries that can be the best in it, in order.
+    entries: Vec<Entry>,
+    /// The number of entries in the parts in which it ends.
+    listed: usize,
+    halves: Option<Box<[Part; 2]>>,
+}
+
+impl Part {
+    /// Finds the best of some candidates in the part with these corners, which comes of `depth` halvings.
+    fn new(candidates: &[&Candidate], corners: Corners, depth: u32) -> Self {
+        let mut best = best(candidates, corners);
+        let sides = (0..3).map(|k| (corners[(k + 1) % 3] - corners[k]).norm());
+        let size = sides.fold(0.0, f64::max);
+        let mut halved = None;
+        if best.len() > 2 && size > LEAST_SIZE && depth < MOST_HALVINGS {
+            let both = halves(corners).map(|corners| Self::new(&best, corners, depth + 1));
+            best.retain(|one| both.iter().any(|half| half.entries.contains(&one.entry)));
+            let listed = both.iter().map(|half| half.listed).sum::<usize>();
+            if best.len() > FEW && listed <= REPEATS * best.len() {
+                halved = Some((listed, Box::new(both)));
+            }
+        }
+        let (listed, halves) = match halved {
+            Some((listed, halves)) => (listed, Some(halves)),
+            None => (best.len(), None),
+        };
+        Self {
+            entries: best.iter().map(|candidate| candidate.entry).collect(),
+            listed,
+            halves,
+        }
+    }
+}
+
+impl Parts {
+    /// Divides the triangles of a floor, which have these entries in order.
+    pub fn new(
+        floor: &Floor,
+        targets: &Targets,
+        mut found: impl Iterator<Item = Vec<Entry>>,
+    ) -> Self {
+        let count = floor.mesh.triangles().len();
+        let mut all = Self {
+            parts: vec![NONE; count],
+            entries: Vec::new(),
+        };
+        for from in (0..count).step_by(CHUNK) {
+            let some: Vec<Vec<Entry>> = found.by_ref().take(CHUNK).collect();
+            let some = some.into_par_iter().enumerate().map(|(k, entries)| {
+                let look_up = |&entry: &Entry| Candidate::new(floor, targets, entry);
+                let candidates: Vec<Candidate> = entries.iter().map(look_up).collect();
+                let candidates: Vec<&Candidate> = candidates.iter().collect();
+                Part::new(&candidates, floor.mesh.corners((from + k) as u32), 0)
+            });
+            for (k, part) in some.collect::<Vec<_>>().into_iter().enumerate() {
+                all.add(from + k, part);
+            }
+        }
+        all.parts.shrink_to_fit();
+        all.entries.shrink_to_fit();
+        all
+    }
+
+    fn add(&mut self, number: usize, mut part: Part) {
+        if let Some(halves) = part.halves {
+            let first = self.parts.len();
+            self.parts.extend([NONE; 2]);
+            self.parts[number] = HALVED | first as u32;
+            for (k, half) in halves.into_iter().enumerate() {
+                self.add(first + k, half);
+            }
+        } else if let Some(last) = part.entries.last_mut() {
+            last.target |= LAST;
+            self.parts[number] = self.entries.len() as u32;
+            self.entries.append(&mut part.entries);
+        }
+    }
+
+    /// The entries that can be the best at `p`, which lies in triangle `t`.
+    #[inline]
+    pub fn at(&self, floor: &Floor, p: Vector, t: u32) -> impl Iterator<Item = Entry> {
+        let mut part = self.parts[t as usize];
+        if part & HALVED != 0 {
+            let mut corners = floor.mesh.corners(t);
+            while part & HALVED != 0 {
+                let [a, b] = halves(corners);
+                let [_, middle, top] = a;
+                let is_left = (top - middle).perp(&(p - middle)) >= 0.0;
+                corners = if is_left { a } else { b };
+                part = self.parts[(part & !HALVED) as usize + usize::from(!is_left)];
+            }
+        }
+        self.of(part)
+    }
+
+    /// The entries from number `first` to a marked one.
+    #[inline]
+    fn of(&self, first: u32) -> impl Iterator<Item = Entry> {
+        let all = self.entries.get(first as usize..).unwrap_or_default();
+        let mut is_over = false;
+        all.iter().map_while(move |entry| {
+            let is_last = entry.target & LAST != 0;
+            let here = (!is_over).then_some(Entry {
+                target: entry.target & !LAST,
+                ..*entry
+            });
+            is_over |= is_last;
+            here
+        })
+    }
+
+    /// Calls `take` for all parts of triangle `t` with each of their entries.
+    pub fn each(&self, floor: &Floor, t: u32, mut take: impl FnMut(Corners, Entry)) {
+        let mut waiting = vec![(floor.mesh.corners(t), self.parts[t as usize])];
+        while let Some((corners, part)) = waiting.pop() {
+            if part & HALVED != 0 {
+                let first = (part & !HALVED) as usize;
+                let both = halves(corners);
+                waiting.extend([0, 1].map(|k| (both[k], self.parts[first + k])));
+            } else {
+                self.of(part).for_each(|entry| take(corners, entry));
+            }
+        }
+    }
+
+    /// Has triangle `t` no entries?
+    pub fn is_empty(&self, t: u32) -> bool {
+        self.parts[t as usize] == NONE
+    }
+
+    /// All entries.
+    pub fn all(&self) -> impl Iterator<Item = Entry> {
+        let all = self.entries.iter();
+        all.map(|entry| Entry {
+            target: entry.target & !LAST,
+            ..*entry
+        })
+    }
+
+    /// The memory that it takes, bytes.
+    pub fn bytes(&self) -> usize {
+        self.parts.capacity() * size_of::<u32>() + self.entries.capacity() * size_of::<Entry>()
+    }
+}
