@@ -83,10 +83,10 @@ fn the_keys_of_nested_objects_are_documented() {
         ),
         ("measurements.density", "at_secs, region?"),
         (
-            "grids.preferred_speed",
+            "waiting_areas.for_secs",
             "one of uniform, normal, lognormal, weibull, gamma, exponential, values or weidmann_age",
         ),
-        ("grids.preferred_speed.normal", "mean, std, max?, min?"),
+        ("waiting_areas.for_secs.normal", "mean, std, max?, min?"),
         ("stop", "idle_secs?, when_empty?"),
         ("view", "region, opens_at_secs?"),
         (
