@@ -49,5 +49,6 @@ mod sound;
 mod statistics;
 mod walls;
 mod wave;
+mod way_field;
 mod way_finding;
 mod ways;

@@ -26,6 +26,7 @@ mod read;
 mod recording;
 mod reproduction;
 mod scenario_geometry;
+mod seeing;
 mod stability;
 mod stress;
 mod study_robustness;

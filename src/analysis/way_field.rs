@@ -59,6 +59,25 @@ pub struct WayField {
     next: Vec<u32>,
 }
 
+/// Bands of length, from 0 on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bands {
+    /// The width of each: 1, 2 or 5 times a power of ten, meters.
+    pub width: f64,
+    /// Their number.
+    pub count: u32,
+}
+
+impl Bands {
+    /// The end of the last one, meters.
+    pub fn end(&self) -> f64 {
+        self.width * f64::from(self.count)
+    }
+}
+
+/// The most bands.
+const MOST_BANDS: f64 = 14.0;
+
 /// The numbers of what comes first, if it is no corner.
 const NOTHING: u32 = u32::MAX;
 const GOAL: u32 = u32::MAX - 1;
@@ -86,6 +105,20 @@ impl WayField {
     pub fn longest(&self) -> f64 {
         let lengths = self.lengths.iter().copied().flatten();
         lengths.fold(0.0, f64::max)
+    }
+
+    /// Bands of length.
+    pub fn bands(&self) -> Bands {
+        let longest = self.longest().max(1e-3);
+        let least = longest / MOST_BANDS;
+        let decade = 10_f64.powf(least.log10().floor());
+        let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade);
+        let width = steps.into_iter().find(|step| *step >= least);
+        let width = width.unwrap_or(least);
+        Bands {
+            width,
+            count: (longest / width).ceil().max(1.0) as u32,
+        }
     }
 
     /// Does another corner come first in the cell on the right of cell `k` or above it?

@@ -12,8 +12,6 @@ use crate::output::plot::{BLACK, Cells, ColorBar, Mark, Style};
 
 /// The side of a cell of the field, points.
 const CELL: f64 = 0.5;
-/// About this many bands.
-const BANDS: f64 = 12.0;
 /// The color of the borders of the path map's cells.
 pub const BORDER: Rgb = [120, 60, 130];
 /// The number of agents whose ways are shown.
@@ -49,10 +47,8 @@ impl Paths {
     pub(super) fn draw(&self, simulation: &Simulation, frame: &Frame) -> Drawn {
         let grid = Grid::over([frame.min, frame.max], frame.meters(CELL));
         let field = WayField::new(&self.ways, self.to, grid);
-        let longest = field.longest().max(1e-3);
-        let width = nice(longest / BANDS);
-        let bands = (longest / width).ceil().max(1.0);
-        let map = ColorMap::pale([0.0, (bands * width) as f32], bands as u32);
+        let bands = field.bands();
+        let map = ColorMap::pale([0.0, bands.end() as f32], bands.count);
         let size = Vector::new(grid.columns as f64, grid.rows as f64) * grid.cell;
         let cells = |values, map| {
             Mark::Cells(Cells {
@@ -169,14 +165,4 @@ fn far_apart(points: &[Vector]) -> Vec<Vector> {
         chosen.extend(next);
     }
     chosen
-}
-
-/// 1, 2 or 5 times a power of ten, at least `least`.
-pub fn nice(least: f64) -> f64 {
-    let decade = 10_f64.powf(least.log10().floor());
-    let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade);
-    steps
-        .into_iter()
-        .find(|step| *step >= least)
-        .unwrap_or(least)
 }

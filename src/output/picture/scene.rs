@@ -24,6 +24,8 @@ const FAR: f64 = 1e7;
 const NAMED_GOALS: usize = 8;
 /// Half of a goal's cross, points.
 const CROSS: f64 = 3.0;
+/// The names of exits narrower than this lie beside them, points.
+const NARROW: f64 = 50.0;
 /// How far behind an exit people need room: it may lie that far from walls, meters.
 const BEHIND: f64 = 3.5;
 
@@ -192,11 +194,21 @@ fn label_places(
             let is_out = |way: &Vector| walls.obstacle_at(middle + way * BEHIND).is_some();
             let out = [aside, -aside].into_iter().find(is_out).unwrap_or(aside);
             let side = |way: Vector| {
-                let part = |x: f64| (x * 1.4).round() as i8;
+                let part = |x: f64| (x * 1.4).round().clamp(-1.0, 1.0) as i8;
                 (middle + way * frame.meters(2.0), [part(way.x), part(way.y)])
             };
+            // Beside the floor behind a narrow exit, where it covers no walls.
+            let beside = |end: Vector| {
+                let (_, side) = side(direction(end - middle) + out);
+                (end + out * frame.meters(2.0), side)
+            };
+            let is_narrow = (b - a).norm() * frame.scale < NARROW && place.is_exit();
+            let narrow = [b, a].map(beside).into_iter().filter(|_| is_narrow);
             let others = AROUND.map(|side| (middle, side));
-            [side(out), side(-out)].into_iter().chain(others).collect()
+            narrow
+                .chain([side(out), side(-out)])
+                .chain(others)
+                .collect()
         }
         Kind::Disk { .. } | Kind::Waiting(_) => around(lines, false),
         Kind::Queue(queue) => {
@@ -307,7 +319,7 @@ pub fn legend(simulation: &Simulation, has_paths: bool) -> Vec<Entry> {
             entry("agent", Look::Agent(FAINT)),
             entry("shortest way", Look::Line(Style::full(BLACK, 0.9, ""))),
             entry(
-                "border between cells with the same next corner",
+                "border of cells with the same next corner",
                 Look::Line(Style::full(BORDER, 0.6, "")),
             ),
             entry("corner", Look::Dot(BORDER)),

@@ -15,7 +15,7 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 use rerun::{AsComponents, Color, EntityPath, Points2D, RecordingStream, RecordingStreamBuilder};
 
 use super::error::Cause;
-use super::{APPLICATION, DebugAgents, RecordingOptions, SIM_TIME, crowd, geometry, text};
+use super::{APPLICATION, DebugAgents, RecordingOptions, SIM_TIME, crowd, geometry, places, text};
 use crate::engine::scene::Region;
 
 /// Length of the loop that plays first, seconds.
@@ -43,12 +43,21 @@ pub enum Opening {
 }
 
 /// The kind of data shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Content {
     /// A simulation.
-    Run,
+    Run(Journeys),
     /// A measured crowd, without energy or computing time.
     Measurement,
+}
+
+/// What a recording has of journeys and ways.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Journeys {
+    /// Do agents visit places?
+    pub begin: bool,
+    /// The entities with the lengths of ways, which are hidden at first.
+    pub fields: Vec<EntityPath>,
 }
 
 /// Sends the default blueprint.
@@ -56,7 +65,7 @@ pub fn send(
     stream: &RecordingStream,
     options: &RecordingOptions,
     opening: Opening,
-    content: Content,
+    content: &Content,
 ) -> Result<(), Cause> {
     let (blueprint, properties) = layout(options, opening, content);
     let (memory, storage) = RecordingStreamBuilder::new(APPLICATION)
@@ -96,39 +105,59 @@ pub fn send(
 fn layout(
     options: &RecordingOptions,
     opening: Opening,
-    content: Content,
+    content: &Content,
 ) -> (Blueprint, Vec<Property>) {
     let geometry = "+ /world/geometry/**";
     let agents = format!("+ /{}", crowd::ENTITY);
+    let none = Journeys::default();
+    let journeys = match content {
+        Content::Run(journeys) => journeys,
+        Content::Measurement => &none,
+    };
+    let hidden = journeys.fields.as_slice();
+    let ways = (!hidden.is_empty()).then_some("+ /world/ways/**");
     let crowd = |name: &str| {
         Spatial2DView::new(name)
             .with_origin("/")
-            .with_contents([geometry, agents.as_str()])
+            .with_contents([geometry, agents.as_str()].into_iter().chain(ways))
     };
     let by_density = crowd("Density 0–8 P/m²").into();
     let by_speed = crowd("Speed 0–1.8 m/s")
-        .with_overrides(crowd::ENTITY, [speed_colors()])
+        .with_overrides(crowd::ENTITY, [colors_of(crowd::SPEED_COLORS)])
         .into();
     let mut properties = Vec::new();
-    add_properties(&mut properties, &by_density, &options.view, BACKGROUND);
-    add_properties(&mut properties, &by_speed, &options.view, SPEED_BACKGROUND);
+    let all = &mut properties;
+    add_properties(all, &by_density, (&options.view, BACKGROUND), hidden);
+    add_properties(all, &by_speed, (&options.view, SPEED_BACKGROUND), hidden);
+    let mut beside: ContainerLike = by_speed;
+    if journeys.begin {
+        let by_stage = crowd("Stage of the journey")
+            .with_overrides(crowd::ENTITY, [colors_of(crowd::STAGE_COLORS)])
+            .into();
+        add_properties(all, &by_stage, (&options.view, BACKGROUND), hidden);
+        beside = Tabs::new([by_stage, beside]).into();
+    }
     let mut below = Vec::new();
     if options.debug != DebugAgents::None {
         let forces = Spatial2DView::new("Forces")
             .with_origin("/")
-            .with_contents([geometry, agents.as_str(), "+ /world/debug/**"])
+            .with_contents(
+                [geometry, agents.as_str(), "+ /world/debug/**"]
+                    .into_iter()
+                    .chain(ways),
+            )
             .with_overrides(crowd::ENTITY, [dim_colors()])
             .into();
         let shown = match opening {
             Opening::Whole(Some(focus)) => focus,
             _ => options.view,
         };
-        add_properties(&mut properties, &forces, &shown, BACKGROUND);
+        add_properties(&mut properties, &forces, (&shown, BACKGROUND), hidden);
         below.push(forces);
     }
     below.extend([plots(content), texts(content)]);
     let root = Vertical::new([
-        Horizontal::new([by_density, by_speed]).into(),
+        Horizontal::new([by_density, beside]).into(),
         Horizontal::new(below).into(),
     ])
     .with_row_shares([3.0, 2.0]);
@@ -162,10 +191,10 @@ fn time_panel(options: &RecordingOptions, opening: Opening) -> TimePanel {
         .with_play_state(PlayState::Playing)
 }
 
-/// The crowd's points with the speed colors.
-fn speed_colors() -> Visualizer {
+/// The crowd's points with the colors of a component.
+fn colors_of(component: &str) -> Visualizer {
     let colors = Points2D::descriptor_colors().component;
-    let mapping = VisualizerComponentMapping::new_source_component(colors, crowd::SPEED_COLORS);
+    let mapping = VisualizerComponentMapping::new_source_component(colors, component);
     Points2D::update_fields()
         .visualizer()
         .with_mappings(vec![mapping.into()])
@@ -179,7 +208,7 @@ fn dim_colors() -> Visualizer {
         .visualizer()
 }
 
-fn plots(content: Content) -> ContainerLike {
+fn plots(content: &Content) -> ContainerLike {
     let plot = |name: &str, origin: &str| TimeSeriesView::new(name).with_origin(origin).into();
     let both = |name: &str, plots: [ContainerLike; 2]| Vertical::new(plots).with_name(name).into();
     let density = plot("Density", "/stats/density");
@@ -188,20 +217,28 @@ fn plots(content: Content) -> ContainerLike {
         [density, plot("Mean speed", "/stats/speed")],
     );
     let agents = plot("Agents", "/stats/crowd");
-    if content == Content::Measurement {
+    let Content::Run(journeys) = content else {
         return Tabs::new([motion, agents]).into();
-    }
+    };
     let energy = plot("Kinetic energy", "/stats/energy");
     let crowd = both("Agents and energy", [agents, energy]);
-    Tabs::new([motion, crowd, plot("Computing time", "/stats/time")]).into()
+    let places = || {
+        let of = |what: &str| format!("/stats/places/{what}");
+        let present = plot("Agents in queues and waiting areas", &of(places::PRESENT));
+        let passed = plot("Agents that have passed exits", &of(places::PASSED));
+        both("Places", [present, passed])
+    };
+    let places = journeys.begin.then(places);
+    let time = plot("Computing time", "/stats/time");
+    Tabs::new(places.into_iter().chain([motion, crowd, time])).into()
 }
 
-fn texts(content: Content) -> ContainerLike {
+fn texts(content: &Content) -> ContainerLike {
     let document = |name: &str| -> ContainerLike {
         let origin = format!("/{}", text::DOCUMENT);
         TextDocumentView::new(name).with_origin(origin).into()
     };
-    if content == Content::Measurement {
+    if *content == Content::Measurement {
         return document("Measurement");
     }
     Tabs::new([
@@ -211,12 +248,13 @@ fn texts(content: Content) -> ContainerLike {
     .into()
 }
 
-/// Sets zoom and background, and makes the obstacle image ignore clicks, which it would otherwise swallow.
+/// Sets zoom and background, makes the obstacle image ignore clicks, which it would otherwise swallow, and hides
+/// entities until their eye icon is clicked.
 fn add_properties(
     properties: &mut Vec<Property>,
     view: &ContainerLike,
-    shown: &Region,
-    [r, g, b]: [u8; 3],
+    (shown, [r, g, b]): (&Region, [u8; 3]),
+    hidden: &[EntityPath],
 ) {
     let ContainerLike::View(view) = view else {
         return;
@@ -237,4 +275,12 @@ fn add_properties(
     ];
     let path = view.blueprint_path();
     properties.extend(own.map(|(name, value)| (path.join(&EntityPath::from(name)), value)));
+    for entity in hidden {
+        let overrides = path.join(&EntityPath::from("ViewContents/overrides"));
+        let own = overrides
+            .join(entity)
+            .join(&EntityPath::from("visualizers"));
+        let behavior = EntityBehavior::new().with_visible(false);
+        properties.push((own, Box::new(behavior)));
+    }
 }

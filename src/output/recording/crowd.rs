@@ -22,6 +22,9 @@ const ARCHETYPE: &str = "agent";
 /// The component with the speed colors.
 pub const SPEED_COLORS: &str = "agent:speed_colors";
 
+/// The component with the colors by stage of the journey.
+pub const STAGE_COLORS: &str = "agent:stage_colors";
+
 /// Logs the crowd.
 #[derive(Default)]
 pub struct Crowd {
@@ -64,6 +67,14 @@ impl Crowd {
             values = values
                 .with_component_from_data("rest_density", halves(&rows, &snapshot.rest_densities))
                 .with_component_from_data("pressure", pressure);
+        }
+        if !snapshot.stages.is_empty() {
+            let stage = |&i: &usize| {
+                let [r, g, b] = snapshot.stages[i];
+                Color::from_rgb(r, g, b)
+            };
+            let colors = rows.iter().map(stage);
+            values = values.with_component::<rerun::components::Color>("stage_colors", colors);
         }
         stream.log(ENTITY, &[&points as &dyn AsComponents, &values])?;
         Ok(())

@@ -18,6 +18,9 @@ const MOST_LABELS: usize = 40;
 
 const WHITE: Rgb = [255; 3];
 
+/// The color of ways.
+const WAY: Rgb = [240, 200, 90];
+
 /// Length of an arrow in meters per m/s² of acceleration: 0.5 m for the goal force of an average person at rest.
 pub const METERS_PER_ACCELERATION: f64 = 0.2;
 
@@ -110,6 +113,9 @@ pub fn begin(
         );
         add(name, &style, Box::new(representative_points))?;
     }
+    if scene.ways.is_some() {
+        add("ways", &line_style(WAY, 1.0), Box::new(ways))?;
+    }
     for term in Term::all().filter(|&term| acts(term, scene)) {
         let style = arrow_style(color(term).1, 1.2).with_draw_order(13.0);
         let data = move |open: &[Open]| arrows(open, |agent| agent.force(term));
@@ -168,6 +174,16 @@ fn kernels(open: &[Open]) -> Data {
 
 fn hidden_regions(open: &[Open]) -> Data {
     strips(open.iter().flat_map(|agent| agent.hidden.iter().cloned()))
+}
+
+/// The rest of each agent's way, over its corners to its end.
+fn ways(open: &[Open]) -> Data {
+    let ways = open.iter().filter_map(|agent| {
+        let corners = agent.breakdown.way.as_ref()?.corners.iter();
+        let corners = corners.map(|&corner| xy(corner.into()));
+        Some(std::iter::once(xy(agent.position)).chain(corners).collect())
+    });
+    strips(ways)
 }
 
 /// The positions of agents, each with its nearest point on a wall and its representative point there.

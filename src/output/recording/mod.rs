@@ -7,9 +7,11 @@
 //! | entity | what |
 //! |---|---|
 //! | `world/geometry/{walls,obstacles,goals}` | static |
+//! | `world/geometry/{exits,waypoints,waiting_areas,queues,queue_spots,zones,names}` | static |
+//! | `world/ways/…` | the lengths of the ways to each place and goal as an image, hidden at first |
 //! | `world/agents` | the crowd: positions, radii, density and speed colors, `agent:…` values |
-//! | `world/debug/…` | the debug agents: kernels, hidden regions, wall points, forces |
-//! | `stats/…` | time series |
+//! | `world/debug/…` | the debug agents: kernels, hidden regions, wall points, forces, ways |
+//! | `stats/…` | time series; those of places are in `stats/places` |
 //! | `info/scenario` | the scenario and a legend, as text |
 //! | `log` | events: entries and pushes |
 
@@ -22,6 +24,7 @@ mod geometry;
 mod layers;
 mod measured;
 mod output;
+mod places;
 mod relay;
 mod session;
 mod snapshot;
@@ -41,7 +44,7 @@ use rerun::RecordingStream;
 
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
-use blueprint::Content;
+use blueprint::{Content, Journeys};
 use output::{APPLICATION, Output};
 use session::Session;
 use snapshot::Snapshot;
@@ -97,11 +100,21 @@ impl Recorder {
         let log_own = |stream: &RecordingStream| {
             text::log_run(stream, scene, options)?;
             geometry::log(stream, scene, agents)?;
+<<<<<<< HEAD
             stats::log_entrances(stream, scene)?;
+=======
+            places::log(stream, scene)?;
+            places::log_ways(stream, scene)?;
+            places::log_series(stream, scene)?;
+>>>>>>> 1b0d371 (Record places, ways and stages of journeys)
             layers::begin(stream, scene, &options.debug)
         };
+        let content = Content::Run(Journeys {
+            begin: !scene.journeys.places.is_empty(),
+            fields: places::fields(scene),
+        });
         Ok(Self {
-            session: Session::begin(output, options.clone(), Content::Run, log_own)?,
+            session: Session::begin(output, options.clone(), content, log_own)?,
             opened: false,
             focus: None,
             events: None,

@@ -32,7 +32,7 @@ impl Session {
                 true => Opening::Live,
                 false => Opening::Empty,
             };
-            blueprint::send(stream, &options, opening, content)?;
+            blueprint::send(stream, &options, opening, &content)?;
             let layers = log_own(stream)?;
             crowd::log_style(stream)?;
             stats::log_style(stream)?;
@@ -59,7 +59,7 @@ impl Session {
             // The viewer cannot go to a time that it has not read yet.
             self.output.stream.flush_blocking()?;
             let (stream, opening) = (&self.output.stream, Opening::Whole(focus));
-            blueprint::send(stream, &self.options, opening, self.content)
+            blueprint::send(stream, &self.options, opening, &self.content)
         };
         let ended = end();
         self.output.checked(ended)?;

@@ -1,9 +1,14 @@
 //! A copy of one frame, so that another thread can write it.
 
+use rerun::EntityPath;
+
 use super::debug::{DebugAgents, Open};
 use super::geometry::xy;
+use super::places;
 use crate::engine::math::Vector;
 use crate::engine::simulation::{Event, Simulation};
+use crate::output::colors::Rgb;
+use crate::output::scenery::stage_color;
 
 /// A copy of one frame in single precision, with agents in the simulation's order.
 #[derive(Default)]
@@ -24,6 +29,10 @@ pub struct Snapshot {
     /// Also empty for measured data, like the next.
     pub rest_densities: Vec<f32>,
     pub pressures: Vec<f32>,
+    /// Colors by the stage of the journey; empty in scenes without journeys.
+    pub stages: Vec<Rgb>,
+    /// The values of the time series of places.
+    pub places: Vec<(EntityPath, f64)>,
     /// Counted arrivals so far; `None` for measured data.
     pub evacuated: Option<usize>,
     /// How many agents wait at each entrance.
@@ -43,6 +52,9 @@ impl Snapshot {
         let (agents, fields) = (frame.agents, frame.fields);
         let vectors = |values: &[Vector]| values.iter().map(|&v| xy(v)).collect();
         let numbers = |values: &[f64]| values.iter().map(|&x| x as f32).collect();
+        let trips = &agents.trip;
+        let stages = (0..agents.len()).filter(|_| !trips.is_empty());
+        let stages = stages.map(|i| stage_color(trips.get(i).and_then(Option::as_ref)));
         Self {
             frame: frame.clock.frame().cast_signed(),
             time: frame.clock.time(),
@@ -54,6 +66,8 @@ impl Snapshot {
             densities: numbers(&fields.density),
             rest_densities: numbers(&fields.rest_density),
             pressures: numbers(&fields.pressure),
+            stages: stages.collect(),
+            places: places::values(simulation),
             open: debug.open(simulation),
             waiting: simulation.backlogs().map(|one| one.waiting).collect(),
             ..Self::default()

@@ -11,6 +11,7 @@ use super::{DebugAgents, RecordingOptions};
 use crate::engine::profile::Term;
 use crate::engine::scene::Scene;
 use crate::output::colors::{DENSITY_RANGE, SPEED_RANGE};
+use crate::output::scenery;
 
 pub const DOCUMENT: &str = "info/scenario";
 
@@ -68,6 +69,15 @@ pub fn log_run(
          * Look first at t = {} s, where the marked loop begins.\n",
         options.opens_at,
     );
+    if !scene.journeys.places.is_empty() {
+        let names = scenery::STAGES.map(|(name, _)| name).join(", ");
+        agents +=
+            &format!("* Colors by stage of the journey, from stage 1: {names}; gray: ended.\n");
+    }
+    if scene.ways.is_some() {
+        agents += "* Lengths of ways (`world/ways`), hidden at first: click the eye beside a place in the list of \
+                   the view's entities.\n";
+    }
     if options.debug != DebugAgents::None {
         agents += &format!(
             "* Agents laid open (`world/debug`): circle = kernel of radius h; tinted outline = hidden \
