@@ -2,10 +2,6 @@
 
 use sandbox::engine::simulation::Simulation;
 use sandbox::engine::ways::Destination;
-<<<<<<< HEAD
-=======
-use sandbox::scenario::Scenario;
->>>>>>> 1b0d371 (Record places, ways and stages of journeys)
 use serde_json::{Value, json};
 
 use crate::common::simulated::{after, go_on, scenario};

@@ -49,6 +49,9 @@ pub struct Breakdown {
     /// Its way around walls; `None` if it walks straight toward its goal.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub way: Option<WayLeft>,
+    /// When it begins to walk, seconds; `None` if it already walks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub walks_from_secs: Option<f64>,
     /// The place that it visits; `None` without a journey.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub visit: Option<Visit>,
@@ -167,6 +170,8 @@ impl Breakdown {
             acceleration: fields.acceleration[i].into(),
             profiles: profiles.collect(),
             way: way_left(simulation, i),
+            walks_from_secs: (agents.walks_from.get(i).copied())
+                .filter(|&from| frame.clock.time() < from),
             visit: Visit::of(simulation, i),
             own_forces: own_forces.collect(),
             neighbors,

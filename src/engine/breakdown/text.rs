@@ -70,6 +70,9 @@ impl Breakdown {
     }
 
     fn write_visit(&self, f: &mut Formatter) -> fmt::Result {
+        if let Some(from) = self.walks_from_secs {
+            writeln!(f, "  does not walk before {from:.2} s")?;
+        }
         let Some(visit) = &self.visit else {
             return Ok(());
         };

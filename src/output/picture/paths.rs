@@ -101,7 +101,8 @@ impl Paths {
         let chosen = chosen.iter().step_by(every);
         let mut from: Vec<Vector> = chosen.map(|&i| agents.position[i]).collect();
         if from.is_empty() {
-            from.extend(entries);
+            let lines = scene.entrances.iter().flat_map(|entrance| entrance.line);
+            from.extend(entries.chain(lines));
         }
         far_apart(&from)
     }

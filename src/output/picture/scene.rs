@@ -3,7 +3,7 @@
 use super::labels::{AROUND, Labels};
 use super::paths::BORDER;
 use super::{Frame, dark, light, xy};
-use crate::engine::journeys::{Kind, Place, Status, Trip};
+use crate::engine::journeys::{Kind, Place, Status};
 use crate::engine::math::{Vector, bounds, direction, perpendicular};
 use crate::engine::simulation::Simulation;
 use crate::output::colors::Rgb;
@@ -121,6 +121,15 @@ pub fn sources(simulation: &Simulation, labels: &mut Labels) -> Vec<Mark> {
             SOURCE,
             &around(&corners, false),
         );
+    }
+    for entrance in &simulation.scene().entrances {
+        let [a, b] = entrance.line;
+        marks.push(Mark::Line(
+            [a, b].map(xy).to_vec(),
+            Style::broken(SOURCE, 2.6, ""),
+        ));
+        let name = format!("entrance {}", entrance.name);
+        labels.add(&name, SOURCE, &AROUND.map(|side| ((a + b) * 0.5, side)));
     }
     marks
 }
@@ -248,8 +257,17 @@ pub fn goals(simulation: &Simulation, frame: &Frame, labels: &mut Labels) -> Vec
     marks
 }
 
-/// What an agent does, as far as pictures show it.
-fn doing(trip: Option<&Trip>) -> (&'static str, Rgb) {
+/// What agent `i` does, as far as pictures show it.
+fn doing(simulation: &Simulation, i: usize) -> (&'static str, Rgb) {
+    let (agents, clock) = (simulation.frame().agents, simulation.frame().clock);
+    if agents
+        .walks_from
+        .get(i)
+        .is_some_and(|&from| clock.time() < from)
+    {
+        return ("does not walk yet", [120, 150, 190]);
+    }
+    let trip = agents.trip.get(i).and_then(Option::as_ref);
     match trip.map(|trip| trip.status) {
         Some(Status::Waiting { .. }) => ("waiting", [200, 130, 0]),
         Some(Status::Queued { .. }) => ("in a queue", [170, 80, 140]),
@@ -266,7 +284,7 @@ pub fn agents(simulation: &Simulation, faint: bool) -> Option<Mark> {
         radius: agents.radius[i],
         color: match faint {
             true => FAINT,
-            false => doing(agents.trip.get(i).and_then(Option::as_ref)).1,
+            false => doing(simulation, i).1,
         },
     };
     let discs: Vec<Disc> = (0..agents.len()).map(disc).collect();
@@ -328,17 +346,16 @@ pub fn legend(simulation: &Simulation, has_paths: bool) -> Vec<Entry> {
     let agents = simulation.frame().agents;
     let mut shown = Vec::new();
     for i in 0..agents.len() {
-        let seen = doing(agents.trip.get(i).and_then(Option::as_ref));
+        let seen = doing(simulation, i);
         if !shown.contains(&seen) {
             shown.push(seen);
         }
     }
     shown.sort_by_key(|(text, _)| std::cmp::Reverse(*text));
-    if simulation.scene().journeys.places.is_empty() {
-        return shown
-            .iter()
-            .map(|(_, color)| entry("agent", Look::Agent(*color)))
-            .collect();
+    if let [(_, color)] = shown[..]
+        && simulation.scene().journeys.places.is_empty()
+    {
+        return vec![entry("agent", Look::Agent(color))];
     }
     shown
         .into_iter()

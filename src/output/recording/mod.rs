@@ -7,7 +7,7 @@
 //! | entity | what |
 //! |---|---|
 //! | `world/geometry/{walls,obstacles,goals}` | static |
-//! | `world/geometry/{exits,waypoints,waiting_areas,queues,queue_spots,zones,names}` | static |
+//! | `world/geometry/{exits,waypoints,waiting_areas,queues,queue_spots,zones,entrances,names}` | static |
 //! | `world/ways/…` | the lengths of the ways to each place and goal as an image, hidden at first |
 //! | `world/agents` | the crowd: positions, radii, density and speed colors, `agent:…` values |
 //! | `world/debug/…` | the debug agents: kernels, hidden regions, wall points, forces, ways |
@@ -100,13 +100,10 @@ impl Recorder {
         let log_own = |stream: &RecordingStream| {
             text::log_run(stream, scene, options)?;
             geometry::log(stream, scene, agents)?;
-<<<<<<< HEAD
             stats::log_entrances(stream, scene)?;
-=======
             places::log(stream, scene)?;
             places::log_ways(stream, scene)?;
             places::log_series(stream, scene)?;
->>>>>>> 1b0d371 (Record places, ways and stages of journeys)
             layers::begin(stream, scene, &options.debug)
         };
         let content = Content::Run(Journeys {

@@ -21,6 +21,8 @@ use crate::output::scenery;
 /// The time series of places: agents in queues and waiting areas, and agents that have passed exits.
 pub const PRESENT: &str = "present";
 pub const PASSED: &str = "passed";
+/// The color of entrances.
+const ENTRANCE: Rgb = [0, 170, 200];
 /// The distance between the lines of a hatched zone, meters.
 const HATCHING: f64 = 0.8;
 /// The longest side of a picture of ways, pixels, and the smallest pixel, meters.
@@ -66,10 +68,29 @@ pub fn log(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
             stream.log_static(format!("world/geometry/{name}"), &strips)?;
         }
     }
-    let queues = places.iter().filter_map(|place| match &place.kind {
-        Kind::Queue(queue) => Some((queue, scenery::color(&place.kind))),
-        _ => None,
-    });
+    let entrances = scene.entrances.iter();
+    let lines: Vec<_> = entrances
+        .map(|entrance| entrance.line.map(xy).to_vec())
+        .collect();
+    if !lines.is_empty() {
+        let strips = strips(lines, ENTRANCE, 2.0);
+        stream.log_static("world/geometry/entrances", &strips)?;
+    }
+    log_spots(stream, scene)?;
+    log_zones(stream, scene)?;
+    log_names(stream, scene)
+}
+
+/// Logs the spots of queues.
+fn log_spots(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
+    let queues = scene
+        .journeys
+        .places
+        .iter()
+        .filter_map(|place| match &place.kind {
+            Kind::Queue(queue) => Some((queue, scenery::color(&place.kind))),
+            _ => None,
+        });
     let spots = queues.flat_map(|(queue, color)| {
         let spots = scenery::spots(queue).into_iter();
         spots.map(move |spot| (xy(spot), colored(color)))
@@ -82,8 +103,7 @@ pub fn log(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
             .with_draw_order(0.5);
         stream.log_static("world/geometry/queue_spots", &points)?;
     }
-    log_zones(stream, scene)?;
-    log_names(stream, scene)
+    Ok(())
 }
 
 fn log_zones(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
@@ -124,7 +144,11 @@ fn log_names(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
             scenery::ZONE,
         )
     });
-    let all: Vec<_> = places.chain(zones).collect();
+    let entrances = scene.entrances.iter().map(|entrance| {
+        let at = below(entrance.line.to_vec());
+        (at, format!("entrance {}", entrance.name), ENTRANCE)
+    });
+    let all: Vec<_> = places.chain(zones).chain(entrances).collect();
     if all.is_empty() {
         return Ok(());
     }

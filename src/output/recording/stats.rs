@@ -78,13 +78,11 @@ pub fn log(stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
             stream.log(format!("stats/{entity}"), &Scalars::single(value))?;
         }
     }
-<<<<<<< HEAD
     for (k, &count) in snapshot.waiting.iter().enumerate() {
         stream.log(waiting(k), &Scalars::single(f64::from(count)))?;
-=======
+    }
     for (entity, value) in &snapshot.places {
         stream.log(entity.clone(), &Scalars::single(*value))?;
->>>>>>> 1b0d371 (Record places, ways and stages of journeys)
     }
     if snapshot.opens_here {
         log_line(stream, "Look here first.".to_owned(), TextLogLevel::INFO)?;
