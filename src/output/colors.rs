@@ -19,7 +19,7 @@ const STEPS: usize = 64;
 /// A color map for a range of values.
 #[derive(Debug, Clone)]
 pub struct ColorMap {
-    colors: [Rgb; STEPS],
+    colors: Box<[Rgb; STEPS]>,
     range: [f32; 2],
     /// The number of bands of equal color.
     bands: Option<u32>,
@@ -32,7 +32,7 @@ impl ColorMap {
             [r, g, b]
         };
         Self {
-            colors: std::array::from_fn(color),
+            colors: Box::new(std::array::from_fn(color)),
             range,
             bands: None,
         }
@@ -54,7 +54,7 @@ impl ColorMap {
     /// One color for all values.
     pub fn plain(color: Rgb) -> Self {
         Self {
-            colors: [color; STEPS],
+            colors: Box::new([color; STEPS]),
             range: [0.0, 1.0],
             bands: None,
         }

@@ -136,7 +136,8 @@ impl Picture<'_> {
         below.extend(scene::agents(self.simulation, paths.is_some()));
         let mut marks = vec![Mark::Group(below)];
         marks.extend(scene::walls(self.simulation));
-        marks.extend(scene::zones(self.simulation, frame, &mut labels));
+        let inside = paths.is_none();
+        marks.extend(scene::zones(self.simulation, frame, inside, &mut labels));
         marks.extend(scene::sources(self.simulation, &mut labels));
         marks.append(&mut above);
         marks.extend(scene::places(self.simulation, frame, &mut labels));

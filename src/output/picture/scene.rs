@@ -84,8 +84,13 @@ pub fn walls(simulation: &Simulation) -> Vec<Mark> {
     outlines.collect()
 }
 
-/// Zones, hatched, with their names.
-pub fn zones(simulation: &Simulation, frame: &Frame, labels: &mut Labels) -> Vec<Mark> {
+/// Zones, hatched, with their names in the middle if `inside`, else around them.
+pub fn zones(
+    simulation: &Simulation,
+    frame: &Frame,
+    inside: bool,
+    labels: &mut Labels,
+) -> Vec<Mark> {
     let mut marks = Vec::new();
     for zone in &simulation.scene().journeys.zones {
         let style = |width| Style::full(light(ZONE, 0.7), width, "");
@@ -95,7 +100,7 @@ pub fn zones(simulation: &Simulation, frame: &Frame, labels: &mut Labels) -> Vec
         let lines = hatching.into_iter().map(|line| line.map(xy).to_vec());
         marks.extend(lines.map(|line| Mark::Line(line, style(0.4))));
         let name = format!("zone {}", scenery::zone_name(zone));
-        labels.add(&name, ZONE, &around(zone.area.points(), true));
+        labels.add(&name, ZONE, &around(zone.area.points(), inside));
     }
     marks
 }

@@ -98,7 +98,7 @@ fn color_cells(cells: &Cells, panel: &Panel, image: &mut RgbImage) {
         let part = (at - low) / (high - low);
         (0.0..1.0)
             .contains(&part)
-            .then(|| (part * count as f64) as usize)
+            .then_some((part * count as f64) as usize)
     };
     let column = |x: u32| {
         let at = (f64::from(x) + 0.5) / f64::from(width);

@@ -30,11 +30,11 @@ const SIDE: f64 = 480.0;
 const PIXEL: f64 = 0.1;
 /// The most destinations with a picture of ways.
 const MOST_FIELDS: usize = 16;
-/// The class of the borders between cells with the same next corner.
-const BORDER: u8 = 255;
+
+type IsKind = fn(&Kind) -> bool;
 
 /// The kinds of places, and the entities that hold them.
-const KINDS: [(&str, fn(&Kind) -> bool); 4] = [
+const KINDS: [(&str, IsKind); 4] = [
     ("exits", |kind| matches!(kind, Kind::Exit(_))),
     ("waypoints", |kind| {
         matches!(kind, Kind::Line(_) | Kind::Disk { .. })
@@ -204,9 +204,10 @@ pub fn log_ways(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
 
 fn log_field(stream: &RecordingStream, entity: EntityPath, field: &WayField) -> Result<(), Cause> {
     let (grid, bands) = (field.grid, field.bands());
+    let border = bands.count as u8 + 1;
     let class = |(k, length): (usize, &Option<f64>)| match length {
         None => 0,
-        Some(_) if field.is_border(k) => BORDER,
+        Some(_) if field.is_border(k) => border,
         Some(length) => 1 + (length / bands.width).min(f64::from(bands.count) - 1.0) as u8,
     };
     let pixels: Vec<u8> = field.lengths.iter().enumerate().map(class).collect();
@@ -220,7 +221,7 @@ fn log_field(stream: &RecordingStream, entity: EntityPath, field: &WayField) -> 
     let others = [
         (0, "no way".to_owned(), Rgba32::TRANSPARENT),
         (
-            u16::from(BORDER),
+            u16::from(border),
             "another next corner".to_owned(),
             Rgba32::from_rgb(120, 60, 130),
         ),
