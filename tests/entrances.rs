@@ -253,3 +253,18 @@ fn the_number_of_agents_is_bounded_before_the_run() {
         );
     }
 }
+
+#[test]
+fn agents_beyond_the_ends_of_the_line_take_no_room_from_it() {
+    let entrance = Entrance {
+        name: "door".to_owned(),
+        line: [[0.0, 0.0].into(), [2.0, 0.0].into()],
+        group: 0,
+        goal: [10.0, 0.0].into(),
+        arrivals: Arrivals::At(vec![0.0]),
+    };
+    let others = [-9.0, -5.0, 4.0, 8.0].map(|x| ([x, 0.0].into(), 0.25));
+    let walls = Walls::new(Vec::new());
+    let free = entrance.free(0.25, &walls, others.into_iter());
+    assert_eq!(free, [[0.0, 2.0]]);
+}

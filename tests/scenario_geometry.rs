@@ -152,9 +152,13 @@ fn a_plan_on_the_command_line_replaces_the_walls_of_the_scenario() {
         None,
         "an open plane"
     );
-    // Like a scenario, settings may name a file.
-    let set = ["walkable_area=plans/kiosk.wkt", "obstacles=[]"]
-        .map(|set| set.parse::<Setting>().unwrap());
+    // Like a scenario, settings may name a file. The goals lie outside of this one.
+    let set = [
+        "walkable_area=plans/kiosk.wkt",
+        "obstacles=[]",
+        "navigation=straight",
+    ]
+    .map(|set| set.parse::<Setting>().unwrap());
     let walls = Scenario::load(&path, &set).unwrap().scene.walls;
     assert_eq!(walls.obstacle_at([5.0, 5.0].into()), Some(0));
 }

@@ -124,8 +124,10 @@ impl Entrance {
         let mut from = 0.0_f64;
         let end = self.length();
         for [start, stop] in blocked.into_iter().chain([[end, end]]) {
+            // Discs can lie beyond the ends of the line.
+            let start = start.min(end);
             if start > from {
-                free.push([from, start.min(end)]);
+                free.push([from, start]);
             }
             from = from.max(stop);
         }

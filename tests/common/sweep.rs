@@ -14,7 +14,7 @@ pub const ROOM: &str = r#"{"goal": [10, 1], "profile": "sph", "duration_secs": 0
 
 /// One person in a crack between two obstacles that fill the rest of the floor. If jitter puts the person beside
 /// the crack, there is no free point nearby and the run fails at its start.
-pub const CRACK: &str = r#"{"goal": [2, 40], "duration_secs": 0.1,
+pub const CRACK: &str = r#"{"goal": [2, 40], "duration_secs": 0.1, "navigation": "straight",
     "walkable_area": [[[[0, 0], [4, 0], [4, 4], [0, 4]]]],
     "obstacles": [[[-1, -1], [2, -1], [2, 5], [-1, 5]],
                   [[2.0000005, -1], [5, -1], [5, 5], [2.0000005, 5]]],

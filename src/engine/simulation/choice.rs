@@ -18,8 +18,11 @@ const CLEARLY_QUICKER: f64 = 0.8;
 const OBSERVED: f64 = 10.0;
 /// The least flow that agents expect through an exit, P/(m s): about what Weidmann (1993) gives.
 const FLOW_PER_METER: f64 = 1.3;
-/// Within this distance, meters, this many agents make a crowd before an exit; then its flow is what it lets through.
-const CROWD: (f64, u32) = (2.0, 4);
+/// Where agents stand more densely than this within [`BEFORE`] meters of a line, P/m², there is a crowd before it: then
+/// its flow is what it lets through. A free stream with the least flow has 0.9 P/m².
+const CROWD: f64 = 1.5;
+/// Before a line is what lies within this distance, meters.
+const BEFORE: f64 = 2.0;
 /// So many passes after the first one make a flow.
 const FEWEST_OBSERVED: usize = 5;
 /// The least flow that agents expect from observation, P/s.
@@ -292,17 +295,21 @@ impl Chooser<'_> {
             Kind::Queue(queue) => return f64::from(queue.servers) / queue.mean_service,
             Kind::Disk { .. } | Kind::Waiting(_) => return f64::INFINITY,
         };
-        let (near, crowd) = CROWD;
-        if state.nearer_than(near) >= crowd
+        let width = place.line().map_or(0.0, |[a, b]| (b - a).norm());
+        let crowd = CROWD * BEFORE * (width + BEFORE);
+        if f64::from(state.nearer_than(BEFORE)) >= crowd
             && let Some(flow) = self.observed(state)
         {
             return flow.max(LEAST_FLOW);
         }
         let places = self.scene.journeys.places.iter();
         let states = places.zip(&self.crowd.progress.places);
-        let flows = states.filter_map(|(place, state)| Some(self.observed(state)? / width(place)?));
+        let flows = states.filter_map(|(place, state)| {
+            let width = place.line().map(|[a, b]| (b - a).norm())?;
+            Some(self.observed(state)? / width)
+        });
         let per_meter = flows.fold(FLOW_PER_METER, f64::max);
-        width(place).map_or(most, |width| (per_meter * width).min(most))
+        (per_meter * width).min(most)
     }
 
     /// The flow through a place since the first of the agents that passed it during the last seconds, P/s; `None` if
@@ -313,11 +320,6 @@ impl Chooser<'_> {
         let since = clock.time() - clock.time_at(state.recent[0]);
         (others >= FEWEST_OBSERVED && since > 0.0).then(|| others as f64 / since)
     }
-}
-
-/// The length of the line of a place, meters.
-fn width(place: &Place) -> Option<f64> {
-    place.line().map(|[a, b]| (b - a).norm())
 }
 
 /// The place with the least value; `before` unless another one is `better` than it. Also returns whether `before` is

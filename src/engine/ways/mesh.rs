@@ -32,25 +32,27 @@ impl Mesh {
     /// Triangulates areas that touch at points at most.
     ///
     /// # Errors
-    /// Edges that cross, or coordinates that the triangulation cannot represent.
+    /// Edges that still cross where they were split, or coordinates that the triangulation cannot represent.
     pub fn new(areas: &[Area]) -> Result<Self, WayError> {
-        let (points, edges) = edges_of(areas);
-        let vertices = points.iter().map(|p| Point2::new(p.x, p.y)).collect();
-        let walls: Vec<[usize; 2]> = edges.iter().map(|e| e.map(|k| k as usize)).collect();
-        let mut crossing = None;
-        let triangulation = ConstrainedDelaunayTriangulation::<Point2<f64>>::try_bulk_load_cdt(
-            vertices,
-            walls,
-            |[k, _]| crossing = crossing.or(Some(k)),
-        )
-        .map_err(|error| WayError::Coordinates(error.to_string()))?;
-        if let Some(k) = crossing {
-            return Err(WayError::Crossing(points[k]));
+        let (mut points, mut walls) = edges_of(areas);
+        for _ in 0..MOST_SPLITS {
+            let mut crossing = Vec::new();
+            let vertices = points.iter().map(|p| Point2::new(p.x, p.y)).collect();
+            let triangulation = ConstrainedDelaunayTriangulation::<Point2<f64>>::try_bulk_load_cdt(
+                vertices,
+                walls.clone(),
+                |wall| crossing.push(wall),
+            )
+            .map_err(|error| WayError::Coordinates(error.to_string()))?;
+            if crossing.is_empty() {
+                let triangles = floor(&triangulation);
+                let mut mesh = Self { points, triangles };
+                mesh.measure();
+                return Ok(mesh);
+            }
+            split(&mut points, &mut walls, &crossing);
         }
-        let triangles = floor(&triangulation);
-        let mut mesh = Self { points, triangles };
-        mesh.measure();
-        Ok(mesh)
+        Err(WayError::Crossing(points[points.len() - 1]))
     }
 
     /// Point `k`, meters.
@@ -201,7 +203,7 @@ pub fn nearest_on(p: Vector, a: Vector, b: Vector) -> Vector {
 }
 
 /// The distinct corners of the areas, and their edges.
-fn edges_of(areas: &[Area]) -> (Vec<Vector>, Vec<[u32; 2]>) {
+fn edges_of(areas: &[Area]) -> (Vec<Vector>, Vec<[usize; 2]>) {
     let (mut points, mut edges) = (Vec::new(), Vec::new());
     let mut numbers = HashMap::new();
     for ring in areas.iter().flat_map(Area::rings) {
@@ -210,14 +212,53 @@ fn edges_of(areas: &[Area]) -> (Vec<Vector>, Vec<[u32; 2]>) {
             let key = [p.x, p.y].map(|x| (x + 0.0).to_bits());
             *numbers.entry(key).or_insert_with(|| {
                 points.push(*p);
-                points.len() as u32 - 1
+                points.len() - 1
             })
         };
-        let around: Vec<u32> = ring.points().iter().map(&mut number).collect();
+        let around: Vec<usize> = ring.points().iter().map(&mut number).collect();
         let ends = around.iter().cycle().skip(1);
         edges.extend(around.iter().zip(ends).map(|(&a, &b)| [a, b]));
     }
     (points, edges)
+}
+
+/// Walls are split where they cross at most this often: rounding can make the parts cross again.
+const MOST_SPLITS: usize = 4;
+
+/// Splits walls where those in `crossing` cross others. Corners of floor plans are moved by up to a micrometer to given
+/// corners, so that walls that touch can cross.
+fn split(points: &mut Vec<Vector>, walls: &mut Vec<[usize; 2]>, crossing: &[[usize; 2]]) {
+    let mut cuts: Vec<Vec<usize>> = vec![Vec::new(); walls.len()];
+    for (k, one) in walls
+        .iter()
+        .enumerate()
+        .filter(|(_, wall)| crossing.contains(wall))
+    {
+        let [a, b] = one.map(|end| points[end]);
+        for (other, ends) in walls.iter().enumerate() {
+            let [c, d] = ends.map(|end| points[end]);
+            let (from, to) = (side(a, b, c), side(a, b, d));
+            let crosses = from * to < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
+            if crosses {
+                points.push(c + (d - c) * (from / (from - to)));
+                cuts[k].push(points.len() - 1);
+                cuts[other].push(points.len() - 1);
+            }
+        }
+    }
+    let parts = walls.iter().zip(cuts).flat_map(|(&[from, to], mut cuts)| {
+        let start = points[from];
+        let distance = |&point: &usize| (points[point] - start).norm_squared();
+        cuts.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        cuts.dedup_by(|a, b| points[*a] == points[*b]);
+        cuts.insert(0, from);
+        cuts.push(to);
+        let parts: Vec<[usize; 2]> = cuts.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+        parts
+    });
+    *walls = parts
+        .filter(|&[from, to]| points[from] != points[to])
+        .collect();
 }
 
 /// The triangles inside: those behind an odd number of walls from outside.
