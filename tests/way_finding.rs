@@ -115,3 +115,34 @@ fn goals_that_cannot_be_reached_are_refused_with_their_place() {
     assert!(scenario(&document, &["min_passage_width=0.2"]).is_ok());
     assert!(scenario(&document, &["navigation=straight"]).is_ok());
 }
+
+#[test]
+fn ways_lead_over_rotated_plans_whose_holes_touch() {
+    use rand::{Rng, SeedableRng};
+    let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(7);
+    for _ in 0..300 {
+        let turn: f64 = random.random_range(0.0..1.5);
+        let (sine, cosine) = turn.sin_cos();
+        let place = |x: i32, y: i32| {
+            let [x, y] = [x, y].map(|c| 1.5 * f64::from(c));
+            [cosine * x - sine * y, sine * x + cosine * y]
+        };
+        let ring = |corners: [[i32; 2]; 4]| corners.map(|[x, y]| place(x, y));
+        let mut rings = vec![ring([[0, 0], [6, 0], [6, 6], [0, 6]])];
+        for (x, y) in (0..6).flat_map(|x| (1..5).map(move |y| (x, y))) {
+            if random.random_range(0..3) == 0 {
+                rings.push(ring([[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]]));
+            }
+        }
+        let middle = |x: f64, y: f64| [cosine * x - sine * y, sine * x + cosine * y];
+        let document = json!({
+            "walkable_area": [rings],
+            "agents": [{"position": middle(0.7, 0.7), "goal": middle(8.3, 8.3)}],
+        });
+        match scenario(&document, &[]) {
+            Ok(_) => {}
+            // A row of holes from wall to wall.
+            Err(error) => assert!(error.contains("walls close it off"), "{error}"),
+        }
+    }
+}

@@ -70,6 +70,9 @@ pub(super) fn ways(keys: &File, scene: &Scene) -> Result<Option<Arc<Ways>>, Prob
     } else {
         &[]
     };
+    if goals.is_empty() && places.is_empty() {
+        return Ok(None);
+    }
     let prepared = Prepared {
         scene,
         starts: &starts,

@@ -68,11 +68,12 @@ fn holds(root: &Value, schema: &Value, keyword: &str, rule: &Value, value: &Valu
             known.all(|(schema, value)| valid(root, schema, value))
         }),
         "additionalProperties" => {
-            assert_eq!(*rule, Value::Bool(false));
-            let known = |key| schema["properties"].get(key).is_some();
-            value
-                .as_object()
-                .is_none_or(|object| object.keys().all(known))
+            let known = |key: &String| schema["properties"].get(key).is_some();
+            let fits = |value: &Value| *rule != Value::Bool(false) && valid(root, rule, value);
+            value.as_object().is_none_or(|object| {
+                let mut entries = object.iter();
+                entries.all(|(key, value)| known(key) || fits(value))
+            })
         }
         unknown => panic!("{unknown} is not known here"),
     }

@@ -149,7 +149,8 @@ impl Crowd {
     /// Agent `i` passes a place of its stage, perhaps not the one that it had chosen.
     fn take_place(&mut self, i: usize, place: usize) {
         if let Some(trip) = &mut self.agents.trip[i] {
-            self.progress.places[usize::from(trip.place)].bound -= 1;
+            let bound = &mut self.progress.places[usize::from(trip.place)].bound;
+            *bound = bound.saturating_sub(1);
             self.progress.places[place].bound += 1;
             trip.place = place as u16;
         }
@@ -186,7 +187,7 @@ impl Crowd {
                 continue;
             };
             let state = &mut self.progress.places[usize::from(trip.place)];
-            state.bound -= 1;
+            state.bound = state.bound.saturating_sub(1);
             state.passed += 1;
             state.recent.push(self.clock.frame());
             let group = usize::from(self.agents.group[i]);

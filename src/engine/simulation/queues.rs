@@ -18,7 +18,7 @@ impl Crowd {
         };
         let place = trip.place;
         let state = &mut self.progress.places[usize::from(place)];
-        let waiting = (state.tickets - state.passed) as usize;
+        let waiting = state.tickets.saturating_sub(state.passed) as usize;
         let end = queue.spot(waiting);
         if (end - position).norm() <= JOINING.max(queue.spacing) {
             trip.status = Status::Queued {

@@ -106,6 +106,10 @@ impl State {
             && pushes.all(|push| push < scene.pushes.len())
             && self.schedule.fits(scene)
             && self.progress.fits(scene)
+            && agents.route.iter().flatten().all(|route| {
+                let ways = scene.ways.as_ref();
+                ways.is_none_or(|ways| ways.knows(route))
+            })
             && agents
                 .trip
                 .iter()

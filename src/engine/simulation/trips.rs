@@ -225,7 +225,7 @@ impl Crowd {
                 state.bound = if comes {
                     state.bound + 1
                 } else {
-                    state.bound - 1
+                    state.bound.saturating_sub(1)
                 };
                 if let Some(lengths) = &lengths {
                     state.count(lengths[k], comes);
@@ -249,7 +249,7 @@ impl Crowd {
             return;
         };
         let state = &mut self.progress.places[usize::from(trip.place)];
-        state.bound -= 1;
+        state.bound = state.bound.saturating_sub(1);
         state.passed += 1;
         state.recent.push(self.clock.frame());
         let stages = &scene.journeys.journeys[usize::from(trip.journey)].stages;
@@ -349,7 +349,9 @@ impl Crowd {
             return;
         };
         let state = &mut self.progress.places[usize::from(trip.place)];
-        state.taken[spot as usize] = false;
+        if let Some(taken) = state.taken.get_mut(spot as usize) {
+            *taken = false;
+        }
         self.count_wait(i, since);
         self.go_on(scene, i);
     }

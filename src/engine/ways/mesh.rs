@@ -1,6 +1,6 @@
 //! The floor as triangles. The only file that names spade.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use spade::handles::FixedFaceHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
@@ -8,7 +8,7 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use super::WayError;
 use super::expansion::Border;
 use crate::engine::geometry::Area;
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, bounds};
 
 /// A triangle of the floor.
 #[derive(Debug, Clone, PartialEq)]
@@ -225,9 +225,15 @@ fn edges_of(areas: &[Area]) -> (Vec<Vector>, Vec<[usize; 2]>) {
 /// Walls are split where they cross at most this often: rounding can make the parts cross again.
 const MOST_SPLITS: usize = 4;
 
-/// Splits walls where those in `crossing` cross others. Corners of floor plans are moved by up to a micrometer to given
-/// corners, so that walls that touch can cross.
+/// An end of a wall this near to another wall is on it, meters, or as a part of the extent: corners of floor plans are
+/// moved by up to a micrometer to given corners.
+const TOUCHING: f64 = 4e-6;
+const TOUCHING_PART: f64 = 4e-8;
+
+/// Splits walls where those in `crossing` cross others: at an end that lies on the other wall, else where they cross.
 fn split(points: &mut Vec<Vector>, walls: &mut Vec<[usize; 2]>, crossing: &[[usize; 2]]) {
+    let [low, high] = bounds(points.iter().copied()).unwrap_or_default();
+    let touching = TOUCHING.max((high - low).max() * TOUCHING_PART);
     let mut cuts: Vec<Vec<usize>> = vec![Vec::new(); walls.len()];
     for (k, one) in walls
         .iter()
@@ -239,26 +245,41 @@ fn split(points: &mut Vec<Vector>, walls: &mut Vec<[usize; 2]>, crossing: &[[usi
             let [c, d] = ends.map(|end| points[end]);
             let (from, to) = (side(a, b, c), side(a, b, d));
             let crosses = from * to < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
-            if crosses {
+            if !crosses {
+                continue;
+            }
+            let on = |ends: &[usize; 2], [a, b]: [Vector; 2]| {
+                let near = |end: &&usize| to_segment(points[**end], a, b) <= touching;
+                ends.iter().filter(near).copied().collect::<Vec<usize>>()
+            };
+            let (on_one, on_other) = (on(ends, [a, b]), on(one, [c, d]));
+            if on_one.is_empty() && on_other.is_empty() {
                 points.push(c + (d - c) * (from / (from - to)));
                 cuts[k].push(points.len() - 1);
                 cuts[other].push(points.len() - 1);
             }
+            cuts[k].extend(on_one);
+            cuts[other].extend(on_other);
         }
     }
     let parts = walls.iter().zip(cuts).flat_map(|(&[from, to], mut cuts)| {
-        let start = points[from];
-        let distance = |&point: &usize| (points[point] - start).norm_squared();
+        let distance = |&point: &usize| (points[point] - points[from]).norm_squared();
         cuts.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        cuts.dedup_by(|a, b| points[*a] == points[*b]);
         cuts.insert(0, from);
         cuts.push(to);
-        let parts: Vec<[usize; 2]> = cuts.windows(2).map(|pair| [pair[0], pair[1]]).collect();
-        parts
+        let parts = cuts
+            .windows(2)
+            .map(|pair| [pair[0].min(pair[1]), pair[0].max(pair[1])]);
+        parts.collect::<Vec<[usize; 2]>>()
     });
-    *walls = parts
-        .filter(|&[from, to]| points[from] != points[to])
-        .collect();
+    // Two walls at the same place enclose nothing.
+    let mut odd = BTreeSet::new();
+    for part in parts.filter(|[from, to]| from != to) {
+        if !odd.remove(&part) {
+            odd.insert(part);
+        }
+    }
+    *walls = odd.into_iter().collect();
 }
 
 /// The triangles inside: those behind an odd number of walls from outside.

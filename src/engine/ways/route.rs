@@ -109,6 +109,17 @@ impl Ways {
         !floor.mesh.gaps(here, floor.least_width).any(crosses)
     }
 
+    /// Can `route` come from here?
+    pub fn knows(&self, route: &Route) -> bool {
+        let maps = self.maps.len();
+        let corners = self.floor.corners.len();
+        route.map.is_none_or(|map| usize::from(map) < maps)
+            && route
+                .next
+                .bend()
+                .is_none_or(|bend| (bend.corner as usize) < corners)
+    }
+
     fn map_to(&self, to: Destination) -> Option<u16> {
         let map = match to {
             Destination::Place(place) => {
