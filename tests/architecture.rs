@@ -216,6 +216,7 @@ fn each_foreign_crate_is_used_in_one_place() {
         ("fearless_simd", "engine/pairs"),
         ("sysinfo", "lab/machine"),
         ("rustsim_crowd", "lab/bench"),
+        ("spade", "engine/ways"),
         ("i_overlay", "scenario/floor_plan"),
     ] {
         assert_eq!(strays(krate, &[home]), Vec::<String>::new());
