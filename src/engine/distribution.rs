@@ -27,7 +27,7 @@ const WEIDMANN: [[f64; 2]; 10] = [
     [85.0, 0.55],
 ];
 
-/// The ages that [`WEIDMANN`] covers, years.
+/// The ages that the curve covers, years.
 pub const AGES: [f64; 2] = [WEIDMANN[0][0], WEIDMANN[WEIDMANN.len() - 1][0]];
 /// The ages of [`Family::WeidmannAge`] if none are given, years.
 pub const ADULTS: [f64; 2] = [20.0, 80.0];
@@ -277,7 +277,7 @@ impl Shape {
     }
 }
 
-/// The walking speed at an age in years, m/s: [`WEIDMANN`], linear in between.
+/// The walking speed at an age in years, m/s: the curve, linear in between.
 fn speed_at(age: f64) -> f64 {
     let spans = WEIDMANN.windows(2).map(|span| (span[0], span[1]));
     let mut spans = spans.filter(|&(_, [to, _])| age <= to);

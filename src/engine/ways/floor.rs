@@ -170,7 +170,8 @@ impl Floor {
     }
 
     /// Calls `enter` for every triangle from which a way can go straight to `bend`, with the part of it from which that
-    /// is so, and goes on behind the triangle if that returns true. Calls `see` as [`expand`] does.
+    /// is so, and goes on behind the triangle if that returns true. Calls `see` for every point of the mesh that is seen
+    /// through the opposite side of its triangle.
     pub fn look_from(
         &self,
         bend: Bend,
