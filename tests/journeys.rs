@@ -3,6 +3,7 @@
 use rayon::ThreadPoolBuilder;
 use sandbox::engine::journeys::Status;
 use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::Scenario;
 use sandbox::scenario::measurements::Left;
 use serde_json::{Value, json};
 
@@ -364,4 +365,29 @@ fn places_and_journeys_that_cannot_work_are_refused_with_place_and_fix() {
         straight.contains("journeys and exits need `paths`"),
         "{straight}"
     );
+}
+
+#[test]
+fn sixty_people_leave_a_corridor_drawn_as_wkt_that_leads_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    };
+    let outline = "POLYGON ((0 0, 12 0, 12 10, 0 10, 0 8, 10 8, 10 2, 0 2, 0 0))";
+    file("corridor.wkt", outline);
+    let document = json!({
+        "walkable_area": "corridor.wkt",
+        "exits": [{"name": "end", "line": [[0, 8], [0, 10]]}],
+        "crowds": [{"area": [[0, 0], [12, 0], [12, 2], [0, 2]], "number": 60}],
+    });
+    let path = file("corridor.json", &document.to_string());
+    for profile in ["sph", "rvo->sph"] {
+        let setting = format!("profile={profile}").parse().unwrap();
+        let scenario = Scenario::load(&path, &[setting]).unwrap();
+        let mut simulation = Simulation::new(scenario.scene).unwrap();
+        go_on(&mut simulation, 40.0);
+        assert_eq!(simulation.outcome().arrivals.len(), 60, "{profile}");
+    }
 }
