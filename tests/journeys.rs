@@ -147,6 +147,8 @@ fn agents_wait_until_the_given_time_or_their_release() {
             room["events"] = events.clone();
         })
     };
+    let endless = scenario(&waiting(json!({}), json!([])), &[]).unwrap_err();
+    assert!(endless.contains("wait forever in `hall`"), "{endless}");
     for document in [
         waiting(json!({"until_secs": 10}), json!([])),
         waiting(json!({"for_secs": 10}), json!([])),

@@ -146,3 +146,17 @@ fn ways_lead_over_rotated_plans_whose_holes_touch() {
         }
     }
 }
+
+#[test]
+fn exits_that_no_agent_walks_to_are_refused() {
+    let document = json!({
+        "goal": [5, 5],
+        "exits": [{"name": "east", "line": [[10, 4], [10, 6]]}],
+        "agents": [{"position": [0, 0]}],
+    });
+    let error = scenario(&document, &[]).unwrap_err();
+    assert!(
+        error.contains("exits: no agent walks to an exit"),
+        "{error}"
+    );
+}

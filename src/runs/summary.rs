@@ -63,7 +63,7 @@ pub struct Backlog {
     pub entrance: String,
     /// The most agents that waited at once.
     pub largest: u32,
-    /// When so many waited first, seconds.
+    /// The first time with this number, seconds.
     pub largest_at_secs: f64,
     /// Agents that still wait at the end.
     pub at_end: u32,

@@ -314,7 +314,7 @@ pub(super) struct Event {
     pub open: Option<String>,
     /// The name of an exit that closes.
     pub close: Option<String>,
-    /// The name of a waiting area: from then on, nobody waits there.
+    /// The name of a waiting area: from then on, agents do not wait there.
     pub release: Option<String>,
     /// Of a push: the duration, seconds.
     #[schemars(range(min = 0, max = LONGEST_TIME))]

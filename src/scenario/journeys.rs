@@ -7,12 +7,13 @@ use super::error::{Problem, Under, suggestion};
 use super::file::{self, File, Point, Ring as GivenRing};
 use super::places::{self, Stage};
 use super::quote::shown;
+use super::spots::spots;
 use crate::engine::geometry::{Ring, Walls};
 use crate::engine::journeys::{
     Change, ChangeKind, Choice, Exit, Journey, JourneyStage, Journeys, Kind, Place, Queue,
     WaitingArea, Zone,
 };
-use crate::engine::math::{Vector, bounds};
+use crate::engine::math::Vector;
 
 /// The name of the journey of people without goal and journey in scenarios with exits.
 pub(super) const TO_NEAREST_EXIT: &str = "nearest exit";
@@ -54,6 +55,7 @@ pub(super) fn journeys(keys: &File, walls: &Walls) -> Result<Journeys, Problem> 
         });
     }
     found.add_changes(keys)?;
+    found.check_waits()?;
     Ok(found.journeys)
 }
 
@@ -244,6 +246,35 @@ impl Found<'_> {
         Ok(())
     }
 
+    /// Checks that agents do not wait forever before the last stage of a journey.
+    fn check_waits(&self) -> Result<(), Problem> {
+        let Journeys {
+            places,
+            journeys,
+            changes,
+            ..
+        } = &self.journeys;
+        let is_endless = |&place: &u16| match &places[usize::from(place)].kind {
+            Kind::Waiting(waiting) => {
+                let released = changes.iter().any(|change| change.place == place);
+                waiting.until.is_none() && waiting.lasting.is_none() && !released
+            }
+            _ => false,
+        };
+        for (k, journey) in journeys.iter().enumerate() {
+            let before_last = journey.stages.iter().rev().skip(1);
+            let mut visited = before_last.flat_map(|stage| stage.places.iter().copied());
+            if let Some(place) = visited.find(is_endless) {
+                let reason = format!(
+                    "agents would wait forever in `{}`: give it `until_secs` or `for_secs`, or an event that releases it",
+                    shown(&places[usize::from(place)].name)
+                );
+                return Err(Problem::new(format!("journeys[{k}]"), reason));
+            }
+        }
+        Ok(())
+    }
+
     fn change(&self, event: &file::Event) -> Result<Option<Change>, Problem> {
         let given = [
             ("open", &event.open, ChangeKind::Open),
@@ -326,45 +357,4 @@ fn line(given: &[Point; 2]) -> Result<[Vector; 2], Problem> {
 pub(super) fn ring(GivenRing(given): &GivenRing) -> Result<Ring, Problem> {
     let points = given.iter().map(|&p| p.into()).collect();
     Ring::new(points).map_err(|error| Problem::new("", error.to_string()))
-}
-
-/// The first spots are taken at this density, P/m²; more between them if these are taken.
-const LOOSE: f64 = 1.5;
-/// The densest spots, P/m².
-const DENSEST: f64 = 6.0;
-/// The most spots of an area.
-const MOST_SPOTS: f64 = 20_000.0;
-/// Spots keep this distance from walls, meters.
-const FROM_WALLS: f64 = 0.3;
-
-/// Spots in an area, the first ones to take first: points of a sequence that fills the area evenly however many of
-/// them are taken, and those nearest to `facing` before others of the same density.
-fn spots(area: &Ring, walls: &Walls, facing: Option<Vector>) -> Vec<Vector> {
-    let [low, high] = bounds(area.points().iter().copied()).unwrap_or_default();
-    let extent = high - low;
-    let covered = extent.x * extent.y;
-    let most = (DENSEST * covered).min(MOST_SPOTS);
-    // The R2 sequence: multiples of the inverse powers of the plastic number.
-    const PLASTIC: f64 = 1.324_717_957_244_746;
-    let step = Vector::new(1.0 / PLASTIC, 1.0 / (PLASTIC * PLASTIC));
-    let point = |k: f64| {
-        let part = (step * k).map(|x| (x + 0.5).fract());
-        low + extent.component_mul(&part)
-    };
-    let is_free = |p: &Vector| {
-        let mut near = Vec::new();
-        walls.near(*p, FROM_WALLS, &mut near);
-        let reach = |&k: &u32| (walls.wall(k).nearest_point(*p).point - p).norm() < FROM_WALLS;
-        area.contains(*p) && walls.obstacle_at(*p).is_none() && !near.iter().any(reach)
-    };
-    let all = (0..most as u32).map(|k| point(f64::from(k)));
-    let mut spots: Vec<Vector> = all.filter(is_free).collect();
-    if let Some(facing) = facing {
-        let block = (LOOSE * area.area()).ceil().max(1.0) as usize;
-        for spots in spots.chunks_mut(block) {
-            let distance = |p: &Vector| (p - facing).norm();
-            spots.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        }
-    }
-    spots
 }

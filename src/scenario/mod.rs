@@ -42,6 +42,7 @@ mod schema;
 mod setting;
 mod settings;
 mod shipped;
+mod spots;
 mod wall_lists;
 mod ways;
 

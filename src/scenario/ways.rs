@@ -53,6 +53,11 @@ enum To {
 /// The path maps of a scene that is otherwise complete; `None` if agents walk straight.
 pub(super) fn ways(keys: &File, scene: &Scene) -> Result<Option<Arc<Ways>>, Problem> {
     let has_journeys = scene.groups.iter().any(|group| group.journey.is_some());
+    if !keys.exits.is_empty() && !scene.groups.is_empty() && !has_journeys {
+        let reason =
+            "no agent walks to an exit: all have goals; remove `goal`, or give agents a `journey`";
+        return Err(Problem::new("exits", reason));
+    }
     if keys.navigation == WayFinding::Straight {
         let reason = "`straight` leads to goals only; journeys and exits need `paths`";
         return match has_journeys {

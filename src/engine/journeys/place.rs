@@ -157,11 +157,8 @@ impl Queue {
     /// `ahead` agents.
     pub fn next_corner(&self, k: usize, ahead: usize) -> usize {
         let behind = ahead as f64 * self.spacing;
-        let mut length = 0.0;
         let sides = self.path.windows(2).map(|pair| (pair[1] - pair[0]).norm());
-        let before = sides.take(k).sum::<f64>();
-        length += before;
-        if behind > length {
+        if behind > sides.take(k).sum::<f64>() {
             (k + 1).min(self.path.len() - 1)
         } else {
             k.saturating_sub(1)

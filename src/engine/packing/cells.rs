@@ -6,8 +6,8 @@ use super::Space;
 use super::taken::Taken;
 use crate::engine::math::Vector;
 
-/// The most cells: so many, and so many per body. An area with so little room for its extent that it needs more is not
-/// searched completely.
+/// The most cells of a search, in addition to those per body. An area that needs more, because it has little room for
+/// its extent, is not searched completely.
 const MOST: usize = 1 << 14;
 const MOST_PER_BODY: usize = 16;
 

@@ -23,7 +23,7 @@ const FLOW_PER_METER: f64 = 1.3;
 const CROWD: f64 = 1.5;
 /// Before a line is what lies within this distance, meters.
 const BEFORE: f64 = 2.0;
-/// So many passes after the first one make a flow.
+/// The fewest passes after the first one from which a flow is computed.
 const FEWEST_OBSERVED: usize = 5;
 /// The least flow that agents expect from observation, P/s.
 const LEAST_FLOW: f64 = 0.1;

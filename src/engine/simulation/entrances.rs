@@ -32,7 +32,7 @@ pub struct Backlog<'a> {
     pub waiting: u32,
     /// The most that have waited at once.
     pub largest: u32,
-    /// The first frame in which so many waited.
+    /// The first frame with this number.
     pub largest_frame: u64,
 }
 

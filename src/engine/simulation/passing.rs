@@ -187,9 +187,7 @@ impl Crowd {
                 continue;
             };
             let state = &mut self.progress.places[usize::from(trip.place)];
-            state.bound = state.bound.saturating_sub(1);
-            state.passed += 1;
-            state.recent.push(self.clock.frame());
+            state.pass(&self.clock, scene);
             let group = usize::from(self.agents.group[i]);
             self.outcome.arrivals.push(Arrival {
                 id: self.agents.id[i],

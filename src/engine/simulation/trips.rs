@@ -65,6 +65,16 @@ impl Default for PlaceState {
 }
 
 impl PlaceState {
+    /// An agent that was bound for this place passes it.
+    pub(super) fn pass(&mut self, clock: &Clock, scene: &Scene) {
+        self.bound = self.bound.saturating_sub(1);
+        self.passed += 1;
+        // Only agents that choose the quickest place read the flow.
+        if scene.journeys.has_quickest() {
+            self.recent.push(clock.frame());
+        }
+    }
+
     /// Takes the first free one of `spots`, or the free one nearest to a point; beyond the last spot if none is free.
     fn free_spot(&mut self, spots: &[Vector], near: Option<Vector>) -> usize {
         self.taken.resize(self.taken.len().max(spots.len()), false);
@@ -249,9 +259,7 @@ impl Crowd {
             return;
         };
         let state = &mut self.progress.places[usize::from(trip.place)];
-        state.bound = state.bound.saturating_sub(1);
-        state.passed += 1;
-        state.recent.push(self.clock.frame());
+        state.pass(&self.clock, scene);
         let stages = &scene.journeys.journeys[usize::from(trip.journey)].stages;
         trip.status = Status::Finished;
         trip.chooses_at = u64::MAX;

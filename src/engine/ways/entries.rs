@@ -22,7 +22,7 @@ pub struct Entries<'a> {
     targets: &'a Targets,
     /// The entries of each triangle.
     found: Vec<Vec<Entry>>,
-    /// With so many entries, those of a triangle are pruned.
+    /// For each triangle, the number of entries at which they are pruned next.
     many: Vec<u32>,
     /// For each triangle, a length that the best way from anywhere in it does not exceed, meters.
     most: Vec<f64>,
