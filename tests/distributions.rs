@@ -125,6 +125,34 @@ fn quantiles_grow_and_stay_finite_up_to_the_ends() {
     }
 }
 
+#[test]
+fn extreme_parameters_give_draws_between_the_bounds_or_an_error() {
+    let sizes = [1e-300, 1e-9, 1e-3, 0.7, 40.0, 1e4, 1e9, 1e300];
+    let ends = [0.0, 1e-320, 1e-9, 1.0, 100.0, 1e9, f64::INFINITY];
+    let mut known = 0;
+    for (first, second) in sizes.into_iter().flat_map(|a| sizes.map(|b| (a, b))) {
+        for family in [
+            Family::Normal([first, second]),
+            Family::LogNormal([first.ln(), second]),
+            Family::log_normal_with(first, second),
+            Family::Weibull([first, second]),
+            Family::Gamma([first, second]),
+            Family::Exponential(first),
+        ] {
+            for bounds in ends.into_iter().flat_map(|low| ends.map(|high| [low, high])) {
+                let Ok(distribution) = Distribution::new(&family, bounds) else {
+                    continue;
+                };
+                known += 1;
+                let draws = [1e-16, 0.3, 0.5, 1.0 - 1e-16].map(|u| distribution.quantile(u));
+                let inside = draws.iter().all(|x| (bounds[0]..=bounds[1]).contains(x));
+                assert!(inside && draws.is_sorted(), "{family:?} {bounds:?}: {draws:?}");
+            }
+        }
+    }
+    assert!(known > 1000, "{known}");
+}
+
 fn crowd(traits: Traits) -> Scene {
     let mut scene = scene(Vec::new(), blend("sph"));
     scene.groups[0].traits = traits;

@@ -12,6 +12,9 @@ use crate::engine::random::{self, Purpose};
 /// The least share of a distribution that its bounds may keep: below this, a draw would be rounding error.
 pub const LEAST_SHARE: f64 = 1e-6;
 
+/// The largest shape of a gamma distribution: its values differ by 1 % there, and the time of a draw grows with its root.
+pub const LARGEST_SHAPE: f64 = 1e4;
+
 /// Weidmann (1993), Transporttechnik der Fussgänger: walking speed by age, in years and m/s. The values are not from the
 /// original but a digitization of its curve as the RiMEA guideline prints it.
 const WEIDMANN: [[f64; 2]; 10] = [
@@ -71,7 +74,8 @@ enum Shape {
     Normal(Normal),
     LogNormal(Normal),
     Weibull([f64; 2]),
-    Gamma(Gamma),
+    /// The distribution of scale 1, and the scale.
+    Gamma(Gamma, f64),
     Exponential(f64),
     /// Values in ascending order, each with the share of the values up to it.
     Values(Vec<[f64; 2]>),
@@ -101,6 +105,11 @@ pub enum DistributionError {
     /// Ages that the table lacks.
     #[error("ages are known from {low} to {high} years, not {0}", low = AGES[0], high = AGES[1])]
     Age(f64),
+    /// The shape of a gamma distribution is too large.
+    #[error(
+        "a gamma distribution of shape {0} is as good as normal; give \"normal\", or a shape up to {LARGEST_SHAPE}"
+    )]
+    Shape(f64),
     /// The bounds leave nothing to draw from.
     #[error(
         "fewer than one in a million draws lie between {low} and {high}; move the distribution there, or widen its bounds"
@@ -142,9 +151,16 @@ impl Family {
                 Shape::Weibull([positive("scale", scale)?, positive("shape", shape)?])
             }
             Self::Gamma([shape, scale]) => {
-                let rate = 1.0 / positive("scale", scale)?;
-                let gamma = Gamma::new(positive("shape", shape)?, rate);
-                Shape::Gamma(gamma.map_err(|_| DistributionError::NotPositive("scale", scale))?)
+                let scale = positive("scale", scale)?;
+                if positive("shape", shape)? > LARGEST_SHAPE {
+                    return Err(DistributionError::Shape(shape));
+                }
+                // Of scale 1: the distribution function knows no product of bound and rate that rounds to 0 or infinity.
+                let gamma = Gamma::new(shape, 1.0);
+                Shape::Gamma(
+                    gamma.map_err(|_| DistributionError::NotPositive("shape", shape))?,
+                    scale,
+                )
             }
             Self::Exponential(mean) => Shape::Exponential(positive("the mean", mean)?),
             Self::Values(ref values) => Shape::Values(cumulative(values)?),
@@ -254,7 +270,7 @@ impl Shape {
             Self::Normal(normal) => normal.cdf(x),
             Self::LogNormal(normal) => normal.cdf(x.max(0.0).ln()),
             Self::Weibull([scale, shape]) => -(-(x.max(0.0) / scale).powf(*shape)).exp_m1(),
-            Self::Gamma(gamma) => gamma.cdf(x),
+            Self::Gamma(gamma, scale) => gamma.cdf(x / scale),
             Self::Exponential(mean) => -(-x.max(0.0) / mean).exp_m1(),
             Self::Uniform(_) | Self::Values(_) | Self::WeidmannAge(_) => f64::NAN,
         }
@@ -266,7 +282,7 @@ impl Shape {
             Self::Normal(normal) => normal.inverse_cdf(share),
             Self::LogNormal(normal) => normal.inverse_cdf(share).exp(),
             Self::Weibull([scale, shape]) => scale * (-(-share).ln_1p()).powf(1.0 / shape),
-            Self::Gamma(gamma) => gamma.inverse_cdf(share),
+            Self::Gamma(gamma, scale) => scale * gamma.inverse_cdf(share),
             Self::Exponential(mean) => -mean * (-share).ln_1p(),
             Self::Values(values) => {
                 let place = values.partition_point(|&[_, up_to]| up_to <= share);

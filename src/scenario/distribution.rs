@@ -11,7 +11,9 @@ use serde_json::Value;
 use super::error::{Problem, Under};
 use super::file::LONGEST_TIME;
 use super::range::brief;
-use crate::engine::distribution::{ADULTS, AGES, Distribution, DistributionError, Family};
+use crate::engine::distribution::{
+    ADULTS, AGES, Distribution, DistributionError, Family, LARGEST_SHAPE,
+};
 use crate::engine::traits::Traits;
 
 /// The largest parameter of a distribution.
@@ -114,7 +116,7 @@ pub(super) struct Scaled {
     #[schemars(range(max = LARGEST), extend("exclusiveMinimum" = 0))]
     scale: f64,
     /// The shape.
-    #[schemars(range(min = 0.01, max = 1e6))]
+    #[schemars(range(min = 0.01, max = LARGEST_SHAPE))]
     shape: f64,
     /// No draw is below this. Default: the least value of the key.
     #[schemars(range(min = -LARGEST, max = LARGEST))]
