@@ -139,14 +139,20 @@ fn extreme_parameters_give_draws_between_the_bounds_or_an_error() {
             Family::Gamma([first, second]),
             Family::Exponential(first),
         ] {
-            for bounds in ends.into_iter().flat_map(|low| ends.map(|high| [low, high])) {
+            for bounds in ends
+                .into_iter()
+                .flat_map(|low| ends.map(|high| [low, high]))
+            {
                 let Ok(distribution) = Distribution::new(&family, bounds) else {
                     continue;
                 };
                 known += 1;
                 let draws = [1e-16, 0.3, 0.5, 1.0 - 1e-16].map(|u| distribution.quantile(u));
                 let inside = draws.iter().all(|x| (bounds[0]..=bounds[1]).contains(x));
-                assert!(inside && draws.is_sorted(), "{family:?} {bounds:?}: {draws:?}");
+                assert!(
+                    inside && draws.is_sorted(),
+                    "{family:?} {bounds:?}: {draws:?}"
+                );
             }
         }
     }

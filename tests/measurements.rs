@@ -7,7 +7,7 @@ use sandbox::engine::simulation::{Fault, Simulation};
 use sandbox::runs::drive::{Observer, Run};
 use sandbox::runs::summary::Summary;
 use sandbox::scenario::Scenario;
-use sandbox::scenario::measurements::Watched;
+use sandbox::scenario::measurements::{Walk, Watched};
 use serde_json::json;
 
 /// The times of four arrivals with gaps of about 1, 4 and 1 s, and the measurements that count `arrivals`.
@@ -118,4 +118,55 @@ fn inside_is_what_the_polygon_says_wherever_it_is_not_the_rim() {
         assert_eq!(is_seen(&horseshoe, None, p), solid.contains(p), "{p:?}");
     }
     assert!(!is_seen(&horseshoe, None, vector(0.0, 4.0)));
+}
+
+/// What a run of this document measures.
+fn measured(document: serde_json::Value) -> Summary {
+    let scenario = Scenario::parse(&document.to_string(), "f.json", &[]).unwrap();
+    let mut run = Run::new(scenario).unwrap();
+    run.drive::<Fault, dyn Observer<Fault>>(&mut [], || false)
+        .unwrap();
+    Summary::of(&run)
+}
+
+#[test]
+fn walks_of_people_at_a_steady_speed_give_their_density_speed_and_flow() {
+    // Five people 3 m apart cross a region of 10 m × 2 m at 1.4 m/s: each is there for 10 / 1.4 s.
+    let agents = (0..5).map(|k| json!({"position": [-3.0 * f64::from(k) - 1.0, 0], "velocity": [1.4, 0], "goal": [100, 0]}));
+    let summary = measured(json!({
+        "duration_secs": 20, "profile": "sph", "agents": agents.collect::<Vec<_>>(),
+        "measurements": [{"walks": {"region": [[0, -1], [10, 1]], "until_secs": 18}}, {"walks": {"name": "all"}}],
+    }));
+    let metric = |name: &str| summary.metric(name).unwrap();
+    assert_eq!(metric("walks_agents"), 5.0);
+    let near = |name: &str, expected: f64| {
+        let found = metric(name);
+        assert!(
+            (found / expected - 1.0).abs() < 0.005,
+            "{name}: {found}, expected {expected}"
+        );
+    };
+    near("walks_speed_m_per_s", 1.4);
+    near("walks_density_per_m2", 5.0 * (10.0 / 1.4) / (18.0 * 20.0));
+    near("walks_flow_per_m_per_s", 5.0 * 10.0 / (18.0 * 20.0));
+    assert_eq!(summary.metric("all_density_per_m2"), None);
+    let walks: Vec<Walk> = summary.data("all").unwrap();
+    assert!(walks.iter().all(|walk| (walk.secs - 20.0).abs() < 1e-9));
+    assert!(walks.iter().all(|walk| (walk.meters - 28.0).abs() < 0.1));
+}
+
+#[test]
+fn a_walk_starts_after_the_time_before_it_and_not_with_a_shove() {
+    let summary = measured(json!({
+        "duration_secs": 12, "profile": "sph",
+        "agents": [{"position": [0, 0], "goal": [100, 0], "premovement_secs": 6, "radius": 0.25},
+                   {"position": [-4, 0.3], "velocity": [1.4, 0], "goal": [100, 0.3], "radius": 0.25}],
+        "measurements": [{"walks": {}}],
+    }));
+    let walks: Vec<Walk> = summary.data("walks").unwrap();
+    assert_eq!(walks[1].started_secs, Some(0.0));
+    let off = walks[0].started_secs.unwrap() - 6.0;
+    assert!((0.0..0.5).contains(&off), "{off}");
+    let shoved = summary.metric("walks_start_delay_secs").unwrap();
+    assert!((shoved - off).abs() < 1e-12);
 }

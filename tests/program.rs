@@ -38,3 +38,4 @@ mod trajectory;
 mod trajectory_area;
 mod trajectory_formats;
 mod trajectory_robustness;
+mod verify;

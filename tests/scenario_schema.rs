@@ -49,7 +49,8 @@ fn whole() -> Value {
         "events": [{"name": "e", "at_secs": 1, "for_secs": 1, "region": [[0, 0], [5, 5]], "goal_scale": 3,
                     "ignore_contact": true, "ignore_sph": false}],
         "measurements": [{"density": {"at_secs": 5, "region": [[0, 0], [5, 5]]}}, {"evacuated": {}},
-                         {"flow_of_first": {"arrivals": 2}}, {"flow_until": {"until_secs": 5}}],
+                         {"flow_of_first": {"arrivals": 2}}, {"flow_until": {"until_secs": 5}},
+                         {"walks": {"name": "w", "region": [[0, 0], [5, 5]], "from_secs": 1, "until_secs": 5}}],
         "stop": {"when_empty": true, "idle_secs": 5},
         "view": {"region": [[0, 0], [9, 9]], "opens_at_secs": 1},
         "debug_agents": [0, 1]
@@ -69,7 +70,7 @@ fn all_scenario_files_and_one_with_every_key_are_valid() {
     let schema = schema();
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let mut seen = 0;
-    for folder in ["", "stress", "accuracy"].map(|folder| scenarios.join(folder)) {
+    for folder in ["", "stress", "accuracy", "verification"].map(|folder| scenarios.join(folder)) {
         for entry in fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
             if path
@@ -134,6 +135,7 @@ fn every_object_has_the_keys_that_the_parser_knows() {
         ("/measurements/0/density", "/$defs/Density"),
         ("/measurements/2/flow_of_first", "/$defs/FlowOfFirst"),
         ("/measurements/3/flow_until", "/$defs/FlowUntil"),
+        ("/measurements/4/walks", "/$defs/Walks"),
         ("/stop", "/$defs/Stop"),
         ("/view", "/$defs/View"),
     ] {

@@ -2,8 +2,10 @@
 //! repeated measurements, straight lines, and the jackknife.
 
 use serde::{Deserialize, Serialize, Serializer};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::distribution::{ContinuousCDF, StudentsT, Uniform};
 use statrs::statistics::{Data, Max, Min, OrderStatistics};
+use statrs::stats_tests::NaNPolicy;
+use statrs::stats_tests::ks_test::{KSOneSampleAlternativeMethod, ks_onesample};
 
 /// The mean and the standard deviation of some values.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -84,6 +86,15 @@ pub fn student_95(count: usize) -> Option<f64> {
     let degrees = count.checked_sub(1)?;
     let distribution = StudentsT::new(0.0, 1.0, degrees as f64).ok()?;
     Some(distribution.inverse_cdf(0.975))
+}
+
+/// The probability that as many uniform draws between 0 and 1 are as far from uniform as `shares` (Kolmogorov–Smirnov
+/// test, two-sided). `None` without values.
+pub fn uniform_probability(shares: &[f64]) -> Option<f64> {
+    let uniform = Uniform::standard();
+    let method = KSOneSampleAlternativeMethod::TwoSidedAsymptotic;
+    let found = ks_onesample(shares.to_vec(), &uniform, method, NaNPolicy::Error);
+    found.ok().map(|(_, probability)| probability)
 }
 
 /// A value and its standard error.

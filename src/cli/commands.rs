@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
 use super::arguments::{DrawOptions, InspectOptions, ResumeOptions, RunOptions};
-use super::{accuracy, bench, measure, reproduce, stress, sweep};
+use super::{accuracy, bench, measure, reproduce, stress, sweep, verify};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -90,6 +90,12 @@ pub enum Command {
         mut_arg("out", |out| out.required(false).default_value("stress"))
     )]
     Stress(stress::StressOptions),
+    /// Run verification cases of RiMEA, ISO 20414 and NIST: tables and pictures
+    #[command(
+        after_help = format!("{}Example: sandbox verify --only 12 --only iso6 --seeds 3", verify::about()),
+        mut_arg("out", |out| out.required(false).default_value("verification"))
+    )]
+    Verify(verify::VerifyOptions),
     /// Print the JSON Schema of scenario files, for completion and checks in editors
     #[command(after_help = SCHEMA_EXAMPLE)]
     Schema,

@@ -22,6 +22,7 @@ mod sweep;
 mod trajectory;
 mod update;
 mod values;
+mod verify;
 mod watch;
 
 use std::io::{ErrorKind, Write};
@@ -154,6 +155,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Bench(options) => bench::run(&options),
         Command::Accuracy(options) => accuracy::run(&options),
         Command::Stress(options) => stress::run(&options),
+        Command::Verify(options) => verify::run(&options),
         Command::Schema => list::schema(),
         Command::Sweep(options) => sweep::run(&options),
         Command::Measure(options) => measure::run(&options),

@@ -232,6 +232,20 @@ impl Distribution {
             .clamp(self.bounds[0], self.bounds[1])
     }
 
+    /// The share of all draws up to `x`, by bisection of the quantiles.
+    pub fn share_up_to(&self, x: f64) -> f64 {
+        const HALVINGS: usize = 50;
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            match self.quantile(middle) <= x {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        low
+    }
+
     /// The mean, from a thousand quantiles.
     pub fn mean(&self) -> f64 {
         const QUANTILES: u32 = 1000;

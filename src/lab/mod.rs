@@ -1,6 +1,7 @@
 //! The lab: experiments of many runs. The paper's tables and figures ([`reproduce`]), studies over settings and seeds
 //! ([`sweep`]), run time on this [`machine`] ([`mod@bench`]), hard cases and the largest stable time step ([`stress`]),
-//! and run time against error ([`accuracy`]). [`measure`] finds densities, fields, fundamental diagrams and flows of
+//! run time against
+//! error ([`accuracy`]), and small cases with known answers ([`mod@verify`]). [`measure`] finds densities, fields, fundamental diagrams and flows of
 //! any trajectory.
 
 pub mod error;
@@ -20,3 +21,5 @@ pub mod bench;
 pub mod stress;
 
 pub mod accuracy;
+
+pub mod verify;

@@ -15,6 +15,7 @@ mod integrity;
 mod jitter;
 mod snapshot;
 mod speed_by_density;
+mod walks;
 mod wave;
 
 use std::fmt;
@@ -34,6 +35,7 @@ pub use integrity::{Integrity, Watched};
 pub use jitter::Jitter;
 pub use snapshot::{Snapshot, SnapshotAt};
 pub use speed_by_density::SpeedByDensity;
+pub use walks::{Walk, Walks};
 pub use wave::{Wave, WaveData};
 
 use super::error::{Problem, Under};
@@ -111,6 +113,8 @@ pub enum Measurement {
     Integrity(Integrity),
     /// Mean speed by density.
     SpeedByDensity(SpeedByDensity),
+    /// What each agent walks; density, speed and flow in a region.
+    Walks(Walks),
     /// Computing time by stage.
     FrameTime(FrameTime),
 }
@@ -134,6 +138,7 @@ impl Measurement {
             Self::Closest(keys) => started(keys),
             Self::Integrity(keys) => started(keys),
             Self::SpeedByDensity(keys) => started(keys),
+            Self::Walks(keys) => started(keys),
             Self::FrameTime(keys) => started(keys),
         }
     }

@@ -1,0 +1,47 @@
+//! A picture of each case.
+
+use super::case::Case;
+use crate::engine::simulation::{Fault, Simulation};
+use crate::lab::error::LabError;
+use crate::lab::sweep::Cell;
+use crate::output::picture::Picture;
+use crate::runs::job::Listener;
+use crate::runs::parallel::side_by_side;
+use crate::runs::store::Store;
+
+/// Draws a run of each case at one moment, with the first profile and seed: `ID.png`.
+pub fn save(
+    cases: &[&Case],
+    cells: &[&Cell],
+    store: &Store,
+    listener: &dyn Listener,
+) -> Result<(), LabError> {
+    listener.notes(&format!("drawing {} picture(s)", cases.len()));
+    side_by_side(cases.len(), |k| {
+        let (label, at) = cases[k].picture;
+        let cell = cells.iter().find(|cell| cell.label() == Some(label));
+        let cell = cell.ok_or_else(|| LabError::missing(cases[k].id, "run for its picture"))?;
+        let failed = |error| LabError::of(label, error);
+        let scenario = cell.case.scenario();
+        let scenario = scenario.map_err(|error| LabError::of(label, error))?;
+        let mut simulation = Simulation::new(scenario.scene).map_err(failed)?;
+        go_to(at, &mut simulation).map_err(failed)?;
+        let picture = Picture {
+            title: format!("{}: {label}", cases[k].id),
+            simulation: &simulation,
+            view: scenario.view.region,
+            paths: Vec::new(),
+        };
+        picture.save(&store.path(&format!("{}.png", cases[k].id)))?;
+        Ok(())
+    })
+}
+
+/// Advances to a time, seconds, and evaluates the frame.
+fn go_to(at: f64, simulation: &mut Simulation) -> Result<(), Fault> {
+    let last = simulation.frame().clock.frame_at(at);
+    while simulation.frame().clock.frame() < last {
+        simulation.step()?;
+    }
+    simulation.evaluate().map(|_| ())
+}

@@ -1,0 +1,234 @@
+//! What `sandbox verify` prints and writes.
+
+use serde_json::json;
+
+use super::case::Case;
+use super::check::{Check, Expected};
+use super::suite::THROUGH_WALLS;
+use crate::lab::error::LabError;
+use crate::output::table::Table;
+use crate::runs::store::Store;
+
+/// The checks of one case with one profile and seed.
+#[derive(Clone)]
+pub struct Finding {
+    /// The case.
+    pub case: &'static Case,
+    /// The profile.
+    pub profile: String,
+    /// The seed.
+    pub seed: u64,
+    /// The checks.
+    pub checks: Vec<Check>,
+}
+
+impl Finding {
+    /// Are all values as expected?
+    pub fn is_passed(&self) -> bool {
+        self.checks.iter().all(Check::is_passed)
+    }
+}
+
+/// All findings.
+pub struct Report {
+    /// The profiles, in the order of the columns.
+    pub profiles: Vec<String>,
+    /// The findings, by case, profile and seed.
+    pub findings: Vec<Finding>,
+}
+
+/// A check of a case, with all profiles and seeds.
+struct Row<'a> {
+    /// The findings of the case.
+    findings: Vec<&'a Finding>,
+    /// The number of the check.
+    check: usize,
+}
+
+impl Row<'_> {
+    fn case(&self) -> &'static Case {
+        self.findings[0].case
+    }
+
+    fn check(&self) -> &Check {
+        &self.findings[0].checks[self.check]
+    }
+
+    /// Walls are shown only where they do not hold.
+    fn is_shown(&self) -> bool {
+        let mut checks = self.findings.iter().map(|one| &one.checks[self.check]);
+        self.check().quantity != THROUGH_WALLS || checks.any(|check| !check.is_passed())
+    }
+
+    /// The values of a profile over the seeds, bold if one is not as expected.
+    fn values(&self, profile: &str) -> String {
+        let own = self.findings.iter().filter(|one| one.profile == profile);
+        let checks: Vec<&Check> = own.map(|one| &one.checks[self.check]).collect();
+        let mut texts: Vec<String> = checks.iter().map(|check| written(check.value)).collect();
+        texts.dedup();
+        let text = texts.join(", ");
+        match checks.iter().all(|check| check.is_passed()) {
+            true => text,
+            false => format!("**{text}**"),
+        }
+    }
+}
+
+/// Three digits behind the point at most.
+fn written(value: Option<f64>) -> String {
+    let rounded = |value: f64| (1e3 * value).round() / 1e3;
+    value.map_or("–".to_owned(), |value| rounded(value).to_string())
+}
+
+impl Report {
+    /// Cases that miss an expectation although they passed before; empty if there are none.
+    pub fn failures(&self) -> Vec<String> {
+        let missed = self.findings.iter().filter(|finding| !finding.is_passed());
+        let new = missed.filter(|finding| finding.case.known_miss(&finding.profile).is_none());
+        let lines = new.map(|finding| {
+            let missed = finding.checks.iter().filter(|check| !check.is_passed());
+            let missed = missed.map(|check| {
+                let (value, expected) = (written(check.value), check.expected_written());
+                format!("{} is {value}, expected {expected}", check.quantity)
+            });
+            let missed: Vec<String> = missed.collect();
+            let Finding {
+                case,
+                profile,
+                seed,
+                ..
+            } = finding;
+            format!(
+                "case {}, {profile}, seed {seed}: {}",
+                case.id,
+                missed.join("; ")
+            )
+        });
+        lines.collect()
+    }
+
+    /// Does a profile pass a case with all seeds? `None` without a finding.
+    fn is_passed(&self, case: &Case, profile: &str) -> Option<bool> {
+        let own = |one: &&Finding| one.case.id == case.id && one.profile == profile;
+        let mut own = self.findings.iter().filter(own).peekable();
+        own.peek()?;
+        Some(own.all(Finding::is_passed))
+    }
+
+    /// Known misses that are none with any seed: the list of known misses should lose them.
+    pub fn no_longer_missed(&self) -> Vec<String> {
+        let passed = |case: &'static Case| {
+            let misses = case.misses.iter().map(|(profile, _)| *profile);
+            let passed = misses.filter(|profile| self.is_passed(case, profile) == Some(true));
+            passed.map(move |profile| format!("case {}, {profile}: passes now", case.id))
+        };
+        self.cases().into_iter().flat_map(passed).collect()
+    }
+
+    /// The cases, in order.
+    fn cases(&self) -> Vec<&'static Case> {
+        let mut cases: Vec<&'static Case> = self.findings.iter().map(|one| one.case).collect();
+        cases.dedup_by_key(|case| case.id);
+        cases
+    }
+
+    /// All results as Markdown: a summary, a table, and the reasons of the misses.
+    pub fn markdown(&self) -> String {
+        let count = |profile: &String| {
+            let cases = self.cases();
+            let passed = cases
+                .iter()
+                .filter(|case| self.is_passed(case, profile) == Some(true));
+            format!("{profile}: {} of {} cases", passed.count(), cases.len())
+        };
+        let counts: Vec<String> = self.profiles.iter().map(count).collect();
+        let walls = match self
+            .rows()
+            .iter()
+            .any(|row| row.check().quantity == THROUGH_WALLS)
+        {
+            false => " In no run did anyone pass through a wall.",
+            true => "",
+        };
+        let table = self.table();
+        let mut misses = String::new();
+        for case in self.cases() {
+            for (profile, why) in case.misses {
+                if self.is_passed(case, profile) == Some(false) {
+                    misses += &format!("- **{}**, {profile}: {why}.\n", case.id);
+                }
+            }
+        }
+        if !misses.is_empty() {
+            misses = format!("\nKnown misses:\n\n{misses}");
+        }
+        let counts = counts.join(", by ");
+        format!("Passed by {counts}. Bold: not as expected.{walls}\n\n{table}{misses}")
+    }
+
+    fn rows(&self) -> Vec<Row<'_>> {
+        let rows = self.cases().into_iter().flat_map(|case| {
+            let own = self.findings.iter().filter(|one| one.case.id == case.id);
+            let findings: Vec<&Finding> = own.collect();
+            let checks = findings[0].checks.len();
+            (0..checks).map(move |check| Row {
+                findings: findings.clone(),
+                check,
+            })
+        });
+        rows.filter(Row::is_shown).collect()
+    }
+
+    fn table(&self) -> String {
+        let rows = self.rows();
+        let first = |row: &Row, text: &'static str| if row.check == 0 { text } else { "" };
+        let mut table = Table::of(&rows)
+            .column("case", |row| first(row, row.case().id))
+            .column("what it shows", |row| first(row, row.case().about))
+            .column("quantity", |row| row.check().quantity.clone())
+            .column("expected", |row| row.check().expected_written());
+        for profile in &self.profiles {
+            table = table.column(profile, move |row| row.values(profile));
+        }
+        table.table().markdown()
+    }
+
+    /// Writes `verification.md` and `verification.csv` into the store's folder.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn write(&self, store: &Store) -> Result<(), LabError> {
+        store.write("verification.md", self.markdown().as_bytes())?;
+        let rows = self.findings.iter().flat_map(|finding| {
+            let checks = finding.checks.iter();
+            checks.map(move |check| (finding, check))
+        });
+        let rows: Vec<(&Finding, &Check)> = rows.collect();
+        let bound = |check: &Check, k: usize| match check.expected {
+            Expected::Between(bounds) if bounds[k].is_finite() => Some(bounds[k]),
+            _ => None,
+        };
+        let csv = Table::of(&rows)
+            .column("case", |(finding, _)| finding.case.id)
+            .column("profile", |(finding, _)| finding.profile.as_str())
+            .column("seed", |(finding, _)| finding.seed)
+            .column("quantity", |(_, check)| check.quantity.as_str())
+            .column("value", |(_, check)| check.value)
+            .column("least", |(_, check)| bound(check, 0))
+            .column("most", |(_, check)| bound(check, 1))
+            .column("passed", |(_, check)| check.is_passed());
+        store.write("verification.csv", &csv.table().csv()?)?;
+        let entry = |finding: &Finding| {
+            json!({
+                "case": finding.case.id, "profile": finding.profile, "seed": finding.seed,
+                "passed": finding.is_passed(), "checks": finding.checks,
+            })
+        };
+        let entries: Vec<_> = self.findings.iter().map(entry).collect();
+        store.write(
+            "verification.json",
+            format!("{:#}\n", json!(entries)).as_bytes(),
+        )?;
+        Ok(())
+    }
+}
