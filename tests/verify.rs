@@ -5,7 +5,7 @@ use std::fs;
 
 use crate::common::program::{refused, run, stderr, text};
 use sandbox::lab::sweep::Study;
-use sandbox::lab::verify::{CASES, Case, Check, Finding, Report, chosen};
+use sandbox::lab::verify::{CASES, Case, Check, Finding, PROFILES, Report, chosen};
 
 fn all() -> impl Iterator<Item = &'static Case> {
     CASES.iter().copied().flatten()
@@ -21,11 +21,14 @@ fn the_cases_use_all_runs_of_the_study_and_no_others() {
     let known: BTreeSet<&str> = study.cells.iter().filter_map(|cell| cell.label()).collect();
     let used: BTreeSet<&str> = all().flat_map(|case| case.runs).copied().collect();
     assert_eq!(used, known);
+    assert_eq!(
+        study.document["grid"]["profile"],
+        serde_json::json!(PROFILES)
+    );
     for case in all() {
         assert!(case.runs.contains(&case.picture.0), "{}", case.id);
-        let profiles = ["sph", "sf->sph", "rvo->sph"];
         let mut misses = case.misses.iter();
-        assert!(misses.all(|(profile, why)| profiles.contains(profile) && !why.is_empty()));
+        assert!(misses.all(|(profile, why)| PROFILES.contains(profile) && !why.is_empty()));
     }
     let ids: BTreeSet<&str> = all().map(|case| case.id).collect();
     assert_eq!(ids.len(), all().count());
@@ -88,6 +91,9 @@ fn a_miss_fails_unless_it_is_known_and_a_known_one_that_passes_is_told() {
         ["case 4, sph: passes now"]
     );
     assert!(report(missing, 11.0).markdown().contains("**11**"));
+    let mut other = report(passing, 11.0);
+    other.findings[0].profile = "sf".to_owned();
+    assert!(other.failures().is_empty());
 }
 
 #[test]
@@ -125,9 +131,11 @@ fn unknown_cases_and_tables_of_some_cases_are_refused() {
         2,
         &["--only 8: no such case", "12a", "iso13"],
     );
+    let unknown = ["verify", "--only", "6", "--profile", "sphh"];
+    refused(&unknown, 2, &["sphh"]);
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("table.md");
     fs::write(&file, "<!-- verification -->\n<!-- /verification -->\n").unwrap();
     let update = ["verify", "--only", "6", "--update", text(&file)];
-    refused(&update, 2, &["--update needs all cases"]);
+    refused(&update, 2, &["--update needs all cases and profiles"]);
 }

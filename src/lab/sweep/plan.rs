@@ -31,6 +31,13 @@ pub(super) struct File {
     pub(super) seeds: Option<Seeds>,
 }
 
+impl File {
+    /// Replaces the number of seeds, if one is given.
+    pub(super) fn with_seeds(&mut self, seeds: Option<u64>) {
+        self.seeds = seeds.map(Seeds::Count).or(self.seeds.take());
+    }
+}
+
 /// Everything that cells are combined from.
 pub(super) struct Plan {
     pub(super) names: Vec<String>,

@@ -10,7 +10,6 @@ use super::StudyError;
 use super::cell::{Cell, LABEL};
 use super::choice::Root;
 use super::plan::{File, Plan};
-use super::seeds::Seeds;
 use crate::runs::error::{RunError, StoreError};
 use crate::runs::job::Job;
 use crate::runs::memory::Memory;
@@ -80,7 +79,7 @@ impl Study {
             reason: error.to_string(),
         })?;
         let built_in = false;
-        Self::parse_within(&text, Root { path, built_in }, None, memory)
+        Self::parse_within(&text, Root { path, built_in }, |_| (), memory)
     }
 
     /// Reads a study from a file, or the built-in one of this name if there is no such file.
@@ -106,13 +105,40 @@ impl Study {
         seeds: Option<u64>,
         memory: Option<u64>,
     ) -> Result<Self, StudyError> {
+        Self::changed(name, |file| file.with_seeds(seeds), memory)
+    }
+
+    /// The same with other profiles than those of its grid, if any are given.
+    ///
+    /// # Errors
+    /// As [`built_in`](Self::built_in).
+    pub fn built_in_for(
+        name: &str,
+        profiles: &[String],
+        seeds: Option<u64>,
+    ) -> Result<Self, StudyError> {
+        let change = |file: &mut File| {
+            file.with_seeds(seeds);
+            let grid = file.grid.0.iter_mut();
+            let profile = grid.filter(|(key, _)| !profiles.is_empty() && key == "profile");
+            profile.for_each(|(_, values)| *values = profiles.into());
+        };
+        Self::changed(name, change, None)
+    }
+
+    /// A built-in study, changed.
+    fn changed(
+        name: &str,
+        change: impl FnOnce(&mut File),
+        memory: Option<u64>,
+    ) -> Result<Self, StudyError> {
         let path = built_in_path(name);
         let text = built_in(&path).ok_or_else(|| ScenarioError::Unreadable {
             file: path.display().to_string(),
             reason: "no such study is built into the program".to_owned(),
         })?;
         let (path, built_in) = (path.as_path(), true);
-        Self::parse_within(text, Root { path, built_in }, seeds, memory)
+        Self::parse_within(text, Root { path, built_in }, change, memory)
     }
 
     /// Reads a study from JSON. `path` is its name in messages; files that it refers to are relative to the folder of
@@ -122,13 +148,13 @@ impl Study {
     /// As [`read`](Self::read).
     pub fn parse(text: &str, path: &Path) -> Result<Self, StudyError> {
         let built_in = false;
-        Self::parse_within(text, Root { path, built_in }, None, None)
+        Self::parse_within(text, Root { path, built_in }, |_| (), None)
     }
 
     fn parse_within(
         text: &str,
         root: Root,
-        seeds: Option<u64>,
+        change: impl FnOnce(&mut File),
         memory: Option<u64>,
     ) -> Result<Self, StudyError> {
         let file = root.path.display().to_string();
@@ -139,7 +165,7 @@ impl Study {
         };
         let document = read_document(text, &file)?;
         let mut written = parse(text).map_err(invalid)?;
-        written.seeds = seeds.map(Seeds::Count).or(written.seeds);
+        change(&mut written);
         let plan = Plan::new(&written, root).map_err(invalid)?;
         let name = written.name.unwrap_or_else(|| stem.into_owned());
         check_name(&name).map_err(invalid)?;

@@ -22,6 +22,9 @@ pub struct Case {
     pub picture: (&'static str, f64),
 }
 
+/// The profiles of the study, whose misses are known.
+pub const PROFILES: [&str; 3] = ["sph", "sf->sph", "rvo->sph"];
+
 /// All cases, in the order of the report.
 pub const CASES: [&[Case]; 2] = [&rimea::CASES, &iso::CASES];
 

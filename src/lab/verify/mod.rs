@@ -13,7 +13,7 @@ mod rimea;
 mod speeds;
 mod suite;
 
-pub use case::{CASES, Case, Runs};
+pub use case::{CASES, Case, PROFILES, Runs};
 pub use check::{Check, Expected};
 pub use report::{Finding, Report};
 pub use suite::{chosen, verify};

@@ -31,18 +31,19 @@ pub fn chosen(names: &[String]) -> Result<Vec<&'static Case>, String> {
     Ok(all().filter(is_chosen).collect())
 }
 
-/// Computes the runs of these cases that are not in `store`, with `seeds` seeds each, judges them, and writes tables and
-/// pictures.
+/// Computes the runs of these cases that are not in `store`, for these profiles (without any: [`PROFILES`](super::PROFILES)) and with
+/// `seeds` seeds each; judges them, and writes tables and pictures.
 ///
 /// # Errors
-/// A run fails, or a file cannot be written.
+/// A profile is unknown, a run fails, or a file cannot be written.
 pub fn verify(
     cases: &[&'static Case],
+    profiles: &[String],
     seeds: u64,
     store: &Store,
     listener: &dyn Listener,
 ) -> Result<Report, LabError> {
-    let study = Study::built_in("verification", Some(seeds), None)?;
+    let study = Study::built_in_for("verification", profiles, Some(seeds))?;
     let labels: BTreeSet<&str> = cases.iter().flat_map(|case| case.runs).copied().collect();
     let wanted = |cell: &&sweep::Cell| cell.label().is_some_and(|label| labels.contains(label));
     let jobs = study.jobs(|cell| wanted(&cell));
