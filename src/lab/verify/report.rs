@@ -5,6 +5,7 @@ use serde_json::json;
 use super::case::{Case, PROFILES};
 use super::check::{Check, Expected};
 use super::suite::THROUGH_WALLS;
+use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
 use crate::output::table::Table;
 use crate::runs::store::Store;
@@ -60,13 +61,17 @@ impl Row<'_> {
         self.check().quantity != THROUGH_WALLS || checks.any(|check| !check.is_passed())
     }
 
-    /// The values of a profile over the seeds, bold if one is not as expected.
+    /// The least and the largest value of a profile over the seeds, bold if one is not as expected.
     fn values(&self, profile: &str) -> String {
         let own = self.findings.iter().filter(|one| one.profile == profile);
         let checks: Vec<&Check> = own.map(|one| &one.checks[self.check]).collect();
-        let mut texts: Vec<String> = checks.iter().map(|check| written(check.value)).collect();
-        texts.dedup();
-        let text = texts.join(", ");
+        let values: Option<Vec<f64>> = checks.iter().map(|check| check.value).collect();
+        let range = values.map(|values| Range::of(&values));
+        let ends = range.map_or([None; 2], |range| [range.minimum, range.maximum].map(Some));
+        let text = match ends.map(written) {
+            [low, high] if low == high => low,
+            [low, high] => format!("{low} to {high}"),
+        };
         match checks.iter().all(|check| check.is_passed()) {
             true => text,
             false => format!("**{text}**"),

@@ -13,7 +13,7 @@ use crate::scenario::range::region;
 
 /// The name of the values if none is given.
 const NAME: &str = "walks";
-/// An agent has started when it keeps at least this part of its preferred speed.
+/// An agent that keeps this part of its preferred speed has started.
 const STARTED: f64 = 0.25;
 /// For so long, seconds: a shove by others is shorter.
 const KEPT: f64 = 1.0;
@@ -47,8 +47,7 @@ pub struct Walk {
     pub preferred_speed: f64,
     /// When it may start: its entry and its pre-movement time, seconds.
     pub due_secs: f64,
-    /// When it began to walk at a quarter of its preferred speed or more, for a second at least, seconds; `None`
-    /// before.
+    /// From when on it had a quarter of its preferred speed or more, for a second at least, seconds; `None` before.
     pub started_secs: Option<f64>,
     /// Time in the region, seconds.
     pub secs: f64,
@@ -59,20 +58,10 @@ pub struct Walk {
 /// What was seen so far.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Seen {
-    /// The walk of each agent, by id.
-    walks: Vec<Option<Observed>>,
+    /// The walk and the last position of each agent, by id.
+    walks: Vec<Option<(Walk, Vector)>>,
     /// The time observed, seconds.
     secs: f64,
-}
-
-/// An agent under observation.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-struct Observed {
-    walk: Walk,
-    /// Its last position, meters.
-    position: Vector,
-    /// Since when it has walked, seconds.
-    moving_since: Option<f64>,
 }
 
 impl Walks {
@@ -123,7 +112,7 @@ impl Measure for Walks {
         let region = self.region.and_then(|corners| region("", corners).ok());
         seen.walks.resize(agents.entered() as usize, None);
         for (i, (&id, &position)) in agents.id.iter().zip(&agents.position).enumerate() {
-            let seen = seen.walks[id as usize].get_or_insert_with(|| {
+            let (walk, before) = seen.walks[id as usize].get_or_insert_with(|| {
                 let own = agents.preferred_speed.get(i).copied();
                 let walk = Walk {
                     agent: id,
@@ -134,29 +123,24 @@ impl Measure for Walks {
                     secs: 0.0,
                     meters: 0.0,
                 };
-                Observed {
-                    walk,
-                    position,
-                    moving_since: None,
-                }
+                (walk, position)
             });
-            let walk = &mut seen.walk;
-            if walk.started_secs.is_none() {
-                let is_moving = agents.velocity[i].norm() >= STARTED * walk.preferred_speed;
-                let since = is_moving.then(|| seen.moving_since.unwrap_or(now));
-                walk.started_secs = since.filter(|since| now - since >= KEPT);
-                seen.moving_since = since;
+            let is_walking = agents.velocity[i].norm() >= STARTED * walk.preferred_speed;
+            match walk.started_secs {
+                None => walk.started_secs = is_walking.then_some(now),
+                Some(since) if now - since < KEPT && !is_walking => walk.started_secs = None,
+                Some(_) => {}
             }
             if is_due && region.is_none_or(|region| region.contains(position)) {
                 walk.secs += step;
-                walk.meters += (position - seen.position).norm();
+                walk.meters += (position - *before).norm();
             }
-            seen.position = position;
+            *before = position;
         }
     }
 
     fn values(&self, seen: &Seen, _: &Simulation) -> Vec<Option<f64>> {
-        let walks = || seen.walks.iter().flatten().map(|seen| &seen.walk);
+        let walks = || seen.walks.iter().flatten().map(|(walk, _)| walk);
         let sum = |of: fn(&Walk) -> f64| walks().map(of).sum::<f64>();
         let (secs, meters) = (sum(|walk| walk.secs), sum(|walk| walk.meters));
         let product = self.area().map(|area| area * seen.secs);
@@ -173,7 +157,7 @@ impl Measure for Walks {
 
     fn data(&self, seen: &Seen) -> Option<(String, Value)> {
         let walks = seen.walks.iter().flatten();
-        let walks: Vec<&Walk> = walks.map(|seen| &seen.walk).collect();
+        let walks: Vec<&Walk> = walks.map(|(walk, _)| walk).collect();
         Some((self.name().to_owned(), json!(walks)))
     }
 }
