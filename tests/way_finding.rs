@@ -1,7 +1,8 @@
 //! Crowds that find their ways around walls.
 
+use sandbox::engine::math::Vector;
 use sandbox::engine::simulation::Simulation;
-use sandbox::engine::ways::Destination;
+use sandbox::engine::ways::{Destination, Route, SLACK, Walker};
 use serde_json::{Value, json};
 
 use crate::common::simulated::{after, go_on, scenario};
@@ -46,6 +47,87 @@ fn without_walls_between_paths_change_no_bit() {
         after(&open, &[&setting], 4.0).digest()
     });
     assert_eq!(paths, straight);
+}
+
+#[test]
+fn where_no_wall_can_come_between_no_way_is_looked_up() {
+    let room = json!({
+        "walkable_area": [[[[0, 0], [20, 0], [20, 10], [0, 10]]]],
+        "grids": [{"min": [1, 1], "max": [5, 6], "columns": 5, "rows": 5, "goal": [18, 4]}]
+    });
+    let scene = scenario(&room, &[]).unwrap().scene;
+    assert!(!scene.walls.is_empty() && scene.ways.is_none());
+    let mut with_pillar = room;
+    with_pillar["obstacles"] = json!([[[10, 4], [11, 4], [11, 5], [10, 5]]]);
+    assert!(scenario(&with_pillar, &[]).unwrap().scene.ways.is_some());
+}
+
+/// Between two searches an agent keeps its corner as long as it sees it. It may take a way that is longer than the
+/// shortest by `SLACK`, and by 1.6 m more while it is pushed straight back by 0.8 m.
+#[test]
+fn agents_see_what_they_walk_to_and_take_nearly_the_shortest_way_wherever_they_are_pushed() {
+    use rand::{Rng, SeedableRng};
+    let doors = [[2.0, 2.0], [6.0, 4.0], [2.0, 6.0]];
+    let walls = doors.map(|[x, y]| {
+        let left = [[0.0, y], [x, y], [x, y + 0.2], [0.0, y + 0.2]];
+        let right = [[x + 1.0, y], [9.0, y], [9.0, y + 0.2], [x + 1.0, y + 0.2]];
+        [left, right]
+    });
+    let pillar = [[4.0, 4.8], [4.4, 4.8], [4.4, 5.2], [4.0, 5.2]];
+    let obstacles: Vec<_> = walls.into_iter().flatten().chain([pillar]).collect();
+    let document = json!({
+        "walkable_area": [[[[0, 0], [10, 0], [10, 8], [0, 8]]]], "obstacles": obstacles,
+        "agents": [{"position": [8, 7.5], "goal": [0.5, 0.5]}]
+    });
+    let ways = scenario(&document, &[]).unwrap().scene.ways.unwrap();
+    let goal = Vector::new(0.5, 0.5);
+    let is_free = |p: Vector, to: Vector| {
+        let inside = (1..100).map(|k| p + (to - p) * (f64::from(k) / 100.0));
+        inside.into_iter().all(|q| ways.floor.locate(q).is_some())
+    };
+    let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(5);
+    let (mut p, mut held, mut aim) = (Vector::new(8.0, 7.5), None::<Route>, goal);
+    let (mut kept, mut steps) = (0, 0);
+    while steps < 20_000 {
+        // Mostly a step on the way, sometimes a push anywhere.
+        let push: f64 = [0.1, 0.1, 0.1, 0.6, 3.0][random.random_range(0..5)];
+        let turn: f64 = random.random_range(0.0..std::f64::consts::TAU);
+        let ahead = (aim - p).normalize() * 0.1;
+        let next = p + ahead + push * random.random::<f64>() * Vector::new(turn.cos(), turn.sin());
+        if ways.floor.locate(next).is_none() || (next - goal).norm() < 0.2 {
+            continue;
+        }
+        (p, steps) = (next, steps + 1);
+        if held.is_some_and(|route| route.holds(p)) {
+            kept += 1;
+        } else {
+            let walker = Walker {
+                id: 0,
+                position: p,
+                to: Destination::Goal(goal),
+                radius: 0.2,
+            };
+            aim = ways.aim(&walker, &mut held, 1);
+        }
+        let route = held.unwrap();
+        assert!(
+            is_free(p, ways.next(&route)),
+            "{p} cannot see {}",
+            ways.next(&route)
+        );
+        let mut course = ways.course_of(&route);
+        course.insert(0, p);
+        let length: f64 = course
+            .windows(2)
+            .map(|ends| (ends[1] - ends[0]).norm())
+            .sum();
+        let shortest = ways.way(p, Destination::Goal(goal)).unwrap().length;
+        assert!(
+            length < shortest + SLACK + 1.6,
+            "{p}: {length}, not {shortest}"
+        );
+    }
+    assert!(kept > steps / 10, "{kept}");
 }
 
 #[test]

@@ -87,6 +87,10 @@ pub struct Agents {
     /// The way that the agent follows, held until the next coarse frame; `None` for agents that entered since. Empty
     /// in scenes without path maps.
     pub route: Vec<Option<Route>>,
+    /// Do some agents have no route yet?
+    pub lacks_routes: bool,
+    /// The point that the agent walks to on its route, meters. As long as `route`.
+    pub aim: Vec<Vector>,
     /// How far the agent has come on its journey; `None` for agents without a journey, and for those that entered
     /// since the last coarse frame. Empty in scenes without journeys.
     pub trip: Vec<Option<Trip>>,
@@ -146,6 +150,7 @@ impl Agents {
         ];
         always.iter().all(|&len| len == count)
             && sometimes.iter().all(|&len| len <= count)
+            && self.aim.len() == self.route.len()
             && all_or_none.iter().all(|&len| len == count || len == 0)
     }
 
@@ -208,24 +213,38 @@ impl Agents {
     /// Finds the ways of all agents in coarse frames, and of those that entered since in every frame. `seed` is that of
     /// the population.
     pub fn follow(&mut self, ways: &Ways, coarse: bool, seed: u64) {
-        self.route.resize(self.len(), None);
+        if !coarse && !self.lacks_routes && self.route.len() == self.len() {
+            return;
+        }
+        self.lacks_routes = false;
+        self.make_room_for_routes();
         let (ids, positions, goals, radii) = (&self.id, &self.position, &self.goal, &self.radius);
         let trips = &self.trip;
-        let routes = self.route.par_iter_mut().enumerate();
-        routes.with_min_len(SOME).for_each(|(i, route)| {
-            if coarse || route.is_none() {
+        let routes = self.route.par_iter_mut().zip(&mut self.aim);
+        let routes = routes.zip(positions).enumerate();
+        routes
+            .with_min_len(FEW)
+            .for_each(|(i, ((route, aim), &position))| {
+                let still_holds = |route: &Route| !coarse || route.holds(position);
+                if route.as_ref().is_some_and(still_holds) {
+                    return;
+                }
                 let trip = trips.get(i).and_then(Option::as_ref);
                 let walker = Walker {
                     id: ids[i],
-                    position: positions[i],
+                    position,
                     to: trip.map_or(Destination::Goal(goals[i]), |trip| {
                         Destination::Place(trip.place)
                     }),
                     radius: radii[i],
                 };
-                *route = Some(ways.route(&walker, route.as_ref(), seed));
-            }
-        });
+                *aim = ways.aim(&walker, route, seed);
+            });
+    }
+
+    fn make_room_for_routes(&mut self) {
+        self.route.resize(self.len(), None);
+        self.aim.resize(self.len(), Vector::zeros());
     }
 
     /// Extends `avoidance` to all agents.
@@ -240,8 +259,10 @@ impl Agents {
             arrange(&mut self.avoidance, order);
         }
         if !self.route.is_empty() {
-            self.route.resize(self.len(), None);
+            self.lacks_routes |= self.route.len() < self.len();
+            self.make_room_for_routes();
             arrange(&mut self.route, order);
+            arrange(&mut self.aim, order);
         }
         if !self.acceleration_before.is_empty() {
             self.acceleration_before.resize(self.len(), None);
@@ -293,6 +314,8 @@ fn set_last(values: &mut Vec<f64>, count: usize, value: f64, usual: f64) {
 
 /// Least number of values per parallel task.
 const SOME: usize = 4096;
+/// Least number of agents that look for their ways per parallel task.
+const FEW: usize = 512;
 
 fn arrange<T: Copy + Send + Sync>(values: &mut Vec<T>, order: &[u32]) {
     let arranged = order.par_iter().with_min_len(SOME);

@@ -222,7 +222,7 @@ fn way_left(simulation: &Simulation, i: usize) -> Option<WayLeft> {
     Some(WayLeft {
         length: Some(route.length()).filter(|length| length.is_finite()),
         next: ways.next(route).into(),
-        heading: ways.direction(route, position).into(),
+        heading: direction(agents.aim[i] - position).into(),
         corners: corners.collect(),
     })
 }

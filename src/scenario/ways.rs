@@ -88,7 +88,8 @@ pub(super) fn ways(keys: &File, scene: &Scene) -> Result<Option<Arc<Ways>>, Prob
     let ways = prepared.ways(prepared.width)?;
     prepared.check_goals(&ways)?;
     prepared.check_journeys(&ways)?;
-    Ok(Some(Arc::new(ways)))
+    // Where all goals are in sight, agents walk straight.
+    Ok((has_journeys || ways.bend()).then(|| Arc::new(ways)))
 }
 
 /// The goals that need path maps: those of several agents, and those behind walls.

@@ -98,32 +98,35 @@ impl Simulation {
         let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
         let preferred = &mut self.derived.fields.preferred_velocity;
         preferred.resize(crowd.agents.len(), Vector::zeros());
-        self.stages.time(Stage::PreferredVelocity, || {
-            if let Some(ways) = &scene.ways {
-                let coarse = crowd.clock.is_coarse();
+        if let Some(ways) = &scene.ways {
+            let coarse = crowd.clock.is_coarse();
+            self.stages.time(Stage::Ways, || {
                 crowd.agents.follow(ways, coarse, scene.seed);
-            }
+            });
+        }
+        self.stages.time(Stage::PreferredVelocity, || {
             let agents = &crowd.agents;
+            // Agents walk to the next point of their way; without ways, straight to their goal.
+            let aims = match scene.ways {
+                Some(_) => &agents.aim,
+                None => &agents.goal,
+            };
             let alike = !self.fixed.needs.paces && agents.walk_alike();
-            if alike && scene.ways.is_none() {
-                return straight_at(scene.preferred_speed, agents, preferred);
+            if alike && agents.trip.is_empty() {
+                let speed = scene.preferred_speed;
+                return straight_at(speed, &agents.position, aims, preferred);
             }
             let time = crowd.clock.time();
             let wishes = preferred.par_iter_mut().with_min_len(TASK * BLOCK);
             wishes.enumerate().for_each(|(i, wish)| {
-                let (position, goal) = (agents.position[i], agents.goal[i]);
+                let position = agents.position[i];
                 let pace = scene.pace(agents, i, time);
                 let trip = agents.trip.get(i).and_then(Option::as_ref);
                 if let Some(place) = trip.and_then(|trip| trip.hold) {
                     *wish = clamp_length((place - position) / ARRIVAL_TIME, pace);
                     return;
                 }
-                let route = agents.route.get(i).and_then(Option::as_ref);
-                let toward = match (&scene.ways, route) {
-                    (Some(ways), Some(route)) => ways.direction(route, position),
-                    _ => direction(goal - position),
-                };
-                *wish = toward * pace;
+                *wish = direction(aims[i] - position) * pace;
             });
         });
     }
@@ -247,16 +250,16 @@ impl Fixed {
 /// Agents slow down this many seconds before they reach the spot where they wait.
 const ARRIVAL_TIME: f64 = 1.0;
 
-/// The preferred velocities of agents that walk straight toward their goals at the same `speed`, m/s.
-fn straight_at(speed: f64, agents: &Agents, preferred: &mut [Vector]) {
+/// The preferred velocities of agents that walk straight toward their `aims` at the same `speed`, m/s.
+fn straight_at(speed: f64, positions: &[Vector], aims: &[Vector], preferred: &mut [Vector]) {
     let blocks = (
         preferred.par_chunks_mut(BLOCK),
-        agents.position.par_chunks(BLOCK),
-        agents.goal.par_chunks(BLOCK),
+        positions.par_chunks(BLOCK),
+        aims.par_chunks(BLOCK),
     );
     let blocks = blocks.into_par_iter().with_min_len(TASK);
-    blocks.for_each(|(preferred, positions, goals)| {
-        for ((v, &r), &g) in preferred.iter_mut().zip(positions).zip(goals) {
+    blocks.for_each(|(preferred, positions, aims)| {
+        for ((v, &r), &g) in preferred.iter_mut().zip(positions).zip(aims) {
             *v = goal::preferred_velocity(r, g, speed);
         }
     });

@@ -17,6 +17,8 @@ pub enum Stage {
     Packing,
     /// Step 1B.
     DensityAndPressure,
+    /// Next corners on the ways around walls, coarse.
+    Ways,
     /// Step 2.
     PreferredVelocity,
     /// Velocity obstacles, coarse.
@@ -31,13 +33,14 @@ pub enum Stage {
 
 impl Stage {
     /// All stages in the order of the loop.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Schedule,
         Self::Journeys,
         Self::Sort,
         Self::Neighbors,
         Self::Packing,
         Self::DensityAndPressure,
+        Self::Ways,
         Self::PreferredVelocity,
         Self::Rvo,
         Self::Acceleration,
@@ -54,6 +57,7 @@ impl Stage {
             Self::Neighbors => "neighbors",
             Self::Packing => "packing",
             Self::DensityAndPressure => "density_and_pressure",
+            Self::Ways => "ways",
             Self::PreferredVelocity => "preferred_velocity",
             Self::Rvo => "rvo",
             Self::Acceleration => "acceleration",

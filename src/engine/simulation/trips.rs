@@ -246,6 +246,7 @@ impl Crowd {
             trip.hold = None;
             if let Some(route) = self.agents.route.get_mut(i) {
                 *route = None;
+                self.agents.lacks_routes = true;
             }
             let place = &scene.journeys.places[usize::from(place)];
             self.agents.goal[i] = place.nearest_point(self.agents.position[i]);

@@ -88,10 +88,7 @@ impl<'a> Entries<'a> {
         };
         if rest + farthest < *most {
             let targets = self.targets;
-            if corners
-                .iter()
-                .all(|&p| targets.holds(self.floor, entry, p, 0.0))
-            {
+            if corners.iter().all(|&p| targets.holds(self.floor, entry, p)) {
                 *most = rest + farthest;
             }
         }

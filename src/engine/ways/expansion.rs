@@ -22,11 +22,12 @@ impl Eye {
         }
     }
 
-    /// How much [`side`](Self::side) changes per meter.
-    pub fn scale(&self, through: Vector) -> f64 {
+    /// A vector in the direction of the ray through `through`; [`side`](Self::side) changes by its length per meter.
+    #[inline]
+    pub fn ray(&self, through: Vector) -> Vector {
         match *self {
-            Self::Near(eye) => (through - eye).norm(),
-            Self::Far(way) => way.norm(),
+            Self::Near(eye) => through - eye,
+            Self::Far(way) => way,
         }
     }
 }

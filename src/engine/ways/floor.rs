@@ -6,7 +6,7 @@ use super::WayError;
 use super::corner::{Bend, Corner, Turn};
 use super::expansion::{Eye, Sight, View, expand};
 use super::grid::Grid;
-use super::mesh::Mesh;
+use super::mesh::{Mesh, side};
 use crate::engine::geometry::Area;
 use crate::engine::math::Vector;
 
@@ -19,6 +19,8 @@ pub struct Floor {
     pub grid: Grid,
     /// The corners that shortest ways bend around.
     pub corners: Vec<Corner>,
+    /// Their places again, side by side, meters.
+    places: Vec<Vector>,
     /// Ways narrower than this are closed, meters.
     pub least_width: f64,
     /// The corner at each corner of each triangle, with the triangle's place in the corner's fan.
@@ -27,6 +29,9 @@ pub struct Floor {
     ways: Vec<u32>,
     starts: Vec<u32>,
 }
+
+/// The search for a triangle goes from one to the next this often.
+const STEPS: usize = 3;
 
 /// A straight way between two corners. The turn of each is that of a way that ends at the other.
 type StraightWay = [Bend; 2];
@@ -50,6 +55,7 @@ impl Floor {
             starts: vec![0],
             grid: Grid::over(&mesh),
             mesh,
+            places: corners.iter().map(|corner| corner.place).collect(),
             corners,
             least_width,
             at,
@@ -92,6 +98,7 @@ impl Floor {
         (self.ways.capacity() + self.starts.capacity()) * size_of::<u32>()
             + self.grid.bytes()
             + self.mesh.bytes()
+            + self.places.capacity() * size_of::<Vector>()
             + self.at.capacity() * size_of::<[Option<(u32, u32)>; 3]>()
             + corners.sum::<usize>()
     }
@@ -116,13 +123,30 @@ impl Floor {
     /// The place of a bend's corner, meters.
     #[inline]
     pub fn place(&self, bend: Bend) -> Vector {
-        self.corners[bend.corner as usize].place
+        self.places[bend.corner as usize]
     }
 
     /// A triangle that contains `p`; `None` outside of the floor.
     pub fn locate(&self, p: Vector) -> Option<u32> {
         let mut near = self.grid.triangles(p).iter().copied();
         near.find(|&t| self.mesh.contains(t, p))
+    }
+
+    /// As [`locate`](Self::locate), but looks near triangle `before` first.
+    pub fn locate_from(&self, before: u32, p: Vector) -> Option<u32> {
+        let mut here = before;
+        for _ in 0..STEPS {
+            let corners = self.mesh.corners(here);
+            let is_beyond = |&k: &usize| side(corners[k], corners[(k + 1) % 3], p) < 0.0;
+            let Some(k) = (0..3).find(is_beyond) else {
+                return Some(here);
+            };
+            let Some(next) = self.mesh.triangle(here).across[k] else {
+                break;
+            };
+            here = next;
+        }
+        self.locate(p)
     }
 
     /// The triangle nearest to a point, such as one in a wall.

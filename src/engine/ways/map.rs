@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 use super::WayError;
 use super::corner::{Bend, Turn};
 use super::entries::{Entries, spread};
-use super::expansion::Eye;
 use super::floor::Floor;
 use super::goal::{Goal, Seen};
 use super::parts::Parts;
@@ -44,6 +43,9 @@ impl Next {
     }
 }
 
+/// No entry has this number.
+pub const NO_ENTRY: usize = usize::MAX;
+
 /// The way from a position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Way {
@@ -51,6 +53,11 @@ pub struct Way {
     pub length: f64,
     /// What comes first.
     pub next: Next,
+    /// What comes first is seen from everywhere within this distance, in the same triangle and on the way there,
+    /// meters, at most 1.
+    pub sight: f64,
+    /// The number of the map's entry for this way; `NO_ENTRY` if it has none.
+    pub entry: usize,
 }
 
 /// For one goal, the way from any position.
@@ -72,7 +79,8 @@ impl PathMap {
     pub fn new(floor: &Floor, goals: &[Goal], margin: f64) -> Result<Self, WayError> {
         let mut seen = Seen::new(floor, goals, margin)?;
         spread(floor, &mut seen.targets);
-        let Seen { targets, views } = seen;
+        let Seen { mut targets, views } = seen;
+        targets.find_beyond(floor);
         let entries = Entries::new(floor, &targets, views);
         let building = entries.bytes();
         let parts = Parts::new(floor, &targets, entries.of_triangles());
@@ -112,36 +120,80 @@ impl PathMap {
     /// The way from `p`, which lies in triangle `t`. `None` if the goal cannot be reached from there. An agent that
     /// walks toward `held` goes on until this corner is behind it or another way is shorter by [`SLACK`].
     pub fn way(&self, floor: &Floor, p: Vector, t: u32, held: Option<Bend>) -> Option<Way> {
-        let best = self.best(floor, (p, t), 0.0);
-        // Rounding can leave gaps between regions.
-        let best = best.or_else(|| self.best(floor, (p, t), GAP));
-        let Some((length, entry)) = best else {
+        let Some((number, entry)) = self.best(floor, p, t) else {
             return self
                 .way_in(floor, p, t)
                 .or_else(|| self.way_out(floor, p, t));
         };
-        let Some(bend) = self.targets.bend(entry.target) else {
-            let next = Next::Goal(self.targets.nearest(floor, entry.target, p));
-            return Some(Way { length, next });
+        let other = held.filter(|&held| {
+            let bend = self.targets.bend(entry.target);
+            bend.is_some_and(|bend| bend != held)
+        });
+        let best = self.over(floor, p, (number, entry));
+        let kept = other.and_then(|held| self.kept(floor, (p, t), held, best.length));
+        Some(kept.unwrap_or(best))
+    }
+
+    /// The way from `p` over entry number `number`, if `p` still lies where its target is seen and the way bends there.
+    /// For positions in the entry's triangle and between it and the target.
+    pub fn way_over(&self, floor: &Floor, p: Vector, number: usize) -> Option<Way> {
+        let entry = self.parts.entry(number)?;
+        if !self.targets.bends(floor, entry.target, p) {
+            return None;
+        }
+        let way = self.over(floor, p, (number, entry));
+        (way.sight > 0.0).then_some(way)
+    }
+
+    /// The way from `p` over an entry with this number.
+    #[inline]
+    fn over(&self, floor: &Floor, p: Vector, (number, entry): (usize, Entry)) -> Way {
+        let next = match self.targets.bend(entry.target) {
+            None => Next::Goal(self.targets.nearest(floor, entry.target, p)),
+            Some(bend) => toward(bend, entry.borders.map(|b| self.targets.border(floor, b))),
         };
-        let other = held.filter(|&held| held != bend);
-        let kept = other.and_then(|held| self.kept(floor, (p, t), held, length));
-        kept.or_else(|| {
-            let borders = entry.borders.map(|b| self.targets.border(floor, b));
-            let next = toward(bend, borders);
-            Some(Way { length, next })
+        let [right, left] = self
+            .targets
+            .cone(floor, entry)
+            .map(|limit| limit.distance(p, FAR));
+        Way {
+            length: self.targets.length(floor, entry.target, p),
+            next,
+            sight: right.min(left),
+            entry: number,
+        }
+    }
+
+    /// The entry of the shortest way from `p` in triangle `t`, and its number.
+    #[inline]
+    fn best(&self, floor: &Floor, p: Vector, t: u32) -> Option<(usize, Entry)> {
+        let shortest = self.shortest(floor, (p, t), |entry| self.targets.holds(floor, entry, p));
+        // Rounding can leave gaps between regions.
+        shortest.or_else(|| {
+            self.shortest(floor, (p, t), |entry| {
+                let limits = self.targets.limits(floor, entry);
+                limits.iter().all(|limit| limit.holds(p, GAP))
+            })
         })
     }
 
-    /// The shortest way from `p` in triangle `t` over an entry that holds there or within `margin` meters.
+    /// The entry of the shortest way from `p` in triangle `t` over an entry that `holds`, and its number.
     #[inline]
-    fn best(&self, floor: &Floor, (p, t): (Vector, u32), margin: f64) -> Option<(f64, Entry)> {
-        let mut best: Option<(f64, Entry)> = None;
-        for entry in self.parts.at(floor, p, t) {
-            let length = self.targets.length(floor, entry.target, p);
-            let is_shorter = best.is_none_or(|(least, _)| length < least);
-            if is_shorter && self.targets.holds(floor, entry, p, margin) {
-                best = Some((length, entry));
+    fn shortest(
+        &self,
+        floor: &Floor,
+        (p, t): (Vector, u32),
+        holds: impl Fn(Entry) -> bool,
+    ) -> Option<(usize, Entry)> {
+        let (mut best, mut least) = (None, f64::INFINITY);
+        for (number, entry) in self.parts.at(floor, p, t) {
+            let rest = self.targets.rest(entry.target);
+            let way = self.targets.nearest(floor, entry.target, p) - p;
+            // Most ways are longer: no root for them.
+            let left = least - rest;
+            if left > 0.0 && way.norm_squared() < left * left && holds(entry) {
+                least = way.norm() + rest;
+                best = Some((number, entry));
             }
         }
         best
@@ -150,19 +202,28 @@ impl PathMap {
     /// The way over `held` from `p` in triangle `t`, if it goes straight there, bends there, and is longer than `least`
     /// by at most [`SLACK`].
     fn kept(&self, floor: &Floor, (p, t): (Vector, u32), held: Bend, least: f64) -> Option<Way> {
-        let length = self.targets.length(floor, held.index() as u32, p);
-        let eye = Eye::Near(floor.place(held));
-        let beyond = eye.side(self.targets.beyond(floor, held), p);
-        let bends = match held.turn {
-            Turn::First => beyond <= 0.0,
-            Turn::Last => beyond >= 0.0,
-        };
-        if length > least + SLACK || !bends {
+        let target = held.index() as u32;
+        let length = self.targets.length(floor, target, p);
+        if length > least + SLACK || !self.targets.bends(floor, target, p) {
             return None;
         }
+        let mut entries = self.parts.at(floor, p, t);
+        let holds = |entry: Entry| entry.target == target && self.targets.holds(floor, entry, p);
+        if let Some(found) = entries.find(|&(_, entry)| holds(entry)) {
+            // Longer than the shortest: it is compared with others again soon.
+            let entry = NO_ENTRY;
+            return Some(Way {
+                entry,
+                ..self.over(floor, p, found)
+            });
+        }
         let view = floor.sight(p, t, held)?;
-        let next = toward(held, [view.right.at, view.left.at]);
-        Some(Way { length, next })
+        Some(Way {
+            length,
+            next: toward(held, [view.right.at, view.left.at]),
+            sight: 0.0,
+            entry: NO_ENTRY,
+        })
     }
 
     /// The way from a position in triangle `t` from which no target is seen, but from another part of the triangle.
@@ -177,8 +238,12 @@ impl PathMap {
             let rest = self.targets.length(floor, entry.target, point);
             let length = (point - p).norm() + rest;
             if best.is_none_or(|best| length < best.length) {
-                let next = Next::Out(point);
-                best = Some(Way { length, next });
+                best = Some(Way {
+                    length,
+                    next: Next::Out(point),
+                    sight: 0.0,
+                    entry: NO_ENTRY,
+                });
             }
         });
         best
@@ -210,6 +275,8 @@ impl PathMap {
         Some(Way {
             length,
             next: Next::Out(next),
+            sight: 0.0,
+            entry: NO_ENTRY,
         })
     }
 
@@ -252,6 +319,9 @@ fn toward(bend: Bend, [right, left]: [Vector; 2]) -> Next {
     };
     Next::Corner { bend, borders }
 }
+
+/// Distances to the border of what is seen are not distinguished beyond this, meters.
+const FAR: f64 = 1.0;
 
 /// Regions reach this far where there are gaps between them, meters.
 const GAP: f64 = 1e-6;

@@ -107,6 +107,33 @@ impl Mesh {
         (0..3).all(|k| side(corners[k], corners[(k + 1) % 3], p) >= 0.0)
     }
 
+    /// A distance, at most `most` meters, within which `p` stays in triangle `t`, in a neighbor of it, or between it and
+    /// `place`.
+    pub fn room_before(&self, t: u32, p: Vector, place: Vector, most: f64) -> f64 {
+        let mut room = most;
+        for (ends, next) in self.sides(t) {
+            let here = from_line(ends, p, room);
+            if here >= room || side(ends[0], ends[1], place) <= 0.0 {
+                continue;
+            }
+            room = match next {
+                None => here,
+                Some(next) => {
+                    let others = self.sides(next).filter(|&(_, across)| across != Some(t));
+                    let there = others.map(|(ends, _)| from_line(ends, p, room));
+                    here.max(there.fold(room, f64::min))
+                }
+            };
+        }
+        room
+    }
+
+    /// The sides of triangle `t`, and what lies beyond each.
+    fn sides(&self, t: u32) -> impl Iterator<Item = ([Vector; 2], Option<u32>)> {
+        let (corners, across) = (self.corners(t), self.triangle(t).across);
+        (0..3).map(move |k| ([corners[k], corners[(k + 1) % 3]], across[k]))
+    }
+
     /// The distance from `p` to triangle `t`, meters; 0 inside.
     pub fn distance(&self, t: u32, p: Vector) -> f64 {
         if self.contains(t, p) {
@@ -329,4 +356,20 @@ fn floor(triangulation: &ConstrainedDelaunayTriangulation<Point2<f64>>) -> Vec<T
         }
     };
     faces().map(triangle).collect()
+}
+
+/// The distance of `p` from a line, meters, at most `most`; negative on its right.
+fn from_line([a, b]: [Vector; 2], p: Vector, most: f64) -> f64 {
+    part(side(a, b, p), b - a, most)
+}
+
+/// `product` divided by the length of a vector, at most `most`, which most quotients exceed.
+#[inline]
+pub fn part(product: f64, vector: Vector, most: f64) -> f64 {
+    // No root and no division for them.
+    if product > 0.0 && product * product >= most * most * vector.norm_squared() {
+        most
+    } else {
+        product / vector.norm()
+    }
 }

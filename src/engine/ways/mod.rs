@@ -12,6 +12,7 @@ mod expansion;
 mod floor;
 mod goal;
 mod grid;
+mod list;
 mod map;
 mod mesh;
 mod parts;

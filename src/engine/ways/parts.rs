@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::floor::Floor;
+use super::list::Lists;
 use super::region::{Candidate, Corners, best};
 use super::targets::{Entry, Targets};
 use crate::engine::math::Vector;
@@ -18,21 +19,19 @@ const MOST_HALVINGS: u32 = 12;
 /// Triangles that are divided at once.
 const CHUNK: usize = 1024;
 
-/// Marks the last entry of a part.
-const LAST: u32 = 1 << 31;
 /// Marks parts that are halved.
 const HALVED: u32 = 1 << 31;
 /// A part without entries.
 const NONE: u32 = HALVED - 1;
 
 /// The parts of all triangles.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Parts {
     /// First those that are whole triangles, then the halves in pairs: the number of the first entry, or `HALVED` and
     /// the number of the first half.
     parts: Vec<u32>,
-    /// The entries of each part in the order of their targets; the last is marked.
-    entries: Vec<Entry>,
+    /// The entries of each part in the order of their targets.
+    entries: Lists,
 }
 
 /// The two halves of a part, on the left and on the right of the line from the middle of its longest side to the
@@ -96,7 +95,7 @@ impl Parts {
         let count = floor.mesh.triangles().len();
         let mut all = Self {
             parts: vec![NONE; count],
-            entries: Vec::new(),
+            entries: Lists::new(targets.len(), floor.borders() + targets.borders.len()),
         };
         for from in (0..count).step_by(CHUNK) {
             let some: Vec<Vec<Entry>> = found.by_ref().take(CHUNK).collect();
@@ -111,11 +110,11 @@ impl Parts {
             }
         }
         all.parts.shrink_to_fit();
-        all.entries.shrink_to_fit();
+        all.entries.shrink();
         all
     }
 
-    fn add(&mut self, number: usize, mut part: Part) {
+    fn add(&mut self, number: usize, part: Part) {
         if let Some(halves) = part.halves {
             let first = self.parts.len();
             self.parts.extend([NONE; 2]);
@@ -123,16 +122,21 @@ impl Parts {
             for (k, half) in halves.into_iter().enumerate() {
                 self.add(first + k, half);
             }
-        } else if let Some(last) = part.entries.last_mut() {
-            last.target |= LAST;
+        } else if !part.entries.is_empty() {
             self.parts[number] = self.entries.len() as u32;
-            self.entries.append(&mut part.entries);
+            self.entries.add(&part.entries);
         }
     }
 
-    /// The entries that can be the best at `p`, which lies in triangle `t`.
+    /// Entry number `k`, if there is one.
     #[inline]
-    pub fn at(&self, floor: &Floor, p: Vector, t: u32) -> impl Iterator<Item = Entry> {
+    pub fn entry(&self, k: usize) -> Option<Entry> {
+        self.entries.get(k).map(|(entry, _)| entry)
+    }
+
+    /// The entries that can be the best at `p`, which lies in triangle `t`, with their numbers.
+    #[inline]
+    pub fn at(&self, floor: &Floor, p: Vector, t: u32) -> impl Iterator<Item = (usize, Entry)> {
         let mut part = self.parts[t as usize];
         if part & HALVED != 0 {
             let mut corners = floor.mesh.corners(t);
@@ -144,23 +148,7 @@ impl Parts {
                 part = self.parts[(part & !HALVED) as usize + usize::from(!is_left)];
             }
         }
-        self.of(part)
-    }
-
-    /// The entries from number `first` to a marked one.
-    #[inline]
-    fn of(&self, first: u32) -> impl Iterator<Item = Entry> {
-        let all = self.entries.get(first as usize..).unwrap_or_default();
-        let mut is_over = false;
-        all.iter().map_while(move |entry| {
-            let is_last = entry.target & LAST != 0;
-            let here = (!is_over).then_some(Entry {
-                target: entry.target & !LAST,
-                ..*entry
-            });
-            is_over |= is_last;
-            here
-        })
+        self.entries.from(part as usize)
     }
 
     /// Calls `take` for all parts of triangle `t` with each of their entries.
@@ -172,7 +160,8 @@ impl Parts {
                 let both = halves(corners);
                 waiting.extend([0, 1].map(|k| (both[k], self.parts[first + k])));
             } else {
-                self.of(part).for_each(|entry| take(corners, entry));
+                let entries = self.entries.from(part as usize);
+                entries.for_each(|(_, entry)| take(corners, entry));
             }
         }
     }
@@ -184,15 +173,11 @@ impl Parts {
 
     /// All entries.
     pub fn all(&self) -> impl Iterator<Item = Entry> {
-        let all = self.entries.iter();
-        all.map(|entry| Entry {
-            target: entry.target & !LAST,
-            ..*entry
-        })
+        self.entries.all()
     }
 
     /// The memory that it takes, bytes.
     pub fn bytes(&self) -> usize {
-        self.parts.capacity() * size_of::<u32>() + self.entries.capacity() * size_of::<Entry>()
+        self.parts.capacity() * size_of::<u32>() + self.entries.bytes()
     }
 }

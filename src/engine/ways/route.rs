@@ -4,16 +4,23 @@ use rand::Rng;
 use serde::{Deserialize, Serialize};
 
 use super::WayError;
+use super::corner::Bend;
 use super::floor::Floor;
 use super::goal::Goal;
-use super::map::{Next, PathMap, Way};
+use super::map::{Next, PathMap, SLACK, Way};
 use super::mesh::side;
 use super::steer::heading;
-use crate::engine::math::{Vector, direction};
+use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
 
 /// Agents keep this distance from corners in addition to their radius, drawn for each agent, meters.
 const CLEARANCE: [f64; 2] = [0.05, 0.6];
+
+/// Agents keep their aim until they have moved this part of the distance to what comes next. Headings err by a few
+/// degrees.
+const SHARE: f64 = 0.15;
+/// They move this far at most until then, meters.
+const LONGEST: f64 = 0.8;
 
 /// Lines are shortened by this at both ends, so that bodies fit between the ends, meters.
 const LINE_MARGIN: f64 = 0.25;
@@ -41,14 +48,35 @@ pub enum Destination {
 /// The way that an agent follows.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Route {
+    /// Where the agent was when its aim was last found, meters.
+    found: Vector,
+    /// The aim is found again when the agent is this far from there, meters.
+    reach: f64,
+    /// The triangle in which the way was found.
+    triangle: u32,
+    /// The number of the map's entry for it.
+    entry: u32,
+    /// There, the way was longer than the shortest by this at most, meters.
+    excess: f64,
     /// The number of its path map; `None`: straight to its goal.
     map: Option<u16>,
-    /// What comes next.
-    next: Next,
+    /// What comes first.
+    first: First,
     /// The length of the way, meters; infinite without a path map.
     length: f64,
     /// The distance that the agent keeps from corners, meters.
     clearance: f64,
+}
+
+/// What comes first on the way of an agent.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+enum First {
+    /// A corner.
+    Corner(Bend),
+    /// The end of the way, meters.
+    End(Vector),
+    /// A point in a place wide enough for ways, meters.
+    Out(Vector),
 }
 
 /// What the route of an agent depends on.
@@ -86,7 +114,7 @@ impl Ways {
     /// The way from `p` to a destination; `None` if there is none, or no map of it.
     pub fn way(&self, p: Vector, to: Destination) -> Option<Way> {
         let map = self.map_to(to)?;
-        self.from(usize::from(map), p, None)
+        self.from(map, p)
     }
 
     /// Does a way lead from `p` to a destination that is nowhere narrower than the floor's least width?
@@ -111,13 +139,19 @@ impl Ways {
 
     /// Can `route` come from here?
     pub fn knows(&self, route: &Route) -> bool {
-        let maps = self.maps.len();
         let corners = self.floor.corners.len();
-        route.map.is_none_or(|map| usize::from(map) < maps)
-            && route
-                .next
-                .bend()
-                .is_none_or(|bend| (bend.corner as usize) < corners)
+        let is_known = match route.first {
+            First::Corner(bend) => (bend.corner as usize) < corners,
+            First::End(_) | First::Out(_) => true,
+        };
+        let is_known = is_known && (route.triangle as usize) < self.floor.mesh.triangles().len();
+        let maps = self.maps.len();
+        is_known && route.map.is_none_or(|map| usize::from(map) < maps)
+    }
+
+    /// Does a way bend around a corner from anywhere?
+    pub fn bend(&self) -> bool {
+        self.maps.iter().any(PathMap::bends)
     }
 
     fn map_to(&self, to: Destination) -> Option<u16> {
@@ -130,44 +164,96 @@ impl Ways {
         map.map(|map| (self.places + map) as u16)
     }
 
-    fn from(&self, map: usize, p: Vector, held: Option<&Next>) -> Option<Way> {
+    fn from(&self, map: u16, p: Vector) -> Option<Way> {
         let floor = &self.floor;
         let here = floor.locate(p).or_else(|| floor.nearest(p))?;
-        self.maps[map].way(floor, p, here, held.and_then(Next::bend))
+        self.maps[usize::from(map)].way(floor, p, here, None)
     }
 
-    /// The route of an agent from where it is, after `before`. `seed` is that of the population.
-    pub fn route(&self, walker: &Walker, before: Option<&Route>, seed: u64) -> Route {
-        let mut route = before.copied().unwrap_or_else(|| {
+    /// Finds the route of an agent from where it is, and the point that it walks to, meters. `seed` is that of the
+    /// population.
+    pub fn aim(&self, walker: &Walker, route: &mut Option<Route>, seed: u64) -> Vector {
+        let p = walker.position;
+        let route = route.get_or_insert_with(|| {
             let [low, high] = CLEARANCE;
             let mut random = random::stream(seed, Purpose::Clearance, walker.id, 0);
             Route {
+                found: p,
+                reach: 0.0,
+                triangle: 0,
+                entry: u32::MAX,
+                excess: 0.0,
                 map: self.map_to(walker.to),
-                next: Next::Goal(walker.position),
+                first: First::End(p),
                 length: f64::INFINITY,
                 clearance: walker.radius + random.random_range(low..=high),
             }
         });
-        let way = route
-            .map
-            .and_then(|map| self.from(usize::from(map), walker.position, Some(&route.next)));
-        match (way, walker.to) {
-            (Some(way), _) => (route.next, route.length) = (way.next, way.length),
-            (None, Destination::Goal(goal)) => route.next = Next::Goal(goal),
-            // Without a way, the agent stays.
-            (None, Destination::Place(_)) => route.next = Next::Goal(walker.position),
+        let Some(way) = self.go_on(route, p) else {
+            let end = match walker.to {
+                Destination::Goal(goal) => goal,
+                // Without a way, the agent stays.
+                Destination::Place(_) => p,
+            };
+            (route.first, route.reach) = (First::End(end), 0.0);
+            return end;
+        };
+        route.first = match way.next {
+            Next::Corner { bend, .. } => First::Corner(bend),
+            Next::Goal(point) => First::End(point),
+            Next::Out(point) => First::Out(point),
+        };
+        let place = self.next(route);
+        match way.next {
+            Next::Corner { .. } => {
+                let ahead = (place - p).norm().max(NEAREST);
+                p + heading(&self.floor, p, &way.next, route.clearance) * ahead
+            }
+            Next::Goal(_) | Next::Out(_) => place,
         }
-        route
     }
 
-    /// The direction in which an agent on `route` walks; straight toward its goal if nothing stands between.
-    pub fn direction(&self, route: &Route, position: Vector) -> Vector {
-        match route.next {
-            Next::Goal(goal) => direction(goal - position),
-            next => heading(&self.floor, position, &next, route.clearance),
+    /// The way from `p` for an agent on `route`: over the same entry, as long as it holds at `p` and is certainly not
+    /// longer than the shortest by [`SLACK`].
+    fn go_on(&self, route: &mut Route, p: Vector) -> Option<Way> {
+        let (floor, map) = (&self.floor, &self.maps[usize::from(route.map?)]);
+        if let Some(way) = map.way_over(floor, p, route.entry as usize) {
+            // The shortest way was longer by the distance moved at most.
+            let excess = route.excess + way.length - route.length + (p - route.found).norm();
+            route.set(floor, p, (&way, excess));
+            if route.reach > 0.0 && excess < SLACK {
+                return Some(way);
+            }
         }
+        let held = match route.first {
+            First::Corner(bend) => Some(bend),
+            First::End(_) | First::Out(_) => None,
+        };
+        let here = floor.locate_from(route.triangle, p);
+        let here = here.or_else(|| floor.nearest(p))?;
+        let way = map.way(floor, p, here, held)?;
+        route.triangle = here;
+        route.entry = u32::try_from(way.entry).unwrap_or(u32::MAX);
+        route.set(floor, p, (&way, 0.0));
+        Some(way)
     }
 }
+
+impl Route {
+    /// The agent at `p` takes a way that is longer than the shortest by at most `excess` meters.
+    fn set(&mut self, floor: &Floor, p: Vector, (way, excess): (&Way, f64)) {
+        let place = match way.next {
+            Next::Corner { bend, .. } => floor.place(bend),
+            Next::Goal(point) | Next::Out(point) => point,
+        };
+        (self.found, self.length, self.excess) = (p, way.length, excess);
+        let most = (SHARE * (place - p).norm()).min(LONGEST).min(way.sight);
+        self.reach = floor.mesh.room_before(self.triangle, p, place, most);
+    }
+}
+
+/// The aim of an agent that walks to a corner is at least this far away, meters.
+const NEAREST: f64 = 1.0;
 
 /// The most points of a course: far more than any way has corners.
 const MOST_POINTS: usize = 10_000;
@@ -193,13 +279,13 @@ impl Ways {
     /// The points that the rest of a route leads over, as in [`course`](Self::course).
     pub fn course_of(&self, route: &Route) -> Vec<Vector> {
         match route.map {
-            Some(map) => self.points(map, route.next),
+            Some(map) => self.points(map, self.first(route)),
             None => vec![self.next(route)],
         }
     }
 
     fn points(&self, map: u16, first: Next) -> Vec<Vector> {
-        let (number, map) = (usize::from(map), &self.maps[usize::from(map)]);
+        let (number, map) = (map, &self.maps[usize::from(map)]);
         let (mut points, mut next) = (Vec::new(), Some(first));
         while let Some(now) = next.take_if(|_| points.len() < MOST_POINTS) {
             match now {
@@ -213,7 +299,7 @@ impl Ways {
                 }
                 Next::Out(point) => {
                     points.push(point);
-                    next = self.from(number, point, None).map(|way| way.next);
+                    next = self.from(number, point).map(|way| way.next);
                 }
             }
         }
@@ -222,9 +308,20 @@ impl Ways {
 
     /// The point that an agent on `route` walks to next, meters: a corner or its goal.
     pub fn next(&self, route: &Route) -> Vector {
-        match route.next {
-            Next::Goal(point) | Next::Out(point) => point,
-            Next::Corner { bend, .. } => self.floor.place(bend),
+        match route.first {
+            First::Corner(bend) => self.floor.place(bend),
+            First::End(point) | First::Out(point) => point,
+        }
+    }
+
+    fn first(&self, route: &Route) -> Next {
+        match route.first {
+            First::Corner(bend) => Next::Corner {
+                bend,
+                borders: [self.floor.place(bend); 2],
+            },
+            First::End(point) => Next::Goal(point),
+            First::Out(point) => Next::Out(point),
         }
     }
 
@@ -237,9 +334,10 @@ impl Ways {
 }
 
 impl Route {
-    /// What comes next.
-    pub fn next(&self) -> Next {
-        self.next
+    /// Does an agent at `position` still follow the route?
+    #[inline]
+    pub fn holds(&self, position: Vector) -> bool {
+        self.reach > 0.0 && (position - self.found).norm_squared() < self.reach * self.reach
     }
 
     /// The length of the way when it was last found, meters; infinite without a path map.

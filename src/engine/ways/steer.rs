@@ -9,33 +9,84 @@ use crate::engine::math::{Vector, direction, perpendicular};
 /// it: along the tangent of the circle around the next corner, on the side away from the corner's walls; and past
 /// the corners on the way there.
 pub fn heading(floor: &Floor, p: Vector, next: &Next, clearance: f64) -> Vector {
-    let (corner, turn, [near, far]) = match *next {
+    let (corner, bend, [near, far]) = match *next {
         Next::Goal(point) | Next::Out(point) => return direction(point - p),
         Next::Corner { bend, borders } => {
             (&floor.corners[bend.corner as usize], bend.turn, borders)
         }
     };
-    let ahead = direction(corner.place - p);
+    let (ahead, distance) = direction_and_length(corner.place - p);
     // To the side away from the corner's walls.
-    let aside = match turn {
+    let aside = match bend {
         Turn::First => -perpendicular(ahead),
         Turn::Last => perpendicular(ahead),
     };
-    // Angles to the side, radians.
-    let to = |point: Vector| (aside.dot(&(point - p))).atan2(ahead.dot(&(point - p)));
-    let around = |point: Vector, gap: f64| (gap / (point - p).norm()).min(1.0).asin();
-    let own = around(corner.place, clearance.min(corner.room));
-    let least = own.max(to(near).min(0.0) + around(near, clearance));
-    let most = to(far).max(0.0) - around(far, clearance);
-    let angle = if least <= most {
-        least
-    } else {
-        0.5 * (least + most)
+    // Directions have a component ahead and one to the side.
+    let seen = |point: Vector| Vector::new(ahead.dot(&(point - p)), aside.dot(&(point - p)));
+    let (near, far) = (seen(near), seen(far));
+    let own = turn(clearance.min(corner.room), distance);
+    // Mostly, this heading passes both points far enough away.
+    let is_past_near = match near.y < 0.0 {
+        true => near.perp(&own) >= clearance,
+        false => near.norm_squared() * own.y * own.y >= clearance * clearance,
     };
-    let angle = angle.clamp(-MOST_TURN, MOST_TURN);
-    ahead * angle.cos() + aside * angle.sin()
+    let is_past_far = far.y > 0.0 && own.perp(&far) >= clearance;
+    let way = if is_past_near && is_past_far {
+        own
+    } else {
+        between(own, (near, far), clearance)
+    };
+    let way = if way.x < MOST_TURN.x {
+        Vector::new(MOST_TURN.x, MOST_TURN.y.copysign(way.y))
+    } else {
+        way
+    };
+    ahead * way.x + aside * way.y
 }
 
-/// The largest angle between the heading and the shortest way, radians. Below a right angle the way left gets shorter
-/// with every step.
-const MOST_TURN: f64 = 1.3;
+/// The direction `own`, turned so that it passes the points `near` and `far` on both sides with `clearance` meters; in
+/// the middle between them if there is not enough room.
+fn between(own: Vector, (near, far): (Vector, Vector), clearance: f64) -> Vector {
+    let past_near = past(near, near.y < 0.0, clearance);
+    let is_wider = past_near.x.max(past_near.y) > 0.0 && own.perp(&past_near) > 0.0;
+    let least = if is_wider { past_near } else { own };
+    let most = past(far, far.y > 0.0, -clearance);
+    if least.perp(&most) >= 0.0 {
+        least
+    } else {
+        direction(least + most)
+    }
+}
+
+fn direction_and_length(way: Vector) -> (Vector, f64) {
+    let length = way.norm();
+    let ahead = if length > 0.0 { way / length } else { way };
+    (ahead, length)
+}
+
+/// The largest angle between the heading and the shortest way, 1.3 radians, as a direction. Below a right angle the way
+/// left gets shorter with every step.
+const MOST_TURN: Vector = Vector::new(0.267_498_828_624_587_4, 0.963_558_185_417_193);
+
+/// The direction that passes a point at `to` at a distance of `gap` meters on the left; if the point does not count, only
+/// the turn away from it.
+fn past(to: Vector, counts: bool, gap: f64) -> Vector {
+    let distance = to.norm();
+    let turn = turn(gap, distance);
+    if counts {
+        let way = to / distance;
+        way * turn.x + perpendicular(way) * turn.y
+    } else {
+        turn
+    }
+}
+
+/// The direction, seen from a direction toward a point, that passes the point at a distance of `gap` meters.
+fn turn(gap: f64, distance: f64) -> Vector {
+    let sine = if gap.abs() < distance {
+        gap / distance
+    } else {
+        1.0_f64.copysign(gap)
+    };
+    Vector::new((1.0 - sine * sine).sqrt(), sine)
+}

@@ -3,8 +3,8 @@
 use super::corner::{Bend, Turn};
 use super::expansion::Eye;
 use super::floor::Floor;
-use super::mesh::nearest_on;
-use crate::engine::math::Vector;
+use super::mesh::{nearest_on, part};
+use crate::engine::math::{Vector, direction};
 
 /// A part of a goal that ways go straight to.
 #[derive(Debug, Clone, Copy)]
@@ -32,6 +32,8 @@ pub struct Targets {
     pub rest: Vec<f64>,
     /// For each bend, the target that comes next.
     pub next: Vec<u32>,
+    /// For each bend, the direction beyond which the way over it does not bend around its walls.
+    pub beyond: Vec<[f32; 2]>,
     /// The parts of the goals.
     pub sources: Vec<Source>,
     /// Points on the borders of what sources see, in addition to those of the floor, meters.
@@ -62,15 +64,26 @@ impl Limit {
         self.eye.side(self.through, p) * self.sign
     }
 
+    /// The distance of `p` from the border, meters, at most `most`; negative outside.
+    #[inline]
+    pub fn distance(&self, p: Vector, most: f64) -> f64 {
+        part(self.inside(p), self.eye.ray(self.through), most)
+    }
+
     /// Does `p` lie in it, or within `margin` meters of it?
     #[inline]
     pub fn holds(&self, p: Vector, margin: f64) -> bool {
         let inside = self.inside(p);
-        inside >= 0.0 || inside >= -margin * self.eye.scale(self.through)
+        inside >= 0.0 || inside >= -margin * self.eye.ray(self.through).norm()
     }
 }
 
 impl Targets {
+    /// The number of targets.
+    pub fn len(&self) -> usize {
+        self.rest.len() + self.sources.len()
+    }
+
     /// The bend with this number, if it is one.
     pub fn bend(&self, target: u32) -> Option<Bend> {
         let bend = target as usize;
@@ -124,41 +137,73 @@ impl Targets {
         (self.nearest(floor, target, p) - p).norm() + self.rest(target)
     }
 
+    /// Finds the directions beyond which ways do not bend, when all targets and what comes next are known.
+    pub fn find_beyond(&mut self, floor: &Floor) {
+        let directions = (0..self.next.len()).map(|number| {
+            let bend = Bend::of_index(number);
+            let place = floor.place(bend);
+            let along = direction(place - self.nearest(floor, self.next[number], place));
+            let beyond = bend.turn.beyond(Vector::zeros(), along);
+            [beyond.x as f32, beyond.y as f32]
+        });
+        self.beyond = directions.collect();
+    }
+
     /// A point in the direction beyond which the way over a bend does not bend around its walls, meters.
     #[inline]
     pub fn beyond(&self, floor: &Floor, bend: Bend) -> Vector {
-        let place = floor.place(bend);
-        let next = self.nearest(floor, self.next[bend.index()], place);
-        bend.turn.beyond(place, place - next)
+        let [x, y] = self.beyond[bend.index()].map(f64::from);
+        floor.place(bend) + Vector::new(x, y)
+    }
+
+    /// The half-planes whose common part the target of an entry sees of the triangle.
+    #[inline]
+    pub fn cone(&self, floor: &Floor, entry: Entry) -> [Limit; 2] {
+        let eye = self.eye(floor, entry.target);
+        let [right, left] = entry.borders.map(|number| self.border(floor, number));
+        [(right, 1.0), (left, -1.0)].map(|(through, sign)| Limit { eye, through, sign })
     }
 
     /// The half-planes whose common part is where an entry holds.
     #[inline]
     pub fn limits(&self, floor: &Floor, entry: Entry) -> [Limit; 3] {
-        let eye = self.eye(floor, entry.target);
-        let [right, left] = entry.borders.map(|number| self.border(floor, number));
-        let limit = |through: Vector, sign: f64| Limit { eye, through, sign };
-        let bends = match self.bend(entry.target) {
-            None => limit(right, 1.0),
-            Some(bend) => {
-                let sign = if bend.turn == Turn::First { -1.0 } else { 1.0 };
-                limit(self.beyond(floor, bend), sign)
-            }
-        };
-        [limit(right, 1.0), limit(left, -1.0), bends]
+        let [right, left] = self.cone(floor, entry);
+        let bends = self.bend(entry.target).map_or(right, |bend| Limit {
+            through: self.beyond(floor, bend),
+            sign: if bend.turn == Turn::First { -1.0 } else { 1.0 },
+            ..right
+        });
+        [right, left, bends]
     }
 
-    /// Does `entry` hold at `p`, or within `margin` meters of it?
+    /// Does `entry` hold at `p`?
     #[inline]
-    pub fn holds(&self, floor: &Floor, entry: Entry, p: Vector, margin: f64) -> bool {
-        let limits = self.limits(floor, entry);
-        limits.iter().all(|limit| limit.holds(p, margin))
+    pub fn holds(&self, floor: &Floor, entry: Entry, p: Vector) -> bool {
+        let eye = self.eye(floor, entry.target);
+        let [right, left] = entry.borders;
+        eye.side(self.border(floor, right), p) >= 0.0
+            && eye.side(self.border(floor, left), p) <= 0.0
+            && self.bends(floor, entry.target, p)
+    }
+
+    /// Does the way from `p` over a target bend there around walls, or end?
+    #[inline]
+    pub fn bends(&self, floor: &Floor, target: u32, p: Vector) -> bool {
+        let Some(bend) = self.bend(target) else {
+            return true;
+        };
+        let side = Eye::Near(floor.place(bend)).side(self.beyond(floor, bend), p);
+        match bend.turn {
+            Turn::First => side <= 0.0,
+            Turn::Last => side >= 0.0,
+        }
     }
 
     /// The memory that it takes, bytes.
     pub fn bytes(&self) -> usize {
         self.rest.capacity() * size_of::<f64>()
             + self.next.capacity() * size_of::<u32>()
+            + self.beyond.capacity() * size_of::<[f32; 2]>()
             + self.borders.capacity() * size_of::<Vector>()
             + self.sources.capacity() * size_of::<Source>()
     }
