@@ -220,10 +220,10 @@ fn computing_everything_does_not_change_the_motion() {
                 .filter(|stage| !spent.contains(stage))
                 .collect()
         };
-        // The scene has no sources, pushes and journeys.
+        // The scene has no sources, pushes, journeys and path maps.
         assert_eq!(
             skipped(&paying),
-            [Stage::Schedule, Stage::Journeys],
+            [Stage::Schedule, Stage::Journeys, Stage::Ways],
             "{name}: everything was computed"
         );
         assert!(skipped(&needed).len() > 1, "{name}");

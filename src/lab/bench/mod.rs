@@ -6,6 +6,7 @@
 
 mod compare;
 mod crowd;
+mod hall;
 mod pictures;
 mod report;
 mod scaling;

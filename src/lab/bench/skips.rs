@@ -56,7 +56,7 @@ const TURN: u64 = 10;
 const LISTING: &[Stage] = &[Stage::Sort, Stage::Neighbors];
 
 /// All skips that can be undone.
-pub const SKIPS: [Skip; 8] = [
+pub const SKIPS: [Skip; 9] = [
     Skip {
         name: "density",
         about: "density and pressure where nothing reads them",
@@ -96,6 +96,11 @@ pub const SKIPS: [Skip; 8] = [
         name: "walls by blocks",
         about: "looking for walls agent by agent, rather than by blocks of 128 agents first",
         undo: |simulation| Ok(Undone::Work(work::walls_one_by_one(simulation)?, &[])),
+    },
+    Skip {
+        name: "ways",
+        about: "looking up ways on path maps where agents walk straight",
+        undo: |simulation| Ok(Undone::Work(work::ways(simulation)?, &[])),
     },
 ];
 

@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::crowd::Crowd;
+use super::hall;
 use super::pictures::{bar, color, key, sheet};
 use super::report::Findings;
 use super::timing::{failed, ms_of, ms_per_frame, warmed};
@@ -19,7 +20,7 @@ use crate::scenario::{Scenario, Setting};
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "stages",
-    about: "time per stage of a frame, at the busiest stretch of each shipped scenario and in dense crowds that avoid",
+    about: "time per stage of a frame, at the busiest stretch of each shipped scenario, in dense crowds that avoid, and in a dense hall",
     run,
 };
 
@@ -97,6 +98,14 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
         };
         rows.push(measure(started, plan)?);
     }
+    say("hall with pillars");
+    let started = Started {
+        name: "hall with pillars",
+        profile: "sph".to_owned(),
+        simulation: hall::settled(plan.choose([13, 5], [2, 1]), plan.choose(50, 5))?,
+        frames: plan.choose(100, 5),
+    };
+    rows.push(measure(started, plan)?);
     let stretches =
         BUSIEST.map(|(name, from, lasting)| format!("{name} {from}–{} s", from + lasting));
     let stretches = stretches.join(", ");
@@ -107,6 +116,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
         notes: vec![format!(
             "Stages are medians, in ms per frame; every repeat takes the same frames. Scenarios as shipped: {stretches}. \
              Streams: {agents} agents after their first second, half of them walking to the right and half to the left. \
+             Hall: 65 pillars stand between the agents, at 4.7 P/m², and their goal; from 1 to 3 s. \
              – : a stage that never runs."
         )],
     })

@@ -7,9 +7,12 @@ use rayon::prelude::*;
 
 use super::Undone;
 use crate::engine::forces::rvo::Scratch;
+use crate::engine::geometry::{Area, Ring};
+use crate::engine::math::{Vector, bounds};
 use crate::engine::neighbors::{Lists, Neighbors};
 use crate::engine::pairs::Packed;
 use crate::engine::simulation::{Simulation, StageTimes};
+use crate::engine::ways::{Floor, Route, Ways};
 use crate::lab::bench::timing::{failed, ms_of, warmed};
 use crate::lab::error::LabError;
 
@@ -158,4 +161,58 @@ pub fn walls_one_by_one(simulation: &Simulation) -> Result<Work, &'static str> {
         });
         one_by_one - by_blocks
     }))
+}
+
+/// The most goals with a path map.
+const MOST_GOALS: usize = 100;
+/// The floor reaches this far beyond agents and goals, meters.
+const AROUND: f64 = 5.0;
+
+/// Looking up ways on an open floor.
+pub fn ways(simulation: &Simulation) -> Result<Work, &'static str> {
+    let (agents, scene) = (simulation.frame().agents, simulation.scene());
+    if scene.ways.is_some() {
+        return Err("walls stand between agents and goals");
+    }
+    let mut goals: Vec<Vector> = Vec::new();
+    for goal in &agents.goal {
+        if goals.len() < MOST_GOALS && !goals.contains(goal) {
+            goals.push(*goal);
+        }
+    }
+    let ways = open_floor(&agents.position, goals).ok_or("there is no floor")?;
+    let seed = scene.seed;
+    let mut held: Vec<(Option<Route>, Vector)> = Vec::new();
+    Ok(Box::new(move |simulation| {
+        let frame = simulation.frame();
+        let mut agents = frame.agents.clone();
+        held.resize(agents.entered() as usize, (None, Vector::zeros()));
+        let routes = agents.id.iter().map(|&id| held[id as usize]);
+        (agents.route, agents.aim) = routes.unzip();
+        agents.lacks_routes = agents.route.contains(&None);
+        let spent = seconds(|| agents.follow(&ways, frame.clock.is_coarse(), seed));
+        let routes = agents.route.into_iter().zip(agents.aim);
+        for (&id, route) in agents.id.iter().zip(routes) {
+            held[id as usize] = route;
+        }
+        spent
+    }))
+}
+
+/// Path maps to goals on a rectangle without walls inside.
+fn open_floor(positions: &[Vector], goals: Vec<Vector>) -> Option<Ways> {
+    let [low, high] = bounds(positions.iter().chain(&goals).copied())?;
+    let (low, high) = (low.add_scalar(-AROUND), high.add_scalar(AROUND));
+    let corners = vec![
+        low,
+        Vector::new(high.x, low.y),
+        high,
+        Vector::new(low.x, high.y),
+    ];
+    let area = Area {
+        exterior: Ring::new(corners).ok()?,
+        holes: Vec::new(),
+    };
+    let floor = Floor::new(&[area], 0.0).ok()?;
+    Ways::new(floor, &[], goals).ok()
 }
