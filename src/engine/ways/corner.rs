@@ -122,7 +122,7 @@ impl Corner {
                 (other, along)
             });
         }
-        if total <= PI + MARGIN {
+        if total <= PI - MARGIN {
             return None;
         }
         let half = angles.partition_point(|&angle| angle <= 0.5 * total);
