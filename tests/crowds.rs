@@ -45,6 +45,17 @@ fn gaps(scenario: &Scenario, first: usize) -> [f64; 2] {
     gaps
 }
 
+/// The grid in which bodies are looked up had cells of size 0, and was made coarser without end.
+#[test]
+fn a_crowd_of_less_than_half_an_agent_is_empty() {
+    for spacing in ["random", "grid"] {
+        let area = [[7, 7], [8, 7], [8, 8]];
+        let mut document = floor(json!([{"area": area, "density": 0.9, "spacing": spacing}]));
+        document["grids"] = json!([]);
+        assert_eq!(parse(&document).unwrap().scene.agents.len(), 0);
+    }
+}
+
 #[test]
 fn bodies_overlap_neither_each_other_nor_walls() {
     for spacing in ["random", "grid"] {

@@ -105,6 +105,9 @@ pub fn scattered(
     radii: &[f64],
     random: &mut impl Rng,
 ) -> Result<Vec<Vector>, usize> {
+    if radii.is_empty() {
+        return Ok(Vec::new());
+    }
     // Large bodies first: small ones find places between them.
     let mut order: Vec<usize> = (0..radii.len()).collect();
     order.sort_by(|&a, &b| radii[b].total_cmp(&radii[a]));
@@ -195,6 +198,9 @@ impl<'a> Throwing<'a> {
 /// # Errors
 /// They do not fit: the number that does.
 pub fn lattice(space: &Space, others: &[Body], radii: &[f64]) -> Result<Vec<Vector>, usize> {
+    if radii.is_empty() {
+        return Ok(Vec::new());
+    }
     let widest = radii.iter().copied().fold(0.0, f64::max);
     let taken = Taken::new(space.bounds(), others, radii);
     let closest = 2.0 * (widest + ROUNDING);
