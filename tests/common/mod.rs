@@ -3,6 +3,8 @@
 
 pub mod bounded;
 pub mod documents;
+pub mod errands;
+pub mod floors;
 pub mod json_schema;
 #[cfg(all(feature = "program", unix))]
 pub mod outputs;
@@ -23,8 +25,10 @@ pub mod simulated;
 pub mod social;
 #[cfg(feature = "program")]
 pub mod sweep;
+pub mod taut;
 #[cfg(feature = "program")]
 pub mod tracks;
+pub mod visibility;
 pub mod wall_checks;
 
 use sandbox::engine::agents::NewAgent;
