@@ -286,3 +286,24 @@ fn where_obstacles_overlap_the_nearest_free_point_may_be_a_corner_between_two() 
     assert!((free - vector(1.0, 1.0)).norm() < 1e-5, "{free}");
     assert_eq!(cross.obstacle_at(free), None);
 }
+
+/// In front of one wall of a corner, the way out was on the line of the other wall; by rounding it could be behind that,
+/// and an agent that was moved there walked out of the room.
+#[test]
+fn the_way_out_into_a_corner_keeps_clear_of_both_walls() {
+    for k in 0..1000 {
+        let turn = nalgebra::Rotation2::new(0.0062 * f64::from(k));
+        let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]].map(Vector::from);
+        let exterior = Ring::new(corners.map(|p| turn * p).to_vec()).unwrap();
+        let area = Area {
+            exterior,
+            holes: vec![],
+        };
+        let walls = Walls::new(vec![Polygon::enclosing(vec![area]).unwrap()]);
+        let free = walls.free_point_near(turn * vector(-0.2, -0.1)).unwrap();
+        for wall in walls.iter() {
+            let gap = wall.signed_distance(free);
+            assert!(gap > 0.9e-6, "turn {k}: {gap} m in front of a wall");
+        }
+    }
+}

@@ -93,7 +93,16 @@ fn check_free_point(walls: &Walls, p: Vector) {
     let feet = walls
         .iter()
         .map(|wall| wall.nearest_point(p).point + wall.normal * 1e-6);
+    let gap = |q: Vector| {
+        let gaps = walls
+            .iter()
+            .map(|wall| (wall.nearest_point(q).point - q).norm());
+        gaps.fold(f64::INFINITY, f64::min)
+    };
+    // Points on the line of another wall count only if there are no others.
+    let is_clear = |q: Vector| gap(q) >= 5e-7;
     let free = feet.filter(|&foot| walls.obstacle_at(foot).is_none());
+    let free = free.filter(|&foot| !is_clear(exit) || is_clear(foot));
     let nearest = free
         .map(|foot| (foot - p).norm())
         .fold(f64::INFINITY, f64::min);

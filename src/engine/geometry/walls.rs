@@ -127,10 +127,19 @@ impl Walls {
 
     /// The point nearest to `p`, just in front of a wall, that lies in no obstacle. Candidates are the walls' points
     /// nearest to `p` and the points where two walls meet: corners of rooms and of overlapping obstacles.
+    ///
+    /// Beside a corner, the point in front of one wall can be on the line of the other, where rounding could let an agent
+    /// through. Such points are taken only where there are no others, as in very narrow gaps.
     pub fn free_point_near(&self, p: Vector) -> Option<Vector> {
-        let foot = self.free_foot(p);
+        let clear = self.free_point(p, 0.5 * CLEARANCE);
+        clear.or_else(|| self.free_point(p, 0.0))
+    }
+
+    /// As [`free_point_near`](Self::free_point_near), `gap` meters from all walls.
+    fn free_point(&self, p: Vector, gap: f64) -> Option<Vector> {
+        let foot = self.free_foot(p, gap);
         let reach = foot.map_or(f64::INFINITY, |(distance, _)| distance);
-        let corner = self.nearest_free(p, self.corners_near(p, reach));
+        let corner = self.nearest_free(p, gap, self.corners_near(p, reach));
         let nearest = [foot, corner].into_iter().flatten();
         nearest
             .min_by(|a, b| a.0.total_cmp(&b.0))
@@ -139,7 +148,7 @@ impl Walls {
 
     /// The nearest free point among the walls' points nearest to `p`, with its distance, meters. Searches in growing
     /// circles.
-    fn free_foot(&self, p: Vector) -> Option<(f64, Vector)> {
+    fn free_foot(&self, p: Vector, gap: f64) -> Option<(f64, Vector)> {
         let mut reach = FIRST_REACH;
         let mut found = Vec::new();
         loop {
@@ -149,7 +158,7 @@ impl Walls {
                 let wall = self.wall(k);
                 wall.nearest_point(p).point + wall.normal * CLEARANCE
             });
-            let foot = self.nearest_free(p, feet.collect());
+            let foot = self.nearest_free(p, gap, feet.collect());
             let complete = found.len() == self.walls.len() || reach == f64::INFINITY;
             // Points lie `CLEARANCE` in front of their walls, so the point of a wall out of reach may be nearer by
             // that.
@@ -179,14 +188,17 @@ impl Walls {
         corners
     }
 
-    /// The nearest to `p` of the `exits` outside all obstacles, with its distance, meters.
-    fn nearest_free(&self, p: Vector, exits: Vec<Vector>) -> Option<(f64, Vector)> {
+    /// The nearest to `p` of the `exits` outside all obstacles and `gap` meters from all walls, with its distance, meters.
+    fn nearest_free(&self, p: Vector, gap: f64, exits: Vec<Vector>) -> Option<(f64, Vector)> {
         let distance = |exit: Vector| ((exit - p).norm(), exit);
         let mut exits: Vec<(f64, Vector)> = exits.into_iter().map(distance).collect();
         exits.sort_by(|a, b| a.0.total_cmp(&b.0));
-        exits
-            .into_iter()
-            .find(|&(_, exit)| self.obstacle_at(exit).is_none())
+        let mut near = Vec::new();
+        exits.into_iter().find(|&(_, exit)| {
+            near.clear();
+            self.near(exit, gap, &mut near);
+            near.is_empty() && self.obstacle_at(exit).is_none()
+        })
     }
 
     /// The index of the first obstacle that contains `p`.
