@@ -72,7 +72,7 @@ fn run(mut simulation: Simulation, errand: &Errand, secs: f64) -> Simulation {
         watched.observe(&simulation);
         simulation.integrate().unwrap();
         let frame = simulation.frame();
-        if frame.clock.frame() % 10 == 0 || frame.clock.frame() == last {
+        if frame.clock.frame().is_multiple_of(10) || frame.clock.frame() == last {
             check_places(&simulation, errand);
         }
     }
