@@ -145,6 +145,12 @@ impl PathMap {
         (way.sight > 0.0).then_some(way)
     }
 
+    /// Points on the borders of what the target of entry number `number` sees, on its right and on its left, meters.
+    pub fn borders(&self, floor: &Floor, number: usize) -> Option<[Vector; 2]> {
+        let entry = self.parts.entry(number)?;
+        Some(entry.borders.map(|b| self.targets.border(floor, b)))
+    }
+
     /// The way from `p` over an entry with this number.
     #[inline]
     fn over(&self, floor: &Floor, p: Vector, (number, entry): (usize, Entry)) -> Way {

@@ -9,7 +9,7 @@ use super::floor::Floor;
 use super::goal::Goal;
 use super::map::{Next, PathMap, SLACK, Way};
 use super::mesh::side;
-use super::steer::heading;
+use super::steer::{between_borders, heading};
 use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
 
@@ -66,6 +66,8 @@ pub struct Route {
     length: f64,
     /// The distance that the agent keeps from corners, meters.
     clearance: f64,
+    /// Is the agent on its way around the last corner, and sees the end?
+    rounds: bool,
 }
 
 /// What comes first on the way of an agent.
@@ -187,6 +189,7 @@ impl Ways {
                 first: First::End(p),
                 length: f64::INFINITY,
                 clearance: walker.radius + random.random_range(low..=high),
+                rounds: false,
             }
         });
         let Some(way) = self.go_on(route, p) else {
@@ -198,19 +201,35 @@ impl Ways {
             (route.first, route.reach) = (First::End(end), 0.0);
             return end;
         };
+        let rounds = route.rounds || matches!(route.first, First::Corner(_));
+        route.rounds = false;
         route.first = match way.next {
             Next::Corner { bend, .. } => First::Corner(bend),
             Next::Goal(point) => First::End(point),
             Next::Out(point) => First::Out(point),
         };
         let place = self.next(route);
-        match way.next {
-            Next::Corner { .. } => {
-                let ahead = (place - p).norm().max(NEAREST);
-                p + heading(&self.floor, p, &way.next, route.clearance) * ahead
+        let way_around = match way.next {
+            Next::Corner { .. } => Some(heading(&self.floor, p, &way.next, route.clearance)),
+            Next::Goal(end) => {
+                // Agents that see the end from the start walk straight if their body fits.
+                let least = walker.radius + CLEARANCE[0];
+                let gap = if rounds { route.clearance } else { least };
+                let borders = route.map.and_then(|map| {
+                    let map = &self.maps[usize::from(map)];
+                    map.borders(&self.floor, way.entry)
+                });
+                let way_around = borders.and_then(|borders| between_borders(p, end, borders, gap));
+                route.rounds = rounds && way_around.is_some();
+                way_around.map(|(heading, nearest)| {
+                    route.reach = route.reach.min(SHARE * nearest);
+                    heading
+                })
             }
-            Next::Goal(_) | Next::Out(_) => place,
-        }
+            Next::Out(_) => None,
+        };
+        let ahead = (place - p).norm().max(NEAREST);
+        way_around.map_or(place, |heading| p + heading * ahead)
     }
 
     /// The way from `p` for an agent on `route`: over the same entry, as long as it holds at `p` and is certainly not

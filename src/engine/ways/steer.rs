@@ -34,28 +34,77 @@ pub fn heading(floor: &Floor, p: Vector, next: &Next, clearance: f64) -> Vector 
     let way = if is_past_near && is_past_far {
         own
     } else {
-        between(own, (near, far), clearance)
+        between((own, distance), (near, far), clearance)
     };
-    let way = if way.x < MOST_TURN.x {
-        Vector::new(MOST_TURN.x, MOST_TURN.y.copysign(way.y))
-    } else {
-        way
-    };
+    let way = bounded(way);
     ahead * way.x + aside * way.y
 }
 
-/// The direction `own`, turned so that it passes the points `near` and `far` on both sides with `clearance` meters; in
-/// the middle between them if there is not enough room.
-fn between(own: Vector, (near, far): (Vector, Vector), clearance: f64) -> Vector {
-    let past_near = past(near, near.y < 0.0, clearance);
-    let is_wider = past_near.x.max(past_near.y) > 0.0 && own.perp(&past_near) > 0.0;
-    let least = if is_wider { past_near } else { own };
-    let most = past(far, far.y > 0.0, -clearance);
-    if least.perp(&most) >= 0.0 {
-        least
+/// The direction in which an agent at `p` walks to the end of its way, `end`, that passes the borders of what the end
+/// sees, on its right and on its left, with `gap` meters where there is room for it; and the distance to the nearest of
+/// these that is in the way, meters. `None`: straight.
+pub fn between_borders(
+    p: Vector,
+    end: Vector,
+    [right, left]: [Vector; 2],
+    gap: f64,
+) -> Option<(Vector, f64)> {
+    let (ahead, distance) = direction_and_length(end - p);
+    let aside = perpendicular(ahead);
+    let seen = |point: Vector| Vector::new(ahead.dot(&(point - p)), aside.dot(&(point - p)));
+    // Only points before the end count, if they are too near to the straight line. The end may be near to them, too.
+    let too_near = |border: Vector| {
+        let gap = gap.min((end - border).norm());
+        let point = seen(border);
+        let counts = (0.0..distance).contains(&point.x) && point.y.abs() < gap;
+        counts.then_some((point, gap))
+    };
+    // The agent looks against the end's view.
+    let (on_right, on_left) = (too_near(left), too_near(right));
+    let least = on_right.map(|(point, gap)| (past(point, true, gap), point.norm()));
+    let most = on_left.map(|(point, gap)| (past(point, true, -gap), point.norm()));
+    let way = match (least, most) {
+        (None, None) => return None,
+        (Some((way, _)), None) | (None, Some((way, _))) => way,
+        (Some(least), Some(most)) => middle(least, most),
+    };
+    let way = bounded(way);
+    let near = [least, most].into_iter().flatten();
+    let nearest = near.map(|(_, away)| away).fold(f64::INFINITY, f64::min);
+    Some((ahead * way.x + aside * way.y, nearest))
+}
+
+/// A direction that turns by [`MOST_TURN`] at most.
+fn bounded(way: Vector) -> Vector {
+    if way.x < MOST_TURN.x {
+        Vector::new(MOST_TURN.x, MOST_TURN.y.copysign(way.y))
     } else {
-        direction(least + most)
+        way
     }
+}
+
+/// The direction `own` past a corner at this distance, turned so that it passes the points `near` and `far` on both
+/// sides with `clearance` meters where there is enough room.
+fn between(own: (Vector, f64), (near, far): (Vector, Vector), clearance: f64) -> Vector {
+    let past_near = past(near, near.y < 0.0, clearance);
+    let is_wider = past_near.x.max(past_near.y) > 0.0 && own.0.perp(&past_near) > 0.0;
+    let least = if is_wider {
+        (past_near, near.norm())
+    } else {
+        own
+    };
+    let most = past(far, far.y > 0.0, -clearance);
+    if least.0.perp(&most) >= 0.0 {
+        least.0
+    } else {
+        middle(least, (most, far.norm()))
+    }
+}
+
+/// Between two directions past points at these distances: in the middle if they are equally near, else along that of the
+/// nearer point, which is passed first.
+fn middle((one, one_away): (Vector, f64), (other, other_away): (Vector, f64)) -> Vector {
+    direction(one * other_away.powi(2) + other * one_away.powi(2))
 }
 
 fn direction_and_length(way: Vector) -> (Vector, f64) {
