@@ -9,7 +9,7 @@ use serde_json::json;
 
 use crate::common::floors::Plan;
 use crate::common::plans::margin;
-use crate::common::simulated::scenario;
+use crate::common::simulated::{after, scenario};
 
 /// An agent leaves within this distance of its goal, meters.
 const WITHIN: f64 = 0.3;
@@ -129,5 +129,23 @@ fn lone_agents_pass_gaps_of_a_meter_and_hardly_touch_a_wall() {
             let is_good = (walk.arrived || profile == "rvo") && is_clear && is_short;
             assert!(is_good, "{profile}, seed {seed}: {walk:?}");
         }
+    }
+}
+
+#[test]
+fn a_person_who_avoids_by_rvo_leaves_by_a_narrow_door_from_the_side() {
+    // The floor behind an exit was as wide as the door: RVO stopped in front of that dead end for ever.
+    for (x, width) in [(9.2, 0.7), (9.6, 0.8), (9.6, 0.9)] {
+        let document = json!({
+            "walkable_area": [[[[0, 0], [10, 0], [10, 8], [0, 8]]]], "profile": "rvo->sph",
+            "exits": [{"name": "door", "line": [[10, 1], [10, 1.0 + width]]}],
+            "agents": [{"position": [x, 7], "radius": 0.26}],
+        });
+        let simulation = after(&document, &[], 20.0);
+        assert_eq!(
+            simulation.outcome().arrivals.len(),
+            1,
+            "from x = {x} by {width} m"
+        );
     }
 }

@@ -137,12 +137,9 @@ fn walls_round(
         given.push(rings(polygon).under(&format!("[{k}]"))?);
     }
     let mut plan = FloorPlan::walkable(&given).map_err(problem)?;
-    let openings = doors
-        .iter()
-        .filter_map(|&line| opening(&plan.walkable, line));
-    let openings: Vec<_> = openings.map(|ring| vec![ring]).collect();
+    let openings = openings(&plan.walkable, doors);
     if !openings.is_empty() {
-        given.extend(openings);
+        given.extend(openings.into_iter().map(|ring| vec![ring]));
         plan = FloorPlan::walkable(&given).map_err(problem)?;
     }
     plan.solids()
@@ -157,34 +154,110 @@ const BEHIND: f64 = 3.0;
 /// That floor begins this far before the line, meters, so that rounding leaves no gap between.
 const OVERLAP: f64 = 0.01;
 
-/// The floor behind the line of an exit or entrance that lies on the edge of the walkable area; `None` if there is room to cross the
-/// line. Where another room lies behind, the floor ends there.
-fn opening(walkable: &[Area], [a, b]: [Vector; 2]) -> Option<Vec<[f64; 2]>> {
-    const STEPS: u32 = 300;
-    let middle = (a + b) * 0.5;
+/// That floor widens by this on both sides toward its end, meters, or less where something else is near: RVO stops in
+/// front of a dead end as wide as a door.
+const WIDENS: [f64; 4] = [3.0, 2.0, 1.0, 0.0];
+
+/// The floor behind the line of an exit or entrance on the edge of the walkable area.
+struct Opening {
+    /// The ends of the line, meters.
+    ends: [Vector; 2],
+    /// The direction from the first end to the second, and out of the area.
+    directions: [Vector; 2],
+    /// Meters.
+    depth: f64,
+}
+
+/// The floors behind the lines of exits and entrances that lie on the edge of the walkable area. Where another room lies
+/// behind, the floor ends there; the floors of two lines do not touch unless their lines are that near.
+fn openings(walkable: &[Area], doors: &[[Vector; 2]]) -> Vec<Vec<[f64; 2]>> {
     let is_floor = |p: Vector| walkable.iter().any(|area| area.contains(p));
-    let room = |way: Vector, length: f64| {
-        let steps = (1..=STEPS).map(|k| length * f64::from(k) / f64::from(STEPS));
-        let mut places = steps.map(|step| (step, is_floor(middle + way * step)));
-        places.find(|(_, is_floor)| !is_floor).map(|(step, _)| step)
+    let openings = doors
+        .iter()
+        .filter_map(|&door| Opening::of(&is_floor, door));
+    let openings: Vec<Opening> = openings.collect();
+    let ring = |opening: &Opening| {
+        let is_taken = |p: Vector, widens: f64| {
+            let mut others = openings.iter().filter(|other| !other.is_at(opening.ends));
+            is_floor(p) || others.any(|other| other.contains(p, widens))
+        };
+        let is_free = |widens: &f64| !opening.places(*widens).any(|p| is_taken(p, *widens));
+        opening.ring(WIDENS.into_iter().find(is_free).unwrap_or_default())
     };
-    let normal = perpendicular(direction(b - a));
-    let out = [normal, -normal]
-        .into_iter()
-        .find(|way| room(*way, ROOM_BEHIND).is_some())?;
-    if room(-out, ROOM_BEHIND).is_some() {
-        return None; // walls on both sides: the line is not at a floor, which is refused later
+    openings.iter().map(ring).collect()
+}
+
+impl Opening {
+    /// `None` if there is room to cross the line, or none on both sides.
+    fn of(is_floor: &impl Fn(Vector) -> bool, [a, b]: [Vector; 2]) -> Option<Self> {
+        const STEPS: u32 = 300;
+        let middle = (a + b) * 0.5;
+        let room = |way: Vector, length: f64| {
+            let steps = (1..=STEPS).map(|k| length * f64::from(k) / f64::from(STEPS));
+            let mut places = steps.map(|step| (step, is_floor(middle + way * step)));
+            places.find(|(_, is_floor)| !is_floor).map(|(step, _)| step)
+        };
+        let along = direction(b - a);
+        let normal = perpendicular(along);
+        let out = [normal, -normal]
+            .into_iter()
+            .find(|way| room(*way, ROOM_BEHIND).is_some())?;
+        if room(-out, ROOM_BEHIND).is_some() {
+            return None; // walls on both sides: the line is not at a floor, which is refused later
+        }
+        let wall = room(out, ROOM_BEHIND)?;
+        let steps = (1..=STEPS).map(|k| wall + (BEHIND - wall) * f64::from(k) / f64::from(STEPS));
+        let mut behind = steps.filter(|step| is_floor(middle + out * *step));
+        Some(Self {
+            ends: [a, b],
+            directions: [along, out],
+            depth: behind.next().unwrap_or(BEHIND),
+        })
     }
-    let wall = room(out, ROOM_BEHIND)?;
-    let steps = (1..=STEPS).map(|k| wall + (BEHIND - wall) * f64::from(k) / f64::from(STEPS));
-    let mut behind = steps.filter(|step| is_floor(middle + out * *step));
-    let depth = behind.next().unwrap_or(BEHIND);
-    let corners = [(a, -OVERLAP), (b, -OVERLAP), (b, depth), (a, depth)];
-    Some(
-        corners
-            .map(|(end, step)| (end + out * step).into())
-            .to_vec(),
-    )
+
+    /// Is it behind this line?
+    fn is_at(&self, [a, b]: [Vector; 2]) -> bool {
+        self.ends == [a, b] || self.ends == [b, a]
+    }
+
+    /// The place `step` meters behind the line, where the floor is `widens` meters wider on both sides at [`BEHIND`];
+    /// `across` is 0 on one side and 1 on the other.
+    fn place(&self, step: f64, across: f64, widens: f64) -> Vector {
+        let ([a, b], [along, out]) = (self.ends, self.directions);
+        let aside = along * (widens * step.max(0.0) / BEHIND);
+        let (a, b) = (a - aside, b + aside);
+        a + (b - a) * across + out * step
+    }
+
+    /// Places all over the widened part, some decimeters apart.
+    fn places(&self, widens: f64) -> impl Iterator<Item = Vector> {
+        const STEPS: u32 = 24;
+        let part = |k: u32| f64::from(k) / f64::from(STEPS);
+        let steps = if widens > 0.0 { 1..STEPS } else { 0..0 };
+        steps.flat_map(move |k| {
+            let step = self.depth * part(k);
+            (0..=STEPS).map(move |l| self.place(step, part(l), widens))
+        })
+    }
+
+    fn contains(&self, p: Vector, widens: f64) -> bool {
+        let (way, [along, out]) = (p - self.ends[0], self.directions);
+        let (step, across) = (way.dot(&out), way.dot(&along));
+        let aside = widens * step / BEHIND;
+        let width = (self.ends[1] - self.ends[0]).norm();
+        (0.0..=self.depth).contains(&step) && (-aside..=width + aside).contains(&across)
+    }
+
+    fn ring(&self, widens: f64) -> Vec<[f64; 2]> {
+        let corners = [
+            (-OVERLAP, 0.0),
+            (-OVERLAP, 1.0),
+            (self.depth, 1.0),
+            (self.depth, 0.0),
+        ];
+        let corners = corners.map(|(step, across)| self.place(step, across, widens).into());
+        corners.to_vec()
+    }
 }
 
 /// An area from its outline and holes.

@@ -15,8 +15,8 @@ const RVO_SINGLE_FILE: &str = "in a curved corridor of 0.8 m every velocity lead
      and the more they are an SPH fluid, which nothing slows";
 
 /// Why RVO's time does not double with half of the doors.
-const RVO_THINS_OUT: &str = "a door passes 6 P/s of a dense crowd, which is SPH, but 3 P/s of a sparse one, which \
-     avoids by RVO; with four doors the crowd thins out earlier";
+const RVO_THINS_OUT: &str = "a door passes more of a dense crowd, which is SPH, than of a sparse one, which avoids by \
+     RVO; with four doors the crowd thins out earlier";
 
 /// All cases, by number.
 pub const CASES: [Case; 17] = [
