@@ -130,6 +130,29 @@ fn measured(document: serde_json::Value) -> Summary {
 }
 
 #[test]
+fn a_person_between_walls_whose_corners_are_at_the_same_height_is_not_inside() {
+    // The observer computed the ends of edges anew: by rounding, a ray to the right passed between two of them.
+    let y = 12.493022060221938;
+    let room = json!([
+        [0, 0],
+        [17.2, 0],
+        [17.2, y],
+        [12.2, y],
+        [12.2, 3.5],
+        [5.3, 3.5],
+        [5.3, y],
+        [0, y]
+    ]);
+    let summary = measured(json!({
+        "walkable_area": [[room]], "duration_secs": 4, "seed": 207,
+        "entrances": [{"line": [[4.123497529578993, y], [3.019413915502604, y]], "per_sec": 1, "goal": [3, 6]}],
+        "measurements": [{"integrity": {}}],
+    }));
+    assert!(summary.agents > 2);
+    assert_eq!(summary.metric("agents_through_walls"), Some(0.0));
+}
+
+#[test]
 fn walks_of_people_at_a_steady_speed_give_their_density_speed_and_flow() {
     // Five people 3 m apart cross a region of 10 m × 2 m at 1.4 m/s: each is there for 10 / 1.4 s.
     let agents = (0..5).map(|k| json!({"position": [-3.0 * f64::from(k) - 1.0, 0], "velocity": [1.4, 0], "goal": [100, 0]}));

@@ -14,6 +14,8 @@ const CELLS: usize = 64;
 #[derive(Debug, Clone, Copy)]
 struct Edge {
     start: Vector,
+    /// As the obstacle gives it, so that edges have no gaps between them.
+    end: Vector,
     along: Vector,
     length: f64,
 }
@@ -41,12 +43,13 @@ impl Fence {
                 let along = (end - start) / length;
                 Edge {
                     start,
+                    end,
                     along,
                     length,
                 }
             })
             .collect();
-        let ends = edges.iter().flat_map(|edge| [edge.start, edge.end()]);
+        let ends = edges.iter().flat_map(|edge| [edge.start, edge.end]);
         let [low, high] = bounds(ends).unwrap_or_default();
         let mut fence = Self {
             counts: obstacles
@@ -59,7 +62,7 @@ impl Fence {
             edges,
         };
         for (k, edge) in fence.edges.clone().into_iter().enumerate() {
-            for cell in fence.touched(edge.start, edge.end()) {
+            for cell in fence.touched(edge.start, edge.end) {
                 fence.cells[cell].push(k as u32);
             }
         }
@@ -96,7 +99,7 @@ impl Fence {
         self.counts.iter().any(|&(count, unbounded)| {
             let (mut odd, mut near) = (unbounded, false);
             for edge in edges.by_ref().take(count) {
-                let (from, to) = (edge.start, edge.end());
+                let (from, to) = (edge.start, edge.end);
                 near |= edge.distance(p) <= TOLERANCE;
                 if (from.y > p.y) != (to.y > p.y) {
                     let x = from.x + (p.y - from.y) / (to.y - from.y) * (to.x - from.x);
@@ -109,10 +112,6 @@ impl Fence {
 }
 
 impl Edge {
-    fn end(&self) -> Vector {
-        self.start + self.along * self.length
-    }
-
     /// Does the path from `a` to `b` start on the free side and cross this edge?
     fn is_crossed(&self, a: Vector, b: Vector) -> bool {
         let inward = perpendicular(self.along);
