@@ -16,7 +16,7 @@ const LAST_SHORT: u16 = 1 << 15;
 const LAST_LONG: u32 = 1 << 31;
 
 impl Lists {
-    /// No lists, for entries with so many different `targets` and `borders`.
+    /// Empty lists, for entries whose numbers of targets and borders are below `targets` and `borders`.
     pub fn new(targets: usize, borders: usize) -> Self {
         let is_small = targets <= usize::from(LAST_SHORT) && borders <= 1 + usize::from(u16::MAX);
         match is_small {

@@ -212,7 +212,7 @@ impl Ways {
         let way_around = match way.next {
             Next::Corner { .. } => Some(heading(&self.floor, p, &way.next, route.clearance)),
             Next::Goal(end) => {
-                // Agents that see the end from the start walk straight if their body fits.
+                // Agents that see the end from the start walk straight if their bodies fit.
                 let least = walker.radius + CLEARANCE[0];
                 let gap = if rounds { route.clearance } else { least };
                 let borders = route.map.and_then(|map| {

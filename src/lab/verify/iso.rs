@@ -176,7 +176,7 @@ const CORRIDORS: [&str; 4] = [
     "long corridor 480",
 ];
 
-/// The time rises with the number of people who come from the other side, and all arrive.
+/// The more people walk west, the longer the others take to walk east; all arrive.
 fn counterflow(runs: &Runs) -> Checks {
     let name = "t100_secs_eastward";
     let mut checks = vec![Check::reported(
