@@ -16,8 +16,8 @@ use crate::common::bounded::cases;
 use crate::common::errands::{Errand, errands};
 use crate::common::plans::{Ring, contains, margin};
 
-/// Walls that an exit or entrance opens have floor behind them for this far, meters.
-const BEHIND_LINES: f64 = 3.01;
+/// Walls that an exit or entrance opens have floor behind them for this far, meters: 3 m out and 3 m aside.
+const BEHIND_LINES: f64 = 4.25;
 /// Agents stop in front of walls; rounding and uniting areas move walls by less than this, meters.
 const ROUNDING: f64 = 1e-5;
 /// Far more than any case takes.

@@ -10,11 +10,13 @@ use super::crowding;
 use super::error::{Problem, Under, in_plain_words};
 use super::file::{self, DEFAULT_DURATION, DEFAULT_PROFILE, File, TimeStep};
 use super::need::Need;
+use super::plan::Surroundings;
 use super::profiles::{ProfileChoice, ProfileName};
 use super::range::{self, region};
 use super::{PlanFile, Scenario, View, journeys, measurements, plan, preset, profiles, ways};
 use crate::analysis::stability;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
+use crate::engine::geometry::Polygon;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::profile::Override;
 use crate::engine::scene::{Push, Region, Scene};
@@ -60,12 +62,13 @@ impl Contents {
     pub(super) fn scenario(self, path: &Path) -> Result<Scenario, Problem> {
         let keys = &self.keys;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let mut scene = empty_scene(keys)?;
+        let Surroundings { solids, behind } = plan::surroundings(keys)?;
+        let mut scene = empty_scene(keys, solids);
         let default = ProfileChoice::Named(ProfileName(DEFAULT_PROFILE.to_owned()));
         let choice = keys.profile.as_ref().unwrap_or(&default);
         let blend = profiles::blend(choice, &keys.parameters).under("profile")?;
         scene.journeys = journeys::journeys(keys, &scene.walls)?;
-        Crowd::new(keys, &blend, &mut scene).enter()?;
+        Crowd::new(keys, &blend, &behind, &mut scene).enter()?;
         let duration_secs = duration(keys);
         crowding::check(keys, &scene, duration_secs)?;
         measurements::check(&keys.measurements)?;
@@ -129,10 +132,10 @@ fn first_step(keys: &File) -> f64 {
 }
 
 /// The scene without agents, sources and pushes.
-fn empty_scene(keys: &File) -> Result<Scene, Problem> {
+fn empty_scene(keys: &File, solids: Vec<Polygon>) -> Scene {
     let paper = Scene::default();
     let seed = seed(keys);
-    Ok(Scene {
+    Scene {
         seed: keys.population_seed.unwrap_or(seed),
         behavior_seed: Some(keys.behavior_seed.unwrap_or(seed)),
         clock: clock(keys, first_step(keys)),
@@ -143,8 +146,8 @@ fn empty_scene(keys: &File) -> Result<Scene, Problem> {
         preferred_speed: keys.preferred_speed.unwrap_or(paper.preferred_speed),
         max_speed: keys.max_speed.unwrap_or(paper.max_speed),
         max_speed_ratio: max_speed_ratio(keys, &paper),
-        ..Scene::with_obstacles(plan::solids(keys)?)
-    })
+        ..Scene::with_obstacles(solids)
+    }
 }
 
 /// s_max / s_pref of agents with a preferred speed of their own; `None` if the file gives s_max.

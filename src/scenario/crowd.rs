@@ -30,6 +30,8 @@ const ROUNDING: f64 = 1e-9;
 pub(super) struct Crowd<'a> {
     pub file: &'a File,
     default: &'a Blend,
+    /// The outlines of the floors behind exits and entrances, where no crowd starts.
+    pub behind: &'a [Vec<Vector>],
     pub scene: &'a mut Scene,
     /// Groups of single agents, by behavior.
     shared: BTreeMap<String, u16>,
@@ -40,11 +42,17 @@ pub(super) struct Crowd<'a> {
 }
 
 impl<'a> Crowd<'a> {
-    /// `default` is the blend of agents that name no profile.
-    pub(super) fn new(file: &'a File, default: &'a Blend, scene: &'a mut Scene) -> Self {
+    /// `default` is the blend of agents that name no profile; `behind` are the floors behind exits and entrances.
+    pub(super) fn new(
+        file: &'a File,
+        default: &'a Blend,
+        behind: &'a [Vec<Vector>],
+        scene: &'a mut Scene,
+    ) -> Self {
         Self {
             file,
             default,
+            behind,
             scene,
             shared: BTreeMap::new(),
             custom: BTreeSet::new(),

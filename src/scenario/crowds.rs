@@ -176,7 +176,8 @@ impl Building<'_> {
         Ok(())
     }
 
-    /// The part of an area outside of all obstacles and inside of the walkable area.
+    /// The part of an area outside of all obstacles and inside of the walkable area as it is given: without the floors
+    /// behind exits.
     fn free_area(&self, given: &Place) -> Result<Vec<Area>, Problem> {
         let rings = match given {
             Place::Ring(ring) => std::slice::from_ref(ring),
@@ -186,7 +187,8 @@ impl Building<'_> {
         let backwards = |ring: &Outline| ring.points().iter().rev().copied().collect();
         let mut own: Vec<Vec<Vector>> = area.holes.iter().map(backwards).collect();
         own.insert(0, area.exterior.points().to_vec());
-        let (mut floors, bodies) = outlines(self.scene.walls.obstacles());
+        let (mut floors, mut bodies) = outlines(self.scene.walls.obstacles());
+        bodies.extend(self.behind.iter().cloned());
         floors.insert(0, own);
         let areas = free(&floors, &bodies).map_err(|error| Problem::new("", error.to_string()))?;
         match areas.is_empty() {

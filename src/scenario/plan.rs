@@ -104,8 +104,16 @@ pub(super) fn walls(file: &File) -> u64 {
     rings.map(|ring| ring.0.len() as u64).sum()
 }
 
-/// The obstacles in order, then the solid around the walkable area.
-pub(super) fn solids(file: &File) -> Result<Vec<Polygon>, Problem> {
+/// What surrounds people.
+pub(super) struct Surroundings {
+    /// The obstacles in order, then the solid around the walkable area.
+    pub solids: Vec<Polygon>,
+    /// The outlines of the floors behind exits and entrances, counterclockwise.
+    pub behind: Vec<Vec<Vector>>,
+}
+
+/// The obstacles and the walkable area of a file.
+pub(super) fn surroundings(file: &File) -> Result<Surroundings, Problem> {
     let walls = walls(file);
     if walls > MOST_WALLS {
         let reason = format!(
@@ -113,6 +121,7 @@ pub(super) fn solids(file: &File) -> Result<Vec<Polygon>, Problem> {
         );
         return Err(Problem::new(OBSTACLES, reason));
     }
+    let mut behind = Vec::new();
     let mut solids = Vec::with_capacity(file.obstacles.len() + 1);
     for (k, given) in file.obstacles.iter().enumerate() {
         solids.push(obstacle(given).under(&format!("{OBSTACLES}[{k}]"))?);
@@ -122,16 +131,18 @@ pub(super) fn solids(file: &File) -> Result<Vec<Polygon>, Problem> {
         let entrances = file.entrances.iter().map(|entrance| entrance.line.0);
         let doors = exits.chain(entrances).map(|line| line.map(Vector::from));
         let doors: Vec<[Vector; 2]> = doors.collect();
-        solids.extend(walls_round(polygons, &doors).under(WALKABLE_AREA)?);
+        let around = walls_round(polygons, &doors).under(WALKABLE_AREA)?;
+        solids.extend(around.solids);
+        behind = around.behind;
     }
-    Ok(solids)
+    Ok(Surroundings { solids, behind })
 }
 
 /// The solid around `polygons`, open behind the lines of exits and entrances.
 fn walls_round(
     polygons: &[Vec<GivenRing>],
     doors: &[[Vector; 2]],
-) -> Result<Vec<Polygon>, Problem> {
+) -> Result<Surroundings, Problem> {
     let mut given = Vec::with_capacity(polygons.len());
     for (k, polygon) in polygons.iter().enumerate() {
         given.push(rings(polygon).under(&format!("[{k}]"))?);
@@ -139,11 +150,15 @@ fn walls_round(
     let mut plan = FloorPlan::walkable(&given).map_err(problem)?;
     let openings = openings(&plan.walkable, doors);
     if !openings.is_empty() {
-        given.extend(openings.into_iter().map(|ring| vec![ring]));
+        given.extend(openings.iter().map(|opening| vec![opening.ring(-OVERLAP)]));
         plan = FloorPlan::walkable(&given).map_err(problem)?;
     }
-    plan.solids()
-        .map_err(|error| Problem::new("", error.to_string()))
+    Ok(Surroundings {
+        solids: plan
+            .solids()
+            .map_err(|error| Problem::new("", error.to_string()))?,
+        behind: openings.iter().map(Opening::outline).collect(),
+    })
 }
 
 /// People need this much room behind the line of an exit to cross it, meters.
@@ -166,25 +181,28 @@ struct Opening {
     directions: [Vector; 2],
     /// Meters.
     depth: f64,
+    /// It is wider by this on both sides at [`BEHIND`], meters.
+    widens: f64,
 }
 
 /// The floors behind the lines of exits and entrances that lie on the edge of the walkable area. Where another room lies
 /// behind, the floor ends there; the floors of two lines do not touch unless their lines are that near.
-fn openings(walkable: &[Area], doors: &[[Vector; 2]]) -> Vec<Vec<[f64; 2]>> {
+fn openings(walkable: &[Area], doors: &[[Vector; 2]]) -> Vec<Opening> {
     let is_floor = |p: Vector| walkable.iter().any(|area| area.contains(p));
     let openings = doors
         .iter()
         .filter_map(|&door| Opening::of(&is_floor, door));
     let openings: Vec<Opening> = openings.collect();
-    let ring = |opening: &Opening| {
+    let widest = |opening: &Opening| {
         let is_taken = |p: Vector, widens: f64| {
             let mut others = openings.iter().filter(|other| !other.is_at(opening.ends));
-            is_floor(p) || others.any(|other| other.contains(p, widens))
+            is_floor(p) || others.any(|other| other.widened(widens).contains(p))
         };
-        let is_free = |widens: &f64| !opening.places(*widens).any(|p| is_taken(p, *widens));
-        opening.ring(WIDENS.into_iter().find(is_free).unwrap_or_default())
+        let wide = WIDENS.into_iter().map(|widens| opening.widened(widens));
+        let mut free = wide.filter(|wide| !wide.places().any(|p| is_taken(p, wide.widens)));
+        free.next().unwrap_or_else(|| opening.widened(0.0))
     };
-    openings.iter().map(ring).collect()
+    openings.iter().map(widest).collect()
 }
 
 impl Opening {
@@ -212,7 +230,12 @@ impl Opening {
             ends: [a, b],
             directions: [along, out],
             depth: behind.next().unwrap_or(BEHIND),
+            widens: 0.0,
         })
+    }
+
+    fn widened(&self, widens: f64) -> Self {
+        Self { widens, ..*self }
     }
 
     /// Is it behind this line?
@@ -220,42 +243,52 @@ impl Opening {
         self.ends == [a, b] || self.ends == [b, a]
     }
 
-    /// The place `step` meters behind the line, where the floor is `widens` meters wider on both sides at [`BEHIND`];
-    /// `across` is 0 on one side and 1 on the other.
-    fn place(&self, step: f64, across: f64, widens: f64) -> Vector {
+    /// The place `step` meters behind the line; `across` is 0 on one side and 1 on the other.
+    fn place(&self, step: f64, across: f64) -> Vector {
         let ([a, b], [along, out]) = (self.ends, self.directions);
-        let aside = along * (widens * step.max(0.0) / BEHIND);
+        let aside = along * (self.widens * step.max(0.0) / BEHIND);
         let (a, b) = (a - aside, b + aside);
         a + (b - a) * across + out * step
     }
 
     /// Places all over the widened part, some decimeters apart.
-    fn places(&self, widens: f64) -> impl Iterator<Item = Vector> {
+    fn places(&self) -> impl Iterator<Item = Vector> {
         const STEPS: u32 = 24;
         let part = |k: u32| f64::from(k) / f64::from(STEPS);
-        let steps = if widens > 0.0 { 1..STEPS } else { 0..0 };
+        let steps = if self.widens > 0.0 { 1..STEPS } else { 0..0 };
         steps.flat_map(move |k| {
             let step = self.depth * part(k);
-            (0..=STEPS).map(move |l| self.place(step, part(l), widens))
+            (0..=STEPS).map(move |l| self.place(step, part(l)))
         })
     }
 
-    fn contains(&self, p: Vector, widens: f64) -> bool {
+    fn contains(&self, p: Vector) -> bool {
         let (way, [along, out]) = (p - self.ends[0], self.directions);
         let (step, across) = (way.dot(&out), way.dot(&along));
-        let aside = widens * step / BEHIND;
+        let aside = self.widens * step / BEHIND;
         let width = (self.ends[1] - self.ends[0]).norm();
         (0.0..=self.depth).contains(&step) && (-aside..=width + aside).contains(&across)
     }
 
-    fn ring(&self, widens: f64) -> Vec<[f64; 2]> {
+    /// The floor behind the line, counterclockwise.
+    fn outline(&self) -> Vec<Vector> {
+        let mut outline: Vec<Vector> = self.ring(0.0).into_iter().map(Vector::from).collect();
+        let [along, out] = self.directions;
+        if along.perp(&out) < 0.0 {
+            outline.reverse();
+        }
+        outline
+    }
+
+    /// The corners, from `first` meters behind the line.
+    fn ring(&self, first: f64) -> Vec<[f64; 2]> {
         let corners = [
-            (-OVERLAP, 0.0),
-            (-OVERLAP, 1.0),
+            (first, 0.0),
+            (first, 1.0),
             (self.depth, 1.0),
             (self.depth, 0.0),
         ];
-        let corners = corners.map(|(step, across)| self.place(step, across, widens).into());
+        let corners = corners.map(|(step, across)| self.place(step, across).into());
         corners.to_vec()
     }
 }
