@@ -82,6 +82,19 @@ fn a_density_counts_the_free_area() {
 }
 
 #[test]
+fn nobody_starts_on_the_floor_behind_an_exit() {
+    let mut document = floor(json!([{"area": [[0, 0], [20, 0], [20, 10], [0, 10]], "density": 1}]));
+    document["walkable_area"] = json!([[[[0, 0], [10, 0], [10, 10], [0, 10]]]]);
+    document["exits"] = json!([{"name": "door", "line": [[10, 4], [10, 6]]}]);
+    document.as_object_mut().unwrap().remove("goal");
+    let scenario = parse(&document).unwrap();
+    // 100 m² without the pillar, and the grid.
+    assert_eq!(scenario.scene.agents.len(), 96 + 16);
+    let beyond = |agent: &&NewAgent| agent.position.x > 10.0;
+    assert_eq!(scenario.scene.agents.iter().filter(beyond).count(), 0);
+}
+
+#[test]
 fn few_agents_are_spread_evenly() {
     let crowd = json!([{"area": [[0, 10], [10, 10], [10, 20], [0, 20]], "number": 100}]);
     let scenario = parse(&floor(crowd)).unwrap();

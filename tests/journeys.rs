@@ -93,47 +93,6 @@ fn an_exit_lets_at_most_the_given_flow_through() {
 }
 
 #[test]
-fn a_queue_serves_in_order_of_arrival_with_its_rate() {
-    let document = with(|room| {
-        room["queues"] =
-            json!([{"name": "till", "path": [[16, 8], [9, 8], [9, 2]], "service_secs": 3}]);
-        room["journeys"] = json!([{"name": "buy", "stages": ["till", "east"]}]);
-        room["grids"] =
-            json!([{"min": [1, 2], "max": [4, 8], "columns": 3, "rows": 5, "journey": "buy"}]);
-    });
-    let mut simulation = after(&document, &[], 25.0);
-    let tickets = |simulation: &Simulation| -> Vec<(u32, f64)> {
-        let agents = simulation.frame().agents;
-        let queued = agents.trip.iter().zip(&agents.position);
-        let mut queued: Vec<(u32, f64)> = queued
-            .filter_map(|(trip, p)| match trip.as_ref()?.status {
-                Status::Queued { ticket, .. } => Some((ticket, p.x)),
-                _ => None,
-            })
-            .collect();
-        queued.sort_by_key(|&(ticket, _)| ticket);
-        queued
-    };
-    let queued = tickets(&simulation);
-    assert!(queued.len() >= 4, "{queued:?}");
-    // They stand half a meter apart along the path, the first at its front.
-    assert!((queued[0].1 - 16.0).abs() < 0.4, "{queued:?}");
-    for pair in queued[..6].windows(2) {
-        assert!((0.3..0.7).contains(&(pair[0].1 - pair[1].1)), "{queued:?}");
-    }
-    go_on(&mut simulation, 80.0);
-    let times: Vec<f64> = simulation
-        .outcome()
-        .arrivals
-        .iter()
-        .map(|a| a.time)
-        .collect();
-    assert_eq!(times.len(), 15);
-    let mean = (times[14] - times[0]) / 14.0;
-    assert!((3.0..4.5).contains(&mean), "{mean} s per agent");
-}
-
-#[test]
 fn agents_wait_until_the_given_time_or_their_release() {
     let waiting = |keys: Value, events: Value| {
         with(|room| {

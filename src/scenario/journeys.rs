@@ -13,7 +13,7 @@ use crate::engine::journeys::{
     Change, ChangeKind, Choice, Exit, Journey, JourneyStage, Journeys, Kind, Place, Queue,
     WaitingArea, Zone,
 };
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, direction};
 
 /// The name of the journey of people without goal and journey in scenarios with exits.
 pub(super) const TO_NEAREST_EXIT: &str = "nearest exit";
@@ -21,6 +21,10 @@ pub(super) const TO_NEAREST_EXIT: &str = "nearest exit";
 const SHORTEST_LINE: f64 = 0.3;
 /// Default distance between people in a queue, meters.
 const SPACING: f64 = 0.5;
+/// A queue that goes on beyond its path ends this far before a wall, meters.
+const TAIL_GAP: f64 = 0.3;
+/// Farther walls do not end a queue, meters.
+const LONGEST_TAIL: f64 = 1000.0;
 /// Default radius of a waypoint, meters.
 const WITHIN: f64 = 0.5;
 
@@ -81,7 +85,8 @@ impl Found<'_> {
             self.add("waiting_areas", k, &given.name, kind)?;
         }
         for (k, given) in keys.queues.iter().enumerate() {
-            self.add("queues", k, &given.name, queue(given))?;
+            let queue = queue(given, self.walls);
+            self.add("queues", k, &given.name, queue)?;
         }
         Ok(())
     }
@@ -328,20 +333,43 @@ fn waypoint(given: &places::Waypoint) -> Result<Kind, Problem> {
     }
 }
 
-fn queue(given: &places::Queue) -> Result<Kind, Problem> {
+fn queue(given: &places::Queue, walls: &Walls) -> Result<Kind, Problem> {
     let path: Vec<Vector> = given.path.iter().map(|&p| p.into()).collect();
-    if let Some(k) = path.windows(2).position(|pair| pair[0] == pair[1]) {
-        let reason = "the same point as the next one; remove one";
-        return Err(Problem::new(format!("path[{k}]"), reason));
+    let mut length = 0.0;
+    let mut tail = (path[0], Vector::zeros());
+    for (k, pair) in path.windows(2).enumerate() {
+        let way = pair[1] - pair[0];
+        let problem = |reason| Err(Problem::new(format!("path[{k}]"), reason));
+        if way == Vector::zeros() {
+            return problem("the same point as the next one; remove one");
+        }
+        if first_wall(walls, pair[0], pair[1]).is_some() {
+            return problem(
+                "a wall stands between this point and the next; lead the path around it",
+            );
+        }
+        length += way.norm();
+        tail = (pair[1], direction(way) * LONGEST_TAIL);
     }
+    let wall = first_wall(walls, tail.0, tail.0 + tail.1);
+    length += wall.map_or(f64::INFINITY, |part| {
+        (part * LONGEST_TAIL - TAIL_GAP).max(0.0)
+    });
     let service = given.service_secs.times().under("service_secs")?;
     Ok(Kind::Queue(Queue {
         path,
+        length,
         spacing: given.spacing.unwrap_or(SPACING),
         servers: given.servers.unwrap_or(1),
         mean_service: service.mean(),
         service,
     }))
+}
+
+/// The part of the way from `a` to `b` up to the first wall, if there is one.
+fn first_wall(walls: &Walls, a: Vector, b: Vector) -> Option<f64> {
+    let near = walls.near_any(&[a, b], 0.0);
+    walls.first_crossing(a, b, &near).map(|(part, _)| part)
 }
 
 fn line(given: &[Point; 2]) -> Result<[Vector; 2], Problem> {

@@ -61,6 +61,9 @@ pub struct WaitingArea {
 pub struct Queue {
     /// The line on which agents stand, from the front, meters.
     pub path: Vec<Vector>,
+    /// The length of the line and of its continuation in the last direction up to the next wall, meters. Agents for
+    /// whom it is too short gather at its end.
+    pub length: f64,
     /// The distance between agents, meters.
     pub spacing: f64,
     /// How many agents are served at a time.
@@ -137,9 +140,9 @@ fn nearest(points: impl Iterator<Item = Vector>, p: Vector) -> Vector {
 
 impl Queue {
     /// Where the agent with `ahead` agents before it stands, meters. Beyond the end of the path, the queue goes on in
-    /// the same direction.
+    /// the same direction up to a wall.
     pub fn spot(&self, ahead: usize) -> Vector {
-        let mut left = ahead as f64 * self.spacing;
+        let mut left = self.length.min(ahead as f64 * self.spacing);
         let mut end = [self.path[0]; 2];
         for pair in self.path.windows(2) {
             let (a, b) = (pair[0], pair[1]);
