@@ -4,8 +4,16 @@ use nalgebra::Rotation2;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sandbox::engine::geometry::{Area, Ring};
-use sandbox::engine::math::Vector;
-use sandbox::engine::ways::{Floor, Goal, Next, PathMap, WayError, heading, nearest_on};
+use sandbox::engine::math::{Vector, direction};
+use sandbox::engine::ways::{Floor, Goal, Next, PathMap, WayError, around, nearest_on};
+
+/// The direction of the next step, `clearance` meters from corners.
+fn heading(floor: &Floor, p: Vector, next: &Next, clearance: f64) -> Vector {
+    match *next {
+        Next::Corner { bend, borders } => around(floor, p, (bend, borders), clearance),
+        Next::Goal(point) | Next::Out(point) => direction(point - p),
+    }
+}
 
 const SIZE: Vector = Vector::new(60.0, 40.0);
 

@@ -3,7 +3,7 @@
 //! A [`Floor`] is a constrained Delaunay triangulation of the areas that people walk in, with the corners that shortest
 //! ways bend around and the ways between corners. A [`PathMap`] has the way to one goal from any position: the
 //! [`Next`] point or corner, and the length. It is exact for polygons with holes, shared by all agents with that
-//! goal, and needs no search per agent; an agent that is pushed somewhere else asks again. [`heading`] keeps clear of
+//! goal, and needs no search per agent; an agent that is pushed somewhere else asks again. [`around`] keeps clear of
 //! the corners on the way.
 
 mod corner;
@@ -28,7 +28,7 @@ pub use goal::Goal;
 pub use map::{Next, PathMap, SLACK, Way};
 pub use mesh::{Mesh, Triangle, nearest_on, side};
 pub use route::{Destination, Route, Walker, Ways};
-pub use steer::heading;
+pub use steer::around;
 
 use crate::engine::math::Vector;
 

@@ -9,7 +9,7 @@ use super::floor::Floor;
 use super::goal::Goal;
 use super::map::{Next, PathMap, SLACK, Way};
 use super::mesh::side;
-use super::steer::{between_borders, heading};
+use super::steer::{around, between_borders};
 use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
 
@@ -210,7 +210,9 @@ impl Ways {
         };
         let place = self.next(route);
         let way_around = match way.next {
-            Next::Corner { .. } => Some(heading(&self.floor, p, &way.next, route.clearance)),
+            Next::Corner { bend, borders } => {
+                Some(around(&self.floor, p, (bend, borders), route.clearance))
+            }
             Next::Goal(end) => {
                 // Agents that see the end from the start walk straight if their bodies fit.
                 let least = walker.radius + CLEARANCE[0];

@@ -1,23 +1,22 @@
 //! Steering toward what comes next, with clearance at corners.
 
-use super::corner::Turn;
+use super::corner::{Bend, Turn};
 use super::floor::Floor;
-use super::map::Next;
 use crate::engine::math::{Vector, direction, perpendicular};
 
-/// The direction in which an agent at `p` walks that keeps `clearance` meters from corners where there is room for
-/// it: along the tangent of the circle around the next corner, on the side away from the corner's walls; and past
-/// the corners on the way there.
-pub fn heading(floor: &Floor, p: Vector, next: &Next, clearance: f64) -> Vector {
-    let (corner, bend, [near, far]) = match *next {
-        Next::Goal(point) | Next::Out(point) => return direction(point - p),
-        Next::Corner { bend, borders } => {
-            (&floor.corners[bend.corner as usize], bend.turn, borders)
-        }
-    };
+/// The direction in which an agent at `p` walks around a corner, keeping `clearance` meters from corners where there is
+/// room for it: along the tangent of the circle around the corner, on the side away from its walls, and between the
+/// borders `near` and `far` of what the corner sees, on the side of its walls and on the other.
+pub fn around(
+    floor: &Floor,
+    p: Vector,
+    (bend, [near, far]): (Bend, [Vector; 2]),
+    clearance: f64,
+) -> Vector {
+    let corner = &floor.corners[bend.corner as usize];
     let (ahead, distance) = direction_and_length(corner.place - p);
     // To the side away from the corner's walls.
-    let aside = match bend {
+    let aside = match bend.turn {
         Turn::First => -perpendicular(ahead),
         Turn::Last => perpendicular(ahead),
     };
