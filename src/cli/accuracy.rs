@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use super::update::CaseOptions;
 use super::watch::Watch;
 use super::{Failure, tell};
-use crate::lab::accuracy::{Plan, SCENES, Scene, WALLS, accuracy, knobs};
+use crate::lab::accuracy::{CHOICES, Plan, SCENES, Scene, WALLS, accuracy, knobs};
 
 #[derive(Args)]
 pub struct AccuracyOptions {
@@ -43,7 +43,6 @@ pub fn scenes() -> Vec<&'static str> {
 }
 
 pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
-    let store = options.cases.store()?;
     let wanted = |name: &str| options.scene.is_empty() || options.scene.iter().any(|s| s == name);
     let in_time = |scene: &Scene| !(options.quick && scene.is_long && options.scene.is_empty());
     let scenes = SCENES
@@ -55,8 +54,16 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
         knobs: options.knob.clone(),
         quick: options.quick,
     };
+    // The table of choices is of all scenes.
+    let updated = |name: &str| name != CHOICES || options.scene.is_empty();
+    let scenes = plan.scenes.iter().map(|scene| scene.name);
+    let tables = scenes.chain([CHOICES, WALLS]).filter(|name| updated(name));
+    let store = options.cases.store(&tables.collect::<Vec<_>>())?;
     let report = accuracy(&plan, &store, &Watch::new())?;
     let said = tell(options.json, || report.json(), || report.text());
-    options.cases.update(report.parts())?;
+    let parts = report.parts().into_iter();
+    options
+        .cases
+        .update(parts.filter(|(name, _)| updated(name)))?;
     said
 }

@@ -48,15 +48,15 @@ pub fn about() -> String {
 }
 
 pub fn run(options: &ReproduceOptions) -> Result<(), Failure> {
-    let store = options.cases.store()?;
     let wanted = |product: &&Product| {
         let named = options.what.iter().any(|name| name == product.name);
         named || product.in_all && options.what.iter().any(|name| name == ALL)
     };
     let products: Vec<&Product> = PRODUCTS.iter().filter(wanted).collect();
+    let names: Vec<&str> = products.iter().map(|product| product.name).collect();
+    let store = options.cases.store(&names)?;
     let texts = reproduce(&products, options.seeds, &store, &Watch::new())?;
     let said = texts.iter().try_for_each(say);
-    let names = products.iter().map(|product| product.name);
-    options.cases.update(names.zip(&texts))?;
+    options.cases.update(names.into_iter().zip(&texts))?;
     said
 }

@@ -5,7 +5,7 @@ use clap::Args;
 use super::update::CaseOptions;
 use super::watch::Watch;
 use super::{Failure, say};
-use crate::lab::stress::{Detail, stress};
+use crate::lab::stress::{Detail, PARTS, stress};
 
 #[derive(Args)]
 pub struct StressOptions {
@@ -17,13 +17,12 @@ pub struct StressOptions {
 }
 
 pub fn run(options: &StressOptions) -> Result<(), Failure> {
-    let store = options.cases.store()?;
+    let store = options.cases.store(&PARTS)?;
     let detail = Detail::read(options.quick)?;
     let report = stress(&detail, &store, &Watch::new())?;
     let parts = report.parts();
-    let mut texts = parts.iter().map(|(_, text)| text);
-    let said = texts.try_for_each(|text| say(format!("{text}\n")));
-    options.cases.update(parts)?;
+    let said = parts.iter().try_for_each(|text| say(format!("{text}\n")));
+    options.cases.update(PARTS.into_iter().zip(parts))?;
     said?;
     match report.failures() {
         none if none.is_empty() => Ok(()),

@@ -27,14 +27,16 @@ pub struct CaseOptions {
 }
 
 impl CaseOptions {
-    /// Opens the folder for the results, after a check that the document can be updated and that no result replaces it.
-    pub fn store(&self) -> Result<Store, Failure> {
+    /// Opens the folder for the results, after a check that the document can be updated, has a place for one of the
+    /// `tables` at least, and that no result replaces it.
+    pub fn store(&self, tables: &[&str]) -> Result<Store, Failure> {
         use_threads(self.threads)?;
         if let Some(file) = &self.update {
             let place = fs::canonicalize(file).map_err(|error| failed(file, &error))?;
             let mut outputs = Outputs::new(true);
             outputs.writes("--update", file, Manner::Whole);
             outputs.check()?;
+            check_places(file, tables)?;
             let results = fs::canonicalize(&self.out).ok();
             if results.is_some() && place.parent() == results.as_deref() {
                 return Err(Failure::Input(format!(
@@ -66,6 +68,21 @@ impl CaseOptions {
         };
         put().map_err(|error| failed(file, &error))
     }
+}
+
+fn check_places(file: &Path, tables: &[&str]) -> Result<(), Failure> {
+    let document = input::text(file).map_err(|error| failed(file, &error))?;
+    let has_place = |table: &&str| put_between(&document, table, "").is_some();
+    if tables.iter().any(has_place) {
+        return Ok(());
+    }
+    let lines = tables.iter().map(|table| format!("<!-- {table} -->"));
+    let lines: Vec<String> = lines.collect();
+    Err(Failure::Input(format!(
+        "--update {}: no place for a table; add a line {} and a line <!-- /NAME --> after it",
+        file.display(),
+        lines.join(" or ")
+    )))
 }
 
 fn failed(file: &Path, error: &io::Error) -> Failure {

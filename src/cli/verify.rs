@@ -47,7 +47,12 @@ pub fn run(options: &VerifyOptions) -> Result<(), Failure> {
         let reason = "--update needs all cases and profiles; leave --only and --profile out";
         return Err(Failure::Input(reason.to_owned()));
     }
-    let store = options.cases.store()?;
+    let mut given = options.profile.iter().enumerate();
+    if let Some((_, twice)) = given.find(|(k, name)| options.profile[..*k].contains(name)) {
+        let reason = format!("--profile {twice}: given twice; give it once");
+        return Err(Failure::Input(reason));
+    }
+    let store = options.cases.store(&[TABLE])?;
     let report = verify(
         &cases,
         &options.profile,

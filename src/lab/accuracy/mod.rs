@@ -22,7 +22,7 @@ pub mod walls;
 pub use found::{Found, Measured, Point, Quantity};
 pub use front::{better, cheapest};
 pub use lyapunov::Lyapunov;
-pub use report::{Report, WALLS};
+pub use report::{CHOICES, Report, WALLS};
 pub use scenes::{Kind, SCENES, Scene};
 pub use suite::{Plan, accuracy};
 pub use trajectory::{Errors, Motion, SAMPLES, Trajectories, limit};

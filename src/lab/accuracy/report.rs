@@ -7,6 +7,8 @@ use crate::lab::error::LabError;
 use crate::output::table::Table;
 use crate::runs::store::Store;
 
+/// The name of the table of the best choices of all scenes.
+pub const CHOICES: &str = "choices";
 /// The name of the wall measurements in lists of scenes.
 pub const WALLS: &str = "wall-integrals";
 
@@ -30,7 +32,7 @@ impl Report {
 
     /// The cheapest settings for each error, then all points, as Markdown: (name, text).
     pub fn parts(&self) -> Vec<(String, String)> {
-        let choices = [("choices".to_owned(), self.choices().markdown())].into_iter();
+        let choices = [(CHOICES.to_owned(), self.choices().markdown())].into_iter();
         let scenes = self.scenes.iter().map(|found| {
             let text = format!("{}\n\n{}", found.notes, found.table().markdown());
             (found.scene.name.to_owned(), text)

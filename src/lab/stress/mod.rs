@@ -14,6 +14,6 @@ pub use cell::{Cell, Limit};
 pub use condition::Condition;
 pub use fit::fit;
 pub use map::Detail;
-pub use report::Report;
+pub use report::{PARTS, Report};
 pub use rest::{Remains, Rest};
 pub use suite::{Finished, stress};

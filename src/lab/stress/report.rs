@@ -29,6 +29,9 @@ pub struct Report {
     pub jitter: Vec<Finished>,
 }
 
+/// The names of the tables.
+pub const PARTS: [&str; 3] = ["hard", "maps", "jitter"];
+
 impl Report {
     /// All violated requirements; empty if there are none.
     pub fn failures(&self) -> Vec<String> {
@@ -50,12 +53,12 @@ impl Report {
         hard.chain(unstable).chain(short).collect()
     }
 
-    /// All results as Markdown: (name, text).
-    pub fn parts(&self) -> [(&'static str, String); 3] {
+    /// All results as Markdown, in the order of [`PARTS`].
+    pub fn parts(&self) -> [String; 3] {
         [
-            ("hard", hard_table(&self.hard)),
-            ("maps", self.maps()),
-            ("jitter", jitter_table(&self.jitter)),
+            hard_table(&self.hard),
+            self.maps(),
+            jitter_table(&self.jitter),
         ]
     }
 
@@ -64,7 +67,7 @@ impl Report {
     /// # Errors
     /// A file cannot be written.
     pub fn write(&self, store: &Store) -> Result<(), LabError> {
-        let text: String = self.parts().map(|(_, text)| text + "\n").concat();
+        let text: String = self.parts().map(|text| text + "\n").concat();
         store.write("report.md", text.as_bytes())?;
         store.write("maps.csv", &csv(&self.cells)?)?;
         store.write("held_out.csv", &csv(&self.held_out)?)?;

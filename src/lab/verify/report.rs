@@ -159,10 +159,13 @@ impl Report {
         let table = self.table();
         let mut misses = String::new();
         for case in self.cases() {
-            for (profile, why) in case.misses {
-                if self.is_passed(case, profile) == Some(false) {
-                    misses += &format!("- **{}**, {profile}: {why}.\n", case.id);
-                }
+            let missed = case.misses.iter();
+            let missed = missed.filter(|(of, _)| self.is_passed(case, of) == Some(false));
+            let missed: Vec<_> = missed.collect();
+            for one_reason in missed.chunk_by(|a, b| a.1 == b.1) {
+                let profiles: Vec<&str> = one_reason.iter().map(|(profile, _)| *profile).collect();
+                let (profiles, why) = (profiles.join(", "), one_reason[0].1);
+                misses += &format!("- **{}**, {profiles}: {why}.\n", case.id);
             }
         }
         if !misses.is_empty() {

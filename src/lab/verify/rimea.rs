@@ -14,6 +14,10 @@ const RVO_SINGLE_FILE: &str = "in a curved corridor of 0.8 m every velocity lead
      penalty for the time to collision slows even four people far apart to 0.4 m/s; the more people, the less they avoid \
      and the more they are an SPH fluid, which nothing slows";
 
+/// Why people jam before a second opening.
+const PUSHED_THROUGH: &str = "the pressure of the crowd pushes 10 to 15 % more people per second through the first \
+     opening than walk through the second, and the rest gather before it";
+
 /// Why RVO's time does not double with half of the doors.
 const RVO_THINS_OUT: &str = "a door passes more of a dense crowd, which is SPH, than of a sparse one, which avoids by \
      RVO; with four doors the crowd thins out earlier";
@@ -225,10 +229,14 @@ pub const CASES: [Case; 17] = [
             Ok(vec![
                 Check::reported("density before the first [P/m²]", first),
                 Check::reported("density before the second [P/m²]", second),
-                Check::at_most("ratio", ratio, 0.9),
+                Check::at_most("ratio", ratio, 0.5),
             ])
         },
-        misses: &[],
+        misses: &[
+            ("sph", PUSHED_THROUGH),
+            ("sf->sph", PUSHED_THROUGH),
+            ("rvo->sph", PUSHED_THROUGH),
+        ],
         picture: ("two openings", 15.0),
     },
     Case {

@@ -84,9 +84,14 @@ impl Measure for Walks {
             let reason = format!("must be above `from_secs`, {}, not {until}", self.from_secs);
             return Err(Problem::new("walks.until_secs", reason));
         }
-        self.region.map_or(Ok(()), |corners| {
-            region("walks.region", corners).map(|_| ())
-        })
+        let Some(corners) = self.region else {
+            return Ok(());
+        };
+        region("walks.region", corners)?;
+        match self.area() {
+            Some(0.0) => Err(Problem::new("walks.region", "has no area")),
+            _ => Ok(()),
+        }
     }
 
     fn names(&self) -> Vec<(String, &'static str)> {
