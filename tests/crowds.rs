@@ -86,6 +86,7 @@ fn nobody_starts_on_the_floor_behind_an_exit() {
     let mut document = floor(json!([{"area": [[0, 0], [20, 0], [20, 10], [0, 10]], "density": 1}]));
     document["walkable_area"] = json!([[[[0, 0], [10, 0], [10, 10], [0, 10]]]]);
     document["exits"] = json!([{"name": "door", "line": [[10, 4], [10, 6]]}]);
+    document["navigation"] = json!("paths");
     document.as_object_mut().unwrap().remove("goal");
     let scenario = parse(&document).unwrap();
     // 100 m² without the pillar, and the grid.

@@ -331,10 +331,22 @@ fn recording_from_beyond_the_end_is_refused_or_noted() {
 }
 
 #[test]
-fn the_updated_file_must_lie_outside_of_the_results() {
+fn the_updated_file_must_have_places_for_tables_and_lie_outside_of_the_results() {
     let folder = folder();
     fs::write(folder.path().join("report.md"), "mine").unwrap();
-    for command in ["stress --quick", "accuracy --quick", "reproduce table1"] {
+    for command in [
+        "stress --quick",
+        "accuracy --quick",
+        "reproduce table1",
+        "verify",
+    ] {
+        let typed = format!("{command} --out new --update report.md");
+        refused(
+            folder.path(),
+            &typed,
+            2,
+            &["--update report.md", "no place for a table"],
+        );
         let typed = format!("{command} --out . --update report.md");
         refused(folder.path(), &typed, 2, &["--update report.md", "--out ."]);
         let typed = format!("{command} --out new --update dir");

@@ -36,7 +36,6 @@ impl CaseOptions {
             let mut outputs = Outputs::new(true);
             outputs.writes("--update", file, Manner::Whole);
             outputs.check()?;
-            check_places(file, tables)?;
             let results = fs::canonicalize(&self.out).ok();
             if results.is_some() && place.parent() == results.as_deref() {
                 return Err(Failure::Input(format!(
@@ -45,6 +44,7 @@ impl CaseOptions {
                     self.out.display()
                 )));
             }
+            check_places(file, tables)?;
         }
         Ok(Store::open(&self.out)?)
     }
