@@ -179,6 +179,44 @@ fn walks_of_people_at_a_steady_speed_give_their_density_speed_and_flow() {
 }
 
 #[test]
+fn people_at_a_steady_speed_have_the_flow_density_and_speed_of_their_distances() {
+    // 41 people 3 m apart walk 1.4 m/s through a region 12 m × 2 m and leave at its end, where a second line is.
+    let agents = (0..41).map(|k| {
+        json!({"position": [-3.0 * f64::from(k), 0], "velocity": [1.4, 0], "goal": [12.3, 0],
+                                        "remove_within": 0.3})
+    });
+    let summary = measured(json!({
+        "duration_secs": 110, "profile": "sph", "agents": agents.collect::<Vec<_>>(), "stop": {"when_empty": true},
+        "measurements": [{"line_flow": {"line": [[6, 1], [6, -1]], "region": [[0, -1], [12, 1]]}},
+                         {"line_flow": {"name": "end", "line": [[11.99, 1], [11.99, -1]], "part": [0, 1]}},
+                         {"line_flow": {"name": "beside", "line": [[6, 1], [6, 3]]}}],
+    }));
+    let metric = |name: &str| summary.metric(name).unwrap();
+    for (name, expected) in [
+        ("line_flow_per_s", 1.4 / 3.0),
+        ("end_flow_per_s", 1.4 / 3.0),
+        ("line_density_per_m2", 4.0 / 24.0),
+        ("line_speed_m_per_s", 1.4),
+        ("line_passages", 41.0),
+        ("end_passages", 41.0),
+    ] {
+        let found = metric(name);
+        let off = (found / expected - 1.0).abs();
+        assert!(off < 0.02, "{name}: {found}, expected {expected}");
+    }
+    assert_eq!(metric("beside_passages"), 0.0);
+    assert_eq!(summary.metric("beside_flow_per_s"), None);
+    let times: Vec<f64> = summary.data("end").unwrap();
+    for (k, time) in times.iter().enumerate() {
+        let expected = (11.99 + 3.0 * k as f64) / 1.4;
+        assert!(
+            (time - expected).abs() < 0.03,
+            "{time}, expected {expected}"
+        );
+    }
+}
+
+#[test]
 fn a_walk_starts_after_the_time_before_it_and_not_with_a_shove() {
     let summary = measured(json!({
         "duration_secs": 12, "profile": "sph",

@@ -50,7 +50,8 @@ fn whole() -> Value {
                     "ignore_contact": true, "ignore_sph": false}],
         "measurements": [{"density": {"at_secs": 5, "region": [[0, 0], [5, 5]]}}, {"evacuated": {}},
                          {"flow_of_first": {"arrivals": 2}}, {"flow_until": {"until_secs": 5}},
-                         {"walks": {"name": "w", "region": [[0, 0], [5, 5]], "from_secs": 1, "until_secs": 5}}],
+                         {"walks": {"name": "w", "region": [[0, 0], [5, 5]], "from_secs": 1, "until_secs": 5}},
+                         {"line_flow": {"name": "l", "line": [[0, 0], [5, 0]], "region": [[0, 0], [5, 5]], "part": [0.2, 0.8]}}],
         "stop": {"when_empty": true, "idle_secs": 5},
         "view": {"region": [[0, 0], [9, 9]], "opens_at_secs": 1},
         "debug_agents": [0, 1]

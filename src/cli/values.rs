@@ -6,8 +6,8 @@ use std::str::FromStr;
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
+use crate::analysis::crossing::Line;
 use crate::engine::scene::Region;
-use crate::lab::measure::Line;
 use crate::output::trajectory::read::FRAME_RATES;
 
 /// A number in a range; the error is `otherwise`.

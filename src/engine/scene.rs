@@ -139,6 +139,11 @@ impl Region {
     pub fn contains(&self, p: Vector) -> bool {
         (self.min.x..=self.max.x).contains(&p.x) && (self.min.y..=self.max.y).contains(&p.y)
     }
+
+    /// Square meters.
+    pub fn area(&self) -> f64 {
+        (self.max.x - self.min.x) * (self.max.y - self.min.y)
+    }
 }
 
 /// Everything that a [`Simulation`](crate::engine::simulation::Simulation) is built from.

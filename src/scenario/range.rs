@@ -193,3 +193,12 @@ pub(super) fn region(key: &str, Corners([min, max]): Corners) -> Result<Region, 
     );
     Err(Problem::new(key, reason))
 }
+
+/// A region with an area.
+pub(super) fn wide_region(key: &str, corners: Corners) -> Result<Region, Problem> {
+    let found = region(key, corners)?;
+    match found.area() {
+        0.0 => Err(Problem::new(key, "has no area")),
+        _ => Ok(found),
+    }
+}

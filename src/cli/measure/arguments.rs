@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
+use crate::analysis::crossing::Line;
 use crate::engine::scene::Region;
-use crate::lab::measure::Line;
 
 use super::super::arguments::ProgramOptions;
 use super::super::values::{frame_rate, length, line, moment, positive_seconds, region};

@@ -2,38 +2,8 @@
 
 use serde::Serialize;
 
-use crate::engine::math::Vector;
+use crate::analysis::crossing::{Balance, Line};
 use crate::output::trajectory::read::Tracks;
-
-/// A measurement line. Forward is from its left to its right, seen from its first end to its second.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Line {
-    /// First end, meters; belongs to the line.
-    pub start: Vector,
-    /// Second end, meters; does not belong to the line, so that a path crosses only one of two lines that join.
-    pub end: Vector,
-}
-
-impl Line {
-    /// Length, meters.
-    pub fn length(&self) -> f64 {
-        (self.end - self.start).norm()
-    }
-
-    /// Where the path from `from` to `to` crosses the line, as a fraction of the path, and whether forward. A point on
-    /// the line counts as right of it.
-    pub fn crossed(&self, from: Vector, to: Vector) -> Option<(f64, bool)> {
-        let way = self.end - self.start;
-        let [before, after] = [from, to].map(|p| way.perp(&(p - self.start)));
-        if (before > 0.0) == (after > 0.0) {
-            return None;
-        }
-        let part = before / (before - after);
-        let along = (from + (to - from) * part - self.start).dot(&way);
-        let within = (0.0..self.length() * self.length()).contains(&along);
-        within.then_some((part, before > 0.0))
-    }
-}
 
 /// A person crosses a line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -80,7 +50,7 @@ impl Crossings {
         let mut list = Vec::new();
         let mut across_gaps = 0;
         for (p, &id) in tracks.ids.iter().enumerate() {
-            let (mut balance, mut lowest, mut highest) = (0, 0, 0);
+            let mut balance = Balance::default();
             for pair in tracks.rows_of(p).windows(2) {
                 let [before, after] = [pair[0], pair[1]].map(|row| row as usize);
                 let [start, end] = [before, after].map(|row| tracks.position[row]);
@@ -97,9 +67,7 @@ impl Crossings {
                     continue;
                 }
                 let direction: i8 = if is_forward { 1 } else { -1 };
-                balance += i64::from(direction);
-                let passage = balance < lowest || balance > highest;
-                (lowest, highest) = (lowest.min(balance), highest.max(balance));
+                let passage = balance.passes(is_forward);
                 let place = start + (end - start) * part;
                 list.push(Crossing {
                     line: number,

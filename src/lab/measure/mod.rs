@@ -20,7 +20,7 @@ pub mod speed;
 pub use density::{Behind, MOST_HIDDEN, Parts, parts};
 pub use diagram::{CLASS, Class, Diagram, FrameMean};
 pub use fields::{Fields, Grid, MOST_CELLS, Mean};
-pub use line::{Crossing, Crossings, Line, Way};
+pub use line::{Crossing, Crossings, Way};
 pub use output::{Results, files};
 pub use record::MomentRecorder;
 pub use report::Report;
@@ -30,6 +30,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use crate::analysis::crossing::Line;
 use crate::analysis::statistics::MeanStd;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::Region;

@@ -13,6 +13,7 @@ mod fence;
 mod frame_time;
 mod integrity;
 mod jitter;
+mod line_flow;
 mod snapshot;
 mod speed_by_density;
 mod walks;
@@ -33,6 +34,7 @@ pub use egress::{Egress, Left};
 pub use frame_time::{FrameTime, StageTimes};
 pub use integrity::{Integrity, Watched};
 pub use jitter::Jitter;
+pub use line_flow::LineFlow;
 pub use snapshot::{Snapshot, SnapshotAt};
 pub use speed_by_density::SpeedByDensity;
 pub use walks::{Walk, Walks};
@@ -115,6 +117,8 @@ pub enum Measurement {
     SpeedByDensity(SpeedByDensity),
     /// What each agent walks; density, speed and flow in a region.
     Walks(Walks),
+    /// The flow across a line, with density and speed before it.
+    LineFlow(LineFlow),
     /// Computing time by stage.
     FrameTime(FrameTime),
 }
@@ -139,6 +143,7 @@ impl Measurement {
             Self::Integrity(keys) => started(keys),
             Self::SpeedByDensity(keys) => started(keys),
             Self::Walks(keys) => started(keys),
+            Self::LineFlow(keys) => started(keys),
             Self::FrameTime(keys) => started(keys),
         }
     }

@@ -9,7 +9,7 @@ use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::file::{Corners, LONGEST_TIME};
-use crate::scenario::range::region;
+use crate::scenario::range::{region, wide_region};
 
 /// The name of the values if none is given.
 const NAME: &str = "walks";
@@ -71,8 +71,7 @@ impl Walks {
 
     /// Square meters.
     fn area(&self) -> Option<f64> {
-        let of = region("", self.region?).ok()?;
-        Some((of.max.x - of.min.x) * (of.max.y - of.min.y))
+        Some(region("", self.region?).ok()?.area())
     }
 }
 
@@ -84,14 +83,9 @@ impl Measure for Walks {
             let reason = format!("must be above `from_secs`, {}, not {until}", self.from_secs);
             return Err(Problem::new("walks.until_secs", reason));
         }
-        let Some(corners) = self.region else {
-            return Ok(());
-        };
-        region("walks.region", corners)?;
-        match self.area() {
-            Some(0.0) => Err(Problem::new("walks.region", "has no area")),
-            _ => Ok(()),
-        }
+        self.region.map_or(Ok(()), |corners| {
+            wide_region("walks.region", corners).map(|_| ())
+        })
     }
 
     fn names(&self) -> Vec<(String, &'static str)> {

@@ -1,0 +1,55 @@
+//! Lines that people cross.
+
+use serde::{Deserialize, Serialize};
+
+use crate::engine::math::Vector;
+
+/// A measurement line. Forward is from its left to its right, seen from its first end to its second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Line {
+    /// First end, meters; belongs to the line.
+    pub start: Vector,
+    /// Second end, meters; does not belong to the line, so that a path crosses only one of two lines that join.
+    pub end: Vector,
+}
+
+impl Line {
+    /// Length, meters.
+    pub fn length(&self) -> f64 {
+        (self.end - self.start).norm()
+    }
+
+    /// Where the path from `from` to `to` crosses the line, as a fraction of the path, and whether forward. A point on
+    /// the line counts as right of it.
+    pub fn crossed(&self, from: Vector, to: Vector) -> Option<(f64, bool)> {
+        let way = self.end - self.start;
+        let [before, after] = [from, to].map(|p| way.perp(&(p - self.start)));
+        if (before > 0.0) == (after > 0.0) {
+            return None;
+        }
+        let part = before / (before - after);
+        let along = (from + (to - from) * part - self.start).dot(&way);
+        let within = (0.0..self.length() * self.length()).contains(&along);
+        within.then_some((part, before > 0.0))
+    }
+}
+
+/// How often a person has crossed a line forward, minus how often backward, and the extremes of that so far. A person who
+/// sways back and forth across the line passes it once: a crossing is a passage if the balance reaches a new extreme.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Balance {
+    now: i64,
+    lowest: i64,
+    highest: i64,
+}
+
+impl Balance {
+    /// Counts a crossing. Is it a passage?
+    pub fn passes(&mut self, is_forward: bool) -> bool {
+        self.now += if is_forward { 1 } else { -1 };
+        let is_new = self.now < self.lowest || self.now > self.highest;
+        self.lowest = self.lowest.min(self.now);
+        self.highest = self.highest.max(self.now);
+        is_new
+    }
+}

@@ -1,0 +1,201 @@
+//! The flow of people across a line, with density and speed before it.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::Measure;
+use crate::analysis::crossing::{Balance, Line};
+use crate::engine::math::Vector;
+use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::file::{Corners, Point};
+use crate::scenario::range::{region, wide_region};
+
+/// The name of the values if none is given.
+const NAME: &str = "line";
+/// The part of the passages that counts if none is given.
+const PART: [f64; 2] = [0.1, 0.9];
+/// Time between the frames in which density and speed are measured, and over which speeds are means, seconds.
+const EVERY_SECS: f64 = 0.4;
+
+/// The flow of people across a line, in either direction, between two parts of all passages; density and speed in a
+/// region in the same time. A person who sways back and forth passes once.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LineFlow {
+    /// The beginning of the names of its values. Default: `line`.
+    #[schemars(length(min = 1))]
+    name: Option<String>,
+    /// The ends of the line, meters. The second one does not belong to it.
+    line: [Point; 2],
+    /// The region: lower left and upper right corner, meters.
+    region: Option<Corners>,
+    /// Which passages count, as parts of all: from the first 10 % to the first 90 % if missing.
+    #[schemars(inner(range(min = 0, max = 1)))]
+    part: Option<[f64; 2]>,
+}
+
+/// An agent on its way.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Track {
+    /// Its position in the last frame, meters.
+    last: Vector,
+    /// Its position in the last frame in which density and speed were measured, meters.
+    sampled: Option<Vector>,
+    balance: Balance,
+}
+
+/// The agents in the region at one time.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+struct Sample {
+    /// Seconds.
+    time: f64,
+    agents: u32,
+    /// Those whose speed is known.
+    moving: u32,
+    /// The sum of their speeds, m/s.
+    speeds: f64,
+}
+
+/// What was seen so far.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub struct Seen {
+    /// By id.
+    tracks: Vec<Option<Track>>,
+    /// Times of the passages, seconds, ascending.
+    times: Vec<f64>,
+    samples: Vec<Sample>,
+    /// How many arrivals were seen.
+    arrivals: usize,
+}
+
+impl LineFlow {
+    fn name(&self) -> &str {
+        self.name.as_deref().unwrap_or(NAME)
+    }
+
+    fn line(&self) -> Line {
+        let [start, end] = self.line.map(Vector::from);
+        Line { start, end }
+    }
+
+    /// The times of the first and the last passage that count, and the flow between them, P/s.
+    fn flow(&self, times: &[f64]) -> Option<([f64; 2], f64)> {
+        let last = times.len().checked_sub(1)? as f64;
+        let [first, last] = self
+            .part
+            .unwrap_or(PART)
+            .map(|part| (part * last).round() as usize);
+        let ends = [times[first], times[last]];
+        let span = ends[1] - ends[0];
+        (span > 0.0).then(|| (ends, (last - first) as f64 / span))
+    }
+}
+
+impl Measure for LineFlow {
+    type Seen = Seen;
+
+    fn check(&self) -> Result<(), Problem> {
+        let problem = |key: &str, reason: &str| Err(Problem::new(key, reason));
+        if self.line().length() == 0.0 {
+            return problem("line_flow.line", "both ends are the same point");
+        }
+        if self.part.is_some_and(|[first, last]| first >= last) {
+            return problem("line_flow.part", "the first part must be below the second");
+        }
+        self.region.map_or(Ok(()), |corners| {
+            wide_region("line_flow.region", corners).map(|_| ())
+        })
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        let name = |(what, unit)| (format!("{}_{what}", self.name()), unit);
+        let values = [
+            ("passages", "agents"),
+            ("flow_per_s", "P/s"),
+            ("density_per_m2", "P/m²"),
+            ("speed_m_per_s", "m/s"),
+        ];
+        values.into_iter().map(name).collect()
+    }
+
+    fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
+        let frame = simulation.frame();
+        let (clock, agents) = (frame.clock, frame.agents);
+        let (now, step) = (clock.time(), clock.time_step());
+        let line = self.line();
+        let before = seen.times.len();
+        seen.tracks.resize(agents.entered() as usize, None);
+        let mut passed = |track: &mut Track, position: Vector| {
+            if let Some((part, is_forward)) = line.crossed(track.last, position)
+                && track.balance.passes(is_forward)
+            {
+                seen.times.push(now - step + step * part);
+            }
+            track.last = position;
+        };
+        for arrival in &simulation.outcome().arrivals[seen.arrivals..] {
+            if let Some(mut track) = seen.tracks[arrival.id as usize].take() {
+                passed(&mut track, arrival.position);
+            }
+        }
+        let every = clock.frame_at(EVERY_SECS).max(1);
+        let is_due = clock.frame().is_multiple_of(every);
+        let region = self.region.and_then(|corners| region("", corners).ok());
+        let mut sample = Sample {
+            time: now,
+            ..Sample::default()
+        };
+        for (&id, &position) in agents.id.iter().zip(&agents.position) {
+            let track = seen.tracks[id as usize].get_or_insert(Track {
+                last: position,
+                sampled: None,
+                balance: Balance::default(),
+            });
+            passed(track, position);
+            if is_due && region.is_some_and(|region| region.contains(position)) {
+                sample.agents += 1;
+                if let Some(before) = track.sampled {
+                    sample.moving += 1;
+                    sample.speeds += (position - before).norm() / (every as f64 * step);
+                }
+            }
+            if is_due {
+                track.sampled = Some(position);
+            }
+        }
+        seen.arrivals = simulation.outcome().arrivals.len();
+        seen.times[before..].sort_by(f64::total_cmp);
+        if is_due && region.is_some() {
+            seen.samples.push(sample);
+        }
+    }
+
+    fn values(&self, seen: &Seen, _: &Simulation) -> Vec<Option<f64>> {
+        let flow = self.flow(&seen.times);
+        let region = self.region.and_then(|corners| region("", corners).ok());
+        let ends = flow.map_or([f64::NAN; 2], |(ends, _)| ends);
+        let samples = seen.samples.iter();
+        let samples = samples.filter(|sample| (ends[0]..=ends[1]).contains(&sample.time));
+        let (mut count, mut agents, mut moving, mut speeds) = (0.0, 0.0, 0.0, 0.0);
+        for sample in samples {
+            count += 1.0;
+            agents += f64::from(sample.agents);
+            moving += f64::from(sample.moving);
+            speeds += sample.speeds;
+        }
+        vec![
+            Some(seen.times.len() as f64),
+            flow.map(|(_, flow)| flow),
+            region
+                .filter(|_| count > 0.0)
+                .map(|region| agents / (count * region.area())),
+            (moving > 0.0).then(|| speeds / moving),
+        ]
+    }
+
+    fn data(&self, seen: &Seen) -> Option<(String, Value)> {
+        Some((self.name().to_owned(), json!(seen.times)))
+    }
+}
