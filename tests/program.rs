@@ -38,4 +38,5 @@ mod trajectory;
 mod trajectory_area;
 mod trajectory_formats;
 mod trajectory_robustness;
+mod validate;
 mod verify;

@@ -4,48 +4,56 @@ use std::collections::BTreeSet;
 use std::fs;
 
 use crate::common::program::{refused, run, stderr, text};
+use sandbox::lab::suite::{Case, Check, Finding, Report};
 use sandbox::lab::sweep::Study;
-use sandbox::lab::verify::{CASES, Case, Check, Finding, PROFILES, Report, chosen};
-
-fn all() -> impl Iterator<Item = &'static Case> {
-    CASES.iter().copied().flatten()
-}
+use sandbox::lab::verify::VERIFICATION;
 
 fn named(id: &str) -> &'static Case {
-    all().find(|case| case.id == id).unwrap()
+    VERIFICATION.all().find(|case| case.id == id).unwrap()
 }
 
 #[test]
 fn the_cases_use_all_runs_of_the_study_and_no_others() {
     let study = Study::built_in("verification", None, None).unwrap();
     let known: BTreeSet<&str> = study.cells.iter().filter_map(|cell| cell.label()).collect();
-    let used: BTreeSet<&str> = all().flat_map(|case| case.runs).copied().collect();
+    let used: BTreeSet<&str> = VERIFICATION
+        .all()
+        .flat_map(|case| case.runs)
+        .copied()
+        .collect();
     assert_eq!(used, known);
     assert_eq!(
         study.document["grid"]["profile"],
-        serde_json::json!(PROFILES)
+        serde_json::json!(VERIFICATION.profiles)
     );
-    for case in all() {
+    for case in VERIFICATION.all() {
         assert!(case.runs.contains(&case.picture.0), "{}", case.id);
         let mut misses = case.misses.iter();
-        assert!(misses.all(|(profile, why)| PROFILES.contains(profile) && !why.is_empty()));
+        assert!(
+            misses.all(|(profile, why)| VERIFICATION.profiles.contains(profile) && !why.is_empty())
+        );
     }
-    let ids: BTreeSet<&str> = all().map(|case| case.id).collect();
-    assert_eq!(ids.len(), all().count());
+    let ids: BTreeSet<&str> = VERIFICATION.all().map(|case| case.id).collect();
+    assert_eq!(ids.len(), VERIFICATION.all().count());
 }
 
 #[test]
 fn cases_are_chosen_by_id_or_number() {
     let ids = |names: &[&str]| -> Vec<&str> {
         let names: Vec<String> = names.iter().map(|&name| name.to_owned()).collect();
-        chosen(&names).unwrap().iter().map(|case| case.id).collect()
+        VERIFICATION
+            .chosen(&names)
+            .unwrap()
+            .iter()
+            .map(|case| case.id)
+            .collect()
     };
     assert_eq!(ids(&["12"]), ["12a", "12b", "12c", "12d"]);
     assert_eq!(ids(&["iso1", "1"]), ["1", "iso1"]);
     assert_eq!(ids(&["12c"]), ["12c"]);
-    assert_eq!(ids(&[]).len(), all().count());
+    assert_eq!(ids(&[]).len(), VERIFICATION.all().count());
     assert_eq!(
-        chosen(&["6".to_owned(), "8".to_owned()]).err(),
+        VERIFICATION.chosen(&["6".to_owned(), "8".to_owned()]).err(),
         Some("8".to_owned())
     );
 }
@@ -64,11 +72,12 @@ fn a_value_passes_inside_of_its_range_ends_included() {
 /// A report of one case with one value by `sph`.
 fn report(case: &'static Case, value: f64) -> Report {
     Report {
+        suite: &VERIFICATION,
         profiles: vec!["sph".to_owned()],
         findings: vec![Finding {
             case,
             profile: "sph".to_owned(),
-            seed: 1,
+            seed: Some(1),
             checks: vec![Check::at_most("time [s]", Some(value), 10.0)],
         }],
     }

@@ -6,7 +6,9 @@ use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
 use super::arguments::{DrawOptions, InspectOptions, ResumeOptions, RunOptions};
-use super::{accuracy, bench, measure, reproduce, stress, sweep, verify};
+use super::{accuracy, bench, measure, reproduce, stress, suite, sweep};
+use crate::lab::validate::VALIDATION;
+use crate::lab::verify::VERIFICATION;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -92,10 +94,16 @@ pub enum Command {
     Stress(stress::StressOptions),
     /// Run verification cases of RiMEA, ISO 20414 and NIST: tables and pictures
     #[command(
-        after_help = format!("{}Example: sandbox verify --only 12 --only iso6 --seeds 3", verify::about()),
+        after_help = format!("{}Example: sandbox verify --only 12 --only iso6 --seeds 3", suite::about(&VERIFICATION)),
         mut_arg("out", |out| out.required(false).default_value("verification"))
     )]
-    Verify(verify::VerifyOptions),
+    Verify(suite::VerifyOptions),
+    /// Compare scenes of experiments with what was measured there: tables and pictures
+    #[command(
+        after_help = format!("{}Example: sandbox validate door --seeds 3", suite::about(&VALIDATION)),
+        mut_arg("out", |out| out.required(false).default_value("validation"))
+    )]
+    Validate(suite::ValidateOptions),
     /// Print the JSON Schema of scenario files, for completion and checks in editors
     #[command(after_help = SCHEMA_EXAMPLE)]
     Schema,

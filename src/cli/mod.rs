@@ -18,11 +18,11 @@ mod output;
 mod report;
 mod reproduce;
 mod stress;
+mod suite;
 mod sweep;
 mod trajectory;
 mod update;
 mod values;
-mod verify;
 mod watch;
 
 use std::io::{ErrorKind, Write};
@@ -155,7 +155,8 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Bench(options) => bench::run(&options),
         Command::Accuracy(options) => accuracy::run(&options),
         Command::Stress(options) => stress::run(&options),
-        Command::Verify(options) => verify::run(&options),
+        Command::Verify(options) => suite::verify(&options),
+        Command::Validate(options) => suite::validate(&options),
         Command::Schema => list::schema(),
         Command::Sweep(options) => sweep::run(&options),
         Command::Measure(options) => measure::run(&options),

@@ -1,7 +1,7 @@
 //! The lab: experiments of many runs. The paper's tables and figures ([`reproduce`]), studies over settings and seeds
 //! ([`sweep`]), run time on this [`machine`] ([`mod@bench`]), hard cases and the largest stable time step ([`stress`]),
 //! run time against
-//! error ([`accuracy`]), and small cases with known answers ([`mod@verify`]). [`measure`] finds densities, fields, fundamental diagrams and flows of
+//! error ([`accuracy`]), and cases with known answers ([`suite`], [`mod@verify`]), and scenes of experiments ([`mod@validate`]). [`measure`] finds densities, fields, fundamental diagrams and flows of
 //! any trajectory.
 
 pub mod error;
@@ -22,4 +22,8 @@ pub mod stress;
 
 pub mod accuracy;
 
+pub mod suite;
+
 pub mod verify;
+
+pub mod validate;

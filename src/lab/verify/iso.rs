@@ -1,10 +1,9 @@
 //! The cases of ISO 20414 and NIST TN 1822 that RiMEA lacks and a flat plan allows.
 
-use super::case::{Case, Runs};
-use super::check::Check;
 use crate::analysis::statistics::{MeanStd, uniform_probability};
 use crate::engine::distribution::{Distribution, Family};
 use crate::lab::error::LabError;
+use crate::lab::suite::{Case, Check, Runs};
 
 type Checks = Result<Vec<Check>, LabError>;
 

@@ -1,9 +1,8 @@
 //! The cases of RiMEA 4.1.1 that a flat plan allows.
 
-use super::case::{Case, Runs};
-use super::check::Check;
 use super::speeds::{DENSITIES, ages, fundamental_diagram, single_file};
 use crate::lab::error::LabError;
+use crate::lab::suite::{Case, Check, Runs};
 
 /// Why the speed of a dense crowd is too high.
 const NOTHING_SLOWS: &str = "nothing slows a crowd whose agents all walk at the same velocity: pressure, contact and \

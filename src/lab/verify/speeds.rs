@@ -1,8 +1,7 @@
 //! Cases about speeds: by density, by age, in single file.
 
-use super::case::Runs;
-use super::check::Check;
 use crate::lab::error::LabError;
+use crate::lab::suite::{Check, Runs};
 use crate::scenario::measurements::Walk;
 
 type Checks = Result<Vec<Check>, LabError>;

@@ -11,6 +11,13 @@ const ROUNDING: f64 = 1e-9;
 pub enum Expected {
     /// A value between two, inclusive; infinite if there is no bound.
     Between([f64; 2]),
+    /// A measured value, and how far off another may be, as a part of it.
+    Near {
+        /// The measured value.
+        value: f64,
+        /// The part of it.
+        tolerance: f64,
+    },
     /// Any value: it is reported.
     Any,
 }
@@ -33,6 +40,22 @@ impl Check {
             quantity: quantity.into(),
             value,
             expected: Expected::Between([low, high]),
+        }
+    }
+
+    /// A value that may be off a measured one by a part of it.
+    pub fn near(
+        quantity: impl Into<String>,
+        value: Option<f64>,
+        (measured, tolerance): (f64, f64),
+    ) -> Self {
+        Self {
+            quantity: quantity.into(),
+            value,
+            expected: Expected::Near {
+                value: measured,
+                tolerance,
+            },
         }
     }
 
@@ -60,14 +83,29 @@ impl Check {
         }
     }
 
+    /// The bounds of the value, inclusive; infinite if there are none.
+    pub fn bounds(&self) -> [f64; 2] {
+        match self.expected {
+            Expected::Any => [f64::NEG_INFINITY, f64::INFINITY],
+            Expected::Near { value, tolerance } => {
+                [1.0 - tolerance, 1.0 + tolerance].map(|part| value * part)
+            }
+            Expected::Between(bounds) => bounds,
+        }
+    }
+
     /// Is the value as expected? A missing value is only if any is.
     pub fn is_passed(&self) -> bool {
+        let [low, high] = self.bounds();
+        let range = low - ROUNDING..=high + ROUNDING;
+        self.expected == Expected::Any || self.value.is_some_and(|value| range.contains(&value))
+    }
+
+    /// How far the value is off a measured one, as a part of it.
+    pub fn error(&self) -> Option<f64> {
         match self.expected {
-            Expected::Any => true,
-            Expected::Between([low, high]) => {
-                let range = low - ROUNDING..=high + ROUNDING;
-                self.value.is_some_and(|value| range.contains(&value))
-            }
+            Expected::Near { value, .. } => Some(self.value? / value - 1.0),
+            _ => None,
         }
     }
 
@@ -75,6 +113,9 @@ impl Check {
     pub fn expected_written(&self) -> String {
         match self.expected {
             Expected::Any => "reported".to_owned(),
+            Expected::Near { value, tolerance } => {
+                format!("{value} ± {} %", (100.0 * tolerance).round())
+            }
             Expected::Between([low, high]) if low == high => format!("{low}"),
             Expected::Between([f64::NEG_INFINITY, high]) => format!("at most {high}"),
             Expected::Between([low, f64::INFINITY]) => format!("at least {low}"),

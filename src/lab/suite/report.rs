@@ -1,10 +1,8 @@
-//! What `sandbox verify` prints and writes.
+//! What is printed and written about a suite.
 
 use serde_json::json;
 
-use super::case::{Case, PROFILES};
-use super::check::{Check, Expected};
-use super::suite::THROUGH_WALLS;
+use super::{Case, Check, Suite, THROUGH_WALLS};
 use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
 use crate::output::table::Table;
@@ -17,8 +15,8 @@ pub struct Finding {
     pub case: &'static Case,
     /// The profile.
     pub profile: String,
-    /// The seed.
-    pub seed: u64,
+    /// The seed; `None` for means over seeds.
+    pub seed: Option<u64>,
     /// The checks.
     pub checks: Vec<Check>,
 }
@@ -32,6 +30,8 @@ impl Finding {
 
 /// All findings.
 pub struct Report {
+    /// The suite.
+    pub suite: &'static Suite,
     /// The profiles, in the order of the columns.
     pub profiles: Vec<String>,
     /// The findings, by case, profile and seed.
@@ -68,10 +68,15 @@ impl Row<'_> {
         let values: Option<Vec<f64>> = checks.iter().map(|check| check.value).collect();
         let range = values.map(|values| Range::of(&values));
         let ends = range.map_or([None; 2], |range| [range.minimum, range.maximum].map(Some));
-        let text = match ends.map(written) {
+        let mut text = match ends.map(written) {
             [low, high] if low == high => low,
             [low, high] => format!("{low} to {high}"),
         };
+        if let [only] = checks[..]
+            && let Some(error) = only.error()
+        {
+            text += &format!(" ({:+.0} %)", 100.0 * error);
+        }
         match checks.iter().all(|check| check.is_passed()) {
             true => text,
             false => format!("**{text}**"),
@@ -86,11 +91,12 @@ fn written(value: Option<f64>) -> String {
 }
 
 impl Report {
-    /// Cases that miss an expectation although they passed before, of [`PROFILES`]; empty if there are none.
+    /// Cases that miss an expectation although they passed before, of the suite's profiles; empty if there are none.
     pub fn failures(&self) -> Vec<String> {
         let missed = self.findings.iter().filter(|finding| !finding.is_passed());
         let is_known = |one: &Finding| one.case.known_miss(&one.profile).is_some();
-        let new = missed.filter(|one| PROFILES.contains(&one.profile.as_str()) && !is_known(one));
+        let new = missed
+            .filter(|one| self.suite.profiles.contains(&one.profile.as_str()) && !is_known(one));
         let lines = new.map(|finding| {
             let missed = finding.checks.iter().filter(|check| !check.is_passed());
             let missed = missed.map(|check| {
@@ -104,11 +110,8 @@ impl Report {
                 seed,
                 ..
             } = finding;
-            format!(
-                "case {}, {profile}, seed {seed}: {}",
-                case.id,
-                missed.join("; ")
-            )
+            let seed = seed.map_or(String::new(), |seed| format!(", seed {seed}"));
+            format!("case {}, {profile}{seed}: {}", case.id, missed.join("; "))
         });
         lines.collect()
     }
@@ -157,17 +160,31 @@ impl Report {
             true => "",
         };
         let table = self.table();
-        let mut misses = String::new();
+        // Cases one after the other that the same profiles miss for the same reason share a line.
+        let mut reasons: Vec<(Vec<&str>, Vec<&str>, &str)> = Vec::new();
         for case in self.cases() {
             let missed = case.misses.iter();
             let missed = missed.filter(|(of, _)| self.is_passed(case, of) == Some(false));
             let missed: Vec<_> = missed.collect();
             for one_reason in missed.chunk_by(|a, b| a.1 == b.1) {
                 let profiles: Vec<&str> = one_reason.iter().map(|(profile, _)| *profile).collect();
-                let (profiles, why) = (profiles.join(", "), one_reason[0].1);
-                misses += &format!("- **{}**, {profiles}: {why}.\n", case.id);
+                let why = one_reason[0].1;
+                match reasons.last_mut() {
+                    Some((cases, of, same)) if *of == profiles && *same == why => {
+                        cases.push(case.id)
+                    }
+                    _ => reasons.push((vec![case.id], profiles, why)),
+                }
             }
         }
+        let line = |(cases, profiles, why): (Vec<&str>, Vec<&str>, &str)| {
+            format!(
+                "- **{}**, {}: {why}.\n",
+                cases.join(", "),
+                profiles.join(", ")
+            )
+        };
+        let mut misses: String = reasons.into_iter().map(line).collect();
         if !misses.is_empty() {
             misses = format!("\nKnown misses:\n\n{misses}");
         }
@@ -202,21 +219,20 @@ impl Report {
         table.table().markdown()
     }
 
-    /// Writes `verification.md` and `verification.csv` into the store's folder.
+    /// Writes all results as Markdown, CSV and JSON into the store's folder, under the name of the suite.
     ///
     /// # Errors
     /// A file cannot be written.
     pub fn write(&self, store: &Store) -> Result<(), LabError> {
-        store.write("verification.md", self.markdown().as_bytes())?;
+        let name = |ending: &str| format!("{}.{ending}", self.suite.name);
+        store.write(&name("md"), self.markdown().as_bytes())?;
         let rows = self.findings.iter().flat_map(|finding| {
             let checks = finding.checks.iter();
             checks.map(move |check| (finding, check))
         });
         let rows: Vec<(&Finding, &Check)> = rows.collect();
-        let bound = |check: &Check, k: usize| match check.expected {
-            Expected::Between(bounds) if bounds[k].is_finite() => Some(bounds[k]),
-            _ => None,
-        };
+        let bound =
+            |check: &Check, k: usize| Some(check.bounds()[k]).filter(|bound| bound.is_finite());
         let csv = Table::of(&rows)
             .column("case", |(finding, _)| finding.case.id)
             .column("profile", |(finding, _)| finding.profile.as_str())
@@ -226,7 +242,7 @@ impl Report {
             .column("least", |(_, check)| bound(check, 0))
             .column("most", |(_, check)| bound(check, 1))
             .column("passed", |(_, check)| check.is_passed());
-        store.write("verification.csv", &csv.table().csv()?)?;
+        store.write(&name("csv"), &csv.table().csv()?)?;
         let entry = |finding: &Finding| {
             json!({
                 "case": finding.case.id, "profile": finding.profile, "seed": finding.seed,
@@ -234,10 +250,7 @@ impl Report {
             })
         };
         let entries: Vec<_> = self.findings.iter().map(entry).collect();
-        store.write(
-            "verification.json",
-            format!("{:#}\n", json!(entries)).as_bytes(),
-        )?;
+        store.write(&name("json"), format!("{:#}\n", json!(entries)).as_bytes())?;
         Ok(())
     }
 }

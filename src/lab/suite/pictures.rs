@@ -1,6 +1,6 @@
 //! A picture of each case.
 
-use super::case::Case;
+use super::Case;
 use crate::engine::simulation::{Fault, Simulation};
 use crate::lab::error::LabError;
 use crate::lab::sweep::Cell;

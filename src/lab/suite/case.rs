@@ -1,14 +1,13 @@
 //! Cases, and the runs that they judge.
 
 use super::check::Check;
-use super::{iso, rimea};
 use crate::lab::error::LabError;
 use crate::runs::summary::{PlaceResult, Summary};
 use crate::scenario::measurements::Walk;
 
-/// A verification case.
+/// A case.
 pub struct Case {
-    /// Its number: of RiMEA, or after `iso` of ISO 20414 (and NIST TN 1822).
+    /// Its name in tables, on the command line and of its picture.
     pub id: &'static str,
     /// A description, in one line.
     pub about: &'static str,
@@ -21,12 +20,6 @@ pub struct Case {
     /// The picture: the label of a run, and the time, seconds.
     pub picture: (&'static str, f64),
 }
-
-/// The profiles of the study, whose misses are known.
-pub const PROFILES: [&str; 3] = ["sph", "sf->sph", "rvo->sph"];
-
-/// All cases, in the order of the report.
-pub const CASES: [&[Case]; 2] = [&rimea::CASES, &iso::CASES];
 
 impl Case {
     /// Is it meant by `name`: its id, or its number without the letter?
@@ -44,18 +37,27 @@ impl Case {
 }
 
 /// The results of one profile and one seed, by label.
-pub struct Runs<'a>(pub Vec<(&'a str, &'a Summary)>);
+pub struct Runs<'a> {
+    /// The name of the suite.
+    pub suite: &'a str,
+    /// The results.
+    pub own: Vec<(&'a str, &'a Summary)>,
+}
 
 impl Runs<'_> {
+    fn missing(&self, label: &str, what: &str) -> LabError {
+        LabError::missing(format!("{}, {label}", self.suite), what)
+    }
+
     /// The results of a run.
     ///
     /// # Errors
     /// There is no such run.
     pub fn of(&self, label: &str) -> Result<&Summary, LabError> {
-        let found = self.0.iter().find(|(own, _)| *own == label);
+        let found = self.own.iter().find(|(own, _)| *own == label);
         found
             .map(|(_, summary)| *summary)
-            .ok_or_else(|| LabError::missing(format!("verification, {label}"), "run"))
+            .ok_or_else(|| self.missing(label, "run"))
     }
 
     /// A measured value of a run.
@@ -93,7 +95,7 @@ impl Runs<'_> {
             .places
             .iter()
             .find(|place| place.name == name);
-        found.ok_or_else(|| LabError::missing(format!("verification, {label}"), name))
+        found.ok_or_else(|| self.missing(label, name))
     }
 
     /// The number of agents that have passed a place.
@@ -120,6 +122,6 @@ impl Runs<'_> {
     /// There is no such run, or it measures no `walks`.
     pub fn walks(&self, label: &str) -> Result<Vec<Walk>, LabError> {
         let walks = self.of(label)?.data("walks");
-        walks.ok_or_else(|| LabError::missing(format!("verification, {label}"), "walks"))
+        walks.ok_or_else(|| self.missing(label, "walks"))
     }
 }

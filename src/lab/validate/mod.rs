@@ -1,0 +1,13 @@
+//! Validation: scenes of experiments, with what was measured there.
+
+mod bottlenecks;
+
+use super::suite::Suite;
+
+/// The scenes.
+pub static VALIDATION: Suite = Suite {
+    name: "validation",
+    cases: &[&bottlenecks::CASES],
+    profiles: &["sph", "sf->sph", "rvo->sph"],
+    judges_means: true,
+};

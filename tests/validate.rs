@@ -1,0 +1,62 @@
+//! Validation: scenes and their runs, means over seeds, and the command.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use crate::common::program::{refused, run, stderr, text};
+use sandbox::lab::suite::Check;
+use sandbox::lab::sweep::Study;
+use sandbox::lab::validate::VALIDATION;
+
+#[test]
+fn the_scenes_use_all_runs_of_the_study_and_no_others() {
+    let study = Study::built_in(VALIDATION.name, None, None).unwrap();
+    let known: BTreeSet<&str> = study.cells.iter().filter_map(|cell| cell.label()).collect();
+    let used: BTreeSet<&str> = VALIDATION.all().flat_map(|case| case.runs).copied().collect();
+    assert_eq!(used, known);
+    let profiles = serde_json::json!(VALIDATION.profiles);
+    assert_eq!(study.document["grid"]["profile"], profiles);
+    for case in VALIDATION.all() {
+        assert!(case.runs.contains(&case.picture.0), "{}", case.id);
+    }
+}
+
+#[test]
+fn a_value_passes_within_the_tolerance_of_the_measured_one() {
+    let check = |value| Check::near("flow", value, (2.0, 0.06));
+    assert!(check(Some(2.12)).is_passed() && check(Some(1.88)).is_passed());
+    assert!(!check(Some(2.13)).is_passed() && !check(Some(1.87)).is_passed());
+    assert!(!check(None).is_passed());
+    assert!((check(Some(3.0)).error().unwrap() - 0.5).abs() < 1e-12);
+    assert_eq!(check(None).expected_written(), "2 ± 6 %");
+}
+
+#[test]
+fn validate_judges_means_over_seeds() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("v");
+    let csv = |seeds: &str| {
+        let mut typed = vec!["validate", "door", "--profile", "sph", "--seeds", seeds];
+        typed.extend(["--out", text(&out)]);
+        let output = run(&typed);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        fs::read_to_string(out.join("validation.csv")).unwrap()
+    };
+    let flow = |csv: &str| -> f64 {
+        let line = csv.lines().find(|line| line.contains("flow")).unwrap();
+        line.split(',').nth(4).unwrap().parse().unwrap()
+    };
+    let one = flow(&csv("1"));
+    let both = csv("2");
+    assert_eq!(both.matches("flow").count(), 1, "{both}");
+    let cell = |seed: &str| {
+        let scenario = "scenarios/validation/door.json";
+        let seed = format!("seed={seed}");
+        let output = run(&["run", scenario, "--profile", "sph", "--set", &seed, "--json"]);
+        let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        result["metrics"]["door_flow_per_s"].as_f64().unwrap()
+    };
+    assert!((one - cell("1")).abs() < 1e-9);
+    assert!((flow(&both) - 0.5 * (cell("1") + cell("2"))).abs() < 1e-9);
+    refused(&["validate", "gate"], 2, &["gate: no such case", "gap-2.4"]);
+}
