@@ -5,6 +5,8 @@ use sandbox::engine::agents::{Agents, NewAgent};
 use sandbox::engine::math::Vector;
 use sandbox::engine::placement::Grid;
 use sandbox::engine::random::{Purpose, stream};
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::Scenario;
 
 #[test]
 fn bodies_depend_on_seed_and_id_and_stay_in_the_papers_range() {
@@ -90,4 +92,29 @@ fn every_key_has_its_own_stream_and_repeats_it() {
     ] {
         assert_ne!(base, other);
     }
+}
+
+fn masses(keys: &str) -> [Vec<u64>; 3] {
+    let text = format!(
+        r#"{{"goal": [50, 5], "grids": [{{"min": [0, 0], "max": [9, 9], "columns": 9, "rows": 9, "jitter": 0.2,
+            "preferred_speed": {{"uniform": [1, 2]}}{keys}}}]}}"#
+    );
+    let scene = Scenario::parse(&text, "f", &[]).unwrap().scene;
+    let simulation = Simulation::new(scene).unwrap();
+    let agents = simulation.frame().agents;
+    [&agents.mass, &agents.radius, &agents.preferred_speed]
+        .map(|values| values.iter().map(|value| value.to_bits()).collect())
+}
+
+#[test]
+fn masses_are_drawn_apart_from_all_other_traits() {
+    let [of_radius, radii, speeds] = masses("");
+    let [ones, ..] = masses(r#", "mass": 1"#);
+    assert!(ones.iter().all(|&mass| f64::from_bits(mass) == 1.0));
+    let drawn = masses(r#", "mass": {"uniform": [0.9, 1.1]}"#);
+    assert_eq!(drawn[1..], [radii, speeds]);
+    assert_ne!(drawn[0], of_radius);
+    let values = drawn[0].iter().map(|&mass| f64::from_bits(mass));
+    assert!(values.clone().all(|mass| (0.9..=1.1).contains(&mass)));
+    assert!(values.fold(0.0, f64::max) > 1.05);
 }

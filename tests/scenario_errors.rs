@@ -151,7 +151,7 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
     ],
     [
         "sources.0.rwos=5",
-        "--set sources.0.rwos=5: unknown key `rwos`; did you mean `rows`? Expected one of `name`, `min`, `max`, `columns`, `rows`, `jitter`, `goal`, `goal_offset`, `journey`, `profile`, `remove_within`, `counted`, `preferred_speed`, `radius`, `premovement_secs`, `start_secs`, `every_secs`, `times`",
+        "--set sources.0.rwos=5: unknown key `rwos`; did you mean `rows`? Expected one of `name`, `min`, `max`, `columns`, `rows`, `jitter`, `goal`, `goal_offset`, `journey`, `profile`, `remove_within`, `counted`, `preferred_speed`, `radius`, `mass`, `premovement_secs`, `start_secs`, `every_secs`, `times`",
     ],
     [
         "profile.base=sf",

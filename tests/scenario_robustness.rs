@@ -131,7 +131,7 @@ const EVERYTHING: &str = r#"{
   "grids": [{"name": "g", "min": [3, 3], "max": [5, 5], "columns": 3, "rows": 2, "jitter": 0.1,
              "goal_offset": [1, 0], "profile": {"navigation": "social", "sph": true}}],
   "crowds": [{"area": [[6, 1], [8, 1], [8, 4], [6, 4]], "number": 5, "preferred_speed": "weidmann_age",
-              "radius": {"values": [[0.2, 1], [0.25, 2]]}},
+              "radius": {"values": [[0.2, 1], [0.25, 2]]}, "mass": {"uniform": [0.8, 1.2]}},
              {"area": [[[6, 6], [8, 6], [8, 8]], [[7.2, 6.2], [7.5, 6.2], [7.5, 6.4]]], "density": 1,
               "spacing": "grid", "premovement_secs": {"weibull": {"scale": 0.3, "shape": 1.2, "max": 5}}}],
   "sources": [{"min": [0, 5], "max": [0, 9], "columns": 1, "rows": 4, "every_secs": 0.5, "start_secs": 0,

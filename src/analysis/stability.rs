@@ -29,6 +29,7 @@ use crate::engine::agents::{RADIUS_RANGE, REFERENCE_RADIUS};
 use crate::engine::clock::PAPER_COARSE_STEP;
 use crate::engine::profile::{Navigation, Profile};
 use crate::engine::scene::{Integrator, Scene};
+use crate::engine::traits::Traits;
 
 /// C₁ to C₃, and the safety margins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -209,25 +210,27 @@ fn three_digits(value: f64) -> f64 {
     format!("{rounded:.2e}").parse().unwrap_or(rounded)
 }
 
-/// The share of drawn radii that may be smaller than assumed: a normal distribution has no smallest radius.
+/// The share of drawn radii and masses that may be smaller than assumed: a normal distribution has no smallest radius.
 const RARE: f64 = 1e-6;
 
 /// The smallest mass that an agent of the scene has or may be assigned.
 fn lightest(scene: &Scene) -> f64 {
     let of_radius = |radius: f64| (radius / REFERENCE_RADIUS).powi(2);
     let drawn = of_radius(RADIUS_RANGE[0]);
-    let of_groups = scene.groups.iter().map(|group| match &group.traits.radius {
-        Some(radius) => of_radius(radius.quantile(RARE)),
-        None => drawn,
+    let of_groups = scene.groups.iter().map(|group| {
+        let Traits { radius, mass, .. } = &group.traits;
+        match (mass, radius) {
+            (Some(mass), _) => mass.quantile(RARE),
+            (None, Some(radius)) => of_radius(radius.quantile(RARE)),
+            (None, None) => drawn,
+        }
     });
     let of_groups: Vec<f64> = of_groups.collect();
     let of_group = |group: u16| of_groups[usize::from(group)];
     let given = scene.agents.iter().map(|agent| {
-        let radius = agent.radius.map(of_radius);
-        agent
-            .mass
-            .or(radius)
-            .unwrap_or_else(|| of_group(agent.group))
+        let own_mass = &scene.groups[usize::from(agent.group)].traits.mass;
+        let radius = agent.radius.filter(|_| own_mass.is_none());
+        (agent.mass.or(radius.map(of_radius))).unwrap_or_else(|| of_group(agent.group))
     });
     let sources = scene.sources.iter().map(|source| source.group);
     let entrances = scene.entrances.iter().map(|entrance| entrance.group);

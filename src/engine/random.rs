@@ -29,6 +29,8 @@ pub enum Purpose {
     Arrival = 13,
     /// Place at which an agent comes through an entrance.
     Entry = 14,
+    /// Mass of an agent.
+    Mass = 15,
 }
 
 /// Base-2 logarithm of the 32-bit words reserved per frame: enough for eight million draws of 64 bits.

@@ -11,6 +11,8 @@ pub struct Traits {
     pub preferred_speed: Option<Distribution>,
     /// D_i, meters.
     pub radius: Option<Distribution>,
+    /// m_i; `None`: (D_i / 0.24)².
+    pub mass: Option<Distribution>,
     /// Time from its entry until an agent walks, seconds.
     pub premovement: Option<Distribution>,
 }
@@ -33,6 +35,7 @@ impl Traits {
         NewAgent {
             preferred_speed: draw(new.preferred_speed, &self.preferred_speed, Purpose::Speed),
             radius: draw(new.radius, &self.radius, Purpose::Body),
+            mass: draw(new.mass, &self.mass, Purpose::Mass),
             premovement: draw(new.premovement, &self.premovement, Purpose::Premovement),
             ..new
         }

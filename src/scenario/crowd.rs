@@ -257,6 +257,7 @@ impl<'a> Crowd<'a> {
         let draws = [
             &given.preferred_speed,
             &given.radius,
+            &given.mass,
             &given.premovement_secs,
         ];
         let name = given.name.as_deref().unwrap_or(place);

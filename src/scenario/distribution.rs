@@ -27,6 +27,8 @@ const SPEED: &str = "preferred_speed";
 const SPEEDS: [f64; 2] = [0.0, 100.0];
 /// The range of radii, meters.
 const RADII: [f64; 2] = [0.01, 10.0];
+/// The range of masses.
+const MASSES: [f64; 2] = [1e-6, 1e6];
 /// The range of times before agents walk, seconds.
 const WAITS: [f64; 2] = [0.0, LONGEST_TIME];
 
@@ -168,6 +170,10 @@ pub(super) fn speed(generator: &mut SchemaGenerator) -> Schema {
 
 pub(super) fn radius(generator: &mut SchemaGenerator) -> Schema {
     draw(generator, RADII, &[])
+}
+
+pub(super) fn mass(generator: &mut SchemaGenerator) -> Schema {
+    draw(generator, MASSES, &[])
 }
 
 pub(super) fn wait(generator: &mut SchemaGenerator) -> Schema {
@@ -316,9 +322,9 @@ impl Draw {
     }
 }
 
-/// The traits of agents, from the keys `preferred_speed`, `radius` and `premovement_secs`.
+/// The traits of agents, from the keys `preferred_speed`, `radius`, `mass` and `premovement_secs`.
 pub(super) fn traits(
-    [preferred_speed, radius, premovement_secs]: [&Option<Draw>; 3],
+    [preferred_speed, radius, mass, premovement_secs]: [&Option<Draw>; 4],
 ) -> Result<Traits, Problem> {
     let of = |key: &str, draw: &Option<Draw>, range| {
         let made = draw
@@ -335,6 +341,7 @@ pub(super) fn traits(
     Ok(Traits {
         preferred_speed: of(SPEED, preferred_speed, SPEEDS)?,
         radius: of("radius", radius, RADII)?,
+        mass: of("mass", mass, MASSES)?,
         premovement: of("premovement_secs", premovement_secs, WAITS)?,
     })
 }

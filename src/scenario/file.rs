@@ -277,6 +277,11 @@ pub(super) struct Grid {
     #[serde(default)]
     #[schemars(schema_with = "distribution::radius")]
     pub radius: Option<Draw>,
+    /// m_i, 1 for an average person: a number, or a distribution. Lighter agents need shorter time steps. Default:
+    /// (D_i / 0.24)².
+    #[serde(default)]
+    #[schemars(schema_with = "distribution::mass")]
+    pub mass: Option<Draw>,
     /// The time from its entry until an agent walks, seconds: a number, or a distribution. Default: 0.
     #[serde(default)]
     #[schemars(schema_with = "distribution::wait")]
