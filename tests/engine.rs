@@ -50,6 +50,8 @@ mod skips;
 mod social;
 mod sound;
 mod statistics;
+mod walking;
+mod walking_profiles;
 mod walls;
 mod wave;
 mod way_extremes;

@@ -22,7 +22,7 @@ fn listed(agents: &mut Agents) -> Neighbors {
     let ranges = Ranges {
         support: 1.0,
         avoidance: Some(5.0),
-        social: Some(5.0),
+        wide: Some(5.0),
         longest_step: 0.036,
         drift: 0.5 * SKIN,
         margin: 0.5 * SKIN,

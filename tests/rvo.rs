@@ -8,7 +8,7 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sandbox::engine::agents::NewAgent;
-use sandbox::engine::forces::rvo::{Candidate, MovingDisc, Rvo, Scratch, Search, Situation};
+use sandbox::engine::forces::rvo::{Candidate, MovingDisc, Rvo, Scratch, Search, Situation, Wish};
 use sandbox::engine::geometry::{Polygon, Wall, Walls};
 use sandbox::engine::math::Vector;
 use sandbox::engine::simulation::Simulation;
@@ -340,7 +340,11 @@ fn a_choice_exists_only_while_its_weight_is_positive() {
             let i = view.agents.index_of(id).unwrap();
             let (now, last) = (view.agents.avoidance[i], before[id as usize]);
             assert_eq!(now.is_some(), view.fields.density[i] < 4.0);
-            let chosen = Rvo::default().acceleration(&view, i, 1.8, &mut Scratch::default());
+            let wish = Wish {
+                preferred_velocity: view.fields.preferred_velocity[i],
+                max_speed: 1.8,
+            };
+            let chosen = Rvo::default().acceleration(&view, i, wish, &mut Scratch::default());
             match (now, last) {
                 (Some(now), None) if frame % 5 != 0 => {
                     in_between += 1;

@@ -124,7 +124,7 @@ const EVERYTHING: &str = r#"{
   "coarse_every": 5, "integrator": "velocity-verlet", "wall_method": "union", "precision": "double",
   "neighbor_lists": "coarse", "preferred_speed": 1.4, "max_speed": 1.8,
   "profile": {"blend": [{"at_density": 2, "profile": "rvo"}, {"at_density": 4, "profile": "sph"}]},
-  "parameters": {"viscosity": 5, "candidates": 10}, "goal": [9, 5],
+  "parameters": {"viscosity": 5, "candidates": 10, "walking_law": "density-ahead", "jam_density": 7}, "goal": [9, 5],
   "obstacles": [[[0, 0], [1, 0], [1, 1]], [[0.5, 0], [2, 0], [2, 1], [0.5, 0.5]]],
   "agents": [{"position": [2, 2], "velocity": [1, 0], "radius": 0.3, "mass": 1, "goal": [3, 3],
               "mean_density": 2, "profile": "sf", "remove_within": 0.5, "counted": false}],

@@ -22,7 +22,7 @@ fn whole() -> Value {
             {"at_density": 2, "profile": "sf"},
             {"at_density": 4, "profile": {"base": "sph", "parameters": {"viscosity": 1}}}
         ]},
-        "parameters": {"goal_scale": 2, "candidates": 30},
+        "parameters": {"goal_scale": 2, "candidates": 30, "walking_law": "headway", "lane_half_width": 0.4},
         "walkable_area": [[[[0, 0], [9, 0], [9, 9]], [[5, 2], [6, 2], [6, 3]]]],
         "obstacles": [[[0, 0], [1, 0], [1, 1]], [[[3, 1], [5, 1], [5, 3]], [[4, 1.5], [4.5, 1.5], [4.5, 2]]]],
         "agents": [

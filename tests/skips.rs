@@ -1,6 +1,7 @@
 //! Quantities that a scene does not need are not computed and are absent.
 
 use crate::common;
+use crate::common::walking::with;
 use crate::common::{blend, blend_with, block, person, rectangle, room, scene, vector};
 use sandbox::engine::agents::Agents;
 use sandbox::engine::boundary::WallMethod;
@@ -8,7 +9,7 @@ use sandbox::engine::forces::near::Wanted;
 use sandbox::engine::profile::Blend;
 use sandbox::engine::scene::Needs;
 use sandbox::engine::simulation::{Simulation, Stage};
-use sandbox::scenario::catalog::Parameters;
+use sandbox::scenario::catalog::{Parameters, WalkingLawKind};
 
 fn crowd(blend: Blend) -> Simulation {
     let mut scene = scene(vec![room(8.0, 1.0)], blend);
@@ -64,6 +65,7 @@ fn needs_follow_from_the_profiles() {
         pairs: sph,
         rvo: false,
         social: false,
+        walking: false,
         avoidance: None,
         removal: false,
         paces: false,
@@ -152,6 +154,21 @@ fn without_avoidance_no_neighbors_within_five_meters_are_searched() {
         scene.ranges(&scene.needs(), &Agents::default()).avoidance,
         Some(5.0)
     );
+}
+
+#[test]
+fn scenes_without_a_law_search_no_farther() {
+    let ranges = |blend: Blend| {
+        let scene = scene(vec![], blend);
+        let agents = sandbox::engine::agents::Agents::default();
+        scene.ranges(&scene.needs(), &agents).wide
+    };
+    assert_eq!(ranges(blend("sph")), None);
+    assert_eq!(ranges(blend_with("sph", &with(WalkingLawKind::Drag))), None);
+    let headway = ranges(blend_with("sph", &with(WalkingLawKind::Headway))).unwrap();
+    assert!((headway - 1.14_f64.hypot(0.45)).abs() < 1e-12);
+    let both = blend_with("sf", &with(WalkingLawKind::Headway));
+    assert_eq!(ranges(both), Some(5.0));
 }
 
 #[test]

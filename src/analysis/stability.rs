@@ -22,11 +22,14 @@
 //!
 //! A corner has its own limit with ω² = 2 K^obs/m, because both of its edges push. Springs of walls and social
 //! forces replace C₂ K/m if they are stiffer. All friction includes K^goal/(τ m) of the goal force, or 1/Δt_coarse
-//! for RVO. No step is longer than the paper's Δt_coarse.
+//! for RVO. A walking law that looks ahead, with ds/dx its change of speed over distance, adds ω² = 2 K^goal/(τ m)
+//! |ds/dx| everywhere: it pulls an agent after the one ahead. Drag adds its γ at twice ρ⁰max to all friction. No step is
+//! longer than the paper's Δt_coarse.
 
 use crate::analysis::sound;
-use crate::engine::agents::{RADIUS_RANGE, REFERENCE_RADIUS};
+use crate::engine::agents::{Agents, RADIUS_RANGE, REFERENCE_RADIUS};
 use crate::engine::clock::PAPER_COARSE_STEP;
+use crate::engine::forces::walking::WalkingLaw;
 use crate::engine::profile::{Navigation, Profile};
 use crate::engine::scene::{Integrator, Scene};
 use crate::engine::traits::Traits;
@@ -104,6 +107,10 @@ impl Scheme {
 
 /// Drag in a pressed crowd relative to a loose crowd, which has a quarter of its density.
 const PRESSED_DRAG: f64 = 0.25;
+/// A walking law couples an agent to the one ahead: the fastest mode moves both, in opposite directions.
+const BOTH_ENDS: f64 = 2.0;
+/// The highest density of a crowd relative to ρ⁰max: beyond, pressure drives it apart.
+const CROWDED: f64 = 2.0;
 /// Both edges of a corner push an agent in front of it in the same direction.
 const EDGES_AT_A_CORNER: f64 = 2.0;
 
@@ -122,6 +129,10 @@ pub struct Mode {
     pub viscosity: f64,
     /// K^goal/(τ m), or 1/Δt_coarse for RVO, 1/s.
     pub correction: f64,
+    /// The steepest walking law: speed per distance, 1/s.
+    pub steepness: f64,
+    /// The friction of walking laws in the densest crowds, 1/s.
+    pub friction: f64,
 }
 
 impl Mode {
@@ -138,6 +149,14 @@ impl Mode {
                     mode.pressure = mode.pressure.max(speed / sph.support_radius);
                 }
                 mode.take(profile, mass);
+                let law = profile.walking.as_ref();
+                let pace = fastest(scene);
+                let steepness = law.map_or(0.0, |law| law.steepness(pace, sph.support_radius));
+                mode.steepness = mode.steepness.max(steepness);
+                if let Some(WalkingLaw::Drag(drag)) = law {
+                    let densest = CROWDED * sph.rest_density_max;
+                    mode.friction = mode.friction.max(drag.rate(densest));
+                }
             }
         }
         // A push can override K^goal of any agent.
@@ -179,12 +198,14 @@ impl Mode {
     /// The step by the formula, without margin, seconds.
     pub fn largest_step(&self, scheme: Scheme, constants: &Constants) -> f64 {
         let springs = (constants.contact * self.contact).max(self.other_springs);
-        let pressed = (constants.pressure * self.pressure).powi(2) + springs;
+        let law = BOTH_ENDS * self.steepness * self.correction;
+        let pressed = (constants.pressure * self.pressure).powi(2) + springs + law;
         let drag = constants.drag * self.viscosity;
+        let friction = self.correction + self.friction;
         let steps = [
-            scheme.largest_step(pressed, PRESSED_DRAG * drag + self.correction),
-            scheme.largest_step(self.corner, self.correction),
-            scheme.largest_step(0.0, drag + self.correction),
+            scheme.largest_step(pressed, PRESSED_DRAG * drag + friction),
+            scheme.largest_step(self.corner + law, friction),
+            scheme.largest_step(0.0, drag + friction),
             PAPER_COARSE_STEP,
         ];
         steps.into_iter().fold(f64::INFINITY, f64::min)
@@ -236,6 +257,20 @@ fn lightest(scene: &Scene) -> f64 {
     let entrances = scene.entrances.iter().map(|entrance| entrance.group);
     let entering = sources.chain(entrances).map(of_group);
     given.chain(entering).reduce(f64::min).unwrap_or(drawn)
+}
+
+/// The highest preferred speed that an agent of the scene has or may be assigned, m/s.
+fn fastest(scene: &Scene) -> f64 {
+    let drawn = scene.groups.iter().filter_map(|group| {
+        let speed = group.traits.preferred_speed.as_ref();
+        speed.map(|speed| speed.quantile(1.0 - RARE))
+    });
+    let given = scene
+        .agents
+        .iter()
+        .filter_map(|agent| agent.preferred_speed);
+    let own = drawn.chain(given).fold(0.0, f64::max);
+    own.max(scene.highest_pace(&Agents::default()))
 }
 
 /// The smallest τ of all goal forces, seconds; the paper's τ if there is none.

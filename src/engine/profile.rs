@@ -13,6 +13,7 @@ use crate::engine::forces::pressure;
 use crate::engine::forces::rvo::Rvo;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::forces::viscosity::Viscosity;
+use crate::engine::forces::walking::WalkingLaw;
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::BLOCK;
@@ -24,6 +25,8 @@ pub struct Profile {
     pub name: String,
     /// Step 3.
     pub navigation: Navigation,
+    /// Step 3: what slows its walk because of the crowd; `None` in the paper's profiles.
+    pub walking: Option<WalkingLaw>,
     /// Step 3B, pressure; `false` in a profile without SPH, and if k = 0.
     pub pressure: bool,
     /// Step 3B, viscosity; `None` in a profile without SPH, and if μ = 0.
@@ -44,6 +47,14 @@ pub enum Navigation {
 }
 
 impl Navigation {
+    /// The goal force, if there is one.
+    pub fn goal(&self) -> Option<GoalForce> {
+        match *self {
+            Self::Goal(goal) | Self::Social(goal, _) => Some(goal),
+            Self::Rvo(_) => None,
+        }
+    }
+
     /// The social force, if there is one.
     pub fn social(&self) -> Option<SocialForce> {
         match *self {
@@ -78,6 +89,8 @@ pub struct Override {
 pub struct Terms {
     /// Eq. 17.
     pub goal: Option<Vector>,
+    /// What a walking law takes away.
+    pub walking: Option<Vector>,
     /// Eq. 18.
     pub social_agents: Option<Vector>,
     /// Eq. 19.
@@ -101,6 +114,8 @@ pub struct Terms {
 pub enum Term {
     /// Eq. 17.
     Goal,
+    /// What a walking law takes away.
+    Walking,
     /// Eq. 18.
     SocialAgents,
     /// Eq. 19.
@@ -129,6 +144,7 @@ impl Term {
     pub fn name(self) -> &'static str {
         match self {
             Self::Goal => "goal",
+            Self::Walking => "walking",
             Self::SocialAgents => "social_agents",
             Self::SocialWalls => "social_walls",
             Self::Rvo => "rvo",
@@ -152,9 +168,10 @@ impl Term {
 impl Terms {
     /// Every term with its value, in the order of the simulation loop. Destructuring makes a forgotten field a
     /// compile error, and so does every `match` on [`Term`].
-    pub fn listed(&self) -> [(Term, Option<Vector>); 9] {
+    pub fn listed(&self) -> [(Term, Option<Vector>); 10] {
         let Self {
             goal,
+            walking,
             social_agents,
             social_walls,
             rvo,
@@ -166,6 +183,7 @@ impl Terms {
         } = *self;
         [
             (Term::Goal, goal),
+            (Term::Walking, walking),
             (Term::SocialAgents, social_agents),
             (Term::SocialWalls, social_walls),
             (Term::Rvo, rvo),
@@ -210,6 +228,7 @@ impl Profile {
         let rvo = matches!(self.navigation, Navigation::Rvo(_));
         match term {
             Term::Goal => !rvo,
+            Term::Walking => self.walking.is_some_and(|law| !(rvo && law.looks_ahead())),
             Term::SocialAgents | Term::SocialWalls => social,
             Term::Rvo => rvo,
             Term::PressureAgents | Term::PressureWalls => self.pressure,
@@ -235,6 +254,10 @@ impl Profile {
             }
             terms.viscosity = self.viscosity.map(|_| viscosity);
         }
+        if let Some((law, rate)) = self.looks_ahead(changed) {
+            let rate = rate / frame.agents.mass[i];
+            terms.walking = Some(law.acceleration(frame, i, rate));
+        }
         if let Some(social) = self.navigation.social() {
             terms.social_agents = Some(social.from_agents(frame, i));
         }
@@ -245,6 +268,13 @@ impl Profile {
             }
         }
         terms
+    }
+
+    /// The law that lowers the preferred speed in the goal force, and K^goal/τ, 1/s.
+    fn looks_ahead(&self, changed: Option<&Override>) -> Option<(WalkingLaw, f64)> {
+        let law = self.walking.filter(WalkingLaw::looks_ahead)?;
+        let goal = changed_goal(self.navigation.goal()?, changed);
+        Some((law, goal.rate()))
     }
 
     /// Adds the coefficients of this profile for sums over near agents, times `weight`, for `agents` of one block of a
@@ -305,6 +335,11 @@ impl Profile {
                         take(|t| &mut t.rvo, i, held);
                     }
                 }
+            }
+        }
+        if let Some(WalkingLaw::Drag(drag)) = self.walking {
+            for i in agents.clone() {
+                take(|t| &mut t.walking, i, drag.acceleration(frame, i));
             }
         }
         if self.pressure && feels_sph(changed) {

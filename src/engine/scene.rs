@@ -9,6 +9,7 @@ use crate::engine::entrance::Entrance;
 use crate::engine::forces::near::Wanted;
 use crate::engine::forces::own::Force;
 use crate::engine::forces::social::SocialForce;
+use crate::engine::forces::walking::WalkingLaw;
 use crate::engine::geometry::{Polygon, Walls};
 use crate::engine::journeys::Journeys;
 use crate::engine::math::Vector;
@@ -247,11 +248,13 @@ impl Scene {
             .iter()
             .any(|group| group.blend.depends_on_density());
         let own = self.own_forces.iter().any(|force| force.needs_density());
+        let drag = profiles().any(|profile| matches!(profile.walking, Some(WalkingLaw::Drag(_))));
         Needs {
-            density: pairs.pressure || pairs.viscosity || blending || own,
+            density: pairs.pressure || pairs.viscosity || blending || drag || own,
             pairs,
             rvo: self.groups.iter().any(|group| group.blend.rvo().is_some()),
             social: !self.social_forces().is_empty(),
+            walking: !self.walking_laws().is_empty(),
             avoidance: profiles()
                 .filter_map(|profile| profile.navigation.avoidance_radius())
                 .reduce(f64::max),
@@ -296,13 +299,21 @@ impl Scene {
     /// The distinct social forces of all profiles.
     pub fn social_forces(&self) -> Vec<SocialForce> {
         let steps = self.groups.iter().flat_map(|group| group.blend.steps());
-        let mut different = Vec::new();
-        for social in steps.filter_map(|step| step.profile.navigation.social()) {
-            if !different.contains(&social) {
-                different.push(social);
-            }
-        }
-        different
+        different(steps.filter_map(|step| step.profile.navigation.social()))
+    }
+
+    /// The distinct walking laws of all profiles that look ahead.
+    pub fn walking_laws(&self) -> Vec<WalkingLaw> {
+        let steps = self.groups.iter().flat_map(|group| group.blend.steps());
+        let laws = steps.filter_map(|step| step.profile.walking);
+        different(laws.filter(WalkingLaw::looks_ahead))
+    }
+
+    /// The largest preferred speed of all agents in any zone, m/s.
+    pub fn highest_pace(&self, agents: &Agents) -> f64 {
+        let own = agents.preferred_speed.iter().copied();
+        let factors = self.journeys.zones.iter().map(|zone| zone.speed_factor);
+        own.fold(self.preferred_speed, f64::max) * factors.fold(1.0, f64::max)
     }
 
     /// The ranges of the neighbor search for these agents.
@@ -327,17 +338,29 @@ impl Scene {
         Ranges {
             support,
             avoidance: needs.avoidance,
-            social: needs.social.then(|| {
-                self.social_forces()
-                    .iter()
-                    .map(|social| social.avoidance_radius)
-                    .fold(0.0, f64::max)
+            wide: (needs.social || needs.walking).then(|| {
+                let social = self.social_forces().into_iter();
+                let pace = self.highest_pace(agents);
+                let laws = self.walking_laws().into_iter();
+                let laws = laws.map(|law| law.reach(pace, support));
+                let radii = social.map(|social| social.avoidance_radius).chain(laws);
+                radii.fold(0.0, f64::max)
             }),
             longest_step,
             drift,
             margin,
         }
     }
+}
+
+fn different<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
+    let mut different = Vec::new();
+    for one in all {
+        if !different.contains(&one) {
+            different.push(one);
+        }
+    }
+    different
 }
 
 /// What a scene needs, decided once. Everything else is never computed.
@@ -351,6 +374,8 @@ pub struct Needs {
     pub rvo: bool,
     /// Some profile uses social forces.
     pub social: bool,
+    /// Some profile has a walking law that looks ahead.
+    pub walking: bool,
     /// The largest avoidance radius, meters.
     pub avoidance: Option<f64>,
     /// Some agents leave at their goal.
@@ -368,6 +393,7 @@ impl Needs {
             pairs: self.pairs.with(other.pairs),
             rvo: self.rvo || other.rvo,
             social: self.social || other.social,
+            walking: self.walking || other.walking,
             avoidance: radii.reduce(f64::max),
             removal: self.removal || other.removal,
             paces: self.paces || other.paces,

@@ -26,6 +26,7 @@ use serde::{Deserialize, Serialize};
 use crate::engine::agents::Agents;
 use crate::engine::clock::Clock;
 use crate::engine::forces::social::SocialForce;
+use crate::engine::forces::walking::WalkingLaw;
 use crate::engine::frame::{Fields, Frame};
 use crate::engine::journeys::Status;
 use crate::engine::math::Vector;
@@ -58,6 +59,8 @@ struct Fixed {
     needs: Needs,
     /// The distinct social forces of the scene.
     social_forces: Vec<SocialForce>,
+    /// The distinct walking laws of the scene that add to the goal force.
+    walking_laws: Vec<WalkingLaw>,
 }
 
 /// State: with the parameters, it determines all later frames.
@@ -174,6 +177,7 @@ impl Simulation {
         let fixed = Fixed {
             needs: scene.needs(),
             social_forces: scene.social_forces(),
+            walking_laws: scene.walking_laws(),
             scene: Scene {
                 agents: Vec::new(),
                 ..scene

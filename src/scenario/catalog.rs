@@ -11,6 +11,7 @@ use crate::engine::forces::goal::GoalForce;
 use crate::engine::forces::rvo::Rvo;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::forces::viscosity::Viscosity;
+use crate::engine::forces::walking::{DensityAhead, Drag, Headway, WalkingLaw};
 use crate::engine::profile::{Blend, BlendError, BlendStep, Navigation, Profile};
 
 /// The names of §5.5.
@@ -41,6 +42,20 @@ pub enum NavigationKind {
     Social,
     /// Velocity obstacles.
     Rvo,
+}
+
+/// The kind of walking law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum WalkingLawKind {
+    /// None: the paper's profiles.
+    None,
+    /// A time gap to the nearest agent ahead.
+    Headway,
+    /// Slower the denser the crowd ahead.
+    DensityAhead,
+    /// Friction by density.
+    Drag,
 }
 
 /// Parameters of a profile; `None` means the paper's value (§5.5). Where a text says that the paper's time step is too
@@ -85,6 +100,34 @@ pub struct Parameters {
     /// and less exact. 1e-3 moves agents by 0.1 mm in a second and saves up to half the time in crowds of 10,000.
     #[schemars(range(min = 0, max = STRONGEST), extend("default" = SocialForce::default().avoidance_tolerance))]
     pub avoidance_tolerance: Option<f64>,
+    /// What slows agents in a crowd, beside the paper's forces: `headway`, a time gap to the nearest agent ahead;
+    /// `density-ahead`, Weidmann's speed at the density ahead; `drag`, a friction. A law replaces social forces;
+    /// with both, agents brake twice.
+    #[schemars(extend("default" = "none"))]
+    pub walking_law: Option<WalkingLawKind>,
+    /// T (`headway`), seconds: the time gap. An agent with d meters to the nearest agent ahead walks at (d - l)/T.
+    /// Longer: slower crowds and smaller flows. Below about twice `relaxation_time` files stop and go.
+    #[schemars(range(min = 0.01, max = 100), extend("default" = Headway::default().headway_time))]
+    pub headway_time: Option<f64>,
+    /// l (`headway`), meters: the distance to the nearest agent ahead at which an agent stands. Longer: sparser queues.
+    #[schemars(range(min = 0, max = FARTHEST), extend("default" = Headway::default().headway_length))]
+    pub headway_length: Option<f64>,
+    /// w (`headway`), meters: the half-width of the lane; its edges fade over another half of it. Wider: slower crowds.
+    #[schemars(range(min = 0.01, max = FARTHEST), extend("default" = Headway::default().lane_half_width))]
+    pub lane_half_width: Option<f64>,
+    /// The jam density (`density-ahead`), P/m²: agents stand before a crowd of this density. Higher: faster crowds.
+    #[schemars(range(min = 0.01, max = HIGHEST_DENSITY), extend("default" = DensityAhead::default().jam_density))]
+    pub jam_density: Option<f64>,
+    /// Weidmann's γ (`density-ahead`), P/m²: how soon agents slow down. Higher: faster at all densities below the jam.
+    #[schemars(range(min = 0.01, max = HIGHEST_DENSITY), extend("default" = DensityAhead::default().slowing_density))]
+    pub slowing_density: Option<f64>,
+    /// γ₀ (`drag`), m²/s: the friction per density above `drag_from_density`. Higher: slower crowds.
+    #[schemars(range(min = 0, max = STRONGEST), extend("default" = Drag::default().drag_per_density))]
+    pub drag_per_density: Option<f64>,
+    /// The density (`drag`), P/m², at which the friction begins. Below 1.55 it slows lone agents, too, whose density is
+    /// that of their own mass.
+    #[schemars(range(min = 0, max = HIGHEST_DENSITY), extend("default" = Drag::default().drag_from_density))]
+    pub drag_from_density: Option<f64>,
     /// w (Eq. 20), meters: the weight of the time to collision in RVO. Higher: agents avoid collisions earlier, with
     /// larger detours; 0: they do not avoid them.
     #[schemars(range(min = 0, max = STRONGEST), extend("default" = Rvo::default().collision_weight))]
@@ -154,6 +197,15 @@ impl Parameters {
         self.part()
     }
 
+    fn walking(&self) -> Option<WalkingLaw> {
+        match self.walking_law? {
+            WalkingLawKind::None => None,
+            WalkingLawKind::Headway => Some(WalkingLaw::Headway(self.part())),
+            WalkingLawKind::DensityAhead => Some(WalkingLaw::DensityAhead(self.part())),
+            WalkingLawKind::Drag => Some(WalkingLaw::Drag(self.part())),
+        }
+    }
+
     /// A profile with navigation `kind`, with or without SPH. Zero stiffness, k or μ switches the term off.
     pub fn profile(&self, name: &str, kind: NavigationKind, sph: bool) -> Profile {
         let switch = |value: f64| (value != 0.0).then_some(value);
@@ -165,6 +217,7 @@ impl Parameters {
                 NavigationKind::Social => Navigation::Social(self.part(), self.part()),
                 NavigationKind::Rvo => Navigation::Rvo(self.part()),
             },
+            walking: self.walking(),
             pressure: sph && self.sph().gas_constant != 0.0,
             viscosity: switch(self.viscosity.unwrap_or(0.0))
                 .filter(|_| sph)

@@ -29,6 +29,7 @@ pub mod taut;
 #[cfg(feature = "program")]
 pub mod tracks;
 pub mod visibility;
+pub mod walking;
 pub mod wall_checks;
 
 use sandbox::engine::agents::NewAgent;

@@ -25,6 +25,11 @@ impl Default for GoalForce {
 }
 
 impl GoalForce {
+    /// K^goal/τ, 1/s.
+    pub fn rate(&self) -> f64 {
+        self.goal_scale / self.relaxation_time
+    }
+
     /// Eq. 17, divided by the mass, for each of `agents`.
     #[inline]
     pub fn accelerations(
@@ -33,7 +38,7 @@ impl GoalForce {
         agents: Range<usize>,
         mut take: impl FnMut(usize, Vector),
     ) {
-        let rate = self.goal_scale / self.relaxation_time;
+        let rate = self.rate();
         let preferred = &frame.fields.preferred_velocity[agents.clone()];
         let velocity = &frame.agents.velocity[agents.clone()];
         let mass = &frame.agents.mass[agents.clone()];

@@ -12,3 +12,4 @@ pub mod pressure;
 pub mod rvo;
 pub mod social;
 pub mod viscosity;
+pub mod walking;

@@ -54,13 +54,22 @@ pub struct Situation {
     pub walls: Vec<Wall>,
 }
 
+/// How an agent wants to walk, and may.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wish {
+    /// v_i^pref, m/s.
+    pub preferred_velocity: Vector,
+    /// s_max, m/s.
+    pub max_speed: f64,
+}
+
 impl Rvo {
     /// Eq. 21: the acceleration, held until the next coarse frame.
     pub fn acceleration(
         &self,
         frame: &Frame,
         i: usize,
-        max_speed: f64,
+        wish: Wish,
         scratch: &mut Scratch,
     ) -> Vector {
         let Scratch {
@@ -68,7 +77,7 @@ impl Rvo {
             candidates,
             search,
         } = scratch;
-        situation.see(frame, i, self.avoidance_radius, max_speed);
+        situation.see(frame, i, self.avoidance_radius, wish);
         let rng = random::stream(
             frame.seed,
             Purpose::Candidates,
@@ -125,13 +134,13 @@ fn draw(count: u32, situation: &Situation, mut rng: impl Rng, candidates: &mut V
 
 impl Situation {
     /// Sets this to the surroundings of agent `i` of a frozen frame within `radius` meters.
-    pub fn see(&mut self, frame: &Frame, i: usize, radius: f64, max_speed: f64) {
+    pub fn see(&mut self, frame: &Frame, i: usize, radius: f64, wish: Wish) {
         let agents = frame.agents;
         self.position = agents.position[i];
         self.velocity = agents.velocity[i];
-        self.preferred_velocity = frame.fields.preferred_velocity[i];
+        self.preferred_velocity = wish.preferred_velocity;
         self.radius = agents.radius[i];
-        self.max_speed = max_speed;
+        self.max_speed = wish.max_speed;
         self.discs.clear();
         for run in frame.neighbors.around(self.position, radius) {
             for j in run {

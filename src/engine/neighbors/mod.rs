@@ -41,8 +41,8 @@ pub struct Ranges {
     pub support: f64,
     /// Radius of the avoidance methods, meters.
     pub avoidance: Option<f64>,
-    /// Radius of social forces, meters.
-    pub social: Option<f64>,
+    /// Radius of the sums over agents that do not read the lists of near agents, meters: social forces and walking laws.
+    pub wide: Option<f64>,
     /// The longest step of any agent in a frame, s_max Δt, meters.
     pub longest_step: f64,
     /// How far any agent may move between sorts, meters; within it no wall is missed.
@@ -122,12 +122,12 @@ impl Neighbors {
     }
 
     /// Coordinates may wrap with a period of twice this length, meters: wrapping makes no agent that a cluster reads
-    /// seem near. See [`Clusters::extent`]. For social forces, the distance to an agent is at most the sum of a
+    /// seem near. See [`Clusters::extent`]. For sums without lists, the distance to an agent is at most the sum of a
     /// cluster's width, two cells, the radius and two displacements since the sort.
     pub fn extent(&self) -> f64 {
         let far = |radius: f64| radius + 2.5 * self.reach + 2.0 * self.ranges.margin;
         let unlisted = 2.0 * (self.ranges.drift - self.ranges.margin);
-        Clusters::extent(self.reach).max(self.ranges.social.map_or(0.0, far)) + unlisted
+        Clusters::extent(self.reach).max(self.ranges.wide.map_or(0.0, far)) + unlisted
     }
 
     /// All agents within `radius` meters of `p`, as ranges: candidates for avoidance. They include agents at `p`, and
@@ -161,6 +161,29 @@ impl Neighbors {
             let near = near.filter(|&j| (p - positions[j as usize]).norm() < radius);
             found.extend(near.map(|j| j..j + 1));
         }
+    }
+
+    /// Replaces `found` by runs with all agents in a rectangle, given by its lower left and upper right corners, and
+    /// some that are near it.
+    pub fn inside(&self, corners: [Vector; 2], positions: &[Vector], found: &mut Vec<Range<u32>>) {
+        found.clear();
+        let rows = self.grid.rows(corners, self.ranges.margin);
+        if self.grid.height() <= self.reach {
+            found.extend(rows.filter(|run| !run.is_empty()));
+            return;
+        }
+        // Cells had to be made larger than the reach of the lists, and have agents that are far away.
+        let [low, high] = corners;
+        let near = rows.flatten().filter(|&j| {
+            let p = positions[j as usize];
+            low.x <= p.x && low.y <= p.y && p.x <= high.x && p.y <= high.y
+        });
+        found.extend(near.map(|j| j..j + 1));
+    }
+
+    /// The largest support radius, meters.
+    pub fn support(&self) -> f64 {
+        self.ranges.support
     }
 
     /// Walls that may be within reach of agent `i` for SPH and contact, in ascending order.

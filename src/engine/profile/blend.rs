@@ -7,6 +7,7 @@ use crate::engine::density::SphParameters;
 use crate::engine::forces::near::PairCoefficients;
 use crate::engine::forces::rvo::Rvo;
 use crate::engine::forces::social::SocialForce;
+use crate::engine::forces::walking::WalkingLaw;
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::BLOCK;
@@ -45,8 +46,10 @@ pub enum BlendError {
     /// The second density is not greater than the first.
     #[error("densities must rise: {1} P/m² follows {0} P/m²")]
     NotRising(f64, f64),
-    /// Two profiles have different RVO parameters.
-    #[error("profiles of one blend share one velocity of RVO: give them the same RVO parameters")]
+    /// Two profiles have different RVO parameters or, with RVO, different walking laws.
+    #[error(
+        "profiles of one blend share one velocity of RVO: give them the same RVO parameters and the same walking law"
+    )]
     DifferentRvo,
 }
 
@@ -72,7 +75,8 @@ impl Blend {
                 return Err(BlendError::NotRising(low, high));
             }
         }
-        let mut rvos = steps.iter().filter_map(|step| rvo_of(&step.profile));
+        let rvo = |step: &BlendStep| Some((rvo_of(&step.profile)?, step.profile.walking));
+        let mut rvos = steps.iter().filter_map(rvo);
         if let Some(first) = rvos.next()
             && rvos.any(|other| other != first)
         {
@@ -106,6 +110,12 @@ impl Blend {
     /// The RVO parameters of this blend, if any of its profiles uses RVO.
     pub fn rvo(&self) -> Option<Rvo> {
         self.steps.iter().find_map(|step| rvo_of(&step.profile))
+    }
+
+    /// The walking law of the profiles with RVO, if it lowers the preferred speed.
+    pub fn law_of_rvo(&self) -> Option<WalkingLaw> {
+        let mut with_rvo = (self.steps.iter()).filter(|step| rvo_of(&step.profile).is_some());
+        with_rvo.find_map(|step| step.profile.walking.filter(WalkingLaw::looks_ahead))
     }
 
     /// The profiles that act on agent `i` of a frozen frame, with their weights, which sum to 1.
@@ -172,6 +182,27 @@ impl Blend {
             if profile.navigation.social().as_ref() == Some(social) {
                 for i in agents {
                     coefficients[i % BLOCK] += weight / frame.agents.mass[i];
+                }
+            }
+        });
+    }
+
+    /// Adds K^goal/(τ m) of the profiles with this walking law, times their weights, for `agents` of one block of a
+    /// frozen frame, all with this blend.
+    pub fn add_walking_rates(
+        &self,
+        frame: &Frame,
+        agents: Range<usize>,
+        changed: Option<&Override>,
+        law: &WalkingLaw,
+        rates: &mut [f64; BLOCK],
+    ) {
+        self.each_share(frame, agents, |profile, agents, weight| {
+            if let Some((own, rate)) = profile.looks_ahead(changed)
+                && own == *law
+            {
+                for i in agents {
+                    rates[i % BLOCK] += weight * rate / frame.agents.mass[i];
                 }
             }
         });

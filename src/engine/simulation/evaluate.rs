@@ -9,7 +9,7 @@ use crate::engine::agents::Agents;
 use crate::engine::density;
 use crate::engine::forces::goal;
 use crate::engine::forces::near::{self, PairCoefficients};
-use crate::engine::forces::rvo::Scratch;
+use crate::engine::forces::rvo::{Scratch, Wish};
 use crate::engine::forces::social::SocialForce;
 use crate::engine::frame::{Frame, velocity_range};
 use crate::engine::math::{Vector, are_finite, clamp_length, direction, numbers_are_finite};
@@ -28,7 +28,7 @@ impl Simulation {
             self.sort_agents();
         }
         let needs = &self.fixed.needs;
-        if !(needs.pairs.any() || needs.social || self.density_is_due()) {
+        if !(needs.pairs.any() || needs.social || needs.walking || self.density_is_due()) {
             return;
         }
         let (fixed, agents, derived) = (&self.fixed, &self.crowd.agents, &mut self.derived);
@@ -147,9 +147,10 @@ impl Simulation {
                 let blend = fixed.blend(agents, i);
                 let rvo = blend.rvo().filter(|_| blend.rvo_acts(&frame, i));
                 let held = held.filter(|_| !frame.clock.is_coarse());
-                let max_speed = fixed.scene.max_speed(agents, i);
                 *chosen = rvo.map(|rvo| {
-                    held.unwrap_or_else(|| rvo.acceleration(&frame, i, max_speed, scratch))
+                    held.unwrap_or_else(|| {
+                        rvo.acceleration(&frame, i, fixed.wish(&frame, i), scratch)
+                    })
                 });
             });
         });
@@ -185,6 +186,16 @@ impl Simulation {
 }
 
 impl Fixed {
+    /// How agent `i` wants to walk by RVO.
+    fn wish(&self, frame: &Frame, i: usize) -> Wish {
+        let law = self.blend(frame.agents, i).law_of_rvo();
+        let free = frame.fields.preferred_velocity[i];
+        Wish {
+            preferred_velocity: law.map_or(free, |law| law.preferred_velocity(frame, i)),
+            max_speed: self.scene.max_speed(frame.agents, i),
+        }
+    }
+
     /// Updates the velocity ranges; leaves them empty if no social force has a tolerance.
     fn update_velocity_ranges(&self, agents: &Agents, ranges: &mut Vec<[Vector; 2]>) {
         ranges.clear();
@@ -211,6 +222,13 @@ impl Fixed {
                 blend.add_social_coefficients(frame, span, social, &mut felt);
             });
             social.add_from_agents(frame, b, &felt, acceleration);
+        }
+        for law in &self.walking_laws {
+            let mut rates = [0.0; BLOCK];
+            self.each_span(frame.agents, from..to, |span, blend, changed| {
+                blend.add_walking_rates(frame, span, changed, law, &mut rates);
+            });
+            law.add_accelerations(frame, b, &rates, acceleration);
         }
         self.each_span(frame.agents, from..to, |span, blend, changed| {
             let acceleration = &mut acceleration[span.start - from..span.end - from];

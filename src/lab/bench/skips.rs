@@ -56,7 +56,7 @@ const TURN: u64 = 10;
 const LISTING: &[Stage] = &[Stage::Sort, Stage::Neighbors];
 
 /// All skips that can be undone.
-pub const SKIPS: [Skip; 9] = [
+pub const SKIPS: [Skip; 10] = [
     Skip {
         name: "density",
         about: "density and pressure where nothing reads them",
@@ -98,6 +98,11 @@ pub const SKIPS: [Skip; 9] = [
         undo: |simulation| Ok(Undone::Work(work::walls_one_by_one(simulation)?, &[])),
     },
     Skip {
+        name: "walking law",
+        about: "the headway law where no profile has a walking law",
+        undo: |simulation| Ok(Undone::Work(work::walking_law(simulation)?, &[])),
+    },
+    Skip {
         name: "ways",
         about: "looking up ways on path maps where agents walk straight",
         undo: |simulation| Ok(Undone::Work(work::ways(simulation)?, &[])),
@@ -126,6 +131,7 @@ pub fn everything() -> Needs {
         },
         rvo: true,
         social: true,
+        walking: true,
         avoidance: Some(AVOIDANCE),
         removal: true,
         paces: true,

@@ -27,6 +27,7 @@ pub const METERS_PER_ACCELERATION: f64 = 0.2;
 /// The colors of terms in their order; the last ones are for terms to come.
 const COLORS: [(&str, [u8; 3]); 12] = [
     ("green", [95, 211, 120]),
+    ("lime", [190, 240, 60]),
     ("light blue", [86, 180, 233]),
     ("blue", [70, 120, 255]),
     ("cyan", [60, 220, 220]),
@@ -36,7 +37,6 @@ const COLORS: [(&str, [u8; 3]); 12] = [
     ("yellow", [250, 230, 80]),
     ("pink", [255, 120, 190]),
     ("brown", [190, 130, 80]),
-    ("lime", [190, 240, 60]),
     ("white", [240, 240, 240]),
 ];
 

@@ -6,10 +6,11 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use super::Undone;
-use crate::engine::forces::rvo::Scratch;
+use crate::engine::forces::rvo::{Scratch, Wish};
+use crate::engine::forces::walking::{Headway, WalkingLaw};
 use crate::engine::geometry::{Area, Ring};
 use crate::engine::math::{Vector, bounds};
-use crate::engine::neighbors::{Lists, Neighbors};
+use crate::engine::neighbors::{BLOCK, Lists, Neighbors, TASK};
 use crate::engine::pairs::Packed;
 use crate::engine::simulation::{Simulation, StageTimes};
 use crate::engine::ways::{Floor, Route, Ways};
@@ -98,8 +99,11 @@ pub fn rvo_by_blend(simulation: &Simulation) -> Result<Work, &'static str> {
             if let Some(rvo) = blend.rvo()
                 && !blend.rvo_acts(&frame, i)
             {
-                let max_speed = simulation.scene().max_speed(frame.agents, i);
-                black_box(rvo.acceleration(&frame, i, max_speed, scratch));
+                let wish = Wish {
+                    preferred_velocity: frame.fields.preferred_velocity[i],
+                    max_speed: simulation.scene().max_speed(frame.agents, i),
+                };
+                black_box(rvo.acceleration(&frame, i, wish, scratch));
             }
         };
         let agents = (0..frame.agents.len()).into_par_iter();
@@ -120,7 +124,7 @@ pub fn lists(coarse: bool) -> Work {
             let ranges = scene.ranges(needs, &agents);
             neighbors.sort(&mut agents, ranges);
             neighbors.list_walls(&agents, frame.walls);
-            if needs.pairs.any() || needs.social || needs.density {
+            if needs.pairs.any() || needs.social || needs.walking || needs.density {
                 neighbors.list_agents();
                 packed.take_bodies(&agents, neighbors.extent(), |i| {
                     let group = &scene.groups[usize::from(agents.group[i])];
@@ -160,6 +164,27 @@ pub fn walls_one_by_one(simulation: &Simulation) -> Result<Work, &'static str> {
             }
         });
         one_by_one - by_blocks
+    }))
+}
+
+/// The headway law for all agents.
+pub fn walking_law(simulation: &Simulation) -> Result<Work, &'static str> {
+    let needs = simulation.needs();
+    if needs.walking {
+        return Err("the scene needs it");
+    }
+    if !(needs.pairs.any() || needs.social || needs.density) {
+        return Err("the scene has no packed agents");
+    }
+    let law = WalkingLaw::Headway(Headway::default());
+    let mut lost = Vec::new();
+    Ok(Box::new(move |simulation| {
+        let frame = simulation.frame();
+        lost.resize(frame.agents.len(), Vector::zeros());
+        let blocks = lost.par_chunks_mut(BLOCK).with_min_len(TASK).enumerate();
+        seconds(|| {
+            blocks.for_each(|(b, lost)| law.add_accelerations(&frame, b, &[1.0; BLOCK], lost))
+        })
     }))
 }
 

@@ -1,0 +1,129 @@
+//! The law of the density ahead: agents walk slower the denser the crowd before them.
+//!
+//! The speed is that of U. Weidmann, Transporttechnik der Fussgänger (1993): s = s₀ (1 − e^(−γ (1/ρ − 1/ρ_jam))), with
+//! γ = 1.913 and ρ_jam = 5.4 P/m². The density is that of the half disc ahead. An agent that leaves a crowd has free
+//! space before it and walks freely, at the same ρ_i (Eq. 9) at which an agent in the crowd hardly moves.
+//!
+//! ρ^ahead = Σ_j m_j K(a, r), K = 315/(32 h³) max(0, a) (1 − r²/h²)³, with the distance a along the line ahead and
+//! r = |r_ij| < h. K integrates to 1 over the half disc. It is zero at the agent's own place, so a sum without the
+//! agent itself is not too low, as a half of Eq. 9 would be by the agent's own 4/(π h²) = 1.27 P/m². It is zero beside
+//! the agent, so the speed does not jump when the agent turns. Walls add nothing: half of the view of an agent at a
+//! wall is empty at most, and its density that much lower.
+
+use std::f64::consts::LN_2;
+use std::ops::Range;
+
+use super::Walkers;
+use crate::engine::pairs::prelude::*;
+use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, spread};
+
+/// Parameters of the law of the density ahead.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
+#[serde(default)]
+pub struct DensityAhead {
+    /// ρ_jam, P/m²: the density ahead at which an agent stands.
+    pub jam_density: f64,
+    /// γ, P/m².
+    pub slowing_density: f64,
+}
+
+impl Default for DensityAhead {
+    fn default() -> Self {
+        Self {
+            jam_density: 5.4,
+            slowing_density: 1.913,
+        }
+    }
+}
+
+/// The integral of a (1 − r²/h²)³ over the half disc is h³ over this.
+const NORM: f64 = 315.0 / 32.0;
+
+impl DensityAhead {
+    /// s^law, m/s: the speed of an agent with preferred speed `free`, m/s, at this density ahead, P/m².
+    pub fn speed(&self, free: f64, density: f64) -> f64 {
+        let gap = 1.0 / density - 1.0 / self.jam_density;
+        let share = 1.0 - (-self.slowing_density * gap).exp();
+        free * share.max(0.0)
+    }
+
+    /// K, 1/m², of an agent at a distance of `along` meters along the line ahead and `across` meters beside it.
+    pub fn kernel(along: f64, across: f64, h: f64) -> f64 {
+        let rest = 1.0 - (along * along + across * across) / (h * h);
+        NORM / (h * h * h) * along.max(0.0) * rest.max(0.0).powi(3)
+    }
+
+    /// |∇ρ^ahead| is at most ρ times the integral of |∂K/∂a|, about 4/h. ρ |ds/dρ| = s₀ γ/ρ e^(−γ (1/ρ − 1/ρ_jam)) is
+    /// largest at ρ = γ, or at ρ_jam if that is lower.
+    pub(super) fn steepness(&self, speed: f64, support: f64) -> f64 {
+        let ratio = self.slowing_density / self.jam_density;
+        let most = if ratio < 1.0 {
+            (ratio - 1.0).exp()
+        } else {
+            ratio
+        };
+        speed * most * 4.0 / support
+    }
+
+    /// s_i − s_i^law, m/s. `runs` contain all agents in view, and some out of view.
+    #[inline(always)]
+    pub(super) fn lost_speeds<R: Real, S: Simd>(
+        &self,
+        simd: S,
+        bodies: &Bodies<R>,
+        walkers: &Walkers<R, S>,
+        runs: &[Range<u32>],
+    ) -> Lanes<R, S> {
+        let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
+        let per_h: Lanes<R, S> = load(simd, &bodies.per_support, walkers.start);
+        let per_h_squared = per_h * per_h;
+        let mut sum = Ahead {
+            mass: &bodies.mass,
+            backwards: walkers.backwards,
+            scale: per_h_squared * splat::<R, S>(simd, -bodies.unit * bodies.unit),
+            sum: zero,
+        };
+        add_pairs(simd, bodies, (walkers.start, runs), &mut sum);
+        let norm = splat::<R, S>(simd, NORM * bodies.unit);
+        let density = sum.sum * per_h_squared * per_h * norm;
+        // −γ (1/ρ − 1/ρ_jam)/ln 2, at most 0.
+        let jammed = splat::<R, S>(simd, self.slowing_density / self.jam_density / LN_2);
+        let slowing = splat::<R, S>(simd, self.slowing_density / LN_2);
+        let power = (jammed - slowing / density).min(zero);
+        // Without agents ahead the share is 1, to the last bit.
+        let share = one - R::exp2(simd, power);
+        walkers.speed - walkers.speed * share
+    }
+}
+
+/// ρ^ahead for eight agents i.
+struct Ahead<'a, R: Real, S: Simd> {
+    mass: &'a [R],
+    /// −ê_i.
+    backwards: [Lanes<R, S>; 2],
+    /// −(meters per coordinate unit)²/h².
+    scale: Lanes<R, S>,
+    /// The sum without the factor 315/(32 h³), in coordinate units.
+    sum: Lanes<R, S>,
+}
+
+impl<'a, R: Real, S: Simd> PairSum<R, S> for Ahead<'a, R, S> {
+    type Run = &'a [R];
+
+    #[inline(always)]
+    fn run(&self, run: Range<usize>) -> &'a [R] {
+        &self.mass[run]
+    }
+
+    #[inline(always)]
+    fn add(&mut self, simd: S, [dx, dy]: [Lanes<R, S>; 2], mass: &'a [R], j: usize) {
+        let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
+        let along = dy
+            .mul_add(self.backwards[1], dx * self.backwards[0])
+            .max(zero);
+        let squared = dy.mul_add(dy, dx * dx);
+        let rest = squared.mul_add(self.scale, one).max(zero);
+        let weighted = spread::<R, S>(simd, mass[j]) * along * rest;
+        self.sum = weighted.mul_add(rest * rest, self.sum);
+    }
+}

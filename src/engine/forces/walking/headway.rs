@@ -1,0 +1,139 @@
+//! The headway law: agents keep a time gap to the nearest agent in their lane.
+//!
+//! A. Tordeux, M. Chraibi, A. Seyfried, Collision-free speed model for pedestrian dynamics, Traffic and Granular Flow
+//! '15 (2016): s = min(s₀, max(0, (d − ℓ)/T)), d the distance to the nearest agent in front within a lane. There a
+//! lane has sharp edges, and the speed jumps when an agent crosses one. Here the edges fade.
+
+use std::ops::Range;
+
+use super::Walkers;
+use crate::engine::pairs::prelude::*;
+use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, splat};
+
+/// Parameters of the headway law.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
+#[serde(default)]
+pub struct Headway {
+    /// T, seconds.
+    pub headway_time: f64,
+    /// ℓ, meters: the distance at which an agent stands.
+    pub headway_length: f64,
+    /// w, meters: agents up to this far beside the line ahead count in full.
+    pub lane_half_width: f64,
+}
+
+impl Default for Headway {
+    fn default() -> Self {
+        Self {
+            headway_time: 0.6,
+            headway_length: 0.3,
+            lane_half_width: 0.3,
+        }
+    }
+}
+
+/// Width of the fading edge of a lane and length of its fading beginning, in units of w.
+const FADE: f64 = 0.5;
+
+impl Headway {
+    /// s^law, m/s: the speed of an agent with preferred speed `free`, m/s, if the nearest agent in its lane is at this
+    /// distance, meters.
+    pub fn speed(&self, free: f64, distance: f64) -> f64 {
+        ((distance - self.headway_length) / self.headway_time).clamp(0.0, free)
+    }
+
+    /// R, meters: agents farther ahead do not slow an agent with this preferred speed, m/s.
+    #[inline(always)]
+    pub fn range(&self, speed: f64) -> f64 {
+        self.headway_length + self.headway_time * speed
+    }
+
+    /// The distance in meters at which an agent counts, for an agent with range R, meters: its distance d, if it is in
+    /// the lane; at the edges of the lane it grows continuously to R.
+    ///
+    /// d*² = d² + R² (max(0, (|c| − w)/f) + max(0, 1 − a/f)), with the distances a `along` and c `across` the line
+    /// ahead, and f = w/2. Agents behind, and those farther than w + f from the line, have d* ≥ R.
+    pub fn distance_in_lane(&self, range: f64, along: f64, across: f64) -> f64 {
+        let fade = FADE * self.lane_half_width;
+        let outside =
+            ((across.abs() - self.lane_half_width) / fade).max(0.0) + (1.0 - along / fade).max(0.0);
+        (along * along + across * across + range * range * outside).sqrt()
+    }
+
+    #[inline(always)]
+    pub(super) fn view(&self, speed: f64) -> [f64; 2] {
+        let aside = (1.0 + FADE) * self.lane_half_width;
+        [self.range(speed), aside]
+    }
+
+    pub(super) fn steepness(&self) -> f64 {
+        1.0 / self.headway_time
+    }
+
+    /// s_i − s_i^law, m/s; zero, to the last bit, without agents in range. `runs` contain all agents in view, and some
+    /// out of view.
+    #[inline(always)]
+    pub(super) fn lost_speeds<R: Real, S: Simd>(
+        &self,
+        simd: S,
+        bodies: &Bodies<R>,
+        walkers: &Walkers<R, S>,
+        runs: &[Range<u32>],
+    ) -> Lanes<R, S> {
+        let (zero, unit) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, bodies.unit));
+        let per_time = splat::<R, S>(simd, 1.0 / self.headway_time);
+        let length = splat::<R, S>(simd, self.headway_length);
+        let time = splat::<R, S>(simd, self.headway_time);
+        let range = walkers.speed.mul_add(time, length) / unit;
+        let range_squared = range * range;
+        let fade = FADE * self.lane_half_width;
+        let mut sum = Nearest {
+            backwards: walkers.backwards,
+            range_squared,
+            per_fade: splat::<R, S>(simd, bodies.unit / fade),
+            edge: splat::<R, S>(simd, -self.lane_half_width / fade),
+            squared: range_squared,
+        };
+        add_pairs(simd, bodies, (walkers.start, runs), &mut sum);
+        let distance = sum.squared.sqrt() * unit;
+        let speed = ((distance - length) * per_time)
+            .max(zero)
+            .min(walkers.speed);
+        let slowed = sum.squared.simd_lt(range_squared);
+        slowed.select(walkers.speed - speed, zero)
+    }
+}
+
+/// The least d*² for eight agents i, at most R².
+struct Nearest<R: Real, S: Simd> {
+    /// −ê_i.
+    backwards: [Lanes<R, S>; 2],
+    /// R², coordinate units².
+    range_squared: Lanes<R, S>,
+    /// 1/f, per coordinate unit.
+    per_fade: Lanes<R, S>,
+    /// −w/f.
+    edge: Lanes<R, S>,
+    /// The least d*² so far, coordinate units².
+    squared: Lanes<R, S>,
+}
+
+impl<R: Real, S: Simd> PairSum<R, S> for Nearest<R, S> {
+    type Run = ();
+
+    #[inline(always)]
+    fn run(&self, _: Range<usize>) {}
+
+    #[inline(always)]
+    fn add(&mut self, simd: S, [dx, dy]: [Lanes<R, S>; 2], (): (), _: usize) {
+        let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
+        let [x, y] = self.backwards;
+        let along = dy.mul_add(y, dx * x);
+        let across = (dx * y - dy * x).abs();
+        let aside = across.mul_add(self.per_fade, self.edge).max(zero);
+        let behind = (one - along * self.per_fade).max(zero);
+        let squared = dy.mul_add(dy, dx * dx);
+        let squared = self.range_squared.mul_add(aside + behind, squared);
+        self.squared = self.squared.min(squared);
+    }
+}

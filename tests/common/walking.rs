@@ -1,0 +1,47 @@
+//! Crowds with walking laws.
+
+use rand::Rng;
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::math::Vector;
+use sandbox::engine::random::{Purpose, stream};
+use sandbox::engine::scene::Scene;
+use sandbox::engine::simulation::Simulation;
+use sandbox::scenario::catalog::{Parameters, WalkingLawKind};
+
+use super::{blend_with, breakdown, scene, vector};
+
+/// The laws that lower the preferred speed.
+pub const LOOKING: [WalkingLawKind; 2] = [WalkingLawKind::Headway, WalkingLawKind::DensityAhead];
+
+pub fn with(law: WalkingLawKind) -> Parameters {
+    Parameters {
+        walking_law: Some(law),
+        ..Parameters::default()
+    }
+}
+
+/// 300 people in a square of 10 m, with goals in all directions and preferred speeds up to 3 m/s.
+pub fn crowd(law: WalkingLawKind, seed: u64) -> Scene {
+    let mut rng = stream(seed, Purpose::Placement, 0, 0);
+    let mut random = move |size: f64| rng.random_range(-size..size);
+    let mut scene = scene(vec![], blend_with("sph", &with(law)));
+    for k in 0..300 {
+        let position = vector(random(5.0), random(5.0));
+        scene.agents.push(NewAgent {
+            preferred_speed: Some(1.5 + random(1.5)),
+            velocity: vector(random(1.0), random(1.0)),
+            // Some are where they want to be.
+            ..NewAgent::at(
+                position,
+                [position, vector(random(50.0), random(50.0))][(k % 10).min(1)],
+                0,
+            )
+        });
+    }
+    scene
+}
+
+pub fn walking(simulation: &Simulation, id: u32) -> Vector {
+    let terms = breakdown(simulation, id).profiles[0].accelerations;
+    terms.walking.unwrap()
+}
