@@ -5,6 +5,7 @@ use crate::common::{
     acceleration, bits, blend_with, block, breakdown, evaluated, on_threads, room, run, scene,
     vector, walker,
 };
+use sandbox::analysis::stability::time_step;
 use sandbox::engine::forces::walking::{Headway, WalkingLaw};
 use sandbox::engine::math::Vector;
 use sandbox::engine::pairs::Precision;
@@ -126,4 +127,26 @@ fn a_resumed_run_with_a_law_goes_on_with_the_same_bits() {
         run(simulation, 30);
     }
     assert_eq!(bits(&whole), bits(&resumed));
+}
+
+#[test]
+fn steep_laws_and_strong_drag_shorten_the_automatic_time_step() {
+    let step = |parameters: &Parameters| {
+        let mut scene = scene(vec![], blend_with("sph", parameters));
+        scene.agents = block(vector(0.0, 0.0), 2, 2, 1.0, vector(9.0, 0.0));
+        time_step(&scene).unwrap()
+    };
+    let free = step(&Parameters::default());
+    let steep = step(&Parameters {
+        headway_time: Some(0.01),
+        ..with(WalkingLawKind::Headway)
+    });
+    let rough = step(&Parameters {
+        drag_per_density: Some(10.0),
+        ..with(WalkingLawKind::Drag)
+    });
+    assert!(steep < 0.9 * free && steep > 0.2 * free, "{steep} {free}");
+    assert!(rough < 0.9 * free && rough > 0.2 * free, "{rough} {free}");
+    let default = step(&with(WalkingLawKind::Headway));
+    assert!((0.95 * free..=free).contains(&default), "{default} {free}");
 }
