@@ -33,6 +33,7 @@ mod measurements;
 mod needs;
 mod neighbor_lists;
 mod neighbors;
+mod periodic;
 mod precision;
 mod queues;
 mod reference_states;

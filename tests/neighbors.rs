@@ -4,7 +4,7 @@ use crate::common::vector;
 use rand::Rng;
 use sandbox::engine::agents::{Agents, NewAgent};
 use sandbox::engine::math::Vector;
-use sandbox::engine::neighbors::{BLOCK, CLUSTER, Grid, Neighbors, Ranges, SKIN};
+use sandbox::engine::neighbors::{BLOCK, CLUSTER, Grid, Neighbors, Ranges, Run, SKIN};
 use sandbox::engine::random::{Purpose, stream};
 
 fn crowd(count: u32, side: f64) -> Agents {
@@ -26,6 +26,7 @@ fn listed(agents: &mut Agents) -> Neighbors {
         longest_step: 0.036,
         drift: 0.5 * SKIN,
         margin: 0.5 * SKIN,
+        period: None,
     };
     neighbors.sort(agents, ranges);
     neighbors.list_agents();
@@ -33,7 +34,7 @@ fn listed(agents: &mut Agents) -> Neighbors {
 }
 
 fn near(neighbors: &Neighbors, i: usize) -> Vec<usize> {
-    neighbors.near().near(i).collect()
+    neighbors.near().near(i).map(|(j, _)| j).collect()
 }
 
 #[test]
@@ -91,7 +92,10 @@ fn no_neighbor_is_missed_until_the_lists_are_stale() {
         neighbors.travelled(0.05 * f64::from(step));
         for i in 0..agents.len() {
             let r_i = agents.position[i];
-            let around: Vec<usize> = neighbors.around(r_i, 5.0).flatten().collect();
+            let around: Vec<usize> = neighbors
+                .around(r_i, 5.0)
+                .flat_map(|run| run.indices())
+                .collect();
             let near = near(&neighbors, i);
             let mut runs = Vec::new();
             let alone = i..i + 1;
@@ -100,7 +104,7 @@ fn no_neighbor_is_missed_until_the_lists_are_stale() {
                 let distance = (r_i - agents.position[j]).norm();
                 assert!(distance >= 1.0 || near.contains(&j));
                 assert!(distance >= 5.0 || around.contains(&j));
-                assert!(distance >= 5.0 || runs.iter().any(|run| run.contains(&(j as u32))));
+                assert!(distance >= 5.0 || runs.iter().any(|run| run.indices().contains(&j)));
             }
         }
         // Lists rebuilt on the old cells are valid as long as before.
@@ -120,8 +124,7 @@ fn all_agents_around_a_cluster_are_found_once() {
         for (cluster, _) in blocks.flat_map(|block| block.clusters()) {
             for radius in [0.5, 2.7, 5.0] {
                 neighbors.around_cluster(cluster.clone(), &agents.position, radius, &mut runs);
-                let found: Vec<usize> =
-                    runs.iter().cloned().flatten().map(|j| j as usize).collect();
+                let found: Vec<usize> = runs.iter().flat_map(Run::indices).collect();
                 assert!(found.is_sorted_by(|a, b| a < b));
                 for (i, j) in cluster
                     .clone()
@@ -172,7 +175,10 @@ fn strange_sizes_and_extents_make_small_grids() {
             vec![Vector::new(f64::NAN, 0.0); 3],
         ] {
             let mut grid = Grid::default();
-            assert_eq!(grid.rebuild(&positions, height).len(), positions.len());
+            assert_eq!(
+                grid.rebuild(&positions, height, None).len(),
+                positions.len()
+            );
             assert!(grid.cells() <= 1024);
         }
     }

@@ -69,6 +69,7 @@ fn needs_follow_from_the_profiles() {
         avoidance: None,
         removal: false,
         paces: false,
+        directions: false,
     };
     assert_eq!(needs("sph"), goal_only);
     let wide = Needs {

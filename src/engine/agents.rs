@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::journeys::Trip;
 use crate::engine::math::Vector;
+use crate::engine::period::Period;
 use crate::engine::random::{self, Purpose};
 use crate::engine::ways::{Destination, Route, Walker, Ways};
 
@@ -64,7 +65,7 @@ pub struct Agents {
     pub position: Vec<Vector>,
     /// v_i, m/s.
     pub velocity: Vec<Vector>,
-    /// g_i, meters.
+    /// g_i, meters; not used by agents that walk in a direction.
     pub goal: Vec<Vector>,
     /// D_i, meters.
     pub radius: Vec<f64>,
@@ -103,6 +104,9 @@ pub struct Agents {
     pub max_speed: Vec<f64>,
     /// The time from which the agent walks, seconds. Empty while no agent had to wait.
     pub walks_from: Vec<f64>,
+    /// How often the agent has gone round: the number of periods from its position to where it would be without the
+    /// period. Empty in scenes without period; agents that entered since the last sort have no entry yet.
+    pub laps: Vec<i32>,
     next_id: u32,
 }
 
@@ -131,6 +135,7 @@ impl Agents {
             self.route.len(),
             self.trip.len(),
             self.zone.len(),
+            self.laps.len(),
         ];
         let always = [
             self.position.len(),
@@ -205,6 +210,16 @@ impl Agents {
         );
     }
 
+    /// Moves agents that have left the period to their image in it, and counts their laps.
+    pub fn wrap(&mut self, period: &Period) {
+        self.laps.resize(self.len(), 0);
+        for (position, laps) in self.position.iter_mut().zip(&mut self.laps) {
+            let (image, passed) = period.wrapped(*position);
+            *position = image;
+            *laps += passed;
+        }
+    }
+
     /// Do all agents walk at the scene's preferred speed, all the time?
     pub fn walk_alike(&self) -> bool {
         self.preferred_speed.is_empty() && self.walks_from.is_empty()
@@ -271,6 +286,10 @@ impl Agents {
         if !self.trip.is_empty() {
             self.trip.resize(self.len(), None);
             arrange(&mut self.trip, order);
+        }
+        if !self.laps.is_empty() {
+            self.laps.resize(self.len(), 0);
+            arrange(&mut self.laps, order);
         }
         if !self.zone.is_empty() {
             self.zone.resize(self.len(), None);

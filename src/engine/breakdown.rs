@@ -28,7 +28,7 @@ pub struct Breakdown {
     pub radius: f64,
     /// m_i.
     pub mass: f64,
-    /// g_i, meters.
+    /// g_i, meters; the start of an agent that walks in a direction.
     pub goal: [f64; 2],
     /// ρ_i, P/m².
     pub density: f64,

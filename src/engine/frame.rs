@@ -6,7 +6,7 @@ use crate::engine::agents::Agents;
 use crate::engine::clock::Clock;
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
-use crate::engine::neighbors::{CLUSTER, Neighbors};
+use crate::engine::neighbors::{CLUSTER, Neighbors, Run};
 use crate::engine::pairs::Packed;
 
 /// Quantities derived from the state, one array each, with the step that writes it in parentheses.
@@ -81,19 +81,21 @@ impl Frame<'_> {
     /// The near neighbors j of agent `i` at less than `radius` meters, with r_ij = r_i − r_j.
     pub fn near(&self, i: usize, radius: f64) -> impl Iterator<Item = (usize, Vector)> + '_ {
         let position = &self.agents.position;
-        let candidates = self.neighbors.near().near(i).filter(move |&j| j != i);
+        let candidates = self.neighbors.near().near(i);
+        let candidates = candidates.filter(move |&(j, _)| j != i);
         candidates
-            .map(move |j| (j, position[i] - position[j]))
+            .map(move |(j, laps)| (j, self.neighbors.seen_from(position[i], laps) - position[j]))
             .filter(move |(_, r_ij)| r_ij.norm_squared() < radius * radius)
     }
 
     /// Upper bound on the relative speed between any of `agents` and any of `others`, m/s. Requires
     /// [`velocity_ranges`](Fields::velocity_ranges).
-    pub(crate) fn relative_speed(&self, agents: Range<usize>, others: &[Range<u32>]) -> f64 {
+    pub(crate) fn relative_speed(&self, agents: Range<usize>, others: &[Run]) -> f64 {
         let velocities = &self.agents.velocity[agents];
         let [low, high] = velocity_range(velocities.iter().map(|&v| [v, v]));
         let ranges = others.iter().flat_map(|run| {
-            let cells = run.start as usize / CLUSTER..(run.end as usize).div_ceil(CLUSTER);
+            let others = run.indices();
+            let cells = others.start / CLUSTER..others.end.div_ceil(CLUSTER);
             &self.fields.velocity_ranges[cells]
         });
         let [lowest, highest] = velocity_range(ranges.copied());

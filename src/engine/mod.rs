@@ -5,6 +5,8 @@
 
 pub mod math;
 
+pub mod period;
+
 pub mod random;
 
 pub mod distribution;

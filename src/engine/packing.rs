@@ -13,6 +13,7 @@ use rand::Rng;
 
 use crate::engine::geometry::{Area, AreaIndex, Polygon, Wall, Walls};
 use crate::engine::math::{Vector, bounds};
+use crate::engine::period::Period;
 use cells::Cells;
 use taken::Taken;
 
@@ -50,17 +51,19 @@ pub struct Space<'a> {
     /// The borders of the areas.
     borders: Walls,
     walls: &'a Walls,
+    period: Option<Period>,
 }
 
 impl<'a> Space<'a> {
-    /// The space in `areas`, which lie outside of the obstacles of `walls`.
-    pub fn new(areas: &'a [Area], walls: &'a Walls) -> Self {
+    /// The space in `areas`, which lie outside of the obstacles of `walls` and in the `period`, if there is one.
+    pub fn new(areas: &'a [Area], walls: &'a Walls, period: Option<Period>) -> Self {
         let around = Polygon::enclosing(areas.to_vec());
         Self {
             areas,
             index: AreaIndex::new(areas),
             borders: Walls::new(around.into_iter().collect()),
             walls,
+            period,
         }
     }
 
@@ -151,7 +154,7 @@ impl<'a> Throwing<'a> {
         Self {
             space,
             radii,
-            taken: Taken::new(space.bounds(), others, radii),
+            taken: Taken::new(space.bounds(), space.period, others, radii),
             places: Vec::with_capacity(radii.len()),
         }
     }
@@ -202,7 +205,7 @@ pub fn lattice(space: &Space, others: &[Body], radii: &[f64]) -> Result<Vec<Vect
         return Ok(Vec::new());
     }
     let widest = radii.iter().copied().fold(0.0, f64::max);
-    let taken = Taken::new(space.bounds(), others, radii);
+    let taken = Taken::new(space.bounds(), space.period, others, radii);
     let closest = 2.0 * (widest + ROUNDING);
     let per_body = space.size() / radii.len().max(1) as f64;
     let mut pitch = (per_body * 2.0 / 3_f64.sqrt()).sqrt().max(closest);
@@ -246,7 +249,26 @@ fn sites(space: &Space, taken: &Taken, bodies: (usize, f64), pitch: f64) -> Vec<
     let mut near = Vec::new();
     let has_room =
         |&p: &Vector| taken.has_room(p, bodies.1) && space.has_room(p, bodies.1, &mut near);
-    sites.into_iter().map(place).filter(has_room).collect()
+    let places: Vec<Vector> = sites.into_iter().map(place).filter(has_room).collect();
+    match space.period {
+        Some(_) => apart(space, bodies.1, places),
+        None => places,
+    }
+}
+
+/// The `places` at which bodies of this radius do not touch across the ends of the period.
+fn apart(space: &Space, radius: f64, mut places: Vec<Vector>) -> Vec<Vector> {
+    let radii = vec![radius; places.len()];
+    let mut taken = Taken::new(space.bounds(), space.period, &[], &radii);
+    taken.set_spacing(0.0);
+    places.retain(|&place| {
+        let has_room = taken.has_room(place, radius);
+        if has_room {
+            taken.add(Body { place, radius });
+        }
+        has_room
+    });
+    places
 }
 
 /// The first site of a row, in pitches from the left.

@@ -15,6 +15,7 @@ use crate::engine::journeys::Journeys;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::{ListPolicy, Ranges, SKIN};
 use crate::engine::pairs::Precision;
+use crate::engine::period::Period;
 use crate::engine::placement::Grid;
 use crate::engine::profile::{Blend, Override, Profile};
 use crate::engine::traits::Traits;
@@ -60,6 +61,8 @@ pub struct Group {
     pub counted: bool,
     /// The number of the journey of its agents; `None`: each walks to its own goal.
     pub journey: Option<u16>,
+    /// The direction in which its agents walk, of length 1, instead of to their goals.
+    pub direction: Option<Vector>,
     /// What is drawn for each of its agents.
     pub traits: Traits,
 }
@@ -73,6 +76,7 @@ impl Group {
             removal_radius: None,
             counted: true,
             journey: None,
+            direction: None,
             traits: Traits::default(),
         }
     }
@@ -145,6 +149,17 @@ impl Region {
     pub fn area(&self) -> f64 {
         (self.max.x - self.min.x) * (self.max.y - self.min.y)
     }
+
+    /// Its corners, counterclockwise.
+    pub fn corners(&self) -> [Vector; 4] {
+        let (low, high) = (self.min, self.max);
+        [
+            low,
+            Vector::new(high.x, low.y),
+            high,
+            Vector::new(low.x, high.y),
+        ]
+    }
 }
 
 /// Everything that a [`Simulation`](crate::engine::simulation::Simulation) is built from.
@@ -170,8 +185,10 @@ pub struct Scene {
     pub max_speed: f64,
     /// s_max of agents with a preferred speed of their own, divided by that speed; `None`: they have the scene's s_max.
     pub max_speed_ratio: Option<f64>,
-    /// The obstacles and their walls.
+    /// The obstacles and their walls; in a periodic scene those of the neighboring periods, too.
     pub walls: Walls,
+    /// The period of a periodic scene: at least twice as long as any agent reaches ([`Ranges::interaction`]).
+    pub period: Option<Period>,
     /// Groups by index.
     pub groups: Vec<Group>,
     /// Initial agents, in the order of their ids.
@@ -205,6 +222,7 @@ impl Default for Scene {
             max_speed: 1.8,
             max_speed_ratio: Some(1.8 / 1.4),
             walls: Walls::new(Vec::new()),
+            period: None,
             groups: Vec::new(),
             agents: Vec::new(),
             sources: Vec::new(),
@@ -263,6 +281,7 @@ impl Scene {
                 .iter()
                 .any(|group| group.removal_radius.is_some()),
             paces: !self.journeys.zones.is_empty(),
+            directions: self.groups.iter().any(|group| group.direction.is_some()),
         }
     }
 
@@ -349,6 +368,7 @@ impl Scene {
             longest_step,
             drift,
             margin,
+            period: self.period,
         }
     }
 }
@@ -382,6 +402,8 @@ pub struct Needs {
     pub removal: bool,
     /// Agents have preferred speeds of their own, or do not walk all the time.
     pub paces: bool,
+    /// Some agents walk in a direction, not to a goal.
+    pub directions: bool,
 }
 
 impl Needs {
@@ -397,6 +419,7 @@ impl Needs {
             avoidance: radii.reduce(f64::max),
             removal: self.removal || other.removal,
             paces: self.paces || other.paces,
+            directions: self.directions || other.directions,
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::engine::agents::Agents;
 use crate::engine::geometry::Ring;
 use crate::engine::journeys::{Kind, Place, Queue, Status, Trip, Zone};
 use crate::engine::math::{Vector, bounds, direction, perpendicular};
-use crate::engine::scene::{Goal, Scene};
+use crate::engine::scene::{Goal, Group, Scene};
 use crate::output::colors::Rgb;
 
 /// The color of zones.
@@ -141,7 +141,8 @@ pub fn goals(scene: &Scene, agents: &Agents) -> Vec<GoalOf> {
     let mut different = BTreeMap::new();
     for (goal, group) in own.chain(entering) {
         let of = scene.groups.get(usize::from(group));
-        if of.is_some_and(|group| group.journey.is_some()) {
+        let walks_on = |group: &Group| group.journey.is_some() || group.direction.is_some();
+        if of.is_some_and(walks_on) {
             continue;
         }
         let place = (millimeters(goal.x), millimeters(goal.y));

@@ -13,11 +13,14 @@ use super::need::Need;
 use super::plan::Surroundings;
 use super::profiles::{ProfileChoice, ProfileName};
 use super::range::{self, region};
-use super::{PlanFile, Scenario, View, journeys, measurements, plan, preset, profiles, ways};
+use super::{
+    PlanFile, Scenario, View, journeys, measurements, periodic, plan, preset, profiles, ways,
+};
 use crate::analysis::stability;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::engine::geometry::Polygon;
 use crate::engine::math::{Vector, bounds};
+use crate::engine::period::Period;
 use crate::engine::profile::Override;
 use crate::engine::scene::{Push, Region, Scene};
 
@@ -61,6 +64,7 @@ impl Contents {
     /// scenario.
     pub(super) fn scenario(self, path: &Path) -> Result<Scenario, Problem> {
         let keys = &self.keys;
+        periodic::check_keys(keys)?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let Surroundings { solids, behind } = plan::surroundings(keys)?;
         let mut scene = empty_scene(keys, solids);
@@ -73,6 +77,7 @@ impl Contents {
         crowding::check(keys, &scene, duration_secs)?;
         measurements::check(&keys.measurements)?;
         scene.pushes = pushes(&keys.events)?;
+        periodic::check(keys, &scene)?;
         scene.ways = ways::ways(keys, &scene)?;
         if keys.time_step_secs == Some(TimeStep::Auto(file::Auto::Auto)) {
             scene.clock = automatic_clock(keys, &scene)?;
@@ -146,6 +151,7 @@ fn empty_scene(keys: &File, solids: Vec<Polygon>) -> Scene {
         preferred_speed: keys.preferred_speed.unwrap_or(paper.preferred_speed),
         max_speed: keys.max_speed.unwrap_or(paper.max_speed),
         max_speed_ratio: max_speed_ratio(keys, &paper),
+        period: keys.periodic.map(Period::from),
         ..Scene::with_obstacles(solids)
     }
 }
@@ -248,6 +254,8 @@ fn surroundings(scene: &Scene) -> Region {
     let lines = lines.flat_map(|entrance| [entrance.line[0], entrance.line[1], entrance.goal]);
     let margin = Vector::new(DEFAULT_MARGIN, DEFAULT_MARGIN);
     let [low, high] = bounds(corners.chain(agents).chain(sources).chain(lines)).unwrap_or_default();
+    let period = scene.period;
+    let [low, high] = period.map_or([low, high], |period| period.clipped([low, high]));
     Region {
         min: low - margin,
         max: high + margin,

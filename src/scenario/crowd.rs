@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::distribution::traits;
 use super::error::{Problem, Under, suggestion};
 use super::file::{self, Corners, File};
+use super::goals::Target;
 use super::journeys::TO_NEAREST_EXIT;
 use super::profiles::{self, ProfileChoice};
 use super::quote::shown;
@@ -96,13 +97,11 @@ impl<'a> Crowd<'a> {
             return Err(Problem::new("velocity", reason));
         }
         let journey = self.journey(agent.journey.as_deref(), agent.goal.is_some())?;
-        let goal = match (agent.goal, journey) {
-            (Some(goal), _) => goal.into(),
-            (None, Some(_)) => agent.position.into(),
-            (None, None) => self.default_goal()?,
-        };
+        let target = self.target(agent.goal, journey, agent.remove_within)?;
+        let position = agent.position.into();
         let group = self.shared_group(Behavior {
             journey,
+            direction: target.direction,
             profile: agent.profile.as_ref(),
             remove_within: agent.remove_within,
             counted: agent.counted,
@@ -114,7 +113,7 @@ impl<'a> Crowd<'a> {
             mean_density: agent.mean_density,
             preferred_speed: agent.preferred_speed,
             premovement: agent.premovement_secs,
-            ..NewAgent::at(agent.position.into(), goal, group)
+            ..NewAgent::at(position, target.goal_from(position), group)
         });
         Ok(())
     }
@@ -130,28 +129,24 @@ impl<'a> Crowd<'a> {
                 return Err(Problem::new(key, reason));
             }
         }
-        let (grid, goal) = self.placed(given)?;
-        let group = self.grid_group(given, place)?;
+        let (grid, target) = self.placed(given)?;
+        let group = self.grid_group(given, target.direction, place)?;
         let first_id = self.scene.agents.len() as u32;
-        let agents = grid.positions(self.scene.seed, first_id).map(|position| {
-            let goal = match goal {
-                Goal::Point(goal) => goal,
-                Goal::Offset(offset) => position + offset,
-            };
-            NewAgent::at(position, goal, group)
-        });
+        let agents = grid.positions(self.scene.seed, first_id);
+        let agents =
+            agents.map(|position| NewAgent::at(position, target.goal_from(position), group));
         self.scene.agents.extend(agents);
         Ok(())
     }
 
     fn source(&mut self, given: &file::Grid, place: &str) -> Result<(), Problem> {
-        let (grid, goal) = self.placed(given)?;
+        let (grid, target) = self.placed(given)?;
         let [start, every] = given.schedule();
         let source = Source {
             name: given.name.as_deref().unwrap_or(place).to_owned(),
             grid,
-            group: self.grid_group(given, place)?,
-            goal,
+            group: self.grid_group(given, target.direction, place)?,
+            goal: target.goal,
             start,
             every,
             times: given.times,
@@ -160,8 +155,8 @@ impl<'a> Crowd<'a> {
         Ok(())
     }
 
-    /// The grid and the goal of a grid or source.
-    fn placed(&self, given: &file::Grid) -> Result<(Grid, Goal), Problem> {
+    /// The grid and the target of a grid or source.
+    fn placed(&self, given: &file::Grid) -> Result<(Grid, Target), Problem> {
         let Region { min, max } = region("min", Corners([given.min, given.max]))?;
         let grid = Grid {
             min,
@@ -183,18 +178,20 @@ impl<'a> Crowd<'a> {
         }
         let has_goal = given.goal.is_some() || given.goal_offset.is_some();
         let journey = self.journey(given.journey.as_deref(), has_goal)?;
-        let goal = match (given.goal, given.goal_offset) {
-            // Each place of a journey becomes the goal in its turn.
-            (None, None) if journey.is_some() => Goal::Offset(Vector::zeros()),
+        let target = match (given.goal, given.goal_offset) {
+            (_, Some(_)) if self.scene.period.is_some() => {
+                let reason =
+                    "in a periodic scene agents walk in a direction, not to a point; remove it";
+                return Err(Problem::new("goal_offset", reason));
+            }
             (Some(_), Some(_)) => {
                 let reason = "either `goal` or `goal_offset`, not both";
                 return Err(Problem::new("goal_offset", reason));
             }
-            (Some(goal), None) => Goal::Point(goal.into()),
-            (None, Some(offset)) => Goal::Offset(offset.into()),
-            (None, None) => Goal::Point(self.default_goal()?),
+            (None, Some(offset)) => Target::to(Goal::Offset(offset.into())),
+            (goal, None) => self.target(goal, journey, given.remove_within)?,
         };
-        Ok((grid, goal))
+        Ok((grid, target))
     }
 
     /// The journey of agents that name `given`; `None` if they walk to a goal.
@@ -227,13 +224,6 @@ impl<'a> Crowd<'a> {
         }
     }
 
-    pub(super) fn default_goal(&self) -> Result<Vector, Problem> {
-        let reason =
-            "no goal: set `goal` or `journey` here, `goal` at the top of the file, or add `exits`";
-        let goal = self.file.goal.ok_or_else(|| Problem::new("", reason))?;
-        Ok(goal.into())
-    }
-
     /// The group of single agents with this behavior; creates it if needed.
     fn shared_group(&mut self, behavior: Behavior) -> Result<u16, Problem> {
         let key = format!("{behavior:?}");
@@ -246,10 +236,16 @@ impl<'a> Crowd<'a> {
     }
 
     /// The group of the agents of a grid or source.
-    fn grid_group(&mut self, given: &file::Grid, place: &str) -> Result<u16, Problem> {
+    fn grid_group(
+        &mut self,
+        given: &file::Grid,
+        direction: Option<Vector>,
+        place: &str,
+    ) -> Result<u16, Problem> {
         let has_goal = given.goal.is_some() || given.goal_offset.is_some();
         let behavior = Behavior {
             journey: self.journey(given.journey.as_deref(), has_goal)?,
+            direction,
             profile: given.profile.as_ref(),
             remove_within: given.remove_within,
             counted: given.counted,
@@ -297,6 +293,7 @@ impl<'a> Crowd<'a> {
             removal_radius: behavior.remove_within,
             counted: behavior.counted.unwrap_or(true),
             journey: behavior.journey,
+            direction: behavior.direction,
             traits,
         }))
     }
@@ -306,6 +303,7 @@ impl<'a> Crowd<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Behavior<'a> {
     pub journey: Option<u16>,
+    pub direction: Option<Vector>,
     pub profile: Option<&'a ProfileChoice>,
     pub remove_within: Option<f64>,
     pub counted: Option<bool>,

@@ -7,16 +7,18 @@ use super::catalog::HIGHEST_DENSITY;
 use super::crowd::{Behavior, Crowd as Building};
 use super::distribution::{self, Draw, traits};
 use super::error::{Problem, Under};
-use super::file::{Point, Ring};
+use super::file::Ring;
 use super::floor_plan::{free, outlines};
+use super::goals::Aim;
 use super::plan;
 use super::profiles::ProfileChoice;
 use super::schema::word;
 use crate::engine::agents::{NewAgent, RADIUS_RANGE};
 use crate::engine::geometry::{Area, Ring as Outline};
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, bounds};
 use crate::engine::packing::{self, Body, Space};
 use crate::engine::random::{self, Purpose};
+use crate::engine::scene::Region;
 
 /// The share of radii that may be smaller than assumed.
 const RARE: f64 = 1e-6;
@@ -54,7 +56,7 @@ pub(super) struct Crowd {
     #[schemars(schema_with = "word::<Spacing>")]
     pub spacing: Spacing,
     /// The goal. Default: the scenario's goal.
-    pub goal: Option<Point>,
+    pub goal: Option<Aim>,
     /// Instead of `goal`: the name of the journey.
     pub journey: Option<String>,
     /// The behavior. Default: the scenario's profile.
@@ -128,15 +130,10 @@ impl Building<'_> {
         ];
         let traits = traits(draws)?;
         let journey = self.journey(given.journey.as_deref(), given.goal.is_some())?;
-        // Each place of a journey becomes the goal in its turn.
-        let goal = match (given.goal, journey) {
-            (Some(goal), _) => Some(goal.into()),
-            (None, Some(_)) => None,
-            (None, None) => Some(self.default_goal()?),
-        };
+        let target = self.target(given.goal, journey, given.remove_within)?;
         let (seed, first) = (self.scene.seed, self.scene.agents.len() as u32);
         self.note_bodies();
-        let space = Space::new(&areas, &self.scene.walls);
+        let space = Space::new(&areas, &self.scene.walls, self.scene.period);
         let least = traits.radius.as_ref();
         let least = least.map_or(RADIUS_RANGE[0], |radius| radius.quantile(RARE));
         // A few of too many agents are enough to find out how many fit.
@@ -167,6 +164,7 @@ impl Building<'_> {
         })?;
         let behavior = Behavior {
             journey,
+            direction: target.direction,
             profile: given.profile.as_ref(),
             remove_within: given.remove_within,
             counted: given.counted,
@@ -177,13 +175,13 @@ impl Building<'_> {
             .agents
             .extend(agents.map(|(place, radius)| NewAgent {
                 radius: Some(radius),
-                ..NewAgent::at(place, goal.unwrap_or(place), group)
+                ..NewAgent::at(place, target.goal_from(place), group)
             }));
         Ok(())
     }
 
-    /// The part of an area outside of all obstacles and inside of the walkable area as it is given: without the floors
-    /// behind exits.
+    /// The part of an area outside of all obstacles and inside of the walkable area as it is given, without the floors
+    /// behind exits, and inside of the period.
     fn free_area(&self, given: &Place) -> Result<Vec<Area>, Problem> {
         let rings = match given {
             Place::Ring(ring) => std::slice::from_ref(ring),
@@ -195,6 +193,11 @@ impl Building<'_> {
         own.insert(0, area.exterior.points().to_vec());
         let (mut floors, mut bodies) = outlines(self.scene.walls.obstacles());
         bodies.extend(self.behind.iter().cloned());
+        if let Some(period) = &self.scene.period {
+            let corners = bounds(own.iter().flatten().copied()).unwrap_or_default();
+            let [min, max] = period.clipped(corners);
+            floors.push(vec![Region { min, max }.corners().to_vec()]);
+        }
         floors.insert(0, own);
         let areas = free(&floors, &bodies).map_err(|error| Problem::new("", error.to_string()))?;
         match areas.is_empty() {
@@ -214,7 +217,9 @@ impl Building<'_> {
         self.bodies.extend(new.map(|(id, agent)| {
             let traits = &scene.groups[usize::from(agent.group)].traits;
             Body {
-                place: agent.position,
+                place: scene
+                    .period
+                    .map_or(agent.position, |period| period.wrapped(agent.position).0),
                 radius: agent
                     .radius
                     .unwrap_or_else(|| traits.radius_of(scene.seed, id as u32)),

@@ -7,6 +7,7 @@ use super::crowd::{Behavior, Crowd as Building};
 use super::distribution::{self, Draw, traits};
 use super::error::Problem;
 use super::file::{LONGEST_TIME, Point};
+use super::goals::Aim;
 use super::profiles::ProfileChoice;
 use super::schema::word;
 use crate::engine::agents::RADIUS_RANGE;
@@ -58,7 +59,7 @@ pub(super) struct Entrance {
     #[schemars(range(min = 1))]
     pub number: Option<u32>,
     /// The goal. Default: the scenario's goal.
-    pub goal: Option<Point>,
+    pub goal: Option<Aim>,
     /// Instead of `goal`: the name of the journey.
     pub journey: Option<String>,
     /// The behavior. Default: the scenario's profile.
@@ -171,8 +172,10 @@ impl Building<'_> {
         };
         let name = given.name.as_deref().unwrap_or(place).to_owned();
         let journey = self.journey(given.journey.as_deref(), given.goal.is_some())?;
+        let target = self.target(given.goal, journey, given.remove_within)?;
         let behavior = Behavior {
             journey,
+            direction: target.direction,
             profile: given.profile.as_ref(),
             remove_within: given.remove_within,
             counted: given.counted,
@@ -185,12 +188,7 @@ impl Building<'_> {
         }
         let entrance = Line {
             line,
-            goal: match (given.goal, journey) {
-                (Some(goal), _) => goal.into(),
-                // Each place of a journey becomes the goal in its turn.
-                (None, Some(_)) => (line[0] + line[1]) * 0.5,
-                (None, None) => self.default_goal()?,
-            },
+            goal: target.goal_from((line[0] + line[1]) * 0.5),
             arrivals: given.arrivals()?,
             group: self.group(&name, behavior, traits)?,
             name,

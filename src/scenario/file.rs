@@ -10,7 +10,9 @@ use serde_json::{Value, json};
 use super::crowds::Crowd;
 use super::distribution::{self, Draw};
 use super::entrances::Entrance;
+use super::goals::Aim;
 use super::measurements::Measurement;
+use super::periodic::Periodic;
 use super::places::{Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
 use super::preset::Preset;
 use super::profiles::ProfileChoice;
@@ -113,8 +115,10 @@ pub(super) struct File {
     /// (the outline, then the holes), or the name of a WKT or GeoJSON file.
     #[schemars(schema_with = "obstacles")]
     pub obstacles: Vec<Obstacle>,
-    /// The goal of agents that have none of their own.
-    pub goal: Option<Point>,
+    /// The scene repeats itself without end.
+    pub periodic: Option<Periodic>,
+    /// The goal of agents that have none of their own. Default in a periodic scene: along the axis.
+    pub goal: Option<Aim>,
     /// Lines at which people leave. People without goal and journey walk to the nearest one.
     pub exits: Vec<Exit>,
     /// Lines and disks on people's ways.
@@ -218,7 +222,7 @@ pub(super) struct Agent {
     #[schemars(range(min = 0, max = LONGEST_TIME))]
     pub premovement_secs: Option<f64>,
     /// The goal. Default: the scenario's goal.
-    pub goal: Option<Point>,
+    pub goal: Option<Aim>,
     /// Instead of `goal`: the name of the journey.
     pub journey: Option<String>,
     /// ρ̂ (Eq. 8) of the previous frame, P/m². Default: the density from agents alone in its first frame.
@@ -256,7 +260,7 @@ pub(super) struct Grid {
     #[schemars(range(min = 0, max = 1e6))]
     pub jitter: f64,
     /// The goal. Default: the scenario's goal.
-    pub goal: Option<Point>,
+    pub goal: Option<Aim>,
     /// Instead of `goal`: the goal relative to each agent's start.
     pub goal_offset: Option<Point>,
     /// Instead of `goal`: the name of the journey.

@@ -7,9 +7,11 @@ use serde_json::{Value, json};
 use super::PlanFile;
 use super::error::{Problem, Under};
 use super::file::{File, Obstacle, Point, Ring as GivenRing};
+use super::periodic;
 use super::setting::Setting;
 use crate::engine::geometry::{Area, Polygon, Ring};
 use crate::engine::math::{Vector, direction, perpendicular};
+use crate::engine::period::Period;
 use crate::scenario::floor_plan::{self, FloorPlan, FloorPlanError};
 use crate::scenario::quote::shown;
 
@@ -94,14 +96,15 @@ fn ring_value(ring: &Ring) -> Value {
     ring.points().iter().map(|p| json!([p.x, p.y])).collect()
 }
 
-/// The number of walls in a file: one per corner.
+/// The number of walls of a scene: one per corner, in a periodic scene of three periods.
 pub(super) fn walls(file: &File) -> u64 {
     let rings = file.obstacles.iter().flat_map(|obstacle| match obstacle {
         Obstacle::Ring(ring) => std::slice::from_ref(ring),
         Obstacle::Polygon(rings) => rings,
     });
     let rings = rings.chain(file.walkable_area.iter().flatten().flatten());
-    rings.map(|ring| ring.0.len() as u64).sum()
+    let corners: u64 = rings.map(|ring| ring.0.len() as u64).sum();
+    corners * if file.periodic.is_some() { 3 } else { 1 }
 }
 
 /// What surrounds people.
@@ -121,31 +124,42 @@ pub(super) fn surroundings(file: &File) -> Result<Surroundings, Problem> {
         );
         return Err(Problem::new(OBSTACLES, reason));
     }
+    let period = file.periodic.map(Period::from);
     let mut behind = Vec::new();
     let mut solids = Vec::with_capacity(file.obstacles.len() + 1);
+    let mut copies = Vec::new();
     for (k, given) in file.obstacles.iter().enumerate() {
-        solids.push(obstacle(given).under(&format!("{OBSTACLES}[{k}]"))?);
+        let bodies = obstacle(given, period.as_ref()).under(&format!("{OBSTACLES}[{k}]"))?;
+        let mut bodies = bodies.into_iter();
+        solids.extend(bodies.next());
+        copies.extend(bodies);
     }
+    solids.extend(copies);
     if let Some(polygons) = &file.walkable_area {
         let exits = file.exits.iter().map(|exit| exit.line);
         let entrances = file.entrances.iter().map(|entrance| entrance.line.0);
         let doors = exits.chain(entrances).map(|line| line.map(Vector::from));
         let doors: Vec<[Vector; 2]> = doors.collect();
-        let around = walls_round(polygons, &doors).under(WALKABLE_AREA)?;
+        let around = walls_round(polygons, &doors, period.as_ref()).under(WALKABLE_AREA)?;
+        if let Some(period) = &period {
+            periodic::check_ends(&around.solids, period).under(WALKABLE_AREA)?;
+        }
         solids.extend(around.solids);
         behind = around.behind;
     }
     Ok(Surroundings { solids, behind })
 }
 
-/// The solid around `polygons`, open behind the lines of exits and entrances.
+/// The solid around `polygons` and their copies, open behind the lines of exits and entrances.
 fn walls_round(
     polygons: &[Vec<GivenRing>],
     doors: &[[Vector; 2]],
+    period: Option<&Period>,
 ) -> Result<Surroundings, Problem> {
     let mut given = Vec::with_capacity(polygons.len());
     for (k, polygon) in polygons.iter().enumerate() {
-        given.push(rings(polygon).under(&format!("[{k}]"))?);
+        let rings = rings(polygon).under(&format!("[{k}]"))?;
+        given.extend(periodic::copies(&rings, period));
     }
     let mut plan = FloorPlan::walkable(&given).map_err(problem)?;
     let openings = openings(&plan.walkable, doors);
@@ -302,7 +316,15 @@ pub(super) fn area(given: &[GivenRing]) -> Result<Area, Problem> {
     }
 }
 
-fn obstacle(given: &Obstacle) -> Result<Polygon, Problem> {
+/// A body, with its copies in a periodic scene.
+fn obstacle(given: &Obstacle, period: Option<&Period>) -> Result<Vec<Polygon>, Problem> {
+    if let Some(period) = period {
+        let rings = match given {
+            Obstacle::Ring(ring) => vec![points(ring)?],
+            Obstacle::Polygon(given) => rings(given)?,
+        };
+        return periodic::bodies(&rings, period);
+    }
     let polygon = match given {
         Obstacle::Ring(ring) => Polygon::new(points(ring)?.into_iter().map(Into::into).collect()),
         Obstacle::Polygon(given) => {
@@ -310,7 +332,8 @@ fn obstacle(given: &Obstacle) -> Result<Polygon, Problem> {
             Polygon::filling(area)
         }
     };
-    polygon.map_err(|error| Problem::new("", error.to_string()))
+    let polygon = polygon.map_err(|error| Problem::new("", error.to_string()))?;
+    Ok(vec![polygon])
 }
 
 fn rings(given: &[GivenRing]) -> Result<Vec<Vec<[f64; 2]>>, Problem> {
@@ -330,7 +353,7 @@ fn points(GivenRing(ring): &GivenRing) -> Result<Vec<[f64; 2]>, Problem> {
 }
 
 /// Converts an error; its place becomes the path if it is an index.
-fn problem(error: FloorPlanError) -> Problem {
+pub(super) fn problem(error: FloorPlanError) -> Problem {
     match error {
         FloorPlanError::Geometry { place, reason } => Problem::new(place, reason),
         FloorPlanError::EmptyGeometry(place) => Problem::new(place, "has no rings"),

@@ -48,6 +48,8 @@ enum To {
     Goal { goal: Vector, shared: bool },
     /// The first stage of a journey.
     Journey(u16),
+    /// In a direction, without end.
+    Away,
 }
 
 /// The path maps of a scene that is otherwise complete; `None` if agents walk straight.
@@ -274,9 +276,10 @@ fn starts(scene: &Scene) -> Vec<Start> {
         starts.push(Start {
             place: free(place),
             name: group.name.clone(),
-            to: match group.journey {
-                Some(journey) => To::Journey(journey),
-                None => To::Goal { goal, shared },
+            to: match (group.journey, group.direction) {
+                (Some(journey), _) => To::Journey(journey),
+                (None, Some(_)) => To::Away,
+                (None, None) => To::Goal { goal, shared },
             },
         });
     };
@@ -311,7 +314,7 @@ fn areas(scene: &Scene, starts: &[Start]) -> Result<Vec<Area>, Problem> {
     let corners = scene.walls.iter().map(|wall| wall.start);
     let ends = starts.iter().flat_map(|start| match start.to {
         To::Goal { goal, .. } => [start.place, goal],
-        To::Journey(_) => [start.place; 2],
+        To::Journey(_) | To::Away => [start.place; 2],
     });
     let places = scene.journeys.places.iter().flat_map(Place::goals);
     let places = places.flat_map(|goal| match goal {

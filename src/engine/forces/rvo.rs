@@ -143,8 +143,9 @@ impl Situation {
         self.max_speed = wish.max_speed;
         self.discs.clear();
         for run in frame.neighbors.around(self.position, radius) {
-            for j in run {
-                let offset = agents.position[j] - self.position;
+            let place = frame.neighbors.seen_from(self.position, run.laps);
+            for j in run.indices() {
+                let offset = agents.position[j] - place;
                 let reach = self.radius + agents.radius[j];
                 let squared = offset.norm_squared();
                 // Ignores agents in contact, and with them agent i itself.

@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::engine::frame::Frame;
 use crate::engine::geometry::WallPart;
 use crate::engine::math::{Vector, direction};
-use crate::engine::neighbors::BLOCK;
+use crate::engine::neighbors::{BLOCK, Run};
 use crate::engine::pairs::prelude::*;
 use crate::engine::pairs::{
     Bodies, Lanes, Level, PairSum, Real, Simd, add_pairs, dispatch, each, load, splat, spread,
@@ -118,7 +118,7 @@ impl SocialForce {
         &self,
         simd: S,
         bodies: &Bodies<R>,
-        (start, runs): (usize, &[Range<u32>]),
+        (start, runs): (usize, &[Run]),
         coefficients: &[f64],
         out: &mut [Vector],
     ) {

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::Grid;
-use crate::engine::math::Vector;
+use super::{Grid, Run};
+use crate::engine::math::{Vector, bounds};
 
 /// The number of agents that are processed together, and whose lists share memory.
 pub const BLOCK: usize = 128;
@@ -29,7 +29,7 @@ pub struct Clusters {
 #[derive(Debug, Clone, Default)]
 pub struct ClusterBlock {
     clusters: Vec<Cluster>,
-    runs: Vec<Range<u32>>,
+    runs: Vec<Run>,
 }
 
 #[derive(Debug, Clone)]
@@ -89,18 +89,19 @@ impl Clusters {
         self.blocks.get(b).unwrap_or(NOBODY)
     }
 
-    /// All agents in the list of agent `i`, including itself, in ascending order; some are out of reach.
-    pub fn near(&self, i: usize) -> impl Iterator<Item = usize> + '_ {
+    /// All agents in the list of agent `i`, including itself, in ascending order, then those across the ends of the
+    /// period, each with its laps (see [`Run`]); some are out of reach.
+    pub fn near(&self, i: usize) -> impl Iterator<Item = (usize, i32)> + '_ {
         let own = self.block(i / BLOCK).clusters();
         own.filter(move |(agents, _)| agents.contains(&i))
-            .flat_map(|(_, runs)| runs.iter().cloned().flatten())
-            .map(|j| j as usize)
+            .flat_map(|(_, runs)| runs)
+            .flat_map(|run| run.indices().map(|j| (j, run.laps)))
     }
 }
 
 impl ClusterBlock {
     /// The agents of each cluster, with the runs of their list.
-    pub fn clusters(&self) -> impl Iterator<Item = (Range<usize>, &[Range<u32>])> {
+    pub fn clusters(&self) -> impl Iterator<Item = (Range<usize>, &[Run])> {
         self.clusters.iter().scan(0, |start, cluster| {
             let runs = &self.runs[*start..cluster.runs_end as usize];
             *start = cluster.runs_end as usize;
@@ -133,8 +134,12 @@ impl ClusterBlock {
             for (row, [from, to]) in (first.row - 1..).zip(extent.rows) {
                 let run = grid.run(row, from, to);
                 if !run.is_empty() {
-                    self.runs.push(run);
+                    self.runs.push(run.into());
                 }
+            }
+            if grid.period().is_some() {
+                let corners = bounds(positions[start..end].iter().copied()).unwrap_or_default();
+                self.runs.extend(grid.across(corners, reach));
             }
             self.close(start..end);
             start = end;
@@ -150,11 +155,7 @@ impl ClusterBlock {
         reach: f64,
     ) {
         for i in agents {
-            let p = positions[i];
-            for run in grid.rows([p; 2], reach) {
-                let near = run.filter(|&j| (p - positions[j as usize]).norm() < reach);
-                self.runs.extend(near.map(|j| j..j + 1));
-            }
+            grid.each_near(positions[i], positions, [reach, 0.0], &mut self.runs);
             self.close(i..i + 1);
         }
     }

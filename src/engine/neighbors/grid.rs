@@ -5,7 +5,9 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::Run;
 use crate::engine::math::{Vector, bounds};
+use crate::engine::period::Period;
 
 /// The fewest agents per parallel task.
 const SOME: usize = 4096;
@@ -37,6 +39,8 @@ pub struct Grid {
     width: f64,
     columns: usize,
     rows: usize,
+    /// Repeats the cells.
+    period: Option<Period>,
     /// The first agent of each cell, row by row; the last entry is the number of agents.
     start: Vec<u32>,
 }
@@ -49,6 +53,7 @@ impl Default for Grid {
             width: 1.0,
             columns: 1,
             rows: 3,
+            period: None,
             start: vec![0; 4],
         }
     }
@@ -56,8 +61,14 @@ impl Default for Grid {
 
 impl Grid {
     /// Lays a grid with rows of at least `height` meters over `positions` and returns the order that sorts them by
-    /// cell. The sort is stable.
-    pub fn rebuild(&mut self, positions: &[Vector], height: f64) -> Vec<u32> {
+    /// cell. The sort is stable. All positions lie in the `period`, if there is one.
+    pub fn rebuild(
+        &mut self,
+        positions: &[Vector],
+        height: f64,
+        period: Option<Period>,
+    ) -> Vec<u32> {
+        self.period = period;
         let [low, high] = bounds(positions.iter().copied()).unwrap_or_default();
         self.size_cells(high - low, positions.len(), height);
         self.origin = low - Vector::new(0.0, self.height);
@@ -141,8 +152,13 @@ impl Grid {
     }
 
     /// The agents in all cells within `radius` meters of a box, given by its lower left and upper right corners, row
-    /// by row. Some agents are out of reach.
-    pub fn rows(
+    /// by row, then those seen across the ends of the period. Some agents are out of reach.
+    pub fn rows(&self, corners: [Vector; 2], radius: f64) -> impl Iterator<Item = Run> + '_ {
+        let rows = self.own_rows(corners, radius);
+        rows.map(Run::from).chain(self.across(corners, radius))
+    }
+
+    fn own_rows(
         &self,
         [low, high]: [Vector; 2],
         radius: f64,
@@ -155,5 +171,65 @@ impl Grid {
             let half = (radius * radius - gap * gap).max(0.0).sqrt();
             self.run(row, low.x - half, high.x + half)
         })
+    }
+
+    /// The agents in all cells within `radius` meters of a box across the ends of the period; none without period.
+    pub fn across(&self, [low, high]: [Vector; 2], radius: f64) -> impl Iterator<Item = Run> + '_ {
+        let sides = self.period.map(|period| {
+            [-1, 1].map(|laps| {
+                let corners = [low, high].map(|p| p - period.way(laps));
+                let is_near = self.is_near(corners, radius);
+                (laps, is_near.then_some(corners))
+            })
+        });
+        sides
+            .into_iter()
+            .flatten()
+            .flat_map(move |(laps, corners)| {
+                let rows = corners.into_iter();
+                let rows = rows.flat_map(move |corners| self.own_rows(corners, radius));
+                let rows = rows.filter(|agents| !agents.is_empty());
+                rows.map(move |agents| Run { agents, laps })
+            })
+    }
+
+    /// Is a box within `radius` meters of the cells?
+    fn is_near(&self, [low, high]: [Vector; 2], radius: f64) -> bool {
+        let extent = Vector::new(
+            self.columns as f64 * self.width,
+            self.rows as f64 * self.height,
+        );
+        let (low, high) = (low - self.origin, high - self.origin);
+        let (before, after) = (high.add_scalar(radius), low.add_scalar(-radius) - extent);
+        before.min() >= 0.0 && after.max() <= 0.0
+    }
+
+    /// Appends the agents nearer to `p` than `radius` meters, each as a run of its own. They have moved by less than
+    /// `margin` meters since the grid was laid.
+    pub fn each_near(
+        &self,
+        p: Vector,
+        positions: &[Vector],
+        [radius, margin]: [f64; 2],
+        found: &mut Vec<Run>,
+    ) {
+        for Run { agents, laps } in self.rows([p; 2], radius + margin) {
+            let p = self.seen_from(p, laps);
+            let near = agents.filter(|&j| (p - positions[j as usize]).norm() < radius);
+            found.extend(near.map(|j| Run {
+                agents: j..j + 1,
+                laps,
+            }));
+        }
+    }
+
+    /// The place from which an agent at `p` sees the agents of a run, meters.
+    pub fn seen_from(&self, p: Vector, laps: i32) -> Vector {
+        self.period.map_or(p, |period| p - period.way(laps))
+    }
+
+    /// The period of the cells.
+    pub fn period(&self) -> Option<&Period> {
+        self.period.as_ref()
     }
 }

@@ -8,16 +8,19 @@
 mod clusters;
 mod grid;
 mod lists;
+mod run;
 
 pub use clusters::{BLOCK, CLUSTER, ClusterBlock, Clusters, TASK};
 pub use grid::{Grid, Place};
 pub use lists::Lists;
+pub use run::Run;
 
 use std::ops::Range;
 
 use crate::engine::agents::Agents;
 use crate::engine::geometry::Walls;
 use crate::engine::math::{Vector, bounds};
+use crate::engine::period::Period;
 
 /// Margin of all lists, meters: when an agent has moved by half of it since the sort, all lists are rebuilt. With a
 /// larger margin, lists are rebuilt less often but are longer.
@@ -49,6 +52,16 @@ pub struct Ranges {
     pub drift: f64,
     /// How far any agent may move between sorts so that no neighbor is missed either, meters; at most `drift`.
     pub margin: f64,
+    /// Agents are also neighbors across the ends of this period, in which all of them are at the sort.
+    pub period: Option<Period>,
+}
+
+impl Ranges {
+    /// How far agents of these radii act on each other, meters.
+    pub fn interaction(&self, widest: f64) -> f64 {
+        let avoidance = self.avoidance.unwrap_or_default();
+        self.support.max(2.0 * widest).max(avoidance)
+    }
 }
 
 /// Neighbors as of the last sort.
@@ -74,7 +87,8 @@ impl Neighbors {
         self.travelled = 0.0;
         self.near.clear();
         self.reach = near_radius(agents, &ranges);
-        let order = self.grid.rebuild(&agents.position, self.reach);
+        let period = ranges.period;
+        let order = self.grid.rebuild(&agents.position, self.reach, period);
         agents.arrange(&order);
         self.sorted_at.clone_from(&agents.position);
     }
@@ -116,6 +130,11 @@ impl Neighbors {
         self.travelled > 0.5 * SKIN
     }
 
+    /// The period across whose ends agents are neighbors.
+    pub fn period(&self) -> Option<&Period> {
+        self.grid.period()
+    }
+
     /// The neighbors for SPH and contact, and some agents out of range.
     pub fn near(&self) -> &Clusters {
         &self.near
@@ -130,11 +149,15 @@ impl Neighbors {
         Clusters::extent(self.reach).max(self.ranges.wide.map_or(0.0, far)) + unlisted
     }
 
-    /// All agents within `radius` meters of `p`, as ranges: candidates for avoidance. They include agents at `p`, and
-    /// some out of range.
-    pub fn around(&self, p: Vector, radius: f64) -> impl Iterator<Item = Range<usize>> + '_ {
-        let rows = self.grid.rows([p; 2], radius + self.ranges.margin);
-        rows.map(|run| run.start as usize..run.end as usize)
+    /// All agents within `radius` meters of `p`: candidates for avoidance. They include agents at `p`, and some out of
+    /// range.
+    pub fn around(&self, p: Vector, radius: f64) -> impl Iterator<Item = Run> + '_ {
+        self.grid.rows([p; 2], radius + self.ranges.margin)
+    }
+
+    /// The place from which an agent at `p` sees the agents of a run: with a period, they may be seen across its ends.
+    pub fn seen_from(&self, p: Vector, laps: i32) -> Vector {
+        self.grid.seen_from(p, laps)
     }
 
     /// Replaces `found` by runs with all agents within `radius` meters of any of `agents`, which are one cluster, and
@@ -144,7 +167,7 @@ impl Neighbors {
         agents: Range<usize>,
         positions: &[Vector],
         radius: f64,
-        found: &mut Vec<Range<u32>>,
+        found: &mut Vec<Run>,
     ) {
         found.clear();
         let reach = radius + self.ranges.margin;
@@ -156,29 +179,32 @@ impl Neighbors {
         // Cells had to be made larger than the reach of the lists, so clusters have one agent: list only its
         // neighbors.
         for i in agents {
-            let p = positions[i];
-            let near = self.grid.rows([p; 2], reach).flatten();
-            let near = near.filter(|&j| (p - positions[j as usize]).norm() < radius);
-            found.extend(near.map(|j| j..j + 1));
+            let reach = [radius, self.ranges.margin];
+            self.grid.each_near(positions[i], positions, reach, found);
         }
     }
 
     /// Replaces `found` by runs with all agents in a rectangle, given by its lower left and upper right corners, and
     /// some that are near it.
-    pub fn inside(&self, corners: [Vector; 2], positions: &[Vector], found: &mut Vec<Range<u32>>) {
+    pub fn inside(&self, corners: [Vector; 2], positions: &[Vector], found: &mut Vec<Run>) {
         found.clear();
         let rows = self.grid.rows(corners, self.ranges.margin);
         if self.grid.height() <= self.reach {
-            found.extend(rows.filter(|run| !run.is_empty()));
+            found.extend(rows.filter(|run| !run.agents.is_empty()));
             return;
         }
         // Cells had to be made larger than the reach of the lists, and have agents that are far away.
-        let [low, high] = corners;
-        let near = rows.flatten().filter(|&j| {
-            let p = positions[j as usize];
-            low.x <= p.x && low.y <= p.y && p.x <= high.x && p.y <= high.y
-        });
-        found.extend(near.map(|j| j..j + 1));
+        for Run { agents, laps } in rows {
+            let [low, high] = corners.map(|corner| self.seen_from(corner, laps));
+            let near = agents.filter(|&j| {
+                let p = positions[j as usize];
+                low.x <= p.x && low.y <= p.y && p.x <= high.x && p.y <= high.y
+            });
+            found.extend(near.map(|j| Run {
+                agents: j..j + 1,
+                laps,
+            }));
+        }
     }
 
     /// The largest support radius, meters.

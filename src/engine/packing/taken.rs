@@ -2,6 +2,7 @@
 
 use super::{Body, ROUNDING};
 use crate::engine::math::Vector;
+use crate::engine::period::Period;
 
 /// The most cells per body.
 const CELLS_PER_BODY: usize = 4;
@@ -12,6 +13,8 @@ const NONE: u32 = u32::MAX;
 
 /// Bodies in a grid of square cells.
 pub struct Taken {
+    /// Bodies also take the place of their images in the neighboring periods.
+    period: Option<Period>,
     /// The first are those of others.
     bodies: Vec<Body>,
     /// The number of bodies of others, which keep no distance.
@@ -34,15 +37,22 @@ pub struct Taken {
 
 impl Taken {
     /// The bodies of `others`, with space for bodies of these `radii` with centers in a box.
-    pub fn new([low, high]: [Vector; 2], others: &[Body], radii: &[f64]) -> Self {
+    pub fn new(
+        [low, high]: [Vector; 2],
+        period: Option<Period>,
+        others: &[Body],
+        radii: &[f64],
+    ) -> Self {
         let others = others.iter();
         let widest = others.clone().map(|body| body.radius);
         let widest = widest.chain(radii.iter().copied()).fold(0.0, f64::max);
         let margin = Vector::repeat(2.0 * widest);
         let (low, high) = (low - margin, high + margin);
         let is_near = |p: Vector| low.x <= p.x && low.y <= p.y && p.x <= high.x && p.y <= high.y;
-        let others: Vec<Body> = others.copied().filter(|body| is_near(body.place)).collect();
+        let others = others.flat_map(|&body| images(body, period));
+        let others: Vec<Body> = others.filter(|body| is_near(body.place)).collect();
         let mut taken = Self {
+            period,
             others: others.len(),
             spacing: 0.0,
             widest,
@@ -84,8 +94,10 @@ impl Taken {
     }
 
     pub fn add(&mut self, body: Body) {
-        self.bodies.push(body);
-        self.enlist(body.place);
+        for image in images(body, self.period) {
+            self.bodies.push(image);
+            self.enlist(image.place);
+        }
     }
 
     fn enlist(&mut self, place: Vector) {
@@ -140,4 +152,14 @@ impl Taken {
         let mut around = self.around(p, reach);
         around.any(|k| (self.bodies[k].place - p).norm() + half < self.distance(k, radius))
     }
+}
+
+/// A body, and its images in the neighboring periods.
+fn images(body: Body, period: Option<Period>) -> impl Iterator<Item = Body> {
+    let moved = move |laps| Body {
+        place: period.map_or(body.place, |period| body.place + period.way(laps)),
+        ..body
+    };
+    let laps: &[i32] = if period.is_some() { &[0, -1, 1] } else { &[0] };
+    laps.iter().map(move |&laps| moved(laps))
 }

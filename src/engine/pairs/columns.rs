@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::real::{LANES, Real};
 use crate::engine::agents::Agents;
 use crate::engine::neighbors::{BLOCK, TASK};
+use crate::engine::period::Period;
 
 /// One array per quantity, in the agents' order, padded by [`LANES`] entries so that the last vector load stays in
 /// bounds.
@@ -23,6 +24,8 @@ pub struct Columns<R: Real> {
 pub struct Bodies<R: Real> {
     /// Meters per coordinate unit.
     pub unit: f64,
+    /// The way over one period along x and along y, coordinate units; 0 without period.
+    pub period: [R::Coordinate; 2],
     /// r_j, coordinate units.
     pub x: Vec<R::Coordinate>,
     /// r_j, coordinate units.
@@ -46,8 +49,14 @@ fn reset<T: Copy + Default>(column: &mut Vec<T>, agents: &Agents) {
 
 impl<R: Real> Columns<R> {
     /// Packs the bodies of all agents (see [`Bodies::take`]), and resets their volumes and pressures to 0.
-    pub fn take_bodies(&mut self, agents: &Agents, unit: f64, support: impl Fn(usize) -> f64) {
-        self.bodies.take(agents, unit, support);
+    pub fn take_bodies(
+        &mut self,
+        agents: &Agents,
+        unit: f64,
+        period: Option<&Period>,
+        support: impl Fn(usize) -> f64,
+    ) {
+        self.bodies.take(agents, unit, period, support);
         reset(&mut self.volume, agents);
         reset(&mut self.pressure, agents);
     }
@@ -56,8 +65,16 @@ impl<R: Real> Columns<R> {
 impl<R: Real> Bodies<R> {
     /// Packs the bodies of all agents, and resets their positions and velocities to 0. A coordinate unit is `unit`
     /// meters; `support` returns the h of an agent in meters.
-    pub fn take(&mut self, agents: &Agents, unit: f64, support: impl Fn(usize) -> f64) {
+    pub fn take(
+        &mut self,
+        agents: &Agents,
+        unit: f64,
+        period: Option<&Period>,
+        support: impl Fn(usize) -> f64,
+    ) {
         self.unit = unit;
+        let way: [f64; 2] = period.map_or([0.0; 2], |period| period.way(1).into());
+        self.period = way.map(|meters| R::coordinate(meters, 1.0 / unit));
         reset(&mut self.x, agents);
         reset(&mut self.y, agents);
         reset(&mut self.velocity_x, agents);

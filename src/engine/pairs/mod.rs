@@ -20,6 +20,7 @@ pub use sums::{PairSum, add_pairs, lanes_from, load, splat, spread, store};
 pub use vectors::Vectors;
 
 use crate::engine::agents::Agents;
+use crate::engine::period::Period;
 
 /// The precision of sums over pairs; everything else is in double precision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -83,11 +84,18 @@ impl Packed {
     /// Packs the bodies of all agents. Coordinates may wrap with a period of twice `extent` meters (see
     /// [`Clusters::extent`](crate::engine::neighbors::Clusters::extent)); `support` returns the h of an agent in
     /// meters.
-    pub fn take_bodies(&mut self, agents: &Agents, extent: f64, support: impl Fn(usize) -> f64) {
+    pub fn take_bodies(
+        &mut self,
+        agents: &Agents,
+        extent: f64,
+        period: Option<&Period>,
+        support: impl Fn(usize) -> f64,
+    ) {
         match self {
-            Self::Double(columns) => columns.take_bodies(agents, 1.0, support),
+            Self::Double(columns) => columns.take_bodies(agents, 1.0, period, support),
             Self::Mixed(columns) => {
-                columns.take_bodies(agents, extent / f64::from(1_u32 << 31), support);
+                let unit = extent / f64::from(1_u32 << 31);
+                columns.take_bodies(agents, unit, period, support);
             }
         }
     }

@@ -32,6 +32,14 @@ pub trait Real: SimdFloatElement + Into<f64> + Copy + Default + Send + Sync + 's
     /// Loads the first [`LANES`] coordinates of `places`.
     fn places<S: Simd>(simd: S, places: &[Self::Coordinate]) -> Self::Places<S>;
 
+    /// Each coordinate of `places` minus `times` times `way`.
+    fn moved<S: Simd>(
+        simd: S,
+        places: Self::Places<S>,
+        way: Self::Coordinate,
+        times: i32,
+    ) -> Self::Places<S>;
+
     /// Each coordinate of `from` minus `to`.
     fn differences<S: Simd>(simd: S, from: Self::Places<S>, to: Self::Coordinate)
     -> Self::Lanes<S>;
@@ -58,6 +66,11 @@ impl Real for f64 {
     #[inline(always)]
     fn places<S: Simd>(simd: S, places: &[f64]) -> f64x8<S> {
         f64x8::from_slice(simd, &places[..LANES])
+    }
+
+    #[inline(always)]
+    fn moved<S: Simd>(simd: S, places: f64x8<S>, way: f64, times: i32) -> f64x8<S> {
+        places - f64x8::splat(simd, way * f64::from(times))
     }
 
     #[inline(always)]
@@ -91,6 +104,11 @@ impl Real for f32 {
     #[inline(always)]
     fn places<S: Simd>(simd: S, places: &[i32]) -> i32x8<S> {
         i32x8::from_slice(simd, &places[..LANES])
+    }
+
+    #[inline(always)]
+    fn moved<S: Simd>(simd: S, places: i32x8<S>, way: i32, times: i32) -> i32x8<S> {
+        places - i32x8::splat(simd, way.wrapping_mul(times))
     }
 
     #[inline(always)]

@@ -8,6 +8,7 @@ use fearless_simd::{Simd, prelude::*};
 
 use super::columns::Bodies;
 use super::real::{LANES, Lanes, Real};
+use crate::engine::neighbors::Run;
 
 /// A sum over agents j, for [`LANES`] agents i.
 pub trait PairSum<R: Real, S: Simd> {
@@ -26,13 +27,20 @@ pub trait PairSum<R: Real, S: Simd> {
 pub fn add_pairs<R: Real, S: Simd>(
     simd: S,
     bodies: &Bodies<R>,
-    (start, runs): (usize, &[Range<u32>]),
+    (start, runs): (usize, &[Run]),
     sum: &mut impl PairSum<R, S>,
 ) {
     let x_i = R::places(simd, &bodies.x[start..]);
     let y_i = R::places(simd, &bodies.y[start..]);
     for run in runs {
-        let run = run.start as usize..run.end as usize;
+        let (x_i, y_i) = match run.laps {
+            0 => (x_i, y_i),
+            laps => (
+                R::moved(simd, x_i, bodies.period[0], laps),
+                R::moved(simd, y_i, bodies.period[1], laps),
+            ),
+        };
+        let run = run.indices();
         let (x, y) = (&bodies.x[run.clone()], &bodies.y[run.clone()]);
         let count = run.len();
         let others = sum.run(run);

@@ -6,7 +6,7 @@ use super::Simulation;
 use crate::engine::math::Vector;
 
 impl Simulation {
-    /// SHA-256, as 64 hexadecimal digits, of the frame number, of the id, position, velocity and mean density of
+    /// SHA-256, as 64 hexadecimal digits, of the frame number, of the id, position, velocity, mean density and laps of
     /// all agents in the order of their ids, and of all arrivals. It does not depend on the order in memory, on the
     /// number of threads, or on requests by observers: the mean density ρ̂ is included only if the scene needs it
     /// ([`Needs::density`](crate::engine::scene::Needs::density)).
@@ -23,6 +23,9 @@ impl Simulation {
             add(&mut hasher, agents.velocity[i]);
             if has_mean_density {
                 hasher.update(agents.mean_density[i].to_bits().to_le_bytes());
+            }
+            if let Some(laps) = agents.laps.get(i) {
+                hasher.update(laps.to_le_bytes());
             }
         }
         for arrival in &self.crowd.outcome.arrivals {

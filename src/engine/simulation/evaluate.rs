@@ -24,7 +24,7 @@ impl Simulation {
             ListPolicy::Complete => self.derived.neighbors.are_stale(),
             ListPolicy::Coarse => self.crowd.clock.is_coarse(),
         };
-        if self.crowd.changed || stale {
+        if self.crowd.changed || stale || self.has_left_period() {
             self.sort_agents();
         }
         let needs = &self.fixed.needs;
@@ -36,16 +36,29 @@ impl Simulation {
         if neighbors.near().is_empty() || packed.is_empty() {
             self.stages.time(Stage::Neighbors, || {
                 neighbors.list_agents();
-                packed.take_bodies(agents, neighbors.extent(), |i| {
+                packed.take_bodies(agents, neighbors.extent(), neighbors.period(), |i| {
                     fixed.blend(agents, i).sph.support_radius
                 });
             });
         }
     }
 
-    /// Sorts the agents into cells, and lists the walls near them.
+    /// Has an agent left the period? Then the agents are sorted in this frame, so that observers see all of them in it.
+    fn has_left_period(&self) -> bool {
+        let positions = self.crowd.agents.position.par_iter();
+        self.fixed.scene.period.is_some_and(|period| {
+            let positions = positions.with_min_len(TASK * BLOCK);
+            positions.any(|&position| !period.contains(position))
+        })
+    }
+
+    /// Sorts the agents into cells, and lists the walls near them. Those that have left the period come in at its other
+    /// end.
     pub(super) fn sort_agents(&mut self) {
         let (fixed, crowd, derived) = (&self.fixed, &mut self.crowd, &mut self.derived);
+        if let Some(period) = &fixed.scene.period {
+            crowd.agents.wrap(period);
+        }
         let ranges = fixed.scene.ranges(&fixed.needs, &crowd.agents);
         let neighbors = &mut derived.neighbors;
         self.stages
@@ -111,7 +124,8 @@ impl Simulation {
                 Some(_) => &agents.aim,
                 None => &agents.goal,
             };
-            let alike = !self.fixed.needs.paces && agents.walk_alike();
+            let needs = &self.fixed.needs;
+            let alike = !needs.paces && !needs.directions && agents.walk_alike();
             if alike && agents.trip.is_empty() {
                 let speed = scene.preferred_speed;
                 return straight_at(speed, &agents.position, aims, preferred);
@@ -126,7 +140,8 @@ impl Simulation {
                     *wish = clamp_length((place - position) / ARRIVAL_TIME, pace);
                     return;
                 }
-                *wish = direction(aims[i] - position) * pace;
+                let heading = scene.groups[usize::from(agents.group[i])].direction;
+                *wish = heading.unwrap_or_else(|| direction(aims[i] - position)) * pace;
             });
         });
     }

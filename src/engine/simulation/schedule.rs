@@ -162,6 +162,9 @@ impl Crowd {
         let agent = self.agents.entered();
         let traits = &scene.groups[usize::from(new.group)].traits;
         new = traits.drawn(new, scene.seed, agent);
+        if let Some(period) = &scene.period {
+            (new.position, _) = period.wrapped(new.position);
+        }
         if let Some(obstacle) = scene.walls.obstacle_at(new.position) {
             let free = scene.walls.free_point_near(new.position);
             new.position = free.ok_or(Fault::NoFreePoint { agent, obstacle })?;

@@ -59,7 +59,7 @@ pub fn parts(
     neighbors.list_walls(&agents, &site.walls);
     // Eq. 9 without walls, by the engine's own sums, in double precision.
     let mut bodies = Bodies::<f64>::default();
-    bodies.take(&agents, 1.0, |_| kernel.support_radius);
+    bodies.take(&agents, 1.0, None, |_| kernel.support_radius);
     bodies.take_motions(&agents);
     let mut from_people = vec![0.0; agents.len()];
     for (b, sums) in from_people.chunks_mut(BLOCK).enumerate() {
@@ -74,7 +74,7 @@ pub fn parts(
     if behind == Behind::Same {
         for i in (0..agents.len()).filter(|&i| !near[i].is_empty()) {
             let eye = hidden[i].eye;
-            let seen = neighbors.near().near(i);
+            let seen = neighbors.near().near(i).map(|(j, _)| j);
             let seen = seen.filter(|&j| j == i || site.sees(eye, hidden[j].eye, &near[i]));
             let weight = |j: usize| {
                 let offset = agents.position[i] - agents.position[j];

@@ -10,7 +10,8 @@ use super::error::Cause;
 use crate::engine::agents::Agents;
 use crate::engine::geometry::Polygon;
 use crate::engine::math::{Vector, bounds};
-use crate::engine::scene::Scene;
+use crate::engine::period::Axis;
+use crate::engine::scene::{Region, Scene};
 use crate::output::scenery;
 
 /// The filled obstacles: an image below everything else.
@@ -30,6 +31,7 @@ const GOAL: Color = Color(Rgba32::from_rgb(95, 211, 120));
 /// Logs walls, obstacles and the goals of the scene's agents.
 pub fn log(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result<(), Cause> {
     log_still(stream, scene.walls.obstacles())?;
+    log_period(stream, scene, agents)?;
     log_goals(stream, scene, agents)
 }
 
@@ -42,6 +44,26 @@ pub fn log_still(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), 
         log_obstacles(stream, obstacles)?;
     }
     Ok(())
+}
+
+/// Logs a line at each end of the period.
+fn log_period(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result<(), Cause> {
+    let Some(period) = &scene.period else {
+        return Ok(());
+    };
+    let corners = scene.walls.iter().map(|wall| wall.start);
+    let corners = bounds(corners.chain(agents.position.iter().copied())).unwrap_or_default();
+    let [min, max] = period.clipped(corners);
+    let [a, b, c, d] = Region { min, max }.corners().map(xy);
+    let ends = match period.axis {
+        Axis::X => [vec![a, d], vec![b, c]],
+        Axis::Y => [vec![a, b], vec![d, c]],
+    };
+    let ends = LineStrips2D::new(ends)
+        .with_radii([Radius::new_ui_points(0.75)])
+        .with_colors([GOAL])
+        .with_draw_order(6.0);
+    Ok(stream.log_static("world/geometry/period", &ends)?)
 }
 
 fn log_walls(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), Cause> {

@@ -10,6 +10,7 @@ use super::Row;
 use super::error::Cause;
 use crate::engine::geometry::AreaIndex;
 use crate::engine::math::{Vector, bounds};
+use crate::engine::period::Period;
 use crate::engine::scene::{Goal, Region};
 use crate::engine::simulation::Simulation;
 use crate::scenario::floor_plan::{Rings, free, outlines, to_wkt};
@@ -26,6 +27,8 @@ pub struct WalkableArea {
     /// The rings of the bounded obstacles.
     obstacles: Rings,
     entries: Vec<Vector>,
+    /// The area ends where the period does.
+    period: Option<Period>,
 }
 
 impl WalkableArea {
@@ -60,6 +63,7 @@ impl WalkableArea {
             floors,
             obstacles,
             entries,
+            period: scene.period,
         }
     }
 
@@ -83,20 +87,14 @@ impl WalkableArea {
     /// # Errors
     /// As [`free`].
     pub fn cut_out(&self) -> Result<(String, [f64; 4]), Cause> {
-        let [low, high] = self.bounds;
-        let rectangle = [
-            low,
-            Vector::new(high.x, low.y),
-            high,
-            Vector::new(low.x, high.y),
-        ];
-        let everything = [vec![rectangle.to_vec()]];
-        // The rectangle contains all floors.
-        let floors: &[Rings] = match self.floors.as_slice() {
-            [] => &everything,
-            floors => floors,
-        };
-        let mut areas = free(floors, &self.obstacles)?;
+        let clipped = |period: Period| period.clipped(self.bounds);
+        let [min, max] = self.period.map_or(self.bounds, clipped);
+        let mut floors = self.floors.clone();
+        // Without period, the rectangle contains all floors.
+        if floors.is_empty() || self.period.is_some() {
+            floors.push(vec![Region { min, max }.corners().to_vec()]);
+        }
+        let mut areas = free(&floors, &self.obstacles)?;
         let index = AreaIndex::new(&areas);
         let walked: BTreeSet<usize> = self.entries.iter().flat_map(|&p| index.around(p)).collect();
         if !walked.is_empty() {

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::engine::agents::Agents;
 use crate::engine::frame::Frame;
 use crate::engine::math::{Vector, direction};
 use crate::engine::simulation::Simulation;
@@ -17,7 +18,8 @@ pub struct Row<'a> {
     pub frame: u64,
     /// Seconds.
     pub time: f64,
-    /// Unique, from 0 in the order of entry.
+    /// Unique, from 0 in the order of entry. In a periodic scene each lap of an agent has an id of its own: its
+    /// remainder modulo the number of agents is the agent's id.
     pub id: u32,
     /// The name of the agent's group.
     pub group: &'a str,
@@ -37,7 +39,7 @@ pub struct Row<'a> {
     pub ori_x: f64,
     /// Its y component.
     pub ori_y: f64,
-    /// g_i, meters.
+    /// g_i, meters; the start of an agent that walks in a direction.
     pub goal_x: f64,
     /// Its y component.
     pub goal_y: f64,
@@ -82,15 +84,17 @@ fn row(simulation: &Simulation, number: u64, i: usize) -> Row<'_> {
     let (frame, scene) = (simulation.frame(), simulation.scene());
     let Frame { agents, fields, .. } = frame;
     let (position, velocity, goal) = (agents.position[i], agents.velocity[i], agents.goal[i]);
-    let orientation = orientation(position, velocity, goal);
+    let group = &scene.groups[usize::from(agents.group[i])];
+    let ahead = group.direction.unwrap_or(goal - position);
+    let orientation = orientation(velocity, ahead);
     let wall_gradient = fields.wall_gradient[i];
     let preferred_velocity = fields.preferred_velocity[i];
     let acceleration = fields.acceleration[i];
     Row {
         frame: number,
         time: frame.clock.time(),
-        id: agents.id[i],
-        group: &scene.groups[usize::from(agents.group[i])].name,
+        id: id_of(agents, i),
+        group: &group.name,
         push: agents.push[i].map(|push| scene.pushes[usize::from(push)].name.as_str()),
         pos_x: position.x,
         pos_y: position.y,
@@ -117,10 +121,19 @@ fn row(simulation: &Simulation, number: u64, i: usize) -> Row<'_> {
     }
 }
 
-/// The direction in which an agent faces; the x direction if it stands at its goal.
-fn orientation(position: Vector, velocity: Vector, goal: Vector) -> Vector {
+/// The id of an agent, or of its current lap. Programs that read trajectories compute speeds from positions: with one id
+/// for all laps, an agent would seem to run back at the end of each.
+fn id_of(agents: &Agents, i: usize) -> u32 {
+    let laps = agents.laps.get(i).copied().unwrap_or(0);
+    let number = if laps < 0 { -2 * laps - 1 } else { 2 * laps };
+    let first = agents.entered().wrapping_mul(number as u32);
+    first.wrapping_add(agents.id[i])
+}
+
+/// The direction in which an agent faces: `ahead` if it stands, the x direction if it also stands at its goal.
+fn orientation(velocity: Vector, ahead: Vector) -> Vector {
     let facing = match velocity.norm() < STANDING {
-        true => direction(goal - position),
+        true => direction(ahead),
         false => direction(velocity),
     };
     match facing == Vector::zeros() {

@@ -19,7 +19,7 @@ pub struct ContactsAt {
     #[schemars(range(min = 0, max = LONGEST_TIME))]
     at_secs: f64,
     /// The region: lower left and upper right corner, meters.
-    region: Corners,
+    pub(super) region: Corners,
 }
 
 impl Measure for ContactsAt {

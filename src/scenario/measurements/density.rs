@@ -18,7 +18,7 @@ pub struct Density {
     #[schemars(range(min = 0, max = LONGEST_TIME))]
     at_secs: f64,
     /// The region: lower left and upper right corner, meters; everywhere if missing.
-    region: Option<Corners>,
+    pub(super) region: Option<Corners>,
 }
 
 impl Measure for Density {

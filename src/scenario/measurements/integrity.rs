@@ -70,9 +70,15 @@ impl Watched {
         let fence = self
             .fence
             .get_or_insert_with(|| Fence::new(&simulation.scene().walls));
+        let period = simulation.scene().period;
         self.last.resize(agents.entered() as usize, None);
         for (&id, &position) in agents.id.iter().zip(&agents.position) {
-            let passed = match self.last[id as usize].replace(position) {
+            let last = self.last[id as usize].replace(position);
+            // Across the ends of a period, the last position is the image next to this one.
+            let last = last.map(|last| {
+                period.map_or(last, |period| position - period.shortest(position - last))
+            });
+            let passed = match last {
                 None => fence.encloses(position),
                 Some(before) => before != position && fence.is_crossed(before, position),
             };

@@ -41,6 +41,8 @@ pub use walks::{Walk, Walks};
 pub use wave::{Wave, WaveData};
 
 use super::error::{Problem, Under};
+use super::range::region;
+use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 
 /// The keys of a measurement. They do not change during a run; what the measurement has seen is its `Seen`.
@@ -146,6 +148,17 @@ impl Measurement {
             Self::LineFlow(keys) => started(keys),
             Self::FrameTime(keys) => started(keys),
         }
+    }
+
+    /// The region that it observes, and the name of the measurement.
+    pub(super) fn region(&self) -> Option<(&'static str, Region)> {
+        let (name, corners) = match self {
+            Self::Density(keys) => ("density", keys.region?),
+            Self::Contacts(keys) => ("contacts", keys.region),
+            Self::Walks(keys) => ("walks", keys.region?),
+            _ => return None,
+        };
+        Some((name, region("", corners).ok()?))
     }
 
     /// The names of its values.

@@ -27,7 +27,7 @@ pub struct Walks {
     #[schemars(length(min = 1))]
     name: Option<String>,
     /// The region: lower left and upper right corner, meters; everywhere if missing.
-    region: Option<Corners>,
+    pub(super) region: Option<Corners>,
     /// The start, seconds.
     #[schemars(range(min = 0, max = LONGEST_TIME))]
     from_secs: f64,
@@ -132,7 +132,9 @@ impl Measure for Walks {
             }
             if is_due && region.is_none_or(|region| region.contains(position)) {
                 walk.secs += step;
-                walk.meters += (position - *before).norm();
+                let step = position - *before;
+                let step = scene.period.map_or(step, |period| period.shortest(step));
+                walk.meters += step.norm();
             }
             *before = position;
         }

@@ -14,6 +14,7 @@ use std::f64::consts::LN_2;
 use std::ops::Range;
 
 use super::Walkers;
+use crate::engine::neighbors::Run;
 use crate::engine::pairs::prelude::*;
 use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, spread};
 
@@ -72,7 +73,7 @@ impl DensityAhead {
         simd: S,
         bodies: &Bodies<R>,
         walkers: &Walkers<R, S>,
-        runs: &[Range<u32>],
+        runs: &[Run],
     ) -> Lanes<R, S> {
         let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
         let per_h: Lanes<R, S> = load(simd, &bodies.per_support, walkers.start);

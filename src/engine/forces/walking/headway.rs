@@ -7,6 +7,7 @@
 use std::ops::Range;
 
 use super::Walkers;
+use crate::engine::neighbors::Run;
 use crate::engine::pairs::prelude::*;
 use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, splat};
 
@@ -78,7 +79,7 @@ impl Headway {
         simd: S,
         bodies: &Bodies<R>,
         walkers: &Walkers<R, S>,
-        runs: &[Range<u32>],
+        runs: &[Run],
     ) -> Lanes<R, S> {
         let (zero, unit) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, bodies.unit));
         let per_time = splat::<R, S>(simd, 1.0 / self.headway_time);

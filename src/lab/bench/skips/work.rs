@@ -126,7 +126,7 @@ pub fn lists(coarse: bool) -> Work {
             neighbors.list_walls(&agents, frame.walls);
             if needs.pairs.any() || needs.social || needs.walking || needs.density {
                 neighbors.list_agents();
-                packed.take_bodies(&agents, neighbors.extent(), |i| {
+                packed.take_bodies(&agents, neighbors.extent(), neighbors.period(), |i| {
                     let group = &scene.groups[usize::from(agents.group[i])];
                     group.blend.sph.support_radius
                 });
