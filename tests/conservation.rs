@@ -5,6 +5,7 @@ use crate::common::{blend_with, block, rectangle, run, scene, vector};
 use sandbox::engine::agents::{Agents, NewAgent};
 use sandbox::engine::clock::Clock;
 use sandbox::engine::math::Vector;
+use sandbox::engine::period::{Axis, Period};
 use sandbox::engine::scene::{Integrator, Scene};
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::Parameters;
@@ -66,6 +67,18 @@ fn before_and_after<T>(
     [before, of(simulation.frame().agents)]
 }
 
+/// The same crowd, as wide as a period: its agents press on each other across the ends.
+fn ring(parameters: Parameters) -> Scene {
+    Scene {
+        period: Some(Period {
+            axis: Axis::X,
+            from: -0.1,
+            length: 8.0 * 0.42,
+        }),
+        ..free(parameters)
+    }
+}
+
 #[test]
 fn every_integrator_conserves_the_momentum_of_a_free_crowd() {
     for (k, mu, contact) in [
@@ -74,21 +87,23 @@ fn every_integrator_conserves_the_momentum_of_a_free_crowd() {
         (0.0, 0.0, 1000.0),
         (200.0, 5.0, 50.0),
     ] {
-        let scene = free(Parameters {
+        let parameters = Parameters {
             gas_constant: Some(k),
             viscosity: Some(mu),
             agent_stiffness: Some(contact),
             ..Parameters::default()
-        });
-        for integrator in Integrator::ALL {
-            let [before, after] = before_and_after(&scene, integrator, 100, momentum);
-            let change = (after - before).norm();
-            assert!(before.norm() > 3.0, "{before:?}");
-            // Rounding errors of 64 agents in 100 frames.
-            assert!(
-                change < 1e-11,
-                "{integrator:?} {k} {mu} {contact}: {change}"
-            );
+        };
+        for scene in [free(parameters), ring(parameters)] {
+            for integrator in Integrator::ALL {
+                let [before, after] = before_and_after(&scene, integrator, 100, momentum);
+                let change = (after - before).norm();
+                assert!(before.norm() > 3.0, "{before:?}");
+                // Rounding errors of 64 agents in 100 frames.
+                assert!(
+                    change < 1e-11,
+                    "{integrator:?} {k} {mu} {contact}: {change}"
+                );
+            }
         }
     }
 }

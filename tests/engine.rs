@@ -34,6 +34,7 @@ mod needs;
 mod neighbor_lists;
 mod neighbors;
 mod periodic;
+mod periodic_scenarios;
 mod precision;
 mod queues;
 mod reference_states;

@@ -87,6 +87,7 @@ fn the_keys_of_nested_objects_are_documented() {
             "one of uniform, normal, lognormal, weibull, gamma, exponential, values or weidmann_age",
         ),
         ("waiting_areas.for_secs.normal", "mean, std, max?, min?"),
+        ("periodic", "axis, length, from?"),
         ("stop", "idle_secs?, when_empty?"),
         ("view", "region, opens_at_secs?"),
         (
@@ -109,6 +110,7 @@ fn every_documented_key_is_accepted() {
         "coarse_every" | "population_seed" | "behavior_seed" => "3",
         "parameters" | "stop" => "{}",
         "goal" => "[1, 2]",
+        "periodic" => "{\"axis\": \"x\", \"length\": 20}",
         "walkable_area" => "[[[[0, 0], [9, 0], [9, 9]]]]",
         "view" => "{\"region\": [[0, 0], [1, 1]]}",
         "agent_stiffness" | "wall_stiffness" => "10",

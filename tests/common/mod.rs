@@ -21,6 +21,7 @@ pub mod reading_studies;
 pub mod reading_trajectories;
 #[cfg(feature = "program")]
 pub mod recording;
+pub mod ring;
 pub mod simulated;
 pub mod social;
 #[cfg(feature = "program")]

@@ -135,6 +135,7 @@ pub fn everything() -> Needs {
         avoidance: Some(AVOIDANCE),
         removal: true,
         paces: true,
+        directions: true,
     }
 }
 
