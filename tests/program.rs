@@ -37,6 +37,7 @@ mod tables;
 mod trajectory;
 mod trajectory_area;
 mod trajectory_formats;
+mod trajectory_laps;
 mod trajectory_robustness;
 mod validate;
 mod verify;

@@ -216,7 +216,7 @@ impl Agents {
         for (position, laps) in self.position.iter_mut().zip(&mut self.laps) {
             let (image, passed) = period.wrapped(*position);
             *position = image;
-            *laps += passed;
+            *laps = laps.wrapping_add(passed);
         }
     }
 

@@ -73,9 +73,9 @@ pub struct Row<'a> {
 
 /// All agents in an evaluated frame with the number `number`, by id.
 pub fn rows(simulation: &Simulation, number: u64) -> Vec<Row<'_>> {
-    let ids = &simulation.frame().agents.id;
-    let mut order: Vec<usize> = (0..ids.len()).collect();
-    order.sort_unstable_by_key(|&i| ids[i]);
+    let agents = simulation.frame().agents;
+    let mut order: Vec<usize> = (0..agents.len()).collect();
+    order.sort_unstable_by_key(|&i| id_of(agents, i));
     let row = |i| row(simulation, number, i);
     order.into_par_iter().with_min_len(1024).map(row).collect()
 }
@@ -125,8 +125,9 @@ fn row(simulation: &Simulation, number: u64, i: usize) -> Row<'_> {
 /// for all laps, an agent would seem to run back at the end of each.
 fn id_of(agents: &Agents, i: usize) -> u32 {
     let laps = agents.laps.get(i).copied().unwrap_or(0);
-    let number = if laps < 0 { -2 * laps - 1 } else { 2 * laps };
-    let first = agents.entered().wrapping_mul(number as u32);
+    let back = u32::from(laps < 0);
+    let number = laps.unsigned_abs().wrapping_mul(2).wrapping_sub(back);
+    let first = agents.entered().wrapping_mul(number);
     first.wrapping_add(agents.id[i])
 }
 
