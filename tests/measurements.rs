@@ -1,5 +1,6 @@
 //! Measurements of arrivals, and the independent observer of walls.
 
+use crate::common::simulated::measured;
 use crate::common::{blend, person, polygon, scene, vector};
 use sandbox::engine::geometry::Polygon;
 use sandbox::engine::math::Vector;
@@ -118,15 +119,6 @@ fn inside_is_what_the_polygon_says_wherever_it_is_not_the_rim() {
         assert_eq!(is_seen(&horseshoe, None, p), solid.contains(p), "{p:?}");
     }
     assert!(!is_seen(&horseshoe, None, vector(0.0, 4.0)));
-}
-
-/// What a run of this document measures.
-fn measured(document: serde_json::Value) -> Summary {
-    let scenario = Scenario::parse(&document.to_string(), "f.json", &[]).unwrap();
-    let mut run = Run::new(scenario).unwrap();
-    run.drive::<Fault, dyn Observer<Fault>>(&mut [], || false)
-        .unwrap();
-    Summary::of(&run)
 }
 
 #[test]

@@ -78,10 +78,18 @@ fn the_density_of_a_lattice_is_the_same_everywhere() {
 
 #[test]
 fn forces_are_those_in_the_middle_of_three_crowds() {
-    for profile in NAMES {
+    let laws = ["headway", "density-ahead", "drag"].map(|law| ("sph", law));
+    for (profile, law) in NAMES
+        .map(|profile| (profile, "none"))
+        .into_iter()
+        .chain(laws)
+    {
         for axis in ["x", "y"] {
-            let [one, three] = [true, false]
-                .map(|periodic| evaluated(parsed(&corridor(profile, axis, periodic)).scene));
+            let [one, three] = [true, false].map(|periodic| {
+                let mut document = corridor(profile, axis, periodic);
+                document["parameters"]["walking_law"] = json!(law);
+                evaluated(parsed(&document).scene)
+            });
             let (one, three) = (one.frame(), three.frame());
             for id in 0..70 {
                 let [i, j] = [one, three].map(|frame| frame.agents.index_of(id).unwrap());

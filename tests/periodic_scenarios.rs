@@ -1,6 +1,7 @@
 //! Periodic scenes from scenario files: walls, crowds, measurements and errors.
 
 use crate::common::ring::{corridor, parsed};
+use crate::common::simulated::measured;
 use crate::common::vector;
 use sandbox::runs::drive::Run;
 use sandbox::scenario::Scenario;
@@ -59,6 +60,24 @@ fn measurements_see_no_jump_and_walls_hold() {
     assert!((0.8..1.4).contains(&speed), "{speed}");
     let flow = value("walks_flow_per_m_per_s");
     assert!((flow - speed * 25.0 / 33.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_flow_across_a_line_counts_every_lap() {
+    // One person each way at 1.4 m/s on a ring of 10 m: four laps take 28.6 s. Lines at the ends count as others do.
+    for x in [0.0, 4.0, 10.0] {
+        let summary = measured(json!({
+            "duration_secs": 29, "profile": "sph", "periodic": {"axis": "x", "length": 10}, "navigation": "straight",
+            "agents": [
+                {"position": [2, 1], "velocity": [1.4, 0], "goal": {"direction": [1, 0]}},
+                {"position": [7, 5], "velocity": [-1.4, 0], "goal": {"direction": [-1, 0]}},
+            ],
+            "measurements": [{"line_flow": {"line": [[x, 6], [x, 0]], "region": [[0, 0], [10, 6]]}}],
+        }));
+        assert_eq!(summary.metric("line_passages"), Some(8.0), "{x}");
+        let speed = summary.metric("line_speed_m_per_s").unwrap();
+        assert!((speed - 1.4).abs() < 0.01, "{x}: {speed}");
+    }
 }
 
 #[test]

@@ -79,7 +79,7 @@ fn the_keys_of_nested_objects_are_documented() {
         (
             "measurements",
             "one of density, flow_of_first, flow_until, egress, evacuated, uncounted, pauses, locked, snapshot, wave, contacts, \
-             jitter, closest, integrity, speed_by_density, walks or frame_time",
+             jitter, closest, integrity, speed_by_density, walks, line_flow or frame_time",
         ),
         ("measurements.density", "at_secs, region?"),
         (

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use sandbox::analysis::crossing::Line;
 use sandbox::engine::math::Vector;
 use sandbox::engine::simulation::Simulation;
-use sandbox::lab::measure::{Crossings, Line};
+use sandbox::lab::measure::Crossings;
 use sandbox::output::trajectory::Trajectory;
 use sandbox::output::trajectory::read::{ReadOptions, read};
 use sandbox::scenario::Scenario;

@@ -12,7 +12,11 @@ use sandbox::lab::validate::VALIDATION;
 fn the_scenes_use_all_runs_of_the_study_and_no_others() {
     let study = Study::built_in(VALIDATION.name, None, None).unwrap();
     let known: BTreeSet<&str> = study.cells.iter().filter_map(|cell| cell.label()).collect();
-    let used: BTreeSet<&str> = VALIDATION.all().flat_map(|case| case.runs).copied().collect();
+    let used: BTreeSet<&str> = VALIDATION
+        .all()
+        .flat_map(|case| case.runs)
+        .copied()
+        .collect();
     assert_eq!(used, known);
     let profiles = serde_json::json!(VALIDATION.profiles);
     assert_eq!(study.document["grid"]["profile"], profiles);
@@ -52,7 +56,15 @@ fn validate_judges_means_over_seeds() {
     let cell = |seed: &str| {
         let scenario = "scenarios/validation/door.json";
         let seed = format!("seed={seed}");
-        let output = run(&["run", scenario, "--profile", "sph", "--set", &seed, "--json"]);
+        let output = run(&[
+            "run",
+            scenario,
+            "--profile",
+            "sph",
+            "--set",
+            &seed,
+            "--json",
+        ]);
         let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         result["metrics"]["door_flow_per_s"].as_f64().unwrap()
     };

@@ -1,5 +1,7 @@
 //! A scene: everything that is known before the first frame.
 
+mod region;
+
 use std::sync::Arc;
 
 use crate::engine::agents::{Agents, NewAgent};
@@ -20,6 +22,8 @@ use crate::engine::placement::Grid;
 use crate::engine::profile::{Blend, Override, Profile};
 use crate::engine::traits::Traits;
 use crate::engine::ways::Ways;
+
+pub use region::Region;
 
 /// How the state is advanced by one frame (§5).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -129,38 +133,6 @@ pub struct Push {
 /// The lowest s_max of agents with a preferred speed of their own, m/s: also agents that walk slowly or stand can be
 /// pushed.
 pub const SLOWEST_MAX_SPEED: f64 = 0.5;
-
-/// An axis-aligned rectangle, borders included.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Region {
-    /// Lower left corner, meters.
-    pub min: Vector,
-    /// Upper right corner, meters.
-    pub max: Vector,
-}
-
-impl Region {
-    /// Does `p` lie in the rectangle?
-    pub fn contains(&self, p: Vector) -> bool {
-        (self.min.x..=self.max.x).contains(&p.x) && (self.min.y..=self.max.y).contains(&p.y)
-    }
-
-    /// Square meters.
-    pub fn area(&self) -> f64 {
-        (self.max.x - self.min.x) * (self.max.y - self.min.y)
-    }
-
-    /// Its corners, counterclockwise.
-    pub fn corners(&self) -> [Vector; 4] {
-        let (low, high) = (self.min, self.max);
-        [
-            low,
-            Vector::new(high.x, low.y),
-            high,
-            Vector::new(low.x, high.y),
-        ]
-    }
-}
 
 /// Everything that a [`Simulation`](crate::engine::simulation::Simulation) is built from.
 #[derive(Debug, Clone)]

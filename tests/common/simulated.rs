@@ -1,6 +1,8 @@
 //! Simulations of scenario documents.
 
-use sandbox::engine::simulation::Simulation;
+use sandbox::engine::simulation::{Fault, Simulation};
+use sandbox::runs::drive::{Observer, Run};
+use sandbox::runs::summary::Summary;
 use sandbox::scenario::Scenario;
 use serde_json::Value;
 
@@ -28,4 +30,13 @@ pub fn go_on(simulation: &mut Simulation, secs: f64) {
     while simulation.frame().clock.frame() < last {
         simulation.step().unwrap();
     }
+}
+
+/// What a run of this document measures.
+pub fn measured(document: Value) -> Summary {
+    let scenario = Scenario::parse(&document.to_string(), "f.json", &[]).unwrap();
+    let mut run = Run::new(scenario).unwrap();
+    run.drive::<Fault, dyn Observer<Fault>>(&mut [], || false)
+        .unwrap();
+    Summary::of(&run)
 }

@@ -30,7 +30,7 @@ pub struct LineFlow {
     /// The ends of the line, meters. The second one does not belong to it.
     line: [Point; 2],
     /// The region: lower left and upper right corner, meters.
-    region: Option<Corners>,
+    pub(super) region: Option<Corners>,
     /// Which passages count, as parts of all: from the first 10 % to the first 90 % if missing.
     #[schemars(inner(range(min = 0, max = 1)))]
     part: Option<[f64; 2]>,
@@ -127,8 +127,17 @@ impl Measure for LineFlow {
         let line = self.line();
         let before = seen.times.len();
         seen.tracks.resize(agents.entered() as usize, None);
+        let period = simulation.scene().period;
+        let way = |from: Vector, to: Vector| {
+            let way = to - from;
+            period.map_or(way, |period| period.shortest(way))
+        };
         let mut passed = |track: &mut Track, position: Vector| {
-            if let Some((part, is_forward)) = line.crossed(track.last, position)
+            // A move across the end of the period is seen at both ends.
+            let (last, way) = (track.last, way(track.last, position));
+            let leaving = line.crossed(last, last + way);
+            let crossed = leaving.or_else(|| line.crossed(position - way, position));
+            if let Some((part, is_forward)) = crossed
                 && track.balance.passes(is_forward)
             {
                 seen.times.push(now - step + step * part);
@@ -158,7 +167,7 @@ impl Measure for LineFlow {
                 sample.agents += 1;
                 if let Some(before) = track.sampled {
                     sample.moving += 1;
-                    sample.speeds += (position - before).norm() / (every as f64 * step);
+                    sample.speeds += way(before, position).norm() / (every as f64 * step);
                 }
             }
             if is_due {

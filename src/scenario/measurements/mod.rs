@@ -156,6 +156,7 @@ impl Measurement {
             Self::Density(keys) => ("density", keys.region?),
             Self::Contacts(keys) => ("contacts", keys.region),
             Self::Walks(keys) => ("walks", keys.region?),
+            Self::LineFlow(keys) => ("line_flow", keys.region?),
             _ => return None,
         };
         Some((name, region("", corners).ok()?))
