@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use crate::common::tracks::tracks;
 use crate::common::vector;
 use proptest::prelude::*;
+use sandbox::analysis::crossing::Line;
 use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::math::Vector;
 use sandbox::engine::scene::Region;
 use sandbox::lab::measure::{
-    Behind, CLASS, Class, Crossings, Kernel, Line, MeasureError, Measured, Options, Site, measure,
-    speed,
+    Behind, CLASS, Class, Crossings, Kernel, MeasureError, Measured, Options, Site, measure, speed,
 };
 use sandbox::output::trajectory::read::Tracks;
 

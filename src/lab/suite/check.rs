@@ -101,6 +101,11 @@ impl Check {
         self.expected == Expected::Any || self.value.is_some_and(|value| range.contains(&value))
     }
 
+    /// Is the value compared with a measured one?
+    pub fn is_compared(&self) -> bool {
+        matches!(self.expected, Expected::Near { .. })
+    }
+
     /// How far the value is off a measured one, as a part of it.
     pub fn error(&self) -> Option<f64> {
         match self.expected {

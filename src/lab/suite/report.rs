@@ -148,7 +148,19 @@ impl Report {
             let passed = cases
                 .iter()
                 .filter(|case| self.is_passed(case, profile) == Some(true));
-            format!("{profile}: {} of {} cases", passed.count(), cases.len())
+            let values = self.findings.iter().filter(|one| one.profile == *profile);
+            let values = values.flat_map(|one| &one.checks);
+            let compared: Vec<&Check> = values.filter(|check| check.is_compared()).collect();
+            let inside = compared.iter().filter(|check| check.is_passed()).count();
+            let values = match compared.len() {
+                0 => String::new(),
+                count => format!(" ({inside} of {count} values)"),
+            };
+            format!(
+                "{profile}: {} of {} cases{values}",
+                passed.count(),
+                cases.len()
+            )
         };
         let counts: Vec<String> = self.profiles.iter().map(count).collect();
         let walls = match self
