@@ -140,6 +140,14 @@ fn what_a_periodic_scene_cannot_have_is_refused_by_name() {
             "f: periodic.length: must be at least 2 m, not 1.9",
         ),
         (
+            json!({"zones": [{"name": "mat", "area": [[18, 0], [22, 0], [22, 3], [18, 3]], "speed_factor": 0.5}]}),
+            "f: zones: `mat`: area: reaches out of the period from 0 to 20 m",
+        ),
+        (
+            json!({"measurements": [{"line_flow": {"line": [[25, 0], [25, 3]]}}]}),
+            "f: measurements[0].line_flow.line: reaches out of the period from 0 to 20 m",
+        ),
+        (
             json!({"periodic": {"axis": "z", "length": 9}}),
             "f: periodic.axis: unknown value `z`",
         ),

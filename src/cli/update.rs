@@ -76,10 +76,11 @@ fn check_places(file: &Path, tables: &[&str]) -> Result<(), Failure> {
     if tables.iter().any(has_place) {
         return Ok(());
     }
-    let lines = tables.iter().map(|table| format!("<!-- {table} -->"));
+    let lines = tables.iter();
+    let lines = lines.map(|table| format!("<!-- {table} --> and <!-- /{table} --> after it"));
     let lines: Vec<String> = lines.collect();
     Err(Failure::Input(format!(
-        "--update {}: no place for a table; add a line {} and a line <!-- /NAME --> after it",
+        "--update {}: no place for a table; add the lines {}",
         file.display(),
         lines.join(" or ")
     )))

@@ -4,12 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::distribution::traits;
 use super::error::{Problem, Under, suggestion};
-use super::file::{self, Corners, File};
+use super::file::{self, File};
 use super::goals::Target;
 use super::journeys::TO_NEAREST_EXIT;
 use super::profiles::{self, ProfileChoice};
 use super::quote::shown;
 use super::range::region;
+use super::shapes::Corners;
 use crate::engine::agents::NewAgent;
 use crate::engine::math::Vector;
 use crate::engine::packing::Body;

@@ -17,10 +17,10 @@ use super::places::{Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
 use super::preset::Preset;
 use super::profiles::ProfileChoice;
 use super::schema::word;
+use super::shapes::{Corners, Obstacle, Point, Ring};
 use super::ways::{PASSABLE, WayFinding};
 use crate::engine::boundary::WallMethod;
 use crate::engine::clock::{PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
-use crate::engine::math::Vector;
 use crate::engine::neighbors::ListPolicy;
 use crate::engine::pairs::Precision;
 use crate::engine::scene::{Integrator, Scene};
@@ -170,35 +170,6 @@ pub(super) enum TimeStep {
 pub(super) enum Auto {
     Auto,
 }
-
-/// A point [x, y] in meters
-#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
-#[serde(transparent)]
-pub struct Point(#[schemars(inner(range(min = -FARTHEST, max = FARTHEST)))] pub [f64; 2]);
-
-impl From<Point> for Vector {
-    fn from(Point(point): Point) -> Self {
-        point.into()
-    }
-}
-
-/// A ring: its corners in order, in either orientation
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(transparent)]
-pub(super) struct Ring(#[schemars(length(min = 3))] pub Vec<Point>);
-
-/// A solid body: its corners, or its rings
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub(super) enum Obstacle {
-    Ring(Ring),
-    Polygon(#[schemars(length(min = 1))] Vec<Ring>),
-}
-
-/// The lower left and the upper right corner
-#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
-#[serde(transparent)]
-pub struct Corners(pub [Point; 2]);
 
 /// A single agent.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]

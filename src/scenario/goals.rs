@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::crowd::Crowd;
 use super::error::{Problem, Under};
-use super::file::Point;
+use super::shapes::Point;
 use crate::engine::math::{Vector, direction};
 use crate::engine::scene::Goal;
 

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use super::crowd::MOST_NUMBERED;
 use super::error::{Problem, Under, suggestion};
-use super::file::{self, File, Point, Ring as GivenRing};
+use super::file::{self, File};
 use super::places::{self, Stage};
 use super::quote::shown;
+use super::shapes::{Point, Ring as GivenRing};
 use super::spots::spots;
 use crate::engine::geometry::{Ring, Walls};
 use crate::engine::journeys::{

@@ -43,6 +43,7 @@ mod range;
 mod schema;
 mod setting;
 mod settings;
+mod shapes;
 mod shipped;
 mod spots;
 mod wall_lists;

@@ -171,13 +171,17 @@ pub(super) fn check(keys: &File, scene: &Scene) -> Result<(), Problem> {
         return Err(Problem::new(LENGTH, reason));
     }
     let measured = keys.measurements.iter().enumerate();
-    let measured = measured.filter_map(|(k, measurement)| {
-        let (key, region) = measurement.region()?;
-        Some((format!("measurements[{k}].{key}.region"), region))
+    let measured = measured.flat_map(|(k, measurement)| {
+        let places = measurement.places().into_iter();
+        places.map(move |(key, region)| (format!("measurements[{k}].{key}"), region))
+    });
+    let zones = scene.journeys.zones.iter().map(|zone| {
+        let [min, max] = bounds(zone.area.points().iter().copied()).unwrap_or_default();
+        (format!("zones: `{}`: area", zone.name), Region { min, max })
     });
     let pushed = scene.pushes.iter();
     let pushed = pushed.map(|push| (format!("events: `{}`: region", push.name), push.region));
-    for (place, Region { min, max }) in measured.chain(pushed) {
+    for (place, Region { min, max }) in measured.chain(pushed).chain(zones) {
         let [from, to] = period.ends();
         if period.along(min) < from || period.along(max) > to {
             let reason = format!(

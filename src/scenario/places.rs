@@ -6,7 +6,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::distribution::{self, Draw};
-use super::file::{LONGEST_TIME, Point, Ring};
+use super::file::LONGEST_TIME;
+use super::shapes::{Point, Ring};
 
 /// A line at which people leave.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]

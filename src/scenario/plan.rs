@@ -6,9 +6,10 @@ use serde_json::{Value, json};
 
 use super::PlanFile;
 use super::error::{Problem, Under};
-use super::file::{File, Obstacle, Point, Ring as GivenRing};
+use super::file::File;
 use super::periodic;
 use super::setting::Setting;
+use super::shapes::{Obstacle, Point, Ring as GivenRing};
 use crate::engine::geometry::{Area, Polygon, Ring};
 use crate::engine::math::{Vector, direction, perpendicular};
 use crate::engine::period::Period;

@@ -6,8 +6,8 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use super::error::{Problem, in_plain_words};
-use super::file::Corners;
 use super::schema::{allows, resolved, root, ways, words_of};
+use super::shapes::Corners;
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
 

@@ -7,7 +7,7 @@ use crate::lab::suite::{Case, Check, Runs};
 const TOLERANCES: [f64; 3] = [0.06, 0.10, 0.10];
 
 /// Why crowds are too fast.
-const NOTHING_SLOWS: &str = "nothing slows a crowd whose agents all walk at the same velocity: pressure, contact and \
+pub const NOTHING_SLOWS: &str = "nothing slows a crowd whose agents all walk at the same velocity: pressure, contact and \
      avoidance act on differences of velocity or on overlaps only";
 
 /// Why crowds before a door are not dense.

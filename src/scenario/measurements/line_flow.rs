@@ -7,17 +7,19 @@ use serde_json::{Value, json};
 use super::Measure;
 use crate::analysis::crossing::{Balance, Line};
 use crate::engine::math::Vector;
+use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
-use crate::scenario::file::{Corners, Point};
 use crate::scenario::range::{region, wide_region};
+use crate::scenario::shapes::{Corners, Point};
 
 /// The name of the values if none is given.
 const NAME: &str = "line";
 /// The part of the passages that counts if none is given.
 const PART: [f64; 2] = [0.1, 0.9];
-/// Time between the frames in which density and speed are measured, and over which speeds are means, seconds.
-const EVERY_SECS: f64 = 0.4;
+/// Time between the frames in which density and speed are measured, seconds. Speeds are means from one before to one
+/// after.
+const EVERY_SECS: f64 = 0.2;
 
 /// The flow of people across a line, in either direction, between two parts of all passages; density and speed in a
 /// region in the same time. A person who sways back and forth passes once.
@@ -41,8 +43,8 @@ pub struct LineFlow {
 struct Track {
     /// Its position in the last frame, meters.
     last: Vector,
-    /// Its position in the last frame in which density and speed were measured, meters.
-    sampled: Option<Vector>,
+    /// Its positions in the last two frames in which density was measured, the latest last, meters.
+    sampled: [Option<Vector>; 2],
     balance: Balance,
 }
 
@@ -78,6 +80,14 @@ impl LineFlow {
     fn line(&self) -> Line {
         let [start, end] = self.line.map(Vector::from);
         Line { start, end }
+    }
+
+    pub(super) fn around_line(&self) -> Region {
+        let Line { start, end } = self.line();
+        Region {
+            min: start.inf(&end),
+            max: start.sup(&end),
+        }
     }
 
     /// The times of the first and the last passage that count, and the flow between them, P/s.
@@ -159,19 +169,21 @@ impl Measure for LineFlow {
         for (&id, &position) in agents.id.iter().zip(&agents.position) {
             let track = seen.tracks[id as usize].get_or_insert(Track {
                 last: position,
-                sampled: None,
+                sampled: [None; 2],
                 balance: Balance::default(),
             });
             passed(track, position);
-            if is_due && region.is_some_and(|region| region.contains(position)) {
-                sample.agents += 1;
-                if let Some(before) = track.sampled {
-                    sample.moving += 1;
-                    sample.speeds += way(before, position).norm() / (every as f64 * step);
-                }
-            }
+            let is_inside = |p: Vector| region.is_some_and(|region| region.contains(p));
             if is_due {
-                track.sampled = Some(position);
+                sample.agents += u32::from(is_inside(position));
+                if let [Some(first), Some(middle)] = track.sampled
+                    && is_inside(middle)
+                    && let Some(before) = seen.samples.last_mut()
+                {
+                    before.moving += 1;
+                    before.speeds += way(first, position).norm() / (2.0 * every as f64 * step);
+                }
+                track.sampled = [track.sampled[1], Some(position)];
             }
         }
         seen.arrivals = simulation.outcome().arrivals.len();

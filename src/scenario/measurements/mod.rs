@@ -150,16 +150,23 @@ impl Measurement {
         }
     }
 
-    /// The region that it observes, and the name of the measurement.
-    pub(super) fn region(&self) -> Option<(&'static str, Region)> {
-        let (name, corners) = match self {
-            Self::Density(keys) => ("density", keys.region?),
-            Self::Contacts(keys) => ("contacts", keys.region),
-            Self::Walks(keys) => ("walks", keys.region?),
-            Self::LineFlow(keys) => ("line_flow", keys.region?),
-            _ => return None,
+    /// The regions that it observes and the boxes around its lines, by their keys.
+    pub(super) fn places(&self) -> Vec<(&'static str, Region)> {
+        let places = match self {
+            Self::Density(keys) => vec![("density.region", keys.region)],
+            Self::Contacts(keys) => vec![("contacts.region", Some(keys.region))],
+            Self::Walks(keys) => vec![("walks.region", keys.region)],
+            Self::LineFlow(keys) => {
+                let line = ("line_flow.line", keys.around_line());
+                let region = keys.region.and_then(|corners| region("", corners).ok());
+                let region = region.map(|region| ("line_flow.region", region));
+                return std::iter::once(line).chain(region).collect();
+            }
+            _ => Vec::new(),
         };
-        Some((name, region("", corners).ok()?))
+        let found =
+            |(key, corners): (&'static str, Option<_>)| Some((key, region("", corners?).ok()?));
+        places.into_iter().filter_map(found).collect()
     }
 
     /// The names of its values.

@@ -8,8 +8,9 @@ use super::Measure;
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
-use crate::scenario::file::{Corners, LONGEST_TIME};
+use crate::scenario::file::LONGEST_TIME;
 use crate::scenario::range::{region, wide_region};
+use crate::scenario::shapes::Corners;
 
 /// The name of the values if none is given.
 const NAME: &str = "walks";
