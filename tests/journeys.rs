@@ -74,6 +74,19 @@ fn nobody_passes_a_closed_exit_until_it_opens() {
 }
 
 #[test]
+fn people_who_meet_on_the_line_of_an_exit_in_the_open_do_not_block_each_other() {
+    let hall = json!({
+        "walkable_area": [[[[0, 0], [25, 0], [25, 8], [0, 8]]]],
+        "exits": [{"name": "e", "line": [[20, 3], [20, 5]]}],
+        "crowds": [{"area": [[2, 1], [16, 1], [16, 7], [2, 7]], "number": 80}],
+    });
+    for profile in ["profile=sph", "profile=sf"] {
+        let simulation = after(&hall, &[profile], 60.0);
+        assert_eq!(passed(&simulation), [80], "{profile}");
+    }
+}
+
+#[test]
 fn an_exit_lets_at_most_the_given_flow_through() {
     let document = with(|room| {
         room["exits"] = json!([{"name": "east", "line": [[20, 4], [20, 6]], "most_per_sec": 2}]);

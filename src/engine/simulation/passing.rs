@@ -8,7 +8,7 @@ use crate::engine::journeys::{Kind, Place, Status};
 use crate::engine::math::{Vector, direction, perpendicular};
 use crate::engine::neighbors::{BLOCK, TASK};
 use crate::engine::scene::Scene;
-use crate::engine::ways::side;
+use crate::engine::ways::{nearest_on, side};
 
 /// Agents that may not pass an exit stop this far before its line, meters.
 const STOP_BEFORE: f64 = 1e-3;
@@ -65,7 +65,10 @@ impl Simulation {
         }
         let before = &self.buffers.before;
         self.stages.time(Stage::Journeys, || {
-            let crossings = crowd.crossings(scene, before);
+            let mut crossings = crowd.crossings(scene, before);
+            if crowd.clock.is_coarse() {
+                crossings.extend(crowd.meetings(scene, &crossings));
+            }
             if !crossings.is_empty() {
                 crowd.pass(scene, before, &crossings);
             }
@@ -112,6 +115,45 @@ impl Crowd {
             .collect();
         let id = |crossing: &Crossing| agents.id[crossing.agent];
         found.sort_by(|a, b| a.part.total_cmp(&b.part).then(id(a).cmp(&id(b))));
+        found
+    }
+
+    /// Agents that meet another one on the line of their exit, which comes from the other side: neither could cross it.
+    /// Both bodies touch the line, and each other. Agents of `passing` cross a line already.
+    fn meetings(&self, scene: &Scene, passing: &[Crossing]) -> Vec<Crossing> {
+        let agents = &self.agents;
+        let touching = |agent: usize| {
+            let trip = agents.trip.get(agent)?.as_ref()?;
+            let place = usize::from(trip.place);
+            let Kind::Exit(exit) = &scene.journeys.places[place].kind else {
+                return None;
+            };
+            let ([a, b], p) = (exit.line, agents.position[agent]);
+            let touches = (nearest_on(p, a, b) - p).norm() < agents.radius[agent];
+            (touches && trip.status == Status::Walking).then(|| (place, side(a, b, p) > 0.0, agent))
+        };
+        let all = (0..agents.len()).into_par_iter();
+        let all: Vec<(usize, bool, usize)> = all
+            .with_min_len(TASK * BLOCK)
+            .filter_map(touching)
+            .collect();
+        let meets = |&(place, is_left, agent): &(usize, bool, usize)| {
+            let (p, radius) = (agents.position[agent], agents.radius[agent]);
+            all.iter().any(|&(other_place, is_other_left, other)| {
+                let gap = (agents.position[other] - p).norm() - radius - agents.radius[other];
+                other_place == place && is_other_left != is_left && gap < 0.0
+            })
+        };
+        let is_new = |agent: usize| passing.iter().all(|crossing| crossing.agent != agent);
+        let found = all.iter().filter(|one| meets(one) && is_new(one.2));
+        let crossing = |&(place, _, agent): &(usize, bool, usize)| Crossing {
+            agent,
+            place,
+            line: scene.journeys.places[place].line().unwrap_or_default(),
+            part: 1.0,
+        };
+        let mut found: Vec<Crossing> = found.map(crossing).collect();
+        found.sort_by_key(|crossing| agents.id[crossing.agent]);
         found
     }
 
