@@ -115,27 +115,6 @@ fn the_nearest_agent_in_the_lane_sets_the_speed() {
 }
 
 #[test]
-fn agents_without_a_gap_creep_but_not_faster_than_they_want() {
-    let headway = Headway {
-        creeping_speed: 0.2,
-        ..Headway::default()
-    };
-    assert_eq!(headway.speed(1.4, 0.1), 0.2);
-    assert_eq!(headway.speed(0.1, 0.1), 0.1);
-    assert!((headway.speed(1.4, 0.6) - 0.5).abs() < 1e-12);
-    let mut law = with(WalkingLawKind::Headway);
-    law.creeping_speed = Some(0.2);
-    let own = person(Vector::zeros(), vector(100.0, 0.0));
-    let mut scene = scene(vec![], blend_with("sph", &law));
-    scene.agents = vec![own, person(vector(0.2, 0.0), vector(0.2, 0.0))];
-    let slowed = walking(&evaluated(scene), 0);
-    assert!(
-        (slowed - vector((0.2 - 1.4) / 0.5, 0.0)).norm() < 1e-5,
-        "{slowed}"
-    );
-}
-
-#[test]
 fn speeds_do_not_jump_when_an_agent_enters_a_lane_or_falls_behind() {
     let headway = Headway::default();
     let range = headway.range(1.4);

@@ -115,10 +115,6 @@ pub struct Parameters {
     /// w (`headway`), meters: the half-width of the lane; its edges fade over another half of it. Wider: slower crowds.
     #[schemars(range(min = 0.01, max = FARTHEST), extend("default" = Headway::default().lane_half_width))]
     pub lane_half_width: Option<f64>,
-    /// s_c, m/s: with the law `headway`, the speed at which agents walk on when there is no gap. Higher: denser crowds
-    /// before narrow doors, which pass more people.
-    #[schemars(range(min = 0, max = 10), extend("default" = Headway::default().creeping_speed))]
-    pub creeping_speed: Option<f64>,
     /// The jam density (`density-ahead`), P/m²: agents stand before a crowd of this density. Higher: faster crowds.
     #[schemars(range(min = 0.01, max = HIGHEST_DENSITY), extend("default" = DensityAhead::default().jam_density))]
     pub jam_density: Option<f64>,

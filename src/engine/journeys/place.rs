@@ -61,8 +61,8 @@ pub struct WaitingArea {
 pub struct Queue {
     /// The line on which agents stand, from the front, meters.
     pub path: Vec<Vector>,
-    /// The length of the line and of its continuation in the last direction up to the next wall, meters. Agents for
-    /// whom it is too short gather at its end.
+    /// The length of the line and of its continuation in the last direction up to the next wall, meters. If it is too
+    /// short for all agents, the last ones gather at its end.
     pub length: f64,
     /// The distance between agents, meters.
     pub spacing: f64,

@@ -2,8 +2,7 @@
 //!
 //! A. Tordeux, M. Chraibi, A. Seyfried, Collision-free speed model for pedestrian dynamics, Traffic and Granular Flow
 //! '15 (2016): s = min(s₀, max(0, (d − ℓ)/T)), d the distance to the nearest agent in front within a lane. There a
-//! lane has sharp edges, and the speed jumps when an agent crosses one. Here the edges fade. People in dense crowds
-//! creep forward without a gap (0.3 m/s at 3 to 6 P/m²), so a least speed s_c may replace the 0.
+//! lane has sharp edges, and the speed jumps when an agent crosses one. Here the edges fade.
 
 use std::ops::Range;
 
@@ -22,8 +21,6 @@ pub struct Headway {
     pub headway_length: f64,
     /// w, meters: agents up to this far beside the line ahead count in full.
     pub lane_half_width: f64,
-    /// s_c, m/s: the speed at which agents walk on when there is no gap.
-    pub creeping_speed: f64,
 }
 
 impl Default for Headway {
@@ -32,7 +29,6 @@ impl Default for Headway {
             headway_time: 0.6,
             headway_length: 0.3,
             lane_half_width: 0.3,
-            creeping_speed: 0.0,
         }
     }
 }
@@ -44,8 +40,7 @@ impl Headway {
     /// s^law, m/s: the speed of an agent with preferred speed `free`, m/s, if the nearest agent in its lane is at this
     /// distance, meters.
     pub fn speed(&self, free: f64, distance: f64) -> f64 {
-        let speed = (distance - self.headway_length) / self.headway_time;
-        speed.max(self.creeping_speed).min(free)
+        ((distance - self.headway_length) / self.headway_time).clamp(0.0, free)
     }
 
     /// R, meters: agents farther ahead do not slow an agent with this preferred speed, m/s.
@@ -103,7 +98,7 @@ impl Headway {
         add_pairs(simd, bodies, (walkers.start, runs), &mut sum);
         let distance = sum.squared.sqrt() * unit;
         let speed = ((distance - length) * per_time)
-            .max(splat::<R, S>(simd, self.creeping_speed))
+            .max(zero)
             .min(walkers.speed);
         let slowed = sum.squared.simd_lt(range_squared);
         slowed.select(walkers.speed - speed, zero)
