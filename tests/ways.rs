@@ -10,7 +10,10 @@ use sandbox::engine::ways::{Floor, Goal, Next, PathMap, WayError, around, neares
 /// The direction of the next step, `clearance` meters from corners.
 fn heading(floor: &Floor, p: Vector, next: &Next, clearance: f64) -> Vector {
     match *next {
-        Next::Corner { bend, borders } => around(floor, p, (bend, borders), clearance),
+        Next::Corner { bend, borders } => {
+            let distance = (floor.place(bend) - p).norm();
+            around(floor, (p, distance), (bend, borders), clearance)
+        }
         Next::Goal(point) | Next::Out(point) => direction(point - p),
     }
 }

@@ -53,6 +53,8 @@ pub struct Way {
     pub length: f64,
     /// What comes first.
     pub next: Next,
+    /// The distance to it, meters.
+    pub distance: f64,
     /// What comes first is seen from everywhere within this distance, in the same triangle and on the way there,
     /// meters, at most 1.
     pub sight: f64,
@@ -154,17 +156,18 @@ impl PathMap {
     /// The way from `p` over an entry with this number.
     #[inline]
     fn over(&self, floor: &Floor, p: Vector, (number, entry): (usize, Entry)) -> Way {
+        let place = self.targets.nearest(floor, entry.target, p);
+        let distance = (place - p).norm();
+        let cone = self.targets.cone(floor, entry);
         let next = match self.targets.bend(entry.target) {
-            None => Next::Goal(self.targets.nearest(floor, entry.target, p)),
-            Some(bend) => toward(bend, entry.borders.map(|b| self.targets.border(floor, b))),
+            None => Next::Goal(place),
+            Some(bend) => toward(bend, cone.map(|limit| limit.through)),
         };
-        let [right, left] = self
-            .targets
-            .cone(floor, entry)
-            .map(|limit| limit.distance(p, FAR));
+        let [right, left] = cone.map(|limit| limit.distance(p, FAR));
         Way {
-            length: self.targets.length(floor, entry.target, p),
+            length: distance + self.targets.rest(entry.target),
             next,
+            distance,
             sight: right.min(left),
             entry: number,
         }
@@ -209,7 +212,8 @@ impl PathMap {
     /// by at most [`SLACK`].
     fn kept(&self, floor: &Floor, (p, t): (Vector, u32), held: Bend, least: f64) -> Option<Way> {
         let target = held.index() as u32;
-        let length = self.targets.length(floor, target, p);
+        let distance = (floor.place(held) - p).norm();
+        let length = distance + self.targets.rest(target);
         if length > least + SLACK || !self.targets.bends(floor, target, p) {
             return None;
         }
@@ -227,6 +231,7 @@ impl PathMap {
         Some(Way {
             length,
             next: toward(held, [view.right.at, view.left.at]),
+            distance,
             sight: 0.0,
             entry: NO_ENTRY,
         })
@@ -242,11 +247,13 @@ impl PathMap {
             };
             let point = region.center;
             let rest = self.targets.length(floor, entry.target, point);
-            let length = (point - p).norm() + rest;
+            let distance = (point - p).norm();
+            let length = distance + rest;
             if best.is_none_or(|best| length < best.length) {
                 best = Some(Way {
                     length,
                     next: Next::Out(point),
+                    distance,
                     sight: 0.0,
                     entry: NO_ENTRY,
                 });
@@ -281,6 +288,7 @@ impl PathMap {
         Some(Way {
             length,
             next: Next::Out(next),
+            distance: (next - p).norm(),
             sight: 0.0,
             entry: NO_ENTRY,
         })

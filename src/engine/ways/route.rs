@@ -211,7 +211,8 @@ impl Ways {
         let place = self.next(route);
         let way_around = match way.next {
             Next::Corner { bend, borders } => {
-                Some(around(&self.floor, p, (bend, borders), route.clearance))
+                let (at, corner) = ((p, way.distance), (bend, borders));
+                Some(around(&self.floor, at, corner, route.clearance))
             }
             Next::Goal(end) => {
                 // Agents that see the end from the start walk straight if their bodies fit.
@@ -221,6 +222,7 @@ impl Ways {
                     let map = &self.maps[usize::from(map)];
                     map.borders(&self.floor, way.entry)
                 });
+                let end = (end, way.distance);
                 let way_around = borders.and_then(|borders| between_borders(p, end, borders, gap));
                 route.rounds = rounds && way_around.is_some();
                 way_around.map(|(heading, nearest)| {
@@ -230,7 +232,7 @@ impl Ways {
             }
             Next::Out(_) => None,
         };
-        let ahead = (place - p).norm().max(NEAREST);
+        let ahead = way.distance.max(NEAREST);
         way_around.map_or(place, |heading| p + heading * ahead)
     }
 
@@ -241,7 +243,7 @@ impl Ways {
         if let Some(way) = map.way_over(floor, p, route.entry as usize) {
             // The shortest way was longer by the distance moved at most.
             let excess = route.excess + way.length - route.length + (p - route.found).norm();
-            route.set(floor, p, (&way, excess));
+            route.set(floor, p, &way, excess);
             if route.reach > 0.0 && excess < SLACK {
                 return Some(way);
             }
@@ -255,20 +257,20 @@ impl Ways {
         let way = map.way(floor, p, here, held)?;
         route.triangle = here;
         route.entry = u32::try_from(way.entry).unwrap_or(u32::MAX);
-        route.set(floor, p, (&way, 0.0));
+        route.set(floor, p, &way, 0.0);
         Some(way)
     }
 }
 
 impl Route {
     /// The agent at `p` takes a way that is longer than the shortest by at most `excess` meters.
-    fn set(&mut self, floor: &Floor, p: Vector, (way, excess): (&Way, f64)) {
+    fn set(&mut self, floor: &Floor, p: Vector, way: &Way, excess: f64) {
         let place = match way.next {
             Next::Corner { bend, .. } => floor.place(bend),
             Next::Goal(point) | Next::Out(point) => point,
         };
         (self.found, self.length, self.excess) = (p, way.length, excess);
-        let most = (SHARE * (place - p).norm()).min(LONGEST).min(way.sight);
+        let most = (SHARE * way.distance).min(LONGEST).min(way.sight);
         self.reach = floor.mesh.room_before(self.triangle, p, place, most);
     }
 }

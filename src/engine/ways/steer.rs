@@ -4,17 +4,17 @@ use super::corner::{Bend, Turn};
 use super::floor::Floor;
 use crate::engine::math::{Vector, direction, perpendicular};
 
-/// The direction in which an agent at `p` walks around a corner, keeping `clearance` meters from corners where there is
+/// The direction in which an agent at `p` walks around a corner `distance` meters away, keeping `clearance` meters from corners where there is
 /// room for it: along the tangent of the circle around the corner, on the side away from its walls, and between the
 /// borders `near` and `far` of what the corner sees, on the side of its walls and on the other.
 pub fn around(
     floor: &Floor,
-    p: Vector,
+    (p, distance): (Vector, f64),
     (bend, [near, far]): (Bend, [Vector; 2]),
     clearance: f64,
 ) -> Vector {
     let corner = &floor.corners[bend.corner as usize];
-    let (ahead, distance) = direction_and_length(corner.place - p);
+    let ahead = ahead(corner.place - p, distance);
     // To the side away from the corner's walls.
     let aside = match bend.turn {
         Turn::First => -perpendicular(ahead),
@@ -39,16 +39,16 @@ pub fn around(
     ahead * way.x + aside * way.y
 }
 
-/// The direction in which an agent at `p` walks to the end of its way, `end`, that passes the borders of what the end
+/// The direction in which an agent at `p` walks to the end of its way, `end`, `distance` meters away, that passes the borders of what the end
 /// sees, on its right and on its left, with `gap` meters where there is room for it; and the distance to the nearest of
 /// these that is in the way, meters. `None`: straight.
 pub fn between_borders(
     p: Vector,
-    end: Vector,
+    (end, distance): (Vector, f64),
     [right, left]: [Vector; 2],
     gap: f64,
 ) -> Option<(Vector, f64)> {
-    let (ahead, distance) = direction_and_length(end - p);
+    let ahead = ahead(end - p, distance);
     let aside = perpendicular(ahead);
     let seen = |point: Vector| Vector::new(ahead.dot(&(point - p)), aside.dot(&(point - p)));
     // Only points before the end count, if they are too near to the straight line. The end may be near to them, too.
@@ -106,10 +106,9 @@ fn middle((one, one_away): (Vector, f64), (other, other_away): (Vector, f64)) ->
     direction(one * other_away.powi(2) + other * one_away.powi(2))
 }
 
-fn direction_and_length(way: Vector) -> (Vector, f64) {
-    let length = way.norm();
-    let ahead = if length > 0.0 { way / length } else { way };
-    (ahead, length)
+/// The direction of a way of this length, meters.
+fn ahead(way: Vector, length: f64) -> Vector {
+    if length > 0.0 { way / length } else { way }
 }
 
 /// The largest angle between the heading and the shortest way, 1.3 radians, as a direction. Below a right angle the way

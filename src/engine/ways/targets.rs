@@ -53,7 +53,8 @@ pub struct Entry {
 #[derive(Debug, Clone, Copy)]
 pub struct Limit {
     eye: Eye,
-    through: Vector,
+    /// A point on the border, meters.
+    pub through: Vector,
     sign: f64,
 }
 
