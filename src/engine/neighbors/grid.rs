@@ -37,6 +37,8 @@ pub struct Grid {
     origin: Vector,
     height: f64,
     width: f64,
+    /// Cells per meter, along the rows and across.
+    per_meter: Vector,
     columns: usize,
     rows: usize,
     /// Repeats the cells.
@@ -51,6 +53,7 @@ impl Default for Grid {
             origin: Vector::zeros(),
             height: 1.0,
             width: 1.0,
+            per_meter: Vector::repeat(1.0),
             columns: 1,
             rows: 3,
             period: None,
@@ -112,6 +115,7 @@ impl Grid {
                 self.height *= 2.0;
             }
         }
+        self.per_meter = Vector::new(1.0 / self.width, 1.0 / self.height);
         self.columns = columns(self.width) as usize;
         self.rows = rows(self.height) as usize;
     }
@@ -191,6 +195,30 @@ impl Grid {
                 let rows = rows.filter(|agents| !agents.is_empty());
                 rows.map(move |agents| Run { agents, laps })
             })
+    }
+
+    /// Appends the agents in all cells that a rectangle reaches into, given by its lower left and upper right corners,
+    /// row by row, then those seen across the ends of the period.
+    pub fn inside(&self, [low, high]: [Vector; 2], found: &mut Vec<Run>) {
+        let [across, up] = [self.columns, self.rows].map(|count| (count - 1) as f64);
+        let place = |p: Vector| {
+            let cell = (p - self.origin).component_mul(&self.per_meter);
+            [
+                cell.x.clamp(0.0, across) as usize,
+                cell.y.clamp(0.0, up) as usize,
+            ]
+        };
+        let ([left, bottom], [right, top]) = (place(low), place(high));
+        for row in bottom..=top {
+            let first = row * self.columns;
+            let agents = self.start[first + left]..self.start[first + right + 1];
+            if !agents.is_empty() {
+                found.push(Run::from(agents));
+            }
+        }
+        if self.period.is_some() {
+            found.extend(self.across([low, high], 0.0));
+        }
     }
 
     /// Is a box within `radius` meters of the cells?

@@ -188,13 +188,14 @@ impl Neighbors {
     /// some that are near it.
     pub fn inside(&self, corners: [Vector; 2], positions: &[Vector], found: &mut Vec<Run>) {
         found.clear();
-        let rows = self.grid.rows(corners, self.ranges.margin);
+        let margin = Vector::repeat(self.ranges.margin);
+        let moved = [corners[0] - margin, corners[1] + margin];
+        self.grid.inside(moved, found);
         if self.grid.height() <= self.reach {
-            found.extend(rows.filter(|run| !run.agents.is_empty()));
             return;
         }
         // Cells had to be made larger than the reach of the lists, and have agents that are far away.
-        for Run { agents, laps } in rows {
+        for Run { agents, laps } in std::mem::take(found) {
             let [low, high] = corners.map(|corner| self.seen_from(corner, laps));
             let near = agents.filter(|&j| {
                 let p = positions[j as usize];

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::Walkers;
+use super::{View, Walkers};
 use crate::engine::neighbors::Run;
 use crate::engine::pairs::prelude::*;
 use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, splat};
@@ -61,10 +61,12 @@ impl Headway {
         (along * along + across * across + range * range * outside).sqrt()
     }
 
-    #[inline(always)]
-    pub(super) fn view(&self, speed: f64) -> [f64; 2] {
-        let aside = (1.0 + FADE) * self.lane_half_width;
-        [self.range(speed), aside]
+    pub(super) fn view(&self) -> View {
+        View {
+            length: self.headway_length,
+            time: self.headway_time,
+            aside: (1.0 + FADE) * self.lane_half_width,
+        }
     }
 
     pub(super) fn steepness(&self) -> f64 {

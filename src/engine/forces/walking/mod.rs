@@ -17,8 +17,6 @@ pub use density_ahead::DensityAhead;
 pub use drag::Drag;
 pub use headway::Headway;
 
-use std::ops::Range;
-
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::BLOCK;
@@ -36,6 +34,17 @@ pub enum WalkingLaw {
     DensityAhead(DensityAhead),
     /// A friction that grows with the density.
     Drag(Drag),
+}
+
+/// Where an agent looks for others: a rectangle ahead of it.
+#[derive(Debug, Clone, Copy, Default)]
+struct View {
+    /// How far ahead an agent looks that stands, meters.
+    length: f64,
+    /// How much farther per preferred speed, seconds.
+    time: f64,
+    /// How far to each side, meters.
+    aside: f64,
 }
 
 /// Eight agents that look ahead.
@@ -57,17 +66,19 @@ impl WalkingLaw {
     /// The farthest distance of agents that can slow an agent with this preferred speed, m/s, meters; `support` is
     /// the largest support radius.
     pub fn reach(&self, speed: f64, support: f64) -> f64 {
-        let [ahead, aside] = self.view(speed, support);
-        ahead.hypot(aside)
+        let view = self.view(support);
+        (view.length + view.time * speed).hypot(view.aside)
     }
 
-    /// How far ahead and to each side an agent with this preferred speed looks, meters.
-    #[inline(always)]
-    fn view(&self, speed: f64, support: f64) -> [f64; 2] {
+    fn view(&self, support: f64) -> View {
         match self {
-            Self::Headway(law) => law.view(speed),
-            Self::DensityAhead(_) => [support; 2],
-            Self::Drag(_) => [0.0; 2],
+            Self::Headway(law) => law.view(),
+            Self::DensityAhead(_) => View {
+                length: support,
+                time: 0.0,
+                aside: support,
+            },
+            Self::Drag(_) => View::default(),
         }
     }
 
@@ -118,6 +129,8 @@ impl WalkingLaw {
         out: &mut [Vector],
     ) {
         let mut runs = Vec::new();
+        let view = self.view(frame.neighbors.support());
+        let positions = &frame.agents.position;
         for (agents, _) in frame.neighbors.near().block(b).clusters() {
             let own = agents.start % BLOCK..agents.start % BLOCK + agents.len();
             let rates = &rates[own.clone()];
@@ -126,8 +139,8 @@ impl WalkingLaw {
             }
             let wishes = &frame.fields.preferred_velocity[agents.clone()];
             let walkers = Walkers::<R, S>::new(simd, agents.start, wishes);
-            let area = self.area(frame, &walkers, agents);
-            let positions = &frame.agents.position;
+            let way = walkers.area(simd, bodies, &view);
+            let area = way.map(|way| positions[agents.start] + way);
             frame.neighbors.inside(area, positions, &mut runs);
             let lost = match self {
                 Self::Headway(law) => law.lost_speeds(simd, bodies, &walkers, &runs),
@@ -140,32 +153,6 @@ impl WalkingLaw {
                 *out += Vector::new(x[k], y[k]) * *rate;
             }
         }
-    }
-
-    /// The lower left and the upper right corner of a rectangle with all places that the walkers look at.
-    #[inline(always)]
-    fn area<R: Real, S: Simd>(
-        &self,
-        frame: &Frame,
-        walkers: &Walkers<R, S>,
-        agents: Range<usize>,
-    ) -> [Vector; 2] {
-        let support = frame.neighbors.support();
-        let [x, y] = walkers.backwards;
-        let (x, y) = (store::<R, S>(x), store::<R, S>(y));
-        let speed = store::<R, S>(walkers.speed);
-        let mut low = frame.agents.position[agents.start];
-        let mut high = low;
-        for (k, place) in frame.agents.position[agents].iter().enumerate() {
-            let [ahead, aside] = self.view(speed[k], support);
-            let (front_x, front_y) = (-x[k] * ahead, -y[k] * ahead);
-            let (side_x, side_y) = (y[k].abs() * aside, x[k].abs() * aside);
-            low.x = low.x.min(place.x + front_x.min(0.0) - side_x);
-            low.y = low.y.min(place.y + front_y.min(0.0) - side_y);
-            high.x = high.x.max(place.x + front_x.max(0.0) + side_x);
-            high.y = high.y.max(place.y + front_y.max(0.0) + side_y);
-        }
-        [low, high]
     }
 }
 
@@ -189,4 +176,46 @@ impl<R: Real, S: Simd> Walkers<R, S> {
             speed,
         }
     }
+
+    /// The lower left and the upper right corner of a rectangle with all places that they look at, meters from the
+    /// first of them.
+    #[inline(always)]
+    fn area(&self, simd: S, bodies: &Bodies<R>, view: &View) -> [Vector; 2] {
+        let [back_x, back_y] = self.backwards;
+        let [low_x, high_x] = self.span(simd, (&bodies.x, bodies.unit), view, [back_x, back_y]);
+        let [low_y, high_y] = self.span(simd, (&bodies.y, bodies.unit), view, [back_y, back_x]);
+        [Vector::new(low_x, low_y), Vector::new(high_x, high_y)]
+    }
+
+    /// The rectangle along one axis; the vectors backwards have these components along it and across.
+    #[inline(always)]
+    fn span(
+        &self,
+        simd: S,
+        (places, unit): (&[R::Coordinate], f64),
+        view: &View,
+        [backwards, across]: [Lanes<R, S>; 2],
+    ) -> [f64; 2] {
+        let zero = splat::<R, S>(simd, 0.0);
+        let at = R::places(simd, &places[self.start..]);
+        let at = R::differences(simd, at, places[self.start]) * splat::<R, S>(simd, unit);
+        let (time, length) = (
+            splat::<R, S>(simd, -view.time),
+            splat::<R, S>(simd, -view.length),
+        );
+        let front = backwards * self.speed.mul_add(time, length);
+        let side = across.abs() * splat::<R, S>(simd, view.aside);
+        let walks = self.speed.simd_gt(zero);
+        let low = walks.select(at + front.min(zero) - side, zero);
+        let high = walks.select(at + front.max(zero) + side, zero);
+        let (low, high) = (store::<R, S>(low), store::<R, S>(high));
+        [fold(low, f64::min), fold(high, f64::max)]
+    }
+}
+
+/// The least or the greatest of eight numbers.
+#[inline(always)]
+fn fold(numbers: [f64; LANES], of_two: impl Fn(f64, f64) -> f64) -> f64 {
+    let four = [0, 1, 2, 3].map(|k| of_two(numbers[k], numbers[k + 4]));
+    of_two(of_two(four[0], four[1]), of_two(four[2], four[3]))
 }
