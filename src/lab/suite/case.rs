@@ -40,7 +40,11 @@ impl Case {
 pub struct Runs<'a> {
     /// The name of the suite.
     pub suite: &'a str,
-    /// The results.
+    /// The profile.
+    pub profile: String,
+    /// The seed.
+    pub seed: u64,
+    /// The results of all cases.
     pub own: Vec<(&'a str, &'a Summary)>,
 }
 

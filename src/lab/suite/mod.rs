@@ -17,9 +17,11 @@ pub use report::{Finding, Report};
 use crate::lab::error::LabError;
 use crate::lab::jobs::{read, results};
 use crate::lab::sweep::{self, Study};
+use crate::output::plot::Sheet;
 use crate::runs::case::RunResult;
 use crate::runs::job::Listener;
 use crate::runs::store::Store;
+use crate::runs::summary::Summary;
 
 /// The name of the check of walls.
 const THROUGH_WALLS: &str = "people through walls";
@@ -34,7 +36,13 @@ pub struct Suite {
     pub profiles: &'static [&'static str],
     /// Are means over all seeds judged, or each seed?
     pub judges_means: bool,
+    /// Pictures of all results, by the names of their files, from the runs of each profile and seed.
+    pub sheets: fn(&[Runs]) -> Vec<(&'static str, Sheet)>,
 }
+
+/// Why crowds of the paper's profiles are too fast.
+pub const NOTHING_SLOWS: &str = "nothing slows a crowd whose agents all walk at the same velocity: pressure, contact and \
+     avoidance act on differences of velocity or on overlaps only";
 
 impl Suite {
     /// All cases, in the order of the report.
@@ -78,7 +86,7 @@ impl Suite {
             results.map(|result| read(&result)).collect();
         let results = results?;
         let cells: Vec<&sweep::Cell> = study.cells.iter().filter(wanted).collect();
-        let mut runs: BTreeMap<(usize, u64), Vec<(&str, &RunResult)>> = BTreeMap::new();
+        let mut runs: BTreeMap<(usize, u64), Vec<(&str, &Summary)>> = BTreeMap::new();
         let mut profiles = Vec::new();
         for (cell, result) in cells.iter().zip(&results) {
             let profile = &result.summary.profile;
@@ -88,16 +96,23 @@ impl Suite {
                 profiles.len() - 1
             });
             let own = runs.entry((number, cell.case.seed)).or_default();
-            own.push((cell.label().unwrap_or_default(), result));
+            own.push((cell.label().unwrap_or_default(), &result.summary));
         }
+        let runs = runs.into_iter().map(|((profile, seed), own)| Runs {
+            suite: self.name,
+            profile: profiles[profile].clone(),
+            seed,
+            own,
+        });
+        let runs: Vec<Runs> = runs.collect();
         let mut findings = Vec::new();
         for case in cases {
-            for ((profile, seed), runs) in &runs {
+            for runs in &runs {
                 findings.push(Finding {
                     case,
-                    profile: profiles[*profile].clone(),
-                    seed: Some(*seed),
-                    checks: self.judged(case, runs)?,
+                    profile: runs.profile.clone(),
+                    seed: Some(runs.seed),
+                    checks: judged(case, runs)?,
                 });
             }
         }
@@ -110,29 +125,27 @@ impl Suite {
             findings,
         };
         report.write(store)?;
+        for (stem, sheet) in (self.sheets)(&runs) {
+            sheet.save(&store.path(stem))?;
+        }
         pictures::save(cases, &cells, store, listener)?;
         Ok(report)
     }
+}
 
-    /// The checks of a case, and that no agent passed through a wall.
-    fn judged(&self, case: &Case, runs: &[(&str, &RunResult)]) -> Result<Vec<Check>, LabError> {
-        let own = runs.iter().filter(|(label, _)| case.runs.contains(label));
-        let own = own.map(|(label, result)| (*label, &result.summary));
-        let runs = Runs {
-            suite: self.name,
-            own: own.collect(),
-        };
-        let mut checks = (case.judge)(&runs)?;
-        let through = runs.own.iter();
-        let through: Vec<f64> = through
-            .filter_map(|(_, summary)| summary.metric("agents_through_walls"))
-            .collect();
-        if !through.is_empty() {
-            let sum = through.iter().sum();
-            checks.push(Check::exactly(THROUGH_WALLS, Some(sum), 0.0));
-        }
-        Ok(checks)
+/// The checks of a case, and that no agent passed through a wall.
+fn judged(case: &Case, runs: &Runs) -> Result<Vec<Check>, LabError> {
+    let mut checks = (case.judge)(runs)?;
+    let own = runs.own.iter();
+    let own = own.filter(|(label, _)| case.runs.contains(label));
+    let through: Vec<f64> = own
+        .filter_map(|(_, summary)| summary.metric("agents_through_walls"))
+        .collect();
+    if !through.is_empty() {
+        let sum = through.iter().sum();
+        checks.push(Check::exactly(THROUGH_WALLS, Some(sum), 0.0));
     }
+    Ok(checks)
 }
 
 /// One finding with the means over the seeds for each case and profile; a value that one seed lacks is missing.

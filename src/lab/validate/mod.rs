@@ -2,6 +2,7 @@
 
 mod bottlenecks;
 mod corridors;
+mod pictures;
 
 use super::suite::Suite;
 
@@ -11,4 +12,5 @@ pub static VALIDATION: Suite = Suite {
     cases: &[&bottlenecks::CASES, &corridors::CASES],
     profiles: &["sph", "sf->sph", "rvo->sph"],
     judges_means: true,
+    sheets: pictures::sheets,
 };

@@ -2,14 +2,10 @@
 
 use super::speeds::{DENSITIES, ages, fundamental_diagram, single_file};
 use crate::lab::error::LabError;
-use crate::lab::suite::{Case, Check, Runs};
-
-/// Why the speed of a dense crowd is too high.
-const NOTHING_SLOWS: &str = "nothing slows a crowd whose agents all walk at the same velocity: pressure, contact and \
-     avoidance act on differences of velocity or on overlaps only";
+use crate::lab::suite::{Case, Check, NOTHING_SLOWS, Runs};
 
 /// Why people in single file are too slow or too fast with RVO.
-const RVO_SINGLE_FILE: &str = "in a curved corridor of 0.8 m every velocity leads into a wall within seconds, and the \
+pub const RVO_SINGLE_FILE: &str = "in a curved corridor of 0.8 m every velocity leads into a wall within seconds, and the \
      penalty for the time to collision slows even four people far apart to 0.4 m/s; the more people, the less they avoid \
      and the more they are an SPH fluid, which nothing slows";
 

@@ -89,7 +89,7 @@ pub fn ages(runs: &Runs) -> Checks {
 }
 
 /// The runs with their densities, 1/m, and the 10 and 90 % quantiles of measured speeds there, m/s.
-const BANDS: [(&str, &str, [f64; 2]); 4] = [
+pub const BANDS: [(&str, &str, [f64; 2]); 4] = [
     ("single file 13", "0.5", [0.71, 1.39]),
     ("single file 24", "0.9", [0.45, 1.10]),
     ("single file 30", "1.1", [0.32, 0.84]),
