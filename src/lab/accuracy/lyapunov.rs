@@ -87,8 +87,14 @@ fn distances(document: &Value, shift: u32) -> Result<Vec<(f64, f64)>, LabError> 
 /// Root mean square distance between the agents of two crowds.
 fn distance(one: &Simulation, other: &Simulation) -> f64 {
     let pairs = by_id(one).into_iter().zip(by_id(other));
+    let period = one.scene().period;
     let [one, other] = [one, other].map(|crowd| &crowd.frame().agents.position);
-    let squares = pairs.map(|(i, k)| (one[i] - other[k]).norm_squared());
+    let squares = pairs.map(|(i, k)| {
+        let way = one[i] - other[k];
+        period
+            .map_or(way, |period| period.shortest(way))
+            .norm_squared()
+    });
     (squares.sum::<f64>() / one.len().max(1) as f64).sqrt()
 }
 

@@ -41,12 +41,15 @@ pub struct Scene {
 }
 
 /// All scenes.
-pub const SCENES: [Scene; 9] = [
+pub const SCENES: [Scene; 12] = [
     scene("relaxed", Kind::Motion, false, Some(whirl)),
     scene("pulse", Kind::Motion, false, Some(compression)),
     scene("wall", Kind::Motion, false, None),
     scene("social", Kind::Motion, false, None),
     scene("rvo", Kind::Motion, false, None),
+    scene("headway", Kind::Motion, false, None),
+    scene("density-ahead", Kind::Motion, true, None),
+    scene("drag", Kind::Motion, true, None),
     scene("evacuation", Kind::Statistics, false, None),
     scene("evacuation-social", Kind::Statistics, true, None),
     scene("evacuation-rvo", Kind::Statistics, true, None),

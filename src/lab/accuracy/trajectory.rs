@@ -79,7 +79,12 @@ impl Motion {
 fn snapshot(simulation: &Simulation) -> Snapshot {
     let frame = simulation.frame();
     let (agents, density) = (frame.agents, &frame.fields.density);
-    let state = |i: usize| (agents.position[i], agents.velocity[i], density[i]);
+    let period = simulation.scene().period;
+    let place = |i: usize| match (period, agents.laps.get(i)) {
+        (Some(period), Some(&laps)) => agents.position[i] + period.way(laps),
+        _ => agents.position[i],
+    };
+    let state = |i: usize| (place(i), agents.velocity[i], density[i]);
     let ids = agents.id.iter().enumerate();
     ids.map(|(i, &id)| (id, state(i))).collect()
 }

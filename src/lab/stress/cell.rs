@@ -112,10 +112,13 @@ impl Cell {
 
     /// The job that finds it.
     pub fn job(crowd: Rest, bisections: u32, first_seed: u64) -> Job<'static> {
-        let name = format!(
+        let mut name = format!(
             "map k={} ρ⁰max={} K^ag={} μ={}, {bisections} bisections, seeds after {first_seed}",
             crowd.gas_constant, crowd.rest_density_max, crowd.agent_stiffness, crowd.viscosity
         );
+        if crowd.law.walking_law.is_some() {
+            name += &format!(", {}", crowd.law);
+        }
         // Simulated seconds: 8 s in two rooms with three crowds, mostly for the fine steps.
         let simulated = 48.0 * (1.0 / FINE + f64::from(bisections) + 3.0);
         let mode = crowd.mode();

@@ -119,6 +119,7 @@ fn map_table(cells: &[Cell]) -> String {
         .column("ρ⁰max", |cell| cell.crowd.rest_density_max)
         .column("K^ag", |cell| cell.crowd.agent_stiffness)
         .column("μ", |cell| cell.crowd.viscosity)
+        .column("walking law", |cell| cell.crowd.law.to_string())
         .column("auto is stable", |cell| yes(cell.auto_is_stable()));
     for (k, condition) in Condition::ALL.iter().enumerate() {
         let steps = format!("{}: auto / largest stable Δt [s]", condition.name);
@@ -198,6 +199,7 @@ fn csv(cells: &[Cell]) -> Result<Vec<u8>, csv::Error> {
         .column("rest_density_max", |(crowd, _)| crowd.rest_density_max)
         .column("agent_stiffness", |(crowd, _)| crowd.agent_stiffness)
         .column("viscosity", |(crowd, _)| crowd.viscosity)
+        .column("walking_law", |(crowd, _)| crowd.law.to_string())
         .column("condition", |(_, (condition, _))| condition.name)
         .column("auto_secs", |(_, (_, limit))| limit.auto)
         .column("auto_is_stable", |(_, (_, limit))| limit.auto_is_stable)

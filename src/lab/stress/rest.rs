@@ -1,4 +1,6 @@
-//! A crowd that should come to rest, and a check whether it does.
+//! A crowd that should come to rest or, with a walking law, walk steadily, and a check whether it does.
+
+use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
@@ -8,11 +10,12 @@ use crate::engine::agents::{Agents, NewAgent};
 use crate::engine::clock::Clock;
 use crate::engine::geometry::Polygon;
 use crate::engine::math::Vector;
+use crate::engine::period::{Axis, Period};
 use crate::engine::placement::Grid;
 use crate::engine::profile::Blend;
 use crate::engine::scene::{Group, Scene};
 use crate::engine::simulation::{Fault, Simulation};
-use crate::scenario::catalog::{NavigationKind, Parameters};
+use crate::scenario::catalog::{NavigationKind, Parameters, WalkingLawKind};
 use crate::scenario::measurements::{Watched, closest};
 
 /// Agents along each side of the room.
@@ -31,14 +34,17 @@ const DURATION: f64 = 8.0;
 const JUDGED: f64 = 3.0;
 /// Distances between agents are checked every this many frames.
 const CLOSEST_EVERY: u64 = 5;
+/// Preferred speed of crowds with a walking law, m/s.
+const PACE: f64 = 1.34;
 /// Number of crowds, each with another seed.
 const SEEDS: u64 = 3;
-/// Crowds below this speed are at rest, m/s.
+/// Crowds below this speed are at rest, m/s; walking crowds if their velocities differ by less from their mean.
 const RESTING: f64 = 0.1;
 /// The smallest allowed distance between the centers of two agents, relative to the sum of their radii.
 const CLOSEST: f64 = 0.1;
 
-/// Square rooms of agents whose goals are their own positions, each moving in another direction at the start.
+/// Square rooms of agents whose goals are their own positions, each moving in another direction at the start; with a
+/// walking law, endless corridors of this length and width, through which all agents walk in the same direction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Rest {
@@ -50,6 +56,41 @@ pub struct Rest {
     pub agent_stiffness: f64,
     /// μ, 1/s.
     pub viscosity: f64,
+    /// The walking law.
+    #[serde(flatten)]
+    pub law: Law,
+}
+
+/// A walking law, with the parameter on which its stability depends most.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Law {
+    /// Its kind; `None` without law.
+    pub walking_law: Option<WalkingLawKind>,
+    /// T, seconds.
+    pub headway_time: Option<f64>,
+    /// γ, P/m².
+    pub slowing_density: Option<f64>,
+    /// γ₀, m²/s.
+    pub drag_per_density: Option<f64>,
+}
+
+impl fmt::Display for Law {
+    /// Its name with its parameter; nothing without law.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Some(kind) = self.walking_law else {
+            return Ok(());
+        };
+        let value = |value: Option<f64>| value.map_or("default".to_owned(), |x| x.to_string());
+        match kind {
+            WalkingLawKind::None => write!(f, "none"),
+            WalkingLawKind::Headway => write!(f, "headway T={}", value(self.headway_time)),
+            WalkingLawKind::DensityAhead => {
+                write!(f, "density-ahead γ={}", value(self.slowing_density))
+            }
+            WalkingLawKind::Drag => write!(f, "drag γ₀={}", value(self.drag_per_density)),
+        }
+    }
 }
 
 impl Default for Rest {
@@ -60,6 +101,7 @@ impl Default for Rest {
             rest_density_max: 5.0,
             agent_stiffness: 50.0,
             viscosity: 0.0,
+            law: Law::default(),
         }
     }
 }
@@ -67,7 +109,8 @@ impl Default for Rest {
 /// The results of some crowds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Remains {
-    /// Root mean square speed in the last seconds, m/s; `None` if a run failed.
+    /// Root mean square speed in the last seconds, relative to the mean velocity of crowds that walk, m/s; `None` if a
+    /// run failed.
     pub speed: Option<f64>,
     /// How much of the velocities remains from one frame to the next in those seconds, Σ v(t)·v(t − Δt) / Σ v²: 1 if
     /// all velocities are constant, −1 if all of them reverse in every frame.
@@ -92,6 +135,8 @@ impl Remains {
 /// Observations of some crowds: sums over agents and frames of the last seconds, and all failures.
 #[derive(Debug, Clone, Copy, Default)]
 struct Seen {
+    /// Do the crowds walk?
+    walk: bool,
     agents: f64,
     /// Sum of |v|², m²/s².
     squares: f64,
@@ -105,8 +150,13 @@ struct Seen {
 impl Seen {
     /// Adds a frame of the last seconds. `before` are the previous frame's velocities by id; they are replaced.
     fn add(&mut self, agents: &Agents, before: &mut [Vector]) {
+        let mut mean = Vector::zeros();
+        if self.walk {
+            mean = agents.velocity.iter().sum::<Vector>() / agents.len() as f64;
+        }
         for (&id, velocity) in agents.id.iter().zip(&agents.velocity) {
-            let last = std::mem::replace(&mut before[id as usize], *velocity);
+            let velocity = velocity - mean;
+            let last = std::mem::replace(&mut before[id as usize], velocity);
             self.agents += 1.0;
             self.squares += velocity.norm_squared();
             self.lasting += velocity.dot(&last);
@@ -131,7 +181,11 @@ impl Seen {
                 break;
             }
             if frame == judged {
-                Self::default().add(simulation.frame().agents, &mut before);
+                let mut first = Self {
+                    walk: self.walk,
+                    ..Self::default()
+                };
+                first.add(simulation.frame().agents, &mut before);
             } else if frame > judged {
                 self.add(simulation.frame().agents, &mut before);
             }
@@ -154,16 +208,30 @@ impl Rest {
             rest_density_max: Some(self.rest_density_max),
             agent_stiffness: Some(self.agent_stiffness),
             viscosity: Some(self.viscosity),
+            walking_law: self.law.walking_law,
+            headway_time: self.law.headway_time,
+            slowing_density: self.law.slowing_density,
+            drag_per_density: self.law.drag_per_density,
             ..Parameters::default()
         };
+        let walks = self.law.walking_law.is_some();
         let spacing = (1.0 / density).sqrt();
         let side = f64::from(COLUMNS) * spacing;
-        let mut scene = Scene::with_obstacles(walls(side));
+        let mut scene = Scene::with_obstacles(match walks {
+            true => sides(side),
+            false => walls(side),
+        });
         scene.clock = Clock::new(time_step, Clock::nearest_coarse_every(time_step));
-        scene.preferred_speed = 0.0;
+        scene.preferred_speed = if walks { PACE } else { 0.0 };
+        scene.period = walks.then_some(Period {
+            axis: Axis::X,
+            from: 0.0,
+            length: side,
+        });
         let profile = parameters.profile("sph", NavigationKind::Goal, true);
         let group = scene.add_group(Group {
             counted: false,
+            direction: walks.then(Vector::x),
             ..Group::new("crowd", Blend::single(profile, parameters.sph()))
         });
         let grid = Grid {
@@ -177,8 +245,9 @@ impl Rest {
         let thrown = places.map(|(place, id)| {
             // The golden angle: no two neighbors start in the same direction.
             let angle = 2.399_963 * f64::from(id);
+            let kick = if walks { 0.0 } else { KICK };
             NewAgent {
-                velocity: Vector::new(angle.cos(), angle.sin()) * KICK,
+                velocity: Vector::new(angle.cos(), angle.sin()) * kick,
                 ..NewAgent::at(place, place, group)
             }
         });
@@ -197,6 +266,7 @@ impl Rest {
         (condition, first_seed): (Condition, u64),
     ) -> Result<Remains, Fault> {
         let mut seen = Seen {
+            walk: self.law.walking_law.is_some(),
             closest: f64::INFINITY,
             ..Seen::default()
         };
@@ -242,6 +312,17 @@ impl Rest {
     pub fn mode(&self) -> Mode {
         Mode::of(&self.scene(LOOSE, 1.0))
     }
+}
+
+/// Two walls, 1 m thick, beside an endless corridor along x that repeats after its width, `side`.
+fn sides(side: f64) -> Vec<Polygon> {
+    let (left, right) = (-side - 10.0, 2.0 * side + 10.0);
+    let wall = |low: f64, high: f64| {
+        let corners = [[left, low], [right, low], [right, high], [left, high]];
+        Polygon::new(corners.map(Vector::from).to_vec())
+    };
+    let both = [wall(-1.0, 0.0), wall(side, side + 1.0)];
+    both.into_iter().flatten().collect()
 }
 
 /// Two L-shaped walls, 1 m thick, around [0, side]²: at no place do more than two edges push in the same direction.
