@@ -1,6 +1,6 @@
 //! Walking laws: what slows agents because of the crowd ahead.
 
-use crate::common::walking::{LOOKING, crowd, walking, with};
+use crate::common::walking::{LOOKING, anticipating, crowd, walking, with};
 use crate::common::{blend_with, evaluated, person, run, scene, state, vector, walker};
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::forces::walking::{DensityAhead, Drag, Headway};
@@ -20,11 +20,15 @@ fn lowered(simulation: &Simulation, law: WalkingLawKind, i: usize) -> f64 {
         let d = frame.agents.position[j] - frame.agents.position[i];
         (j, d.dot(&heading), d.dot(&perpendicular(heading)))
     });
+    let away = |j: usize| {
+        let relative = frame.agents.velocity[j] - frame.agents.velocity[i];
+        relative.dot(&heading)
+    };
     if law == WalkingLawKind::Headway {
-        let headway = Headway::default();
+        let headway = anticipating();
         let range = headway.range(free);
-        let distances =
-            others.map(|(_, along, across)| headway.distance_in_lane(range, along, across));
+        let distances = others
+            .map(|(j, along, across)| headway.distance_in_lane(range, [along, across], away(j)));
         return headway.speed(free, distances.fold(range, f64::min));
     }
     let kernel =
@@ -119,7 +123,7 @@ fn speeds_do_not_jump_when_an_agent_enters_a_lane_or_falls_behind() {
     let headway = Headway::default();
     let range = headway.range(1.4);
     let speed = |along: f64, across: f64| {
-        let distance = headway.distance_in_lane(range, along, across);
+        let distance = headway.distance_in_lane(range, [along, across], 0.0);
         headway.speed(1.4, distance.min(range))
     };
     let step = 1e-4;

@@ -23,7 +23,8 @@
 //! A corner has its own limit with ω² = 2 K^obs/m, because both of its edges push. Springs of walls and social
 //! forces replace C₂ K/m if they are stiffer. All friction includes K^goal/(τ m) of the goal force, or 1/Δt_coarse
 //! for RVO. A walking law that looks ahead, with ds/dx its change of speed over distance, adds ω² = 2 K^goal/(τ m)
-//! |ds/dx| everywhere: it pulls an agent after the one ahead. Drag adds its γ at twice ρ⁰max to all friction. No step is
+//! |ds/dx| everywhere: it pulls an agent after the one ahead; if the law anticipates, it adds 2 K^goal/(τ m) |ds/dv| to
+//! all friction. Drag adds its γ at twice ρ⁰max to all friction. No step is
 //! longer than the paper's Δt_coarse.
 
 use crate::analysis::sound;
@@ -131,6 +132,8 @@ pub struct Mode {
     pub correction: f64,
     /// The steepest walking law: speed per distance, 1/s.
     pub steepness: f64,
+    /// How much a walking law changes the speed of an agent with that of the one ahead.
+    pub damping: f64,
     /// The friction of walking laws in the densest crowds, 1/s.
     pub friction: f64,
 }
@@ -153,6 +156,7 @@ impl Mode {
                 let pace = fastest(scene);
                 let steepness = law.map_or(0.0, |law| law.steepness(pace, sph.support_radius));
                 mode.steepness = mode.steepness.max(steepness);
+                mode.damping = mode.damping.max(law.map_or(0.0, WalkingLaw::damping));
                 if let Some(WalkingLaw::Drag(drag)) = law {
                     let densest = CROWDED * sph.rest_density_max;
                     mode.friction = mode.friction.max(drag.rate(densest));
@@ -201,7 +205,8 @@ impl Mode {
         let law = BOTH_ENDS * self.steepness * self.correction;
         let pressed = (constants.pressure * self.pressure).powi(2) + springs + law;
         let drag = constants.drag * self.viscosity;
-        let friction = self.correction + self.friction;
+        let following = BOTH_ENDS * self.damping * self.correction;
+        let friction = self.correction + self.friction + following;
         let steps = [
             scheme.largest_step(pressed, PRESSED_DRAG * drag + friction),
             scheme.largest_step(self.corner + law, friction),

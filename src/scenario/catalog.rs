@@ -112,6 +112,10 @@ pub struct Parameters {
     /// l (`headway`), meters: the distance to the nearest agent ahead at which an agent stands. Longer: sparser queues.
     #[schemars(range(min = 0, max = FARTHEST), extend("default" = Headway::default().headway_length))]
     pub headway_length: Option<f64>,
+    /// t (`headway`), seconds: agents look at the distance to the nearest agent ahead that they expect after this time.
+    /// Longer: faster behind agents that speed up, as before a door; no change in a crowd that moves as one.
+    #[schemars(range(min = 0, max = 10), extend("default" = Headway::default().headway_anticipation))]
+    pub headway_anticipation: Option<f64>,
     /// w (`headway`), meters: the half-width of the lane; its edges fade over another half of it. Wider: slower crowds.
     #[schemars(range(min = 0.01, max = FARTHEST), extend("default" = Headway::default().lane_half_width))]
     pub lane_half_width: Option<f64>,

@@ -2,6 +2,7 @@
 
 use rand::Rng;
 use sandbox::engine::agents::NewAgent;
+use sandbox::engine::forces::walking::Headway;
 use sandbox::engine::math::Vector;
 use sandbox::engine::random::{Purpose, stream};
 use sandbox::engine::scene::Scene;
@@ -20,11 +21,23 @@ pub fn with(law: WalkingLawKind) -> Parameters {
     }
 }
 
+/// A headway law with anticipation.
+pub fn anticipating() -> Headway {
+    Headway {
+        headway_anticipation: 0.4,
+        ..Headway::default()
+    }
+}
+
 /// 300 people in a square of 10 m, with goals in all directions and preferred speeds up to 3 m/s.
 pub fn crowd(law: WalkingLawKind, seed: u64) -> Scene {
     let mut rng = stream(seed, Purpose::Placement, 0, 0);
     let mut random = move |size: f64| rng.random_range(-size..size);
-    let mut scene = scene(vec![], blend_with("sph", &with(law)));
+    let parameters = Parameters {
+        headway_anticipation: Some(anticipating().headway_anticipation),
+        ..with(law)
+    };
+    let mut scene = scene(vec![], blend_with("sph", &parameters));
     for k in 0..300 {
         let position = vector(random(5.0), random(5.0));
         scene.agents.push(NewAgent {

@@ -10,12 +10,14 @@ use crate::output::plot::{Axis, BLACK, Corner, GRAY, LINES, Mark, Panel, Point, 
 const TOLERANCE: f64 = 0.10;
 /// The points of a curve.
 const POINTS: u32 = 100;
+/// The most panels in a row.
+const IN_A_ROW: usize = 4;
 /// The part of the passages from which the measured flow is drawn.
 const BEGINNING: f64 = 0.1;
 
 /// `fundamental`, speeds by density, and `passages`, numbers of people over time at each line, of the scenes with runs.
 pub fn sheets(runs: &[Runs]) -> Vec<(&'static str, Sheet)> {
-    let fundamental = [corridor(runs), lines(runs), single_file(runs)];
+    let fundamental = [lines(runs), single_file(runs), corridor(runs)];
     let passages = MEASURED.iter().map(|measured| passages(measured, runs));
     let all = [
         (
@@ -33,7 +35,7 @@ pub fn sheets(runs: &[Runs]) -> Vec<(&'static str, Sheet)> {
     let sheet = |(stem, title, panels): (_, &str, Vec<Panel>)| {
         let sheet = Sheet {
             title: title.to_owned(),
-            columns: panels.len().min(3),
+            columns: panels.len().min(IN_A_ROW),
             panel_size: [200.0, 170.0],
             panels: with_legend(panels),
             ..Sheet::default()
@@ -45,7 +47,7 @@ pub fn sheets(runs: &[Runs]) -> Vec<(&'static str, Sheet)> {
 
 /// The legend beside the last panel of the first row.
 fn with_legend(mut panels: Vec<Panel>) -> Vec<Panel> {
-    let place = panels.len().min(3) - 1;
+    let place = panels.len().min(IN_A_ROW) - 1;
     panels[place].legend = Some(Corner::Beside);
     panels
 }
@@ -127,7 +129,7 @@ fn corridor(runs: &[Runs]) -> Option<Panel> {
     Some(Panel::new("endless corridor", x, y, marks))
 }
 
-/// Density and speed at each line, and an arrow's line from what was measured.
+/// Density and speed at each line, joined to what was measured there.
 fn lines(runs: &[Runs]) -> Option<Panel> {
     let value = |profile: &str, at: &Measured, what: &str| {
         mean(runs, profile, at.run, &format!("{}_{what}", at.line))
@@ -156,7 +158,12 @@ fn lines(runs: &[Runs]) -> Option<Panel> {
     marks.push(Mark::dots(measured, Style::full(BLACK, 2.4, "")));
     let x = Axis::linear("density [P/m²]", [0.0, 8.0]);
     let y = Axis::linear("speed [m/s]", [0.0, 1.6]);
-    Some(Panel::new("gaps, door and corridors", x, y, marks))
+    Some(Panel::new(
+        "gaps, door and corridors; black: measured",
+        x,
+        y,
+        marks,
+    ))
 }
 
 /// Speeds in single file, in the band of measured ones.

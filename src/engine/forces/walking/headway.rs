@@ -3,13 +3,17 @@
 //! A. Tordeux, M. Chraibi, A. Seyfried, Collision-free speed model for pedestrian dynamics, Traffic and Granular Flow
 //! '15 (2016): s = min(s₀, max(0, (d − ℓ)/T)), d the distance to the nearest agent in front within a lane. There a
 //! lane has sharp edges, and the speed jumps when an agent crosses one. Here the edges fade.
+//!
+//! Q. Xu, M. Chraibi, A. Seyfried, Anticipation in a velocity-based model for pedestrian dynamics, Transportation
+//! Research C 133 (2021): people look at the distance that they expect after some time, d + t (v_j − v_i)·ê_i. Here they
+//! do so behind those who walk away from them, and keep less distance than in a crowd that moves as one.
 
 use std::ops::Range;
 
 use super::{View, Walkers};
 use crate::engine::neighbors::Run;
 use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, splat};
+use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, spread};
 
 /// Parameters of the headway law.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
@@ -21,6 +25,8 @@ pub struct Headway {
     pub headway_length: f64,
     /// w, meters: agents up to this far beside the line ahead count in full.
     pub lane_half_width: f64,
+    /// t, seconds: agents look at the distance that they expect after this time; 0: at the distance now.
+    pub headway_anticipation: f64,
 }
 
 impl Default for Headway {
@@ -29,6 +35,7 @@ impl Default for Headway {
             headway_time: 0.6,
             headway_length: 0.3,
             lane_half_width: 0.3,
+            headway_anticipation: 0.0,
         }
     }
 }
@@ -52,13 +59,15 @@ impl Headway {
     /// The distance in meters at which an agent counts, for an agent with range R, meters: its distance d, if it is in
     /// the lane; at the edges of the lane it grows continuously to R.
     ///
-    /// d*² = d² + R² (max(0, (|c| − w)/f) + max(0, 1 − a/f)), with the distances a `along` and c `across` the line
-    /// ahead, and f = w/2. Agents behind, and those farther than w + f from the line, have d* ≥ R.
-    pub fn distance_in_lane(&self, range: f64, along: f64, across: f64) -> f64 {
+    /// d*² = (a + t max(0, u))² + c² + R² (max(0, (|c| − w)/f) + max(0, 1 − a/f)), with the distances a `along` and c
+    /// `across` the line ahead, the relative velocity u = (v_j − v_i)·ê_i, m/s, at which it moves `away`, and f = w/2.
+    /// Agents behind, and those farther than w + f from the line, have d* ≥ R.
+    pub fn distance_in_lane(&self, range: f64, [along, across]: [f64; 2], away: f64) -> f64 {
         let fade = FADE * self.lane_half_width;
         let outside =
             ((across.abs() - self.lane_half_width) / fade).max(0.0) + (1.0 - along / fade).max(0.0);
-        (along * along + across * across + range * range * outside).sqrt()
+        let expected = along + self.headway_anticipation * away.max(0.0);
+        (expected * expected + across * across + range * range * outside).sqrt()
     }
 
     pub(super) fn view(&self) -> View {
@@ -71,6 +80,10 @@ impl Headway {
 
     pub(super) fn steepness(&self) -> f64 {
         1.0 / self.headway_time
+    }
+
+    pub(super) fn damping(&self) -> f64 {
+        self.headway_anticipation / self.headway_time
     }
 
     /// s_i − s_i^law, m/s; zero, to the last bit, without agents in range. `runs` contain all agents in view, and some
@@ -90,7 +103,13 @@ impl Headway {
         let range = walkers.speed.mul_add(time, length) / unit;
         let range_squared = range * range;
         let fade = FADE * self.lane_half_width;
+        let velocity_x = load(simd, &bodies.velocity_x, walkers.start);
+        let velocity_y = load(simd, &bodies.velocity_y, walkers.start);
+        let [x, y] = walkers.backwards;
         let mut sum = Nearest {
+            velocity: [&bodies.velocity_x, &bodies.velocity_y],
+            backwards_speed: velocity_y.mul_add(y, velocity_x * x),
+            time: splat::<R, S>(simd, self.headway_anticipation / bodies.unit),
             backwards: walkers.backwards,
             range_squared,
             per_fade: splat::<R, S>(simd, bodies.unit / fade),
@@ -108,7 +127,13 @@ impl Headway {
 }
 
 /// The least d*² for eight agents i, at most R².
-struct Nearest<R: Real, S: Simd> {
+struct Nearest<'a, R: Real, S: Simd> {
+    /// The velocities of all agents, m/s.
+    velocity: [&'a [R]; 2],
+    /// −v_i·ê_i, m/s.
+    backwards_speed: Lanes<R, S>,
+    /// t, seconds times coordinate units per meter.
+    time: Lanes<R, S>,
     /// −ê_i.
     backwards: [Lanes<R, S>; 2],
     /// R², coordinate units².
@@ -121,21 +146,34 @@ struct Nearest<R: Real, S: Simd> {
     squared: Lanes<R, S>,
 }
 
-impl<R: Real, S: Simd> PairSum<R, S> for Nearest<R, S> {
-    type Run = ();
+impl<'a, R: Real, S: Simd> PairSum<R, S> for Nearest<'a, R, S> {
+    type Run = [&'a [R]; 2];
 
     #[inline(always)]
-    fn run(&self, _: Range<usize>) {}
+    fn run(&self, run: Range<usize>) -> [&'a [R]; 2] {
+        let [x, y] = self.velocity;
+        [&x[run.clone()], &y[run]]
+    }
 
     #[inline(always)]
-    fn add(&mut self, simd: S, [dx, dy]: [Lanes<R, S>; 2], (): (), _: usize) {
+    fn add(
+        &mut self,
+        simd: S,
+        [dx, dy]: [Lanes<R, S>; 2],
+        [velocity_x, velocity_y]: [&'a [R]; 2],
+        j: usize,
+    ) {
         let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
         let [x, y] = self.backwards;
         let along = dy.mul_add(y, dx * x);
         let across = (dx * y - dy * x).abs();
         let aside = across.mul_add(self.per_fade, self.edge).max(zero);
         let behind = (one - along * self.per_fade).max(zero);
-        let squared = dy.mul_add(dy, dx * dx);
+        let v_x = spread::<R, S>(simd, velocity_x[j]);
+        let v_y = spread::<R, S>(simd, velocity_y[j]);
+        let approach = v_y.mul_add(y, v_x * x) - self.backwards_speed;
+        let expected = along - self.time * approach.min(zero);
+        let squared = across.mul_add(across, expected * expected);
         let squared = self.range_squared.mul_add(aside + behind, squared);
         self.squared = self.squared.min(squared);
     }

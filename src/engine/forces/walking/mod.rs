@@ -92,6 +92,14 @@ impl WalkingLaw {
         }
     }
 
+    /// The largest rate at which the lowered speed changes with the velocity of an agent ahead.
+    pub fn damping(&self) -> f64 {
+        match self {
+            Self::Headway(law) => law.damping(),
+            Self::DensityAhead(_) | Self::Drag(_) => 0.0,
+        }
+    }
+
     /// The preferred velocity of agent `i` with the lowered speed, m/s.
     pub fn preferred_velocity(&self, frame: &Frame, i: usize) -> Vector {
         frame.fields.preferred_velocity[i] + self.acceleration(frame, i, 1.0)
