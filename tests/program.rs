@@ -7,6 +7,7 @@ mod accuracy_walls;
 mod backlogs;
 mod bad_days;
 mod bench;
+mod calibrate;
 mod checkpoint;
 mod checkpoint_robustness;
 mod cli;

@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
 use super::arguments::{DrawOptions, InspectOptions, ResumeOptions, RunOptions};
-use super::{accuracy, bench, measure, reproduce, stress, suite, sweep};
+use super::{accuracy, bench, calibrate, measure, reproduce, stress, suite, sweep};
 use crate::lab::validate::VALIDATION;
 use crate::lab::verify::VERIFICATION;
 
@@ -104,6 +104,9 @@ pub enum Command {
         mut_arg("out", |out| out.required(false).default_value("validation"))
     )]
     Validate(suite::ValidateOptions),
+    /// Search for parameters with which scenes come close to what was measured there
+    #[command(after_help = calibrate::EXAMPLE)]
+    Calibrate(calibrate::CalibrateOptions),
     /// Print the JSON Schema of scenario files, for completion and checks in editors
     #[command(after_help = SCHEMA_EXAMPLE)]
     Schema,

@@ -3,6 +3,7 @@
 mod accuracy;
 mod arguments;
 mod bench;
+mod calibrate;
 mod checkpoint;
 mod commands;
 mod draw;
@@ -157,6 +158,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Stress(options) => stress::run(&options),
         Command::Verify(options) => suite::verify(&options),
         Command::Validate(options) => suite::validate(&options),
+        Command::Calibrate(options) => calibrate::run(&options),
         Command::Schema => list::schema(),
         Command::Sweep(options) => sweep::run(&options),
         Command::Measure(options) => measure::run(&options),

@@ -40,6 +40,7 @@ fn steps(seconds: f64) -> u64 {
 impl Listener for Watch {
     fn begins(&self, jobs: usize, kept: usize, seconds: f64) {
         self.notes(&format!("{jobs} case(s) to run, {kept} kept from before"));
+        self.bar.reset(); // the computation may have several parts
         self.bar.set_length(steps(seconds));
         self.bar.enable_steady_tick(Duration::from_secs(1));
     }

@@ -110,6 +110,15 @@ impl Case {
         })
     }
 
+    /// The same run with further settings, which override earlier ones.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with(&self, settings: Vec<Setting>, memory: &Memory) -> Result<Self, RunError> {
+        let settings = self.settings.iter().cloned().chain(settings);
+        Self::new(self.source.clone(), settings.collect(), memory)
+    }
+
     /// The files that it is read from.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         let own = match &self.source {

@@ -12,7 +12,7 @@ use crate::runs::drive::Run;
 use crate::scenario::measurements::{Left, Metric};
 
 /// The results of a run, part of what `--json` reports.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Summary {
     /// The name of the scenario.
     pub scenario: String,

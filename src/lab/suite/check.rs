@@ -31,6 +31,9 @@ pub struct Check {
     pub value: Option<f64>,
     /// What is expected.
     pub expected: Expected,
+    /// The label of the run that gives the value; `None` if several do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub run: Option<&'static str>,
 }
 
 impl Check {
@@ -40,6 +43,7 @@ impl Check {
             quantity: quantity.into(),
             value,
             expected: Expected::Between([low, high]),
+            run: None,
         }
     }
 
@@ -56,6 +60,16 @@ impl Check {
                 value: measured,
                 tolerance,
             },
+            run: None,
+        }
+    }
+
+    /// The same check of a value that this run gives.
+    #[must_use]
+    pub fn of_run(self, label: &'static str) -> Self {
+        Self {
+            run: Some(label),
+            ..self
         }
     }
 
@@ -80,6 +94,7 @@ impl Check {
             quantity: quantity.into(),
             value,
             expected: Expected::Any,
+            run: None,
         }
     }
 

@@ -17,11 +17,11 @@ pub(super) const SCENARIO: &str = "scenario";
 
 /// Where a study is read from, and with it the files that it refers to.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Root<'a> {
+pub(in crate::lab) struct Root<'a> {
     /// The study's file, relative to `scenarios/` if it is built in.
-    pub(super) path: &'a Path,
+    pub(in crate::lab) path: &'a Path,
     /// Is it built into the program, or on disk?
-    pub(super) built_in: bool,
+    pub(in crate::lab) built_in: bool,
 }
 
 impl Root<'_> {
@@ -152,7 +152,7 @@ fn choice(
 }
 
 /// A shipped scenario by its name, or a file.
-pub(super) fn source(name: &str, place: &str, root: Root) -> Result<Source, Problem> {
+pub(in crate::lab) fn source(name: &str, place: &str, root: Root) -> Result<Source, Problem> {
     if let Some(shipped) = Source::shipped(name) {
         return Ok(shipped);
     }

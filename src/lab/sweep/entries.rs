@@ -10,7 +10,7 @@ use crate::scenario::Problem;
 
 /// Keys and values as written.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Entries(pub Vec<(String, Value)>);
+pub(in crate::lab) struct Entries(pub Vec<(String, Value)>);
 
 impl Entries {
     /// The label, and the other entries.

@@ -32,9 +32,13 @@ mod study;
 mod tables;
 
 pub use cell::Cell;
+pub(in crate::lab) use choice::{Root, source};
+pub(in crate::lab) use entries::Entries;
 pub use gathered::{Combination, Gathered, State};
+pub(in crate::lab) use seeds::Seeds;
 pub use shard::Shard;
 pub use study::Study;
+pub(in crate::lab) use study::{check_name, parse};
 
 use crate::lab::error::LabError;
 use crate::runs::error::{RunError, StoreError};

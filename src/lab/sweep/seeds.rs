@@ -10,7 +10,7 @@ use crate::scenario::Problem;
 
 /// The seeds as written.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Seeds {
+pub(in crate::lab) enum Seeds {
     /// The seeds 1, 2, … up to this number.
     Count(u64),
     /// These seeds.
@@ -19,7 +19,7 @@ pub(super) enum Seeds {
 
 impl Seeds {
     /// All seeds, after validation; at most `most` are allowed.
-    pub(super) fn all(&self, most: usize) -> Result<Vec<u64>, Problem> {
+    pub(in crate::lab) fn all(&self, most: usize) -> Result<Vec<u64>, Problem> {
         let (count, least) = match self {
             Self::Count(count) => (*count, "must be at least 1"),
             Self::List(list) => (list.len() as u64, "must not be empty"),

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::StudyError;
@@ -66,6 +67,19 @@ impl Study {
     pub fn jobs(&self, wanted: impl Fn(&Cell) -> bool) -> Vec<Job<'_>> {
         let cells = self.cells.iter().filter(|cell| wanted(cell));
         cells.map(|cell| cell.case.job(cell.to_string())).collect()
+    }
+
+    /// A study of these cells, which another file describes.
+    pub fn of_cells(name: &str, cells: Vec<Cell>, memory: Option<u64>) -> Self {
+        Self {
+            name: name.to_owned(),
+            document: Value::Null,
+            axes: Vec::new(),
+            grid_axes: 0,
+            seeds: 1,
+            cells,
+            memory,
+        }
     }
 
     /// Reads a study, and validates the scenario of every cell. Only as many cells are validated and computed at the
@@ -164,7 +178,7 @@ impl Study {
             problem,
         };
         let document = read_document(text, &file)?;
-        let mut written = parse(text).map_err(invalid)?;
+        let mut written: File = parse(text, "a `scenario`").map_err(invalid)?;
         change(&mut written);
         let plan = Plan::new(&written, root).map_err(invalid)?;
         let name = written.name.unwrap_or_else(|| stem.into_owned());
@@ -202,7 +216,7 @@ fn built_in_path(name: &str) -> PathBuf {
 }
 
 /// Is the name suitable for result files on every system?
-fn check_name(name: &str) -> Result<(), Problem> {
+pub(in crate::lab) fn check_name(name: &str) -> Result<(), Problem> {
     let reason = if name.is_empty() {
         "it is empty"
     } else if name.starts_with('.') {
@@ -222,13 +236,11 @@ fn check_name(name: &str) -> Result<(), Problem> {
     Err(Problem::new("name", reason))
 }
 
-/// Checks names and types.
-fn parse(text: &str) -> Result<File, Problem> {
+/// Checks names and types. `needs` is what a file needs at least, for the message about one that is no object.
+pub(in crate::lab) fn parse<T: DeserializeOwned>(text: &str, needs: &str) -> Result<T, Problem> {
     if !text.trim_start().starts_with('{') {
-        return Err(Problem::new(
-            "",
-            "must be an object, {…}, with a `scenario`",
-        ));
+        let reason = format!("must be an object, {{…}}, with {needs}");
+        return Err(Problem::new("", reason));
     }
     let mut deserializer = serde_json::Deserializer::from_str(text);
     serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {

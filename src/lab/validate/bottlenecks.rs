@@ -126,7 +126,8 @@ impl Measured {
         let all = quantities.into_iter().zip(TOLERANCES);
         all.map(|((quantity, name, measured), tolerance)| {
             let value = runs.metric(self.run, &format!("{}_{name}", self.line))?;
-            Ok(Check::near(quantity, value, (measured, tolerance)))
+            let check = Check::near(quantity, value, (measured, tolerance));
+            Ok(check.of_run(self.run))
         })
         .collect()
     }

@@ -56,10 +56,10 @@ pub const CASES: [Case; 2] = [
 ];
 
 fn speeds(runs: &Runs) -> Result<Vec<Check>, LabError> {
-    let check = |(run, density, measured): (&str, f64, f64)| {
+    let check = |(run, density, measured): (&'static str, f64, f64)| {
         let value = runs.metric(run, "ring_speed_m_per_s")?;
         let quantity = format!("speed at {density} P/m² [m/s]");
-        Ok(Check::near(quantity, value, (measured, TOLERANCE)))
+        Ok(Check::near(quantity, value, (measured, TOLERANCE)).of_run(run))
     };
     SPEEDS.into_iter().map(check).collect()
 }

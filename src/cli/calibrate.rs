@@ -1,0 +1,153 @@
+//! `sandbox calibrate`: a search for parameters, from one file.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::watch::Watch;
+use super::{Failure, tell, use_threads};
+use crate::lab::calibrate::{Calibration, FILES, Target, run as search};
+use crate::lab::machine::main_memory;
+use crate::lab::sweep::Shard;
+use crate::output::table::Table;
+use crate::runs::outputs::{Manner, Outputs};
+use crate::runs::store::Store;
+
+/// An example of a study, and of commands.
+pub const EXAMPLE: &str = r#"A study, JSON:
+  {
+    "settings": { "walking_law": "headway" },
+    "parameters": [
+      { "name": "headway_time", "bounds": [0.3, 1.2], "start": 0.6 },
+      { "name": "radius", "keys": ["crowds.*.radius", "grids.*.radius"], "bounds": [0.15, 0.25] }
+    ],
+    "fit": [{ "case": "gap-2.4" }, { "case": "speeds", "values": ["speed at 0.75", "speed at 2.75"] }],
+    "hold_out": [{ "case": "gap-3.6" }],
+    "transfer": [{ "scenario": "door.json",
+                   "values": [{ "quantity": "door_flow_per_s", "value": 2.1, "tolerance": 0.06 }] }],
+    "seeds": 2, "final_seeds": [11, 12, 13],
+    "screening": { "trajectories": 4 },
+    "search": { "generations": 30 }
+  }
+
+Examples:
+  sandbox calibrate study.json --list
+  sandbox calibrate study.json --out results
+  sandbox calibrate headway --shard 2/8 --out /shared/headway"#;
+
+#[derive(Args)]
+pub struct CalibrateOptions {
+    /// The study: a JSON file with parameters and measured values; or the name of a built-in one, such as headway
+    pub file: PathBuf,
+    /// Compute part I of N (1 ≤ I ≤ N) of each stage first, then what no other process has begun
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
+    /// Run nothing; list the measured values, the parameters and the number of runs
+    #[arg(long, conflicts_with = "shard")]
+    pub list: bool,
+    /// Folder for the results; runs finished there are not run again [default: the study's name]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of runs to compute at once, each on one thread [default: all cores]
+    #[arg(long, value_parser = super::values::threads)]
+    pub threads: Option<usize>,
+    /// Replace existing files with the results' names in a folder that does not belong to a study
+    #[arg(long)]
+    pub force: bool,
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+pub fn run(options: &CalibrateOptions) -> Result<(), Failure> {
+    use_threads(options.threads)?;
+    let calibration = Calibration::open(&options.file, main_memory())?;
+    if options.list {
+        return tell(
+            options.json,
+            || listed_json(&calibration),
+            || listed(&calibration),
+        );
+    }
+    let folder = options.out.clone();
+    let folder = folder.unwrap_or_else(|| PathBuf::from(&calibration.name));
+    let mut outputs = Outputs::new(options.force || Store::at(&folder).is_begun());
+    if options.file.exists() {
+        outputs.reads("the study", &options.file);
+    }
+    for path in calibration.inputs() {
+        outputs.reads("the study's", &path);
+    }
+    for file in FILES {
+        // Another process may start the same study at the same time, so do not create trial files.
+        outputs.writes("--out", &folder.join(file), Manner::Beside);
+    }
+    outputs.check()?;
+    let store = Store::open(&folder)?;
+    let shard = options.shard.unwrap_or(Shard::WHOLE);
+    let report = search(&calibration, shard, &store, &Watch::new())?;
+    tell(options.json, || report.json(), || report.markdown())
+}
+
+/// The measured values, the parameters and the number of runs.
+fn listed(calibration: &Calibration) -> String {
+    let scene = |target: &Target| calibration.scenes[target.scene].name.clone();
+    let targets = Table::of(&calibration.targets)
+        .column("set", |target| target.set.name())
+        .column("scene", |target| target.of.as_str())
+        .column("run", scene)
+        .column("quantity", |target| target.quantity.as_str())
+        .column("measured", |target| target.measured)
+        .column("tolerance", |target| target.tolerance);
+    let parameters = Table::of(&calibration.parameters)
+        .column("parameter", |parameter| parameter.name.as_str())
+        .column("from", |parameter| parameter.bounds[0])
+        .column("to", |parameter| parameter.bounds[1])
+        .column("start", |parameter| parameter.start);
+    let [runs, secs] = most_runs(calibration);
+    format!(
+        "{}\n{}\nat most {runs} runs, about {:.1} hours on one core\n",
+        targets.table().text(),
+        parameters.table().text(),
+        secs / 3600.0,
+    )
+}
+
+fn listed_json(calibration: &Calibration) -> Value {
+    let targets = calibration.targets.iter().map(|target| {
+        json!({
+            "set": target.set, "scene": target.of, "quantity": target.quantity,
+            "run": calibration.scenes[target.scene].name,
+            "measured": target.measured, "tolerance": target.tolerance,
+        })
+    });
+    let parameters = calibration.parameters.iter().map(|parameter| {
+        json!({"name": parameter.name, "bounds": parameter.bounds, "start": parameter.start})
+    });
+    let [runs, secs] = most_runs(calibration);
+    json!({
+        "calibration": calibration.name,
+        "values": targets.collect::<Vec<_>>(),
+        "parameters": parameters.collect::<Vec<_>>(),
+        "most_runs": runs,
+        "expected_secs": secs,
+    })
+}
+
+/// The number of runs if the search does not converge early, and the time that they take on one core, seconds.
+fn most_runs(calibration: &Calibration) -> [f64; 2] {
+    let dimension = calibration.parameters.len();
+    let screening = calibration
+        .screening
+        .map_or(0, |of| of.trajectories * (dimension + 1));
+    let generations = calibration.search.generations * calibration.population(dimension);
+    let points = (1 + screening + generations + 2 * dimension) * calibration.seeds.len();
+    let fitted = calibration.fitted_scenes();
+    let last = 2 * calibration.final_seeds.len();
+    let scenes = calibration.scenes.iter().enumerate().map(|(k, scene)| {
+        let runs = last + if fitted.contains(&k) { points } else { 0 };
+        [runs as f64, runs as f64 * scene.expected_secs()]
+    });
+    scenes.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]])
+}

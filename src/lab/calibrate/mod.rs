@@ -1,0 +1,57 @@
+//! Calibration: parameters for which runs come close to measured values.
+//!
+//! A [`Calibration`] is one file: parameters with bounds, scenes with measured values and tolerances, seeds. [`run`]
+//! computes the starting point, a screening ([`morris`](crate::analysis::morris)), the generations of a search
+//! ([`cma_es`](crate::analysis::cma_es)), slopes around the best point
+//! ([`identifiability`](crate::analysis::identifiability)), and the errors of the fitted values and of those that the
+//! search has not seen. The points of each stage are the cells of a sweep; finished cells are kept in the store, and
+//! everything else follows from them. So a calibration that is interrupted goes on where it was, any number of processes
+//! can share one folder, and the results have the same bytes however often it was interrupted.
+
+mod evaluate;
+mod file;
+mod parameter;
+mod pictures;
+mod reader;
+mod report;
+mod residual;
+mod scene;
+mod search;
+mod study;
+mod text;
+
+pub use evaluate::{Evaluated, Sample};
+pub use parameter::Parameter;
+pub use report::{FILES, Report};
+pub use scene::{Scene, Set, Target};
+pub use search::{Found, Stage};
+pub use study::Calibration;
+
+use crate::lab::error::LabError;
+use crate::lab::sweep::Shard;
+use crate::runs::job::Listener;
+use crate::runs::store::Store;
+
+/// Computes all stages and writes the results into the store's folder. `shard` is the part of each stage's cells that
+/// this process computes first; then it computes those that no other process has claimed, and waits for the others.
+///
+/// # Errors
+/// Results cannot be stored, or the screening drops all parameters.
+pub fn run<'a>(
+    calibration: &'a Calibration,
+    shard: Shard,
+    store: &Store,
+    listener: &dyn Listener,
+) -> Result<Report<'a>, LabError> {
+    let found = search::search(&evaluate::Evaluator {
+        calibration,
+        shard,
+        store,
+        listener,
+    })?;
+    let report = Report { calibration, found };
+    report.write(store)?;
+    listener.notes("drawing 3 pictures");
+    pictures::save(&report, store)?;
+    Ok(report)
+}

@@ -1,0 +1,254 @@
+//! What is printed and written about a calibration.
+
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+use super::evaluate::Sample;
+use super::residual::{noise, residual, root_mean_square};
+use super::scene::{Set, Target};
+use super::search::{Found, Stage, Trial};
+use super::study::Calibration;
+use crate::lab::error::LabError;
+use crate::runs::identity::ENGINE;
+use crate::runs::store::Store;
+
+/// A parameter whose interval covers more of its bounds than this is not identified.
+const MOST: f64 = 0.5;
+/// Closer to a bound than this part of the bounds, a parameter is at the bound.
+const NEAR: f64 = 0.02;
+
+/// The files that [`Report::write`] and the pictures write.
+pub const FILES: [&str; 9] = [
+    "result.json",
+    "result.md",
+    "evaluations.csv",
+    "convergence.svg",
+    "convergence.png",
+    "errors.svg",
+    "errors.png",
+    "screening.svg",
+    "screening.png",
+];
+
+/// A calibration with everything that was found.
+pub struct Report<'a> {
+    /// The calibration.
+    pub calibration: &'a Calibration,
+    /// What was found.
+    pub found: Found,
+}
+
+/// A parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ParameterResult {
+    /// Its name.
+    pub name: String,
+    /// Its value at the start.
+    pub start: f64,
+    /// Its value at the best point.
+    pub best: f64,
+    /// The bounds.
+    pub bounds: [f64; 2],
+    /// Its 95 % interval; `None` if it was not searched.
+    pub interval: Option<[f64; 2]>,
+    /// The part of the bounds that the interval covers, on the scale of the search.
+    pub covers: Option<f64>,
+    /// Do the values determine it? Its interval covers at most half of the bounds.
+    pub identified: bool,
+    /// Is it at a bound? Then its optimum may lie outside.
+    pub at_bound: bool,
+}
+
+/// How far the runs of one point are off one measured value.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Errors {
+    /// The mean over the seeds that gave a value.
+    pub mean: Option<f64>,
+    /// Its difference from the measured value, as a part of it.
+    pub error: Option<f64>,
+    /// The residual, tolerances.
+    pub residual: Option<f64>,
+    /// The standard deviation over the seeds.
+    pub deviation: Option<f64>,
+    /// The standard error of the mean, tolerances.
+    pub noise: Option<f64>,
+    /// The reasons of the failed runs, by seed.
+    pub failures: Vec<String>,
+}
+
+/// A measured value.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ValueResult {
+    /// What it is compared for.
+    pub set: Set,
+    /// Its case or scenario.
+    pub of: String,
+    /// The quantity.
+    pub quantity: String,
+    /// The measured value.
+    pub measured: f64,
+    /// The tolerance, as a part of it.
+    pub tolerance: f64,
+    /// With the starting point.
+    pub start: Errors,
+    /// With the best point.
+    pub best: Errors,
+}
+
+impl Errors {
+    fn of(sample: &Sample, target: &Target, calibration: &Calibration) -> Self {
+        let values = sample.values();
+        let failures = sample.runs.iter().filter_map(|run| run.as_ref().err());
+        Self {
+            mean: values.map(|of| of.mean),
+            error: values.map(|of| of.mean / target.measured - 1.0),
+            residual: residual(sample, target, &calibration.rule),
+            deviation: values.and_then(|of| of.std()),
+            noise: noise(sample, target),
+            failures: failures.cloned().collect(),
+        }
+    }
+
+    /// Is the value within the tolerance with all seeds?
+    pub(super) fn is_within(&self, tolerance: f64) -> bool {
+        let error = self.error.is_some_and(|error| error.abs() <= tolerance);
+        error && self.failures.is_empty()
+    }
+}
+
+impl Report<'_> {
+    pub(super) fn best(&self) -> &Trial {
+        &self.found.trials[self.found.best]
+    }
+
+    /// The parameters.
+    pub fn parameters(&self) -> Vec<ParameterResult> {
+        let point = &self.best().evaluated.point;
+        let all = self.calibration.parameters.iter().zip(point).enumerate();
+        let result = |(k, (parameter, &at)): (usize, (&super::Parameter, &f64))| {
+            let searched = self.found.searched.iter().position(|&own| own == k);
+            let ends = searched.map(|k| {
+                let half = self.found.knowledge.half_width(k);
+                [at - half, at + half].map(|end| end.clamp(0.0, 1.0))
+            });
+            let covers = ends.map(|[low, high]| high - low);
+            ParameterResult {
+                name: parameter.name.clone(),
+                start: parameter.start,
+                best: parameter.value(at),
+                bounds: parameter.bounds,
+                interval: ends.map(|ends| ends.map(|end| parameter.value(end))),
+                covers,
+                identified: covers.is_some_and(|part| part <= MOST),
+                at_bound: searched.is_some() && !(NEAR..=1.0 - NEAR).contains(&at),
+            }
+        };
+        all.map(result).collect()
+    }
+
+    /// The values of all sets.
+    pub fn values(&self) -> Vec<ValueResult> {
+        let of = self.calibration;
+        let result = |(k, target): (usize, &Target)| {
+            let [start, best] = self.found.compared.each_ref().map(|at| &at.samples[k]);
+            ValueResult {
+                set: target.set,
+                of: target.of.clone(),
+                quantity: target.quantity.clone(),
+                measured: target.measured,
+                tolerance: target.tolerance,
+                start: Errors::of(start, target, of),
+                best: Errors::of(best, target, of),
+            }
+        };
+        of.targets.iter().enumerate().map(result).collect()
+    }
+
+    /// The root mean square of a set's residuals with the starting and with the best point, tolerances; `None` for a set
+    /// without values.
+    pub fn misfits(&self, set: Set) -> Option<[f64; 2]> {
+        let of = self.calibration;
+        let [start, best] = self.found.compared.each_ref().map(|at| {
+            let own = at.samples.iter().zip(&of.targets);
+            root_mean_square(own.filter(|(_, target)| target.set == set), &of.rule)
+        });
+        Some([start?, best?])
+    }
+
+    /// The number of trials in a stage, the number of all trials, and the runs without a value in them.
+    pub(super) fn counts(&self) -> [usize; 3] {
+        let trials = &self.found.trials;
+        let in_search = |trial: &&Trial| matches!(trial.stage, Stage::Generation(_));
+        let failures = trials.iter().map(|trial| trial.evaluated.failures()).sum();
+        [
+            trials.iter().filter(in_search).count(),
+            trials.len(),
+            failures,
+        ]
+    }
+
+    /// All results as one object. It has no times and no paths: equal calibrations give equal bytes.
+    pub fn json(&self) -> Value {
+        let of = self.calibration;
+        let [_, points, failures] = self.counts();
+        let searched = 0..self.found.searched.len();
+        let correlations = searched.clone().map(|a| {
+            let of = &self.found.knowledge;
+            let row = searched.clone().map(|b| of.correlation(a, b));
+            row.collect::<Vec<_>>()
+        });
+        let misfits = Set::ALL.into_iter().filter_map(|set| {
+            let [start, best] = self.misfits(set)?;
+            let of_set = self.values().into_iter().filter(|value| value.set == set);
+            let within = |value: &ValueResult| value.best.is_within(value.tolerance);
+            let all: Vec<ValueResult> = of_set.collect();
+            let within = all.iter().filter(|value| within(value)).count();
+            Some(json!({"set": set, "values": all.len(), "start": start, "best": best, "within": within}))
+        });
+        let names = of
+            .parameters
+            .iter()
+            .map(|parameter| parameter.name.as_str());
+        let screening = self.found.screened.as_ref().map(|screened| {
+            json!({"parameters": names.collect::<Vec<_>>(), "misfit": screened.misfit, "values": screened.values})
+        });
+        let generations = self.found.generations.iter().map(|generation| {
+            json!({"misfits": generation.misfits, "best": generation.best, "spread": generation.spread})
+        });
+        json!({
+            "calibration": of.name,
+            "file": of.document,
+            "engine": ENGINE,
+            "settings": self.settings(),
+            "parameters": self.parameters(),
+            "searched": self.found.searched.iter().map(|&k| &of.parameters[k].name).collect::<Vec<_>>(),
+            "correlations": correlations.collect::<Vec<_>>(),
+            "misfits": misfits.collect::<Vec<_>>(),
+            "values": self.values(),
+            "screening": screening,
+            "generations": generations.collect::<Vec<_>>(),
+            "points": points,
+            "values_missing": failures,
+        })
+    }
+
+    /// The keys of the best point with their values, as a scenario's settings.
+    fn settings(&self) -> Value {
+        let parameters = self.calibration.parameters.iter();
+        let both = parameters.zip(&self.best().evaluated.point);
+        let keys = both.flat_map(|(parameter, &at)| {
+            let value = parameter.written(parameter.value(at));
+            let keys = parameter.keys.iter();
+            keys.map(move |key| (key.clone(), value.clone()))
+        });
+        Value::Object(keys.collect::<Map<_, _>>())
+    }
+
+    /// Writes the results as JSON, Markdown and CSV into the store's folder.
+    pub(super) fn write(&self, store: &Store) -> Result<(), LabError> {
+        store.write("result.json", format!("{:#}\n", self.json()).as_bytes())?;
+        store.write("result.md", self.markdown().as_bytes())?;
+        store.write("evaluations.csv", &self.csv()?)?;
+        Ok(())
+    }
+}

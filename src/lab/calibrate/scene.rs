@@ -1,0 +1,150 @@
+//! Scenes, and what was measured there: cases of the validation, or own scenarios.
+
+use serde::Serialize;
+
+use super::file::Rule;
+use crate::lab::error::LabError;
+use crate::lab::suite::{Case as Judged, Check, Runs};
+use crate::lab::validate::VALIDATION;
+use crate::runs::case::{Case, RunResult};
+use crate::runs::summary::Summary;
+
+/// The measurement of people who pass through walls.
+const THROUGH_WALLS: &str = "agents_through_walls";
+
+/// What a value is compared for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Set {
+    /// The search minimizes its residual.
+    Fit,
+    /// The search does not see it: the same kind of scene.
+    HoldOut,
+    /// The search does not see it: another kind of scene.
+    Transfer,
+}
+
+impl Set {
+    /// All sets.
+    pub const ALL: [Self; 3] = [Self::Fit, Self::HoldOut, Self::Transfer];
+
+    /// Its name for readers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fit => "fit",
+            Self::HoldOut => "hold-out",
+            Self::Transfer => "transfer",
+        }
+    }
+}
+
+/// One run, apart from parameters and seed.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// Its name in messages.
+    pub name: String,
+    /// The run without the parameters.
+    pub(super) case: Case,
+    /// Its document without the parameters.
+    pub(super) document: serde_json::Value,
+    /// Does it stop when it is empty?
+    pub(super) ends_empty: bool,
+}
+
+/// A measured value.
+#[derive(Clone)]
+pub struct Target {
+    /// What it is compared for.
+    pub set: Set,
+    /// The number of its scene.
+    pub scene: usize,
+    /// The name of the case or scenario.
+    pub of: String,
+    /// The quantity, with its unit if it is known.
+    pub quantity: String,
+    /// The measured value.
+    pub measured: f64,
+    /// The tolerance, as a part of it.
+    pub tolerance: f64,
+    pub(super) reading: Reading,
+}
+
+/// How the value of a run is found.
+#[derive(Clone)]
+pub(super) enum Reading {
+    /// A check of a case of the validation: its number.
+    Check(&'static Judged, &'static str, usize),
+    /// A measurement.
+    Metric(String),
+}
+
+impl Target {
+    /// The value of a run, or why it has none.
+    pub(super) fn read(&self, scene: &Scene, run: &RunResult, rule: &Rule) -> Result<f64, String> {
+        let through = run.summary.metric(THROUGH_WALLS).unwrap_or_default();
+        if through > 0.0 {
+            return Err(format!("{through} people passed through walls"));
+        }
+        if let Some(why) = scene.stuck(run, rule.stuck_secs) {
+            return Err(why);
+        }
+        let value = match &self.reading {
+            Reading::Metric(name) => run.summary.metric(name),
+            Reading::Check(case, label, number) => {
+                let checks =
+                    checks(case, label, &run.summary).map_err(|error| error.to_string())?;
+                checks[*number].value
+            }
+        };
+        match value {
+            Some(value) if value > 0.0 => Ok(value),
+            Some(value) => Err(format!("{} is {value}", self.quantity)),
+            None => Err(format!("{} has no value", self.quantity)),
+        }
+    }
+}
+
+impl Scene {
+    /// Estimated time of its run on one core, seconds.
+    pub fn expected_secs(&self) -> f64 {
+        self.case.expected_secs
+    }
+
+    /// Why a run is stuck; `None` if it is not.
+    fn stuck(&self, run: &RunResult, secs: f64) -> Option<String> {
+        let waiting = run.summary.backlogs.iter();
+        let waiting: u32 = waiting.map(|backlog| backlog.at_end).sum();
+        let left = run.remaining + waiting as usize;
+        if !self.ends_empty || left == 0 {
+            return None;
+        }
+        let exits = run.summary.places.iter();
+        let last = exits.filter_map(|exit| Some(exit.from_to_secs?[1]));
+        let last = last.max_by(f64::total_cmp);
+        let idle = run.summary.time_secs - last.unwrap_or_default();
+        (idle > secs).then(|| match last {
+            Some(last) => {
+                format!("stuck: {left} people are left after the last one left at {last:.1} s")
+            }
+            None => format!("stuck: {left} people are left"),
+        })
+    }
+}
+
+/// The checks of a case, of which only this run is known.
+pub(super) fn checks(
+    case: &Judged,
+    label: &str,
+    summary: &Summary,
+) -> Result<Vec<Check>, LabError> {
+    let blank = Summary::default();
+    let own = case.runs.iter().map(|run| match *run == label {
+        true => (*run, summary),
+        false => (*run, &blank),
+    });
+    let own = own.collect();
+    (case.judge)(&Runs {
+        suite: VALIDATION.name,
+        own,
+    })
+}

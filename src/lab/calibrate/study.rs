@@ -1,0 +1,307 @@
+//! A calibration's file → checked parameters, scenes and measured values.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::file::{File, Rule, SceneKeys, Screening, Search};
+use super::parameter::Parameter;
+use super::reader::Reader;
+use super::scene::{Scene, Set, Target};
+use crate::analysis::cma_es::{CmaEs, LEAST_POPULATION};
+use crate::lab::sweep::{Root, Seeds, Study, check_name, parse};
+use crate::lab::validate::VALIDATION;
+use crate::runs::memory::Memory;
+use crate::scenario::quote::shown;
+use crate::scenario::{Problem, ScenarioError, Setting, built_in, input, read_document};
+
+/// The profile of the validation's cases unless the file's settings have another.
+const PROFILE: &str = "sph";
+/// Most parameters.
+const MOST_PARAMETERS: usize = 50;
+/// Most seeds.
+const MOST_SEEDS: usize = 1000;
+/// Most points of a generation, and most trajectories.
+const MOST_POINTS: usize = 1000;
+/// Most generations.
+const MOST_GENERATIONS: usize = 10_000;
+/// Largest residual of a file.
+const LARGEST_RESIDUAL: f64 = 1e6;
+
+/// A checked calibration.
+pub struct Calibration {
+    /// Its name, suitable as a file name.
+    pub name: String,
+    /// The contents of the file.
+    pub document: Value,
+    /// The parameters.
+    pub parameters: Vec<Parameter>,
+    /// The scenes of all values.
+    pub scenes: Vec<Scene>,
+    /// The measured values: those of the fit first, then hold-out and transfer.
+    pub targets: Vec<Target>,
+    /// The seeds of the search.
+    pub seeds: Vec<u64>,
+    /// The seeds of the errors that are reported.
+    pub final_seeds: Vec<u64>,
+    /// How far runs are off the measured values.
+    pub rule: Rule,
+    /// The screening, if there is one.
+    pub screening: Option<Screening>,
+    /// The search.
+    pub search: Search,
+    /// Memory that the runs share, bytes; `None` without a limit.
+    pub memory: Option<u64>,
+}
+
+impl Calibration {
+    /// Reads a calibration from a file, or the built-in one of this name if there is no such file: a file under
+    /// `scenarios/calibration/`, without its extension.
+    ///
+    /// # Errors
+    /// The first problem, with its place in the file.
+    pub fn open(path: &Path, memory: Option<u64>) -> Result<Self, ScenarioError> {
+        let name = path.to_str().filter(|_| !path.exists());
+        let shipped = name.map(|name| Path::new("calibration").join(format!("{name}.json")));
+        if let Some((path, text)) = shipped.and_then(|path| Some((path.clone(), built_in(&path)?)))
+        {
+            let (path, built_in) = (path.as_path(), true);
+            return Self::parse(text, Root { path, built_in }, memory);
+        }
+        let text = input::text(path).map_err(|error| ScenarioError::Unreadable {
+            file: path.display().to_string(),
+            reason: error.to_string(),
+        })?;
+        let built_in = false;
+        Self::parse(&text, Root { path, built_in }, memory)
+    }
+
+    fn parse(text: &str, root: Root, memory: Option<u64>) -> Result<Self, ScenarioError> {
+        let file = root.path.display().to_string();
+        let document = read_document(text, &file)?;
+        let stem = root.path.file_stem().unwrap_or_default().to_string_lossy();
+        let checked = parse(text, "`parameters` and `fit`");
+        let checked = checked.and_then(|keys| Self::checked(keys, document, &stem, (root, memory)));
+        checked.map_err(|problem| ScenarioError::Invalid { file, problem })
+    }
+
+    fn checked(
+        keys: File,
+        document: Value,
+        stem: &str,
+        (root, memory): (Root, Option<u64>),
+    ) -> Result<Self, Problem> {
+        let name = keys.name.clone().unwrap_or_else(|| stem.to_owned());
+        check_name(&name)?;
+        check_numbers(&keys)?;
+        let seeds = |given: Option<&Seeds>, other: &[u64]| match given {
+            Some(seeds) => seeds.all(MOST_SEEDS),
+            None => Ok(other.to_vec()),
+        };
+        let own = seeds(keys.seeds.as_ref(), &[1])?;
+        let final_seeds = seeds(keys.final_seeds.as_ref(), &own);
+        let final_seeds = final_seeds.map_err(|problem| Problem {
+            path: format!("final_{}", problem.path),
+            ..problem
+        })?;
+        let shared = Memory::new(memory);
+        let validation = Study::built_in_for(VALIDATION.name, &[PROFILE.to_owned()], Some(1));
+        let mut reader = Reader {
+            root,
+            settings: &keys.settings,
+            validation: validation.map_err(|error| Problem::new("", error.to_string()))?,
+            memory: &shared,
+            scenes: Vec::new(),
+            targets: Vec::new(),
+        };
+        let sets: [&[SceneKeys]; 3] = [&keys.fit, &keys.hold_out, &keys.transfer];
+        for ((set, scenes), key) in Set::ALL
+            .into_iter()
+            .zip(sets)
+            .zip(["fit", "hold_out", "transfer"])
+        {
+            for (k, scene) in scenes.iter().enumerate() {
+                reader.add(set, scene, &format!("{key}[{k}]"))?;
+            }
+        }
+        if reader.targets.iter().all(|target| target.set != Set::Fit) {
+            return Err(Problem::new("fit", "must not be empty"));
+        }
+        let (scenes, targets) = (reader.scenes, reader.targets);
+        let calibration = Self {
+            name,
+            document,
+            parameters: parameters(keys.parameters)?,
+            scenes,
+            targets,
+            seeds: own,
+            final_seeds,
+            rule: keys.residual,
+            screening: keys.screening,
+            search: keys.search,
+            memory,
+        };
+        calibration.check_parameters(&shared)?;
+        Ok(calibration)
+    }
+
+    /// Is every parameter a key of a scene of the fit, and valid at its start and at both bounds?
+    fn check_parameters(&self, memory: &Memory) -> Result<(), Problem> {
+        let starts: Vec<f64> = self
+            .parameters
+            .iter()
+            .map(|parameter| parameter.start)
+            .collect();
+        for (k, parameter) in self.parameters.iter().enumerate() {
+            let place = format!("parameters[{k}]");
+            let used = self.fitted_scenes().into_iter().filter(|&scene| {
+                let document = &self.scenes[scene].document;
+                let settings = parameter.settings(parameter.start, document);
+                settings.is_ok_and(|settings| !settings.is_empty())
+            });
+            if used.count() == 0 {
+                let reason = "no scene of the fit has one of its keys";
+                return Err(Problem::new(place, reason));
+            }
+            for value in [parameter.start, parameter.bounds[0], parameter.bounds[1]] {
+                let mut values = starts.clone();
+                values[k] = value;
+                for scene in &self.scenes {
+                    let case = self.settings(scene, &values).and_then(|settings| {
+                        let case = scene.case.with(settings, memory);
+                        case.map_err(|error| error.to_string())
+                    });
+                    case.map_err(|error| {
+                        let reason = format!("{}: {error}", shown(&scene.name));
+                        Problem::new(&place, reason)
+                    })?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The settings that give a scene these values of all parameters.
+    pub(super) fn settings(&self, scene: &Scene, values: &[f64]) -> Result<Vec<Setting>, String> {
+        let parameters = self.parameters.iter().zip(values);
+        let settings =
+            parameters.map(|(parameter, &value)| parameter.settings(value, &scene.document));
+        let settings: Result<Vec<_>, _> = settings.collect();
+        let settings = settings.map_err(|error| error.to_string())?;
+        Ok(settings.into_iter().flatten().collect())
+    }
+
+    /// The numbers of the scenes whose values are fitted.
+    pub fn fitted_scenes(&self) -> BTreeSet<usize> {
+        let fitted = self.targets.iter().filter(|target| target.set == Set::Fit);
+        fitted.map(|target| target.scene).collect()
+    }
+
+    /// The values at coordinates between 0 and 1.
+    pub fn values(&self, coordinates: &[f64]) -> Vec<f64> {
+        let both = self.parameters.iter().zip(coordinates);
+        both.map(|(parameter, &coordinate)| parameter.value(coordinate))
+            .collect()
+    }
+
+    /// The coordinates of the starting point.
+    pub fn start(&self) -> Vec<f64> {
+        let parameters = self.parameters.iter();
+        parameters
+            .map(|parameter| parameter.coordinate(parameter.start))
+            .collect()
+    }
+
+    /// The points per generation of a search over some of the parameters.
+    pub fn population(&self, parameters: usize) -> usize {
+        let usual = || CmaEs::usual_population(parameters);
+        self.search.population.unwrap_or_else(usual)
+    }
+
+    /// The files that it is read from, apart from its own.
+    pub fn inputs(&self) -> BTreeSet<PathBuf> {
+        let scenes = self.scenes.iter();
+        scenes
+            .flat_map(|scene| scene.case.files())
+            .map(Path::to_owned)
+            .collect()
+    }
+}
+
+/// The parameters, after a check that no two have a name or key in common.
+fn parameters(all: Vec<super::file::ParameterKeys>) -> Result<Vec<Parameter>, Problem> {
+    if all.is_empty() || all.len() > MOST_PARAMETERS {
+        let reason = format!(
+            "must have 1 to {MOST_PARAMETERS} parameters, not {}",
+            all.len()
+        );
+        return Err(Problem::new("parameters", reason));
+    }
+    let mut parameters: Vec<Parameter> = Vec::new();
+    for (k, keys) in all.into_iter().enumerate() {
+        let place = format!("parameters[{k}]");
+        let parameter = Parameter::new(keys, &place)?;
+        for (j, other) in parameters.iter().enumerate() {
+            let same_key = parameter.keys.iter().find(|key| other.keys.contains(key));
+            let same = same_key.or((other.name == parameter.name).then_some(&parameter.name));
+            if let Some(same) = same {
+                let reason = format!("{} is also given by parameters[{j}]", shown(same));
+                return Err(Problem::new(place, reason));
+            }
+        }
+        parameters.push(parameter);
+    }
+    Ok(parameters)
+}
+
+/// Are the numbers of the residual, the screening and the search within their ranges?
+fn check_numbers(keys: &File) -> Result<(), Problem> {
+    let within =
+        |place: &str, value: f64, [least, most]: [f64; 2]| match (least..=most).contains(&value) {
+            true => Ok(()),
+            false => {
+                let reason = format!("must be at least {least} and at most {most}, not {value}");
+                Err(Problem::new(place, reason))
+            }
+        };
+    let Rule {
+        clip,
+        penalty,
+        stuck_secs,
+    } = keys.residual;
+    within("residual.clip", clip, [1.0, LARGEST_RESIDUAL])?;
+    within("residual.penalty", penalty, [clip, LARGEST_RESIDUAL])?;
+    within("residual.stuck_secs", stuck_secs, [0.0, 1e9])?;
+    if let Some(screening) = &keys.screening {
+        let trajectories = screening.trajectories as f64;
+        within(
+            "screening.trajectories",
+            trajectories,
+            [1.0, MOST_POINTS as f64],
+        )?;
+        within(
+            "screening.drop_below",
+            screening.drop_below,
+            [0.0, LARGEST_RESIDUAL],
+        )?;
+    }
+    let Search {
+        population,
+        generations,
+        spread,
+        ..
+    } = keys.search;
+    let population = population.unwrap_or(LEAST_POPULATION) as f64;
+    within(
+        "search.population",
+        population,
+        [LEAST_POPULATION as f64, MOST_POINTS as f64],
+    )?;
+    within(
+        "search.generations",
+        generations as f64,
+        [1.0, MOST_GENERATIONS as f64],
+    )?;
+    within("search.spread", spread, [1e-3, 1.0])
+}
