@@ -5,17 +5,22 @@ use std::fs;
 use std::path::Path;
 use std::process::Stdio;
 
+use proptest::prelude::*;
+use proptest::sample::Index;
+use sandbox::lab::calibrate::Calibration;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
+use crate::common::bounded;
+use crate::common::documents::{count, invalid_value, replace};
 use crate::common::program::{PROGRAM, run, run_in, stderr};
 use crate::common::sweep::cases;
 
 /// Eight people on a ring who do not meet: their speed is the preferred speed.
-const RING: &str = r#"{"duration_secs": 2, "profile": "sph", "periodic": {"axis": "x", "length": 20},
+const RING: &str = r#"{"duration_secs": 6, "profile": "sph", "periodic": {"axis": "x", "length": 20},
     "walkable_area": [[[[0, 0], [20, 0], [20, 1.8], [0, 1.8]]]],
-    "grids": [{"min": [0, 0], "max": [20, 1.8], "columns": 8, "rows": 1, "goal": "right"}],
-    "measurements": [{"walks": {"name": "ring", "region": [[0, 0], [20, 1.8]], "from_secs": 1}}]}"#;
+    "grids": [{"min": [0, 0], "max": [20, 1.8], "columns": 8, "rows": 1}],
+    "measurements": [{"walks": {"name": "ring", "region": [[0, 0], [20, 1.8]], "from_secs": 4}}]}"#;
 
 /// Three people before an exit.
 const ROOM: &str = r#"{"duration_secs": 20, "profile": "sph", "stop": {"when_empty": true},
@@ -38,7 +43,7 @@ fn study() -> Value {
         "seeds": 2,
         "final_seeds": [7, 8],
         "screening": {"trajectories": 2},
-        "search": {"population": 6, "generations": 8, "spread": 0.3}
+        "search": {"population": 6, "generations": 10, "spread": 0.2}
     })
 }
 
@@ -92,7 +97,7 @@ fn the_fitted_parameter_is_found_and_the_idle_one_is_not_identified() {
         "{interval:?}"
     );
     assert_eq!([&speed["identified"], &idle["identified"]], [true, false]);
-    assert_eq!(idle["covers"], 1.0);
+    assert!(idle["covers"].as_f64().unwrap() > 0.5, "{idle}");
     for set in found["misfits"].as_array().unwrap() {
         assert!(set["best"].as_f64().unwrap() < 0.6, "{set}");
         // The start is ln(1.6/1.1)/ln(1.05) tolerances off.
@@ -116,7 +121,7 @@ fn the_fitted_parameter_is_found_and_the_idle_one_is_not_identified() {
         .lines()
         .filter_map(|line| line.split(',').nth(1))
         .collect();
-    assert!(generations.contains("8") && table.lines().count() >= 1 + 1 + 6 + 48 + 4);
+    assert!(generations.contains("10") && table.lines().count() == 1 + 1 + 6 + 60 + 4);
 }
 
 #[test]
@@ -336,4 +341,30 @@ fn broken_studies_are_refused_by_name() {
         assert_eq!(output.status.code(), Some(2), "{case}");
     }
     assert!(!place.path().join("study").exists());
+}
+
+#[test]
+fn a_study_with_changed_values_is_read_or_refused() {
+    let place = folder(&Value::Null);
+    let path = place.path().join("study.json");
+    let read = |document: &Value| match Calibration::parse(&document.to_string(), &path) {
+        Ok(read) => read.targets.len(),
+        Err(error) => {
+            let said = error.to_string();
+            let is_short = said.len() < 3000 && !said.contains(char::is_control);
+            assert!(said.contains("study.json: ") && is_short, "{said:?}");
+            0
+        }
+    };
+    assert_eq!(read(&study()), 2);
+    let changes = || prop::collection::vec((any::<Index>(), invalid_value()), 1..3);
+    bounded::cases(2_000, changes, |changes| {
+        let mut document = study();
+        for (at, by) in changes {
+            let mut k = at.index(count(&document));
+            replace(&mut document, &mut k, &by);
+        }
+        read(&document);
+        1 << 24
+    });
 }

@@ -48,6 +48,8 @@ pub struct Evaluated {
 
 /// The place of a run: point, scene and seed.
 type Place = (usize, usize, u64);
+/// Cells with their places.
+type Cells = Vec<(Place, Cell)>;
 
 impl Sample {
     /// Mean and standard deviation of the values; `None` without values.
@@ -118,7 +120,7 @@ impl Evaluator<'_> {
         &self,
         points: &[Vec<f64>],
         places: Vec<Place>,
-    ) -> Result<(Vec<(Place, Cell)>, BTreeMap<Place, State>), LabError> {
+    ) -> Result<(Cells, BTreeMap<Place, State>), LabError> {
         let of = self.calibration;
         let memory = Memory::new(of.memory);
         let checked: Vec<OnceLock<Result<Case, String>>> =

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::file::{ParameterKeys, Scale};
+use super::study::check_text;
 use crate::lab::error::LabError;
 use crate::scenario::quote::shown;
 use crate::scenario::{Problem, Setting};
@@ -28,7 +29,7 @@ impl Parameter {
     pub(super) fn new(keys: ParameterKeys, place: &str) -> Result<Self, Problem> {
         let problem = |key: &str, reason: String| Problem::new(format!("{place}.{key}"), reason);
         let [low, high] = keys.bounds;
-        if !(low < high) {
+        if low >= high {
             let reason = format!("must be two numbers, the smaller one first, not [{low}, {high}]");
             return Err(problem("bounds", reason));
         }
@@ -40,15 +41,13 @@ impl Parameter {
             let reason = format!("must be within the bounds {low} and {high}, not {start}");
             return Err(problem("start", reason));
         }
-        if let Some(half) = keys.half_width.filter(|half| !(*half > 0.0)) {
+        if let Some(half) = keys.half_width.filter(|half| *half <= 0.0) {
             return Err(problem(
                 "half_width",
                 format!("must be above 0, not {half}"),
             ));
         }
-        if keys.name.is_empty() {
-            return Err(problem("name", "must not be empty".to_owned()));
-        }
+        check_text(&keys.name, &format!("{place}.name"))?;
         let paths = keys.keys.unwrap_or_else(|| vec![keys.name.clone()]);
         if paths.is_empty() {
             return Err(problem("keys", "must not be empty".to_owned()));

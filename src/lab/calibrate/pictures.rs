@@ -17,6 +17,8 @@ const ROW: f64 = 15.0;
 /// Width for the names of values, and of a column of the map of effects, points.
 const NAMES: f64 = 190.0;
 const COLUMN: f64 = 78.0;
+/// The smallest misfit on the logarithmic axis, tolerances.
+const LEAST_SHOWN: f64 = 1e-2;
 /// The tolerances shown to each side.
 const MOST_SHOWN: f64 = 20.0;
 
@@ -39,17 +41,25 @@ fn convergence(report: &Report) -> Sheet {
     let all = generations
         .iter()
         .flat_map(|of| [of.misfits.minimum, of.misfits.maximum]);
-    let all = all.chain([start]).filter(|misfit| *misfit > 0.0);
+    let all = all.chain([start]).map(|misfit| misfit.max(LEAST_SHOWN));
     let range = Range::of(&all.collect::<Vec<_>>());
     let y = Axis::log(
         "misfit: root mean square residual [tolerances]",
         [0.8 * range.minimum, 1.25 * range.maximum],
     );
     let line = |value: fn(&super::search::Generation) -> f64, style| {
-        Mark::Line(numbered().map(|(x, of)| [x, value(of)]).collect(), style)
+        Mark::Line(
+            numbered()
+                .map(|(x, of)| [x, value(of).max(LEAST_SHOWN)])
+                .collect(),
+            style,
+        )
     };
     let dots = |value: fn(&super::search::Generation) -> f64, style| {
-        Mark::dots(numbered().map(|(x, of)| [x, value(of)]), style)
+        Mark::dots(
+            numbered().map(|(x, of)| [x, value(of).max(LEAST_SHOWN)]),
+            style,
+        )
     };
     let marks = vec![
         Mark::Line(
@@ -66,7 +76,7 @@ fn convergence(report: &Report) -> Sheet {
     ];
     let generation = || Axis::linear("generation", [1.0, last]);
     let misfits = Panel {
-        legend: Some(Corner::UpperRight),
+        legend: Some(Corner::Beside),
         ..Panel::new("misfit", generation(), y, marks)
     };
     let searched = report.found.searched.iter().enumerate();
@@ -98,8 +108,8 @@ fn convergence(report: &Report) -> Sheet {
     };
     Sheet {
         title: report.calibration.name.clone(),
-        columns: 2,
-        panel_size: [270.0, 200.0],
+        columns: 1,
+        panel_size: [330.0, 180.0],
         panels: vec![misfits, parameters],
         ..Sheet::default()
     }
@@ -242,16 +252,15 @@ fn screening(report: &Report, screened: &Screened) -> Sheet {
         .iter()
         .map(|of| of.name.as_str())
         .collect();
-    let most =
-        |effects: &[Effect], of: fn(&Effect) -> f64| effects.iter().map(of).fold(1e-9, f64::max);
+    let most = |of: fn(&Effect) -> f64| screened.misfit.iter().map(of).fold(1.0, f64::max);
     let [x, y] = [
         Axis::linear(
             "μ*: mean absolute effect on the misfit [tolerances]",
-            [0.0, 1.35 * most(&screened.misfit, |of| of.mean_absolute)],
+            [0.0, 1.35 * most(|of| of.mean_absolute)],
         ),
         Axis::linear(
             "σ: its standard deviation",
-            [0.0, 1.15 * most(&screened.misfit, |of| of.deviation)],
+            [0.0, 1.15 * most(|of| of.deviation)],
         ),
     ];
     let at = |of: &Effect| [of.mean_absolute, of.deviation];

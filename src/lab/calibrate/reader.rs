@@ -3,6 +3,7 @@
 use super::file::{SceneKeys, ValueKeys};
 use super::parameter::places;
 use super::scene::{Reading, Scene, Set, Target, checks};
+use super::study::check_text;
 use crate::lab::suite::Expected;
 use crate::lab::sweep::{Entries, Root, Study, source};
 use crate::lab::validate::VALIDATION;
@@ -13,6 +14,8 @@ use crate::scenario::measurements::Measurement;
 use crate::scenario::quote::shown;
 use crate::scenario::{Problem, Setting, suggestion};
 
+/// The profile of the validation's cases unless the file's settings have another.
+const PROFILE: &str = "sph";
 /// Largest tolerance, as a part of the measured value.
 const LARGEST_TOLERANCE: f64 = 10.0;
 
@@ -21,8 +24,8 @@ pub(super) struct Reader<'a> {
     pub root: Root<'a>,
     /// Settings of all scenes.
     pub settings: &'a Entries,
-    /// The runs of the validation with one profile.
-    pub validation: Study,
+    /// The runs of the validation, when the first of its cases was read.
+    pub validation: Option<Study>,
     pub memory: &'a Memory,
     pub scenes: Vec<Scene>,
     pub targets: Vec<Target>,
@@ -99,10 +102,9 @@ impl Reader<'_> {
                 return Err(Problem::new(place, reason));
             }
             for &&(number, check, run, value, tolerance) in &meant {
-                let mut cells = self.validation.cells.iter();
-                let cell = cells.find(|cell| cell.label() == Some(run));
-                let missing = || Problem::new(&place, format!("the validation has no run {run}"));
-                let base = cell.ok_or_else(missing)?.case.clone();
+                let base = self
+                    .validated(run)
+                    .map_err(|error| Problem::new(&place, error))?;
                 let scene = self.scene(run.to_owned(), base, &keys.settings, &place)?;
                 self.target(
                     Target {
@@ -137,7 +139,8 @@ impl Reader<'_> {
             let reason = "is missing: a list of objects with `quantity`, `value` and `tolerance`";
             return Err(Problem::new(at("values"), reason));
         }
-        let name = keys.name.clone().unwrap_or_else(|| file.to_owned());
+        let name = keys.name.clone().unwrap_or_else(|| shown(file));
+        check_text(&name, &at("name"))?;
         let scene = self.scene(name.clone(), base, &keys.settings, place)?;
         let scenario = self.scenes[scene].case.scenario();
         let scenario = scenario.map_err(|error| Problem::new(place, error.to_string()))?;
@@ -172,6 +175,19 @@ impl Reader<'_> {
             self.target(target, &place)?;
         }
         Ok(())
+    }
+
+    /// The run of the validation with this label.
+    fn validated(&mut self, label: &str) -> Result<Case, String> {
+        let study = match self.validation.take() {
+            Some(study) => study,
+            None => Study::built_in_for(VALIDATION.name, &[PROFILE.to_owned()], Some(1))
+                .map_err(|error| error.to_string())?,
+        };
+        let cell = study.cells.iter().find(|cell| cell.label() == Some(label));
+        let case = cell.map(|cell| cell.case.clone());
+        self.validation = Some(study);
+        case.ok_or_else(|| format!("the validation has no run {label}"))
     }
 
     /// The number of the scene with the settings of all scenes and its own; a new one unless it is there already.

@@ -10,14 +10,11 @@ use super::parameter::Parameter;
 use super::reader::Reader;
 use super::scene::{Scene, Set, Target};
 use crate::analysis::cma_es::{CmaEs, LEAST_POPULATION};
-use crate::lab::sweep::{Root, Seeds, Study, check_name, parse};
-use crate::lab::validate::VALIDATION;
+use crate::lab::sweep::{Root, Seeds, check_name, parse};
 use crate::runs::memory::Memory;
 use crate::scenario::quote::shown;
 use crate::scenario::{Problem, ScenarioError, Setting, built_in, input, read_document};
 
-/// The profile of the validation's cases unless the file's settings have another.
-const PROFILE: &str = "sph";
 /// Most parameters.
 const MOST_PARAMETERS: usize = 50;
 /// Most seeds.
@@ -67,17 +64,27 @@ impl Calibration {
         if let Some((path, text)) = shipped.and_then(|path| Some((path.clone(), built_in(&path)?)))
         {
             let (path, built_in) = (path.as_path(), true);
-            return Self::parse(text, Root { path, built_in }, memory);
+            return Self::parse_within(text, Root { path, built_in }, memory);
         }
         let text = input::text(path).map_err(|error| ScenarioError::Unreadable {
             file: path.display().to_string(),
             reason: error.to_string(),
         })?;
         let built_in = false;
-        Self::parse(&text, Root { path, built_in }, memory)
+        Self::parse_within(&text, Root { path, built_in }, memory)
     }
 
-    fn parse(text: &str, root: Root, memory: Option<u64>) -> Result<Self, ScenarioError> {
+    /// Reads a calibration from JSON. `path` is its name in messages; files that it refers to are relative to the folder
+    /// of `path`.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn parse(text: &str, path: &Path) -> Result<Self, ScenarioError> {
+        let built_in = false;
+        Self::parse_within(text, Root { path, built_in }, None)
+    }
+
+    fn parse_within(text: &str, root: Root, memory: Option<u64>) -> Result<Self, ScenarioError> {
         let file = root.path.display().to_string();
         let document = read_document(text, &file)?;
         let stem = root.path.file_stem().unwrap_or_default().to_string_lossy();
@@ -106,11 +113,10 @@ impl Calibration {
             ..problem
         })?;
         let shared = Memory::new(memory);
-        let validation = Study::built_in_for(VALIDATION.name, &[PROFILE.to_owned()], Some(1));
         let mut reader = Reader {
             root,
             settings: &keys.settings,
-            validation: validation.map_err(|error| Problem::new("", error.to_string()))?,
+            validation: None,
             memory: &shared,
             scenes: Vec::new(),
             targets: Vec::new(),
@@ -148,22 +154,27 @@ impl Calibration {
 
     /// Is every parameter a key of a scene of the fit, and valid at its start and at both bounds?
     fn check_parameters(&self, memory: &Memory) -> Result<(), Problem> {
-        let starts: Vec<f64> = self
-            .parameters
-            .iter()
-            .map(|parameter| parameter.start)
-            .collect();
+        let starts: Vec<f64> = self.parameters.iter().map(|of| of.start).collect();
+        let refused = |k: usize, scene: &Scene, error: String| {
+            let reason = format!("{}: {error}", shown(&scene.name));
+            Problem::new(format!("parameters[{k}]"), reason)
+        };
+        let fitted = self.fitted_scenes();
         for (k, parameter) in self.parameters.iter().enumerate() {
-            let place = format!("parameters[{k}]");
-            let used = self.fitted_scenes().into_iter().filter(|&scene| {
-                let document = &self.scenes[scene].document;
-                let settings = parameter.settings(parameter.start, document);
-                settings.is_ok_and(|settings| !settings.is_empty())
-            });
-            if used.count() == 0 {
-                let reason = "no scene of the fit has one of its keys";
-                return Err(Problem::new(place, reason));
+            let mut is_used = false;
+            for (number, scene) in self.scenes.iter().enumerate() {
+                let settings = parameter.settings(parameter.start, &scene.document);
+                let settings = settings.map_err(|error| refused(k, scene, error.to_string()))?;
+                is_used |= !settings.is_empty() && fitted.contains(&number);
+                let alone = scene.case.with(settings, memory);
+                alone.map_err(|error| refused(k, scene, error.to_string()))?;
             }
+            if !is_used {
+                let reason = "no scene of the fit has one of its keys";
+                return Err(Problem::new(format!("parameters[{k}]"), reason));
+            }
+        }
+        for (k, parameter) in self.parameters.iter().enumerate() {
             for value in [parameter.start, parameter.bounds[0], parameter.bounds[1]] {
                 let mut values = starts.clone();
                 values[k] = value;
@@ -172,10 +183,7 @@ impl Calibration {
                         let case = scene.case.with(settings, memory);
                         case.map_err(|error| error.to_string())
                     });
-                    case.map_err(|error| {
-                        let reason = format!("{}: {error}", shown(&scene.name));
-                        Problem::new(&place, reason)
-                    })?;
+                    case.map_err(|error| refused(k, scene, error))?;
                 }
             }
         }
@@ -304,4 +312,15 @@ fn check_numbers(keys: &File) -> Result<(), Problem> {
         [1.0, MOST_GENERATIONS as f64],
     )?;
     within("search.spread", spread, [1e-3, 1.0])
+}
+
+/// Is the name short and printable?
+pub(super) fn check_text(name: &str, place: &str) -> Result<(), Problem> {
+    match !name.is_empty() && shown(name) == name {
+        true => Ok(()),
+        false => {
+            let reason = "must have 1 to 80 characters, and no control characters";
+            Err(Problem::new(place, reason))
+        }
+    }
 }

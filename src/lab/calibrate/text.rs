@@ -119,7 +119,7 @@ impl Report<'_> {
         }
         let fitted = of.targets.iter().filter(|target| target.set == Set::Fit);
         for (k, target) in fitted.enumerate() {
-            let name = format!("{}: {}, tolerances", target.of, target.quantity);
+            let name = format!("residual of {}: {}", target.of, target.quantity);
             columns = columns.column(&name, |trial| {
                 residual(&trial.evaluated.samples[k], target, &of.rule)
             });
