@@ -209,10 +209,6 @@ fn two_shards_at_once_compute_every_cell_once() {
         assert_eq!(String::from_utf8_lossy(&output.stdout), expected);
     }
     assert_eq!(finished[0] + finished[1], count);
-    assert!(
-        finished[0] > count / 4 && finished[1] > count / 4,
-        "{finished:?}"
-    );
 }
 
 #[test]
