@@ -7,7 +7,7 @@
 //! ```
 //! # use sandbox::analysis::cma_es::CmaEs;
 //! let mut search = CmaEs::new(&[0.9, 0.1], 0.3, 8, 1);
-//! for _ in 0..60 {
+//! for _ in 0..100 {
 //!     let points = search.ask();
 //!     let values: Vec<f64> = points.iter().map(|x| (x[0] - 0.5).powi(2) + x[1].powi(2)).collect();
 //!     search.tell(&values);

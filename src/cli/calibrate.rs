@@ -107,7 +107,7 @@ fn listed(calibration: &Calibration) -> String {
         .column("start", |parameter| parameter.start);
     let [runs, secs] = most_runs(calibration);
     format!(
-        "{}\n{}\nat most {runs} runs, about {:.1} hours on one core\n",
+        "{}\n{}\nat most {runs} runs and about {:.1} hours on one core; scenes that empty early take less\n",
         targets.table().text(),
         parameters.table().text(),
         secs / 3600.0,

@@ -74,7 +74,12 @@ fn convergence(report: &Report) -> Sheet {
         dots(|of| of.misfits.minimum, Style::full(LINES[0], 1.8, "best")),
         line(|of| of.best, Style::full(LINES[1], 1.2, "best so far")),
     ];
-    let generation = || Axis::linear("generation", [1.0, last]);
+    let every = generations.len().div_ceil(12).max(1);
+    let ticks = (1..=generations.len()).step_by(every);
+    let generation = || Axis {
+        ticks: ticks.clone().map(|k| (k as f64, k.to_string())).collect(),
+        ..Axis::linear("generation", [1.0, last])
+    };
     let misfits = Panel {
         legend: Some(Corner::Beside),
         ..Panel::new("misfit", generation(), y, marks)
@@ -260,7 +265,8 @@ fn screening(report: &Report, screened: &Screened) -> Sheet {
         ),
         Axis::linear(
             "σ: its standard deviation",
-            [0.0, 1.15 * most(|of| of.deviation)],
+            // Names lie above and below their points.
+            [-1, 1].map(|end| f64::from(end).max(-0.1) * 1.15 * most(|of| of.deviation)),
         ),
     ];
     let at = |of: &Effect| [of.mean_absolute, of.deviation];
@@ -268,10 +274,12 @@ fn screening(report: &Report, screened: &Screened) -> Sheet {
         screened.misfit.iter().map(at),
         Style::full(LINES[0], 2.4, ""),
     );
-    let labels = screened.misfit.iter().zip(&names_of).map(|(effect, name)| {
+    let named = screened.misfit.iter().zip(&names_of);
+    let labels = named.zip([1, -1].into_iter().cycle());
+    let labels = labels.map(|((effect, name), above)| {
         Mark::Label(Label {
             at: at(effect),
-            side: [1, 1],
+            side: [1, above],
             text: format!(" {name}"),
             color: BLACK,
         })

@@ -175,7 +175,7 @@ impl Report<'_> {
         Some([start?, best?])
     }
 
-    /// The number of trials in a stage, the number of all trials, and the runs without a value in them.
+    /// The number of trials of the search, that of all trials, and how often a run of theirs gave no value.
     pub(super) fn counts(&self) -> [usize; 3] {
         let trials = &self.found.trials;
         let in_search = |trial: &&Trial| matches!(trial.stage, Stage::Generation(_));
