@@ -10,7 +10,7 @@
 //! for _ in 0..100 {
 //!     let points = search.ask();
 //!     let values: Vec<f64> = points.iter().map(|x| (x[0] - 0.5).powi(2) + x[1].powi(2)).collect();
-//!     search.tell(&values);
+//!     search.tell(&points, &values);
 //! }
 //! assert!((search.mean()[0] - 0.5).abs() < 1e-6);
 //! ```
@@ -36,8 +36,6 @@ pub struct CmaEs {
     covariance_path: DVector<f64>,
     /// The number of generations that were told.
     generation: i32,
-    /// The points of the present generation.
-    asked: Vec<DVector<f64>>,
     rng: ChaCha8Rng,
 }
 
@@ -129,7 +127,6 @@ impl CmaEs {
             step_path: DVector::zeros(n),
             covariance_path: DVector::zeros(n),
             generation: 0,
-            asked: Vec::new(),
             rng: ChaCha8Rng::seed_from_u64(seed),
         }
     }
@@ -153,30 +150,29 @@ impl CmaEs {
 
     /// Draws the points of the next generation.
     pub fn ask(&mut self) -> Vec<Vec<f64>> {
-        self.asked.clear();
-        for _ in 0..self.constants.population {
+        let mut point = || {
             let normal = (0..self.mean.len()).map(|_| normal(&mut self.rng));
             let normal = DVector::from_iterator(self.mean.len(), normal);
             let point = &self.mean + self.step * self.root.times(&normal);
-            self.asked.push(point);
-        }
-        let points = self.asked.iter();
-        points.map(|point| point.as_slice().to_vec()).collect()
+            point.as_slice().to_vec()
+        };
+        (0..self.constants.population).map(|_| point()).collect()
     }
 
-    /// Takes the values of the points that were asked last, in their order; NaN is worse than any number.
-    pub fn tell(&mut self, values: &[f64]) {
+    /// Takes the points of a generation with their values; NaN is worse than any number. The points are those that were
+    /// asked last, or these moved into bounds by [`reflected`]: then the distribution does not widen beyond the bounds.
+    pub fn tell(&mut self, points: &[Vec<f64>], values: &[f64]) {
         let of = &self.constants;
-        let mut order: Vec<usize> = (0..self.asked.len().min(values.len())).collect();
         let value = |k: usize| match values[k].is_nan() {
             true => f64::INFINITY,
             false => values[k],
         };
+        let mut order: Vec<usize> = (0..points.len().min(values.len())).collect();
         order.sort_by(|&a, &b| value(a).total_cmp(&value(b)));
+        let way = |k: usize| (DVector::from_column_slice(&points[k]) - &self.mean) / self.step;
         let parents = order.iter().zip(&of.weights);
-        let parents: Vec<(DVector<f64>, f64)> = parents
-            .map(|(&k, &weight)| ((&self.asked[k] - &self.mean) / self.step, weight))
-            .collect();
+        let parents: Vec<(DVector<f64>, f64)> =
+            parents.map(|(&k, &weight)| (way(k), weight)).collect();
         let n = self.mean.len();
         let zero = || DVector::zeros(n);
         let way = parents
@@ -215,10 +211,8 @@ impl CmaEs {
     }
 }
 
-/// A coordinate reflected at 0 and 1 until it lies between them.
-///
-/// A search over it sees a periodic function, which is continuous where the function is, and needs no penalty at the
-/// bounds.
+/// A coordinate reflected at 0 and 1 until it lies between them. It comes no farther from any place between them, so the
+/// reflected points of a distribution whose center is inside are a narrower distribution.
 pub fn reflected(coordinate: f64) -> f64 {
     let turned = coordinate.rem_euclid(2.0);
     if turned > 1.0 { 2.0 - turned } else { turned }

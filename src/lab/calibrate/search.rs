@@ -216,23 +216,25 @@ impl Stages<'_> {
         };
         let mut generations: Vec<Generation> = Vec::new();
         for number in 1..=of.search.generations {
-            let mean: Vec<f64> = search.mean().iter().map(|&mean| reflected(mean)).collect();
-            let spread = search.spread();
+            let (mean, spread) = (search.mean().to_vec(), search.spread());
             if spread.iter().all(|&spread| spread < CONVERGED) {
                 break;
             }
-            let points = search.ask().into_iter().map(|own| {
+            let asked = search.ask().into_iter();
+            let asked = asked.map(|own| own.into_iter().map(reflected).collect());
+            let asked: Vec<Vec<f64>> = asked.collect();
+            let points = asked.iter().map(|own| {
                 let mut point = start.clone();
                 searched
                     .iter()
                     .zip(own)
-                    .for_each(|(&k, value)| point[k] = reflected(value));
+                    .for_each(|(&k, &value)| point[k] = value);
                 point
             });
             let points: Vec<Vec<f64>> = points.collect();
             let name = format!("generation {number} of {}", of.search.generations);
             let misfits = self.add(&name, Stage::Generation(number), &points)?;
-            search.tell(&misfits);
+            search.tell(&asked, &misfits);
             let best = self.trials[self.best()].misfit;
             let misfits = Range::of(&misfits);
             self.evaluator.listener.notes(&format!(
