@@ -28,6 +28,7 @@ fn options() -> Options {
         cell: 0.25,
         regions: Vec::new(),
         lines: Vec::new(),
+        sample_every: 1.0,
     }
 }
 

@@ -30,6 +30,7 @@ fn gate() -> Line {
 
 fn measured(tracks: &Tracks, regions: Vec<Region>, lines: Vec<Line>) -> Measured {
     let options = Options {
+        sample_every: 1.0,
         kernel: Kernel {
             support_radius: 1.0,
             walls: WallMethod::Union,

@@ -20,6 +20,7 @@ mod manual;
 mod measure_cli;
 mod measure_density;
 mod measure_flow;
+mod measure_safety;
 mod messages;
 mod outputs;
 mod plot;

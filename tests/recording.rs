@@ -51,6 +51,7 @@ fn options(debug: DebugAgents) -> RecordingOptions {
         opens_at: 0.1,
         ends_at: 1.0,
         debug,
+        body_mass: None,
     }
 }
 

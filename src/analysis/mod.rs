@@ -1,6 +1,7 @@
 //! Analysis: statistics over values, space-time diagrams and the speed of waves in them, linear theory (the speed of
 //! sound in a crowd and the largest stable time step), integrals over walls by
-//! quadrature, the ways to a destination on a grid, lines that people cross, and the search for parameters: screening,
+//! quadrature, the ways to a destination on a grid, lines that people cross, what safety engineers read (local density,
+//! exposure, level of service, crowd pressure, forces on bodies and walls), and the search for parameters: screening,
 //! CMA-ES, and how well values determine parameters. It uses only the engine.
 
 pub mod statistics;
@@ -16,6 +17,22 @@ pub mod wall_integrals;
 pub mod way_field;
 
 pub mod crossing;
+
+pub mod site;
+
+pub mod surroundings;
+
+pub mod local;
+
+pub mod exposure;
+
+pub mod service;
+
+pub mod crowd_pressure;
+
+pub mod body_forces;
+
+pub mod wall_forces;
 
 pub mod cma_es;
 

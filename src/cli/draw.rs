@@ -43,6 +43,7 @@ pub fn run(options: &DrawOptions) -> Result<(), Failure> {
         simulation: &simulation,
         view: scenario.view.region,
         paths,
+        body_mass: scenario.mass_on_walls(),
     };
     picture.save(&out)?;
     let (clock, count) = (simulation.frame().clock, simulation.frame().agents.len());

@@ -164,6 +164,7 @@ fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> Reco
         },
         ends_at: scenario.duration_secs,
         debug,
+        body_mass: scenario.mass_on_walls(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Profiles (§5.5) and their blending by density (§4.4).
 
 mod blend;
+mod walls;
 
 pub use blend::{Blend, BlendError, BlendStep};
 

@@ -5,6 +5,7 @@ mod digest;
 mod entrances;
 mod evaluate;
 mod integrate;
+mod loads;
 mod passing;
 mod queues;
 mod schedule;

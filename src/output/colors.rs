@@ -13,6 +13,9 @@ pub const DENSITY_RANGE: f32 = 8.0;
 /// Speed mapped to the last color, m/s.
 pub const SPEED_RANGE: f32 = 1.8;
 
+/// Force on walls mapped to the last color, N/m.
+pub const WALL_FORCE_RANGE: f32 = 3000.0;
+
 /// Few enough that equal colors repeat in a file, more than the eye can tell apart.
 const STEPS: usize = 64;
 
@@ -49,6 +52,15 @@ impl ColorMap {
             bands: Some(bands.max(1)),
             ..map
         }
+    }
+
+    /// Yellow to dark red.
+    fn heat(range: [f32; 2]) -> Self {
+        let whole = preset::yl_or_rd();
+        let part = colorgrad::GradientBuilder::new()
+            .colors(&[0.15, 0.35, 0.55, 0.7, 0.85].map(|at| whole.at(at)))
+            .build::<colorgrad::LinearGradient>();
+        part.map_or_else(|_| Self::new(&whole, range), |part| Self::new(&part, range))
     }
 
     /// One color for all values.
@@ -98,5 +110,8 @@ impl ColorMap {
 
 /// Viridis for densities.
 pub static DENSITY: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::viridis([0.0, DENSITY_RANGE]));
+/// Yellow to dark red for forces on walls.
+pub static WALL_FORCE: LazyLock<ColorMap> =
+    LazyLock::new(|| ColorMap::heat([0.0, WALL_FORCE_RANGE]));
 /// Inferno for speeds.
 pub static SPEED: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::inferno([0.0, SPEED_RANGE]));

@@ -121,6 +121,13 @@ impl Scenario {
         document::write(&self.document)
     }
 
+    /// The mass of an average person, kg, if the scenario measures forces on walls.
+    pub fn mass_on_walls(&self) -> Option<f64> {
+        self.measurements
+            .iter()
+            .find_map(Measurement::mass_on_walls)
+    }
+
     /// Reads a scenario from JSON; see [`Draft::read`].
     ///
     /// # Errors

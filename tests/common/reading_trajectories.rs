@@ -79,6 +79,7 @@ fn check_measured(tracks: &Tracks) {
         end: high + Vector::new(0.5, 1.0),
     };
     let options = Options {
+        sample_every: 1.0,
         kernel: Kernel {
             support_radius: 1.0,
             walls: WallMethod::Union,

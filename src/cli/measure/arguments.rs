@@ -55,6 +55,9 @@ pub struct MeasureOptions {
     /// Measure the flow across this line; forward is from its left to its right; may be repeated
     #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true, value_parser = line)]
     pub line: Vec<Line>,
+    /// Time between samples of exposure, level of service and crowd pressure, seconds
+    #[arg(long, value_name = "SECS", default_value_t = 1.0, value_parser = positive_seconds)]
+    pub sample_every: f64,
     /// Folder for the results [default: the file's name with -measured appended]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -55,7 +55,7 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     });
     drop(progress);
     let measured = measured?;
-    results.finish(&measured)?;
+    results.finish(&measured, &tracks)?;
     recording.finish()?;
     pictures::save(&folder, &measured, &site).map_err(LabError::from)?;
     report_oddities(&measured);
@@ -120,6 +120,7 @@ fn what(options: &MeasureOptions, tracks: &Tracks) -> Options {
         cell: options.cell,
         regions: options.region.clone(),
         lines: options.line.clone(),
+        sample_every: options.sample_every,
     }
 }
 

@@ -11,5 +11,6 @@ pub mod own;
 pub mod pressure;
 pub mod rvo;
 pub mod social;
+pub mod virial;
 pub mod viscosity;
 pub mod walking;

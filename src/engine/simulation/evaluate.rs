@@ -258,7 +258,7 @@ impl Fixed {
 
     /// Splits a range of agents wherever group or push changes.
     #[inline]
-    fn each_span(
+    pub(super) fn each_span(
         &self,
         agents: &Agents,
         range: Range<usize>,

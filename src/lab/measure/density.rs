@@ -1,15 +1,9 @@
 //! The density of people in a frame (§8): Eqs. 9 and 10 without a simulation.
 
-use super::site::{Hidden, Kernel, Site};
-use crate::engine::agents::{Agents, NewAgent, REFERENCE_RADIUS};
-use crate::engine::density::{SphParameters, from_agents};
-use crate::engine::kernel;
+use crate::analysis::site::{Hidden, Kernel, Site};
+use crate::analysis::surroundings::{MOST_HIDDEN, Surroundings};
+use crate::engine::density::SphParameters;
 use crate::engine::math::Vector;
-use crate::engine::neighbors::{BLOCK, Neighbors, Ranges};
-use crate::engine::pairs::Bodies;
-
-/// At most this share of a kernel counts as hidden: in a narrow gap, the visible rest is too small to be meaningful.
-pub const MOST_HIDDEN: f64 = 0.9;
 
 /// The density assumed behind walls: ρ_i⁰ in Eq. 10.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -40,57 +34,17 @@ pub fn parts(
     masses: &[f64],
     (kernel, behind): (&Kernel, Behind),
 ) -> Vec<Parts> {
-    let mut agents = Agents::default();
-    for (k, &position) in positions.iter().enumerate() {
-        let person = NewAgent {
-            radius: Some(REFERENCE_RADIUS),
-            mass: Some(masses.get(k).copied().unwrap_or(1.0)),
-            ..NewAgent::at(position, position, 0)
-        };
-        agents.enter(person, 0);
-    }
-    let ranges = Ranges {
-        support: kernel.support_radius,
-        ..Ranges::default()
-    };
-    let mut neighbors = Neighbors::default();
-    neighbors.sort(&mut agents, ranges);
-    neighbors.list_agents();
-    neighbors.list_walls(&agents, &site.walls);
-    // Eq. 9 without walls, by the engine's own sums, in double precision.
-    let mut bodies = Bodies::<f64>::default();
-    bodies.take(&agents, 1.0, None, |_| kernel.support_radius);
-    bodies.take_motions(&agents);
-    let mut from_people = vec![0.0; agents.len()];
-    for (b, sums) in from_people.chunks_mut(BLOCK).enumerate() {
-        from_agents(&bodies, neighbors.near().block(b), sums);
-    }
-    let seen = (0..agents.len()).map(|i| {
-        let mut near = neighbors.near_walls(i).to_vec();
-        let hidden = site.hidden(agents.position[i], &mut near, kernel);
-        (near, hidden)
+    let h = kernel.support_radius;
+    let around = Surroundings::new(&site.walls, positions, masses, h, |p, near| {
+        site.hidden(p, near, kernel)
     });
-    let (near, hidden): (Vec<Vec<u32>>, Vec<Hidden>) = seen.unzip();
-    if behind == Behind::Same {
-        for i in (0..agents.len()).filter(|&i| !near[i].is_empty()) {
-            let eye = hidden[i].eye;
-            let seen = neighbors.near().near(i).map(|(j, _)| j);
-            let seen = seen.filter(|&j| j == i || site.sees(eye, hidden[j].eye, &near[i]));
-            let weight = |j: usize| {
-                let offset = agents.position[i] - agents.position[j];
-                agents.mass[j] * kernel::density(offset.norm_squared(), kernel.support_radius)
-            };
-            from_people[i] = seen.map(weight).sum();
-        }
-    }
-    let of = |i: usize| Parts {
-        from_people: from_people[i],
-        hidden: hidden[i],
-    };
-    // The ids count the positions in their given order.
-    let mut order: Vec<usize> = (0..agents.len()).collect();
-    order.sort_by_key(|&i| agents.id[i]);
-    order.into_iter().map(of).collect()
+    let sums = around.from_people(behind == Behind::Same);
+    let sums = sums.into_iter().enumerate();
+    sums.map(|(person, from_people)| Parts {
+        from_people,
+        hidden: around.hidden(person),
+    })
+    .collect()
 }
 
 /// The moving averages for [`Behind::Rest`].

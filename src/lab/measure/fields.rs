@@ -5,8 +5,8 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::Person;
-use super::density::MOST_HIDDEN;
-use super::site::{Kernel, Site};
+use crate::analysis::site::{Kernel, Site};
+use crate::analysis::surroundings::MOST_HIDDEN;
 use crate::engine::kernel;
 use crate::engine::math::Vector;
 

@@ -14,17 +14,20 @@ mod output;
 pub mod pictures;
 mod record;
 mod report;
-mod site;
+mod safety;
+mod safety_report;
 pub mod speed;
 
-pub use density::{Behind, MOST_HIDDEN, Parts, parts};
+pub use crate::analysis::site::{Hidden, Kernel, Site};
+pub use crate::analysis::surroundings::MOST_HIDDEN;
+pub use density::{Behind, Parts, parts};
 pub use diagram::{CLASS, Class, Diagram, FrameMean};
 pub use fields::{Fields, Grid, MOST_CELLS, Mean};
 pub use line::{Crossing, Crossings, Way};
 pub use output::{Results, files};
 pub use record::MomentRecorder;
 pub use report::Report;
-pub use site::{Hidden, Kernel, Site};
+pub use safety::{Departures, Safety, Sample};
 
 use std::ops::Range;
 
@@ -57,6 +60,8 @@ pub struct Options {
     pub regions: Vec<Region>,
     /// The lines across which flow is measured.
     pub lines: Vec<Line>,
+    /// Time between samples of exposure, level of service and crowd pressure, seconds.
+    pub sample_every: f64,
 }
 
 /// A person in a frame.
@@ -126,6 +131,10 @@ pub struct Measured {
     pub diagrams: Vec<Diagram>,
     /// One per line.
     pub crossings: Vec<Crossings>,
+    /// Exposure, alarms, level of service, crowd pressure.
+    pub safety: Safety,
+    /// When people had left.
+    pub departures: Departures,
 }
 
 /// Why a measurement is impossible.
@@ -164,6 +173,8 @@ pub fn measure<E: From<MeasureError>>(
     let mut history = History::new(options.behind, tracks.ids.len());
     let mut overview = overview(tracks, chosen.clone());
     let mut seen = vec![false; tracks.ids.len()];
+    let first = tracks.frames[chosen.start];
+    let mut safety = Safety::new(tracks, first, options.sample_every);
     let mut next = chosen.start;
     while next < chosen.end {
         let begin = next;
@@ -192,6 +203,7 @@ pub fn measure<E: From<MeasureError>>(
                 diagram.add(number + 1, moment);
             }
         }
+        safety.add(&moments, site);
         let people: Vec<&Person> = moments.iter().flat_map(|moment| &moment.people).collect();
         fields.add(&people, site);
         take(&moments)?;
@@ -204,6 +216,8 @@ pub fn measure<E: From<MeasureError>>(
         fields,
         diagrams,
         crossings: crossings.collect(),
+        departures: safety.departures(tracks),
+        safety,
     })
 }
 

@@ -6,11 +6,13 @@ use std::path::Path;
 
 use super::pictures::STEMS;
 use super::record::RECORDING;
-use super::{CLASS, Class, Measured, Moment};
+use super::{CLASS, Class, Measured, Moment, Safety};
+use crate::analysis::exposure::PersonExposure;
 use crate::analysis::statistics::MeanStd;
 use crate::engine::math::Vector;
 use crate::lab::error::LabError;
 use crate::output::table::{Cell, Table, csv_lines};
+use crate::output::trajectory::read::Tracks;
 use crate::runs::error::StoreError;
 use crate::runs::store::Store;
 
@@ -20,13 +22,17 @@ const FIELDS: &str = "fields.csv";
 const DIAGRAM: &str = "fundamental_diagram.csv";
 const CLASSES: &str = "fundamental_classes.csv";
 const FLOW: &str = "flow.csv";
+const EXPOSURE: &str = "exposure.csv";
+const ALARMS: &str = "alarms.csv";
 
 const AGENT_COLUMNS: &str = "frame,time,id,x,y,vel_x,vel_y,speed,density,density_from_walls";
 const FIELD_COLUMNS: &str = "x,y,density,vel_x,vel_y,speed,flow_x,flow_y,people";
 
 /// The names of all files that a measurement may write, with its recording and its pictures.
 pub fn files() -> impl Iterator<Item = String> {
-    let tables = [AGENTS, FIELDS, DIAGRAM, CLASSES, FLOW, RECORDING];
+    let tables = [
+        AGENTS, FIELDS, DIAGRAM, CLASSES, FLOW, EXPOSURE, ALARMS, RECORDING,
+    ];
     let pictures = STEMS.map(|stem| ["svg", "png"].map(|kind| format!("{stem}.{kind}")));
     let tables = tables.into_iter().map(str::to_owned);
     tables.chain(pictures.into_iter().flatten())
@@ -86,7 +92,7 @@ impl Results {
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn finish(mut self, measured: &Measured) -> Result<(), LabError> {
+    pub fn finish(mut self, measured: &Measured, tracks: &Tracks) -> Result<(), LabError> {
         let (store, flushed) = (self.store, self.agents.flush());
         flushed.map_err(|error| unwritten(&store.path(AGENTS), &error))?;
         let (diagrams, crossings) = (&measured.diagrams, &measured.crossings);
@@ -94,6 +100,8 @@ impl Results {
         let frames = diagrams.iter().flat_map(|diagram| &diagram.frames);
         store.write(DIAGRAM, &csv_lines(&frames.collect::<Vec<_>>(), true)?)?;
         store.write(CLASSES, &classes(measured).csv()?)?;
+        store.write(EXPOSURE, &exposure(&measured.safety, tracks).csv()?)?;
+        store.write(ALARMS, &csv_lines(&measured.safety.samples, true)?)?;
         if !crossings.is_empty() {
             let all = crossings.iter().flat_map(|crossings| &crossings.list);
             store.write(FLOW, &csv_lines(&all.collect::<Vec<_>>(), true)?)?;
@@ -133,6 +141,18 @@ fn fields(measured: &Measured) -> Result<Vec<u8>, csv::Error> {
     });
     let lines = csv_lines(&rows.collect::<Vec<_>>(), false)?;
     Ok([format!("{FIELD_COLUMNS}\n").as_bytes(), &lines].concat())
+}
+
+/// The seconds of each person who was in a dense crowd or stood.
+fn exposure(safety: &Safety, tracks: &Tracks) -> Table {
+    let rows: Vec<PersonExposure> = safety.exposure.of_people(safety.secs).collect();
+    Table::of(&rows)
+        .column("id", |row| tracks.ids[row.agent as usize].to_string())
+        .column("above_4_secs", |row| row.above_4_secs)
+        .column("above_5_secs", |row| row.above_5_secs)
+        .column("above_6_secs", |row| row.above_6_secs)
+        .column("below_0.2_m_per_s_secs", |row| row.slow_secs)
+        .table()
 }
 
 /// One row per region, kind of values and density class.

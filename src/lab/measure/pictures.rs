@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Class, Crossings, Diagram, FrameMean, Mean, Measured, Site};
+use super::{Class, Crossings, Diagram, FrameMean, Mean, Measured, Site, safety_report};
 use crate::analysis::statistics::MeanStd;
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
@@ -21,16 +21,17 @@ const MOST_DOTS: usize = 1500;
 const NOBODY: f64 = 1e-3;
 
 /// The file names of the pictures, without extension.
-pub const STEMS: [&str; 3] = ["fields", "fundamental_diagram", "flow"];
+pub const STEMS: [&str; 4] = ["fields", "fundamental_diagram", "flow", "safety"];
 
 /// Draws all pictures into `folder`, as SVG and PNG.
 ///
 /// # Errors
 /// A picture cannot be written.
 pub fn save(folder: &Path, measured: &Measured, site: &Site) -> Result<(), PlotError> {
-    let [fields, diagram, flow] = STEMS;
+    let [fields, diagram, flow, safety] = STEMS;
     maps(measured, &site.walls).save(&folder.join(fields))?;
     diagrams(&measured.diagrams).save(&folder.join(diagram))?;
+    safety_report::picture(&measured.safety).save(&folder.join(safety))?;
     if !measured.crossings.is_empty() {
         counts(&measured.crossings).save(&folder.join(flow))?;
     }

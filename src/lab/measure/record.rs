@@ -53,6 +53,7 @@ impl<'a> MomentRecorder<'a> {
             opens_at: measured.times[0].max(ends[0]),
             ends_at: measured.times[1].min(ends[1]),
             debug: DebugAgents::None,
+            body_mass: None,
         };
         let (path, walls) = (folder.join(RECORDING), &site.walls);
         Ok(Self {

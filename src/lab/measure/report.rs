@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Value, json};
 
-use super::{CLASS, Class, Crossings, Diagram, Measured, Options, Way};
+use super::{CLASS, Class, Crossings, Diagram, Measured, Options, Way, safety_report};
 use crate::analysis::statistics::MeanStd;
 use crate::output::table::{Cell, Table};
 use crate::output::trajectory::read::Tracks;
@@ -52,6 +52,7 @@ impl Report<'_> {
                 spread(&overview.speed),
             ),
         };
+        text += &format!("\n{}", safety_report::text(self.measured));
         if !self.measured.crossings.is_empty() {
             text += &format!("\n{}", flows(&self.measured.crossings).text());
         }
@@ -98,6 +99,7 @@ impl Report<'_> {
                 "time_secs": time,
                 "frame": frame,
             })),
+            "safety": safety_report::json(self.measured),
             "lines": self.measured.crossings.iter().map(line).collect::<Vec<_>>(),
             "fundamental_diagrams": self.measured.diagrams.iter().map(diagram).collect::<Vec<_>>(),
             "notes": self.tracks.notes,

@@ -24,13 +24,14 @@ pub fn save(
         let failed = |error| LabError::of(label, error);
         let scenario = cell.case.scenario();
         let scenario = scenario.map_err(|error| LabError::of(label, error))?;
-        let mut simulation = Simulation::new(scenario.scene).map_err(failed)?;
+        let mut simulation = Simulation::new(scenario.scene.clone()).map_err(failed)?;
         go_to(at, &mut simulation).map_err(failed)?;
         let picture = Picture {
             title: format!("{}: {label}", cases[k].id),
             simulation: &simulation,
             view: scenario.view.region,
             paths: Vec::new(),
+            body_mass: scenario.mass_on_walls(),
         };
         picture.save(&store.path(&format!("{}.png", cases[k].id)))?;
         Ok(())

@@ -1,5 +1,6 @@
 //! A picture of a scene at one moment: floor and walls, places, zones, agents; and the ways to a destination.
 
+mod forces;
 mod labels;
 mod paths;
 mod scene;
@@ -36,6 +37,8 @@ pub struct Picture<'a> {
     pub view: Region,
     /// The ways that it shows, each in its own panel.
     pub paths: Vec<Paths>,
+    /// The mass of an average person, kg, if walls are colored by the force on them.
+    pub body_mass: Option<f64>,
 }
 
 /// The part of the plane that a panel shows, and its size.
@@ -130,12 +133,19 @@ impl Picture<'_> {
             }
             None => {
                 below.extend(scene::tints(self.simulation));
-                (scene::summary(self.simulation), None)
+                let bar = self.body_mass.map(|_| forces::bar());
+                (scene::summary(self.simulation), bar)
             }
         };
         below.extend(scene::agents(self.simulation, paths.is_some()));
         let mut marks = vec![Mark::Group(below)];
         marks.extend(scene::walls(self.simulation));
+        let body_mass = self.body_mass.filter(|_| paths.is_none());
+        marks.extend(
+            body_mass
+                .into_iter()
+                .flat_map(|mass| forces::marks(self.simulation, mass)),
+        );
         let inside = paths.is_none();
         marks.extend(scene::zones(self.simulation, frame, inside, &mut labels));
         marks.extend(scene::sources(self.simulation, &mut labels));

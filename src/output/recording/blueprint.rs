@@ -15,7 +15,10 @@ use rerun::external::re_sdk_types::blueprint::archetypes::{
 use rerun::{AsComponents, Color, EntityPath, Points2D, RecordingStream, RecordingStreamBuilder};
 
 use super::error::Cause;
-use super::{APPLICATION, DebugAgents, RecordingOptions, SIM_TIME, crowd, geometry, places, text};
+use super::{
+    APPLICATION, DebugAgents, RecordingOptions, SIM_TIME, crowd, geometry, places, text,
+    wall_forces,
+};
 use crate::engine::scene::Region;
 
 /// Length of the loop that plays first, seconds.
@@ -51,13 +54,15 @@ pub enum Content {
     Measurement,
 }
 
-/// What a recording has of journeys and ways.
+/// What a recording has of journeys, ways and forces on walls.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Journeys {
     /// Do agents visit places?
     pub begin: bool,
     /// The entities with the lengths of ways, which are hidden at first.
     pub fields: Vec<EntityPath>,
+    /// Are walls colored by the force on them?
+    pub wall_forces: bool,
 }
 
 /// Sends the default blueprint.
@@ -116,10 +121,12 @@ fn layout(
     };
     let hidden = journeys.fields.as_slice();
     let ways = (!hidden.is_empty()).then_some("+ /world/ways/**");
+    let pressed = (journeys.wall_forces).then(|| format!("+ /{}", wall_forces::ENTITY));
+    let ways = || ways.into_iter().chain(pressed.as_deref());
     let crowd = |name: &str| {
         Spatial2DView::new(name)
             .with_origin("/")
-            .with_contents([geometry, agents.as_str()].into_iter().chain(ways))
+            .with_contents([geometry, agents.as_str()].into_iter().chain(ways()))
     };
     let by_density = crowd("Density 0–8 P/m²").into();
     let by_speed = crowd("Speed 0–1.8 m/s")
@@ -144,7 +151,7 @@ fn layout(
             .with_contents(
                 [geometry, agents.as_str(), "+ /world/debug/**"]
                     .into_iter()
-                    .chain(ways),
+                    .chain(ways()),
             )
             .with_overrides(crowd::ENTITY, [dim_colors()])
             .into();
@@ -230,7 +237,10 @@ fn plots(content: &Content) -> ContainerLike {
     };
     let places = journeys.begin.then(places);
     let time = plot("Computing time", "/stats/time");
-    Tabs::new(places.into_iter().chain([motion, crowd, time])).into()
+    let series = format!("/{}", wall_forces::SERIES);
+    let forces = (journeys.wall_forces).then(|| plot("Force on walls", &series));
+    let first = places.into_iter().chain(forces);
+    Tabs::new(first.chain([motion, crowd, time])).into()
 }
 
 fn texts(content: &Content) -> ContainerLike {

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `world/geometry/{walls,obstacles,goals}` | static |
 //! | `world/geometry/{exits,waypoints,waiting_areas,queues,queue_spots,zones,entrances,names}` | static |
+//! | `world/wall_forces` | walls colored by the force on them, if the run measures it |
 //! | `world/ways/…` | the lengths of the ways to each place and goal as an image, hidden at first |
 //! | `world/agents` | the crowd: positions, radii, density and speed colors, `agent:…` values |
 //! | `world/debug/…` | the debug agents: kernels, hidden regions, wall points, forces, ways |
@@ -31,6 +32,7 @@ mod snapshot;
 mod stats;
 mod text;
 mod viewer;
+mod wall_forces;
 mod writer;
 
 pub use debug::DebugAgents;
@@ -42,6 +44,7 @@ pub use viewer::{Address, AddressError, Viewer};
 
 use rerun::RecordingStream;
 
+use crate::analysis::wall_forces::Outlines;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use blueprint::{Content, Journeys};
@@ -69,6 +72,8 @@ pub struct RecordingOptions {
     pub ends_at: f64,
     /// The debug agents.
     pub debug: DebugAgents,
+    /// The mass of an average person, kg, if walls are colored by the force on them.
+    pub body_mass: Option<f64>,
 }
 
 /// Writes a recording, frame by frame.
@@ -80,6 +85,8 @@ pub struct Recorder {
     opened: bool,
     /// Region of the debug view.
     focus: Option<Region>,
+    /// Cells of the walls, if they are colored by force.
+    outlines: Option<Outlines>,
     /// Number of events that were recorded or left out; `None` before the first frame.
     events: Option<usize>,
 }
@@ -104,16 +111,21 @@ impl Recorder {
             places::log(stream, scene)?;
             places::log_ways(stream, scene)?;
             places::log_series(stream, scene)?;
+            if options.body_mass.is_some() {
+                wall_forces::log_style(stream)?;
+            }
             layers::begin(stream, scene, &options.debug)
         };
         let content = Content::Run(Journeys {
             begin: !scene.journeys.places.is_empty(),
             fields: places::fields(scene),
+            wall_forces: options.body_mass.is_some(),
         });
         Ok(Self {
             session: Session::begin(output, options.clone(), content, log_own)?,
             opened: false,
             focus: None,
+            outlines: (options.body_mass).map(|_| Outlines::new(&scene.walls)),
             events: None,
         })
     }
@@ -133,6 +145,9 @@ impl Recorder {
         let options = &mut self.session.options;
         let mut snapshot = Snapshot::of(simulation, &options.debug);
         snapshot.ms_per_frame = Some(ms_per_frame);
+        if let (Some(outlines), Some(mass)) = (&self.outlines, options.body_mass) {
+            snapshot.wall_forces = Some(wall_forces::parts(outlines, simulation, mass));
+        }
         let arrivals = simulation.outcome().arrivals.iter();
         snapshot.evacuated = Some(arrivals.filter(|arrival| arrival.counted).count());
         let (clock, events) = (simulation.frame().clock, simulation.events());

@@ -5,6 +5,7 @@ use rerun::EntityPath;
 use super::debug::{DebugAgents, Open};
 use super::geometry::xy;
 use super::places;
+use super::wall_forces::Part;
 use crate::engine::math::Vector;
 use crate::engine::simulation::{Event, Simulation};
 use crate::output::colors::Rgb;
@@ -39,6 +40,8 @@ pub struct Snapshot {
     pub waiting: Vec<u32>,
     /// Events since the last snapshot, each with its time.
     pub events: Vec<(f64, Event)>,
+    /// The parts of walls on which anything presses; `None` if this is not shown.
+    pub wall_forces: Option<Vec<Part>>,
     /// The debug agents.
     pub open: Vec<Open>,
     /// Whether this is the frame to show first.

@@ -10,7 +10,7 @@ use super::layers::{METERS_PER_ACCELERATION, color};
 use super::{DebugAgents, RecordingOptions};
 use crate::engine::profile::Term;
 use crate::engine::scene::Scene;
-use crate::output::colors::{DENSITY_RANGE, SPEED_RANGE};
+use crate::output::colors::{DENSITY_RANGE, SPEED_RANGE, WALL_FORCE_RANGE};
 use crate::output::scenery;
 
 pub const DOCUMENT: &str = "info/scenario";
@@ -73,6 +73,13 @@ pub fn log_run(
         let names = scenery::STAGES.map(|(name, _)| name).join(", ");
         agents +=
             &format!("* Colors by stage of the journey, from stage 1: {names}; gray: ended.\n");
+    }
+    if let Some(mass) = options.body_mass {
+        agents += &format!(
+            "* Force on walls (`world/wall_forces`), the mean over 1 m for people of {mass} kg: yellow 0, orange {:.0}, \
+             dark red {WALL_FORCE_RANGE} N/m and more. Not a limit of safety.\n",
+            0.5 * WALL_FORCE_RANGE,
+        );
     }
     if scene.ways.is_some() {
         agents += "* Lengths of ways (`world/ways`), hidden at first: click the eye beside a place in the list of \

@@ -9,7 +9,7 @@ use super::crowd::Crowd;
 use super::error::Cause;
 use super::layers::Layer;
 use super::snapshot::Snapshot;
-use super::{file, set_time, stats};
+use super::{file, set_time, stats, wall_forces};
 
 /// Maximum number of queued snapshots; the simulation waits when the queue is full.
 const QUEUE: usize = 4;
@@ -31,6 +31,9 @@ impl Writer {
                 stats::log_events(&stream, &snapshot.events)?;
                 set_time(&stream, snapshot.frame, snapshot.time);
                 crowd.log(&stream, &snapshot)?;
+                if let Some(parts) = &snapshot.wall_forces {
+                    wall_forces::log(&stream, parts)?;
+                }
                 for layer in &mut layers {
                     layer.log(&stream, &snapshot.open)?;
                 }

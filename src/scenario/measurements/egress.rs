@@ -1,13 +1,16 @@
-//! How long people take to leave: the times by which parts of them have left.
+//! How long people take to leave: the times by which parts of them have left, and their delays.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Measure;
+use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
+use crate::engine::ways::Destination;
 
 /// Of the people on one journey, or on all journeys: how many have left at an exit, the mean time from entry to exit,
-/// and the times by which 50 %, 95 % and all have left.
+/// the times by which 50 %, 95 % and all have left, the mean wait in queues and waiting areas, and the mean and the
+/// largest delay against free walking.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Egress {
@@ -70,8 +73,54 @@ impl Left {
     }
 }
 
+/// An agent on its way.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Walker {
+    /// When it may start: its entry and its pre-movement time, seconds.
+    due: f64,
+    /// s_pref, m/s.
+    speed: f64,
+    /// The stage of its journey, from 0, and the place that it has chosen for it.
+    stage: u16,
+    place: u16,
+    /// Where the stage began, meters.
+    from: Vector,
+    /// The length of the shortest ways of the stages before, meters.
+    length: f64,
+}
+
+/// What was seen so far.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub struct Seen {
+    /// By id; `None` for agents that have left or are on no journey that counts.
+    walkers: Vec<Option<Walker>>,
+    /// The number of arrivals that were processed.
+    arrivals: usize,
+    /// The delays of those who have left, seconds.
+    delays: Vec<f64>,
+}
+
+impl Egress {
+    /// The number of the journey; `None`: all journeys. `Err` if there is no such journey.
+    fn number(&self, simulation: &Simulation) -> Result<Option<u16>, ()> {
+        let Some(name) = &self.journey else {
+            return Ok(None);
+        };
+        let mut journeys = simulation.scene().journeys.journeys.iter();
+        let found = journeys.position(|journey| journey.name == *name);
+        found.map(|k| Some(k as u16)).ok_or(())
+    }
+}
+
+/// The length of the shortest way from `p` to a place, meters; 0 if there is none.
+fn length(simulation: &Simulation, p: Vector, place: u16) -> f64 {
+    let ways = simulation.scene().ways.as_ref();
+    let way = ways.and_then(|ways| ways.way(p, Destination::Place(place)));
+    way.map_or(0.0, |way| way.length)
+}
+
 impl Measure for Egress {
-    type Seen = ();
+    type Seen = Seen;
 
     fn names(&self) -> Vec<(String, &'static str)> {
         let of = self.journey.as_ref();
@@ -83,26 +132,73 @@ impl Measure for Egress {
             ("t50_secs", "s"),
             ("t95_secs", "s"),
             ("t100_secs", "s"),
+            ("waited_secs", "s"),
+            ("delay_secs", "s"),
+            ("longest_delay_secs", "s"),
         ];
         values.into_iter().map(name).collect()
     }
 
-    fn values(&self, (): &(), simulation: &Simulation) -> Vec<Option<f64>> {
-        let journeys = &simulation.scene().journeys.journeys;
-        let number = self.journey.as_ref().map(|name| {
-            let found = journeys.iter().position(|journey| journey.name == *name);
-            found.map(|k| k as u16)
-        });
-        let Some(number) = number.map_or(Some(None), |found| found.map(Some)) else {
-            return vec![None; 5];
+    fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
+        let (scene, frame) = (simulation.scene(), simulation.frame());
+        let (clock, agents) = (frame.clock, frame.agents);
+        for arrival in &simulation.outcome().arrivals[seen.arrivals..] {
+            let walker = seen.walkers.get_mut(arrival.id as usize);
+            if let (Some(trip), Some(walker)) = (arrival.trip, walker.and_then(Option::take)) {
+                let last = length(simulation, walker.from, trip.exit);
+                let free = (walker.length + last) / walker.speed;
+                // People whose preferred speed is 0 do not walk freely.
+                let delay = Some(arrival.time - walker.due - free);
+                seen.delays.extend(delay.filter(|secs| secs.is_finite()));
+            }
+        }
+        seen.arrivals = simulation.outcome().arrivals.len();
+        let Ok(number) = self.number(simulation) else {
+            return;
+        };
+        // Stages change in coarse frames only.
+        if !clock.is_coarse() {
+            return;
+        }
+        seen.walkers.resize(agents.entered() as usize, None);
+        for (i, trip) in agents.trip.iter().enumerate() {
+            let Some(trip) = trip.filter(|trip| number.is_none_or(|own| own == trip.journey))
+            else {
+                continue;
+            };
+            let position = agents.position[i];
+            let walker = seen.walkers[agents.id[i] as usize].get_or_insert_with(|| Walker {
+                due: (agents.walks_from.get(i)).map_or(trip.entered, |from| from.max(trip.entered)),
+                speed: (agents.preferred_speed.get(i).copied()).unwrap_or(scene.preferred_speed),
+                stage: trip.stage,
+                place: trip.place,
+                from: position,
+                length: 0.0,
+            });
+            if walker.stage != trip.stage {
+                walker.length += length(simulation, walker.from, walker.place);
+                (walker.stage, walker.from) = (trip.stage, position);
+            }
+            walker.place = trip.place;
+        }
+    }
+
+    fn values(&self, seen: &Seen, simulation: &Simulation) -> Vec<Option<f64>> {
+        let Ok(number) = self.number(simulation) else {
+            return vec![None; self.names().len()];
         };
         let left = Left::of(simulation, number);
+        let delays = &seen.delays;
+        let mean = delays.iter().sum::<f64>() / delays.len() as f64;
         vec![
             Some(f64::from(left.finished)),
             left.mean_secs,
             left.t50_secs,
             left.t95_secs,
             left.t100_secs,
+            left.waited_secs,
+            (!delays.is_empty()).then_some(mean),
+            delays.iter().copied().reduce(f64::max),
         ]
     }
 }

@@ -5,19 +5,25 @@
 //! due at any time step.
 
 mod arrivals;
+mod body_forces;
 mod closest;
 mod contacts;
+mod crowd_pressure;
 mod density;
 mod egress;
+mod exposure;
 mod fence;
 mod frame_time;
 mod integrity;
 mod jitter;
 mod line_flow;
+mod service_levels;
 mod snapshot;
 mod speed_by_density;
 mod walks;
+mod wall_forces;
 mod wave;
+mod window;
 
 use std::fmt;
 
@@ -27,17 +33,22 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 pub use arrivals::{Evacuated, FlowOfFirst, FlowUntil, Locked, Pauses, Uncounted};
+pub use body_forces::BodyForces;
 pub use closest::{Closest, closest};
 pub use contacts::ContactsAt;
+pub use crowd_pressure::CrowdPressure;
 pub use density::Density;
 pub use egress::{Egress, Left};
+pub use exposure::Exposure;
 pub use frame_time::{FrameTime, StageTimes};
 pub use integrity::{Integrity, Watched};
 pub use jitter::Jitter;
 pub use line_flow::LineFlow;
+pub use service_levels::ServiceLevels;
 pub use snapshot::{Snapshot, SnapshotAt};
 pub use speed_by_density::SpeedByDensity;
 pub use walks::{Walk, Walks};
+pub use wall_forces::WallForces;
 pub use wave::{Wave, WaveData};
 
 use super::error::{Problem, Under};
@@ -121,6 +132,16 @@ pub enum Measurement {
     Walks(Walks),
     /// The flow across a line, with density and speed before it.
     LineFlow(LineFlow),
+    /// How long people are in dense crowds and stand.
+    Exposure(Exposure),
+    /// How much room people have, by Fruin.
+    ServiceLevels(ServiceLevels),
+    /// Density times variance of the velocities.
+    CrowdPressure(CrowdPressure),
+    /// Forces on people, N.
+    BodyForces(BodyForces),
+    /// Forces on walls, N/m.
+    WallForces(WallForces),
     /// Computing time by stage.
     FrameTime(FrameTime),
 }
@@ -146,6 +167,11 @@ impl Measurement {
             Self::SpeedByDensity(keys) => started(keys),
             Self::Walks(keys) => started(keys),
             Self::LineFlow(keys) => started(keys),
+            Self::Exposure(keys) => started(keys),
+            Self::ServiceLevels(keys) => started(keys),
+            Self::CrowdPressure(keys) => started(keys),
+            Self::BodyForces(keys) => started(keys),
+            Self::WallForces(keys) => started(keys),
             Self::FrameTime(keys) => started(keys),
         }
     }
@@ -156,6 +182,10 @@ impl Measurement {
             Self::Density(keys) => vec![("density.region", keys.region)],
             Self::Contacts(keys) => vec![("contacts.region", Some(keys.region))],
             Self::Walks(keys) => vec![("walks.region", keys.region)],
+            Self::Exposure(keys) => vec![("exposure.region", keys.region)],
+            Self::ServiceLevels(keys) => vec![("service_levels.region", keys.region)],
+            Self::CrowdPressure(keys) => vec![("crowd_pressure.region", keys.region)],
+            Self::BodyForces(keys) => vec![("body_forces.region", keys.region)],
             Self::LineFlow(keys) => {
                 let line = ("line_flow.line", keys.around_line());
                 let region = keys.region.and_then(|corners| region("", corners).ok());
@@ -167,6 +197,14 @@ impl Measurement {
         let found =
             |(key, corners): (&'static str, Option<_>)| Some((key, region("", corners?).ok()?));
         places.into_iter().filter_map(found).collect()
+    }
+
+    /// The mass of an average person, kg, if it measures forces on walls.
+    pub fn mass_on_walls(&self) -> Option<f64> {
+        match self {
+            Self::WallForces(keys) => Some(keys.body_mass_kg),
+            _ => None,
+        }
     }
 
     /// The names of its values.

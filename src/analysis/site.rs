@@ -22,6 +22,16 @@ pub struct Kernel {
     pub walls: WallMethod,
 }
 
+impl Kernel {
+    /// The share of the kernel at `p`, outside obstacles, that the walls in `near` hide.
+    pub fn share(&self, walls: &Walls, p: Vector, near: &[u32]) -> f64 {
+        let mut share = 0.0;
+        let (method, h) = (self.walls, self.support_radius);
+        method.shares(walls, near, p, h, |wall| share += wall.kernel);
+        share
+    }
+}
+
 /// What walls hide from a person.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hidden {
@@ -58,17 +68,18 @@ impl Site {
 
     /// The share of the kernel at `p` that the walls in `near` hide. `p` is outside obstacles.
     pub fn share(&self, p: Vector, near: &[u32], kernel: &Kernel) -> f64 {
-        let mut share = 0.0;
-        let (method, h) = (kernel.walls, kernel.support_radius);
-        method.shares(&self.walls, near, p, h, |wall| share += wall.kernel);
-        share
+        kernel.share(&self.walls, p, near)
     }
 
     /// Whether no wall in `near` is between `p`, outside obstacles, and `q`. Walls that hide `q` also hide that part of
     /// the kernel.
     pub fn sees(&self, p: Vector, q: Vector, near: &[u32]) -> bool {
-        let hides = |&k: &u32| self.walls.wall(k).crossing(p, q).is_some();
-        !near.iter().any(hides)
+        Self::is_clear(&self.walls, p, q, near)
+    }
+
+    /// As [`sees`](Self::sees), for any walls.
+    pub fn is_clear(walls: &Walls, p: Vector, q: Vector, near: &[u32]) -> bool {
+        !near.iter().any(|&k| walls.wall(k).crossing(p, q).is_some())
     }
 
     /// What walls hide from a person at `p`. `near` holds the walls within h of `p`, then those within h of the eye.

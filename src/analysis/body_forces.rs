@@ -1,0 +1,134 @@
+//! How hard a crowd presses on each person: the virial stress of pressure and contact, and the force that follows.
+//!
+//! σ_i = −(ρ_i/2) (Σ_j r_ij ⊗ f_ij + Σ_k 2 (r_i − r_k*) ⊗ f_ik), N/m: over the agents j and over the walls k, which
+//! count as a person at its mirror image. f is body mass × m_i × the acceleration by Eqs. 11, 12, 22 and 23, and ρ_i is
+//! the density of [`local`](super::local). The force on a person is the largest principal pressure, −σ, times the width
+//! of a person. Social forces, RVO and goal forces do not press.
+
+use serde::{Deserialize, Serialize};
+
+use super::exposure::Spell;
+use super::local::local;
+use crate::engine::math::Vector;
+use crate::engine::simulation::Simulation;
+
+/// The mass of an average person, m = 1, if none is given, kg.
+pub const BODY_MASS: f64 = 75.0;
+/// The width of a person, meters.
+pub const WIDTH: f64 = 0.5;
+/// Forces in the literature, newtons: tolerable on a bar (Evans and Hayden 1971), fatal in 4 to 6 minutes and in 15 s
+/// (Hopkins et al. 1993), as Lee and Hughes (2006) give them. Not limits of safety.
+pub const MARKS: [f64; 3] = [623.0, 1112.0, 6227.0];
+
+/// A person and what presses on it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Pressed {
+    /// The agent's id.
+    pub agent: u32,
+    /// Meters.
+    pub position: Vector,
+    /// σ as xx, xy and yy, N/m; pressure is negative.
+    pub stress: [f64; 3],
+    /// The force on the person, newtons.
+    pub force: f64,
+}
+
+/// What presses on each agent of an evaluated frame, by id.
+pub fn pressed(simulation: &Simulation, body_mass: f64) -> Vec<Pressed> {
+    let frame = simulation.frame();
+    let (agents, walls) = (frame.agents, frame.walls);
+    let mut virials = simulation.virials();
+    simulation.each_wall_push(|i, wall, push| {
+        let r_i = agents.position[i];
+        let arm = (r_i - walls.wall(wall).nearest_point(r_i).point) * 2.0;
+        let xy = 0.5 * (arm.x * push.y + arm.y * push.x);
+        let own = [arm.x * push.x, xy, arm.y * push.y];
+        (0..3).for_each(|k| virials[i][k] += own[k]);
+    });
+    let mut order: Vec<usize> = (0..agents.len()).collect();
+    order.sort_unstable_by_key(|&i| agents.id[i]);
+    let people = order.into_iter().zip(local(simulation, false));
+    let pressed = people.map(|(i, person)| {
+        let scale = -0.5 * person.density * body_mass * agents.mass[i];
+        let stress = virials[i].map(|virial| virial * scale);
+        Pressed {
+            agent: agents.id[i],
+            position: agents.position[i],
+            stress,
+            force: principal_pressure(stress).max(0.0) * WIDTH,
+        }
+    });
+    pressed.collect()
+}
+
+/// The largest eigenvalue of −σ, N/m.
+fn principal_pressure([xx, xy, yy]: [f64; 3]) -> f64 {
+    -0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy)
+}
+
+/// What was seen of one person.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+struct Person {
+    /// The largest force, newtons.
+    most: f64,
+    /// The samples above each of [`MARKS`].
+    spells: [Spell; 3],
+}
+
+/// What was seen of people at several times.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct BodyForces {
+    /// The largest force so far, and when, seconds.
+    pub peak: Option<(Pressed, f64)>,
+    /// By id.
+    people: Vec<Person>,
+}
+
+/// One person's largest force.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PersonForce {
+    /// The agent's id.
+    pub agent: u32,
+    /// Newtons.
+    pub max_n: f64,
+}
+
+impl BodyForces {
+    /// Adds the people at a time in seconds.
+    pub fn add(&mut self, time: f64, people: &[Pressed]) {
+        for person in people {
+            let id = person.agent as usize;
+            if self.people.len() <= id {
+                self.people.resize(id + 1, Person::default());
+            }
+            let own = &mut self.people[id];
+            own.most = own.most.max(person.force);
+            for (spell, mark) in own.spells.iter_mut().zip(MARKS) {
+                spell.add(person.force > mark);
+            }
+            if self.peak.is_none_or(|(peak, _)| person.force > peak.force) {
+                self.peak = Some((*person, time));
+            }
+        }
+    }
+
+    /// For each of [`MARKS`]: the number of people above it at any time, and the longest number of samples of one person
+    /// above it without a break.
+    pub fn above(&self) -> [(u32, f64); 3] {
+        std::array::from_fn(|k| {
+            let longest = self.people.iter().map(|own| own.spells[k].longest());
+            let people = longest.clone().filter(|&samples| samples > 0.0).count();
+            (people as u32, longest.fold(0.0, f64::max))
+        })
+    }
+
+    /// The largest force on each person on whom anything pressed.
+    pub fn of_people(&self) -> impl Iterator<Item = PersonForce> + '_ {
+        let people = self.people.iter().zip(0..);
+        let pressed = people.filter(|(own, _)| own.most > 0.0);
+        pressed.map(|(own, agent)| PersonForce {
+            agent,
+            max_n: own.most,
+        })
+    }
+}

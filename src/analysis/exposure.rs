@@ -1,0 +1,145 @@
+//! How long people are in dense crowds and how long they stand, and how large the crowds are.
+//!
+//! The densities are usual marks in the literature on crowds (Fruin 1993, Still 2014), not limits of safety.
+
+use serde::{Deserialize, Serialize};
+
+use super::local::Local;
+
+/// The densities that count as dense, P/m².
+pub const DENSITIES: [f64; 3] = [4.0, 5.0, 6.0];
+/// Below this speed people count as standing, m/s.
+pub const SLOW: f64 = 0.2;
+
+/// How long one condition has lasted, and in how many samples of time it held: the current and the longest run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Spell {
+    now: u32,
+    longest: u32,
+}
+
+impl Spell {
+    /// Adds a sample.
+    pub fn add(&mut self, holds: bool) {
+        self.now = if holds { self.now + 1 } else { 0 };
+        self.longest = self.longest.max(self.now);
+    }
+
+    /// The largest number of samples in a row.
+    pub fn longest(&self) -> f64 {
+        f64::from(self.longest)
+    }
+}
+
+/// A crowd above one of [`DENSITIES`].
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Alarm {
+    /// The largest area at one time, m²: Σ 1/ρ over the people above the density.
+    pub area: f64,
+    /// The most people at one time.
+    pub people: u32,
+    /// The samples with at least one person above the density.
+    pub spell: Spell,
+}
+
+/// How much of a crowd is above one of [`DENSITIES`] at one time.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Dense {
+    /// m²: Σ 1/ρ over these people.
+    pub area: f64,
+    /// Their number.
+    pub people: u32,
+}
+
+/// What was seen of people at several times.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Exposure {
+    /// By number of the person: in how many samples it was above each of [`DENSITIES`], and slower than [`SLOW`].
+    samples: Vec<[u32; 4]>,
+    /// One per density.
+    pub alarms: [Alarm; 3],
+}
+
+/// The exposure of all people to one condition.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Exposed {
+    /// The number of people who were exposed.
+    pub people: u32,
+    /// The sum of their times, seconds.
+    pub person_secs: f64,
+    /// The longest time of one person, seconds.
+    pub longest_secs: f64,
+}
+
+/// One person's exposure.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PersonExposure {
+    /// The number of the person.
+    pub agent: u32,
+    /// Seconds above 4 P/m².
+    pub above_4_secs: f64,
+    /// Seconds above 5 P/m².
+    pub above_5_secs: f64,
+    /// Seconds above 6 P/m².
+    pub above_6_secs: f64,
+    /// Seconds below 0.2 m/s.
+    pub slow_secs: f64,
+}
+
+impl Exposure {
+    /// Adds the people at one time; returns how much of them is above each density.
+    pub fn add<'a>(&mut self, people: impl Iterator<Item = &'a Local>) -> [Dense; 3] {
+        let mut dense = [Dense::default(); 3];
+        for person in people {
+            let number = person.number as usize;
+            if self.samples.len() <= number {
+                self.samples.resize(number + 1, [0; 4]);
+            }
+            let own = &mut self.samples[number];
+            for (k, &density) in DENSITIES.iter().enumerate() {
+                if person.density > density {
+                    own[k] += 1;
+                    dense[k].area += 1.0 / person.density;
+                    dense[k].people += 1;
+                }
+            }
+            own[3] += u32::from(person.speed.is_some_and(|speed| speed < SLOW));
+        }
+        for (alarm, now) in self.alarms.iter_mut().zip(dense) {
+            alarm.area = alarm.area.max(now.area);
+            alarm.people = alarm.people.max(now.people);
+            alarm.spell.add(now.people > 0);
+        }
+        dense
+    }
+
+    /// The exposure to each of [`DENSITIES`] and to standing; a sample stands for `secs` seconds.
+    pub fn exposed(&self, secs: f64) -> [Exposed; 4] {
+        std::array::from_fn(|k| {
+            let counts = self.samples.iter().map(|own| own[k]);
+            let sum: u64 = counts.clone().map(u64::from).sum();
+            Exposed {
+                people: counts.clone().filter(|&count| count > 0).count() as u32,
+                person_secs: sum as f64 * secs,
+                longest_secs: f64::from(counts.max().unwrap_or(0)) * secs,
+            }
+        })
+    }
+
+    /// The exposure of each person who was exposed to anything; a sample stands for `secs` seconds.
+    pub fn of_people(&self, secs: f64) -> impl Iterator<Item = PersonExposure> + '_ {
+        let people = self.samples.iter().zip(0..);
+        let exposed = people.filter(|(own, _)| own.iter().any(|&count| count > 0));
+        exposed.map(move |(own, agent)| {
+            let [above_4_secs, above_5_secs, above_6_secs, slow_secs] =
+                own.map(|count| f64::from(count) * secs);
+            PersonExposure {
+                agent,
+                above_4_secs,
+                above_5_secs,
+                above_6_secs,
+                slow_secs,
+            }
+        })
+    }
+}

@@ -1,0 +1,152 @@
+//! The density around each person and the variance of the velocities there, of people in runs and in trajectories.
+//!
+//! Both are means with the kernel of Eq. 13 at h = √5 m. Its second moment is that of the Gaussian
+//! exp(−r²/R²)/(π R²) with R = 1 m of Helbing, Johansson and Al-Abideen (2007), and unlike that one it ends: walls hide a
+//! part of it that is known exactly. Every person counts as one, whatever its mass.
+
+use serde::{Deserialize, Serialize};
+
+use super::site::{Hidden, Kernel, Site};
+use super::surroundings::{MOST_HIDDEN, Surroundings};
+use crate::engine::agents::Agents;
+use crate::engine::boundary::WallMethod;
+use crate::engine::geometry::Walls;
+use crate::engine::math::Vector;
+use crate::engine::period::Period;
+use crate::engine::simulation::Simulation;
+
+/// The kernel: h = √5 m, and the union of what walls hide.
+pub const KERNEL: Kernel = Kernel {
+    support_radius: 2.236_067_977_499_79,
+    walls: WallMethod::Union,
+};
+
+/// A person at one time, with what is around it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Local {
+    /// The number of the person, the same at all times.
+    pub number: u32,
+    /// Meters.
+    pub position: Vector,
+    /// m/s; `None` if unknown.
+    pub speed: Option<f64>,
+    /// ρ = Σ_j W(r_ij) / (1 − the part of W that walls hide), P/m², over the person itself and all that it sees.
+    pub density: f64,
+    /// ρ Var(v), 1/s²; `None` if no velocity is known nearby, or if it was not asked for.
+    pub pressure: Option<f64>,
+}
+
+/// People at one time.
+#[derive(Debug, Clone, Default)]
+pub struct People {
+    /// The number of each person.
+    pub numbers: Vec<u32>,
+    /// Meters; after those of the people, images of people beyond the ends of a period.
+    positions: Vec<Vector>,
+    /// m/s; `None` if unknown. As long as `positions`.
+    velocities: Vec<Option<Vector>>,
+}
+
+impl People {
+    /// People with their positions and, if known, velocities.
+    pub fn new(people: impl Iterator<Item = (u32, Vector, Option<Vector>)>) -> Self {
+        let mut all = Self::default();
+        for (number, position, velocity) in people {
+            all.numbers.push(number);
+            all.positions.push(position);
+            all.velocities.push(velocity);
+        }
+        all
+    }
+
+    /// The agents of a run, by id: the order of sums does not depend on that of the agents in memory.
+    pub fn of(agents: &Agents, period: Option<&Period>) -> Self {
+        let mut order: Vec<usize> = (0..agents.len()).collect();
+        order.sort_unstable_by_key(|&i| agents.id[i]);
+        let state = |i: usize| (agents.id[i], agents.position[i], Some(agents.velocity[i]));
+        let mut all = Self::new(order.into_iter().map(state));
+        if let Some(period) = period {
+            all.add_images(period);
+        }
+        all
+    }
+
+    /// Adds the images of people within h of the ends of the period.
+    fn add_images(&mut self, period: &Period) {
+        let h = KERNEL.support_radius;
+        let [low, high] = period.ends();
+        let laps = (h / period.length).ceil() as i32;
+        for k in 0..self.numbers.len() {
+            for lap in (-laps..=laps).filter(|&lap| lap != 0) {
+                let image = self.positions[k] + period.way(lap);
+                if (low - h..high + h).contains(&period.along(image)) {
+                    self.positions.push(image);
+                    self.velocities.push(self.velocities[k]);
+                }
+            }
+        }
+    }
+
+    /// The surroundings of people at a site, where they may lean over walls.
+    pub fn at<'a>(&self, site: &'a Site) -> Surroundings<'a> {
+        let hide = |p, near: &mut Vec<u32>| site.hidden(p, near, &KERNEL);
+        Surroundings::new(
+            &site.walls,
+            &self.positions,
+            &[],
+            KERNEL.support_radius,
+            hide,
+        )
+    }
+
+    /// The surroundings of people of whom none is inside an obstacle.
+    fn among<'a>(&self, walls: &'a Walls) -> Surroundings<'a> {
+        let hide = |p, near: &mut Vec<u32>| Hidden {
+            share: KERNEL.share(walls, p, near),
+            eye: p,
+            inside: None,
+        };
+        Surroundings::new(walls, &self.positions, &[], KERNEL.support_radius, hide)
+    }
+
+    /// The people with what is around them, in their order, with pressures if `pressure`.
+    pub fn local(&self, around: &Surroundings, pressure: bool) -> Vec<Local> {
+        let sums = around.from_people(true);
+        let people = self.numbers.iter().zip(sums).enumerate();
+        let local = people.map(|(k, (&number, sum))| {
+            let density = sum / (1.0 - around.hidden(k).share.min(MOST_HIDDEN));
+            let variance = pressure.then(|| self.variance(around, k)).flatten();
+            Local {
+                number,
+                position: self.positions[k],
+                speed: self.velocities[k].map(|v| v.norm()),
+                density,
+                pressure: variance.map(|variance| density * variance),
+            }
+        });
+        local.collect()
+    }
+
+    /// Var(v) = Σ W |v_j − V|² / Σ W around a person, m²/s², where V is the mean velocity with the same weights.
+    fn variance(&self, around: &Surroundings, person: usize) -> Option<f64> {
+        let known = || {
+            let seen = around.seen_by(person);
+            seen.filter_map(|(j, weight)| Some((self.velocities[j]?, weight)))
+        };
+        let (mut total, mut sum) = (0.0, Vector::zeros());
+        for (velocity, weight) in known() {
+            total += weight;
+            sum += velocity * weight;
+        }
+        let mean = sum / total;
+        let squares = known().map(|(velocity, weight)| weight * (velocity - mean).norm_squared());
+        (total > 0.0).then(|| squares.sum::<f64>() / total)
+    }
+}
+
+/// The agents of an evaluated frame with what is around them, by id, with pressures if `pressure`.
+pub fn local(simulation: &Simulation, pressure: bool) -> Vec<Local> {
+    let scene = simulation.scene();
+    let people = People::of(simulation.frame().agents, scene.period.as_ref());
+    people.local(&people.among(&scene.walls), pressure)
+}

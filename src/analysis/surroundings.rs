@@ -1,0 +1,121 @@
+//! The people around each person, seen through the kernel of Eq. 13, with walls between them.
+
+use super::site::{Hidden, Site};
+use crate::engine::agents::{Agents, NewAgent, REFERENCE_RADIUS};
+use crate::engine::density::from_agents;
+use crate::engine::geometry::Walls;
+use crate::engine::kernel;
+use crate::engine::math::Vector;
+use crate::engine::neighbors::{BLOCK, Neighbors, Ranges};
+use crate::engine::pairs::Bodies;
+
+/// At most this share of a kernel counts as hidden: in a narrow gap, the visible rest is too small to be meaningful.
+pub const MOST_HIDDEN: f64 = 0.9;
+
+/// The people around each person in a frame.
+pub struct Surroundings<'a> {
+    walls: &'a Walls,
+    /// h, meters.
+    support_radius: f64,
+    /// Sorted; their ids count the people in the given order.
+    agents: Agents,
+    neighbors: Neighbors,
+    /// The walls near each agent.
+    near_walls: Vec<Vec<u32>>,
+    /// What walls hide from each agent.
+    hidden: Vec<Hidden>,
+    /// The index of each person.
+    index: Vec<usize>,
+}
+
+impl<'a> Surroundings<'a> {
+    /// The people around each of `positions`, as far as h. Without `masses`, all masses are 1. `hide` returns what walls
+    /// hide from a person at a position, given the walls within h, which it may replace by those within h of the eye.
+    pub fn new(
+        walls: &'a Walls,
+        positions: &[Vector],
+        masses: &[f64],
+        support_radius: f64,
+        hide: impl Fn(Vector, &mut Vec<u32>) -> Hidden,
+    ) -> Self {
+        let mut agents = Agents::default();
+        for (k, &position) in positions.iter().enumerate() {
+            let person = NewAgent {
+                radius: Some(REFERENCE_RADIUS),
+                mass: Some(masses.get(k).copied().unwrap_or(1.0)),
+                ..NewAgent::at(position, position, 0)
+            };
+            agents.enter(person, 0);
+        }
+        let ranges = Ranges {
+            support: support_radius,
+            ..Ranges::default()
+        };
+        let mut neighbors = Neighbors::default();
+        neighbors.sort(&mut agents, ranges);
+        neighbors.list_agents();
+        neighbors.list_walls(&agents, walls);
+        let seen = (0..agents.len()).map(|i| {
+            let mut near = neighbors.near_walls(i).to_vec();
+            let hidden = hide(agents.position[i], &mut near);
+            (near, hidden)
+        });
+        let (near_walls, hidden) = seen.unzip();
+        let mut index = vec![0; agents.len()];
+        for (i, &id) in agents.id.iter().enumerate() {
+            index[id as usize] = i;
+        }
+        Self {
+            walls,
+            support_radius,
+            agents,
+            neighbors,
+            near_walls,
+            hidden,
+            index,
+        }
+    }
+
+    /// What walls hide from a person.
+    pub fn hidden(&self, person: usize) -> Hidden {
+        self.hidden[self.index[person]]
+    }
+
+    /// Σ_j m_j W including j = i, P/m², of each person: by the engine's own sums, in double precision, over all people
+    /// within reach or, near walls, only over the visible ones.
+    pub fn from_people(&self, only_visible: bool) -> Vec<f64> {
+        let agents = &self.agents;
+        let mut bodies = Bodies::<f64>::default();
+        bodies.take(agents, 1.0, None, |_| self.support_radius);
+        bodies.take_motions(agents);
+        let mut sums = vec![0.0; agents.len()];
+        for (b, sums) in sums.chunks_mut(BLOCK).enumerate() {
+            from_agents(&bodies, self.neighbors.near().block(b), sums);
+        }
+        let near_walls = |i: &usize| only_visible && !self.near_walls[*i].is_empty();
+        for i in (0..agents.len()).filter(near_walls) {
+            sums[i] = self.visible(i).map(|(_, weight)| weight).sum();
+        }
+        self.index.iter().map(|&i| sums[i]).collect()
+    }
+
+    /// The people that a person sees within reach, itself included, each with m_j W in P/m².
+    pub fn seen_by(&self, person: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let seen = self.visible(self.index[person]);
+        seen.map(|(j, weight)| (self.agents.id[j] as usize, weight))
+    }
+
+    /// The agents j that agent `i` sees, itself included, each with m_j W in P/m².
+    fn visible(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let (agents, near, eye) = (&self.agents, &self.near_walls[i], self.hidden[i].eye);
+        let candidates = self.neighbors.near().near(i).map(|(j, _)| j);
+        let weighted = candidates.map(move |j| {
+            let offset = agents.position[i] - agents.position[j];
+            let kernel = kernel::density(offset.norm_squared(), self.support_radius);
+            (j, agents.mass[j] * kernel)
+        });
+        weighted.filter(move |&(j, weight)| {
+            j == i || weight > 0.0 && Site::is_clear(self.walls, eye, self.hidden[j].eye, near)
+        })
+    }
+}

@@ -1,0 +1,100 @@
+//! How hard near agents press on each other: the virial of pressure and contact.
+
+use std::ops::Range;
+
+use crate::engine::forces::near::PairCoefficients;
+use crate::engine::forces::{contact, pressure};
+use crate::engine::neighbors::{BLOCK, ClusterBlock};
+use crate::engine::pairs::prelude::*;
+use crate::engine::pairs::{
+    Columns, Lanes, Level, PairSum, Real, Simd, add_pairs, dispatch, load, splat, spread, store,
+};
+
+/// Σ_j r_ij ⊗ a_ij as xx, xy and yy, m²/s², where a_ij is the acceleration of i by the pressure (Eq. 11) and contact
+/// (Eq. 22) of j, of each agent of a block. A coordinate unit of `columns` is a meter.
+pub fn virials(
+    columns: &Columns<f64>,
+    block: &ClusterBlock,
+    felt: &PairCoefficients,
+    out: &mut [[f64; 3]],
+) {
+    dispatch!(Level::new(), simd => sums(simd, columns, block, felt, out));
+}
+
+#[inline(always)]
+fn sums<S: Simd>(
+    simd: S,
+    columns: &Columns<f64>,
+    block: &ClusterBlock,
+    felt: &PairCoefficients,
+    out: &mut [[f64; 3]],
+) {
+    for (agents, runs) in block.clusters() {
+        let start = agents.start;
+        let own = start % BLOCK;
+        let mut sum = Virial::<f64, S> {
+            columns,
+            minus_per_h: splat::<f64, S>(simd, -1.0)
+                * load(simd, &columns.bodies.per_support, start),
+            pressure: pressure::FromAgents::new(simd, columns, start, &felt.pressure[own..]),
+            contact: contact::FromAgents::new(simd, columns, start, &felt.contact[own..]),
+            sums: [splat::<f64, S>(simd, 0.0); 3],
+        };
+        add_pairs(simd, &columns.bodies, (start, runs), &mut sum);
+        let [xx, xy, yy] = sum.sums.map(store::<f64, S>);
+        for (k, virial) in out[own..own + agents.len()].iter_mut().enumerate() {
+            *virial = [xx[k], xy[k], yy[k]];
+        }
+    }
+}
+
+/// The virials of eight agents i.
+struct Virial<'a, R: Real, S: Simd> {
+    columns: &'a Columns<R>,
+    /// −1/h.
+    minus_per_h: Lanes<R, S>,
+    pressure: pressure::FromAgents<R, S>,
+    contact: contact::FromAgents<R, S>,
+    /// xx, xy, yy.
+    sums: [Lanes<R, S>; 3],
+}
+
+/// The columns of a run of agents j.
+#[derive(Clone, Copy)]
+struct Run<'a, R> {
+    volume: &'a [R],
+    pressure: &'a [R],
+    radius: &'a [R],
+}
+
+impl<'a, R: Real, S: Simd> PairSum<R, S> for Virial<'a, R, S> {
+    type Run = Run<'a, R>;
+
+    #[inline(always)]
+    fn run(&self, run: Range<usize>) -> Run<'a, R> {
+        Run {
+            volume: &self.columns.volume[run.clone()],
+            pressure: &self.columns.pressure[run.clone()],
+            radius: &self.columns.bodies.radius[run],
+        }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, simd: S, [dx, dy]: [Lanes<R, S>; 2], run: Run<R>, j: usize) {
+        let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
+        let tiny = splat::<R, S>(simd, R::TINY);
+        let distance = dy.mul_add(dy, dx * dx).max(tiny).sqrt();
+        let rest = self.minus_per_h.mul_add(distance, one).max(zero);
+        let weight = spread::<R, S>(simd, run.volume[j]) * rest;
+        let along = self
+            .pressure
+            .along(weight, rest, spread(simd, run.pressure[j]));
+        let radius_j = spread(simd, run.radius[j]);
+        let along = self.contact.added_to(simd, along, distance, radius_j);
+        let force = along / distance;
+        let (x, y) = (force * dx, force * dy);
+        self.sums[0] = x.mul_add(dx, self.sums[0]);
+        self.sums[1] = x.mul_add(dy, self.sums[1]);
+        self.sums[2] = y.mul_add(dy, self.sums[2]);
+    }
+}

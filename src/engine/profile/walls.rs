@@ -1,0 +1,42 @@
+//! What walls do to an agent, wall by wall.
+
+use super::{Blend, Override, feels_contact, feels_sph};
+use crate::engine::boundary::WallMethod;
+use crate::engine::forces::{contact, pressure};
+use crate::engine::frame::Frame;
+use crate::engine::math::Vector;
+
+impl Blend {
+    /// Passes `take` each wall that presses on agent `i` of a frozen frame and the acceleration by it, m/s²: pressure
+    /// (Eq. 12) and contact (Eq. 23) of all active profiles, weighted. A wall may come several times.
+    pub fn each_wall_push(
+        &self,
+        frame: &Frame,
+        i: usize,
+        (changed, method): (Option<&Override>, WallMethod),
+        mut take: impl FnMut(u32, Vector),
+    ) {
+        let near = frame.neighbors.near_walls(i);
+        if near.is_empty() {
+            return;
+        }
+        let (r_i, h) = (frame.agents.position[i], self.sph.support_radius);
+        for (profile, weight) in self.acting(frame, i) {
+            if profile.pressure && feels_sph(changed) {
+                method.shares(frame.walls, near, r_i, h, |share| {
+                    let push = pressure::from_walls(frame, i, share.gradient);
+                    take(share.wall, push * weight);
+                });
+            }
+            let contact = profile.contact.wall_stiffness;
+            if let Some(stiffness) = contact.filter(|_| feels_contact(changed)) {
+                for &wall in near {
+                    let push = contact::from_walls(frame, i, &[wall], stiffness);
+                    if push != Vector::zeros() {
+                        take(wall, push * weight);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! What safety engineers read, as text, JSON and a picture.
+
+use serde_json::{Value, json};
+
+use super::{Departures, Measured, Safety, Sample};
+use crate::analysis::crowd_pressure::BEFORE_ACCIDENT;
+use crate::analysis::exposure::{Alarm, DENSITIES, Exposed, SLOW};
+use crate::analysis::service::LEVELS;
+use crate::output::plot::{Axis, Corner, LINES, Mark, Panel, Sheet, Style};
+use crate::output::table::Table;
+
+/// As text for a terminal.
+pub fn text(measured: &Measured) -> String {
+    let (safety, departures) = (&measured.safety, &measured.departures);
+    let mut text = format!(
+        "exposure and alarms, a sample every {:.2} s; marks from the literature, not limits of safety\n{}",
+        safety.secs,
+        exposure(safety).text()
+    );
+    text += &format!(
+        "\nlevel of service (Fruin 1971), shares of person-seconds in %; planning values, not limits of safety\n{}",
+        levels(safety).text()
+    );
+    if let Some((person, time)) = safety.pressures.peak {
+        let place = person.position;
+        text += &format!(
+            "\ncrowd pressure  at most {:.4} 1/s² at ({:.2}, {:.2}) m, {time:.2} s, {:.2} P/m²; mean {:.4} 1/s²\n\
+             \u{20}               above {BEFORE_ACCIDENT} 1/s² (measured before the accident at Mina in 2006, not a \
+             limit of safety): {} people at once, {:.2} s at a stretch\n",
+            person.pressure.unwrap_or_default(),
+            place.x,
+            place.y,
+            person.density,
+            safety.pressures.mean().unwrap_or_default(),
+            safety.pressures.people,
+            safety.pressures.spell.longest() * safety.secs,
+        );
+    }
+    text + &left(departures)
+}
+
+/// When people had left, in one line.
+fn left(departures: &Departures) -> String {
+    let &Departures { people, left, .. } = departures;
+    let time = |time: Option<f64>| time.map_or("–".to_owned(), |time| format!("{time:.2} s"));
+    let [half, most, all] = [
+        departures.t50_secs,
+        departures.t95_secs,
+        departures.t100_secs,
+    ]
+    .map(time);
+    format!(
+        "\nlast seen       {left} of {people} people before the last frame: 50 % by {half}, 95 % by {most}, all by {all}\n"
+    )
+}
+
+/// One row per density, and one for standing.
+fn exposure(safety: &Safety) -> Table {
+    let alarms = safety.exposure.alarms.map(Some).into_iter().chain([None]);
+    let names = DENSITIES.map(|density| format!("above {density} P/m²"));
+    let names = names.into_iter().chain([format!("below {SLOW} m/s")]);
+    let exposed = safety.exposure.exposed(safety.secs);
+    let rows: Vec<(String, Exposed, Option<Alarm>)> = names
+        .zip(exposed)
+        .zip(alarms)
+        .map(|((name, exposed), alarm)| (name, exposed, alarm))
+        .collect();
+    let secs = safety.secs;
+    Table::of(&rows)
+        .column("", |row| row.0.as_str())
+        .column("people", |row| row.1.people as usize)
+        .fixed("person-seconds", 1, |row| row.1.person_secs)
+        .fixed("longest of one [s]", 1, |row| row.1.longest_secs)
+        .fixed("largest area [m²]", 2, |row| row.2.map(|alarm| alarm.area))
+        .fixed("most at once", 0, |row| {
+            row.2.map(|alarm| f64::from(alarm.people))
+        })
+        .fixed("longest alarm [s]", 1, |row| {
+            row.2.map(|alarm| alarm.spell.longest() * secs)
+        })
+        .table()
+}
+
+/// Two rows: walkways and queues.
+fn levels(safety: &Safety) -> Table {
+    let shares = safety.levels.shares().unwrap_or_default();
+    let rows: Vec<(&str, [f64; 6])> = ["walkway", "queue"].into_iter().zip(shares).collect();
+    let columns = Table::of(&rows).column("", |row| row.0);
+    let levels = LEVELS.into_iter().enumerate();
+    levels
+        .fold(columns, |columns, (k, level)| {
+            let head = level.to_uppercase().to_string();
+            columns.fixed(&head, 1, move |row| 100.0 * row.1[k])
+        })
+        .table()
+}
+
+/// As a JSON object.
+pub fn json(measured: &Measured) -> Value {
+    let safety = &measured.safety;
+    let secs = safety.secs;
+    let exposed = safety.exposure.exposed(secs);
+    let dense = exposed.iter().zip(&safety.exposure.alarms);
+    let dense = dense.zip(DENSITIES).map(|((exposed, alarm), density)| {
+        json!({
+            "above_per_m2": density,
+            "exposed": exposed,
+            "largest_area_m2": alarm.area,
+            "most_people": alarm.people,
+            "longest_alarm_secs": alarm.spell.longest() * secs,
+        })
+    });
+    let shares = safety.levels.shares();
+    let pressures = &safety.pressures;
+    json!({
+        "note": "thresholds are from the literature, not limits of safety",
+        "sample_every_secs": secs,
+        "dense": dense.collect::<Vec<_>>(),
+        "slow": {"below_m_per_s": SLOW, "exposed": exposed[DENSITIES.len()]},
+        "service_walkway": shares.map(|[walkway, _]| walkway),
+        "service_queue": shares.map(|[_, queue]| queue),
+        "crowd_pressure": pressures.peak.map(|(person, time)| json!({
+            "max_per_s2": person.pressure,
+            "time_secs": time,
+            "x": person.position.x,
+            "y": person.position.y,
+            "density": person.density,
+            "mean_per_s2": pressures.mean(),
+            "most_people_above_0.02": pressures.people,
+            "longest_above_0.02_secs": pressures.spell.longest() * secs,
+        })),
+        "departures": measured.departures,
+    })
+}
+
+/// The area above each density and the highest crowd pressure, over time.
+pub fn picture(safety: &Safety) -> Sheet {
+    let samples = &safety.samples;
+    let ends = [samples.first(), samples.last()].map(|of| of.map_or(0.0, |sample| sample.time));
+    let time = || Axis::linear("t [s]", [ends[0], ends[1].max(ends[0] + 1.0)]);
+    let series = |value: fn(&Sample) -> Option<f64>| -> Vec<[f64; 2]> {
+        let points = samples.iter();
+        points
+            .filter_map(|sample| Some([sample.time, value(sample)?]))
+            .collect()
+    };
+    let top = |lines: &[Vec<[f64; 2]>], least: f64| {
+        let values = lines.iter().flatten().map(|[_, y]| *y);
+        1.1 * values.fold(least, f64::max)
+    };
+    let areas = [
+        series(|sample| Some(sample.area_above_4)),
+        series(|sample| Some(sample.area_above_5)),
+        series(|sample| Some(sample.area_above_6)),
+    ];
+    let y = Axis::linear("area [m²]", [0.0, top(&areas, 1.0)]);
+    let lines = areas.into_iter().zip(DENSITIES).zip(LINES);
+    let marks = lines.map(|((points, density), color)| {
+        let label = format!("above {density} P/m²");
+        Mark::Line(points, Style::full(color, 1.2, &label))
+    });
+    let mut alarms = Panel::new("alarms", time(), y, marks.collect());
+    alarms.legend = Some(Corner::UpperRight);
+    let pressure = [series(|sample| sample.pressure)];
+    let y = Axis::linear("ρ Var(v) [1/s²]", [0.0, top(&pressure, BEFORE_ACCIDENT)]);
+    let label = format!("{BEFORE_ACCIDENT}: before the accident at Mina, 2006");
+    let mark = ends.map(|time| [time, BEFORE_ACCIDENT]).to_vec();
+    let mut marks = vec![Mark::Line(mark, Style::broken(LINES[1], 1.2, &label))];
+    marks.extend(pressure.map(|points| Mark::Line(points, Style::full(LINES[0], 1.2, "highest"))));
+    let mut pressure = Panel::new("crowd pressure", time(), y, marks);
+    pressure.legend = Some(Corner::UpperRight);
+    Sheet {
+        title: "marks from the literature, not limits of safety".to_owned(),
+        columns: 2,
+        panel_size: [240.0, 200.0],
+        panels: vec![alarms, pressure],
+        ..Sheet::default()
+    }
+}

@@ -1,0 +1,29 @@
+//! Walls, colored by the force on them.
+
+use super::xy;
+use crate::analysis::wall_forces::Outlines;
+use crate::engine::simulation::Simulation;
+use crate::output::colors::WALL_FORCE;
+use crate::output::plot::{ColorBar, Mark, Style};
+
+/// The parts of walls on which anything presses, colored by the force on 1 m.
+pub fn marks(simulation: &Simulation, body_mass: f64) -> Vec<Mark> {
+    let outlines = Outlines::new(&simulation.scene().walls);
+    let forces = outlines.per_meter(&outlines.forces(simulation, body_mass));
+    let parts = outlines.cells().iter().zip(forces);
+    let pressed = parts.filter(|&(_, force)| force > 0.0);
+    pressed
+        .map(|(cell, force)| {
+            let style = Style::full(WALL_FORCE.color(force as f32), 3.0, "");
+            Mark::Line(cell.ends.map(xy).to_vec(), style)
+        })
+        .collect()
+}
+
+/// The colors of forces on walls.
+pub fn bar() -> ColorBar {
+    ColorBar {
+        label: "force on 1 m of wall [N/m]".to_owned(),
+        map: WALL_FORCE.clone(),
+    }
+}

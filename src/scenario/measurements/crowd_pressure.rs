@@ -1,0 +1,101 @@
+//! Crowd pressure: density times the variance of the velocities.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::Measure;
+use super::window::{Window, every};
+use crate::analysis::crowd_pressure::{BEFORE_ACCIDENT, Pressures};
+use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::file::LONGEST_TIME;
+use crate::scenario::shapes::Corners;
+
+/// The name of the values if none is given.
+const NAME: &str = "crowd_pressure";
+
+/// The highest crowd pressure ρ Var(v) around any person, 1/s², with time, place and density; the mean; the most people
+/// and the longest time above 0.02 1/s², which was measured before the accident at Mina in 2006 (Helbing, Johansson and
+/// Al-Abideen 2007) and is not a limit of safety.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CrowdPressure {
+    /// The beginning of the names of its values. Default: `crowd_pressure`.
+    #[schemars(length(min = 1))]
+    name: Option<String>,
+    /// The region: lower left and upper right corner, meters; everywhere if missing.
+    pub(super) region: Option<Corners>,
+    /// The start, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
+    #[serde(default)]
+    from_secs: f64,
+    /// The end, seconds. Default: the end of the run.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
+    until_secs: Option<f64>,
+    /// Time between two samples, seconds.
+    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
+    #[serde(default = "every")]
+    every_secs: f64,
+}
+
+impl CrowdPressure {
+    fn window(&self) -> Window {
+        Window {
+            region: self.region,
+            from_secs: self.from_secs,
+            until_secs: self.until_secs,
+            every_secs: self.every_secs,
+        }
+    }
+}
+
+impl Measure for CrowdPressure {
+    /// With the time for which a sample stands, seconds.
+    type Seen = (Pressures, f64);
+
+    fn check(&self) -> Result<(), Problem> {
+        self.window().check("crowd_pressure")
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        let name = self.name.as_deref().unwrap_or(NAME);
+        let values = [
+            ("max_per_s2", "1/s²"),
+            ("max_at_secs", "s"),
+            ("max_x_m", "m"),
+            ("max_y_m", "m"),
+            ("max_density_per_m2", "P/m²"),
+            ("mean_per_s2", "1/s²"),
+        ];
+        let above = [
+            (format!("{name}_above_{BEFORE_ACCIDENT}_agents"), "agents"),
+            (format!("{name}_above_{BEFORE_ACCIDENT}_secs"), "s"),
+        ];
+        let values = values.map(|(what, unit)| (format!("{name}_{what}"), unit));
+        values.into_iter().chain(above).collect()
+    }
+
+    fn observe(&self, (seen, secs): &mut Self::Seen, simulation: &Simulation) {
+        let window = self.window();
+        if window.is_due(simulation) {
+            *secs = window.secs(simulation);
+            let time = simulation.frame().clock.time();
+            seen.add(time, window.people(simulation, true).iter());
+        }
+    }
+
+    fn values(&self, (seen, secs): &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
+        let peak = seen.peak;
+        let was_seen = peak.is_some();
+        vec![
+            peak.and_then(|(person, _)| person.pressure),
+            peak.map(|(_, time)| time),
+            peak.map(|(person, _)| person.position.x),
+            peak.map(|(person, _)| person.position.y),
+            peak.map(|(person, _)| person.density),
+            seen.mean(),
+            was_seen.then_some(f64::from(seen.people)),
+            was_seen.then_some(seen.spell.longest() * secs),
+        ]
+    }
+}

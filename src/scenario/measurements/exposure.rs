@@ -1,0 +1,121 @@
+//! How long people are in dense crowds and stand, and how large dense crowds are.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use super::Measure;
+use super::window::{Window, every};
+use crate::analysis::exposure::{DENSITIES, Exposed, Exposure as Seen, PersonExposure};
+use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::file::LONGEST_TIME;
+use crate::scenario::shapes::Corners;
+
+/// The name of the values if none is given.
+const NAME: &str = "exposure";
+
+/// How long people are above 4, 5 and 6 P/m² and below 0.2 m/s, and the alarms: the largest area, the most people and the
+/// longest time above each density. Per agent, in the data: its seconds. Values from the literature, not limits of
+/// safety.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Exposure {
+    /// The beginning of the names of its values. Default: `exposure`.
+    #[schemars(length(min = 1))]
+    name: Option<String>,
+    /// The region: lower left and upper right corner, meters; everywhere if missing.
+    pub(super) region: Option<Corners>,
+    /// The start, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
+    #[serde(default)]
+    from_secs: f64,
+    /// The end, seconds. Default: the end of the run.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
+    until_secs: Option<f64>,
+    /// Time between two samples, seconds.
+    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
+    #[serde(default = "every")]
+    every_secs: f64,
+}
+
+impl Exposure {
+    fn name(&self) -> &str {
+        self.name.as_deref().unwrap_or(NAME)
+    }
+
+    fn window(&self) -> Window {
+        Window {
+            region: self.region,
+            from_secs: self.from_secs,
+            until_secs: self.until_secs,
+            every_secs: self.every_secs,
+        }
+    }
+}
+
+impl Measure for Exposure {
+    /// With the time for which a sample stands, seconds.
+    type Seen = (Seen, f64);
+
+    fn check(&self) -> Result<(), Problem> {
+        self.window().check("exposure")
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        let exposed = [
+            ("agents", "agents"),
+            ("person_secs", "s"),
+            ("longest_secs", "s"),
+        ];
+        let alarm = [
+            ("area_m2", "m²"),
+            ("most_agents", "agents"),
+            ("alarm_secs", "s"),
+        ];
+        let name = |condition: &str, (what, unit): (&str, &'static str)| {
+            (format!("{}_{condition}_{what}", self.name()), unit)
+        };
+        let dense = DENSITIES.iter().flat_map(|density| {
+            let all = exposed.into_iter().chain(alarm);
+            all.map(move |value| name(&format!("above_{density}"), value))
+        });
+        dense
+            .chain(exposed.into_iter().map(|value| name("slow", value)))
+            .collect()
+    }
+
+    fn observe(&self, (seen, secs): &mut Self::Seen, simulation: &Simulation) {
+        let window = self.window();
+        if window.is_due(simulation) {
+            *secs = window.secs(simulation);
+            seen.add(window.people(simulation, false).iter());
+        }
+    }
+
+    fn values(&self, (seen, secs): &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
+        let exposed = seen.exposed(*secs);
+        let of = |exposed: &Exposed| {
+            let people = f64::from(exposed.people);
+            [people, exposed.person_secs, exposed.longest_secs]
+        };
+        let dense = exposed
+            .iter()
+            .zip(&seen.alarms)
+            .flat_map(|(exposed, alarm)| {
+                let (people, longest) = (f64::from(alarm.people), alarm.spell.longest() * secs);
+                of(exposed).into_iter().chain([alarm.area, people, longest])
+            });
+        let slow = of(&exposed[DENSITIES.len()]);
+        let was_seen = *secs > 0.0;
+        dense
+            .chain(slow)
+            .map(|value| was_seen.then_some(value))
+            .collect()
+    }
+
+    fn data(&self, (seen, secs): &Self::Seen) -> Option<(String, Value)> {
+        let people: Vec<PersonExposure> = seen.of_people(*secs).collect();
+        Some((self.name().to_owned(), json!(people)))
+    }
+}

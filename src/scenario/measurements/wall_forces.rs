@@ -1,0 +1,104 @@
+//! Forces on walls, in newtons per meter.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use super::Measure;
+use super::window::{MOST_MASS, Window, body_mass, every};
+use crate::analysis::wall_forces::{CellForce, WallForces as Seen};
+use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::file::LONGEST_TIME;
+
+/// The name of the values if none is given.
+const NAME: &str = "wall_force";
+
+/// The largest force on 1 m of wall by pressure and contact, N/m, with time and place; the longest time and the most
+/// meters of wall above 3 kN/m, the least design load of railings for crowds (EN 1991-1-1), which is not a limit of
+/// safety. Per part of a wall, in the data: its largest force. Recordings and pictures of the run color its walls by
+/// force.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WallForces {
+    /// The beginning of the names of its values. Default: `wall_force`.
+    #[schemars(length(min = 1))]
+    name: Option<String>,
+    /// The start, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
+    #[serde(default)]
+    from_secs: f64,
+    /// The end, seconds. Default: the end of the run.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
+    until_secs: Option<f64>,
+    /// Time between two samples, seconds.
+    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
+    #[serde(default = "every")]
+    every_secs: f64,
+    /// The mass of an average person, m = 1, kg.
+    #[schemars(range(max = MOST_MASS), extend("exclusiveMinimum" = 0))]
+    #[serde(default = "body_mass")]
+    pub(super) body_mass_kg: f64,
+}
+
+impl WallForces {
+    fn name(&self) -> &str {
+        self.name.as_deref().unwrap_or(NAME)
+    }
+
+    fn window(&self) -> Window {
+        Window {
+            region: None,
+            from_secs: self.from_secs,
+            until_secs: self.until_secs,
+            every_secs: self.every_secs,
+        }
+    }
+}
+
+impl Measure for WallForces {
+    /// With the time for which a sample stands, seconds.
+    type Seen = (Seen, f64);
+
+    fn check(&self) -> Result<(), Problem> {
+        self.window().check("wall_forces")
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        let name = |(what, unit)| (format!("{}_{what}", self.name()), unit);
+        let values = [
+            ("max_n_per_m", "N/m"),
+            ("max_at_secs", "s"),
+            ("max_x_m", "m"),
+            ("max_y_m", "m"),
+            ("above_3000_n_per_m_secs", "s"),
+            ("above_3000_n_per_m_m", "m"),
+        ];
+        values.into_iter().map(name).collect()
+    }
+
+    fn observe(&self, (seen, secs): &mut Self::Seen, simulation: &Simulation) {
+        let window = self.window();
+        if window.is_due(simulation) {
+            *secs = window.secs(simulation);
+            seen.add(simulation, self.body_mass_kg);
+        }
+    }
+
+    fn values(&self, (seen, secs): &Self::Seen, _: &Simulation) -> Vec<Option<f64>> {
+        let peak = seen.peak;
+        vec![
+            peak.map(|peak| peak.force),
+            peak.map(|peak| peak.time),
+            peak.map(|peak| peak.place.x),
+            peak.map(|peak| peak.place.y),
+            peak.map(|_| seen.spell.longest() * secs),
+            peak.map(|_| seen.meters),
+        ]
+    }
+
+    fn data(&self, (seen, _): &Self::Seen) -> Option<(String, Value)> {
+        let cells: Vec<&CellForce> = seen.of_cells().collect();
+        Some((self.name().to_owned(), json!(cells)))
+    }
+}

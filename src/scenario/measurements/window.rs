@@ -1,0 +1,79 @@
+//! When and where measurements that sample the crowd look at it.
+
+use super::is_due;
+use crate::analysis::body_forces::BODY_MASS;
+use crate::analysis::local::{Local, local};
+use crate::engine::scene::Region;
+use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::range::{region, wide_region};
+use crate::scenario::shapes::Corners;
+
+/// Time between two samples if none is given, seconds.
+pub fn every() -> f64 {
+    1.0
+}
+
+/// The largest mass of an average person, kg.
+pub const MOST_MASS: f64 = 1000.0;
+
+/// The mass of an average person if none is given, kg.
+pub fn body_mass() -> f64 {
+    BODY_MASS
+}
+
+/// The times and the place of samples.
+#[derive(Debug, Clone, Copy)]
+pub struct Window {
+    pub region: Option<Corners>,
+    /// Seconds.
+    pub from_secs: f64,
+    /// Seconds; `None`: the end of the run.
+    pub until_secs: Option<f64>,
+    /// Seconds.
+    pub every_secs: f64,
+}
+
+impl Window {
+    /// Checks the keys of the measurement `name`.
+    ///
+    /// # Errors
+    /// The window is empty.
+    pub fn check(&self, name: &str) -> Result<(), Problem> {
+        if let Some(until) = self.until_secs.filter(|until| *until < self.from_secs) {
+            let reason = format!(
+                "must not be before `from_secs`, {}, but is {until}",
+                self.from_secs
+            );
+            return Err(Problem::new(format!("{name}.until_secs"), reason));
+        }
+        let key = format!("{name}.region");
+        self.region
+            .map_or(Ok(()), |corners| wide_region(&key, corners).map(|_| ()))
+    }
+
+    /// Is the current frame due?
+    pub fn is_due(&self, simulation: &Simulation) -> bool {
+        let until = self.until_secs.unwrap_or(f64::MAX);
+        is_due(simulation, [self.from_secs, until], self.every_secs)
+    }
+
+    /// The time for which a sample stands, seconds: whole frames.
+    pub fn secs(&self, simulation: &Simulation) -> f64 {
+        let clock = simulation.frame().clock;
+        clock.time_at(clock.frame_at(self.every_secs).max(1))
+    }
+
+    /// The region.
+    pub fn region(&self) -> Option<Region> {
+        region("", self.region?).ok()
+    }
+
+    /// The agents in the region with what is around them, with pressures if `pressure`.
+    pub fn people(&self, simulation: &Simulation, pressure: bool) -> Vec<Local> {
+        let region = self.region();
+        let mut people = local(simulation, pressure);
+        people.retain(|person| region.is_none_or(|region| region.contains(person.position)));
+        people
+    }
+}

@@ -1,0 +1,88 @@
+//! Exposure, alarms, level of service, crowd pressure and departures in trajectories.
+
+use crate::common::tracks::tracks;
+use sandbox::engine::boundary::WallMethod;
+use sandbox::lab::measure::{
+    Behind, Kernel, MeasureError, Measured, Options, Report, Site, measure,
+};
+use sandbox::output::trajectory::read::Tracks;
+
+fn options(sample_every: f64) -> Options {
+    Options {
+        kernel: Kernel {
+            support_radius: 1.0,
+            walls: WallMethod::Union,
+        },
+        behind: Behind::Same,
+        speed_reach: 5,
+        times: [f64::NEG_INFINITY, f64::INFINITY],
+        cell: 1.0,
+        regions: Vec::new(),
+        lines: Vec::new(),
+        sample_every,
+    }
+}
+
+fn measured(tracks: &Tracks, sample_every: f64) -> Measured {
+    let site = Site::new(Vec::new());
+    let taken = measure(tracks, &site, &options(sample_every), |_| {
+        Ok::<(), MeasureError>(())
+    });
+    taken.unwrap()
+}
+
+/// A block of 12 × 12 people 0.4 m apart at 10 frames per second, who stand; person k is seen until frame `last(k)`.
+fn block(last: impl Fn(i64) -> i64) -> Tracks {
+    let people = (0..144).flat_map(|k| (0..=last(k)).map(move |frame| (k, frame)));
+    let rows = people.map(|(k, frame)| (k, frame, (k % 12) as f64 * 0.4, (k / 12) as f64 * 0.4));
+    tracks(10.0, &rows.collect::<Vec<_>>())
+}
+
+#[test]
+fn samples_count_for_their_interval_whatever_it_is() {
+    let tracks = block(|_| 40);
+    for (every, samples) in [(0.1, 41.0), (0.5, 9.0), (1.0, 5.0)] {
+        let safety = measured(&tracks, every).safety;
+        let [four, .., slow] = safety.exposure.exposed(safety.secs);
+        assert!((slow.person_secs - 144.0 * samples * every).abs() < 1e-9);
+        let above = f64::from(safety.exposure.alarms[0].people);
+        assert!(above > 50.0);
+        assert!((four.person_secs - above * samples * every).abs() < 1e-9);
+        assert_eq!(safety.samples.len() as f64, samples);
+        assert_eq!(safety.pressures.peak.unwrap().0.pressure, Some(0.0));
+        let shares = safety.levels.shares().unwrap();
+        assert!(
+            shares
+                .iter()
+                .all(|of| (of.iter().sum::<f64>() - 1.0).abs() < 1e-12)
+        );
+    }
+}
+
+#[test]
+fn people_leave_after_the_last_frame_with_them_and_those_in_the_last_frame_stay() {
+    // Person k leaves after frame 10 + k.
+    let all = measured(&block(|k| if k == 143 { 400 } else { 10 + k }), 1.0).departures;
+    assert_eq!((all.people, all.left), (144, 143));
+    assert_eq!(all.t50_secs, Some((10.0 + 71.0) / 10.0));
+    // 95 % of 144 are 137 people.
+    assert_eq!(all.t95_secs, Some((10.0 + 136.0) / 10.0));
+    assert_eq!(all.t100_secs, None);
+}
+
+#[test]
+fn the_report_names_the_thresholds_as_what_they_are() {
+    let tracks = block(|_| 20);
+    let options = options(1.0);
+    let report = Report {
+        tracks: &tracks,
+        options: &options,
+        measured: &measured(&tracks, 1.0),
+    };
+    let text = report.text();
+    assert!(text.matches("not limits of safety").count() >= 2, "{text}");
+    let json = report.json();
+    assert_eq!(json["safety"]["dense"][0]["exposed"]["longest_secs"], 3.0);
+    assert_eq!(json["safety"]["dense"].as_array().unwrap().len(), 3);
+    assert_eq!(json["safety"]["departures"]["left"], 0);
+}
