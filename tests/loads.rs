@@ -4,7 +4,7 @@ use crate::common::simulated::{go_on, measured, start};
 use crate::common::{
     blend, blend_with, breakdown, evaluated, on_threads, person, rectangle, room, scene, vector,
 };
-use sandbox::analysis::body_forces::{BODY_MASS, WIDTH, pressed};
+use sandbox::analysis::body_forces::{BODY_MASS, BodyForces, Pressed, WIDTH, pressed};
 use sandbox::analysis::local::KERNEL;
 use sandbox::analysis::wall_forces::Outlines;
 use sandbox::engine::agents::NewAgent;
@@ -268,4 +268,25 @@ fn forces_and_exposure_are_the_same_on_any_number_of_threads() {
     let (one, four) = (run(1), run(4));
     assert!(one.metric("wall_force_max_n_per_m").unwrap() > 10.0);
     assert_eq!(one, four);
+}
+
+#[test]
+fn a_person_who_was_elsewhere_in_between_was_pressed_twice() {
+    let person = Pressed {
+        agent: 3,
+        position: Vector::zeros(),
+        stress: [-1400.0, 0.0, -1400.0],
+        force: 700.0,
+    };
+    let mut seen = BodyForces::default();
+    for (time, people) in [
+        (0.0, &[person][..]),
+        (1.0, &[person]),
+        (2.0, &[]),
+        (3.0, &[person]),
+    ] {
+        seen.add(time, people);
+    }
+    assert_eq!(seen.above(), [(1, 2.0), (0, 0.0), (0, 0.0)]);
+    assert_eq!(seen.peak.unwrap().1, 0.0);
 }

@@ -80,9 +80,21 @@ fn the_report_names_the_thresholds_as_what_they_are() {
         measured: &measured(&tracks, 1.0),
     };
     let text = report.text();
-    assert!(text.matches("not limits of safety").count() >= 2, "{text}");
+    assert!(text.matches("not safety limits").count() >= 2, "{text}");
     let json = report.json();
     assert_eq!(json["safety"]["dense"][0]["exposed"]["longest_secs"], 3.0);
     assert_eq!(json["safety"]["dense"].as_array().unwrap().len(), 3);
     assert_eq!(json["safety"]["departures"]["left"], 0);
+}
+
+#[test]
+fn an_alarm_ends_when_nobody_is_there() {
+    let frames = (0..=10).chain(31..=40);
+    let people = frames.flat_map(|frame| (0..144).map(move |k| (k, frame)));
+    let rows = people.map(|(k, frame)| (k, frame, (k % 12) as f64 * 0.4, (k / 12) as f64 * 0.4));
+    let tracks = tracks(10.0, &rows.collect::<Vec<_>>());
+    let safety = measured(&tracks, 1.0).safety;
+    // Samples at 0 s and 1 s, then at 4 s.
+    assert_eq!(safety.samples.len(), 3);
+    assert_eq!(safety.exposure.alarms[0].spell.longest(), 2.0);
 }

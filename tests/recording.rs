@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::common::recording::Recording;
 use crate::common::{polygon, rectangle};
 use rerun::components::{ImageBuffer, ImageFormat, Scale3D, Translation3D};
+use sandbox::analysis::wall_forces::Outlines;
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::geometry::{Area, Polygon, Ring, Walls};
 use sandbox::engine::math::Vector;
@@ -311,4 +312,38 @@ fn the_picture_of_an_enclosure_leaves_the_floor_free_and_has_a_margin() {
     let raster = Raster::of(&Polygon::enclosing(vec![floor]).unwrap());
     assert!((raster.filled() - (144.0 - 96.0)).abs() < 0.5);
     assert_eq!((raster.pixels[0], raster.pixels.last()), (1, Some(&1)));
+}
+
+#[test]
+fn walls_are_colored_by_the_force_on_them_where_it_is_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("walls.rrd");
+    let mut simulation = Simulation::new(scene("sph")).unwrap();
+    let options = RecordingOptions {
+        body_mass: Some(60.0),
+        ..options(DebugAgents::None)
+    };
+    let mut recorder = Recorder::create(path.as_path(), &simulation, &options).unwrap();
+    let mut expected = Vec::new();
+    for _ in 0..40 {
+        simulation.evaluate().unwrap();
+        recorder.log(&simulation, 1.0).unwrap();
+        let outlines = Outlines::new(simulation.frame().walls);
+        let forces = outlines.per_meter(&outlines.forces(&simulation, 60.0));
+        let pressed = forces.iter().filter(|&&force| force > 0.0).count();
+        expected.push((forces.into_iter().fold(0.0, f64::max), pressed));
+        simulation.integrate().unwrap();
+    }
+    recorder.finish().unwrap();
+    let recording = Recording::read(&path);
+    let largest = recording.numbers("/stats/wall_forces", "Scalars:scalars");
+    let colors = recording.numbers("/world/wall_forces", "LineStrips2D:colors");
+    assert_eq!((largest.len(), colors.len()), (40, 40));
+    for (frame, (force, pressed)) in expected.into_iter().enumerate() {
+        assert!((largest[frame].1[0] - force).abs() <= 1e-6 * force);
+        assert_eq!(colors[frame].1.len(), pressed);
+    }
+    assert!(largest.iter().any(|(_, force)| force[0] > 100.0));
+    let (plain, _) = record("sph", DebugAgents::None, true, 2);
+    assert!(!plain.entities().contains("/world/wall_forces"));
 }

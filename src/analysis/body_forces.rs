@@ -17,8 +17,8 @@ pub const BODY_MASS: f64 = 75.0;
 /// The width of a person, meters.
 pub const WIDTH: f64 = 0.5;
 /// Forces in the literature, newtons: tolerable on a bar (Evans and Hayden 1971), fatal in 4 to 6 minutes and in 15 s
-/// (Hopkins et al. 1993), as Lee and Hughes (2006) give them. Not limits of safety.
-pub const MARKS: [f64; 3] = [623.0, 1112.0, 6227.0];
+/// (Hopkins et al. 1993), as Lee and Hughes (2006) give them. Not safety limits.
+pub const THRESHOLDS: [f64; 3] = [623.0, 1112.0, 6227.0];
 
 /// A person and what presses on it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -71,8 +71,10 @@ fn principal_pressure([xx, xy, yy]: [f64; 3]) -> f64 {
 struct Person {
     /// The largest force, newtons.
     most: f64,
-    /// The samples above each of [`MARKS`].
+    /// The samples above each of [`THRESHOLDS`].
     spells: [Spell; 3],
+    /// The number of the last sample with this person, from 1.
+    last: u32,
 }
 
 /// What was seen of people at several times.
@@ -82,6 +84,8 @@ pub struct BodyForces {
     pub peak: Option<(Pressed, f64)>,
     /// By id.
     people: Vec<Person>,
+    /// The number of samples.
+    samples: u32,
 }
 
 /// One person's largest force.
@@ -96,6 +100,7 @@ pub struct PersonForce {
 impl BodyForces {
     /// Adds the people at a time in seconds.
     pub fn add(&mut self, time: f64, people: &[Pressed]) {
+        self.samples += 1;
         for person in people {
             let id = person.agent as usize;
             if self.people.len() <= id {
@@ -103,16 +108,20 @@ impl BodyForces {
             }
             let own = &mut self.people[id];
             own.most = own.most.max(person.force);
-            for (spell, mark) in own.spells.iter_mut().zip(MARKS) {
-                spell.add(person.force > mark);
+            for (spell, threshold) in own.spells.iter_mut().zip(THRESHOLDS) {
+                if own.last + 1 < self.samples {
+                    spell.add(false); // the person was not there in between
+                }
+                spell.add(person.force > threshold);
             }
+            own.last = self.samples;
             if self.peak.is_none_or(|(peak, _)| person.force > peak.force) {
                 self.peak = Some((*person, time));
             }
         }
     }
 
-    /// For each of [`MARKS`]: the number of people above it at any time, and the longest number of samples of one person
+    /// For each of [`THRESHOLDS`]: the number of people above it at any time, and the longest number of samples of one person
     /// above it without a break.
     pub fn above(&self) -> [(u32, f64); 3] {
         std::array::from_fn(|k| {

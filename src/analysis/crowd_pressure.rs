@@ -7,7 +7,7 @@ use super::exposure::Spell;
 use super::local::Local;
 
 /// The pressure at which crowd turbulence began at Mina in 2006, about ten minutes before the accident, 1/s². An
-/// observation of one crowd, not a limit of safety.
+/// observation of one crowd, not a safety limit.
 pub const BEFORE_ACCIDENT: f64 = 0.02;
 
 /// What was seen of people at several times.

@@ -1,6 +1,6 @@
 //! How long people are in dense crowds and how long they stand, and how large the crowds are.
 //!
-//! The densities are usual marks in the literature on crowds (Fruin 1993, Still 2014), not limits of safety.
+//! The densities are usual thresholds in the literature on crowds (Fruin 1993, Still 2014), not safety limits.
 
 use serde::{Deserialize, Serialize};
 

@@ -4,6 +4,7 @@
 //! exp(−r²/R²)/(π R²) with R = 1 m of Helbing, Johansson and Al-Abideen (2007), and unlike that one it ends: walls hide a
 //! part of it that is known exactly. Every person counts as one, whatever its mass.
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::site::{Hidden, Kernel, Site};
@@ -112,7 +113,7 @@ impl People {
     /// The people with what is around them, in their order, with pressures if `pressure`.
     pub fn local(&self, around: &Surroundings, pressure: bool) -> Vec<Local> {
         let sums = around.from_people(true);
-        let people = self.numbers.iter().zip(sums).enumerate();
+        let people = self.numbers.par_iter().zip(sums).enumerate();
         let local = people.map(|(k, (&number, sum))| {
             let density = sum / (1.0 - around.hidden(k).share.min(MOST_HIDDEN));
             let variance = pressure.then(|| self.variance(around, k)).flatten();
@@ -129,18 +130,19 @@ impl People {
 
     /// Var(v) = Σ W |v_j − V|² / Σ W around a person, m²/s², where V is the mean velocity with the same weights.
     fn variance(&self, around: &Surroundings, person: usize) -> Option<f64> {
-        let known = || {
-            let seen = around.seen_by(person);
-            seen.filter_map(|(j, weight)| Some((self.velocities[j]?, weight)))
-        };
-        let (mut total, mut sum) = (0.0, Vector::zeros());
-        for (velocity, weight) in known() {
-            total += weight;
-            sum += velocity * weight;
+        // Relative to a nearby velocity, so that the difference of two large numbers does not decide.
+        let base = self.velocities[person].unwrap_or_default();
+        let (mut total, mut sum, mut squares) = (0.0, Vector::zeros(), 0.0);
+        for (j, weight) in around.seen_by(person) {
+            if let Some(velocity) = self.velocities[j] {
+                let off = velocity - base;
+                total += weight;
+                sum += off * weight;
+                squares += off.norm_squared() * weight;
+            }
         }
-        let mean = sum / total;
-        let squares = known().map(|(velocity, weight)| weight * (velocity - mean).norm_squared());
-        (total > 0.0).then(|| squares.sum::<f64>() / total)
+        let variance = squares / total - (sum / total).norm_squared();
+        (total > 0.0).then(|| variance.max(0.0))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Levels of service (Fruin 1971, *Pedestrian planning and design*): how much room people have.
 //!
-//! The levels were made to plan walkways and queues of everyday traffic. They are not limits of safety.
+//! The levels were made to plan walkways and queues of everyday traffic. They are not safety limits.
 
 use serde::{Deserialize, Serialize};
 

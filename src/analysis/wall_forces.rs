@@ -19,7 +19,7 @@ const CELL: f64 = 0.2;
 /// The length of outline over which forces are averaged, meters.
 pub const WINDOW: f64 = 1.0;
 /// The least design load of railings where crowds gather, N/m (EN 1991-1-1, Table 6.12, category C5: 3 to 5 kN/m). A value
-/// from a code, not a limit of safety.
+/// from a code, not a safety limit.
 pub const DESIGN_LOAD: f64 = 3000.0;
 
 /// A part of a wall.

@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 use crate::output::table::Table;
 use crate::runs::drive::Run;
 use crate::runs::summary::{JourneyResult, PlaceResult, Summary, value};
+use crate::scenario::measurements::Measurement;
 use crate::scenario::quote::shown;
 
 /// The summary, with threads and run times.
@@ -21,6 +22,9 @@ pub fn json(run: &Run, interrupted: bool) -> Value {
     report
 }
 
+/// The least width of names.
+const NAME_WIDTH: usize = 24;
+
 /// The measurements and run times.
 pub fn text(run: &Run, interrupted: bool) -> String {
     let frame = run.simulation.frame();
@@ -34,13 +38,19 @@ pub fn text(run: &Run, interrupted: bool) -> String {
         frame.clock.frame(),
         if interrupted { ", interrupted" } else { "" },
     );
-    for metric in run.metrics.results(&run.simulation) {
+    let metrics = run.metrics.results(&run.simulation);
+    let names = metrics.iter().map(|metric| metric.name.chars().count());
+    let width = names.fold(NAME_WIDTH, usize::max);
+    for metric in metrics {
         let value = match (value(&metric), metric.value) {
             (Value::Number(count), _) if count.is_u64() => count.to_string(),
             (_, Some(value)) => format!("{value:.3}"),
             (_, None) => "–".to_owned(),
         };
-        text += &format!("  {:<24} {value:>10} {}\n", metric.name, metric.unit);
+        text += &format!("  {:<width$} {value:>10} {}\n", metric.name, metric.unit);
+    }
+    if run.scenario.measurements.iter().any(has_thresholds) {
+        text += "  (thresholds are from the literature, not safety limits: docs/measurements.md)\n";
     }
     text += &journeys(run);
     let threads = rayon::current_num_threads();
@@ -49,9 +59,21 @@ pub fn text(run: &Run, interrupted: bool) -> String {
         "{ms:.3} ms per frame on {threads} thread(s), {real_time_factor:.1} × real time\n"
     );
     for (stage, ms) in run.simulation.stages().ms_per_frame() {
-        text += &format!("  {:<24} {ms:>10.4} ms\n", stage.name());
+        text += &format!("  {:<NAME_WIDTH$} {ms:>10.4} ms\n", stage.name());
     }
     text
+}
+
+/// Does it compare with thresholds of the literature?
+fn has_thresholds(measurement: &Measurement) -> bool {
+    matches!(
+        measurement,
+        Measurement::Exposure(_)
+            | Measurement::ServiceLevels(_)
+            | Measurement::CrowdPressure(_)
+            | Measurement::BodyForces(_)
+            | Measurement::WallForces(_)
+    )
 }
 
 /// Tables of the journeys and places; empty without journeys.

@@ -96,11 +96,17 @@ impl Safety {
                 self.last[person.number as usize] = Some(moment.frame);
             }
         }
-        let is_due = |moment: &&Moment| (moment.frame - self.first) % self.every == 0;
+        let is_due = |moment: &&Moment| (moment.frame - self.first).rem_euclid(self.every) == 0;
         let due: Vec<&Moment> = moments.iter().filter(is_due).collect();
         let local = due.par_iter().map(|moment| local(moment, site));
         let local: Vec<Vec<Local>> = local.collect();
         for (moment, people) in due.into_iter().zip(&local) {
+            let last = self.samples.last().map(|last| last.frame);
+            if last.is_some_and(|last| moment.frame - last > self.every) {
+                // Nobody was there in between.
+                self.exposure.add([].iter());
+                self.pressures.add(moment.time, [].iter());
+            }
             self.levels.add(people.iter());
             let [four, five, six] = self.exposure.add(people.iter());
             self.samples.push(Sample {

@@ -13,12 +13,12 @@ use crate::output::table::Table;
 pub fn text(measured: &Measured) -> String {
     let (safety, departures) = (&measured.safety, &measured.departures);
     let mut text = format!(
-        "exposure and alarms, a sample every {:.2} s; marks from the literature, not limits of safety\n{}",
+        "exposure and alarms, a sample every {:.2} s; thresholds from the literature, not safety limits\n{}",
         safety.secs,
         exposure(safety).text()
     );
     text += &format!(
-        "\nlevel of service (Fruin 1971), shares of person-seconds in %; planning values, not limits of safety\n{}",
+        "\nlevel of service (Fruin 1971), shares of person-seconds in %; planning values, not safety limits\n{}",
         levels(safety).text()
     );
     if let Some((person, time)) = safety.pressures.peak {
@@ -26,7 +26,7 @@ pub fn text(measured: &Measured) -> String {
         text += &format!(
             "\ncrowd pressure  at most {:.4} 1/s² at ({:.2}, {:.2}) m, {time:.2} s, {:.2} P/m²; mean {:.4} 1/s²\n\
              \u{20}               above {BEFORE_ACCIDENT} 1/s² (measured before the accident at Mina in 2006, not a \
-             limit of safety): {} people at once, {:.2} s at a stretch\n",
+             safety limit): {} people at once, {:.2} s at a stretch\n",
             person.pressure.unwrap_or_default(),
             place.x,
             place.y,
@@ -113,7 +113,7 @@ pub fn json(measured: &Measured) -> Value {
     let shares = safety.levels.shares();
     let pressures = &safety.pressures;
     json!({
-        "note": "thresholds are from the literature, not limits of safety",
+        "note": "thresholds are from the literature, not safety limits",
         "sample_every_secs": secs,
         "dense": dense.collect::<Vec<_>>(),
         "slow": {"below_m_per_s": SLOW, "exposed": exposed[DENSITIES.len()]},
@@ -146,7 +146,7 @@ pub fn picture(safety: &Safety) -> Sheet {
     };
     let top = |lines: &[Vec<[f64; 2]>], least: f64| {
         let values = lines.iter().flatten().map(|[_, y]| *y);
-        1.1 * values.fold(least, f64::max)
+        1.35 * values.fold(least, f64::max) // room for the legend
     };
     let areas = [
         series(|sample| Some(sample.area_above_4)),
@@ -170,7 +170,7 @@ pub fn picture(safety: &Safety) -> Sheet {
     let mut pressure = Panel::new("crowd pressure", time(), y, marks);
     pressure.legend = Some(Corner::UpperRight);
     Sheet {
-        title: "marks from the literature, not limits of safety".to_owned(),
+        title: "thresholds from the literature, not safety limits".to_owned(),
         columns: 2,
         panel_size: [240.0, 200.0],
         panels: vec![alarms, pressure],

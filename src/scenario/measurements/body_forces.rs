@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::Measure;
 use super::window::{MOST_MASS, Window, body_mass, every};
-use crate::analysis::body_forces::{BodyForces as Seen, MARKS, PersonForce, WIDTH, pressed};
+use crate::analysis::body_forces::{BodyForces as Seen, PersonForce, THRESHOLDS, WIDTH, pressed};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::file::LONGEST_TIME;
@@ -16,8 +16,8 @@ use crate::scenario::shapes::Corners;
 const NAME: &str = "body_force";
 
 /// The largest force by pressure and contact on any person, N, from the virial stress, with time and place; the number of
-/// people above 623, 1112 and 6227 N and the longest time of one of them. These marks are from the literature (Lee and
-/// Hughes 2006), not limits of safety. Per agent, in the data: its largest force.
+/// people above 623, 1112 and 6227 N and the longest time of one of them. These thresholds are from the literature (Lee and
+/// Hughes 2006), not safety limits. Per agent, in the data: its largest force.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodyForces {
@@ -75,7 +75,7 @@ impl Measure for BodyForces {
             (name("max_y_m"), "m"),
             (name("max_stress_n_per_m"), "N/m"),
         ];
-        let above = MARKS.into_iter().flat_map(|mark| {
+        let above = THRESHOLDS.into_iter().flat_map(|mark| {
             [
                 (name(&format!("above_{mark}_n_agents")), "agents"),
                 (name(&format!("above_{mark}_n_secs")), "s"),

@@ -16,7 +16,7 @@ const NAME: &str = "crowd_pressure";
 
 /// The highest crowd pressure ρ Var(v) around any person, 1/s², with time, place and density; the mean; the most people
 /// and the longest time above 0.02 1/s², which was measured before the accident at Mina in 2006 (Helbing, Johansson and
-/// Al-Abideen 2007) and is not a limit of safety.
+/// Al-Abideen 2007) and is not a safety limit.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CrowdPressure {

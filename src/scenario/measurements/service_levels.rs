@@ -15,7 +15,7 @@ use crate::scenario::shapes::Corners;
 const NAME: &str = "service";
 
 /// The shares of the time that people spend at each level of service, A to F, by Fruin's (1971) thresholds for walkways
-/// and for queues. Planning values from the literature, not limits of safety.
+/// and for queues. Planning values from the literature, not safety limits.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ServiceLevels {
