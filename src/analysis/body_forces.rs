@@ -131,7 +131,7 @@ impl BodyForces {
         })
     }
 
-    /// The largest force on each person on whom anything pressed.
+    /// The largest force on each person with a force above 0.
     pub fn of_people(&self) -> impl Iterator<Item = PersonForce> + '_ {
         let people = self.people.iter().zip(0..);
         let pressed = people.filter(|(own, _)| own.most > 0.0);

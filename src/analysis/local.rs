@@ -4,7 +4,6 @@
 //! exp(−r²/R²)/(π R²) with R = 1 m of Helbing, Johansson and Al-Abideen (2007), and unlike that one it ends: walls hide a
 //! part of it that is known exactly. Every person counts as one, whatever its mass.
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::site::{Hidden, Kernel, Site};
@@ -110,13 +109,16 @@ impl People {
         Surroundings::new(walls, &self.positions, &[], KERNEL.support_radius, hide)
     }
 
-    /// The people with what is around them, in their order, with pressures if `pressure`.
+    /// The people with what is around them, in their order, with pressures if `pressure`: ρ Var(v), where Var(v) =
+    /// Σ W |v_j − V|² / Σ W and V is the mean velocity with the same weights.
     pub fn local(&self, around: &Surroundings, pressure: bool) -> Vec<Local> {
         let sums = around.from_people(true);
-        let people = self.numbers.par_iter().zip(sums).enumerate();
+        let moments = pressure.then(|| around.moments(&self.velocities));
+        let people = self.numbers.iter().zip(sums).enumerate();
         let local = people.map(|(k, (&number, sum))| {
             let density = sum / (1.0 - around.hidden(k).share.min(MOST_HIDDEN));
-            let variance = pressure.then(|| self.variance(around, k)).flatten();
+            let moments = moments.as_ref().map(|moments| moments[k]);
+            let variance = moments.and_then(|moments| moments.variance());
             Local {
                 number,
                 position: self.positions[k],
@@ -126,23 +128,6 @@ impl People {
             }
         });
         local.collect()
-    }
-
-    /// Var(v) = Σ W |v_j − V|² / Σ W around a person, m²/s², where V is the mean velocity with the same weights.
-    fn variance(&self, around: &Surroundings, person: usize) -> Option<f64> {
-        // Relative to a nearby velocity, so that the difference of two large numbers does not decide.
-        let base = self.velocities[person].unwrap_or_default();
-        let (mut total, mut sum, mut squares) = (0.0, Vector::zeros(), 0.0);
-        for (j, weight) in around.seen_by(person) {
-            if let Some(velocity) = self.velocities[j] {
-                let off = velocity - base;
-                total += weight;
-                sum += off * weight;
-                squares += off.norm_squared() * weight;
-            }
-        }
-        let variance = squares / total - (sum / total).norm_squared();
-        (total > 0.0).then(|| variance.max(0.0))
     }
 }
 

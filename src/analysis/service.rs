@@ -44,7 +44,7 @@ impl Levels {
         }
     }
 
-    /// The shares of the levels A to F, for walkways and for queues; `None` if nobody was seen.
+    /// The shares of the levels A to F, for walkways and for queues; `None` without people.
     pub fn shares(&self) -> Option<[[f64; 6]; 2]> {
         let total: u64 = self.walkway.iter().sum();
         let shares = |counts: &[u64; 6]| counts.map(|count| count as f64 / total as f64);

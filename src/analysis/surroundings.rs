@@ -1,5 +1,11 @@
 //! The people around each person, seen through the kernel of Eq. 13, with walls between them.
 
+mod moments;
+
+pub use moments::Moments;
+
+use rayon::prelude::*;
+
 use super::site::{Hidden, Site};
 use crate::engine::agents::{Agents, NewAgent, REFERENCE_RADIUS};
 use crate::engine::density::from_agents;
@@ -89,9 +95,8 @@ impl<'a> Surroundings<'a> {
         bodies.take(agents, 1.0, None, |_| self.support_radius);
         bodies.take_motions(agents);
         let mut sums = vec![0.0; agents.len()];
-        for (b, sums) in sums.chunks_mut(BLOCK).enumerate() {
-            from_agents(&bodies, self.neighbors.near().block(b), sums);
-        }
+        let blocks = sums.par_chunks_mut(BLOCK).enumerate();
+        blocks.for_each(|(b, sums)| from_agents(&bodies, self.neighbors.near().block(b), sums));
         let near_walls = |i: &usize| only_visible && !self.near_walls[*i].is_empty();
         for i in (0..agents.len()).filter(near_walls) {
             sums[i] = self.visible(i).map(|(_, weight)| weight).sum();
@@ -99,10 +104,31 @@ impl<'a> Surroundings<'a> {
         self.index.iter().map(|&i| sums[i]).collect()
     }
 
-    /// The people that a person sees within reach, itself included, each with m_j W in P/m².
-    pub fn seen_by(&self, person: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let seen = self.visible(self.index[person]);
-        seen.map(|(j, weight)| (self.agents.id[j] as usize, weight))
+    /// The moments of the velocities that each person sees, its own included.
+    pub fn moments(&self, velocities: &[Option<Vector>]) -> Vec<Moments> {
+        let mut agents = self.agents.clone();
+        for i in 0..agents.len() {
+            let known = velocities[agents.id[i] as usize];
+            agents.velocity[i] = known.unwrap_or_default();
+            agents.mass[i] = if known.is_some() { 1.0 } else { 0.0 };
+        }
+        let mut bodies = Bodies::<f64>::default();
+        bodies.take(&agents, 1.0, None, |_| self.support_radius);
+        bodies.take_motions(&agents);
+        let mut found = vec![Moments::default(); agents.len()];
+        let blocks = found.par_chunks_mut(BLOCK).enumerate();
+        blocks.for_each(|(b, found)| {
+            moments::of_block(&bodies, self.neighbors.near().block(b), found);
+            for (i, found) in (b * BLOCK..).zip(found) {
+                if !self.near_walls[i].is_empty() {
+                    *found = Moments::default();
+                    for (j, weight) in self.visible(i) {
+                        found.add(weight * agents.mass[j], agents.velocity[j]);
+                    }
+                }
+            }
+        });
+        self.index.iter().map(|&i| found[i]).collect()
     }
 
     /// The agents j that agent `i` sees, itself included, each with m_j W in P/m².

@@ -210,7 +210,7 @@ pub struct WallForces {
     outlines: Option<Outlines>,
     /// The largest force per meter so far.
     pub peak: Option<Peak>,
-    /// By number: the largest force on each cell on which anything pressed.
+    /// By number: the largest force on each cell with a force above 0.
     most: BTreeMap<usize, CellForce>,
     /// The samples with a force above [`DESIGN_LOAD`] somewhere.
     pub spell: Spell,
@@ -250,7 +250,7 @@ impl WallForces {
         self.meters = self.meters.max(above);
     }
 
-    /// The largest force on each part of the walls on which anything pressed.
+    /// The largest force on each part of the walls with a force above 0.
     pub fn of_cells(&self) -> impl Iterator<Item = &CellForce> {
         self.most.values()
     }

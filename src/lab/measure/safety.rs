@@ -103,7 +103,7 @@ impl Safety {
         for (moment, people) in due.into_iter().zip(&local) {
             let last = self.samples.last().map(|last| last.frame);
             if last.is_some_and(|last| moment.frame - last > self.every) {
-                // Nobody was there in between.
+                // There were no people in between.
                 self.exposure.add([].iter());
                 self.pressures.add(moment.time, [].iter());
             }

@@ -6,7 +6,7 @@ use crate::engine::simulation::Simulation;
 use crate::output::colors::WALL_FORCE;
 use crate::output::plot::{ColorBar, Mark, Style};
 
-/// The parts of walls on which anything presses, colored by the force on 1 m.
+/// The parts of walls with a force on them, colored by the force on 1 m.
 pub fn marks(simulation: &Simulation, body_mass: f64) -> Vec<Mark> {
     let outlines = Outlines::new(&simulation.scene().walls);
     let forces = outlines.per_meter(&outlines.forces(simulation, body_mass));

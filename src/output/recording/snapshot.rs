@@ -40,7 +40,7 @@ pub struct Snapshot {
     pub waiting: Vec<u32>,
     /// Events since the last snapshot, each with its time.
     pub events: Vec<(f64, Event)>,
-    /// The parts of walls on which anything presses; `None` if this is not shown.
+    /// The parts of walls with a force on them; `None` if they are not colored.
     pub wall_forces: Option<Vec<Part>>,
     /// The debug agents.
     pub open: Vec<Open>,

@@ -16,7 +16,7 @@ pub const SERIES: &str = "stats/wall_forces";
 /// A part of a wall with the force on it, N/m.
 pub type Part = ([[f32; 2]; 2], f32);
 
-/// The parts of walls on which anything presses in an evaluated frame.
+/// The parts of walls with a force on them in an evaluated frame.
 pub fn parts(outlines: &Outlines, simulation: &Simulation, body_mass: f64) -> Vec<Part> {
     let forces = outlines.per_meter(&outlines.forces(simulation, body_mass));
     let parts = outlines.cells().iter().zip(forces);
