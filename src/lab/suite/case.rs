@@ -40,15 +40,21 @@ impl Case {
 pub struct Runs<'a> {
     /// The name of the suite.
     pub suite: &'a str,
-    /// The profile.
-    pub profile: String,
-    /// The seed.
-    pub seed: u64,
     /// The results of all cases.
     pub own: Vec<(&'a str, &'a Summary)>,
 }
 
 impl Runs<'_> {
+    /// The profile; empty without runs.
+    pub fn profile(&self) -> &str {
+        self.own.first().map_or("", |(_, run)| &run.profile)
+    }
+
+    /// The seed; 0 without runs.
+    pub fn seed(&self) -> u64 {
+        self.own.first().map_or(0, |(_, run)| run.seed)
+    }
+
     fn missing(&self, label: &str, what: &str) -> LabError {
         LabError::missing(format!("{}, {label}", self.suite), what)
     }

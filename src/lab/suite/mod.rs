@@ -98,10 +98,8 @@ impl Suite {
             let own = runs.entry((number, cell.case.seed)).or_default();
             own.push((cell.label().unwrap_or_default(), &result.summary));
         }
-        let runs = runs.into_iter().map(|((profile, seed), own)| Runs {
+        let runs = runs.into_values().map(|own| Runs {
             suite: self.name,
-            profile: profiles[profile].clone(),
-            seed,
             own,
         });
         let runs: Vec<Runs> = runs.collect();
@@ -110,8 +108,8 @@ impl Suite {
             for runs in &runs {
                 findings.push(Finding {
                     case,
-                    profile: runs.profile.clone(),
-                    seed: Some(runs.seed),
+                    profile: runs.profile().to_owned(),
+                    seed: Some(runs.seed()),
                     checks: judged(case, runs)?,
                 });
             }

@@ -56,8 +56,8 @@ fn with_legend(mut panels: Vec<Panel>) -> Vec<Panel> {
 fn profiles<'a>(runs: &'a [Runs<'a>]) -> Vec<(&'a str, [u8; 3])> {
     let mut names: Vec<&str> = Vec::new();
     for run in runs {
-        if !names.contains(&run.profile.as_str()) {
-            names.push(&run.profile);
+        if !names.contains(&run.profile()) {
+            names.push(run.profile());
         }
     }
     let colors = LINES.into_iter().cycle();
@@ -66,7 +66,7 @@ fn profiles<'a>(runs: &'a [Runs<'a>]) -> Vec<(&'a str, [u8; 3])> {
 
 /// The mean of a value of a run over the seeds of a profile; `None` if a seed lacks it.
 fn mean(runs: &[Runs], profile: &str, label: &str, value: &str) -> Option<f64> {
-    let own = runs.iter().filter(|run| run.profile == profile);
+    let own = runs.iter().filter(|run| run.profile() == profile);
     let values = own.map(|run| run.metric(label, value).ok().flatten());
     let values: Vec<f64> = values.collect::<Option<_>>()?;
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
@@ -96,7 +96,8 @@ fn corridor(runs: &[Runs]) -> Option<Panel> {
         });
         speeds.collect::<Vec<_>>()
     };
-    runs.first().filter(|run| !speed(&run.profile).is_empty())?;
+    runs.first()
+        .filter(|run| !speed(run.profile()).is_empty())?;
     let curve = |speed: fn(f64) -> f64| {
         let densities = (1..=POINTS).map(|k| 5.0 * f64::from(k) / f64::from(POINTS));
         let points = densities.map(|density| [density, speed(density)]);
@@ -175,7 +176,8 @@ fn single_file(runs: &[Runs]) -> Option<Panel> {
         });
         speeds.collect::<Vec<_>>()
     };
-    runs.first().filter(|run| !speed(&run.profile).is_empty())?;
+    runs.first()
+        .filter(|run| !speed(run.profile()).is_empty())?;
     let low = BANDS.map(|(_, at, [low, _])| [density(at), low]);
     let high = BANDS.map(|(_, at, [_, high])| [density(at), high]);
     let band = low.into_iter().chain(high.into_iter().rev()).collect();
@@ -197,7 +199,7 @@ fn passages(at: &Measured, runs: &[Runs]) -> Option<Panel> {
     let (mut latest, mut most) = (0.0_f64, 0);
     let mut begins = f64::INFINITY;
     for (profile, color) in profiles(runs) {
-        for run in runs.iter().filter(|run| run.profile == profile) {
+        for run in runs.iter().filter(|run| run.profile() == profile) {
             let Some(times) = run
                 .of(at.run)
                 .ok()
@@ -212,7 +214,11 @@ fn passages(at: &Measured, runs: &[Runs]) -> Option<Panel> {
             let steps = (1..)
                 .zip(times)
                 .map(|(count, time)| [time, f64::from(count)]);
-            let label = if run.seed == 1 { profile } else { "" };
+            let label = if run.seed() == runs[0].seed() {
+                profile
+            } else {
+                ""
+            };
             marks.push(Mark::Line(steps.collect(), Style::full(color, 1.0, label)));
         }
     }
