@@ -1,6 +1,6 @@
 //! Walking laws in profiles: beside the goal force and RVO, in blends, on many threads, in resumed runs.
 
-use crate::common::walking::{LOOKING, crowd, with};
+use crate::common::walking::{LOOKING, anticipating, crowd, with};
 use crate::common::{
     acceleration, bits, blend_with, block, breakdown, evaluated, on_threads, room, run, scene,
     vector, walker,
@@ -29,7 +29,7 @@ fn the_law_adds_to_the_goal_force_what_lowers_its_speed() {
         let breakdown = breakdown(&simulation, id);
         let terms = breakdown.profiles[0].accelerations;
         let i = simulation.frame().agents.index_of(id).unwrap();
-        let law = WalkingLaw::Headway(Headway::default());
+        let law = WalkingLaw::Headway(anticipating());
         let wish = law.preferred_velocity(&simulation.frame(), i);
         let velocity = Vector::from(breakdown.velocity);
         let expected = (wish - velocity) * 2.0 / breakdown.mass;
