@@ -66,7 +66,7 @@ pub enum CheckpointError {
 }
 
 impl Checkpoint {
-    /// The checkpoint of an evaluated frame.
+    /// The checkpoint of an evaluated frame that the measurements have observed.
     pub fn of(scenario: &Scenario, simulation: &Simulation, metrics: &Metrics) -> Self {
         Self {
             engine: ENGINE.to_owned(),
@@ -105,7 +105,7 @@ impl Checkpoint {
     pub fn resume(self, scenario: Scenario) -> Result<Run, CheckpointError> {
         let mut simulation = Simulation::resumed(scenario.scene.clone(), self.state)?;
         let mut metrics = Metrics::new(&scenario.measurements, &mut simulation);
-        metrics.resume(&self.seen);
+        metrics.resume(&self.seen, simulation.frame().clock.frame());
         Ok(Run {
             scenario,
             simulation,

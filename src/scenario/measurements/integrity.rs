@@ -104,9 +104,16 @@ impl Watched {
     pub fn agents_through_walls(&self, simulation: &Simulation) -> usize {
         let agents = simulation.frame().agents;
         let positions = agents.id.iter().zip(&agents.position);
+        let built;
+        let fence = match &self.fence {
+            Some(fence) => fence,
+            None => {
+                built = Fence::new(&simulation.scene().walls);
+                &built
+            }
+        };
         let inside = positions.filter(|(id, position)| {
-            let fence = self.fence.as_ref();
-            !self.through_walls.contains(id) && fence.is_some_and(|f| f.encloses(**position))
+            !self.through_walls.contains(id) && fence.encloses(**position)
         });
         self.through_walls.len() + inside.count()
     }

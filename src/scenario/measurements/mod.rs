@@ -226,7 +226,11 @@ pub struct Metric {
 }
 
 /// The measurements of one run.
-pub struct Metrics(Vec<Box<dyn Running>>);
+pub struct Metrics {
+    running: Vec<Box<dyn Running>>,
+    /// The number of the last observed frame.
+    observed: Option<u64>,
+}
 
 impl Metrics {
     /// Prepares the measurements, and requests from `simulation` what they need.
@@ -236,12 +240,19 @@ impl Metrics {
             let last = simulation.frame().clock.frame_at(until);
             simulation.request_density_until(last + 1);
         }
-        Self(running)
+        Self {
+            running,
+            observed: None,
+        }
     }
 
-    /// Observes an evaluated frame; call it in every frame.
+    /// Observes an evaluated frame; call it in every frame. A frame counts once, also if a run resumes at it.
     pub fn observe(&mut self, simulation: &Simulation) {
-        for measurement in &mut self.0 {
+        let frame = simulation.frame().clock.frame();
+        if self.observed.replace(frame) == Some(frame) {
+            return;
+        }
+        for measurement in &mut self.running {
             measurement.observe(simulation);
         }
     }
@@ -249,7 +260,7 @@ impl Metrics {
     /// The values measured so far.
     pub fn results(&self, simulation: &Simulation) -> Vec<Metric> {
         let metric = |((name, unit), value)| Metric { name, value, unit };
-        let measured = self.0.iter().flat_map(|measurement| {
+        let measured = self.running.iter().flat_map(|measurement| {
             let named = measurement.names().into_iter();
             named.zip(measurement.values(simulation)).map(metric)
         });
@@ -258,17 +269,21 @@ impl Metrics {
 
     /// The data of measurements that have more than values, by name.
     pub fn data(&self) -> impl Iterator<Item = (String, Value)> {
-        self.0.iter().filter_map(|measurement| measurement.data())
+        self.running
+            .iter()
+            .filter_map(|measurement| measurement.data())
     }
 
     /// What each measurement has seen so far, as JSON.
     pub fn seen(&self) -> Vec<String> {
-        self.0.iter().map(|one| one.seen().to_string()).collect()
+        let seen = self.running.iter().map(|one| one.seen().to_string());
+        seen.collect()
     }
 
-    /// Restores what was [`seen`](Self::seen) before; what does not match is ignored.
-    pub fn resume(&mut self, seen: &[String]) {
-        for (measurement, seen) in self.0.iter_mut().zip(seen) {
+    /// Restores what was [`seen`](Self::seen) up to and in frame number `frame`; what does not match is ignored.
+    pub fn resume(&mut self, seen: &[String], frame: u64) {
+        self.observed = Some(frame);
+        for (measurement, seen) in self.running.iter_mut().zip(seen) {
             measurement.resume(seen);
         }
     }
