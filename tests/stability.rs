@@ -4,8 +4,9 @@ use crate::common::program;
 use nalgebra::{Matrix3, Vector3};
 use sandbox::analysis::stability::{Constants, FITTED, Mode, Scheme, time_step};
 use sandbox::engine::scene::{Integrator, Scene};
-use sandbox::lab::stress::{Cell, Condition, Detail, Limit, Rest, fit};
+use sandbox::lab::stress::{Cell, Condition, Detail, Law, Limit, Rest, fit};
 use sandbox::scenario::Scenario;
+use sandbox::scenario::catalog::WalkingLawKind;
 
 #[test]
 fn the_automatic_step_is_stable_and_at_least_70_percent_of_the_largest() {
@@ -47,6 +48,22 @@ fn a_crowd_at_rest_oscillates_with_twice_the_automatic_step() {
         assert!(full.speed > Some(0.5) && full.persistence < 0.0, "{full:?}");
         assert!(!full.are_stable());
     }
+}
+
+#[test]
+fn a_crowd_with_drag_walks_steadily_until_the_step_is_too_long() {
+    let crowd = Rest {
+        law: Law {
+            walking_law: Some(WalkingLawKind::Drag),
+            drag_per_density: Some(10.0),
+            ..Law::default()
+        },
+        ..Rest::default()
+    };
+    let condition = Condition::PAPER;
+    let step = crowd.mode().time_step(condition.scheme);
+    assert!(crowd.is_stable(step, (condition, 0)).unwrap());
+    assert!(!crowd.is_stable(4.0 * step, (condition, 0)).unwrap());
 }
 
 #[test]
@@ -156,7 +173,7 @@ fn constants_are_found_again_from_steps_that_they_have_made() {
 
 #[test]
 fn the_maps_have_every_crowd_once() {
-    for (quick, points, others) in [(false, 73, 27), (true, 15, 4)] {
+    for (quick, points, others) in [(false, 73, 41), (true, 15, 6)] {
         let detail = Detail::read(quick).unwrap();
         assert_eq!(
             (detail.crowds().len(), detail.held_out.len()),

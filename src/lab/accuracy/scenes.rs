@@ -198,10 +198,13 @@ pub fn continued(
         let mut person = json!({
             "position": <[f64; 2]>::from(position),
             "velocity": <[f64; 2]>::from(velocity),
-            "goal": <[f64; 2]>::from(agents.goal[i]),
             "radius": agents.radius[i],
             "mass": agents.mass[i],
         });
+        // In periodic scenes agents walk along the axis.
+        if crowd.scene().period.is_none() {
+            person["goal"] = json!(<[f64; 2]>::from(agents.goal[i]));
+        }
         if !agents.newcomer[i] {
             person["mean_density"] = json!(agents.mean_density[i]);
         }

@@ -15,5 +15,5 @@ pub use condition::Condition;
 pub use fit::fit;
 pub use map::Detail;
 pub use report::{PARTS, Report};
-pub use rest::{Remains, Rest};
+pub use rest::{Law, Remains, Rest};
 pub use suite::{Finished, stress};

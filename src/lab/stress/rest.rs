@@ -69,6 +69,8 @@ pub struct Law {
     pub walking_law: Option<WalkingLawKind>,
     /// T, seconds.
     pub headway_time: Option<f64>,
+    /// t, seconds.
+    pub headway_anticipation: Option<f64>,
     /// γ, P/m².
     pub slowing_density: Option<f64>,
     /// γ₀, m²/s.
@@ -84,7 +86,11 @@ impl fmt::Display for Law {
         let value = |value: Option<f64>| value.map_or("default".to_owned(), |x| x.to_string());
         match kind {
             WalkingLawKind::None => write!(f, "none"),
-            WalkingLawKind::Headway => write!(f, "headway T={}", value(self.headway_time)),
+            WalkingLawKind::Headway => {
+                write!(f, "headway T={}", value(self.headway_time))?;
+                let anticipation = self.headway_anticipation;
+                anticipation.map_or(Ok(()), |time| write!(f, " t={time}"))
+            }
             WalkingLawKind::DensityAhead => {
                 write!(f, "density-ahead γ={}", value(self.slowing_density))
             }
@@ -210,6 +216,7 @@ impl Rest {
             viscosity: Some(self.viscosity),
             walking_law: self.law.walking_law,
             headway_time: self.law.headway_time,
+            headway_anticipation: self.law.headway_anticipation,
             slowing_density: self.law.slowing_density,
             drag_per_density: self.law.drag_per_density,
             ..Parameters::default()
