@@ -6,7 +6,7 @@ use crate::common::{
     vector, walker,
 };
 use sandbox::analysis::stability::time_step;
-use sandbox::engine::forces::walking::{Headway, WalkingLaw};
+use sandbox::engine::forces::walking::WalkingLaw;
 use sandbox::engine::math::Vector;
 use sandbox::engine::pairs::Precision;
 use sandbox::engine::profile::{Blend, BlendStep};
