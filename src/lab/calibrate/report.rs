@@ -17,7 +17,7 @@ const MOST: f64 = 0.5;
 /// Closer to a bound than this part of the bounds, a parameter is at the bound.
 const NEAR: f64 = 0.02;
 
-/// The files that [`Report::write`] and the pictures write.
+/// The files that `write` and the pictures write.
 pub const FILES: [&str; 9] = [
     "result.json",
     "result.md",
