@@ -184,7 +184,7 @@ fn exposure_adds_times_and_alarms_last_while_one_person_is_in_the_crowd() {
     assert_eq!(people, [0, 7]);
 }
 
-/// People who stand, 0.4 m apart: 6.25 P/m² in the middle, less at the rim.
+/// A standing crowd with a spacing of 0.4 m: 6.25 P/m² in the middle, less at the rim.
 fn standing() -> Value {
     json!({
         "duration_secs": 10, "profile": "sph", "parameters": {"gas_constant": 0},

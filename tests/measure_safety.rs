@@ -31,7 +31,8 @@ fn measured(tracks: &Tracks, sample_every: f64) -> Measured {
     taken.unwrap()
 }
 
-/// A block of 12 × 12 people 0.4 m apart at 10 frames per second, who stand; person k is seen until frame `last(k)`.
+/// A standing block of 12 × 12 people with a spacing of 0.4 m, at 10 frames per second; person k is seen until frame
+/// `last(k)`.
 fn block(last: impl Fn(i64) -> i64) -> Tracks {
     let people = (0..144).flat_map(|k| (0..=last(k)).map(move |frame| (k, frame)));
     let rows = people.map(|(k, frame)| (k, frame, (k % 12) as f64 * 0.4, (k / 12) as f64 * 0.4));

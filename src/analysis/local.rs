@@ -99,7 +99,7 @@ impl People {
         )
     }
 
-    /// The surroundings of people of whom none is inside an obstacle.
+    /// The surroundings of people; all of them must be outside of the obstacles.
     fn among<'a>(&self, walls: &'a Walls) -> Surroundings<'a> {
         let hide = |p, near: &mut Vec<u32>| Hidden {
             share: KERNEL.share(walls, p, near),

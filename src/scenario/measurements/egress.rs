@@ -96,7 +96,7 @@ pub struct Seen {
     walkers: Vec<Option<Walker>>,
     /// The number of arrivals that were processed.
     arrivals: usize,
-    /// The delays of those who have left, seconds.
+    /// The delays of the agents that have left, seconds.
     delays: Vec<f64>,
 }
 
