@@ -1,12 +1,15 @@
 //! New agents: their bodies, their start positions and their random numbers.
 
+use crate::common::{blend_with, breakdown, evaluated, person, rectangle, scene, vector};
 use rand::Rng;
 use sandbox::engine::agents::{Agents, NewAgent};
+use sandbox::engine::breakdown::Breakdown;
 use sandbox::engine::math::Vector;
 use sandbox::engine::placement::Grid;
 use sandbox::engine::random::{Purpose, stream};
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::Scenario;
+use sandbox::scenario::catalog::Parameters;
 
 #[test]
 fn bodies_depend_on_seed_and_id_and_stay_in_the_papers_range() {
@@ -117,4 +120,36 @@ fn masses_are_drawn_apart_from_all_other_traits() {
     let values = drawn[0].iter().map(|&mass| f64::from_bits(mass));
     assert!(values.clone().all(|mass| (0.9..=1.1).contains(&mass)));
     assert!(values.fold(0.0, f64::max) > 1.05);
+}
+
+#[test]
+fn a_part_of_the_radius_counts_in_contacts() {
+    let terms = |parameters: &Parameters| {
+        let wall = rectangle([-3.0, 3.0], [-1.0, 0.0]);
+        let mut scene = scene(vec![wall], blend_with("sf", parameters));
+        scene.agents = [0.0, 0.3]
+            .map(|x| person(vector(x, 0.1), vector(9.0, 9.0)))
+            .to_vec();
+        let simulation = evaluated(scene);
+        let [own, other] = [0, 1].map(|id| breakdown(&simulation, id));
+        let push = |of: &Breakdown| of.profiles[0].accelerations.contact_agents.unwrap();
+        assert!((push(&own) + push(&other)).norm() < 1e-12);
+        own
+    };
+    let whole = terms(&Parameters::default());
+    for (scale, wall_scale) in [(1.0, 1.0), (0.9, 0.5), (0.5, 0.9), (0.7, 0.3)] {
+        let part = terms(&Parameters {
+            contact_scale: Some(scale),
+            wall_contact_scale: Some(wall_scale),
+            ..Parameters::default()
+        });
+        let own = part.profiles[0].accelerations;
+        let agents = -1000.0 * (0.48 * scale - 0.3).max(0.0);
+        let wall = 1000.0 * (0.24 * wall_scale - 0.1).max(0.0);
+        assert!((own.contact_agents.unwrap() - vector(agents, 0.0)).norm() < 1e-9);
+        assert!((own.contact_walls.unwrap() - vector(0.0, wall)).norm() < 1e-9);
+        let of_whole = whole.profiles[0].accelerations;
+        assert_eq!(own.social_agents, of_whole.social_agents);
+        assert_eq!((part.mass, part.radius), (whole.mass, whole.radius));
+    }
 }

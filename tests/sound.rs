@@ -102,7 +102,7 @@ fn the_measured_modulus_of_a_lattice_agrees_with_the_theory() {
         min: vector(-1.0, -1.0),
         max: vector(1.0, 1.0),
     };
-    let contacts = sound::contacts(&simulation.frame(), &inside).unwrap();
+    let contacts = sound::contacts(&simulation, &inside).unwrap();
     assert_eq!(contacts.per_agent, 6.0);
     assert!((contacts.modulus / sound::touching_modulus(0.48) - 1.0).abs() < 1e-3);
 }
@@ -120,7 +120,7 @@ fn contacts_of_large_discs_count_too() {
         min: vector(-1.0, -1.0),
         max: vector(9.0, 1.0),
     };
-    let found = sound::contacts(&simulation.frame(), &everywhere).unwrap();
+    let found = sound::contacts(&simulation, &everywhere).unwrap();
     assert_eq!(found.per_agent, 1.0);
 }
 

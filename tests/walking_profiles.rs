@@ -1,12 +1,12 @@
 //! Walking laws in profiles: beside the goal force and RVO, in blends, on many threads, in resumed runs.
 
-use crate::common::walking::{LOOKING, anticipating, crowd, with};
+use crate::common::walking::{LOOKING, crowd, walking, with};
 use crate::common::{
     acceleration, bits, blend_with, block, breakdown, evaluated, on_threads, room, run, scene,
     vector, walker,
 };
 use sandbox::analysis::stability::time_step;
-use sandbox::engine::forces::walking::WalkingLaw;
+use sandbox::engine::forces::walking::lost_velocity;
 use sandbox::engine::math::Vector;
 use sandbox::engine::pairs::Precision;
 use sandbox::engine::profile::{Blend, BlendStep};
@@ -29,8 +29,8 @@ fn the_law_adds_to_the_goal_force_what_lowers_its_speed() {
         let breakdown = breakdown(&simulation, id);
         let terms = breakdown.profiles[0].accelerations;
         let i = simulation.frame().agents.index_of(id).unwrap();
-        let law = WalkingLaw::Headway(anticipating());
-        let wish = law.preferred_velocity(&simulation.frame(), i);
+        let frame = simulation.frame();
+        let wish = frame.fields.preferred_velocity[i] + lost_velocity(&frame, i);
         let velocity = Vector::from(breakdown.velocity);
         let expected = (wish - velocity) * 2.0 / breakdown.mass;
         let sum = terms.goal.unwrap() + terms.walking.unwrap();
@@ -97,6 +97,43 @@ fn profiles_with_rvo_share_their_law_in_a_blend() {
     assert!(made([WalkingLawKind::Headway; 2]).is_ok());
     let error = made([WalkingLawKind::Headway, WalkingLawKind::None]).unwrap_err();
     assert!(error.to_string().contains("walking law"), "{error}");
+}
+
+#[test]
+fn profiles_of_a_blend_share_the_law_that_looks_ahead() {
+    let made = |steps| Blend::new("both".to_owned(), Parameters::default().sph(), steps);
+    let other = Parameters {
+        headway_time: Some(0.9),
+        ..with(WalkingLawKind::Headway)
+    };
+    let headway = || step(1.0, &with(WalkingLawKind::Headway));
+    let drag = step(2.0, &with(WalkingLawKind::Drag));
+    let error = made(vec![headway(), step(2.0, &other)]).unwrap_err();
+    assert!(error.to_string().contains("one walking law"), "{error}");
+    let blend = made(vec![step(0.0, &Parameters::default()), headway(), drag]).unwrap();
+    assert_eq!(blend.walking_law(), headway().profile.walking);
+}
+
+#[test]
+fn agents_hold_their_speed_until_the_next_coarse_frame() {
+    let mut scene = scene(vec![], blend_with("sph", &with(WalkingLawKind::Headway)));
+    let goal = vector(60.0, 0.0);
+    scene.agents = vec![
+        walker(vector(0.0, 0.0), vector(0.6, 0.0), goal),
+        walker(vector(0.7, 0.0), Vector::zeros(), vector(0.7, 0.0)),
+    ];
+    let mut simulation = evaluated(scene);
+    for frame in 0..20_u64 {
+        let before = simulation.frame().agents.allowed_speed[0];
+        let free = simulation.frame().fields.preferred_velocity[0].norm();
+        let expected = (before.unwrap() - free) * 2.0 / breakdown(&simulation, 0).mass;
+        assert!((walking(&simulation, 0).x - expected).abs() < 1e-12);
+        run(&mut simulation, 1);
+        simulation.evaluate().unwrap();
+        let now = simulation.frame().agents.allowed_speed[0];
+        let is_coarse = (frame + 1) % 5 == 0;
+        assert_eq!(now != before, is_coarse, "{frame}: {before:?} {now:?}");
+    }
 }
 
 #[test]

@@ -18,10 +18,10 @@
 //! [`Lattice`] computes the same without the long-wave limit: it takes every sum over a hexagonal lattice.
 
 use crate::engine::density::SphParameters;
-use crate::engine::frame::Frame;
 use crate::engine::kernel;
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
+use crate::engine::simulation::Simulation;
 
 /// c in m/s for waves much longer than h, without contacts.
 pub fn speed_of_fluid(gas_constant: f64) -> f64 {
@@ -51,17 +51,19 @@ pub struct Contacts {
 
 /// The contacts of all agents in a region; `None` if the region is empty. The neighbor lists of the frame must
 /// extend to the largest contact distance.
-pub fn contacts(frame: &Frame, region: &Region) -> Option<Contacts> {
+pub fn contacts(simulation: &Simulation, region: &Region) -> Option<Contacts> {
+    let frame = simulation.frame();
     let agents = frame.agents;
+    let radius = |i: usize| agents.radius[i] * simulation.blend(i).reach().contact_scale;
     let inside: Vec<usize> = (0..agents.len())
         .filter(|&i| region.contains(agents.position[i]))
         .collect();
     let count = inside.len() as f64;
     let (mut modulus, mut touching) = (0.0, 0usize);
-    let widest = agents.radius.iter().copied().fold(0.0, f64::max);
+    let widest = (0..agents.len()).map(&radius).fold(0.0, f64::max);
     for &i in &inside {
-        for (j, r_ij) in frame.near(i, agents.radius[i] + widest) {
-            let reach = agents.radius[i] + agents.radius[j];
+        for (j, r_ij) in frame.near(i, radius(i) + widest) {
+            let reach = radius(i) + radius(j);
             if r_ij.norm() < reach {
                 modulus += 0.5 * stiffness(r_ij, reach) * r_ij.x * r_ij.x / agents.mass[i];
                 touching += 1;

@@ -13,7 +13,7 @@ use crate::engine::geometry::Walls;
 use crate::engine::kernel;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::{BLOCK, Neighbors, Ranges};
-use crate::engine::pairs::Bodies;
+use crate::engine::pairs::{Bodies, Reach};
 
 /// At most this share of a kernel counts as hidden: in a narrow gap, the visible rest is too small to be meaningful.
 pub const MOST_HIDDEN: f64 = 0.9;
@@ -92,7 +92,7 @@ impl<'a> Surroundings<'a> {
     pub fn from_people(&self, only_visible: bool) -> Vec<f64> {
         let agents = &self.agents;
         let mut bodies = Bodies::<f64>::default();
-        bodies.take(agents, 1.0, None, |_| self.support_radius);
+        bodies.take(agents, 1.0, None, |_| self.reach());
         bodies.take_motions(agents);
         let mut sums = vec![0.0; agents.len()];
         let blocks = sums.par_chunks_mut(BLOCK).enumerate();
@@ -104,6 +104,13 @@ impl<'a> Surroundings<'a> {
         self.index.iter().map(|&i| sums[i]).collect()
     }
 
+    fn reach(&self) -> Reach {
+        Reach {
+            support_radius: self.support_radius,
+            contact_scale: 1.0,
+        }
+    }
+
     /// The moments of the velocities that each person sees, its own included.
     pub fn moments(&self, velocities: &[Option<Vector>]) -> Vec<Moments> {
         let mut agents = self.agents.clone();
@@ -113,7 +120,7 @@ impl<'a> Surroundings<'a> {
             agents.mass[i] = if known.is_some() { 1.0 } else { 0.0 };
         }
         let mut bodies = Bodies::<f64>::default();
-        bodies.take(&agents, 1.0, None, |_| self.support_radius);
+        bodies.take(&agents, 1.0, None, |_| self.reach());
         bodies.take_motions(&agents);
         let mut found = vec![Moments::default(); agents.len()];
         let blocks = found.par_chunks_mut(BLOCK).enumerate();

@@ -82,6 +82,10 @@ pub struct Agents {
     /// The RVO acceleration held until the next coarse frame, m/s²; `None` where RVO does not act. Empty if no
     /// profile uses RVO.
     pub avoidance: Vec<Option<Vector>>,
+    /// The speed that the walking law allows, held until the next coarse frame, m/s, infinite where no agent is in
+    /// view; `None` for agents that entered since, and for those without a law that looks ahead. Empty if no profile
+    /// has one.
+    pub allowed_speed: Vec<Option<f64>>,
     /// The acceleration of the previous frame, m/s²; `None` for agents that entered since. Used by velocity Verlet
     /// only, otherwise empty.
     pub acceleration_before: Vec<Option<Vector>>,
@@ -131,6 +135,7 @@ impl Agents {
         let count = self.len();
         let sometimes = [
             self.avoidance.len(),
+            self.allowed_speed.len(),
             self.acceleration_before.len(),
             self.route.len(),
             self.trip.len(),
@@ -267,11 +272,20 @@ impl Agents {
         self.avoidance.resize(self.len(), None);
     }
 
+    /// Extends `allowed_speed` to all agents.
+    pub fn make_room_for_laws(&mut self) {
+        self.allowed_speed.resize(self.len(), None);
+    }
+
     /// Moves agent `order[k]` to index k. Agents that are not in `order` are removed.
     pub fn arrange(&mut self, order: &[u32]) {
         if !self.avoidance.is_empty() {
             self.make_room_for_avoidance(); // for agents that entered since
             arrange(&mut self.avoidance, order);
+        }
+        if !self.allowed_speed.is_empty() {
+            self.make_room_for_laws();
+            arrange(&mut self.allowed_speed, order);
         }
         if !self.route.is_empty() {
             self.lacks_routes |= self.route.len() < self.len();

@@ -14,7 +14,7 @@ use crate::engine::forces::pressure;
 use crate::engine::forces::rvo::Rvo;
 use crate::engine::forces::social::SocialForce;
 use crate::engine::forces::viscosity::Viscosity;
-use crate::engine::forces::walking::WalkingLaw;
+use crate::engine::forces::walking::{self, WalkingLaw};
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::BLOCK;
@@ -255,10 +255,6 @@ impl Profile {
             }
             terms.viscosity = self.viscosity.map(|_| viscosity);
         }
-        if let Some((law, rate)) = self.looks_ahead(changed) {
-            let rate = rate / frame.agents.mass[i];
-            terms.walking = Some(law.acceleration(frame, i, rate));
-        }
         if let Some(social) = self.navigation.social() {
             terms.social_agents = Some(social.from_agents(frame, i));
         }
@@ -269,13 +265,6 @@ impl Profile {
             }
         }
         terms
-    }
-
-    /// The law that lowers the preferred speed in the goal force, and K^goal/τ, 1/s.
-    fn looks_ahead(&self, changed: Option<&Override>) -> Option<(WalkingLaw, f64)> {
-        let law = self.walking.filter(WalkingLaw::looks_ahead)?;
-        let goal = changed_goal(self.navigation.goal()?, changed);
-        Some((law, goal.rate()))
     }
 
     /// Adds the coefficients of this profile for sums over near agents, times `weight`, for `agents` of one block of a
@@ -338,10 +327,20 @@ impl Profile {
                 }
             }
         }
-        if let Some(WalkingLaw::Drag(drag)) = self.walking {
-            for i in agents.clone() {
-                take(|t| &mut t.walking, i, drag.acceleration(frame, i));
+        match (self.walking, self.navigation.goal()) {
+            (Some(WalkingLaw::Drag(drag)), _) => {
+                for i in agents.clone() {
+                    take(|t| &mut t.walking, i, drag.acceleration(frame, i));
+                }
             }
+            (Some(_), Some(goal)) => {
+                let rate = changed_goal(goal, changed).rate();
+                for i in agents.clone() {
+                    let lost = walking::lost_velocity(frame, i);
+                    take(|t| &mut t.walking, i, lost * (rate / frame.agents.mass[i]));
+                }
+            }
+            _ => {}
         }
         if self.pressure && feels_sph(changed) {
             for (i, _) in frame.neighbors.agents_near_walls(agents.clone()) {
@@ -350,11 +349,9 @@ impl Profile {
                 take(|t| &mut t.pressure_walls, i, push);
             }
         }
-        if let Some(stiffness) = self.contact.wall_stiffness
-            && feels_contact(changed)
-        {
+        if self.contact.wall_stiffness.is_some() && feels_contact(changed) {
             for (i, near) in frame.neighbors.agents_near_walls(agents) {
-                let push = contact::from_walls(frame, i, near, stiffness);
+                let push = contact::from_walls(frame, i, near, &self.contact);
                 take(|t| &mut t.contact_walls, i, push);
             }
         }

@@ -60,7 +60,7 @@ struct Fixed {
     needs: Needs,
     /// The distinct social forces of the scene.
     social_forces: Vec<SocialForce>,
-    /// The distinct walking laws of the scene that add to the goal force.
+    /// The distinct walking laws of the scene that look ahead.
     walking_laws: Vec<WalkingLaw>,
 }
 
@@ -92,6 +92,7 @@ struct Derived {
 #[derive(Clone, Default)]
 struct Buffers {
     avoidance: Vec<Option<Vector>>,
+    allowed_speed: Vec<Option<f64>>,
     acceleration: Vec<Vector>,
     /// The positions before the move, in scenes with journeys.
     before: Vec<Vector>,
@@ -233,6 +234,7 @@ impl Simulation {
             self.pack();
             self.update_density_and_pressure(self.crowd.clock.time_step()); // 1B
             self.update_preferred_velocity(); // 2
+            self.update_walking_laws(); // 3, coarse
             self.update_rvo(); // 3, coarse
             self.update_acceleration(); // 3, 3B, 4
             self.derived.evaluated = true;

@@ -152,6 +152,13 @@ pub struct Parameters {
     /// contact force. Above about 4000 the paper's time step is too long. Default: 1000; with SPH 200.
     #[schemars(range(min = 0, max = STRONGEST))]
     pub wall_stiffness: Option<f64>,
+    /// The part of D_i that counts in contacts between agents. Smaller: shoulders turn, crowds get denser before
+    /// overlaps push. Masses, entrances and avoidance keep D_i.
+    #[schemars(range(min = 0.1, max = 1), extend("default" = 1))]
+    pub contact_scale: Option<f64>,
+    /// The part of D_i that counts in contacts with walls. Smaller: more room in narrow doors and corridors.
+    #[schemars(range(min = 0.1, max = 1), extend("default" = 1))]
+    pub wall_contact_scale: Option<f64>,
     /// h (§5.2), meters: the support radius of the SPH kernels. Larger: smoother densities, at a cost that grows with
     /// its square. At 0.5 m an agent has four neighbors at 5 P/m², too few for a density.
     #[schemars(range(min = 0.01, max = FARTHEST), extend("default" = SphParameters::default().support_radius))]
@@ -229,6 +236,8 @@ impl Parameters {
             contact: Contact {
                 agent_stiffness: switch(self.agent_stiffness.unwrap_or(agent_stiffness)),
                 wall_stiffness: switch(self.wall_stiffness.unwrap_or(wall_stiffness)),
+                contact_scale: self.contact_scale.unwrap_or(1.0),
+                wall_contact_scale: self.wall_contact_scale.unwrap_or(1.0),
             },
         }
     }

@@ -1,4 +1,7 @@
 //! Contact between discs, and of discs with walls (§5.4, Eqs. 22 and 23).
+//!
+//! In the paper all of the radius D_i counts. People turn their shoulders where it is narrow: a part of it may count
+//! in contacts with agents, and another with walls. Masses and personal space (RVO, entrances) keep D_i.
 
 use std::ops::Range;
 
@@ -11,13 +14,17 @@ use crate::engine::pairs::{Columns, Lanes, Real, Simd, lanes_from, load, splat};
 /// without it, rounding would decide the direction of the push.
 const ON_THE_WALL: f64 = 1e-9;
 
-/// Stiffnesses of one profile; `None` disables that contact.
+/// Contact in one profile; a stiffness `None` disables it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
     /// K^ag, 1/s².
     pub agent_stiffness: Option<f64>,
     /// K^obs, 1/s².
     pub wall_stiffness: Option<f64>,
+    /// The part of D_i and D_j that counts in Eq. 22; the same in all profiles of a blend.
+    pub contact_scale: f64,
+    /// The part of D_i that counts in Eq. 23.
+    pub wall_contact_scale: f64,
 }
 
 /// Eq. 22 for eight agents i: Σ_j max(0, D_i + D_j − |r_ij|) r̂_ij, times a coefficient.
@@ -34,7 +41,7 @@ impl<R: Real, S: Simd> FromAgents<R, S> {
     pub fn new(simd: S, columns: &Columns<R>, start: usize, coefficients: &[f64]) -> Self {
         Self {
             stiffness: lanes_from::<R, S>(simd, coefficients),
-            radius: load(simd, &columns.bodies.radius, start),
+            radius: load(simd, &columns.bodies.contact_radius, start),
             minus_unit: splat::<R, S>(simd, -columns.bodies.unit),
         }
     }
@@ -67,12 +74,13 @@ pub fn add_coefficients(
     }
 }
 
-/// Eq. 23, summed over all of `walls` that overlap the disc and divided by the mass. Both faces of a wall push,
+/// Eq. 23 for a disc of `radius` meters, summed over all of `walls` that overlap it and divided by the mass. Both faces of a wall push,
 /// and a corner counts once for each of its edges. An agent whose center is on a wall is pushed along the
 /// outward normal.
-pub fn from_walls(frame: &Frame, i: usize, walls: &[u32], stiffness: f64) -> Vector {
+pub fn from_walls(frame: &Frame, i: usize, walls: &[u32], contact: &Contact) -> Vector {
     let agents = frame.agents;
-    let (r_i, radius) = (agents.position[i], agents.radius[i]);
+    let radius = agents.radius[i] * contact.wall_contact_scale;
+    let r_i = agents.position[i];
     let mut force = Vector::zeros();
     for &k in walls {
         let wall = frame.walls.wall(k);
@@ -87,5 +95,5 @@ pub fn from_walls(frame: &Frame, i: usize, walls: &[u32], stiffness: f64) -> Vec
             force += push * (radius - distance);
         }
     }
-    force * (stiffness / agents.mass[i])
+    force * (contact.wall_stiffness.unwrap_or(0.0) / agents.mass[i])
 }

@@ -177,7 +177,7 @@ impl<'a, R: Real, S: Simd, const PRESSURE: bool, const VISCOSITY: bool> PairSum<
             pressure: &self.columns.pressure[run.clone()],
             velocity_x: &self.columns.bodies.velocity_x[run.clone()],
             velocity_y: &self.columns.bodies.velocity_y[run.clone()],
-            radius: &self.columns.bodies.radius[run],
+            radius: &self.columns.bodies.contact_radius[run],
         }
     }
 

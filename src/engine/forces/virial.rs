@@ -75,7 +75,7 @@ impl<'a, R: Real, S: Simd> PairSum<R, S> for Virial<'a, R, S> {
         Run {
             volume: &self.columns.volume[run.clone()],
             pressure: &self.columns.pressure[run.clone()],
-            radius: &self.columns.bodies.radius[run],
+            radius: &self.columns.bodies.contact_radius[run],
         }
     }
 

@@ -36,10 +36,19 @@ pub struct Bodies<R: Real> {
     pub velocity_y: Vec<R>,
     /// m_j.
     pub mass: Vec<R>,
-    /// D_j, meters.
-    pub radius: Vec<R>,
+    /// The radius that D_j has in contacts with agents, meters.
+    pub contact_radius: Vec<R>,
     /// 1/h of each agent, 1/m.
     pub per_support: Vec<R>,
+}
+
+/// How far the forces of an agent reach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// h, meters.
+    pub support_radius: f64,
+    /// The part of D_i that counts in contacts with agents.
+    pub contact_scale: f64,
 }
 
 fn reset<T: Copy + Default>(column: &mut Vec<T>, agents: &Agents) {
@@ -54,9 +63,9 @@ impl<R: Real> Columns<R> {
         agents: &Agents,
         unit: f64,
         period: Option<&Period>,
-        support: impl Fn(usize) -> f64,
+        reach: impl Fn(usize) -> Reach,
     ) {
-        self.bodies.take(agents, unit, period, support);
+        self.bodies.take(agents, unit, period, reach);
         reset(&mut self.volume, agents);
         reset(&mut self.pressure, agents);
     }
@@ -64,13 +73,13 @@ impl<R: Real> Columns<R> {
 
 impl<R: Real> Bodies<R> {
     /// Packs the bodies of all agents, and resets their positions and velocities to 0. A coordinate unit is `unit`
-    /// meters; `support` returns the h of an agent in meters.
+    /// meters.
     pub fn take(
         &mut self,
         agents: &Agents,
         unit: f64,
         period: Option<&Period>,
-        support: impl Fn(usize) -> f64,
+        reach: impl Fn(usize) -> Reach,
     ) {
         self.unit = unit;
         let way: [f64; 2] = period.map_or([0.0; 2], |period| period.way(1).into());
@@ -80,12 +89,13 @@ impl<R: Real> Bodies<R> {
         reset(&mut self.velocity_x, agents);
         reset(&mut self.velocity_y, agents);
         reset(&mut self.mass, agents);
-        reset(&mut self.radius, agents);
+        reset(&mut self.contact_radius, agents);
         reset(&mut self.per_support, agents);
         for i in 0..agents.len() {
             self.mass[i] = R::of(agents.mass[i]);
-            self.radius[i] = R::of(agents.radius[i]);
-            self.per_support[i] = R::of(1.0 / support(i));
+            let reach = reach(i);
+            self.contact_radius[i] = R::of(agents.radius[i] * reach.contact_scale);
+            self.per_support[i] = R::of(1.0 / reach.support_radius);
         }
     }
 

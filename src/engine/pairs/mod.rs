@@ -13,7 +13,7 @@ mod real;
 mod sums;
 mod vectors;
 
-pub use columns::{Bodies, Columns};
+pub use columns::{Bodies, Columns, Reach};
 pub use fearless_simd::{Level, Simd, dispatch, f32x8, prelude};
 pub use real::{LANES, Lanes, Real};
 pub use sums::{PairSum, add_pairs, lanes_from, load, splat, spread, store};
@@ -82,20 +82,19 @@ impl Packed {
     }
 
     /// Packs the bodies of all agents. Coordinates may wrap with a period of twice `extent` meters (see
-    /// [`Clusters::extent`](crate::engine::neighbors::Clusters::extent)); `support` returns the h of an agent in
-    /// meters.
+    /// [`Clusters::extent`](crate::engine::neighbors::Clusters::extent)).
     pub fn take_bodies(
         &mut self,
         agents: &Agents,
         extent: f64,
         period: Option<&Period>,
-        support: impl Fn(usize) -> f64,
+        reach: impl Fn(usize) -> Reach,
     ) {
         match self {
-            Self::Double(columns) => columns.take_bodies(agents, 1.0, period, support),
+            Self::Double(columns) => columns.take_bodies(agents, 1.0, period, reach),
             Self::Mixed(columns) => {
                 let unit = extent / f64::from(1_u32 << 31);
-                columns.take_bodies(agents, unit, period, support);
+                columns.take_bodies(agents, unit, period, reach);
             }
         }
     }

@@ -11,6 +11,7 @@ use crate::engine::forces::walking::WalkingLaw;
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::BLOCK;
+use crate::engine::pairs::Reach;
 
 /// Largest number of profiles in a blend. Every group of agents has its own copy of them.
 const MOST_STEPS: usize = 16;
@@ -51,13 +52,22 @@ pub enum BlendError {
         "profiles of one blend share one velocity of RVO: give them the same RVO parameters and the same walking law"
     )]
     DifferentRvo,
+    /// Two profiles have different walking laws that look ahead.
+    #[error(
+        "profiles of one blend share one walking law: give those with `headway` or `density-ahead` the same parameters"
+    )]
+    DifferentLaws,
+    /// Two profiles have bodies of different sizes.
+    #[error("profiles of one blend share one `contact_scale`: {1} follows {0}")]
+    DifferentContact(f64, f64),
 }
 
 impl Blend {
     /// Combines profiles into a blend.
     ///
     /// # Errors
-    /// No profile or too many, densities that do not rise, or profiles with different RVO parameters.
+    /// No profile or too many, densities that do not rise, or profiles with different RVO parameters, walking laws or
+    /// contact scales.
     pub fn new(
         name: String,
         sph: SphParameters,
@@ -74,6 +84,10 @@ impl Blend {
             if low.partial_cmp(&high) != Some(std::cmp::Ordering::Less) {
                 return Err(BlendError::NotRising(low, high));
             }
+            let [before, here] = [0, 1].map(|k| pair[k].profile.contact.contact_scale);
+            if before != here {
+                return Err(BlendError::DifferentContact(before, here));
+            }
         }
         let rvo = |step: &BlendStep| Some((rvo_of(&step.profile)?, step.profile.walking));
         let mut rvos = steps.iter().filter_map(rvo);
@@ -81,6 +95,13 @@ impl Blend {
             && rvos.any(|other| other != first)
         {
             return Err(BlendError::DifferentRvo);
+        }
+        let laws = steps.iter().filter_map(|step| step.profile.walking);
+        let mut laws = laws.filter(WalkingLaw::looks_ahead);
+        if let Some(first) = laws.next()
+            && laws.any(|other| other != first)
+        {
+            return Err(BlendError::DifferentLaws);
         }
         Ok(Self { name, sph, steps })
     }
@@ -107,15 +128,29 @@ impl Blend {
         self.steps.len() > 1
     }
 
+    /// How far the forces of an agent with this blend reach.
+    pub fn reach(&self) -> Reach {
+        Reach {
+            support_radius: self.sph.support_radius,
+            contact_scale: self.steps[0].profile.contact.contact_scale,
+        }
+    }
+
     /// The RVO parameters of this blend, if any of its profiles uses RVO.
     pub fn rvo(&self) -> Option<Rvo> {
         self.steps.iter().find_map(|step| rvo_of(&step.profile))
     }
 
-    /// The walking law of the profiles with RVO, if it lowers the preferred speed.
-    pub fn law_of_rvo(&self) -> Option<WalkingLaw> {
+    /// The walking law of the profiles that have one that looks ahead.
+    pub fn walking_law(&self) -> Option<WalkingLaw> {
+        let mut laws = self.steps.iter().filter_map(|step| step.profile.walking);
+        laws.find(WalkingLaw::looks_ahead)
+    }
+
+    /// Does a walking law lower the preferred speed of RVO?
+    pub fn rvo_has_law(&self) -> bool {
         let mut with_rvo = (self.steps.iter()).filter(|step| rvo_of(&step.profile).is_some());
-        with_rvo.find_map(|step| step.profile.walking.filter(WalkingLaw::looks_ahead))
+        with_rvo.any(|step| step.profile.walking.is_some_and(|law| law.looks_ahead()))
     }
 
     /// The profiles that act on agent `i` of a frozen frame, with their weights, which sum to 1.
@@ -182,27 +217,6 @@ impl Blend {
             if profile.navigation.social().as_ref() == Some(social) {
                 for i in agents {
                     coefficients[i % BLOCK] += weight / frame.agents.mass[i];
-                }
-            }
-        });
-    }
-
-    /// Adds K^goal/(τ m) of the profiles with this walking law, times their weights, for `agents` of one block of a
-    /// frozen frame, all with this blend.
-    pub fn add_walking_rates(
-        &self,
-        frame: &Frame,
-        agents: Range<usize>,
-        changed: Option<&Override>,
-        law: &WalkingLaw,
-        rates: &mut [f64; BLOCK],
-    ) {
-        self.each_share(frame, agents, |profile, agents, weight| {
-            if let Some((own, rate)) = profile.looks_ahead(changed)
-                && own == *law
-            {
-                for i in agents {
-                    rates[i % BLOCK] += weight * rate / frame.agents.mass[i];
                 }
             }
         });

@@ -28,10 +28,9 @@ impl Blend {
                     take(share.wall, push * weight);
                 });
             }
-            let contact = profile.contact.wall_stiffness;
-            if let Some(stiffness) = contact.filter(|_| feels_contact(changed)) {
+            if profile.contact.wall_stiffness.is_some() && feels_contact(changed) {
                 for &wall in near {
-                    let push = contact::from_walls(frame, i, &[wall], stiffness);
+                    let push = contact::from_walls(frame, i, &[wall], &profile.contact);
                     if push != Vector::zeros() {
                         take(wall, push * weight);
                     }

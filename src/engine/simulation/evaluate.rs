@@ -11,6 +11,7 @@ use crate::engine::forces::goal;
 use crate::engine::forces::near::{self, PairCoefficients};
 use crate::engine::forces::rvo::{Scratch, Wish};
 use crate::engine::forces::social::SocialForce;
+use crate::engine::forces::walking;
 use crate::engine::frame::{Frame, velocity_range};
 use crate::engine::math::{Vector, are_finite, clamp_length, direction, numbers_are_finite};
 use crate::engine::neighbors::{BLOCK, CLUSTER, ListPolicy, TASK};
@@ -37,7 +38,7 @@ impl Simulation {
             self.stages.time(Stage::Neighbors, || {
                 neighbors.list_agents();
                 packed.take_bodies(agents, neighbors.extent(), neighbors.period(), |i| {
-                    fixed.blend(agents, i).sph.support_radius
+                    fixed.blend(agents, i).reach()
                 });
             });
         }
@@ -146,6 +147,36 @@ impl Simulation {
         });
     }
 
+    /// Step 3, walking laws: decides in coarse frames, and in any frame for agents that entered since, how fast agents
+    /// may walk.
+    pub(super) fn update_walking_laws(&mut self) {
+        if !self.fixed.needs.walking {
+            return;
+        }
+        self.crowd.agents.make_room_for_laws();
+        let fixed = &self.fixed;
+        let frame = self.derived.frame(fixed, &self.crowd);
+        let (agents, decided) = (frame.agents, &mut self.buffers.allowed_speed);
+        self.stages.time(Stage::WalkingLaws, || {
+            decided.clone_from(&agents.allowed_speed);
+            if frame.clock.is_coarse() {
+                decided.fill(None);
+            }
+            let blocks = decided.par_chunks_mut(BLOCK).with_min_len(TASK).enumerate();
+            blocks.for_each(|(b, allowed)| {
+                for law in &fixed.walking_laws {
+                    let mut is_due = [false; BLOCK];
+                    for (k, allowed) in allowed.iter().enumerate() {
+                        let own = fixed.blend(agents, b * BLOCK + k).walking_law();
+                        is_due[k] = allowed.is_none() && own == Some(*law);
+                    }
+                    law.decide(&frame, b, &is_due, allowed);
+                }
+            });
+        });
+        std::mem::swap(&mut self.crowd.agents.allowed_speed, decided);
+    }
+
     /// Step 3, RVO: chooses new accelerations in coarse frames, and in any frame for agents that hold none.
     pub(super) fn update_rvo(&mut self) {
         if !self.fixed.needs.rvo {
@@ -203,10 +234,13 @@ impl Simulation {
 impl Fixed {
     /// How agent `i` wants to walk by RVO.
     fn wish(&self, frame: &Frame, i: usize) -> Wish {
-        let law = self.blend(frame.agents, i).law_of_rvo();
         let free = frame.fields.preferred_velocity[i];
+        let has_law = self.blend(frame.agents, i).rvo_has_law();
         Wish {
-            preferred_velocity: law.map_or(free, |law| law.preferred_velocity(frame, i)),
+            preferred_velocity: match has_law {
+                true => free + walking::lost_velocity(frame, i),
+                false => free,
+            },
             max_speed: self.scene.max_speed(frame.agents, i),
         }
     }
@@ -237,13 +271,6 @@ impl Fixed {
                 blend.add_social_coefficients(frame, span, social, &mut felt);
             });
             social.add_from_agents(frame, b, &felt, acceleration);
-        }
-        for law in &self.walking_laws {
-            let mut rates = [0.0; BLOCK];
-            self.each_span(frame.agents, from..to, |span, blend, changed| {
-                blend.add_walking_rates(frame, span, changed, law, &mut rates);
-            });
-            law.add_accelerations(frame, b, &rates, acceleration);
         }
         self.each_span(frame.agents, from..to, |span, blend, changed| {
             let acceleration = &mut acceleration[span.start - from..span.end - from];

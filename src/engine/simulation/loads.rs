@@ -21,7 +21,7 @@ impl Simulation {
         }
         let mut columns = Columns::<f64>::default();
         columns.take_bodies(agents, 1.0, frame.neighbors.period(), |i| {
-            self.blend(i).sph.support_radius
+            self.blend(i).reach()
         });
         columns.bodies.take_motions(agents);
         for (i, (&density, &pressure)) in fields.density.iter().zip(&fields.pressure).enumerate() {

@@ -21,6 +21,8 @@ pub enum Stage {
     Ways,
     /// Step 2.
     PreferredVelocity,
+    /// Walking laws, coarse.
+    WalkingLaws,
     /// Velocity obstacles, coarse.
     Rvo,
     /// Steps 3, 3B and 4.
@@ -33,7 +35,7 @@ pub enum Stage {
 
 impl Stage {
     /// All stages in the order of the loop.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Schedule,
         Self::Journeys,
         Self::Sort,
@@ -42,6 +44,7 @@ impl Stage {
         Self::DensityAndPressure,
         Self::Ways,
         Self::PreferredVelocity,
+        Self::WalkingLaws,
         Self::Rvo,
         Self::Acceleration,
         Self::Integration,
@@ -59,6 +62,7 @@ impl Stage {
             Self::DensityAndPressure => "density_and_pressure",
             Self::Ways => "ways",
             Self::PreferredVelocity => "preferred_velocity",
+            Self::WalkingLaws => "walking_laws",
             Self::Rvo => "rvo",
             Self::Acceleration => "acceleration",
             Self::Integration => "integration",

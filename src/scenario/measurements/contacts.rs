@@ -40,7 +40,7 @@ impl Measure for ContactsAt {
         let frame = simulation.frame();
         if frame.clock.frame() == frame.clock.frame_at(self.at_secs) {
             let region = region("", self.region).ok();
-            *seen = region.and_then(|region| sound::contacts(&frame, &region));
+            *seen = region.and_then(|region| sound::contacts(simulation, &region));
         }
     }
 

@@ -7,7 +7,8 @@
 //! a_i = K^goal/(τ m_i) (s_i^law − s_i) ê_i,
 //!
 //! so that both together are the goal force with the lowered speed. RVO has no goal force; the lowered speed is in
-//! its cost (Eq. 20). [`Drag`] is a friction. Agents without preferred velocity do not look ahead.
+//! its cost (Eq. 20). Agents decide on s_i^law in coarse frames, like RVO on its velocities, and hold it in between:
+//! people take longer to react. [`Drag`] is a friction. Agents without preferred velocity do not look ahead.
 
 mod density_ahead;
 mod drag;
@@ -100,49 +101,34 @@ impl WalkingLaw {
         }
     }
 
-    /// The preferred velocity of agent `i` with the lowered speed, m/s.
-    pub fn preferred_velocity(&self, frame: &Frame, i: usize) -> Vector {
-        frame.fields.preferred_velocity[i] + self.acceleration(frame, i, 1.0)
-    }
-
-    /// What the law takes from the preferred velocity of agent `i`, times `rate`, 1/s: an acceleration, m/s².
-    pub fn acceleration(&self, frame: &Frame, i: usize, rate: f64) -> Vector {
-        let mut rates = [0.0; BLOCK];
-        rates[i % BLOCK] = rate;
-        let mut out = [Vector::zeros(); BLOCK];
-        self.add_accelerations(frame, i / BLOCK, &rates, &mut out);
-        out[i % BLOCK]
-    }
-
-    /// Adds what the law takes from the preferred velocities of block `b`, times `rates`, 1/s, to accelerations, m/s².
-    pub fn add_accelerations(
+    /// Decides how fast the agents of block `b` may walk that are due, m/s; infinite without agents in view.
+    pub fn decide(
         &self,
         frame: &Frame,
         b: usize,
-        rates: &[f64; BLOCK],
-        accelerations: &mut [Vector],
+        is_due: &[bool; BLOCK],
+        allowed: &mut [Option<f64>],
     ) {
         each!(frame.packed, columns => dispatch!(Level::new(), simd => {
-            self.add_sums(simd, &columns.bodies, (frame, b), rates, accelerations);
+            self.decide_with(simd, &columns.bodies, (frame, b), is_due, allowed);
         }));
     }
 
     #[inline(always)]
-    fn add_sums<R: Real, S: Simd>(
+    fn decide_with<R: Real, S: Simd>(
         &self,
         simd: S,
         bodies: &Bodies<R>,
         (frame, b): (&Frame, usize),
-        rates: &[f64; BLOCK],
-        out: &mut [Vector],
+        is_due: &[bool; BLOCK],
+        allowed: &mut [Option<f64>],
     ) {
         let mut runs = Vec::new();
         let view = self.view(frame.neighbors.support());
         let positions = &frame.agents.position;
         for (agents, _) in frame.neighbors.near().block(b).clusters() {
             let own = agents.start % BLOCK..agents.start % BLOCK + agents.len();
-            let rates = &rates[own.clone()];
-            if rates.iter().all(|&rate| rate == 0.0) {
+            if !is_due[own.clone()].contains(&true) {
                 continue;
             }
             let wishes = &frame.fields.preferred_velocity[agents.clone()];
@@ -155,12 +141,23 @@ impl WalkingLaw {
                 Self::DensityAhead(law) => law.lost_speeds(simd, bodies, &walkers, &runs),
                 Self::Drag(_) => continue,
             };
-            let [x, y] = walkers.backwards;
-            let (x, y) = (store::<R, S>(x * lost), store::<R, S>(y * lost));
-            for (k, (out, rate)) in out[own].iter_mut().zip(rates).enumerate() {
-                *out += Vector::new(x[k], y[k]) * *rate;
+            let lost = store::<R, S>(lost);
+            for (k, i) in own.enumerate().filter(|&(_, i)| is_due[i]) {
+                let is_free = lost[k] <= 0.0;
+                let lowered = || (wishes[k].norm() - lost[k]).max(0.0);
+                allowed[i] = Some(if is_free { f64::INFINITY } else { lowered() });
             }
         }
+    }
+}
+
+/// What the speed that agent `i` may walk takes from its preferred velocity, m/s.
+pub fn lost_velocity(frame: &Frame, i: usize) -> Vector {
+    let wish = frame.fields.preferred_velocity[i];
+    let speed = wish.norm();
+    match frame.agents.allowed_speed.get(i) {
+        Some(&Some(allowed)) if allowed < speed => wish * (allowed / speed - 1.0),
+        _ => Vector::zeros(),
     }
 }
 

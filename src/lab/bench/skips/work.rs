@@ -128,7 +128,7 @@ pub fn lists(coarse: bool) -> Work {
                 neighbors.list_agents();
                 packed.take_bodies(&agents, neighbors.extent(), neighbors.period(), |i| {
                     let group = &scene.groups[usize::from(agents.group[i])];
-                    group.blend.sph.support_radius
+                    group.blend.reach()
                 });
             }
         })
@@ -167,7 +167,7 @@ pub fn walls_one_by_one(simulation: &Simulation) -> Result<Work, &'static str> {
     }))
 }
 
-/// The headway law for all agents.
+/// The headway law for all agents, in coarse frames.
 pub fn walking_law(simulation: &Simulation) -> Result<Work, &'static str> {
     let needs = simulation.needs();
     if needs.walking {
@@ -177,14 +177,18 @@ pub fn walking_law(simulation: &Simulation) -> Result<Work, &'static str> {
         return Err("the scene has no packed agents");
     }
     let law = WalkingLaw::Headway(Headway::default());
-    let mut lost = Vec::new();
+    let mut allowed = Vec::new();
     Ok(Box::new(move |simulation| {
         let frame = simulation.frame();
-        lost.resize(frame.agents.len(), Vector::zeros());
-        let blocks = lost.par_chunks_mut(BLOCK).with_min_len(TASK).enumerate();
-        seconds(|| {
-            blocks.for_each(|(b, lost)| law.add_accelerations(&frame, b, &[1.0; BLOCK], lost))
-        })
+        if !frame.clock.is_coarse() {
+            return 0.0;
+        }
+        allowed.resize(frame.agents.len(), None);
+        let blocks = allowed.par_chunks_mut(BLOCK).with_min_len(TASK);
+        let decide = |(b, allowed): (usize, &mut [Option<f64>])| {
+            law.decide(&frame, b, &[true; BLOCK], allowed)
+        };
+        seconds(|| blocks.enumerate().for_each(decide))
     }))
 }
 

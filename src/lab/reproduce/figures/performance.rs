@@ -31,7 +31,7 @@ pub const PRODUCT: Product = Product {
 const PAPER: [[f64; 2]; 2] = [[10_000.0, 4.94], [30_000.0, 18.57]];
 
 /// The stages in the order of the legend, with the paper's names.
-const TASKS: [(Stage, &str); 10] = [
+const TASKS: [(Stage, &str); 11] = [
     (Stage::Sort, "1 sorting (paper: kd-tree)"),
     (Stage::Neighbors, "2 neighbors"),
     (Stage::PreferredVelocity, "3 preferred velocity"),
@@ -40,6 +40,7 @@ const TASKS: [(Stage, &str); 10] = [
     (Stage::Integration, "6 integration"),
     (Stage::Packing, "packing"),
     (Stage::Schedule, "entries and pushes"),
+    (Stage::WalkingLaws, "walking laws"),
     (Stage::Rvo, "velocity obstacles"),
     (Stage::Removal, "removal"),
 ];
