@@ -20,19 +20,22 @@ fn lowered(simulation: &Simulation, law: WalkingLawKind, i: usize) -> f64 {
         let d = frame.agents.position[j] - frame.agents.position[i];
         (j, d.dot(&heading), d.dot(&perpendicular(heading)))
     });
-    let away = |j: usize| {
+    let motion = |j: usize| {
         let relative = frame.agents.velocity[j] - frame.agents.velocity[i];
-        relative.dot(&heading)
+        let other = direction(frame.fields.preferred_velocity[j]);
+        [relative.dot(&heading), other.dot(&heading)]
     };
     if law == WalkingLawKind::Headway {
         let headway = anticipating();
         let range = headway.range(free);
         let distances = others
-            .map(|(j, along, across)| headway.distance_in_lane(range, [along, across], away(j)));
+            .map(|(j, along, across)| headway.distance_in_lane(range, [along, across], motion(j)));
         return headway.speed(free, distances.fold(range, f64::min));
     }
-    let kernel =
-        |(j, along, across)| frame.agents.mass[j] * DensityAhead::kernel(along, across, 1.0);
+    let kernel = |(j, along, across)| {
+        let counts = (1.0 + 4.0 * motion(j)[1].min(0.0)).max(0.0);
+        frame.agents.mass[j] * counts * DensityAhead::kernel(along, across, 1.0)
+    };
     DensityAhead::default().speed(free, others.map(kernel).sum())
 }
 
@@ -109,6 +112,26 @@ fn lone_agents_and_agents_with_others_behind_or_beside_walk_freely() {
 }
 
 #[test]
+fn agents_that_come_towards_do_not_count() {
+    for law in LOOKING {
+        let met = |heading: f64| {
+            let mut scene = scene(vec![], blend_with("sph", &with(law)));
+            let place = vector(0.6, 0.0);
+            let goal = place + vector(heading.cos(), heading.sin()) * 50.0;
+            scene.agents = vec![
+                person(Vector::zeros(), vector(100.0, 0.0)),
+                person(place, goal),
+            ];
+            walking(&evaluated(scene), 0).norm()
+        };
+        assert_eq!(met(std::f64::consts::PI), 0.0, "{law:?}");
+        assert_eq!(met(2.0), 0.0);
+        assert!(met(1.6) > 0.0 && met(1.6) < met(1.0));
+        assert_eq!(met(0.0), met(1.0));
+    }
+}
+
+#[test]
 fn the_nearest_agent_in_the_lane_sets_the_speed() {
     let others = [vector(0.66, 0.1), vector(0.9, 0.0), vector(0.4, 0.7)];
     let simulation = among(WalkingLawKind::Headway, &others, Precision::Double);
@@ -123,7 +146,7 @@ fn speeds_do_not_jump_when_an_agent_enters_a_lane_or_falls_behind() {
     let headway = Headway::default();
     let range = headway.range(1.4);
     let speed = |along: f64, across: f64| {
-        let distance = headway.distance_in_lane(range, [along, across], 0.0);
+        let distance = headway.distance_in_lane(range, [along, across], [0.0, 1.0]);
         headway.speed(1.4, distance.min(range))
     };
     let step = 1e-4;

@@ -2,7 +2,7 @@
 
 use super::{Failure, say};
 use crate::scenario::catalog::NAMES;
-use crate::scenario::{self, SHIPPED, nested_settings, settings};
+use crate::scenario::{self, SHIPPED, calibrated, nested_settings, settings};
 
 /// Most characters in a line beside a name.
 const WIDTH: usize = 80;
@@ -28,7 +28,10 @@ pub fn run(list_settings: bool) -> Result<(), Failure> {
         for scenario in SHIPPED {
             text += &format!("{:<12} {}\n", scenario.name, scenario.description());
         }
-        text += &format!("\nprofiles: {}\n", NAMES.join(", "));
+        text += &format!("\nprofiles of the paper: {}\n", NAMES.join(", "));
+        for profile in calibrated::all() {
+            text += &entry(profile.name, 0, profile.about);
+        }
     }
     say(text)
 }

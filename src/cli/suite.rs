@@ -9,7 +9,7 @@ use super::{Failure, say, talk};
 use crate::lab::suite::Suite;
 use crate::lab::validate::VALIDATION;
 use crate::lab::verify::VERIFICATION;
-use crate::scenario::catalog::NAMES;
+use crate::scenario::catalog;
 use crate::scenario::quote::shown;
 
 #[derive(Args)]
@@ -33,7 +33,7 @@ pub struct ValidateOptions {
 #[derive(Args)]
 pub struct SuiteOptions {
     /// This profile in place of sph, sf->sph and rvo->sph; give it several times for several profiles
-    #[arg(long, value_name = "PROFILE", value_parser = PossibleValuesParser::new(NAMES))]
+    #[arg(long, value_name = "PROFILE", value_parser = PossibleValuesParser::new(catalog::names()))]
     pub profile: Vec<String>,
     /// Number of seeds per run: 1, 2, …; verify: a case passes if it does with all of them; validate: means over seeds
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=1000))]

@@ -82,9 +82,8 @@ pub struct Agents {
     /// The RVO acceleration held until the next coarse frame, m/s²; `None` where RVO does not act. Empty if no
     /// profile uses RVO.
     pub avoidance: Vec<Option<Vector>>,
-    /// The speed that the walking law allows, held until the next coarse frame, m/s, infinite where no agent is in
-    /// view; `None` for agents that entered since, and for those without a law that looks ahead. Empty if no profile
-    /// has one.
+    /// The speed that the walking law allows, held until the next coarse frame, m/s, infinite without a law or agents
+    /// in view; `None` for agents that entered since. Empty if no profile has a law that looks ahead.
     pub allowed_speed: Vec<Option<f64>>,
     /// The acceleration of the previous frame, m/s²; `None` for agents that entered since. Used by velocity Verlet
     /// only, otherwise empty.

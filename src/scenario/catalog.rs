@@ -1,10 +1,11 @@
-//! The seven profiles of §5.5, and custom profiles from parameters.
+//! The seven profiles of §5.5, calibrated ones, and custom profiles from parameters.
 
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
+use super::calibrated;
 use crate::engine::density::SphParameters;
 use crate::engine::forces::contact::Contact;
 use crate::engine::forces::goal::GoalForce;
@@ -243,12 +244,27 @@ impl Parameters {
     }
 }
 
+/// The names of all profiles: those of §5.5, then the calibrated ones.
+pub fn names() -> Vec<&'static str> {
+    let calibrated = calibrated::all().iter().map(|profile| profile.name);
+    NAMES.into_iter().chain(calibrated).collect()
+}
+
+/// The profile of the paper on which `name` is based, and `parameters` with those of a calibrated profile where they
+/// have none.
+pub(super) fn resolved<'a>(name: &'a str, parameters: &Parameters) -> (&'a str, Parameters) {
+    match calibrated::named(name) {
+        Some(profile) => (profile.base, parameters.or(&profile.parameters)),
+        None => (name, *parameters),
+    }
+}
+
 /// Reads parameters from their values by name.
 pub(super) fn from_values<T: DeserializeOwned + Default>(values: Map<String, Value>) -> T {
     serde_json::from_value(values.into()).unwrap_or_default()
 }
 
-/// A profile or blend of §5.5 with some parameters changed; `None` for an unknown name.
+/// A profile or blend with some parameters changed; `None` for an unknown name.
 pub fn named(name: &str, parameters: &Parameters) -> Option<Result<Blend, BlendError>> {
     let alias = ALIASES.into_iter().find(|&(alias, _)| alias == name);
     let name = alias.map_or(name, |(_, name)| name);
@@ -258,6 +274,7 @@ pub fn named(name: &str, parameters: &Parameters) -> Option<Result<Blend, BlendE
     };
     let first = plain(first, parameters)?;
     let Some(second) = second else {
+        let (_, parameters) = resolved(name, parameters);
         return Some(Ok(Blend::single(first, parameters.sph())));
     };
     let profiles = [first, plain(second, parameters)?];
@@ -270,9 +287,10 @@ pub fn named(name: &str, parameters: &Parameters) -> Option<Result<Blend, BlendE
     Some(Blend::new(name, parameters.sph(), steps.collect()))
 }
 
-/// One of the five profiles of §5.5 that are not blends; `None` for other names.
+/// A calibrated profile, or one of the five of §5.5 that are not blends; `None` for other names.
 pub fn plain(name: &str, parameters: &Parameters) -> Option<Profile> {
-    let (kind, sph) = match name {
+    let (base, parameters) = resolved(name, parameters);
+    let (kind, sph) = match base {
         "sf" => (NavigationKind::Social, false),
         "rvo" => (NavigationKind::Rvo, false),
         "sf+sph" => (NavigationKind::Social, true),

@@ -17,6 +17,7 @@ pub mod input;
 
 pub mod floor_plan;
 
+pub mod calibrated;
 pub mod catalog;
 
 pub mod measurements;

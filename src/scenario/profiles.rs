@@ -13,7 +13,7 @@ use super::schema::names;
 use super::settings::plain as plain_value;
 use crate::engine::density::SphParameters;
 use crate::engine::profile::{Blend, BlendStep, Profile};
-use crate::scenario::catalog::{self, ALIASES, HIGHEST_DENSITY, NAMES, NavigationKind, Parameters};
+use crate::scenario::catalog::{self, ALIASES, HIGHEST_DENSITY, NavigationKind, Parameters};
 use crate::scenario::quote::shown;
 
 /// A name (see `sandbox list`), or a profile or blend defined in full
@@ -65,7 +65,7 @@ pub(super) struct Step {
 
 fn known_names() -> Vec<&'static str> {
     let aliases = ALIASES.into_iter().map(|(alias, _)| alias);
-    NAMES.into_iter().chain(aliases).collect()
+    catalog::names().into_iter().chain(aliases).collect()
 }
 
 /// The schema of objects that have this key.
@@ -120,11 +120,12 @@ fn named(name: &str, parameters: &Parameters) -> Result<Blend, Problem> {
 }
 
 fn unknown(name: &str) -> Problem {
-    let names = NAMES.join(", ");
+    let known = catalog::names();
+    let names = known.join(", ");
     let near = if name.ends_with('-') {
         "; a shell takes an unquoted `>` for a redirection: quote the name, or write sf-sph or rvo-sph".to_owned()
     } else {
-        suggestion(name, NAMES)
+        suggestion(name, known)
     };
     Problem::new(
         "",
@@ -236,14 +237,21 @@ fn step_profile(choice: &ProfileChoice, parameters: &Parameters) -> Result<Profi
     }
 }
 
+/// The parameters of a step's own, or those of the calibrated profile that it names.
+fn own_parameters(choice: &ProfileChoice) -> Parameters {
+    let (name, own) = match choice {
+        ProfileChoice::Named(name) => (Some(name), Parameters::default()),
+        ProfileChoice::Custom(custom) => (custom.base.as_ref(), custom.parameters),
+    };
+    name.map_or(own, |ProfileName(name)| catalog::resolved(name, &own).1)
+}
+
 /// The SPH parameters given anywhere in a blend, which apply to all of it.
 fn shared_by(custom: &CustomProfile, steps: &[Step]) -> Result<Parameters, Problem> {
     let mut shared = Map::new();
-    let of_steps = steps.iter().enumerate().filter_map(|(k, step)| {
-        let ProfileChoice::Custom(own) = &step.profile else {
-            return None;
-        };
-        Some((format!("blend[{k}].profile."), own.parameters))
+    let of_steps = steps.iter().enumerate().map(|(k, step)| {
+        let own = own_parameters(&step.profile);
+        (format!("blend[{k}].profile."), own)
     });
     let of_all = std::iter::once((String::new(), custom.parameters));
     for (place, own) in of_all.chain(of_steps) {

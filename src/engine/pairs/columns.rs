@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::real::{LANES, Real};
 use crate::engine::agents::Agents;
+use crate::engine::math::{Vector, direction};
 use crate::engine::neighbors::{BLOCK, TASK};
 use crate::engine::period::Period;
 
@@ -40,6 +41,10 @@ pub struct Bodies<R: Real> {
     pub contact_radius: Vec<R>,
     /// 1/h of each agent, 1/m.
     pub per_support: Vec<R>,
+    /// ê_j, zero without preferred velocity. Written where walking laws are due, and empty before.
+    pub heading_x: Vec<R>,
+    /// See `heading_x`.
+    pub heading_y: Vec<R>,
 }
 
 /// How far the forces of an agent reach.
@@ -96,6 +101,18 @@ impl<R: Real> Bodies<R> {
             let reach = reach(i);
             self.contact_radius[i] = R::of(agents.radius[i] * reach.contact_scale);
             self.per_support[i] = R::of(1.0 / reach.support_radius);
+        }
+    }
+
+    /// Packs the directions of preferred velocities, one per agent.
+    pub fn take_headings(&mut self, wishes: &[Vector]) {
+        let padded = wishes.len() + LANES;
+        self.heading_x.resize(padded, R::default());
+        self.heading_y.resize(padded, R::default());
+        let headings = self.heading_x.iter_mut().zip(&mut self.heading_y);
+        for ((x, y), &wish) in headings.zip(wishes) {
+            let heading = direction(wish);
+            (*x, *y) = (R::of(heading.x), R::of(heading.y));
         }
     }
 

@@ -20,6 +20,7 @@ pub use sums::{PairSum, add_pairs, lanes_from, load, splat, spread, store};
 pub use vectors::Vectors;
 
 use crate::engine::agents::Agents;
+use crate::engine::math::Vector;
 use crate::engine::period::Period;
 
 /// The precision of sums over pairs; everything else is in double precision.
@@ -97,6 +98,11 @@ impl Packed {
                 columns.take_bodies(agents, unit, period, reach);
             }
         }
+    }
+
+    /// Packs the directions of preferred velocities, one per agent.
+    pub fn take_headings(&mut self, wishes: &[Vector]) {
+        each!(self, columns => columns.bodies.take_headings(wishes));
     }
 
     /// Packs the positions and velocities of all agents.

@@ -153,24 +153,32 @@ impl Simulation {
         if !self.fixed.needs.walking {
             return;
         }
-        self.crowd.agents.make_room_for_laws();
-        let fixed = &self.fixed;
-        let frame = self.derived.frame(fixed, &self.crowd);
-        let (agents, decided) = (frame.agents, &mut self.buffers.allowed_speed);
+        let (fixed, crowd) = (&self.fixed, &mut self.crowd);
+        crowd.agents.make_room_for_laws();
+        if crowd.clock.is_coarse() {
+            crowd.agents.allowed_speed.fill(None);
+        }
+        if !crowd.agents.allowed_speed.contains(&None) {
+            return;
+        }
+        let (derived, decided) = (&mut self.derived, &mut self.buffers.allowed_speed);
+        decided.clone_from(&crowd.agents.allowed_speed);
         self.stages.time(Stage::WalkingLaws, || {
-            decided.clone_from(&agents.allowed_speed);
-            if frame.clock.is_coarse() {
-                decided.fill(None);
-            }
+            let wishes = &derived.fields.preferred_velocity;
+            derived.packed.take_headings(wishes);
+            let frame = derived.frame(fixed, crowd);
             let blocks = decided.par_chunks_mut(BLOCK).with_min_len(TASK).enumerate();
             blocks.for_each(|(b, allowed)| {
                 for law in &fixed.walking_laws {
                     let mut is_due = [false; BLOCK];
                     for (k, allowed) in allowed.iter().enumerate() {
-                        let own = fixed.blend(agents, b * BLOCK + k).walking_law();
+                        let own = fixed.blend(frame.agents, b * BLOCK + k).walking_law();
                         is_due[k] = allowed.is_none() && own == Some(*law);
                     }
                     law.decide(&frame, b, &is_due, allowed);
+                }
+                for allowed in allowed {
+                    allowed.get_or_insert(f64::INFINITY); // no law
                 }
             });
         });

@@ -8,12 +8,14 @@
 //! r = |r_ij| < h. K integrates to 1 over the half disc. It is zero at the agent's own place, so a sum without the
 //! agent itself is not too low, as a half of Eq. 9 would be by the agent's own 4/(π h²) = 1.27 P/m². It is zero beside
 //! the agent, so the speed does not jump when the agent turns. Walls add nothing: half of the view of an agent at a
-//! wall is empty at most, and its density that much lower.
+//! wall is empty at most, and its density that much lower. Agents that want to walk against agent i count
+//! max(0, 1 + 4 ê_i·ê_j), and not at all if they come straight towards it (see [`headway`](super::headway)).
 
 use std::f64::consts::LN_2;
 use std::ops::Range;
 
 use super::Walkers;
+use super::headway::AGAINST;
 use crate::engine::neighbors::Run;
 use crate::engine::pairs::prelude::*;
 use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, spread};
@@ -79,7 +81,7 @@ impl DensityAhead {
         let per_h: Lanes<R, S> = load(simd, &bodies.per_support, walkers.start);
         let per_h_squared = per_h * per_h;
         let mut sum = Ahead {
-            mass: &bodies.mass,
+            columns: [&bodies.mass, &bodies.heading_x, &bodies.heading_y],
             backwards: walkers.backwards,
             scale: per_h_squared * splat::<R, S>(simd, -bodies.unit * bodies.unit),
             sum: zero,
@@ -99,7 +101,8 @@ impl DensityAhead {
 
 /// ρ^ahead for eight agents i.
 struct Ahead<'a, R: Real, S: Simd> {
-    mass: &'a [R],
+    /// m_j and ê_j of all agents.
+    columns: [&'a [R]; 3],
     /// −ê_i.
     backwards: [Lanes<R, S>; 2],
     /// −(meters per coordinate unit)²/h².
@@ -109,22 +112,35 @@ struct Ahead<'a, R: Real, S: Simd> {
 }
 
 impl<'a, R: Real, S: Simd> PairSum<R, S> for Ahead<'a, R, S> {
-    type Run = &'a [R];
+    type Run = [&'a [R]; 3];
 
     #[inline(always)]
-    fn run(&self, run: Range<usize>) -> &'a [R] {
-        &self.mass[run]
+    fn run(&self, run: Range<usize>) -> [&'a [R]; 3] {
+        self.columns.map(|column| &column[run.clone()])
     }
 
     #[inline(always)]
-    fn add(&mut self, simd: S, [dx, dy]: [Lanes<R, S>; 2], mass: &'a [R], j: usize) {
+    fn add(
+        &mut self,
+        simd: S,
+        [dx, dy]: [Lanes<R, S>; 2],
+        [mass, heading_x, heading_y]: [&'a [R]; 3],
+        j: usize,
+    ) {
         let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
         let along = dy
             .mul_add(self.backwards[1], dx * self.backwards[0])
             .max(zero);
         let squared = dy.mul_add(dy, dx * dx);
         let rest = squared.mul_add(self.scale, one).max(zero);
-        let weighted = spread::<R, S>(simd, mass[j]) * along * rest;
+        let [x, y] = self.backwards;
+        let e_x = spread::<R, S>(simd, heading_x[j]);
+        let e_y = spread::<R, S>(simd, heading_y[j]);
+        let against = e_y.mul_add(y, e_x * x).max(zero);
+        let counts = against
+            .mul_add(splat::<R, S>(simd, -AGAINST), one)
+            .max(zero);
+        let weighted = spread::<R, S>(simd, mass[j]) * along * rest * counts;
         self.sum = weighted.mul_add(rest * rest, self.sum);
     }
 }

@@ -7,6 +7,9 @@
 //! Q. Xu, M. Chraibi, A. Seyfried, Anticipation in a velocity-based model for pedestrian dynamics, Transportation
 //! Research C 133 (2021): people look at the distance that they expect after some time, d + t (v_j − v_i)·ê_i. Here they
 //! do so behind those who walk away from them, and keep less distance than in a crowd that moves as one.
+//!
+//! Agents that want to walk against agent i do not count: two agents that wait for each other would stand for ever,
+//! where people step aside.
 
 use std::ops::Range;
 
@@ -43,6 +46,9 @@ impl Default for Headway {
 /// Width of the fading edge of a lane and length of its fading beginning, in units of w.
 const FADE: f64 = 0.5;
 
+/// Agents count less the more they want to walk against agent i, and not at all where ê_i·ê_j is −1 over this number.
+pub(super) const AGAINST: f64 = 4.0;
+
 impl Headway {
     /// s^law, m/s: the speed of an agent with preferred speed `free`, m/s, if the nearest agent in its lane is at this
     /// distance, meters.
@@ -59,13 +65,20 @@ impl Headway {
     /// The distance in meters at which an agent counts, for an agent with range R, meters: its distance d, if it is in
     /// the lane; at the edges of the lane it grows continuously to R.
     ///
-    /// d*² = (a + t max(0, u))² + c² + R² (max(0, (|c| − w)/f) + max(0, 1 − a/f)), with the distances a `along` and c
-    /// `across` the line ahead, the relative velocity u = (v_j − v_i)·ê_i, m/s, at which it moves `away`, and f = w/2.
-    /// Agents behind, and those farther than w + f from the line, have d* ≥ R.
-    pub fn distance_in_lane(&self, range: f64, [along, across]: [f64; 2], away: f64) -> f64 {
+    /// d*² = (a + t max(0, u))² + c² + R² (max(0, (|c| − w)/f) + max(0, 1 − a/f) + 4 max(0, −ê_i·ê_j)), with the
+    /// distances a `along` and c `across` the line ahead, the relative velocity u = (v_j − v_i)·ê_i, m/s, at which it
+    /// moves `away`, the cosine ê_i·ê_j of both `headings`, and f = w/2. Agents behind, those farther than w + f from the
+    /// line, and those that want to walk the other way have d* ≥ R.
+    pub fn distance_in_lane(
+        &self,
+        range: f64,
+        [along, across]: [f64; 2],
+        [away, headings]: [f64; 2],
+    ) -> f64 {
         let fade = FADE * self.lane_half_width;
-        let outside =
-            ((across.abs() - self.lane_half_width) / fade).max(0.0) + (1.0 - along / fade).max(0.0);
+        let outside = ((across.abs() - self.lane_half_width) / fade).max(0.0)
+            + (1.0 - along / fade).max(0.0)
+            + AGAINST * (-headings).max(0.0);
         let expected = along + self.headway_anticipation * away.max(0.0);
         (expected * expected + across * across + range * range * outside).sqrt()
     }
@@ -108,6 +121,7 @@ impl Headway {
         let [x, y] = walkers.backwards;
         let mut sum = Nearest {
             velocity: [&bodies.velocity_x, &bodies.velocity_y],
+            heading: [&bodies.heading_x, &bodies.heading_y],
             backwards_speed: velocity_y.mul_add(y, velocity_x * x),
             time: splat::<R, S>(simd, self.headway_anticipation / bodies.unit),
             backwards: walkers.backwards,
@@ -130,6 +144,8 @@ impl Headway {
 struct Nearest<'a, R: Real, S: Simd> {
     /// The velocities of all agents, m/s.
     velocity: [&'a [R]; 2],
+    /// ê_j of all agents.
+    heading: [&'a [R]; 2],
     /// −v_i·ê_i, m/s.
     backwards_speed: Lanes<R, S>,
     /// t, seconds times coordinate units per meter.
@@ -147,12 +163,12 @@ struct Nearest<'a, R: Real, S: Simd> {
 }
 
 impl<'a, R: Real, S: Simd> PairSum<R, S> for Nearest<'a, R, S> {
-    type Run = [&'a [R]; 2];
+    type Run = [&'a [R]; 4];
 
     #[inline(always)]
-    fn run(&self, run: Range<usize>) -> [&'a [R]; 2] {
-        let [x, y] = self.velocity;
-        [&x[run.clone()], &y[run]]
+    fn run(&self, run: Range<usize>) -> [&'a [R]; 4] {
+        let [[v_x, v_y], [e_x, e_y]] = [self.velocity, self.heading];
+        [v_x, v_y, e_x, e_y].map(|column| &column[run.clone()])
     }
 
     #[inline(always)]
@@ -160,7 +176,7 @@ impl<'a, R: Real, S: Simd> PairSum<R, S> for Nearest<'a, R, S> {
         &mut self,
         simd: S,
         [dx, dy]: [Lanes<R, S>; 2],
-        [velocity_x, velocity_y]: [&'a [R]; 2],
+        [velocity_x, velocity_y, heading_x, heading_y]: [&'a [R]; 4],
         j: usize,
     ) {
         let (zero, one) = (splat::<R, S>(simd, 0.0), splat::<R, S>(simd, 1.0));
@@ -174,7 +190,11 @@ impl<'a, R: Real, S: Simd> PairSum<R, S> for Nearest<'a, R, S> {
         let approach = v_y.mul_add(y, v_x * x) - self.backwards_speed;
         let expected = along - self.time * approach.min(zero);
         let squared = across.mul_add(across, expected * expected);
-        let squared = self.range_squared.mul_add(aside + behind, squared);
+        let e_x = spread::<R, S>(simd, heading_x[j]);
+        let e_y = spread::<R, S>(simd, heading_y[j]);
+        let against = e_y.mul_add(y, e_x * x).max(zero);
+        let outside = against.mul_add(splat::<R, S>(simd, AGAINST), aside + behind);
+        let squared = self.range_squared.mul_add(outside, squared);
         self.squared = self.squared.min(squared);
     }
 }

@@ -179,10 +179,13 @@ pub fn walking_law(simulation: &Simulation) -> Result<Work, &'static str> {
     let law = WalkingLaw::Headway(Headway::default());
     let mut allowed = Vec::new();
     Ok(Box::new(move |simulation| {
-        let frame = simulation.frame();
+        let mut frame = simulation.frame();
         if !frame.clock.is_coarse() {
             return 0.0;
         }
+        let mut packed = frame.packed.clone();
+        packed.take_headings(&frame.fields.preferred_velocity);
+        frame.packed = &packed;
         allowed.resize(frame.agents.len(), None);
         let blocks = allowed.par_chunks_mut(BLOCK).with_min_len(TASK);
         let decide = |(b, allowed): (usize, &mut [Option<f64>])| {
