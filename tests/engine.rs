@@ -8,6 +8,7 @@ mod common;
 mod architecture;
 mod blending;
 mod bodies;
+mod calibrated;
 mod cma_es;
 mod conservation;
 mod containment;
