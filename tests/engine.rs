@@ -26,6 +26,7 @@ mod floor_plan_pieces;
 mod floor_plan_robustness;
 mod floor_plan_unions;
 mod forces;
+mod from_data;
 mod geometry;
 mod geometry_robustness;
 mod identifiability;

@@ -13,8 +13,8 @@ use sandbox::lab::measure::{
     Behind, Kernel, MeasureError, Measured, Moment, Options, Site, measure,
 };
 use sandbox::output::trajectory::Trajectory;
-use sandbox::output::trajectory::read::{ReadOptions, Tracks, read};
 use sandbox::scenario::floor_plan::parse_wkt;
+use sandbox::scenario::trajectories::{ReadOptions, Tracks, read};
 
 fn options() -> Options {
     Options {

@@ -12,7 +12,7 @@ use sandbox::engine::scene::Region;
 use sandbox::lab::measure::{
     Behind, CLASS, Class, Crossings, Kernel, MeasureError, Measured, Options, Site, measure, speed,
 };
-use sandbox::output::trajectory::read::Tracks;
+use sandbox::scenario::trajectories::Tracks;
 
 const ALWAYS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 

@@ -5,7 +5,7 @@ use sandbox::engine::boundary::WallMethod;
 use sandbox::lab::measure::{
     Behind, Kernel, MeasureError, Measured, Options, Report, Site, measure,
 };
-use sandbox::output::trajectory::read::Tracks;
+use sandbox::scenario::trajectories::Tracks;
 
 fn options(sample_every: f64) -> Options {
     Options {

@@ -3,7 +3,7 @@
 use crate::common::tracks::{file, read_as};
 use crate::common::vector;
 use rusqlite::Connection;
-use sandbox::output::trajectory::read::{ReadOptions, Tracks, Unit, read};
+use sandbox::scenario::trajectories::{ReadOptions, Tracks, Unit, read};
 
 const PLAIN: ReadOptions = ReadOptions {
     unit: None,

@@ -126,6 +126,7 @@ const EVERYTHING: &str = r#"{
   "profile": {"blend": [{"at_density": 2, "profile": "rvo"}, {"at_density": 4, "profile": "sph"}]},
   "parameters": {"viscosity": 5, "candidates": 10, "walking_law": "density-ahead", "jam_density": 7}, "goal": [9, 5],
   "obstacles": [[[0, 0], [1, 0], [1, 1]], [[0.5, 0], [2, 0], [2, 1], [0.5, 0.5]]],
+  "from": {"people": [[4, 0, 8, 8, 1, 0], [5, 0.3, 2, 8, 0, 0]], "radius": 0.2, "goal": [9, 5]},
   "agents": [{"position": [2, 2], "velocity": [1, 0], "radius": 0.3, "mass": 1, "goal": [3, 3],
               "mean_density": 2, "profile": "sf", "remove_within": 0.5, "counted": false}],
   "grids": [{"name": "g", "min": [3, 3], "max": [5, 5], "columns": 3, "rows": 2, "jitter": 0.1,

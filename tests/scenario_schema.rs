@@ -25,6 +25,8 @@ fn whole() -> Value {
         "parameters": {"goal_scale": 2, "candidates": 30, "walking_law": "headway", "lane_half_width": 0.4},
         "walkable_area": [[[[0, 0], [9, 0], [9, 9]], [[5, 2], [6, 2], [6, 3]]]],
         "obstacles": [[[0, 0], [1, 0], [1, 1]], [[[3, 1], [5, 1], [5, 3]], [[4, 1.5], [4.5, 1.5], [4.5, 2]]]],
+        "from": {"name": "f", "people": [[17, 0, 7, 0.5, 1, 0], [18.0, 0.2, 8, 8, 0, 0]], "goal": [8, 8], "profile": "sph",
+                 "remove_within": 0.5, "counted": true, "preferred_speed": 1.2, "radius": 0.2, "mass": 1},
         "agents": [
             {"position": [2, 1], "velocity": [1, 0], "radius": 0.2, "mass": 1, "goal": [8, 1],
              "mean_density": 2, "preferred_speed": 1.3, "premovement_secs": 2, "profile": {"navigation": "rvo", "sph": false}, "remove_within": 1,
@@ -132,6 +134,7 @@ fn every_object_has_the_keys_that_the_parser_knows() {
         ("/crowds/0/premovement_secs/lognormal", "/$defs/Lognormal"),
         ("/sources/0", "/properties/sources/items"),
         ("/entrances/0", "/$defs/Entrance"),
+        ("/from", "/$defs/FromData"),
         ("/events/0", "/$defs/Event"),
         ("/measurements/0/density", "/$defs/Density"),
         ("/measurements/2/flow_of_first", "/$defs/FlowOfFirst"),

@@ -89,6 +89,11 @@ fn the_keys_of_nested_objects_are_documented() {
         ),
         ("waiting_areas.for_secs.normal", "mean, std, max?, min?"),
         ("periodic", "axis, length, from?"),
+        (
+            "from",
+            "at_secs?, counted?, fps?, goal?, journey?, mass?, name?, people?, preferred_speed?, profile?, radius?, \
+             remove_within?, trajectory?, unit?, until_secs?",
+        ),
         ("stop", "idle_secs?, when_empty?"),
         ("view", "region, opens_at_secs?"),
         (
@@ -111,6 +116,7 @@ fn every_documented_key_is_accepted() {
         "coarse_every" | "population_seed" | "behavior_seed" => "3",
         "parameters" | "stop" => "{}",
         "goal" => "[1, 2]",
+        "from" => "{\"people\": [[1, 0, 2, 2, 0, 0]], \"goal\": [5, 5]}",
         "periodic" => "{\"axis\": \"x\", \"length\": 20}",
         "walkable_area" => "[[[[0, 0], [9, 0], [9, 9]]]]",
         "view" => "{\"region\": [[0, 0], [1, 1]]}",

@@ -7,8 +7,8 @@ use sandbox::engine::math::Vector;
 use sandbox::engine::simulation::Simulation;
 use sandbox::lab::measure::Crossings;
 use sandbox::output::trajectory::Trajectory;
-use sandbox::output::trajectory::read::{ReadOptions, read};
 use sandbox::scenario::Scenario;
+use sandbox::scenario::trajectories::{ReadOptions, read};
 use serde_json::json;
 
 #[test]

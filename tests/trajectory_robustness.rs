@@ -16,7 +16,7 @@ use crate::common::tracks::file;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use rusqlite::Connection;
-use sandbox::output::trajectory::read::{ReadOptions, read as read_file, read_text};
+use sandbox::scenario::trajectories::{ReadOptions, read as read_file, read_text};
 
 fn memory_limit(bytes: usize) -> u64 {
     (4 << 20) + 300 * bytes as u64

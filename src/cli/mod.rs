@@ -38,12 +38,12 @@ use crate::lab::error::LabError;
 use crate::lab::machine::main_memory;
 use crate::lab::measure::MeasureError;
 use crate::lab::sweep::StudyError;
-use crate::output::trajectory::read::ReadError;
 use crate::runs::case::Source;
 use crate::runs::error::StoreError;
 use crate::runs::outputs::{Outputs, OutputsError};
 use crate::scenario::floor_plan;
 use crate::scenario::quote::{printable, shown};
+use crate::scenario::trajectories::ReadError;
 use crate::scenario::{Draft, Scenario, ScenarioError, Setting};
 use commands::{Arguments, Command};
 

@@ -8,7 +8,7 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 
 use crate::analysis::crossing::Line;
 use crate::engine::scene::Region;
-use crate::output::trajectory::read::FRAME_RATES;
+use crate::scenario::trajectories::FRAME_RATES;
 
 /// A number in a range; the error is `otherwise`.
 fn within<T: FromStr + PartialOrd>(

@@ -1,8 +1,10 @@
-//! Entrances: lines through which agents come in, at random or regular times and where there is room.
+//! Entrances: lines through which agents come in, at random or regular times and where there is room; and latecomers, each
+//! of whom has a time and a place of its own.
 
 use rand::Rng;
 use rand::distr::Open01;
 
+use crate::engine::agents::NewAgent;
 use crate::engine::geometry::{Wall, Walls};
 use crate::engine::math::{Vector, direction};
 use crate::engine::random::{self, Purpose};
@@ -23,6 +25,23 @@ pub struct Entrance {
     pub goal: Vector,
     /// When agents arrive. Each enters at once if there is room, and else waits for it.
     pub arrivals: Arrivals,
+}
+
+/// An agent that comes in at a place of its own, such as the first one at which a person was recorded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Latecomer {
+    /// When it arrives, seconds. It enters at once if there is room between the other bodies, and else waits for it.
+    pub at: f64,
+    /// The agent.
+    pub agent: NewAgent,
+}
+
+impl Latecomer {
+    /// Does a body of `radius` meters at its place overlap none of the discs `others` (center and radius)?
+    pub fn has_room(&self, radius: f64, mut others: impl Iterator<Item = (Vector, f64)>) -> bool {
+        let place = self.agent.position;
+        others.all(|(center, other)| (center - place).norm() >= radius + other + ROUNDING)
+    }
 }
 
 /// When agents arrive at an entrance.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::engine::agents::{Agents, NewAgent};
 use crate::engine::boundary::WallMethod;
 use crate::engine::clock::Clock;
-use crate::engine::entrance::Entrance;
+use crate::engine::entrance::{Entrance, Latecomer};
 use crate::engine::forces::near::Wanted;
 use crate::engine::forces::own::Force;
 use crate::engine::forces::social::SocialForce;
@@ -169,6 +169,8 @@ pub struct Scene {
     pub sources: Vec<Source>,
     /// Lines through which agents come in later.
     pub entrances: Vec<Entrance>,
+    /// Agents that come in later at places of their own, in the order of their times.
+    pub latecomers: Vec<Latecomer>,
     /// Temporary changes of behavior.
     pub pushes: Vec<Push>,
     /// Places, journeys and zones.
@@ -199,6 +201,7 @@ impl Default for Scene {
             agents: Vec::new(),
             sources: Vec::new(),
             entrances: Vec::new(),
+            latecomers: Vec::new(),
             pushes: Vec::new(),
             journeys: Journeys::default(),
             ways: None,
@@ -255,6 +258,13 @@ impl Scene {
             paces: !self.journeys.zones.is_empty(),
             directions: self.groups.iter().any(|group| group.direction.is_some()),
         }
+    }
+
+    /// The name under which reports count the latecomers, that of their first group; `None` if there are none.
+    pub fn latecomers_name(&self) -> Option<&str> {
+        let first = self.latecomers.first()?;
+        let group = self.groups.get(usize::from(first.agent.group))?;
+        Some(&group.name)
     }
 
     /// The speed at which agent `i` wants to walk at `time` seconds, m/s.

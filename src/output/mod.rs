@@ -1,5 +1,5 @@
 //! Output: text tables, Rerun recordings (the only module that names `rerun`), trajectories (SQLite, text and
-//! CSV, written and read), and pictures as SVG and PNG (the only module that names `plotters`).
+//! CSV), and pictures as SVG and PNG (the only module that names `plotters`).
 
 pub mod table;
 

@@ -136,7 +136,9 @@ pub fn goals(scene: &Scene, agents: &Agents) -> Vec<GoalOf> {
     });
     let through = scene.entrances.iter();
     let through = through.map(|entrance| (entrance.goal, entrance.group));
-    let entering = entering.chain(through);
+    let late = scene.latecomers.iter();
+    let late = late.map(|late| (late.agent.goal, late.agent.group));
+    let entering = entering.chain(through).chain(late);
     let millimeters = |x: f64| (x * 1000.0).round() as i64;
     let mut different = BTreeMap::new();
     for (goal, group) in own.chain(entering) {

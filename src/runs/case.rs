@@ -70,7 +70,7 @@ pub struct Case {
     pub key: Identity,
     source: Source,
     settings: Vec<Setting>,
-    /// The floor plans that its scenario refers to.
+    /// The files that its scenario refers to.
     plans: Vec<PathBuf>,
 }
 
@@ -191,7 +191,8 @@ fn expected_secs(scenario: &Scenario) -> f64 {
     });
     let through = scene.entrances.iter();
     let through = through.map(|entrance| entrance.arrivals.about(scenario.duration_secs));
-    let entering = entering.chain(through);
+    let late = scene.latecomers.len() as f64;
+    let entering = entering.chain(through).chain([late]);
     // Agents that enter during the run are present for half of it on average.
     let agents = scene.agents.len() as f64 + 0.5 * entering.sum::<f64>();
     let needs = scene.needs();

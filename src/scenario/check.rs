@@ -14,7 +14,7 @@ use super::plan::Surroundings;
 use super::profiles::{ProfileChoice, ProfileName};
 use super::range::{self, region};
 use super::{
-    PlanFile, Scenario, View, journeys, measurements, periodic, plan, preset, profiles, ways,
+    PlanFile, Scenario, View, from, journeys, measurements, periodic, plan, preset, profiles, ways,
 };
 use crate::analysis::stability;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
@@ -44,13 +44,15 @@ impl Contents {
     pub(super) fn of(document: Value, path: &Path) -> Result<Self, Problem> {
         let mut document = preset::fill(document);
         without_schema(&mut document)?;
-        let plans = plan::fill(&mut document, path.parent().unwrap_or(Path::new("")))?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut plans = plan::fill(&mut document, folder)?;
         range::check(&document)?;
-        let keys: File = serde_path_to_error::deserialize(&document).map_err(|error| {
+        let mut keys: File = serde_path_to_error::deserialize(&document).map_err(|error| {
             let path = error.path().to_string();
             let path = if path == "." { String::new() } else { path };
             Problem::new(path, in_plain_words(&error.into_inner().to_string()))
         })?;
+        plans.extend(from::fill(&mut document, &mut keys, folder)?);
         let need = Need::of(&keys, &clock(&keys, first_step(&keys)), duration(&keys))?;
         Ok(Self {
             document,
@@ -239,12 +241,14 @@ fn view(given: Option<&file::View>, scene: &Scene) -> Result<View, Problem> {
     })
 }
 
-/// The bounding box of walls, agents, goals, sources and entrances, with a margin.
+/// The bounding box of walls, agents, goals, sources, entrances and latecomers, with a margin.
 fn surroundings(scene: &Scene) -> Region {
     let corners = scene.walls.iter().map(|wall| wall.start);
+    let late = scene.latecomers.iter().map(|late| &late.agent);
     let agents = scene
         .agents
         .iter()
+        .chain(late)
         .flat_map(|agent| [agent.position, agent.goal]);
     let sources = scene
         .sources

@@ -62,8 +62,11 @@ impl<'a> Crowd<'a> {
         }
     }
 
-    /// Adds single agents, grids, crowds, sources, then entrances. Their number has been checked.
+    /// Adds the people of `from`, single agents, grids, crowds, sources, then entrances. Their number has been checked.
     pub(super) fn enter(mut self) -> Result<(), Problem> {
+        if let Some(from) = &self.file.from {
+            self.from_data(from).under("from")?;
+        }
         for (k, agent) in self.file.agents.iter().enumerate() {
             self.agent(agent).under(&format!("agents[{k}]"))?;
         }

@@ -2,6 +2,7 @@
 
 use super::error::Problem;
 use super::file::File;
+use super::from::FromData;
 use super::need;
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
@@ -74,9 +75,12 @@ fn near(p: Vector) -> String {
 
 /// The list element that places agent `id` at the start.
 fn place_of(file: &File, id: usize) -> String {
-    let mut before = file.agents.len();
-    if id < before {
-        return format!("agents[{id}]");
+    let first = file.from.as_ref().map_or(0, FromData::initial) as usize;
+    let mut before = first + file.agents.len();
+    if id < first {
+        return "from".to_owned();
+    } else if id < before {
+        return format!("agents[{}]", id - first);
     }
     for (k, grid) in file.grids.iter().enumerate() {
         before = before.saturating_add(grid.columns as usize * grid.rows as usize);

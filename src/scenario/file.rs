@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use super::crowds::Crowd;
 use super::distribution::{self, Draw};
 use super::entrances::Entrance;
+use super::from::FromData;
 use super::goals::Aim;
 use super::measurements::Measurement;
 use super::periodic::Periodic;
@@ -131,6 +132,8 @@ pub(super) struct File {
     pub journeys: Vec<Journey>,
     /// Areas in which people walk slower or faster, such as stairs.
     pub zones: Vec<Zone>,
+    /// The people of a trajectory file at one time, and those who appear in it later.
+    pub from: Option<FromData>,
     /// Single agents.
     pub agents: Vec<Agent>,
     /// Agents that stand on grids at the start.

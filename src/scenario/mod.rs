@@ -9,7 +9,7 @@
 //!
 //! An agent is removed within `remove_within` meters of its goal, or never if the key is missing. Its arrival
 //! counts as evacuated unless `counted` is false. Top-level `parameters` override those of the profiles. Ids count
-//! from 0 in order of entry: agents, grids, crowds, then sources and entrances as their agents enter.
+//! from 0 in order of entry: the people of `from`, agents, grids, crowds, then the others as they enter.
 
 pub mod quote;
 
@@ -17,7 +17,10 @@ pub mod input;
 
 pub mod floor_plan;
 
+pub mod trajectories;
+
 pub mod calibrated;
+pub mod catalog;
 pub mod catalog;
 
 pub mod measurements;
@@ -32,6 +35,7 @@ mod draft;
 mod entrances;
 mod error;
 mod file;
+mod from;
 mod goals;
 mod journeys;
 mod need;
@@ -73,7 +77,7 @@ use serde_json::Value;
 use crate::engine::scene::{Region, Scene};
 use crate::scenario::measurements::Measurement;
 
-/// The key that names a floor plan file, and the file.
+/// The key that names a file, and the file: a floor plan or trajectories.
 pub type PlanFile = (&'static str, PathBuf);
 
 /// A checked scenario: what to simulate, for how long, and what to measure and show.
@@ -103,7 +107,7 @@ pub struct Scenario {
     pub profile_name: String,
     /// The file with the settings applied, its preset expanded and the contents of the files that it names.
     pub document: Value,
-    /// The floor plan files that it names.
+    /// The files that it names.
     pub files: Vec<PlanFile>,
 }
 

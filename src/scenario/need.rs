@@ -4,6 +4,7 @@ use super::crowds::Crowd;
 use super::entrances::Entrance;
 use super::error::{Problem, ScenarioError};
 use super::file::{File, Grid, TimeStep};
+use super::from::FromData;
 use super::plan;
 use super::wall_lists;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP};
@@ -128,19 +129,26 @@ impl Need {
         let cells = |grid: &Grid| u64::from(grid.columns) * u64::from(grid.rows);
         let last_entry = last_entry(file, clock, duration_secs);
         let entering = |source| cells(source).saturating_mul(entries(source, last_entry));
+        let from = file.from.iter();
+        let there = from.clone().map(FromData::initial).enumerate();
+        let late = from.map(|from| from.later(last_entry)).enumerate();
         let agents = file.agents.iter().map(|_| 1).enumerate();
         let crowds = file.crowds.iter().map(Crowd::most).enumerate();
         let grids = file.grids.iter().map(cells).enumerate();
         let sources = file.sources.iter().map(entering).enumerate();
         let through = |entrance: &Entrance| entrance.most(last_entry);
         let entrances = file.entrances.iter().map(through).enumerate();
-        let initial = agents.map(|one| ("agents", one));
+        let initial = there.map(|one| ("from", one));
+        let initial = initial.chain(agents.map(|one| ("agents", one)));
         let initial = initial.chain(grids.map(|one| ("grids", one)));
         let initial = initial.chain(crowds.map(|one| ("crowds", one)));
         let later = sources.map(|one| ("sources", one));
         let later = later.chain(entrances.map(|one| ("entrances", one)));
-        for (place, (k, agents)) in initial.chain(later) {
-            if !["sources", "entrances"].contains(&place) {
+        let later = later
+            .chain(late.map(|one| ("from", one)))
+            .map(|one| (false, one));
+        for (is_initial, (place, (k, agents))) in initial.map(|one| (true, one)).chain(later) {
+            if is_initial {
                 need.initial = need.initial.saturating_add(agents);
             }
             need.entering = need.entering.saturating_add(agents);
@@ -156,12 +164,16 @@ impl Need {
                  memory; at most {MOST_AGENTS} are allowed: use fewer {}",
                 in_units(need.bytes()),
                 match place {
-                    "crowds" => "agents",
+                    "crowds" | "from" => "agents",
                     "entrances" => "agents per second, or a lower `number`",
                     _ => "columns, rows or entries",
                 },
             );
-            return Err(Problem::new(format!("{place}[{k}]"), reason));
+            let place = match place {
+                "from" => place.to_owned(),
+                place => format!("{place}[{k}]"),
+            };
+            return Err(Problem::new(place, reason));
         }
         Ok(need)
     }

@@ -10,6 +10,7 @@ use super::file::File;
 use super::floor_plan::{Rings, free, outlines};
 use super::quote::shown;
 use crate::engine::agents::RADIUS_RANGE;
+use crate::engine::entrance::Latecomer;
 use crate::engine::geometry::Area;
 use crate::engine::journeys::{Choice, JourneyStage, Place};
 use crate::engine::math::{Vector, bounds};
@@ -296,6 +297,10 @@ fn starts(scene: &Scene) -> Vec<Start> {
             };
             add(start, source.group, goal, shared);
         }
+    }
+    for Latecomer { agent, .. } in &scene.latecomers {
+        let shared = last.replace(agent.goal) == Some(agent.goal);
+        add(agent.position, agent.group, agent.goal, shared);
     }
     for entrance in &scene.entrances {
         let nobody = std::iter::empty();

@@ -6,7 +6,7 @@ use sandbox::analysis::crossing::Line;
 use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::math::Vector;
 use sandbox::lab::measure::{Behind, Kernel, MeasureError, Options, Site, measure, speed};
-use sandbox::output::trajectory::read::{FRAME_RATES, ReadError, ReadOptions, Tracks, read_text};
+use sandbox::scenario::trajectories::{FRAME_RATES, ReadError, ReadOptions, Tracks, read_text};
 
 /// Trajectories with more rows than this are not measured.
 const MAX_ROWS: usize = 60;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use sandbox::output::trajectory::read::{ReadError, ReadOptions, Tracks, read};
+use sandbox::scenario::trajectories::{ReadError, ReadOptions, Tracks, read};
 
 /// Writes a file with this name and text; returns its folder and its path.
 pub fn file(name: &str, text: &str) -> (tempfile::TempDir, PathBuf) {

@@ -15,9 +15,9 @@ use crate::lab::measure::{
     files, measure, pictures, speed,
 };
 use crate::output::recording::check_enabled;
-use crate::output::trajectory::read::{ReadOptions, Tracks, Unit, read};
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::floor_plan::{self, FloorPlan};
+use crate::scenario::trajectories::{ReadOptions, Tracks, Unit, read};
 
 /// The value of `--geometry` for no walls.
 const NO_WALLS: &str = "none";

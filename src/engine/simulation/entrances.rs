@@ -1,4 +1,4 @@
-//! Agents that come in through entrances: on coarse frames, where there is room.
+//! Agents that come in through entrances, and latecomers: on coarse frames, where there is room.
 
 use rand::Rng;
 use rand::distr::Open01;
@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{Crowd, Fault};
 use crate::engine::agents::NewAgent;
 use crate::engine::entrance::{Entrance, place};
+use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
 use crate::engine::scene::Scene;
 
@@ -69,7 +70,78 @@ impl Gate {
     }
 }
 
+/// Progress of the latecomers.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Late {
+    /// Number of agents that have arrived.
+    arrived: u32,
+    /// The numbers of those that wait for room, ascending.
+    waiting: Vec<u32>,
+    /// The largest number of agents that waited, and the first frame in which they did.
+    largest: (u32, u64),
+}
+
+impl Late {
+    /// Does this progress fit `scene`?
+    pub(super) fn fits(&self, scene: &Scene) -> bool {
+        let is_known = |&number: &u32| number < self.arrived;
+        self.arrived as usize <= scene.latecomers.len()
+            && self.waiting.iter().all(is_known)
+            && self.waiting.is_sorted_by(|a, b| a < b)
+    }
+
+    /// Will more agents enter?
+    pub(super) fn expects_agents(&self, scene: &Scene) -> bool {
+        !self.waiting.is_empty() || (self.arrived as usize) < scene.latecomers.len()
+    }
+
+    /// The latecomers that wait, under the name of their group; `None` if the scene has none.
+    pub(super) fn backlog<'a>(&self, scene: &'a Scene) -> Option<Backlog<'a>> {
+        Some(Backlog {
+            name: scene.latecomers_name()?,
+            waiting: self.waiting.len() as u32,
+            largest: self.largest.0,
+            largest_frame: self.largest.1,
+        })
+    }
+}
+
 impl Crowd {
+    /// Lets those latecomers in that have arrived and have room. None waits for another one.
+    pub(super) fn follow_latecomers(&mut self, scene: &Scene) -> Result<(), Fault> {
+        let frame = self.clock.frame();
+        let mut late = std::mem::take(&mut self.schedule.late);
+        while let Some(next) = scene.latecomers.get(late.arrived as usize)
+            && self.clock.coarse_frame_at(next.at) <= frame
+        {
+            late.waiting.push(late.arrived);
+            late.arrived += 1;
+        }
+        for number in std::mem::take(&mut late.waiting) {
+            let next = &scene.latecomers[number as usize];
+            let id = self.agents.entered();
+            let traits = &scene.groups[usize::from(next.agent.group)].traits;
+            let radius = next.agent.radius;
+            let radius = radius.unwrap_or_else(|| traits.radius_of(scene.seed, id));
+            match next.has_room(radius, self.bodies()) {
+                true => self.enter(scene, next.agent)?,
+                false => late.waiting.push(number),
+            }
+        }
+        let waiting = late.waiting.len() as u32;
+        if waiting > late.largest.0 {
+            late.largest = (waiting, frame);
+        }
+        self.schedule.late = late;
+        Ok(())
+    }
+
+    /// The bodies of all agents: center and radius, meters.
+    fn bodies(&self) -> impl Iterator<Item = (Vector, f64)> {
+        let bodies = self.agents.position.iter().zip(&self.agents.radius);
+        bodies.map(|(&position, &radius)| (position, radius))
+    }
+
     /// Lets agents in through entrance `k` as far as they have arrived and there is room.
     pub(super) fn follow_entrance(&mut self, scene: &Scene, k: usize) -> Result<(), Fault> {
         let frame = self.clock.frame();
@@ -99,10 +171,7 @@ impl Crowd {
         let id = self.agents.entered();
         let traits = &scene.groups[usize::from(entrance.group)].traits;
         let radius = traits.radius_of(scene.seed, id);
-        let agents = &self.agents;
-        let others = agents.position.iter().zip(&agents.radius);
-        let others = others.map(|(&position, &radius)| (position, radius));
-        let free = entrance.free(radius, &scene.walls, others);
+        let free = entrance.free(radius, &scene.walls, self.bodies());
         let share = random::stream(scene.seed, Purpose::Entry, id, 0).sample(Open01);
         let along = place(&free, share)?;
         Some(NewAgent {

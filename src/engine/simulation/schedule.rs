@@ -1,13 +1,17 @@
-//! Sources, entrances and pushes: scheduled changes of the crowd, on coarse frames only.
+//! Sources, entrances, latecomers and pushes: scheduled changes of the crowd, on coarse frames only.
 
 use serde::{Deserialize, Serialize};
 
 use crate::engine::agents::NewAgent;
 use crate::engine::clock::Clock;
+use crate::engine::math::clamp_length;
 use crate::engine::scene::{Goal, Push, Scene, Source};
 
-use super::entrances::{Backlog, Gate};
+use super::entrances::{Backlog, Gate, Late};
 use super::{Crowd, Fault, Simulation, Stage};
+
+/// Relative rounding error that a speed clamped to s_max may have.
+const ROUNDING: f64 = 1e-9;
 
 /// A scheduled event.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -37,13 +41,15 @@ pub enum EventKind {
     Released,
 }
 
-/// Progress of the sources, entrances and pushes of a scene.
+/// Progress of the sources, entrances, latecomers and pushes of a scene.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Schedule {
     /// Number of entries so far, per source.
     entries: Vec<u32>,
     /// Progress at each entrance.
     pub(super) gates: Vec<Gate>,
+    /// Progress of the latecomers.
+    pub(super) late: Late,
     /// Active pushes: index of the push and frame of its end.
     pushing: Vec<(u16, u64)>,
     /// Has each push of the scene begun?
@@ -63,7 +69,8 @@ impl Schedule {
             source.times.is_none_or(|times| entries < times)
         });
         let mut gates = self.gates_of(scene).enumerate();
-        from_sources || gates.any(|(k, gate)| gate.expects_agents(scene, k))
+        let through = gates.any(|(k, gate)| gate.expects_agents(scene, k));
+        from_sources || through || self.late.expects_agents(scene)
     }
 
     /// Progress at each entrance of the scene.
@@ -74,7 +81,8 @@ impl Schedule {
 
     pub(super) fn backlogs<'a>(&self, scene: &'a Scene) -> impl Iterator<Item = Backlog<'a>> {
         let gates = self.gates_of(scene).zip(&scene.entrances);
-        gates.map(|(gate, entrance)| gate.backlog(entrance))
+        let gates = gates.map(|(gate, entrance)| gate.backlog(entrance));
+        gates.chain(self.late.backlog(scene))
     }
 
     /// Does this progress fit `scene`?
@@ -84,6 +92,7 @@ impl Schedule {
         self.entries.len() <= sources
             && self.gates.len() <= scene.entrances.len()
             && self.gates.iter().all(Gate::is_sound)
+            && self.late.fits(scene)
             && self.begun.len() <= pushes
             && self.pushing.iter().all(known)
     }
@@ -110,7 +119,7 @@ impl Simulation {
     pub(super) fn follow_schedule(&mut self) -> Result<(), Fault> {
         let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
         let nothing = scene.sources.is_empty() && scene.pushes.is_empty();
-        let nothing = nothing && scene.entrances.is_empty();
+        let nothing = nothing && scene.entrances.is_empty() && scene.latecomers.is_empty();
         if nothing || !crowd.clock.is_coarse() {
             return Ok(());
         }
@@ -125,6 +134,7 @@ impl Simulation {
             for k in 0..scene.entrances.len() {
                 crowd.follow_entrance(scene, k)?;
             }
+            crowd.follow_latecomers(scene)?;
             crowd.end_pushes(scene);
             for (p, push) in scene.pushes.iter().enumerate() {
                 crowd.begin_push(p, push);
@@ -157,7 +167,7 @@ impl Crowd {
         Ok(())
     }
 
-    /// Lets one agent in. An agent inside an obstacle is moved to a free point nearby.
+    /// Lets one agent in. An agent inside an obstacle is moved to a free point nearby, and a speed above s_max is clamped.
     pub(super) fn enter(&mut self, scene: &Scene, mut new: NewAgent) -> Result<(), Fault> {
         let agent = self.agents.entered();
         let traits = &scene.groups[usize::from(new.group)].traits;
@@ -170,9 +180,14 @@ impl Crowd {
             new.position = free.ok_or(Fault::NoFreePoint { agent, obstacle })?;
             self.outcome.displaced.push((agent, obstacle));
         }
-        self.agents.enter(new, scene.seed);
         let usual = [scene.preferred_speed, scene.max_speed];
         let own = new.preferred_speed.map(|speed| scene.own_speeds(speed));
+        let [_, most] = own.unwrap_or(usual);
+        if new.velocity.norm() > most * (1.0 + ROUNDING) {
+            new.velocity = clamp_length(new.velocity, most);
+            self.outcome.clamped_speeds += 1;
+        }
+        self.agents.enter(new, scene.seed);
         self.agents.set_speeds(own, usual);
         let walks_from = new.premovement.map(|wait| self.clock.time() + wait);
         self.agents.set_start(walks_from);

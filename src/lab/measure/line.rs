@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::analysis::crossing::{Balance, Line};
-use crate::output::trajectory::read::Tracks;
+use crate::scenario::trajectories::Tracks;
 
 /// A person crosses a line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

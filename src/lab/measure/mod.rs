@@ -37,7 +37,7 @@ use crate::analysis::crossing::Line;
 use crate::analysis::statistics::MeanStd;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::Region;
-use crate::output::trajectory::read::Tracks;
+use crate::scenario::trajectories::Tracks;
 use density::History;
 
 /// Rows measured at a time, unless a single frame has more.

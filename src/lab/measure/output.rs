@@ -12,9 +12,9 @@ use crate::analysis::statistics::MeanStd;
 use crate::engine::math::Vector;
 use crate::lab::error::LabError;
 use crate::output::table::{Cell, Table, csv_lines};
-use crate::output::trajectory::read::Tracks;
 use crate::runs::error::StoreError;
 use crate::runs::store::Store;
+use crate::scenario::trajectories::Tracks;
 
 /// All people, frame by frame.
 const AGENTS: &str = "agents.csv";

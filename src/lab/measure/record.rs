@@ -9,7 +9,7 @@ use crate::engine::scene::Region;
 use crate::output::recording::{
     DebugAgents, MeasuredPerson, MeasuredRecorder, RecordingError, RecordingOptions,
 };
-use crate::output::trajectory::read::Tracks;
+use crate::scenario::trajectories::Tracks;
 
 /// With ids larger than this, the recording uses the people's numbers instead.
 const LARGEST_ID: i64 = 1 << 22;

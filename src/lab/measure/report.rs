@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::{CLASS, Class, Crossings, Diagram, Measured, Options, Way, safety_report};
 use crate::analysis::statistics::MeanStd;
 use crate::output::table::{Cell, Table};
-use crate::output::trajectory::read::Tracks;
+use crate::scenario::trajectories::Tracks;
 
 /// The summary of a measurement.
 pub struct Report<'a> {

@@ -10,7 +10,7 @@ use crate::analysis::exposure::Exposure;
 use crate::analysis::local::{Local, People};
 use crate::analysis::service::Levels;
 use crate::analysis::site::Site;
-use crate::output::trajectory::read::Tracks;
+use crate::scenario::trajectories::Tracks;
 
 /// What was seen of people in samples of time.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::engine::math::Vector;
-use crate::output::trajectory::read::Tracks;
+use crate::scenario::trajectories::Tracks;
 
 /// Default number of recorded frames that a velocity looks back and ahead, common among PedPy's users.
 pub const FRAMES: i64 = 5;

@@ -37,8 +37,12 @@ pub fn log_style(stream: &RecordingStream) -> Result<(), Cause> {
 
 /// Logs the names of the time series of agents that wait at entrances.
 pub fn log_entrances(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
-    for (k, entrance) in scene.entrances.iter().enumerate() {
-        let name = format!("waiting at {}", entrance.name);
+    let names = scene.entrances.iter();
+    let names = names
+        .map(|entrance| entrance.name.as_str())
+        .chain(scene.latecomers_name());
+    for (k, name) in names.enumerate() {
+        let name = format!("waiting at {name}");
         let style = SeriesLines::new().with_names([name]).with_widths([1.5]);
         stream.log_static(waiting(k), &style)?;
     }

@@ -47,6 +47,9 @@ impl WalkableArea {
             }));
             entries.extend(positions.into_iter().map(entry));
         }
+        for late in &scene.latecomers {
+            goals.extend([late.agent.position, late.agent.goal]);
+        }
         for entrance in &scene.entrances {
             goals.push(entrance.goal);
             goals.extend(entrance.line);

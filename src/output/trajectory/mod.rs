@@ -1,5 +1,4 @@
-//! Writes a run as trajectories for other programs, and [reads](read) trajectories. This is the only module that
-//! names rusqlite.
+//! Writes a run as trajectories for other programs. [`crate::scenario::trajectories`] reads them.
 //!
 //! | file | read by | holds |
 //! |---|---|---|
@@ -15,7 +14,6 @@
 mod area;
 mod error;
 mod lines;
-pub mod read;
 mod row;
 mod sqlite;
 

@@ -10,12 +10,14 @@
 
 mod error;
 mod line;
+mod places;
+#[cfg(feature = "program")]
 mod sqlite;
 mod text;
 mod tracks;
 
 pub use error::ReadError;
-pub use tracks::Tracks;
+pub use tracks::{TOO_FAST, Tracks};
 
 use std::fmt::{self, Display, Formatter};
 use std::fs::File;
@@ -23,17 +25,23 @@ use std::io::Read;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use crate::scenario::quote::shown;
 
 /// Valid frame rates, frames per second.
 pub const FRAME_RATES: RangeInclusive<f64> = 1e-6..=1e6;
 
 /// The unit of the coordinates in a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[schemars(inline)]
 pub enum Unit {
     /// Meters.
+    #[serde(rename = "m")]
     Meter,
     /// Centimeters.
+    #[serde(rename = "cm")]
     Centimeter,
 }
 
@@ -94,7 +102,13 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
     let head = file.by_ref().take(magic.len() as u64);
     { head }.read_to_end(&mut start).map_err(unopened)?;
     if start == magic {
+        #[cfg(feature = "program")]
         return sqlite::read(path, options);
+        #[cfg(not(feature = "program"))]
+        return Err(ReadError::file(
+            path,
+            "a SQLite file, which is read with the feature `program` only; convert it to CSV",
+        ));
     }
     read_text(path, Read::chain(start.as_slice(), file), options)
 }

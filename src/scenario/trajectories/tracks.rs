@@ -12,7 +12,7 @@ use super::{ReadOptions, Unit};
 use crate::engine::math::Vector;
 
 /// If the median speed is above this, m/s, the unit is probably wrong.
-const TOO_FAST: f64 = 10.0;
+pub const TOO_FAST: f64 = 10.0;
 
 /// Frame numbers up to this magnitude are exact in double precision.
 const LAST_FRAME: i64 = 1 << 53;
@@ -75,6 +75,8 @@ pub struct Tracks {
     pub fps: f64,
     /// Difference between the numbers of consecutive recorded frames, usually 1.
     pub step: i64,
+    /// The unit of the file's coordinates, which are converted to meters; `None`: not known, and meters are taken.
+    pub unit: Option<Unit>,
     /// The ids of all persons, ascending. A person's index here is its number.
     pub ids: Vec<i64>,
     /// The frames with at least one person, ascending.
@@ -153,6 +155,7 @@ impl Tracks {
         let mut tracks = Self {
             fps,
             step: 1,
+            unit,
             frames: Vec::new(),
             person,
             position: entries
@@ -278,7 +281,7 @@ impl Tracks {
     }
 
     /// The median speed over all steps from a frame to the next, m/s; 0 without steps.
-    fn median_speed(&self) -> f64 {
+    pub fn median_speed(&self) -> f64 {
         let steps = self.by_person.iter().flat_map(|rows| rows.windows(2));
         let speed = |pair: &[u32]| {
             let [from, to] = [pair[0], pair[1]].map(|row| self.position[row as usize]);
