@@ -7,6 +7,8 @@ use crate::common::program::{refused, run, stderr, text};
 use sandbox::engine::simulation::Simulation;
 use sandbox::output::trajectory::Trajectory;
 use sandbox::scenario::Scenario;
+use sandbox::scenario::measurements::{Measurement, Metrics};
+use sandbox::scenario::trajectories::{ReadOptions, read};
 use serde_json::{Value, json};
 
 /// A room with a crowd, an entrance and a door.
@@ -102,4 +104,39 @@ fn a_run_does_not_replace_the_data_that_it_begins_from() {
         summary["state_sha256"].clone()
     };
     assert_eq!(digest(&resumed.stdout), digest(&whole.stdout));
+}
+
+#[test]
+fn a_line_measures_the_same_in_a_run_and_in_its_trajectories() {
+    let mut document = room();
+    document["measurements"] = json!([{"line_flow": {"line": [[8, 0], [8, 8]], "region": [[6, 2], [8, 6]], "part": [0.2, 0.8]}}]);
+    document["duration_secs"] = json!(12);
+    let scenario = Scenario::parse(&document.to_string(), "f", &[]).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.csv");
+    let mut simulation = Simulation::new(scenario.scene.clone()).unwrap();
+    let mut metrics = Metrics::new(&scenario.measurements, &mut simulation);
+    let mut file = Trajectory::create(&path, &mut simulation, scenario.view.region, 50.0).unwrap();
+    for frame in 0..=600 {
+        simulation.evaluate().unwrap();
+        metrics.observe(&simulation);
+        file.log(&simulation).unwrap();
+        if frame < 600 {
+            simulation.integrate().unwrap();
+        }
+    }
+    file.finish().unwrap();
+    let tracks = read(&path, &ReadOptions::default()).unwrap();
+    let Measurement::LineFlow(line) = &scenario.measurements[0] else {
+        panic!("{:?}", scenario.measurements)
+    };
+    let (values, (_, passages)) = line.of_tracks(&tracks, 0.0, scenario.scene.clock);
+    let own = metrics.results(&simulation);
+    assert_eq!(own.len(), values.len());
+    for (of_run, (name, of_data)) in own.iter().zip(values) {
+        assert_eq!(of_run.name, name);
+        let off = of_run.value.unwrap() - of_data.unwrap();
+        assert!(off.abs() < 1e-6, "{name}: {off}");
+    }
+    assert!(passages.as_array().unwrap().len() > 20);
 }

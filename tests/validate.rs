@@ -13,7 +13,7 @@ fn the_scenes_use_all_runs_of_the_study_and_no_others() {
     let study = Study::built_in(VALIDATION.name, None, None).unwrap();
     let known: BTreeSet<&str> = study.cells.iter().filter_map(|cell| cell.label()).collect();
     let used: BTreeSet<&str> = VALIDATION
-        .all()
+        .without_data()
         .flat_map(|case| case.runs)
         .copied()
         .collect();
@@ -71,4 +71,65 @@ fn validate_judges_means_over_seeds() {
     assert!((one - cell("1")).abs() < 1e-9);
     assert!((flow(&both) - 0.5 * (cell("1") + cell("2"))).abs() < 1e-9);
     refused(&["validate", "gate"], 2, &["gate: no such case", "gap-2.4"]);
+}
+
+/// People who come one by one, one per second, and walk through the entrance at 1 m/s.
+fn file_of_people() -> String {
+    let mut text = "# framerate: 25 fps\n# id frame x/m y/m\n".to_owned();
+    for person in 0..20 {
+        for frame in 0..=120 {
+            let y = 3.0 - f64::from(frame) / 25.0;
+            text += &format!("{person} {} 0 {y}\n", 25 * person + frame);
+        }
+    }
+    text
+}
+
+#[test]
+fn scenes_with_data_are_compared_with_the_data_and_skipped_without() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().join("data");
+    fs::create_dir(&data).unwrap();
+    let out = folder.path().join("v");
+    let report = || {
+        fs::remove_dir_all(&out).ok();
+        let mut typed = vec![
+            "validate",
+            "data-bottleneck",
+            "data-corridor",
+            "--profile",
+            "sph",
+        ];
+        typed.extend(["--out", text(&out), "--data", text(&data)]);
+        let output = run(&typed);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        fs::read_to_string(out.join("validation.md")).unwrap()
+    };
+    let none = report();
+    assert!(none.contains("Skipped, for want of data: 2."), "{none}");
+    assert!(
+        none.contains("040_c_56_h-.txt, from doi:10.34735/ped.2018.1"),
+        "{none}"
+    );
+    assert!(!none.contains("Passed"), "{none}");
+
+    fs::write(data.join("040_c_56_h-.txt"), file_of_people()).unwrap();
+    let some = report();
+    assert!(some.contains("Skipped, for want of data: 1."), "{some}");
+    // One person per second; each is 0.8 s in 0.64 m².
+    for expected in ["flow [P/s] | 1 ± 6 %", "speed [m/s] | 1 ± 10 %"] {
+        assert!(some.contains(expected), "{some}");
+    }
+    let density = some.lines().find(|line| line.contains("density")).unwrap();
+    let density = density.split('|').nth(4).unwrap().trim();
+    let density: f64 = density.split(' ').next().unwrap().parse().unwrap();
+    assert!((density - 0.8 / 0.64).abs() < 0.15, "{density}");
+    assert!(out.join("passages.svg").exists() && out.join("data-bottleneck.png").exists());
+
+    let nowhere = folder.path().join("nowhere");
+    refused(
+        &["validate", "data-bottleneck", "--data", text(&nowhere)],
+        2,
+        &["--data", "nowhere", "give the folder"],
+    );
 }

@@ -72,6 +72,7 @@ fn a_value_passes_inside_of_its_range_ends_included() {
 /// A report of one case with one value by `sph`.
 fn report(case: &'static Case, value: f64) -> Report {
     Report {
+        skipped: Vec::new(),
         suite: &VERIFICATION,
         profiles: vec!["sph".to_owned()],
         findings: vec![Finding {

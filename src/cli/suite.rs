@@ -1,12 +1,15 @@
 //! `sandbox verify` and `sandbox validate`: suites of cases with expected results.
 
+use std::fs;
+use std::path::{Path, PathBuf};
+
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
 use super::update::CaseOptions;
 use super::watch::Watch;
 use super::{Failure, say, talk};
-use crate::lab::suite::Suite;
+use crate::lab::suite::{Chosen, Suite};
 use crate::lab::validate::VALIDATION;
 use crate::lab::verify::VERIFICATION;
 use crate::scenario::catalog;
@@ -26,6 +29,9 @@ pub struct ValidateOptions {
     /// Only these scenes, such as gap-2.4 or door [default: all]
     #[arg(value_name = "SCENE")]
     pub scene: Vec<String>,
+    /// Folder with files of trajectories: scenes that begin from such a file are skipped without it (docs/validation.md)
+    #[arg(long, value_name = "DIR")]
+    pub data: Option<PathBuf>,
     #[command(flatten)]
     pub suite: SuiteOptions,
 }
@@ -43,11 +49,16 @@ pub struct SuiteOptions {
 }
 
 pub fn verify(options: &VerifyOptions) -> Result<(), Failure> {
-    judge(&VERIFICATION, ("--only ", &options.only), &options.suite)
+    judge(
+        &VERIFICATION,
+        ("--only ", &options.only),
+        (&options.suite, None),
+    )
 }
 
 pub fn validate(options: &ValidateOptions) -> Result<(), Failure> {
-    judge(&VALIDATION, ("", &options.scene), &options.suite)
+    let data = options.data.as_deref();
+    judge(&VALIDATION, ("", &options.scene), (&options.suite, data))
 }
 
 /// All cases of a suite, each with a line about it.
@@ -62,7 +73,7 @@ pub fn about(suite: &'static Suite) -> String {
 fn judge(
     suite: &'static Suite,
     (option, names): (&str, &[String]),
-    options: &SuiteOptions,
+    (options, data): (&SuiteOptions, Option<&Path>),
 ) -> Result<(), Failure> {
     let cases = suite.chosen(names).map_err(|name| {
         let ids: Vec<&str> = suite.all().map(|case| case.id).collect();
@@ -78,9 +89,21 @@ fn judge(
         let reason = format!("--profile {twice}: given twice; give it once");
         return Err(Failure::Input(reason));
     }
+    // The scenes are not in the current folder.
+    let data = data.map(|folder| match fs::canonicalize(folder) {
+        Ok(path) if path.is_dir() => Ok(path),
+        Ok(_) => Err(unusable(folder, "it is not a folder")),
+        Err(error) => Err(unusable(folder, error)),
+    });
+    let data = data.transpose()?;
     let store = options.cases.store(&[suite.name])?;
-    let grid = (options.profile.as_slice(), options.seeds);
-    let report = suite.run(&cases, grid, &store, &Watch::new())?;
+    let chosen = Chosen {
+        cases,
+        profiles: &options.profile,
+        seeds: options.seeds,
+        data: data.as_deref(),
+    };
+    let report = suite.run(&chosen, &store, &Watch::new())?;
     let text = report.markdown();
     let said = say(format!("{text}\n"));
     options.cases.update([(suite.name, &text)])?;
@@ -92,4 +115,11 @@ fn judge(
         none if none.is_empty() => Ok(()),
         failures => Err(Failure::Output(failures.join("\n"))),
     }
+}
+
+fn unusable(folder: &Path, why: impl std::fmt::Display) -> Failure {
+    let folder = shown(&folder.display().to_string());
+    Failure::Input(format!(
+        "--data {folder}: {why}; give the folder with the files"
+    ))
 }

@@ -260,13 +260,6 @@ impl Scene {
         }
     }
 
-    /// The name under which reports count the latecomers, that of their first group; `None` if there are none.
-    pub fn latecomers_name(&self) -> Option<&str> {
-        let first = self.latecomers.first()?;
-        let group = self.groups.get(usize::from(first.agent.group))?;
-        Some(&group.name)
-    }
-
     /// The speed at which agent `i` wants to walk at `time` seconds, m/s.
     pub fn pace(&self, agents: &Agents, i: usize, time: f64) -> f64 {
         if agents.walks_from.get(i).is_some_and(|&from| time < from) {

@@ -128,13 +128,21 @@ impl Case {
         own.into_iter().chain(&self.plans).map(PathBuf::as_path)
     }
 
+    /// The scenario with the settings applied, before its agents are placed.
+    ///
+    /// # Errors
+    /// It has become invalid since [`new`](Self::new).
+    pub fn draft(&self) -> Result<Draft, ScenarioError> {
+        let (text, file) = self.source.text()?;
+        Draft::read(&text, &file, &self.settings)
+    }
+
     /// The scenario with the settings applied.
     ///
     /// # Errors
     /// It has become invalid since [`new`](Self::new).
     pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
-        let (text, file) = self.source.text()?;
-        Scenario::parse(&text, &file, &self.settings)
+        self.draft()?.scenario()
     }
 
     /// The job that computes its [`RunResult`]; messages call it `name`.

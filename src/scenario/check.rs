@@ -23,6 +23,7 @@ use crate::engine::math::{Vector, bounds};
 use crate::engine::period::Period;
 use crate::engine::profile::Override;
 use crate::engine::scene::{Push, Region, Scene};
+use crate::scenario::trajectories::Tracks;
 
 /// Margin of the default view around walls, agents, goals and sources, meters.
 const DEFAULT_MARGIN: f64 = 1.0;
@@ -60,6 +61,18 @@ impl Contents {
             keys,
             need,
         })
+    }
+
+    /// The trajectories from which the scenario begins, and the time in them at which it does, seconds; `None` if it
+    /// names no file. The file's name is relative to the folder of `path`.
+    pub(super) fn trajectories(&self, path: &Path) -> Result<Option<(Tracks, f64)>, Problem> {
+        let Some(given) = &self.keys.from else {
+            return Ok(None);
+        };
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let file = given.trajectory.as_ref().map(|name| folder.join(name));
+        let tracks = file.map(|file| from::tracks(&file, given)).transpose();
+        tracks.under("from")
     }
 
     /// Checks relations between values and places the agents. The name of the file `path` is the default name of the

@@ -10,6 +10,7 @@ use super::document;
 use super::error::{Problem, ScenarioError};
 use super::need::Need;
 use super::setting::Setting;
+use super::trajectories::Tracks;
 
 /// A scenario whose names, types and ranges are valid. Relations between values are not checked yet.
 #[derive(Debug, Clone)]
@@ -59,6 +60,15 @@ impl Draft {
     /// The size of its run.
     pub fn need(&self) -> &Need {
         &self.contents.need
+    }
+
+    /// The trajectories from which it begins, and the time in them at which it does, seconds; `None` if it names no file.
+    ///
+    /// # Errors
+    /// The file has changed since [`read`](Self::read), and is invalid now.
+    pub fn trajectories(&self) -> Result<Option<(Tracks, f64)>, ScenarioError> {
+        let tracks = self.contents.trajectories(Path::new(&self.origin.file));
+        tracks.map_err(|problem| self.origin.blame(problem))
     }
 
     /// Checks the relations between values and places the agents.

@@ -17,7 +17,7 @@ use crate::engine::agents::NewAgent;
 use crate::engine::entrance::Latecomer;
 use crate::engine::math::Vector;
 use crate::scenario::quote::{shown, shown_message};
-use crate::scenario::trajectories::{ReadOptions, TOO_FAST, Unit, read};
+use crate::scenario::trajectories::{ReadOptions, TOO_FAST, Tracks, Unit, read};
 
 /// The key.
 const FROM: &str = "from";
@@ -25,8 +25,6 @@ const FROM: &str = "from";
 const FILE: &str = "from.trajectory";
 /// Velocities are means from this long before to this long after, seconds, as in the measurement `line_flow`.
 const REACH: f64 = 0.2;
-/// Frames this near to a time are at that time: decimal times are rarely exact multiples of the frame interval.
-const ROUNDING: f64 = 1e-6;
 
 /// The people of a trajectory file at one time, and those who appear in it later: `trajectory` or `people`.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
@@ -185,8 +183,8 @@ pub(super) fn fill(
     Ok(Some((FILE, path)))
 }
 
-/// The people in a file: those at the time, by id, then those who appear later, by time.
-fn people(path: &Path, given: &FromData) -> Result<Vec<Person>, Problem> {
+/// The trajectories of a file, and the time in it at which the scenario begins, seconds.
+pub(super) fn tracks(path: &Path, given: &FromData) -> Result<(Tracks, f64), Problem> {
     let options = ReadOptions {
         unit: given.unit,
         fps: given.fps,
@@ -210,12 +208,19 @@ fn people(path: &Path, given: &FromData) -> Result<Vec<Person>, Problem> {
         return Err(Problem::new("trajectory", reason));
     }
     let [first, last] = [0, tracks.frames.len() - 1].map(|k| tracks.time(tracks.frames[k]));
-    let near = ROUNDING / tracks.fps;
+    let near = tracks.rounding();
     let at = given.at_secs.unwrap_or(first);
     if at < first - near || at > last + near {
         let reason = format!("{at} s is outside of the data: {file} has {first} to {last} s");
         return Err(Problem::new("at_secs", reason));
     }
+    Ok((tracks, at))
+}
+
+/// The people in a file: those at the time, by id, then those who appear later, by time.
+fn people(path: &Path, given: &FromData) -> Result<Vec<Person>, Problem> {
+    let (tracks, at) = tracks(path, given)?;
+    let near = tracks.rounding();
     let until = given.until_secs.unwrap_or(f64::INFINITY);
     if until < at {
         let reason = format!("{until} is before the start at {at} s; raise it");
@@ -239,6 +244,7 @@ fn people(path: &Path, given: &FromData) -> Result<Vec<Person>, Problem> {
     match there.is_empty() {
         false => Ok(there),
         true => {
+            let file = shown(&path.display().to_string());
             let reason =
                 format!("no one is in {file} at {at} s, or appears in it later until {until} s");
             Err(Problem::new("at_secs", reason))

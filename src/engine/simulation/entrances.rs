@@ -106,6 +106,15 @@ impl Late {
     }
 }
 
+impl Scene {
+    /// The name under which reports count the latecomers, that of their first group; `None` if there are none.
+    pub fn latecomers_name(&self) -> Option<&str> {
+        let first = self.latecomers.first()?;
+        let group = self.groups.get(usize::from(first.agent.group))?;
+        Some(&group.name)
+    }
+}
+
 impl Crowd {
     /// Lets those latecomers in that have arrived and have room. None waits for another one.
     pub(super) fn follow_latecomers(&mut self, scene: &Scene) -> Result<(), Fault> {

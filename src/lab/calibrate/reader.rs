@@ -49,8 +49,8 @@ impl Reader<'_> {
         if keys.name.is_some() {
             return Err(Problem::new(at("name"), "belongs to an own `scenario`"));
         }
-        let Some(case) = VALIDATION.all().find(|case| case.id == id) else {
-            let ids: Vec<&str> = VALIDATION.all().map(|case| case.id).collect();
+        let Some(case) = VALIDATION.without_data().find(|case| case.id == id) else {
+            let ids: Vec<&str> = VALIDATION.without_data().map(|case| case.id).collect();
             let near = suggestion(id, ids.iter().copied());
             let reason = format!(
                 "no case is called `{}`{near} (there are {})",

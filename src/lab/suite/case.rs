@@ -42,6 +42,8 @@ pub struct Runs<'a> {
     pub suite: &'a str,
     /// The results of all cases.
     pub own: Vec<(&'a str, &'a Summary)>,
+    /// What was measured in the data from which runs begin, by the labels of the runs.
+    pub measured: &'a [(&'static str, Summary)],
 }
 
 impl Runs<'_> {
@@ -68,6 +70,12 @@ impl Runs<'_> {
         found
             .map(|(_, summary)| *summary)
             .ok_or_else(|| self.missing(label, "run"))
+    }
+
+    /// What was measured in the data from which a run begins; `None` if it begins from none.
+    pub fn data(&self, label: &str) -> Option<&Summary> {
+        let found = self.measured.iter().find(|(own, _)| *own == label);
+        found.map(|(_, summary)| summary)
     }
 
     /// A measured value of a run.

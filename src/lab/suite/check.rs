@@ -134,6 +134,7 @@ impl Check {
         match self.expected {
             Expected::Any => "reported".to_owned(),
             Expected::Near { value, tolerance } => {
+                let value = (1e3 * value).round() / 1e3; // measured in data: with all digits
                 format!("{value} ± {} %", (100.0 * tolerance).round())
             }
             Expected::Between([low, high]) if low == high => format!("{low}"),

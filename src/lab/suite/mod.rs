@@ -5,14 +5,19 @@
 
 mod case;
 mod check;
+mod data;
 mod pictures;
 mod report;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 pub use case::{Case, Runs};
 pub use check::{Check, Expected};
+pub use data::{DataFile, Skipped};
 pub use report::{Finding, Report};
+
+use data::Found;
 
 use crate::lab::error::LabError;
 use crate::lab::jobs::{read, results};
@@ -32,12 +37,26 @@ pub struct Suite {
     pub name: &'static str,
     /// The cases, in the order of the report.
     pub cases: &'static [&'static [Case]],
+    /// The data that cases need, whose runs are those of the study `NAME_data`.
+    pub data: &'static [DataFile],
     /// The profiles of the study, whose misses are known.
     pub profiles: &'static [&'static str],
     /// Are means over all seeds judged, or each seed?
     pub judges_means: bool,
     /// Pictures of all results, by the names of their files, from the runs of each profile and seed.
     pub sheets: fn(&[Runs]) -> Vec<(&'static str, Sheet)>,
+}
+
+/// What of a suite is computed.
+pub struct Chosen<'a> {
+    /// The cases.
+    pub cases: Vec<&'static Case>,
+    /// The profiles; those of the study if there are none.
+    pub profiles: &'a [String],
+    /// The number of seeds.
+    pub seeds: u64,
+    /// The folder with the data.
+    pub data: Option<&'a Path>,
 }
 
 /// Why crowds of the paper's profiles are too fast.
@@ -65,19 +84,30 @@ impl Suite {
         Ok(self.all().filter(is_chosen).collect())
     }
 
-    /// Computes the runs of these cases that are not in `store`, for these profiles (without any: those of the study)
-    /// and with `seeds` seeds each; judges them, and writes tables and pictures.
+    /// Computes the chosen runs that are not in `store`, judges them, and writes tables and pictures. Cases whose data are
+    /// missing are skipped.
     ///
     /// # Errors
     /// A profile is unknown, a run fails, or a file cannot be written.
     pub fn run(
         &'static self,
-        cases: &[&'static Case],
-        (profiles, seeds): (&[String], u64),
+        chosen: &Chosen,
         store: &Store,
         listener: &dyn Listener,
     ) -> Result<Report, LabError> {
-        let study = Study::built_in_for(self.name, profiles, Some(seeds))?;
+        let Found {
+            cases,
+            files,
+            skipped,
+        } = self.found(&chosen.cases, chosen.data);
+        let grid = (chosen.profiles, Some(chosen.seeds));
+        let mut study = Study::built_in_for(self.name, grid.0, grid.1)?;
+        if !files.is_empty() {
+            let name = format!("{}_data", self.name);
+            study
+                .cells
+                .extend(Study::built_in_with(&name, &files, grid)?.cells);
+        }
         let labels: BTreeSet<&str> = cases.iter().flat_map(|case| case.runs).copied().collect();
         let wanted = |cell: &&sweep::Cell| cell.label().is_some_and(|label| labels.contains(label));
         let jobs = study.jobs(|cell| wanted(&cell));
@@ -98,13 +128,20 @@ impl Suite {
             let own = runs.entry((number, cell.case.seed)).or_default();
             own.push((cell.label().unwrap_or_default(), &result.summary));
         }
+        let mut measured = Vec::new();
+        for label in files.keys() {
+            if let Some(cell) = cells.iter().find(|cell| cell.label() == Some(label)) {
+                measured.push((*label, data::measured(label, &cell.case)?));
+            }
+        }
         let runs = runs.into_values().map(|own| Runs {
             suite: self.name,
             own,
+            measured: &measured,
         });
         let runs: Vec<Runs> = runs.collect();
         let mut findings = Vec::new();
-        for case in cases {
+        for &case in &cases {
             for runs in &runs {
                 findings.push(Finding {
                     case,
@@ -121,12 +158,13 @@ impl Suite {
             suite: self,
             profiles,
             findings,
+            skipped,
         };
         report.write(store)?;
         for (stem, sheet) in (self.sheets)(&runs) {
             sheet.save(&store.path(stem))?;
         }
-        pictures::save(cases, &cells, store, listener)?;
+        pictures::save(&cases, &cells, store, listener)?;
         Ok(report)
     }
 }

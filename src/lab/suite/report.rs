@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::{Case, Check, Suite, THROUGH_WALLS};
+use super::{Case, Check, Skipped, Suite, THROUGH_WALLS};
 use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
 use crate::output::table::Table;
@@ -36,6 +36,8 @@ pub struct Report {
     pub profiles: Vec<String>,
     /// The findings, by case, profile and seed.
     pub findings: Vec<Finding>,
+    /// Cases without data. They neither pass nor fail.
+    pub skipped: Vec<Skipped>,
 }
 
 /// A check of a case, with all profiles and seeds.
@@ -200,8 +202,21 @@ impl Report {
         if !misses.is_empty() {
             misses = format!("\nKnown misses:\n\n{misses}");
         }
+        let mut skips = match self.skipped.len() {
+            0 => String::new(),
+            count => format!("Skipped, for want of data: {count}.\n\n"),
+        };
+        for Skipped { case, why } in &self.skipped {
+            skips += &format!("- **{}**, {}: {why}.\n", case.id, case.about);
+        }
+        if self.findings.is_empty() {
+            return skips;
+        }
+        if !skips.is_empty() {
+            skips.insert(0, '\n');
+        }
         let counts = counts.join(", by ");
-        format!("Passed by {counts}. Bold: not as expected.{walls}\n\n{table}{misses}")
+        format!("Passed by {counts}. Bold: not as expected.{walls}\n\n{table}{misses}{skips}")
     }
 
     fn rows(&self) -> Vec<Row<'_>> {
@@ -261,7 +276,9 @@ impl Report {
                 "passed": finding.is_passed(), "checks": finding.checks,
             })
         };
-        let entries: Vec<_> = self.findings.iter().map(entry).collect();
+        let skipped = self.skipped.iter();
+        let skipped = skipped.map(|one| json!({"case": one.case.id, "skipped": one.why}));
+        let entries: Vec<_> = self.findings.iter().map(entry).chain(skipped).collect();
         store.write(&name("json"), format!("{:#}\n", json!(entries)).as_bytes())?;
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! Everything that the cells of a study are combined from.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
+use std::path::PathBuf;
 
 use serde::Deserialize;
 use serde_json::Value;
@@ -35,6 +36,31 @@ impl File {
     /// Replaces the number of seeds, if one is given.
     pub(super) fn with_seeds(&mut self, seeds: Option<u64>) {
         self.seeds = seeds.map(Seeds::Count).or(self.seeds.take());
+    }
+
+    /// Replaces the profiles of the grid, if there are any, and the number of seeds.
+    pub(super) fn with_grid(&mut self, profiles: &[String], seeds: Option<u64>) {
+        self.with_seeds(seeds);
+        let grid = self.grid.0.iter_mut();
+        let profile = grid.filter(|(key, _)| !profiles.is_empty() && key == "profile");
+        profile.for_each(|(_, values)| *values = profiles.into());
+    }
+
+    /// Keeps the entries of the list whose labels have a file in `data`. Their scenarios begin from it.
+    pub(super) fn with_data(&mut self, data: &BTreeMap<&str, PathBuf>) {
+        let Some(list) = &mut self.list else {
+            return;
+        };
+        list.retain_mut(|Entries(entries)| {
+            let label = entries.iter().find(|(key, _)| key == LABEL);
+            let label = label.and_then(|(_, label)| label.as_str());
+            let Some(path) = label.and_then(|label| data.get(label)) else {
+                return false;
+            };
+            let path = Value::from(path.to_string_lossy());
+            entries.push(("from.trajectory".to_owned(), path));
+            true
+        });
     }
 }
 

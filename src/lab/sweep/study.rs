@@ -1,6 +1,6 @@
 //! Turns a study's file into validated cells.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -131,11 +131,21 @@ impl Study {
         profiles: &[String],
         seeds: Option<u64>,
     ) -> Result<Self, StudyError> {
+        Self::changed(name, |file| file.with_grid(profiles, seeds), None)
+    }
+
+    /// The same with those entries of its list whose labels have a file in `data`: their scenarios begin from it.
+    ///
+    /// # Errors
+    /// As [`built_in`](Self::built_in).
+    pub fn built_in_with(
+        name: &str,
+        data: &BTreeMap<&str, PathBuf>,
+        (profiles, seeds): (&[String], Option<u64>),
+    ) -> Result<Self, StudyError> {
         let change = |file: &mut File| {
-            file.with_seeds(seeds);
-            let grid = file.grid.0.iter_mut();
-            let profile = grid.filter(|(key, _)| !profiles.is_empty() && key == "profile");
-            profile.for_each(|(_, values)| *values = profiles.into());
+            file.with_grid(profiles, seeds);
+            file.with_data(data);
         };
         Self::changed(name, change, None)
     }

@@ -17,6 +17,7 @@ const MISSES: &[(&str, &str)] = &[
 ];
 
 /// What was measured at a line.
+#[derive(Debug, Clone, Copy)]
 pub struct Measured {
     /// The run.
     pub run: &'static str,
@@ -117,7 +118,7 @@ impl Measured {
     }
 
     /// Flow, density and speed at the line, beside the measured ones.
-    fn checks(&self, runs: &Runs) -> Result<Vec<Check>, LabError> {
+    pub fn checks(&self, runs: &Runs) -> Result<Vec<Check>, LabError> {
         let quantities = [
             ("flow [P/s]", "flow_per_s", self.flow),
             ("density [P/m²]", "density_per_m2", self.density),

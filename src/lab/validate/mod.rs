@@ -2,6 +2,7 @@
 
 mod bottlenecks;
 mod corridors;
+mod data;
 mod pictures;
 
 use super::suite::Suite;
@@ -9,7 +10,8 @@ use super::suite::Suite;
 /// The scenes.
 pub static VALIDATION: Suite = Suite {
     name: "validation",
-    cases: &[&bottlenecks::CASES, &corridors::CASES],
+    cases: &[&bottlenecks::CASES, &corridors::CASES, &data::CASES],
+    data: &data::FILES,
     profiles: &["sph", "sf->sph", "rvo->sph"],
     judges_means: true,
     sheets: pictures::sheets,

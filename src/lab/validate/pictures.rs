@@ -2,9 +2,11 @@
 
 use super::bottlenecks::{MEASURED, Measured};
 use super::corridors::SPEEDS;
+use super::data;
 use crate::lab::suite::Runs;
 use crate::lab::verify::speeds::BANDS;
 use crate::output::plot::{Axis, BLACK, Corner, GRAY, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::runs::summary::Summary;
 
 /// The tolerance of measured speeds, as a part of them: half an error bar.
 const TOLERANCE: f64 = 0.10;
@@ -18,7 +20,7 @@ const BEGINNING: f64 = 0.1;
 /// `fundamental`, speeds by density, and `passages`, numbers of people over time at each line, of the scenes with runs.
 pub fn sheets(runs: &[Runs]) -> Vec<(&'static str, Sheet)> {
     let fundamental = [lines(runs), single_file(runs), corridor(runs)];
-    let passages = MEASURED.iter().map(|measured| passages(measured, runs));
+    let passages = all(runs).map(|measured| passages(&measured, runs));
     let all = [
         (
             "fundamental",
@@ -137,9 +139,9 @@ fn lines(runs: &[Runs]) -> Option<Panel> {
     };
     let mut marks = Vec::new();
     for (profile, color) in profiles(runs) {
-        let found = MEASURED.iter().filter_map(|at| {
-            let density = value(profile, at, "density_per_m2")?;
-            let speed = value(profile, at, "speed_m_per_s")?;
+        let found = all(runs).filter_map(|at| {
+            let density = value(profile, &at, "density_per_m2")?;
+            let speed = value(profile, &at, "speed_m_per_s")?;
             Some([[at.density, at.speed], [density, speed]])
         });
         let found: Vec<[[f64; 2]; 2]> = found.collect();
@@ -155,7 +157,7 @@ fn lines(runs: &[Runs]) -> Option<Panel> {
     if marks.is_empty() {
         return None;
     }
-    let measured = MEASURED.iter().map(|at| [at.density, at.speed]);
+    let measured = all(runs).map(|at| [at.density, at.speed]);
     marks.push(Mark::dots(measured, Style::full(BLACK, 2.4, "")));
     let x = Axis::linear("density [P/m²]", [0.0, 8.0]);
     let y = Axis::linear("speed [m/s]", [0.0, 1.6]);
@@ -193,47 +195,60 @@ fn single_file(runs: &[Runs]) -> Option<Panel> {
     ))
 }
 
-/// The number of people past a line over time, and the measured flow.
+/// What was measured at all lines, also in the data of the runs.
+fn all<'a>(runs: &'a [Runs<'a>]) -> impl Iterator<Item = Measured> + 'a {
+    let data = runs.first().into_iter().flat_map(data::measured);
+    MEASURED.into_iter().chain(data)
+}
+
+/// The number of people past a line over time, and the measured flow, or the number in the data.
 fn passages(at: &Measured, runs: &[Runs]) -> Option<Panel> {
     let mut marks = Vec::new();
-    let (mut latest, mut most) = (0.0_f64, 0);
+    let (mut latest, mut most) = (0.0_f64, 0.0_f64);
     let mut begins = f64::INFINITY;
     for (profile, color) in profiles(runs) {
         for run in runs.iter().filter(|run| run.profile() == profile) {
-            let Some(times) = run
-                .of(at.run)
-                .ok()
-                .and_then(|run| run.data::<Vec<f64>>(at.line))
-            else {
+            let Some(steps) = run.of(at.run).ok().and_then(|run| steps(run, at.line)) else {
                 continue;
             };
-            latest = times.last().copied().unwrap_or_default().max(latest);
-            most = times.len().max(most);
-            let tenth = times.get((BEGINNING * times.len() as f64) as usize);
-            begins = tenth.copied().unwrap_or(f64::INFINITY).min(begins);
-            let steps = (1..)
-                .zip(times)
-                .map(|(count, time)| [time, f64::from(count)]);
+            let [end, count] = steps.last().copied().unwrap_or_default();
+            (latest, most) = (latest.max(end), most.max(count));
+            let tenth = steps.get((BEGINNING * steps.len() as f64) as usize);
+            begins = tenth.map_or(f64::INFINITY, |[time, _]| *time).min(begins);
             let label = if run.seed() == runs[0].seed() {
                 profile
             } else {
                 ""
             };
-            marks.push(Mark::Line(steps.collect(), Style::full(color, 1.0, label)));
+            marks.push(Mark::Line(steps, Style::full(color, 1.0, label)));
         }
     }
     if !begins.is_finite() {
         return None;
     }
-    let most = most as f64;
     let first = BEGINNING * most;
     let until = begins + (most - first) / at.flow;
-    let measured = vec![[begins, first], [until, most]];
-    marks.push(Mark::Line(
-        measured,
-        Style::broken(BLACK, 1.2, "measured flow"),
-    ));
-    let x = Axis::linear("time [s]", [0.0, latest.max(until)]);
-    let y = Axis::linear("people", [0.0, most]);
+    let (measured, style) = match runs.first().and_then(|run| run.data(at.run)) {
+        None => (
+            vec![[begins, first], [until, most]],
+            Style::broken(BLACK, 1.2, "measured flow"),
+        ),
+        Some(data) => (steps(data, at.line)?, Style::full(BLACK, 1.2, "measured")),
+    };
+    let [end, count] = measured.last().copied().unwrap_or_default();
+    marks.push(Mark::Line(measured, style));
+    let x = Axis::linear("time [s]", [0.0, latest.max(end)]);
+    let y = Axis::linear("people", [0.0, most.max(count)]);
     Some(Panel::new(at.run, x, y, marks))
+}
+
+/// The number of people past a line over time.
+fn steps(of: &Summary, line: &str) -> Option<Vec<[f64; 2]>> {
+    let times = of.data::<Vec<f64>>(line)?;
+    let steps = (1..).zip(times);
+    Some(
+        steps
+            .map(|(count, time)| [time, f64::from(count)])
+            .collect(),
+    )
 }

@@ -11,6 +11,7 @@ use super::suite::Suite;
 pub static VERIFICATION: Suite = Suite {
     name: "verification",
     cases: &[&rimea::CASES, &iso::CASES],
+    data: &[],
     profiles: &["sph", "sf->sph", "rvo->sph"],
     judges_means: false,
     sheets: |_| Vec::new(),

@@ -6,12 +6,18 @@ use serde_json::{Value, json};
 
 use super::Measure;
 use crate::analysis::crossing::{Balance, Line};
+use crate::engine::clock::Clock;
 use crate::engine::math::Vector;
+use crate::engine::period::Period;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::range::{region, wide_region};
 use crate::scenario::shapes::{Corners, Point};
+use crate::scenario::trajectories::Tracks;
+
+/// Values by their names, and data with their name.
+type Measured = (Vec<(String, Option<f64>)>, (String, Value));
 
 /// The name of the values if none is given.
 const NAME: &str = "line";
@@ -132,12 +138,83 @@ impl Measure for LineFlow {
 
     fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
         let frame = simulation.frame();
-        let (clock, agents) = (frame.clock, frame.agents);
+        let agents = frame.agents;
+        let arrivals = &simulation.outcome().arrivals;
+        let gone = &arrivals[seen.arrivals..];
+        seen.arrivals = arrivals.len();
+        let moment = Moment {
+            clock: frame.clock,
+            period: simulation.scene().period,
+            entered: agents.entered() as usize,
+        };
+        let gone = gone.iter().map(|arrival| (arrival.id, arrival.position));
+        let there = agents
+            .id
+            .iter()
+            .copied()
+            .zip(agents.position.iter().copied());
+        self.see(seen, &moment, gone, there);
+    }
+
+    fn values(&self, seen: &Seen, _: &Simulation) -> Vec<Option<f64>> {
+        self.results(seen)
+    }
+
+    fn data(&self, seen: &Seen) -> Option<(String, Value)> {
+        Some((self.name().to_owned(), json!(seen.times)))
+    }
+}
+
+/// A frame, apart from the people.
+struct Moment<'a> {
+    clock: &'a Clock,
+    period: Option<Period>,
+    /// Above all ids.
+    entered: usize,
+}
+
+impl LineFlow {
+    /// The values, by their names, and the data for people in `tracks` from the time `at` in it, seconds, on. They are measured
+    /// as in a run whose frames are those of `clock` and begin at `at`.
+    pub fn of_tracks(&self, tracks: &Tracks, at: f64, clock: Clock) -> Measured {
+        let times: Vec<[f64; 2]> = (0..tracks.ids.len()).map(|p| tracks.times_of(p)).collect();
+        let last = times.iter().map(|[_, last]| *last).fold(at, f64::max);
+        let mut clock = clock;
+        let mut seen = Seen::default();
+        for frame in 0..=clock.frame_at(last - at) {
+            clock.go_to(frame);
+            let time = at + clock.time();
+            let is_there = |&p: &usize| {
+                let ([first, last], near) = (times[p], tracks.rounding());
+                (first - near..=last + near).contains(&time)
+            };
+            let there = (0..times.len()).filter(is_there);
+            let there = there.map(|p| (p as u32, tracks.place_at(p, time)));
+            let moment = Moment {
+                clock: &clock,
+                period: None,
+                entered: times.len(),
+            };
+            self.see(&mut seen, &moment, std::iter::empty(), there);
+        }
+        let names = self.names().into_iter().map(|(name, _)| name);
+        let values = names.zip(self.results(&seen)).collect();
+        (values, (self.name().to_owned(), json!(seen.times)))
+    }
+
+    /// Sees people in a frame: those who have left since the frame before, and those who are there.
+    fn see(
+        &self,
+        seen: &mut Seen,
+        moment: &Moment,
+        gone: impl Iterator<Item = (u32, Vector)>,
+        there: impl Iterator<Item = (u32, Vector)>,
+    ) {
+        let Moment { clock, period, .. } = *moment;
         let (now, step) = (clock.time(), clock.time_step());
         let line = self.line();
         let before = seen.times.len();
-        seen.tracks.resize(agents.entered() as usize, None);
-        let period = simulation.scene().period;
+        seen.tracks.resize(moment.entered, None);
         let way = |from: Vector, to: Vector| {
             let way = to - from;
             period.map_or(way, |period| period.shortest(way))
@@ -154,9 +231,9 @@ impl Measure for LineFlow {
             }
             track.last = position;
         };
-        for arrival in &simulation.outcome().arrivals[seen.arrivals..] {
-            if let Some(mut track) = seen.tracks[arrival.id as usize].take() {
-                passed(&mut track, arrival.position);
+        for (id, position) in gone {
+            if let Some(mut track) = seen.tracks[id as usize].take() {
+                passed(&mut track, position);
             }
         }
         let every = clock.frame_at(EVERY_SECS).max(1);
@@ -166,7 +243,7 @@ impl Measure for LineFlow {
             time: now,
             ..Sample::default()
         };
-        for (&id, &position) in agents.id.iter().zip(&agents.position) {
+        for (id, position) in there {
             let track = seen.tracks[id as usize].get_or_insert(Track {
                 last: position,
                 sampled: [None; 2],
@@ -186,14 +263,13 @@ impl Measure for LineFlow {
                 track.sampled = [track.sampled[1], Some(position)];
             }
         }
-        seen.arrivals = simulation.outcome().arrivals.len();
         seen.times[before..].sort_by(f64::total_cmp);
         if is_due && region.is_some() {
             seen.samples.push(sample);
         }
     }
 
-    fn values(&self, seen: &Seen, _: &Simulation) -> Vec<Option<f64>> {
+    fn results(&self, seen: &Seen) -> Vec<Option<f64>> {
         let flow = self.flow(&seen.times);
         let region = self.region.and_then(|corners| region("", corners).ok());
         let ends = flow.map_or([f64::NAN; 2], |(ends, _)| ends);
@@ -214,9 +290,5 @@ impl Measure for LineFlow {
                 .map(|region| agents / (count * region.area())),
             (moving > 0.0).then(|| speeds / moving),
         ]
-    }
-
-    fn data(&self, seen: &Seen) -> Option<(String, Value)> {
-        Some((self.name().to_owned(), json!(seen.times)))
     }
 }

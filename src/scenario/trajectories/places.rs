@@ -4,6 +4,11 @@ use super::Tracks;
 use crate::engine::math::Vector;
 
 impl Tracks {
+    /// Times this near to each other are the same, seconds: decimal times are rarely exact multiples of a frame's.
+    pub fn rounding(&self) -> f64 {
+        1e-6 / self.fps
+    }
+
     /// The times of the first and the last frame of person `p`, seconds.
     pub fn times_of(&self, p: usize) -> [f64; 2] {
         let rows = self.rows_of(p);
