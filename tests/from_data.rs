@@ -46,7 +46,10 @@ fn lines(walkers: &[Walker], fps: f64, scale: f64) -> String {
 fn folder(text: &str, from: Value, more: Value) -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("people.txt"), text).unwrap();
-    let mut document = json!({"goal": [50, 0], "from": from});
+    let mut document = match from {
+        Value::Null => json!({"goal": [50, 0]}),
+        from => json!({"goal": [50, 0], "from": from}),
+    };
     let own = document.as_object_mut().unwrap();
     own.extend(more.as_object().unwrap().clone());
     let path = folder.path().join("scene.json");
@@ -139,16 +142,14 @@ fn latecomers_enter_in_the_next_coarse_frame_at_their_place_with_their_velocity(
 
 /// Two people of radius 0.3 m: one stands at the place where the other appears after 1 s, and leaves it after 3 s.
 fn taken() -> Value {
-    json!({"navigation": "straight", "goal": [9, 0], "from": {"radius": 0.3, "people": [
+    json!({"navigation": "straight", "goal": [9, 0], "max_speed": 0.25, "from": {"radius": 0.3, "people": [
         [1, 0, 0, 0, 0, 0], [2, 1, 0.2, 0, 0.5, 0], [3, 1, 5, 5, 0, 0]
     ]}})
 }
 
 #[test]
 fn latecomers_wait_until_there_is_room_and_hold_up_no_one_else() {
-    let mut document = taken();
-    document["max_speed"] = json!(0.25);
-    let scenario = Scenario::parse(&document.to_string(), "f", &[]).unwrap();
+    let scenario = Scenario::parse(&taken().to_string(), "f", &[]).unwrap();
     let mut simulation = Simulation::new(scenario.scene).unwrap();
     let mut entered = Vec::new();
     for frame in 0..1000 {
