@@ -78,8 +78,8 @@ fn the_keys_of_nested_objects_are_documented() {
     for (path, keys) in [
         (
             "measurements",
-            "one of density, flow_of_first, flow_until, egress, evacuated, uncounted, pauses, locked, snapshot, wave, contacts, \
-             jitter, closest, integrity, speed_by_density, walks, line_flow, exposure, service_levels, crowd_pressure, \
+            "one of density, flow_of_first, flow_until, egress, evacuated, uncounted, pauses, locked, snapshot, wave, front, \
+             oscillation, contacts, jitter, closest, integrity, speed_by_density, walks, line_flow, exposure, service_levels, crowd_pressure, \
              body_forces, wall_forces or frame_time",
         ),
         ("measurements.density", "at_secs, region?"),

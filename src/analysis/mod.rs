@@ -1,4 +1,5 @@
-//! Analysis: statistics over values, space-time diagrams and the speed of waves in them, linear theory (the speed of
+//! Analysis: statistics over values, space-time diagrams and the speed of waves in them, the speed of fronts, spectra of
+//! oscillations, linear theory (the speed of
 //! sound in a crowd and the largest stable time step), integrals over walls by
 //! quadrature, the ways to a destination on a grid, lines that people cross, what safety engineers read (local density,
 //! exposure, level of service, crowd pressure, forces on bodies and walls), and the search for parameters: screening,
@@ -7,6 +8,10 @@
 pub mod statistics;
 
 pub mod wave;
+
+pub mod front;
+
+pub mod oscillation;
 
 pub mod sound;
 

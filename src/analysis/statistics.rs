@@ -188,6 +188,25 @@ impl Line {
             offset: mean_y - slope * mean_x,
         })
     }
+
+    /// A robust line through (x, y), sorted by x: the median slope of lines from each point of the first half to its
+    /// counterpart in the second half (Theil's incomplete method, 1950), and the median offset. Up to a quarter of the
+    /// points may be anywhere. `None` without points in both halves that differ in x.
+    pub fn of_halves(points: &[(f64, f64)]) -> Option<Self> {
+        let far = points.len().div_ceil(2);
+        let pairs = points.iter().zip(points.get(far..)?);
+        let slopes = pairs.filter(|(a, b)| a.0 < b.0);
+        let slopes: Vec<f64> = slopes.map(|(a, b)| (b.1 - a.1) / (b.0 - a.0)).collect();
+        if slopes.is_empty() {
+            return None;
+        }
+        let slope = Range::of(&slopes).median;
+        let offsets: Vec<f64> = points.iter().map(|(x, y)| y - slope * x).collect();
+        Some(Self {
+            slope,
+            offset: Range::of(&offsets).median,
+        })
+    }
 }
 
 /// A function of points, with its standard error from a jackknife over blocks of neighboring points: their errors are

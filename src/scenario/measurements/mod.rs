@@ -14,9 +14,12 @@ mod egress;
 mod exposure;
 mod fence;
 mod frame_time;
+mod front;
 mod integrity;
 mod jitter;
 mod line_flow;
+mod mean;
+mod oscillation;
 mod service_levels;
 mod snapshot;
 mod speed_by_density;
@@ -41,9 +44,11 @@ pub use density::Density;
 pub use egress::{Egress, Left};
 pub use exposure::Exposure;
 pub use frame_time::{FrameTime, StageTimes};
+pub use front::{Front, FrontData, Reached};
 pub use integrity::{Integrity, Watched};
 pub use jitter::Jitter;
 pub use line_flow::LineFlow;
+pub use oscillation::Oscillation;
 pub use service_levels::ServiceLevels;
 pub use snapshot::{Snapshot, SnapshotAt};
 pub use speed_by_density::SpeedByDensity;
@@ -55,6 +60,7 @@ use super::error::{Problem, Under};
 use super::range::region;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
+use mean::Mean;
 
 /// The keys of a measurement. They do not change during a run; what the measurement has seen is its `Seen`.
 pub trait Measure: fmt::Debug + Clone + Send + Sync + 'static {
@@ -118,6 +124,10 @@ pub enum Measurement {
     Snapshot(SnapshotAt),
     /// Speed, amplitude and reflection of a wave along x.
     Wave(Wave),
+    /// How far and how fast a start or a push runs through a crowd.
+    Front(Front),
+    /// Spectrum of the mean velocities in boxes: frequency and spin of collective oscillations.
+    Oscillation(Oscillation),
     /// Contacts between agents at one time.
     Contacts(ContactsAt),
     /// Kinetic energy of a crowd that should rest.
@@ -160,6 +170,8 @@ impl Measurement {
             Self::Locked(keys) => started(keys),
             Self::Snapshot(keys) => started(keys),
             Self::Wave(keys) => started(keys),
+            Self::Front(keys) => started(keys),
+            Self::Oscillation(keys) => started(keys),
             Self::Contacts(keys) => started(keys),
             Self::Jitter(keys) => started(keys),
             Self::Closest(keys) => started(keys),
@@ -180,6 +192,8 @@ impl Measurement {
     pub(super) fn places(&self) -> Vec<(&'static str, Region)> {
         let places = match self {
             Self::Density(keys) => vec![("density.region", keys.region)],
+            Self::Front(keys) => vec![("front.region", keys.region)],
+            Self::Oscillation(keys) => vec![("oscillation.region", Some(keys.region))],
             Self::Contacts(keys) => vec![("contacts.region", Some(keys.region))],
             Self::Walks(keys) => vec![("walks.region", keys.region)],
             Self::Exposure(keys) => vec![("exposure.region", keys.region)],
@@ -340,25 +354,6 @@ impl<M: Measure> Running for (M, M::Seen) {
         if let Ok(seen) = serde_json::from_str(seen) {
             self.1 = seen;
         }
-    }
-}
-
-/// The mean of values.
-#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
-pub struct Mean {
-    sum: f64,
-    count: f64,
-}
-
-impl Mean {
-    fn add(&mut self, value: f64) {
-        self.sum += value;
-        self.count += 1.0;
-    }
-
-    /// The mean; `None` without values.
-    fn value(self) -> Option<f64> {
-        (self.count > 0.0).then(|| self.sum / self.count)
     }
 }
 

@@ -1,0 +1,201 @@
+//! Oscillations of a crowd: rotary spectra of mean velocities in boxes.
+//!
+//! A velocity (u, v) is the complex number u + i v. The Fourier transform of its values over time has counterclockwise
+//! circular motion at positive frequencies and clockwise motion at negative ones; motion to and fro along a line has
+//! equal parts of both (J. Gonella, A rotary-component method for analysing meteorological and oceanographic vector time
+//! series, Deep-Sea Research 19, 1972).
+
+use std::f64::consts::TAU;
+
+use serde::{Deserialize, Serialize};
+
+/// Shorter series have no spectrum.
+const FEWEST_SAMPLES: usize = 16;
+/// Half the width of the main lobe of a Hann window, in resolutions: a pure oscillation has its power within.
+const LOBE: f64 = 2.0;
+
+/// A velocity, m/s, or its Fourier transform: real and imaginary part.
+type Complex = [f64; 2];
+
+/// The power of a velocity by angular frequency and sense of rotation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Spectrum {
+    /// From one frequency to the next, rad/s; the first one is 0.
+    pub step: f64,
+    /// 2π over the duration of the series, rad/s: peaks closer than this cannot be told apart.
+    pub resolution: f64,
+    /// Power density at each frequency of counterclockwise motion, m²/s² per rad/s. Both densities together have the
+    /// integral ⟨|v − ⟨v⟩|²⟩, weighted by the window.
+    pub counterclockwise: Vec<f64>,
+    /// The same of clockwise motion.
+    pub clockwise: Vec<f64>,
+}
+
+impl Spectrum {
+    /// The periodogram of a series with a value `every` so many seconds, without its mean, with a Hann window. `None`
+    /// for fewer than 16 values.
+    pub fn of(series: &[[f64; 2]], every: f64) -> Option<Self> {
+        let count = series.len();
+        if count < FEWEST_SAMPLES {
+            return None;
+        }
+        let sum = |k: usize| series.iter().map(|v| v[k]).sum::<f64>();
+        let mean = [0, 1].map(|k| sum(k) / count as f64);
+        let window = |n: usize| 0.5 - 0.5 * (TAU * (n as f64 + 0.5) / count as f64).cos();
+        // Zeros at the end: the spectrum has more points, not a finer resolution.
+        let mut windowed = vec![[0.0; 2]; (2 * count).next_power_of_two()];
+        for (n, (to, v)) in windowed.iter_mut().zip(series).enumerate() {
+            *to = [0, 1].map(|k| (v[k] - mean[k]) * window(n));
+        }
+        let squares: f64 = (0..count).map(|n| window(n).powi(2)).sum();
+        let per_power = every / (TAU * squares);
+        let transform = fourier(&windowed);
+        let power = |k: usize| (transform[k][0].powi(2) + transform[k][1].powi(2)) * per_power;
+        let all = transform.len();
+        let half = 1..all / 2;
+        Some(Self {
+            step: TAU / (all as f64 * every),
+            resolution: TAU / (count as f64 * every),
+            counterclockwise: [power(0)]
+                .into_iter()
+                .chain(half.clone().map(power))
+                .collect(),
+            clockwise: [0.0]
+                .into_iter()
+                .chain(half.map(|k| power(all - k)))
+                .collect(),
+        })
+    }
+
+    /// The mean of spectra with the same frequencies; `None` without spectra.
+    fn mean(spectra: &[Self]) -> Option<Self> {
+        let (first, others) = spectra.split_first()?;
+        let mut mean = first.clone();
+        let count = spectra.len() as f64;
+        for other in others {
+            let pairs = mean
+                .counterclockwise
+                .iter_mut()
+                .zip(&other.counterclockwise);
+            pairs.for_each(|(sum, power)| *sum += power);
+            let pairs = mean.clockwise.iter_mut().zip(&other.clockwise);
+            pairs.for_each(|(sum, power)| *sum += power);
+        }
+        let both = mean.counterclockwise.iter_mut().chain(&mut mean.clockwise);
+        both.for_each(|power| *power /= count);
+        Some(mean)
+    }
+
+    /// The power density of both senses at each frequency, m²/s² per rad/s, with the frequency, rad/s.
+    pub fn densities(&self) -> impl Iterator<Item = [f64; 2]> {
+        let both = self.counterclockwise.iter().zip(&self.clockwise);
+        both.enumerate()
+            .map(|(k, (left, right))| [k as f64 * self.step, left + right])
+    }
+
+    /// ⟨|v − ⟨v⟩|²⟩, m²/s².
+    pub fn power(&self) -> f64 {
+        self.densities().map(|[_, density]| density).sum::<f64>() * self.step
+    }
+
+    /// The part of the power at frequencies in a band, rad/s; `None` without power.
+    pub fn share(&self, [low, high]: [f64; 2]) -> Option<f64> {
+        let inside = self
+            .densities()
+            .filter(|[frequency, _]| (low..=high).contains(frequency));
+        let part = inside.map(|[_, density]| density).sum::<f64>() * self.step / self.power();
+        part.is_finite().then_some(part)
+    }
+
+    /// (P₊ − P₋)/(P₊ + P₋) with the powers of counterclockwise and clockwise motion in a band, rad/s: 1 for
+    /// counterclockwise circles, −1 for clockwise ones, 0 for motion along a line. It is the mean of v × dv/dt over the
+    /// mean of |v| |dv/dt| if the band is narrow. `None` without power.
+    pub fn spin(&self, [low, high]: [f64; 2]) -> Option<f64> {
+        let sum = |powers: &[f64]| -> f64 {
+            let powers = powers.iter().enumerate();
+            let inside = powers.filter(|(k, _)| (low..=high).contains(&(*k as f64 * self.step)));
+            inside.map(|(_, power)| power).sum()
+        };
+        let (left, right) = (sum(&self.counterclockwise), sum(&self.clockwise));
+        let spin = (left - right) / (left + right);
+        spin.is_finite().then_some(spin)
+    }
+
+    /// The frequency with the most power, rad/s, of those that are no trend: from two resolutions on. `None` without
+    /// power.
+    pub fn peak(&self) -> Option<f64> {
+        let densities: Vec<[f64; 2]> = self.densities().collect();
+        let lowest = LOBE * self.resolution;
+        let inside = (1..densities.len().saturating_sub(1)).filter(|&k| densities[k][0] >= lowest);
+        let top = inside.max_by(|&a, &b| densities[a][1].total_cmp(&densities[b][1]))?;
+        let [before, here, after] = [top - 1, top, top + 1].map(|k| densities[k][1]);
+        let bend = before - 2.0 * here + after;
+        // A parabola through three points.
+        let shift = if bend < 0.0 {
+            (0.5 * (before - after) / bend).clamp(-0.5, 0.5)
+        } else {
+            0.0
+        };
+        (here > 0.0).then(|| (top as f64 + shift) * self.step)
+    }
+
+    /// The band that holds the power of a pure oscillation with this frequency, rad/s.
+    pub fn around(&self, frequency: f64) -> [f64; 2] {
+        [-LOBE, LOBE].map(|resolutions| frequency + resolutions * self.resolution)
+    }
+}
+
+/// How the mean velocities in boxes oscillate.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Oscillation {
+    /// The mean spectrum over all boxes.
+    pub spectrum: Spectrum,
+    /// Its peak, rad/s.
+    pub peak: Option<f64>,
+    /// The spin of each box around this peak.
+    pub spins: Vec<f64>,
+}
+
+impl Oscillation {
+    /// Of the series of all boxes, with a value `every` so many seconds; `None` without boxes or for fewer than 16
+    /// values.
+    pub fn of(boxes: &[Vec<[f64; 2]>], every: f64) -> Option<Self> {
+        let spectra = boxes.iter().map(|series| Spectrum::of(series, every));
+        let spectra: Vec<Spectrum> = spectra.collect::<Option<_>>()?;
+        let spectrum = Spectrum::mean(&spectra)?;
+        let peak = spectrum.peak();
+        let band = peak.map(|peak| spectrum.around(peak));
+        let spins = spectra.iter().filter_map(|of| of.spin(band?));
+        Some(Self {
+            spins: spins.collect(),
+            peak,
+            spectrum,
+        })
+    }
+
+    /// The part of the power around the peak.
+    pub fn peak_share(&self) -> Option<f64> {
+        self.spectrum.share(self.spectrum.around(self.peak?))
+    }
+}
+
+/// Σ_n z_n e^(−2πi kn/N) for all k; N is a power of two (Cooley and Tukey 1965).
+fn fourier(values: &[Complex]) -> Vec<Complex> {
+    let count = values.len();
+    if count < 2 {
+        return values.to_vec();
+    }
+    let every_other = |first: usize| {
+        let values = values.iter().skip(first).step_by(2);
+        fourier(&values.copied().collect::<Vec<_>>())
+    };
+    let (even, odd) = (every_other(0), every_other(1));
+    let mut sums = vec![[0.0; 2]; count];
+    for (k, ([a, b], [c, d])) in even.into_iter().zip(odd).enumerate() {
+        let (sin, cos) = (-TAU * k as f64 / count as f64).sin_cos();
+        let [c, d] = [c * cos - d * sin, c * sin + d * cos];
+        sums[k] = [a + c, b + d];
+        sums[k + count / 2] = [a - c, b - d];
+    }
+    sums
+}

@@ -1,0 +1,194 @@
+//! Collective oscillations: the spectrum of the mean velocities in boxes.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::Measure;
+use super::window::Window;
+use crate::analysis::oscillation::Oscillation as Found;
+use crate::engine::scene::Region;
+use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::file::LONGEST_TIME;
+use crate::scenario::range::{region, wide_region};
+use crate::scenario::shapes::Corners;
+
+/// The name of the values if none is given.
+const NAME: &str = "oscillation";
+/// The most boxes.
+const MOST_BOXES: usize = 10_000;
+
+/// The mean velocities of the agents in boxes, sampled at equal times, and their spectrum averaged over the boxes: the
+/// angular frequency of its peak, the parts of the power around the peak and in a band, the root mean square velocity,
+/// and the sense of rotation (spin) in each box.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Oscillation {
+    /// The beginning of the names of its values. Default: `oscillation`.
+    #[schemars(length(min = 1))]
+    name: Option<String>,
+    /// The region that is divided into boxes: lower left and upper right corner, meters.
+    pub(super) region: Corners,
+    /// Side of a box, meters; it is adapted to divide the region.
+    #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
+    #[serde(default = "side")]
+    box_size: f64,
+    /// The start, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
+    #[serde(default)]
+    from_secs: f64,
+    /// The end, seconds. Default: the end of the run.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
+    until_secs: Option<f64>,
+    /// Time between two samples, seconds.
+    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
+    #[serde(default = "often")]
+    every_secs: f64,
+    /// The band of angular frequencies whose part of the power is given, rad/s. Default: 0.30 to 0.40, as measured in a
+    /// crowd (Gu et al. 2025).
+    #[schemars(inner(range(min = 0, max = 1e6)))]
+    #[serde(default = "band")]
+    band: [f64; 2],
+}
+
+fn side() -> f64 {
+    2.0
+}
+
+fn often() -> f64 {
+    0.4
+}
+
+fn band() -> [f64; 2] {
+    [0.3, 0.4]
+}
+
+/// What was seen so far.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub struct Seen {
+    /// Mean velocities, m/s: of all boxes at the first time, then of all boxes at the second, and so on.
+    velocities: Vec<Option<[f64; 2]>>,
+    /// The time between two samples, seconds.
+    every: f64,
+}
+
+impl Oscillation {
+    fn name(&self) -> &str {
+        self.name.as_deref().unwrap_or(NAME)
+    }
+
+    fn window(&self) -> Window {
+        Window {
+            region: Some(self.region),
+            from_secs: self.from_secs,
+            until_secs: self.until_secs,
+            every_secs: self.every_secs,
+        }
+    }
+
+    /// The numbers of boxes along x and y.
+    fn boxes(&self, region: &Region) -> [usize; 2] {
+        let size = region.max - region.min;
+        [size.x, size.y].map(|length| (length / self.box_size).round().max(1.0) as usize)
+    }
+
+    /// The boxes that were never empty.
+    fn found(&self, seen: &Seen) -> Option<Found> {
+        let [columns, rows] = self.boxes(&region("", self.region).ok()?);
+        let boxes = columns * rows;
+        let series = |k: usize| -> Option<Vec<[f64; 2]>> {
+            seen.velocities
+                .iter()
+                .skip(k)
+                .step_by(boxes)
+                .copied()
+                .collect()
+        };
+        let series: Vec<_> = (0..boxes).filter_map(series).collect();
+        Found::of(&series, seen.every)
+    }
+}
+
+impl Measure for Oscillation {
+    type Seen = Seen;
+
+    fn check(&self) -> Result<(), Problem> {
+        self.window().check(NAME)?;
+        let [low, high] = self.band;
+        if high <= low {
+            let reason = format!("its end, {high}, must be above its start, {low}");
+            return Err(Problem::new("oscillation.band", reason));
+        }
+        let [columns, rows] = self.boxes(&wide_region("oscillation.region", self.region)?);
+        match columns.saturating_mul(rows) {
+            ..=MOST_BOXES => Ok(()),
+            boxes => Err(Problem::new(
+                "oscillation.box_size",
+                format!("the region has {boxes} boxes; at most {MOST_BOXES} are allowed"),
+            )),
+        }
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        let values = [
+            ("peak_rad_per_s", "rad/s"),
+            ("peak_share", ""),
+            ("band_share", ""),
+            ("speed_m_per_s", "m/s"),
+            ("spin", ""),
+            ("spin_rms", ""),
+        ];
+        let name = |(what, unit)| (format!("{}_{what}", self.name()), unit);
+        values.into_iter().map(name).collect()
+    }
+
+    fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
+        let window = self.window();
+        let (true, Some(region)) = (window.is_due(simulation), window.region()) else {
+            return;
+        };
+        seen.every = window.secs(simulation);
+        let [columns, rows] = self.boxes(&region);
+        let size = region.max - region.min;
+        let mut sums = vec![(0_u32, [0.0; 2]); columns * rows];
+        let agents = simulation.frame().agents;
+        for (r, v) in agents.position.iter().zip(&agents.velocity) {
+            if !region.contains(*r) {
+                continue;
+            }
+            let part = (r - region.min).component_div(&size);
+            let place = |part: f64, count: usize| ((part * count as f64) as usize).min(count - 1);
+            let (count, sum) = &mut sums[place(part.y, rows) * columns + place(part.x, columns)];
+            *count += 1;
+            *sum = [sum[0] + v.x, sum[1] + v.y];
+        }
+        let means = sums.into_iter().map(|(count, sum)| {
+            (count > 0).then(|| sum.map(|component| component / f64::from(count)))
+        });
+        seen.velocities.extend(means);
+    }
+
+    fn values(&self, seen: &Seen, _: &Simulation) -> Vec<Option<f64>> {
+        let Some(found) = self.found(seen) else {
+            return vec![None; self.names().len()];
+        };
+        let count = found.spins.len() as f64;
+        let mean = |of: fn(&f64) -> f64| {
+            let sum: f64 = found.spins.iter().map(of).sum();
+            (count > 0.0).then(|| sum / count)
+        };
+        vec![
+            found.peak,
+            found.peak_share(),
+            found.spectrum.share(self.band),
+            Some(found.spectrum.power().sqrt()),
+            mean(|spin| *spin),
+            mean(|spin| spin * spin).map(f64::sqrt),
+        ]
+    }
+
+    fn data(&self, seen: &Seen) -> Option<(String, Value)> {
+        Some((self.name().to_owned(), json!(self.found(seen))))
+    }
+}
