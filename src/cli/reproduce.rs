@@ -43,7 +43,7 @@ pub fn about() -> String {
     };
     let lines = products.chain([(ALL, all.as_str())]);
     lines
-        .map(|(name, about)| format!("  {name:<10} {about}\n"))
+        .map(|(name, about)| format!("  {name:<12} {about}\n"))
         .collect()
 }
 

@@ -1,14 +1,14 @@
 //! The tables and figures that can be reproduced.
 
 use super::product::{Needs, Product};
-use super::{figures, questions, table1, table2};
+use super::{figures, physics, questions, table1, table2};
 use crate::lab::error::LabError;
 use crate::lab::jobs::finished;
 use crate::lab::sweep::{Gathered, Study};
 use crate::runs::job::{self, Listener};
 use crate::runs::store::Store;
 
-/// All products, in the paper's order.
+/// All products, in the paper's order, then open questions.
 pub const PRODUCTS: &[Product] = &[
     table1::PRODUCT,
     table2::PRODUCT,
@@ -22,6 +22,9 @@ pub const PRODUCTS: &[Product] = &[
     figures::FIG11,
     figures::STUDY,
     questions::PRODUCT,
+    physics::OSCILLATIONS,
+    physics::START_WAVES,
+    physics::QUEUE_PUSHES,
 ];
 
 /// Computes the missing runs of `products` and writes the products. Returns the text about each.

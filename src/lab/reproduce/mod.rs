@@ -1,4 +1,4 @@
-//! The paper's tables and figures (§6) with one command.
+//! The paper's tables and figures (§6), and studies of open questions, with one command.
 //!
 //! A [`Product`] is a table or a figure: studies under `scenarios/studies/` that compute its runs, and a function that
 //! writes files from their results. Runs that several products share are computed once.
@@ -6,6 +6,7 @@
 mod comparison;
 mod figures;
 mod list;
+mod physics;
 mod product;
 mod published;
 mod questions;

@@ -140,7 +140,7 @@ pub const FIG9: Product = figure::<4>();
 pub const FIG10: Product = figure::<5>();
 
 /// Writes a picture into the store's folder, and returns a line with the file names.
-fn save(sheet: &Sheet, store: &Store, name: &str) -> Result<String, LabError> {
+pub(super) fn save(sheet: &Sheet, store: &Store, name: &str) -> Result<String, LabError> {
     let stem = store.path(name);
     sheet.save(&stem)?;
     Ok(format!("{0}.svg, {0}.png\n", stem.display()))

@@ -1,0 +1,88 @@
+//! Open questions of crowd physics: what crowds of the model do where experiments are known. Each is a study, a table and
+//! a picture; docs/questions.md says what is known and what follows.
+
+mod oscillations;
+mod queue_pushes;
+mod start_waves;
+
+use serde_json::Value;
+
+pub use oscillations::PRODUCT as OSCILLATIONS;
+pub use queue_pushes::PRODUCT as QUEUE_PUSHES;
+pub use start_waves::PRODUCT as START_WAVES;
+
+use super::figures::save;
+use super::product::only;
+use crate::analysis::statistics::MeanStd;
+use crate::lab::error::LabError;
+use crate::lab::sweep::{Combination, Gathered};
+use crate::output::plot::Sheet;
+use crate::output::table::Table;
+use crate::runs::store::Store;
+
+/// Writes a table and a picture about the only study of a product, and returns the table.
+fn write(
+    studies: &[Gathered],
+    store: &Store,
+    table: fn(&[Combination]) -> Table,
+    sheet: fn(&[Combination]) -> Sheet,
+) -> Result<String, LabError> {
+    let study = only(studies)?;
+    let (rows, name) = (study.combinations(), &study.study.name);
+    study.write(store)?;
+    save(&sheet(&rows), store, name)?;
+    Ok(table(&rows).markdown())
+}
+
+/// The label of a combination.
+fn label<'a>(row: &Combination<'a>) -> &'a str {
+    let cell = row.cells.first();
+    cell.and_then(|cell| cell.label()).unwrap_or_default()
+}
+
+/// The profile of a combination: its name, or its base and the parameters that tell it apart.
+fn profile(row: &Combination) -> String {
+    let cell = row.cells.first();
+    let value = cell.and_then(|cell| cell.value("profile"));
+    let parameter = |key: &str| value?.get("parameters")?.get(key);
+    let Some(base) = value.and_then(|value| value.as_str().or(value.get("base")?.as_str())) else {
+        return "default".to_owned();
+    };
+    let law = parameter("walking_law").and_then(Value::as_str);
+    let number = |key: &str, sign: &str, unit: &str| {
+        parameter(key).map(|value| format!("{sign} = {value}{unit}"))
+    };
+    let parts = [
+        law.map(str::to_owned),
+        number("headway_anticipation", "t", " s"),
+        number("gas_constant", "k", ""),
+    ];
+    let parts = parts.into_iter().flatten();
+    [base.to_owned()]
+        .into_iter()
+        .chain(parts)
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+/// The mean of a value over seeds, with its deviation; `None` without values.
+fn mean(row: &Combination, metric: &str) -> Option<MeanStd> {
+    let values = row.values(metric).into_iter().flatten();
+    MeanStd::of(&values.collect::<Vec<f64>>())
+}
+
+/// Combinations in groups with the same name, in the order of their first members.
+fn grouped<'r, 'a>(
+    rows: &'r [Combination<'a>],
+    name: impl Fn(&Combination) -> String,
+) -> Vec<(String, Vec<&'r Combination<'a>>)> {
+    let mut groups: Vec<(String, Vec<&Combination>)> = Vec::new();
+    for row in rows {
+        let name = name(row);
+        match groups.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, group)) => group.push(row),
+            None => groups.push((name, vec![row])),
+        }
+    }
+    groups
+}

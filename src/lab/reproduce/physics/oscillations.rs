@@ -1,0 +1,81 @@
+//! Do dense crowds oscillate? Spectra of locally averaged velocities by density.
+
+use super::super::product::{Needs, Product};
+use super::{grouped, label, mean, profile, write};
+use crate::analysis::oscillation::Oscillation;
+use crate::lab::sweep::Combination;
+use crate::output::plot::{Axis, Corner, LINES, Mark, Panel, Sheet, Style};
+use crate::output::table::Table;
+
+/// The measured angular frequency of crowds above 4 P/m² (Gu et al. 2025), rad/s.
+const MEASURED: [f64; 2] = [0.30, 0.40];
+/// The ends of the axes: angular frequency, rad/s, and power density, m²/s² per rad/s.
+const AXES: [[f64; 2]; 2] = [[0.05, 8.0], [1e-9, 1.0]];
+
+/// The table and the spectra.
+pub const PRODUCT: Product = Product {
+    name: "oscillations",
+    about: "open question: do crowds in a closed square oscillate above 4 P/m²?",
+    in_all: false,
+    studies: &["oscillations"],
+    needs: Needs::All,
+    write: |studies, store| write(studies, store, table, sheet),
+};
+
+fn table(rows: &[Combination]) -> Table {
+    let value =
+        |what: &'static str| move |row: &Combination| mean(row, &format!("oscillation_{what}"));
+    let speed = value("speed_m_per_s");
+    let millimeters = move |row: &Combination| speed(row).map(|of| 1000.0 * of.mean);
+    Table::of(rows)
+        .column("crowd", |row| label(row).to_owned())
+        .column("profile", profile)
+        .fixed("velocity [mm/s]", 1, millimeters)
+        .fixed("peak [rad/s]", 2, value("peak_rad_per_s"))
+        .fixed("power at the peak", 2, value("peak_share"))
+        .fixed("power at 0.30 to 0.40 rad/s", 3, value("band_share"))
+        .fixed("spin", 2, value("spin"))
+        .fixed("its root mean square", 2, value("spin_rms"))
+        .table()
+}
+
+/// A panel for each profile, with a line for each crowd.
+fn sheet(rows: &[Combination]) -> Sheet {
+    let groups = grouped(rows, profile);
+    let last = groups.len().saturating_sub(1);
+    let panels = groups.iter().enumerate().map(|(k, (name, rows))| Panel {
+        legend: (k == last).then_some(Corner::Beside),
+        ..panel(name, rows)
+    });
+    Sheet {
+        title: "Mean velocity in boxes of 2 m: power by angular frequency".to_owned(),
+        columns: groups.len().clamp(1, 3),
+        panel_size: [260.0, 200.0],
+        panels: panels.collect(),
+        ..Sheet::default()
+    }
+}
+
+fn panel(name: &str, rows: &[&Combination]) -> Panel {
+    let [[left, right], [low, high]] = AXES;
+    let [from, to] = MEASURED;
+    let band = vec![[from, low], [to, low], [to, high], [from, high]];
+    let mut marks = vec![Mark::Area(band, [225, 225, 225])];
+    for (k, row) in rows.iter().enumerate() {
+        let found = row.results.first();
+        let found: Option<Oscillation> = found.and_then(|of| of.summary.data("oscillation"));
+        let Some(found) = found else { continue };
+        let points = found.spectrum.densities();
+        let points = points.filter(|[frequency, _]| (left..=right).contains(frequency));
+        let points = points.map(|[frequency, density]| [frequency, density.max(0.1 * low)]);
+        let color = LINES[k % LINES.len()];
+        let style = match k < LINES.len() {
+            true => Style::full(color, 1.0, label(row)),
+            false => Style::broken(color, 1.0, label(row)),
+        };
+        marks.push(Mark::Line(points.collect(), style));
+    }
+    let x = Axis::log("angular frequency [rad/s]", [left, right]);
+    let y = Axis::log("power density [m²/s² per rad/s]", [low, high]);
+    Panel::new(&format!("{name}; gray: measured in crowds"), x, y, marks)
+}

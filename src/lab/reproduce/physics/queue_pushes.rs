@@ -1,0 +1,108 @@
+//! How fast and how far does a push run through a row of standing people?
+
+use super::super::product::{Needs, Product};
+use super::{grouped, label, mean, profile, write};
+use crate::lab::sweep::Combination;
+use crate::output::plot::{Axis, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::output::table::Table;
+use crate::scenario::measurements::FrontData;
+
+/// The setting with the velocity of the last one in the row.
+const PUSH: &str = "agents.0.velocity";
+
+/// The table, and speed and reach by distance.
+pub const PRODUCT: Product = Product {
+    name: "queue-pushes",
+    about: "open question: how fast and how far does a push run through a row?",
+    in_all: false,
+    studies: &["queue_pushes"],
+    needs: Needs::All,
+    write: |studies, store| write(studies, store, table, sheet),
+};
+
+/// The distance from person to person, meters, from their places at the start.
+fn distance(row: &Combination) -> Option<f64> {
+    let found: FrontData = row.results.first()?.summary.data("front")?;
+    let places = || found.people.iter().map(|of| of.place);
+    let [first, last] = [places().reduce(f64::min)?, places().reduce(f64::max)?];
+    Some((last - first) / (found.people.len() as f64 - 1.0))
+}
+
+/// The speed of the one who is pushed, m/s.
+fn push(row: &Combination) -> Option<f64> {
+    row.cells.first()?.value(PUSH)?.get(0)?.as_f64()
+}
+
+/// Of all but the one who is pushed.
+fn reached(row: &Combination) -> Option<f64> {
+    mean(row, "front_agents").map(|of| of.mean - 1.0)
+}
+
+fn table(rows: &[Combination]) -> Table {
+    let value = |what: &'static str| {
+        move |row: &Combination| mean(row, &format!("front_{what}")).map(|of| of.mean)
+    };
+    Table::of(rows)
+        .column("row", |row| label(row).to_owned())
+        .column("profile", profile)
+        .fixed("push [m/s]", 1, push)
+        .fixed("people reached", 1, reached)
+        .fixed("reach [m]", 2, value("reach_m"))
+        .fixed("front [m/s]", 2, value("speed_m_per_s"))
+        .fixed("standard error of the fit", 2, value("speed_error_m_per_s"))
+        .table()
+}
+
+fn sheet(rows: &[Combination]) -> Sheet {
+    let name = |row: &Combination| match push(row) {
+        Some(push) => format!("{}, {push} m/s", profile(row)),
+        None => profile(row),
+    };
+    let groups = grouped(rows, name);
+    let speed = |row: &Combination| {
+        let of = mean(row, "front_speed_m_per_s")?;
+        Some((of.mean, of.error()))
+    };
+    let people = |row: &Combination| Some((reached(row)?, 0.0));
+    let panels = vec![
+        panel(
+            &groups,
+            Axis::linear("front speed [m/s]", [0.0, 10.0]),
+            speed,
+        ),
+        Panel {
+            legend: Some(Corner::Beside),
+            ..panel(&groups, Axis::linear("people reached", [0.0, 21.0]), people)
+        },
+    ];
+    Sheet {
+        title: "A push through a row of twenty people".to_owned(),
+        columns: 2,
+        panel_size: [220.0, 190.0],
+        panels,
+        ..Sheet::default()
+    }
+}
+
+/// A quantity by distance, with a line for each group.
+fn panel(
+    groups: &[(String, Vec<&Combination>)],
+    y: Axis,
+    quantity: impl Fn(&Combination) -> Option<(f64, f64)>,
+) -> Panel {
+    let mut marks = Vec::new();
+    for (k, (name, rows)) in groups.iter().enumerate() {
+        let points = rows.iter().filter_map(|row| {
+            let (y, error) = quantity(row)?;
+            let x = distance(row)?;
+            Some(Point { x, y, error })
+        });
+        let points: Vec<Point> = points.collect();
+        let line = points.iter().map(|point| [point.x, point.y]).collect();
+        let color = LINES[k % LINES.len()];
+        marks.push(Mark::Line(line, Style::full(color, 0.8, "")));
+        marks.push(Mark::Points(points, Style::full(color, 2.2, name)));
+    }
+    let x = Axis::linear("distance from person to person [m]", [0.2, 1.1]);
+    Panel::new("", x, y, marks)
+}

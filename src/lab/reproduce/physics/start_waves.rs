@@ -1,0 +1,145 @@
+//! How fast does a start run back through a waiting crowd?
+
+use serde_json::Value;
+
+use super::super::product::{Needs, Product};
+use super::{grouped, label, mean, profile, write};
+use crate::lab::sweep::Combination;
+use crate::output::plot::{Axis, BLACK, Corner, GRAY, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::output::table::Table;
+use crate::scenario::measurements::FrontData;
+
+/// The length that people wait on, meters.
+const LENGTH: f64 = 30.0;
+/// When they may go, seconds.
+const RELEASED: f64 = 5.0;
+/// The speed of velocity waves in start corrals of marathons (Bain and Bartolo 2019), m/s.
+const MEASURED: f64 = 1.2;
+
+/// The table, the start times and the speeds.
+pub const PRODUCT: Product = Product {
+    name: "start-waves",
+    about: "open question: how fast does a start run back through a crowd?",
+    in_all: false,
+    studies: &["start_waves"],
+    needs: Needs::All,
+    write: |studies, store| write(studies, store, table, sheet),
+};
+
+/// The distance between people along the corridor, meters.
+fn spacing(row: &Combination) -> Option<f64> {
+    let columns = row.cells.first()?.value("grids.0.columns")?.as_f64()?;
+    Some(LENGTH / columns)
+}
+
+/// T of the headway law, seconds, if the profile gives it.
+fn headway_time(row: &Combination) -> Option<f64> {
+    let profile = row.cells.first()?.value("profile")?;
+    profile
+        .get("parameters")?
+        .get("headway_time")
+        .and_then(Value::as_f64)
+}
+
+/// Spacing over T, m/s.
+fn expected(row: &Combination) -> Option<f64> {
+    Some(spacing(row)? / headway_time(row)?)
+}
+
+fn table(rows: &[Combination]) -> Table {
+    let value = |what: &'static str| move |row: &Combination| mean(row, &format!("front_{what}"));
+    let single = |what: &'static str| {
+        move |row: &Combination| mean(row, &format!("front_{what}")).map(|of| of.mean)
+    };
+    Table::of(rows)
+        .column("crowd", |row| label(row).to_owned())
+        .column("profile", profile)
+        .fixed("spacing [m]", 2, spacing)
+        .fixed("front [m/s]", 2, value("speed_m_per_s"))
+        .fixed(
+            "standard error of the fit",
+            2,
+            single("speed_error_m_per_s"),
+        )
+        .fixed("spacing / T [m/s]", 2, expected)
+        .fixed("in space [m/s]", 2, value("speed_in_space_m_per_s"))
+        .fixed("slowness [s/m]", 3, value("slowness_s_per_m"))
+        .table()
+}
+
+/// Start times over places for each profile, then front speeds over spacings.
+fn sheet(rows: &[Combination]) -> Sheet {
+    let groups = grouped(rows, profile);
+    let mut panels: Vec<Panel> = groups
+        .iter()
+        .map(|(name, rows)| times(name, rows))
+        .collect();
+    if let Some(last) = panels.last_mut() {
+        last.legend = Some(Corner::UpperLeft);
+    }
+    panels.push(speeds(&groups));
+    Sheet {
+        title: "A start runs back through a waiting crowd".to_owned(),
+        columns: 2,
+        panel_size: [250.0, 190.0],
+        panels,
+        ..Sheet::default()
+    }
+}
+
+fn times(name: &str, rows: &[&Combination]) -> Panel {
+    let mut marks = Vec::new();
+    let mut latest = 10.0_f64;
+    for (k, row) in rows.iter().enumerate() {
+        let found = row.results.first();
+        let found: Option<FrontData> = found.and_then(|of| of.summary.data("front"));
+        let Some(found) = found else { continue };
+        let started = found
+            .people
+            .iter()
+            .filter_map(|of| Some([of.place, of.secs? - RELEASED]));
+        let started: Vec<[f64; 2]> = started.collect();
+        latest = started.iter().map(|point| point[1]).fold(latest, f64::max);
+        let color = LINES[k % LINES.len()];
+        marks.push(Mark::dots(started, Style::full(color, 1.0, label(row))));
+        if let (Some(slowness), Some(at_zero)) = (found.slowness, found.passes_zero) {
+            let line = [0.0, LENGTH].map(|place| [place, at_zero - RELEASED + slowness * place]);
+            marks.push(Mark::Line(line.to_vec(), Style::full(color, 0.6, "")));
+        }
+    }
+    let x = Axis::linear("place behind the line [m]", [0.0, LENGTH]);
+    let y = Axis::linear("start [s]", [0.0, 1.05 * latest]);
+    Panel::new(name, x, y, marks)
+}
+
+fn speeds(groups: &[(String, Vec<&Combination>)]) -> Panel {
+    let mut marks = Vec::new();
+    let all = groups.iter().flat_map(|(_, rows)| rows);
+    if let Some(time) = all.clone().find_map(|row| headway_time(row)) {
+        let line = vec![[0.0, 0.0], [2.0, 2.0 / time]];
+        let style = Style::full(GRAY, 1.0, &format!("spacing / {time} s"));
+        marks.push(Mark::Line(line, style));
+    }
+    let measured = Style::broken(BLACK, 1.0, "start corrals of marathons");
+    marks.push(Mark::Line(vec![[0.0, MEASURED], [2.0, MEASURED]], measured));
+    for (k, (name, rows)) in groups.iter().enumerate() {
+        let points = rows.iter().filter_map(|row| {
+            let of = mean(row, "front_speed_m_per_s")?;
+            let (x, y, error) = (spacing(row)?, of.mean, of.error());
+            Some(Point { x, y, error })
+        });
+        let points: Vec<Point> = points.collect();
+        if !points.is_empty() {
+            marks.push(Mark::Points(
+                points,
+                Style::full(LINES[k % LINES.len()], 2.2, name),
+            ));
+        }
+    }
+    let x = Axis::linear("spacing [m]", [0.0, 2.0]);
+    let y = Axis::linear("front speed [m/s]", [0.0, 2.5]);
+    Panel {
+        legend: Some(Corner::LowerRight),
+        ..Panel::new("speed of the front", x, y, marks)
+    }
+}
