@@ -20,7 +20,7 @@ pub mod floor_plan;
 pub mod trajectories;
 
 pub mod calibrated;
-pub mod catalog;
+
 pub mod catalog;
 
 pub mod measurements;
