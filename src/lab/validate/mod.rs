@@ -12,7 +12,7 @@ pub static VALIDATION: Suite = Suite {
     name: "validation",
     cases: &[&bottlenecks::CASES, &corridors::CASES, &data::CASES],
     data: &data::FILES,
-    profiles: &["sph", "sf->sph", "rvo->sph"],
+    profiles: &["sph", "sf->sph", "rvo->sph", "walk+sph"],
     judges_means: true,
     sheets: pictures::sheets,
 };
