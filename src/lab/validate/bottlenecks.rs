@@ -9,12 +9,19 @@ const TOLERANCES: [f64; 3] = [0.06, 0.10, 0.10];
 /// Why crowds before a door are not dense.
 const DISTANCE: &str = "avoidance keeps people before the door farther apart than pupils stand";
 
+/// Why crowds of `walk+sph` are too loose before wide gaps.
+const WIDE: &str = "people speed up before a wide gap at densities at which they hardly move in corridors; one time gap \
+     gives the one or the other";
+
 /// The profiles of the paper, which miss nearly all of these scenes.
 const MISSES: &[(&str, &str)] = &[
     ("sph", NOTHING_SLOWS),
     ("sf->sph", NOTHING_SLOWS),
     ("rvo->sph", NOTHING_SLOWS),
 ];
+
+/// And the calibrated one, at wide gaps.
+const ALL_MISS: &[(&str, &str)] = &[MISSES[0], MISSES[1], MISSES[2], ("walk+sph", WIDE)];
 
 /// What was measured at a line.
 #[derive(Debug, Clone, Copy)]
@@ -57,7 +64,7 @@ pub const CASES: [Case; 7] = [
         about: "the gap is 3.6 m wide",
         runs: &[MEASURED[1].run],
         judge: |runs| MEASURED[1].checks(runs),
-        misses: MISSES,
+        misses: ALL_MISS,
         picture: (MEASURED[1].run, 10.0),
     },
     Case {
@@ -65,7 +72,7 @@ pub const CASES: [Case; 7] = [
         about: "the gap is 5 m wide",
         runs: &[MEASURED[2].run],
         judge: |runs| MEASURED[2].checks(runs),
-        misses: MISSES,
+        misses: ALL_MISS,
         picture: (MEASURED[2].run, 8.0),
     },
     Case {
@@ -77,6 +84,10 @@ pub const CASES: [Case; 7] = [
             ("sph", NOTHING_SLOWS),
             ("sf->sph", DISTANCE),
             ("rvo->sph", DISTANCE),
+            (
+                "walk+sph",
+                "pupils press closer and faster through a door than the adults whose figures were fitted",
+            ),
         ],
         picture: (MEASURED[3].run, 5.0),
     },
@@ -85,7 +96,10 @@ pub const CASES: [Case; 7] = [
         about: "2.48 P/s enter a corridor of 1.8 m (run uo-100-180-180)",
         runs: &[MEASURED[4].run],
         judge: |runs| MEASURED[4].checks(runs),
-        misses: &[("sph", NOTHING_SLOWS), ("rvo->sph", NOTHING_SLOWS)],
+        misses: &[(
+            "walk+sph",
+            "a slow person holds up all behind it: no force leads people round each other",
+        )],
         picture: (MEASURED[4].run, 30.0),
     },
     Case {

@@ -38,6 +38,10 @@ pub const CASES: [Case; 2] = [
             ("sph", NOTHING_SLOWS),
             ("sf->sph", NOTHING_SLOWS),
             ("rvo->sph", NOTHING_SLOWS),
+            (
+                "walk+sph",
+                "at 3.25 P/m² people stay in the three files in which they start, each as slow as a single file",
+            ),
         ],
         picture: ("density 2.25", 60.0),
     },
@@ -50,6 +54,10 @@ pub const CASES: [Case; 2] = [
             ("sph", NOTHING_SLOWS),
             ("sf->sph", NOTHING_SLOWS),
             ("rvo->sph", RVO_SINGLE_FILE),
+            (
+                "walk+sph",
+                "in a corridor of 0.8 m people walk left and right of each other, outside of each other's lanes",
+            ),
         ],
         picture: ("single file 30", 45.0),
     },
