@@ -13,7 +13,7 @@ pub use start_waves::PRODUCT as START_WAVES;
 
 use super::figures::save;
 use super::product::only;
-use crate::analysis::statistics::MeanStd;
+use crate::analysis::statistics::{Estimate, MeanStd};
 use crate::lab::error::LabError;
 use crate::lab::sweep::{Combination, Gathered};
 use crate::output::plot::Sheet;
@@ -45,9 +45,8 @@ fn profile(row: &Combination) -> String {
     let cell = row.cells.first();
     let value = cell.and_then(|cell| cell.value("profile"));
     let parameter = |key: &str| value?.get("parameters")?.get(key);
-    let Some(base) = value.and_then(|value| value.as_str().or(value.get("base")?.as_str())) else {
-        return "default".to_owned();
-    };
+    let base = value.and_then(|value| value.get("base").unwrap_or(value).as_str());
+    let base = base.unwrap_or("default");
     let law = parameter("walking_law").and_then(Value::as_str);
     let number = |key: &str, sign: &str, unit: &str| {
         parameter(key).map(|value| format!("{sign} = {value}{unit}"))
@@ -69,6 +68,14 @@ fn profile(row: &Combination) -> String {
 fn mean(row: &Combination, metric: &str) -> Option<MeanStd> {
     let values = row.values(metric).into_iter().flatten();
     MeanStd::of(&values.collect::<Vec<f64>>())
+}
+
+/// The mean speed of the front over seeds, with the mean standard error of the fits.
+fn front_speed(row: &Combination) -> Option<Estimate> {
+    Some(Estimate {
+        value: mean(row, "front_speed_m_per_s")?.mean,
+        error: mean(row, "front_speed_error_m_per_s")?.mean,
+    })
 }
 
 /// Combinations in groups with the same name, in the order of their first members.

@@ -10,7 +10,7 @@ use crate::output::table::Table;
 /// The measured angular frequency of crowds above 4 P/m² (Gu et al. 2025), rad/s.
 const MEASURED: [f64; 2] = [0.30, 0.40];
 /// The ends of the axes: angular frequency, rad/s, and power density, m²/s² per rad/s.
-const AXES: [[f64; 2]; 2] = [[0.05, 8.0], [1e-9, 1.0]];
+const AXES: [[f64; 2]; 2] = [[0.05, 8.0], [1e-10, 0.1]];
 
 /// The table and the spectra.
 pub const PRODUCT: Product = Product {
@@ -30,7 +30,7 @@ fn table(rows: &[Combination]) -> Table {
     Table::of(rows)
         .column("crowd", |row| label(row).to_owned())
         .column("profile", profile)
-        .fixed("velocity [mm/s]", 1, millimeters)
+        .fixed("velocity [mm/s]", 2, millimeters)
         .fixed("peak [rad/s]", 2, value("peak_rad_per_s"))
         .fixed("power at the peak", 2, value("peak_share"))
         .fixed("power at 0.30 to 0.40 rad/s", 3, value("band_share"))

@@ -1,12 +1,17 @@
 //! How fast and how far does a push run through a row of standing people?
 
 use super::super::product::{Needs, Product};
-use super::{grouped, label, mean, profile, write};
+use super::{front_speed, grouped, label, mean, profile, write};
+use crate::analysis::sound::speed_of_fluid;
 use crate::lab::sweep::Combination;
-use crate::output::plot::{Axis, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::output::plot::{Axis, Corner, GRAY, LINES, Mark, Panel, Point, Sheet, Style};
 use crate::output::table::Table;
 use crate::scenario::measurements::FrontData;
 
+/// k of the paper's profiles.
+const GAS_CONSTANT: f64 = 200.0;
+/// The distances on the axis, meters.
+const DISTANCES: [f64; 2] = [0.2, 1.1];
 /// The setting with the velocity of the last one in the row.
 const PUSH: &str = "agents.0.velocity";
 
@@ -39,17 +44,15 @@ fn reached(row: &Combination) -> Option<f64> {
 }
 
 fn table(rows: &[Combination]) -> Table {
-    let value = |what: &'static str| {
-        move |row: &Combination| mean(row, &format!("front_{what}")).map(|of| of.mean)
-    };
     Table::of(rows)
         .column("row", |row| label(row).to_owned())
         .column("profile", profile)
         .fixed("push [m/s]", 1, push)
-        .fixed("people reached", 1, reached)
-        .fixed("reach [m]", 2, value("reach_m"))
-        .fixed("front [m/s]", 2, value("speed_m_per_s"))
-        .fixed("standard error of the fit", 2, value("speed_error_m_per_s"))
+        .fixed("people reached", 0, reached)
+        .fixed("reach [m]", 1, |row| {
+            mean(row, "front_reach_m").map(|of| of.mean)
+        })
+        .fixed("front [m/s]", 1, front_speed)
         .table()
 }
 
@@ -59,15 +62,14 @@ fn sheet(rows: &[Combination]) -> Sheet {
         None => profile(row),
     };
     let groups = grouped(rows, name);
-    let speed = |row: &Combination| {
-        let of = mean(row, "front_speed_m_per_s")?;
-        Some((of.mean, of.error()))
-    };
+    let speed = |row: &Combination| front_speed(row).map(|of| (of.value, of.error));
     let people = |row: &Combination| Some((reached(row)?, 0.0));
-    let panels = vec![
+    let theory = DISTANCES.map(|x| [x, speed_of_fluid(GAS_CONSTANT)]);
+    let theory = Mark::Line(theory.to_vec(), Style::broken(GRAY, 1.0, ""));
+    let mut panels = vec![
         panel(
             &groups,
-            Axis::linear("front speed [m/s]", [0.0, 10.0]),
+            Axis::linear("front speed [m/s]", [0.0, 16.0]),
             speed,
         ),
         Panel {
@@ -75,6 +77,8 @@ fn sheet(rows: &[Combination]) -> Sheet {
             ..panel(&groups, Axis::linear("people reached", [0.0, 21.0]), people)
         },
     ];
+    panels[0].title = "dashed: √(k/2), linear theory of SPH".to_owned();
+    panels[0].marks.push(theory);
     Sheet {
         title: "A push through a row of twenty people".to_owned(),
         columns: 2,
@@ -103,6 +107,6 @@ fn panel(
         marks.push(Mark::Line(line, Style::full(color, 0.8, "")));
         marks.push(Mark::Points(points, Style::full(color, 2.2, name)));
     }
-    let x = Axis::linear("distance from person to person [m]", [0.2, 1.1]);
+    let x = Axis::linear("distance from person to person [m]", DISTANCES);
     Panel::new("", x, y, marks)
 }

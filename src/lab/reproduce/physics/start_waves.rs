@@ -3,7 +3,8 @@
 use serde_json::Value;
 
 use super::super::product::{Needs, Product};
-use super::{grouped, label, mean, profile, write};
+use super::{front_speed, grouped, label, mean, profile, write};
+use crate::analysis::statistics::Estimate;
 use crate::lab::sweep::Combination;
 use crate::output::plot::{Axis, BLACK, Corner, GRAY, LINES, Mark, Panel, Point, Sheet, Style};
 use crate::output::table::Table;
@@ -47,23 +48,18 @@ fn expected(row: &Combination) -> Option<f64> {
 }
 
 fn table(rows: &[Combination]) -> Table {
-    let value = |what: &'static str| move |row: &Combination| mean(row, &format!("front_{what}"));
-    let single = |what: &'static str| {
-        move |row: &Combination| mean(row, &format!("front_{what}")).map(|of| of.mean)
-    };
+    let value =
+        |what: &str, row: &Combination| mean(row, &format!("front_{what}")).map(|of| of.mean);
     Table::of(rows)
         .column("crowd", |row| label(row).to_owned())
         .column("profile", profile)
         .fixed("spacing [m]", 2, spacing)
-        .fixed("front [m/s]", 2, value("speed_m_per_s"))
-        .fixed(
-            "standard error of the fit",
-            2,
-            single("speed_error_m_per_s"),
-        )
-        .fixed("spacing / T [m/s]", 2, expected)
-        .fixed("in space [m/s]", 2, value("speed_in_space_m_per_s"))
-        .fixed("slowness [s/m]", 3, value("slowness_s_per_m"))
+        .fixed("spacing / T [m/s]", 3, expected)
+        .fixed("front [m/s]", 3, front_speed)
+        .fixed("in space [m/s]", 2, |row| {
+            value("speed_in_space_m_per_s", row)
+        })
+        .fixed("slowness [s/m]", 3, |row| value("slowness_s_per_m", row))
         .table()
 }
 
@@ -74,8 +70,15 @@ fn sheet(rows: &[Combination]) -> Sheet {
         .iter()
         .map(|(name, rows)| times(name, rows))
         .collect();
-    if let Some(last) = panels.last_mut() {
-        last.legend = Some(Corner::UpperLeft);
+    let latest = panels
+        .iter()
+        .map(|panel| panel.y.range[1])
+        .fold(0.0, f64::max);
+    for panel in &mut panels {
+        panel.y.range[1] = latest;
+    }
+    if let Some(first) = panels.first_mut() {
+        first.legend = Some(Corner::UpperLeft);
     }
     panels.push(speeds(&groups));
     Sheet {
@@ -87,9 +90,10 @@ fn sheet(rows: &[Combination]) -> Sheet {
     }
 }
 
+/// Dots at the start of each person in the first run, and the fitted lines.
 fn times(name: &str, rows: &[&Combination]) -> Panel {
     let mut marks = Vec::new();
-    let mut latest = 10.0_f64;
+    let mut latest = 1.0_f64;
     for (k, row) in rows.iter().enumerate() {
         let found = row.results.first();
         let found: Option<FrontData> = found.and_then(|of| of.summary.data("front"));
@@ -116,16 +120,16 @@ fn speeds(groups: &[(String, Vec<&Combination>)]) -> Panel {
     let mut marks = Vec::new();
     let all = groups.iter().flat_map(|(_, rows)| rows);
     if let Some(time) = all.clone().find_map(|row| headway_time(row)) {
-        let line = vec![[0.0, 0.0], [2.0, 2.0 / time]];
+        let line = vec![[0.0, 0.0], [1.2, 1.2 / time]];
         let style = Style::full(GRAY, 1.0, &format!("spacing / {time} s"));
         marks.push(Mark::Line(line, style));
     }
     let measured = Style::broken(BLACK, 1.0, "start corrals of marathons");
-    marks.push(Mark::Line(vec![[0.0, MEASURED], [2.0, MEASURED]], measured));
+    marks.push(Mark::Line(vec![[0.0, MEASURED], [1.2, MEASURED]], measured));
     for (k, (name, rows)) in groups.iter().enumerate() {
         let points = rows.iter().filter_map(|row| {
-            let of = mean(row, "front_speed_m_per_s")?;
-            let (x, y, error) = (spacing(row)?, of.mean, of.error());
+            let Estimate { value: y, error } = front_speed(row)?;
+            let x = spacing(row)?;
             Some(Point { x, y, error })
         });
         let points: Vec<Point> = points.collect();
@@ -136,8 +140,8 @@ fn speeds(groups: &[(String, Vec<&Combination>)]) -> Panel {
             ));
         }
     }
-    let x = Axis::linear("spacing [m]", [0.0, 2.0]);
-    let y = Axis::linear("front speed [m/s]", [0.0, 2.5]);
+    let x = Axis::linear("spacing [m]", [0.0, 1.2]);
+    let y = Axis::linear("front speed [m/s]", [0.0, 1.6]);
     Panel {
         legend: Some(Corner::LowerRight),
         ..Panel::new("speed of the front", x, y, marks)
