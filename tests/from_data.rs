@@ -175,13 +175,23 @@ fn latecomers_wait_until_there_is_room_and_hold_up_no_one_else() {
 
 #[test]
 fn speeds_above_the_largest_are_clamped_and_counted() {
-    let people = [[1, 0, 0, 0, 3, 4], [2, 0, 5, 0, 1, 0]];
+    let people = json!([
+        [1, 0, 0, 0, 3, 4],
+        [2, 0, 5, 0, 1, 0],
+        [3, 1e-9, 20, 0, -9, 0]
+    ]);
     let document = json!({"goal": [9, 0], "max_speed": 2, "from": {"people": people}});
     let scenario = Scenario::parse(&document.to_string(), "f", &[]).unwrap();
-    let simulation = Simulation::new(scenario.scene).unwrap();
+    let note = "1 of 2 people of `from` are faster at the start than `max_speed` allows, and are slowed to it";
+    assert_eq!(scenario.notes, [note]);
+    let mut simulation = Simulation::new(scenario.scene).unwrap();
     let agents = simulation.frame().agents;
     assert!((agents.velocity[0] - Vector::new(1.2, 1.6)).norm() < 1e-12);
     assert_eq!(agents.velocity[1], Vector::new(1.0, 0.0));
+    simulation.evaluate().unwrap();
+    let agents = simulation.frame().agents;
+    let late = agents.id.iter().position(|&id| id == 2).unwrap();
+    assert!((agents.velocity[late] - Vector::new(-2.0, 0.0)).norm() < 1e-12);
     assert_eq!(simulation.outcome().clamped_speeds, 1);
 }
 

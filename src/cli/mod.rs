@@ -226,6 +226,9 @@ fn scenario(
     for (key, path) in &scenario.files {
         outputs.reads(key, path);
     }
+    for note in &scenario.notes {
+        talk(&format!("note: {note}"));
+    }
     Ok(scenario)
 }
 

@@ -32,7 +32,7 @@ pub struct Entrance {
 pub struct Latecomer {
     /// When it arrives, seconds. It enters at once if there is room between the other bodies, and else waits for it.
     pub at: f64,
-    /// The agent.
+    /// The agent; a speed above its s_max is clamped to it.
     pub agent: NewAgent,
 }
 

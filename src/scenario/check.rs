@@ -87,7 +87,7 @@ impl Contents {
         let choice = keys.profile.as_ref().unwrap_or(&default);
         let blend = profiles::blend(choice, &keys.parameters).under("profile")?;
         scene.journeys = journeys::journeys(keys, &scene.walls)?;
-        Crowd::new(keys, &blend, &behind, &mut scene).enter()?;
+        let notes = Crowd::new(keys, &blend, &behind, &mut scene).enter()?;
         let duration_secs = duration(keys);
         crowding::check(keys, &scene, duration_secs)?;
         measurements::check(&keys.measurements)?;
@@ -116,6 +116,7 @@ impl Contents {
             profile_name: blend.name,
             document: self.document,
             files: self.plans,
+            notes,
             scene,
         })
     }

@@ -39,6 +39,8 @@ pub(super) struct Crowd<'a> {
     shared: BTreeMap<String, u16>,
     /// The different profiles defined in full.
     custom: BTreeSet<String>,
+    /// For readers of the results.
+    pub notes: Vec<String>,
     /// The bodies of the first agents of the scene, as far as they have been needed.
     pub bodies: Vec<Body>,
 }
@@ -58,14 +60,16 @@ impl<'a> Crowd<'a> {
             scene,
             shared: BTreeMap::new(),
             custom: BTreeSet::new(),
+            notes: Vec::new(),
             bodies: Vec::new(),
         }
     }
 
-    /// Adds the people of `from`, single agents, grids, crowds, sources, then entrances. Their number has been checked.
-    pub(super) fn enter(mut self) -> Result<(), Problem> {
+    /// Adds the people of `from`, single agents, grids, crowds, sources, then entrances. Their number has been checked. Returns
+    /// notes for readers of the results.
+    pub(super) fn enter(mut self) -> Result<Vec<String>, Problem> {
         if let Some(from) = &self.file.from {
-            self.from_data(from).under("from")?;
+            self.add_data(from).under("from")?;
         }
         for (k, agent) in self.file.agents.iter().enumerate() {
             self.agent(agent).under(&format!("agents[{k}]"))?;
@@ -86,7 +90,7 @@ impl<'a> Crowd<'a> {
             let name = format!("entrances[{k}]");
             self.entrance(entrance, &name).under(&name)?;
         }
-        Ok(())
+        Ok(self.notes)
     }
 
     fn agent(&mut self, agent: &file::Agent) -> Result<(), Problem> {

@@ -254,7 +254,7 @@ fn people(path: &Path, given: &FromData) -> Result<Vec<Person>, Problem> {
 
 impl Building<'_> {
     /// Adds the people of `from`.
-    pub(super) fn from_data(&mut self, given: &FromData) -> Result<(), Problem> {
+    pub(super) fn add_data(&mut self, given: &FromData) -> Result<(), Problem> {
         let draws = [&given.preferred_speed, &given.radius, &given.mass, &None];
         let traits = traits(draws)?;
         let journey = self.journey(given.journey.as_deref(), given.goal.is_some())?;
@@ -284,7 +284,19 @@ impl Building<'_> {
             return Err(Problem::new("", reason));
         }
         later.sort_by(|a, b| a.enters().total_cmp(&b.enters()));
-        self.scene.agents.extend(there.into_iter().map(agent));
+        let mut faster = 0;
+        for person in &there {
+            let id = self.scene.agents.len() as u32;
+            let slowed = self.scene.slowed(agent(person), id);
+            faster += usize::from(slowed.velocity != person.velocity());
+            self.scene.agents.push(slowed);
+        }
+        if faster > 0 {
+            self.notes.push(format!(
+                "{faster} of {} people of `{FROM}` are faster at the start than `max_speed` allows, and are slowed to it",
+                there.len()
+            ));
+        }
         let latecomer = |person: &Person| Latecomer {
             at: person.enters(),
             agent: agent(person),

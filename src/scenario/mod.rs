@@ -109,6 +109,8 @@ pub struct Scenario {
     pub document: Value,
     /// The files that it names.
     pub files: Vec<PlanFile>,
+    /// What was changed to make it run, for readers of its results.
+    pub notes: Vec<String>,
 }
 
 /// The initial view of a recording.

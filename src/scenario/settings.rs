@@ -56,6 +56,11 @@ pub(super) fn is_text(key: &str) -> bool {
 /// Is the value of `key` an object that may be empty?
 pub(super) fn may_be_empty(key: &str) -> bool {
     let schema = resolved(property(key));
+    let mut others = ways(schema).into_iter().flatten();
+    let schema = match (others.next(), others.next()) {
+        (Some(only), None) => resolved(only),
+        _ => schema,
+    };
     allows(schema, "object") && schema.get("required").is_none()
 }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{Crowd, Fault};
 use crate::engine::agents::NewAgent;
 use crate::engine::entrance::{Entrance, place};
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, clamp_length};
 use crate::engine::random::{self, Purpose};
 use crate::engine::scene::Scene;
 
@@ -107,6 +107,18 @@ impl Late {
 }
 
 impl Scene {
+    /// The same agent, but with a speed of at most its s_max; it will have the id `id`.
+    #[must_use]
+    pub fn slowed(&self, agent: NewAgent, id: u32) -> NewAgent {
+        let traits = &self.groups[usize::from(agent.group)].traits;
+        let preferred = traits.drawn(agent, self.seed, id).preferred_speed;
+        let most = preferred.map_or(self.max_speed, |speed| self.own_speeds(speed)[1]);
+        NewAgent {
+            velocity: clamp_length(agent.velocity, most),
+            ..agent
+        }
+    }
+
     /// The name under which reports count the latecomers, that of their first group; `None` if there are none.
     pub fn latecomers_name(&self) -> Option<&str> {
         let first = self.latecomers.first()?;
@@ -133,7 +145,12 @@ impl Crowd {
             let radius = next.agent.radius;
             let radius = radius.unwrap_or_else(|| traits.radius_of(scene.seed, id));
             match next.has_room(radius, self.bodies()) {
-                true => self.enter(scene, next.agent)?,
+                true => {
+                    let agent = scene.slowed(next.agent, id);
+                    let is_slower = agent.velocity != next.agent.velocity;
+                    self.outcome.clamped_speeds += u64::from(is_slower);
+                    self.enter(scene, agent)?;
+                }
                 false => late.waiting.push(number),
             }
         }

@@ -4,14 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::agents::NewAgent;
 use crate::engine::clock::Clock;
-use crate::engine::math::clamp_length;
 use crate::engine::scene::{Goal, Push, Scene, Source};
 
 use super::entrances::{Backlog, Gate, Late};
 use super::{Crowd, Fault, Simulation, Stage};
-
-/// Relative rounding error that a speed clamped to s_max may have.
-const ROUNDING: f64 = 1e-9;
 
 /// A scheduled event.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -167,7 +163,7 @@ impl Crowd {
         Ok(())
     }
 
-    /// Lets one agent in. An agent inside an obstacle is moved to a free point nearby, and a speed above s_max is clamped.
+    /// Lets one agent in. An agent inside an obstacle is moved to a free point nearby.
     pub(super) fn enter(&mut self, scene: &Scene, mut new: NewAgent) -> Result<(), Fault> {
         let agent = self.agents.entered();
         let traits = &scene.groups[usize::from(new.group)].traits;
@@ -180,14 +176,9 @@ impl Crowd {
             new.position = free.ok_or(Fault::NoFreePoint { agent, obstacle })?;
             self.outcome.displaced.push((agent, obstacle));
         }
+        self.agents.enter(new, scene.seed);
         let usual = [scene.preferred_speed, scene.max_speed];
         let own = new.preferred_speed.map(|speed| scene.own_speeds(speed));
-        let [_, most] = own.unwrap_or(usual);
-        if new.velocity.norm() > most * (1.0 + ROUNDING) {
-            new.velocity = clamp_length(new.velocity, most);
-            self.outcome.clamped_speeds += 1;
-        }
-        self.agents.enter(new, scene.seed);
         self.agents.set_speeds(own, usual);
         let walks_from = new.premovement.map(|wait| self.clock.time() + wait);
         self.agents.set_start(walks_from);
