@@ -136,7 +136,7 @@ impl Spectrum {
         } else {
             0.0
         };
-        (here > 0.0).then(|| (top as f64 + shift) * self.step)
+        (here > 0.0).then_some((top as f64 + shift) * self.step)
     }
 
     /// The band that holds the power of a pure oscillation with this frequency, rad/s.
