@@ -6,6 +6,7 @@ use crate::common::{
     vector, walker,
 };
 use sandbox::analysis::stability::time_step;
+use sandbox::engine::agents::NewAgent;
 use sandbox::engine::forces::walking::lost_velocity;
 use sandbox::engine::math::Vector;
 use sandbox::engine::pairs::Precision;
@@ -120,7 +121,10 @@ fn agents_hold_their_speed_until_the_next_coarse_frame() {
     let goal = vector(60.0, 0.0);
     scene.agents = vec![
         walker(vector(0.0, 0.0), vector(0.6, 0.0), goal),
-        walker(vector(0.7, 0.0), Vector::zeros(), vector(0.7, 0.0)),
+        NewAgent {
+            preferred_speed: Some(0.01),
+            ..walker(vector(0.7, 0.0), Vector::zeros(), goal)
+        },
     ];
     let mut simulation = evaluated(scene);
     let held = |simulation: &Simulation| {
