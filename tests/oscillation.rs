@@ -66,6 +66,7 @@ fn the_spin_of_circles_is_their_sense() {
     for (sense, spin) in senses.iter().zip(&found.spins) {
         assert!((sense - spin).abs() < 1e-3, "{sense}: {spin}");
     }
+    // The rest is the mean of an incomplete circle, which is removed.
     assert!(found.peak_share().unwrap() > 0.99);
 }
 

@@ -32,8 +32,8 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// The periodogram of a series with a value `every` so many seconds, without its mean, with a Hann window. `None`
-    /// for fewer than 16 values.
+    /// The periodogram of a series without its mean, with a Hann window. `every` is the time between two values,
+    /// seconds. `None` for fewer than 16 values.
     pub fn of(series: &[[f64; 2]], every: f64) -> Option<Self> {
         let count = series.len();
         if count < FEWEST_SAMPLES {
@@ -157,8 +157,8 @@ pub struct Oscillation {
 }
 
 impl Oscillation {
-    /// Of the series of all boxes, with a value `every` so many seconds; `None` without boxes or for fewer than 16
-    /// values.
+    /// Averages the spectra of all boxes. `every` is the time between two values, seconds. `None` without boxes or for
+    /// fewer than 16 values.
     pub fn of(boxes: &[Vec<[f64; 2]>], every: f64) -> Option<Self> {
         let spectra = boxes.iter().map(|series| Spectrum::of(series, every));
         let spectra: Vec<Spectrum> = spectra.collect::<Option<_>>()?;

@@ -12,7 +12,7 @@ use super::catalog::Parameters;
 pub struct Calibrated {
     /// Its name.
     pub name: &'static str,
-    /// For whom, in a sentence.
+    /// The people whom it describes, and what it was fitted to.
     pub about: &'static str,
     /// The calibration that gives its parameters.
     pub study: &'static str,

@@ -74,9 +74,9 @@ pub fn add_coefficients(
     }
 }
 
-/// Eq. 23 for a disc of `radius` meters, summed over all of `walls` that overlap it and divided by the mass. Both faces of a wall push,
-/// and a corner counts once for each of its edges. An agent whose center is on a wall is pushed along the
-/// outward normal.
+/// Eq. 23 for the part of the radius that counts, summed over all of `walls` that overlap the disc and divided by the
+/// mass. Both faces of a wall push, and a corner counts once for each of its edges. An agent whose center is on a wall
+/// is pushed along the outward normal.
 pub fn from_walls(frame: &Frame, i: usize, walls: &[u32], contact: &Contact) -> Vector {
     let agents = frame.agents;
     let radius = agents.radius[i] * contact.wall_contact_scale;

@@ -33,12 +33,12 @@ fn distance(row: &Combination) -> Option<f64> {
     Some((last - first) / (found.people.len() as f64 - 1.0))
 }
 
-/// The speed of the one who is pushed, m/s.
+/// The initial speed of the pushed agent, m/s.
 fn push(row: &Combination) -> Option<f64> {
     row.cells.first()?.value(PUSH)?.get(0)?.as_f64()
 }
 
-/// Of all but the one who is pushed.
+/// The mean number of agents that the push reached, without the pushed one.
 fn reached(row: &Combination) -> Option<f64> {
     mean(row, "front_agents").map(|of| of.mean - 1.0)
 }
