@@ -42,6 +42,7 @@ fn scene(profile: &str) -> Scene {
 
 fn options(debug: DebugAgents) -> RecordingOptions {
     RecordingOptions {
+        id: "a-test".to_owned(),
         title: "a test".to_owned(),
         description: "Small".to_owned(),
         document: "A test".to_owned(),

@@ -55,7 +55,7 @@ fn whole() -> Value {
                          {"walks": {"name": "w", "region": [[0, 0], [5, 5]], "from_secs": 1, "until_secs": 5}},
                          {"line_flow": {"name": "l", "line": [[0, 0], [5, 0]], "region": [[0, 0], [5, 5]], "part": [0.2, 0.8]}}],
         "stop": {"when_empty": true, "idle_secs": 5},
-        "view": {"region": [[0, 0], [9, 9]], "opens_at_secs": 1},
+        "view": {"region": [[0, 0], [9, 9]], "opens_at_secs": 1, "density_range": [0, 8], "speed_range": [0.1, 2]},
         "debug_agents": [0, 1]
     })
 }

@@ -95,7 +95,10 @@ fn the_keys_of_nested_objects_are_documented() {
              remove_within?, trajectory?, unit?, until_secs?",
         ),
         ("stop", "idle_secs?, when_empty?"),
-        ("view", "region, opens_at_secs?"),
+        (
+            "view",
+            "density_range?, opens_at_secs?, region?, speed_range?",
+        ),
         (
             "profile",
             "one of base, navigation or blend, name?, parameters?, sph?",

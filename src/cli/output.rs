@@ -12,6 +12,7 @@ use crate::output::recording::{
     DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer,
 };
 use crate::runs::drive::{End, Observer, Run};
+use crate::runs::identity::Identity;
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::Scenario;
 
@@ -149,11 +150,11 @@ pub fn save_moment(
 
 /// The options of a recording that begins at the time `from`.
 fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> RecordingOptions {
-    let seed = scenario.seed;
-    let opens_at = scenario.view.opens_at_secs;
     let recorded = from..scenario.duration_secs;
+    let opens_at = scenario.view.opens_at_secs.unwrap_or(from);
     RecordingOptions {
-        title: format!("{} {} seed {seed}", scenario.name, scenario.profile_name),
+        id: Identity::of_run(scenario).to_string(),
+        title: title(scenario),
         description: scenario.description.clone(),
         document: format!("## Scenario\n```json\n{}\n```\n", scenario.to_text()),
         view: scenario.view.region,
@@ -166,6 +167,16 @@ fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> Reco
         debug,
         body_mass: scenario.mass_on_walls(),
     }
+}
+
+/// The name of a recording: the scenario with its profile and seed, and what differs from its file.
+fn title(scenario: &Scenario) -> String {
+    let own = format!("{} {}", scenario.name, scenario.profile_name);
+    let others = scenario.changes.iter();
+    let others =
+        others.filter(|change| !change.starts_with("profile") && !change.starts_with("seed "));
+    let changes: String = others.map(|change| format!(", {change}")).collect();
+    format!("{own} seed {}{changes}", scenario.seed)
 }
 
 fn debug_agents(record: &RecordOptions, scenario: &Scenario) -> Result<DebugAgents, Failure> {

@@ -103,7 +103,7 @@ impl Case {
             seed: scenario.seed,
             expected_secs: expected_secs(&scenario),
             need,
-            key: key(&scenario),
+            key: Identity::of_run(&scenario),
             source,
             settings,
             plans: scenario.files.into_iter().map(|(_, path)| path).collect(),
@@ -156,7 +156,7 @@ impl Case {
     /// Runs it on rayon's current threads.
     fn compute(&self, progress: Progress) -> Result<RunResult, RunError> {
         let scenario = self.scenario()?;
-        if key(&scenario) != self.key {
+        if Identity::of_run(&scenario) != self.key {
             return Err(RunError::Changed(shown(&scenario.name)));
         }
         let start = Instant::now();
@@ -178,10 +178,6 @@ impl Observer<Fault> for Progress<'_> {
         self(run.simulation.frame().clock.time() / duration);
         Ok(())
     }
-}
-
-fn key(scenario: &Scenario) -> Identity {
-    Identity::of("run", &scenario.document)
 }
 
 /// Estimates the time from the number of agents and frames, and from their forces; used to sort jobs.

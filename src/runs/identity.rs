@@ -5,6 +5,8 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::scenario::Scenario;
+
 /// A hash of the sources of everything that a run depends on (engine, analysis, scenarios with their measurements,
 /// runs), of all dependencies' versions and of the compiler: see `build.rs`.
 pub const ENGINE: &str = env!("SANDBOX_ENGINE");
@@ -21,6 +23,11 @@ impl Identity {
         let digest = Sha256::digest(format!("{ENGINE} {kind} {input}"));
         let digits = digest[..16].iter().map(|byte| format!("{byte:02x}"));
         Self(digits.collect())
+    }
+
+    /// The identity of a run of this scenario: of all its settings and the contents of the files that it names.
+    pub fn of_run(scenario: &Scenario) -> Self {
+        Self::of("run", &scenario.document)
     }
 }
 

@@ -14,19 +14,15 @@ use super::plan::Surroundings;
 use super::profiles::{ProfileChoice, ProfileName};
 use super::range::{self, region};
 use super::{
-    PlanFile, Scenario, View, from, journeys, measurements, periodic, plan, preset, profiles, ways,
+    PlanFile, Scenario, from, journeys, measurements, periodic, plan, preset, profiles, view, ways,
 };
 use crate::analysis::stability;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::engine::geometry::Polygon;
-use crate::engine::math::{Vector, bounds};
 use crate::engine::period::Period;
 use crate::engine::profile::Override;
-use crate::engine::scene::{Push, Region, Scene};
+use crate::engine::scene::{Push, Scene};
 use crate::scenario::trajectories::Tracks;
-
-/// Margin of the default view around walls, agents, goals and sources, meters.
-const DEFAULT_MARGIN: f64 = 1.0;
 
 /// A document whose keys and values have been checked one by one.
 #[derive(Debug, Clone)]
@@ -107,7 +103,8 @@ impl Contents {
             duration_secs,
             stop: keys.stop.clone(),
             measurements: keys.measurements.clone(),
-            view: view(keys.view.as_ref(), &scene).under("view")?,
+            view: view::of(keys.view.as_ref(), &scene).under("view")?,
+            changes: Vec::new(),
             debug_agents: match &keys.debug_agents {
                 Some(ids) => without_repetition(ids)?,
                 None => spread(entering),
@@ -238,46 +235,6 @@ fn pushes(events: &[file::Event]) -> Result<Vec<Push>, Problem> {
     };
     let pushes = events.iter().enumerate().map(push);
     pushes.filter_map(Result::transpose).collect()
-}
-
-fn view(given: Option<&file::View>, scene: &Scene) -> Result<View, Problem> {
-    let region = match given {
-        Some(given) => region("region", given.region)?,
-        None => surroundings(scene),
-    };
-    if region.min.x == region.max.x || region.min.y == region.max.y {
-        let reason = "encloses no area: its corners must differ in x and in y";
-        return Err(Problem::new("region", reason));
-    }
-    Ok(View {
-        region,
-        opens_at_secs: given.map_or(0.0, |given| given.opens_at_secs),
-    })
-}
-
-/// The bounding box of walls, agents, goals, sources, entrances and latecomers, with a margin.
-fn surroundings(scene: &Scene) -> Region {
-    let corners = scene.walls.iter().map(|wall| wall.start);
-    let late = scene.latecomers.iter().map(|late| &late.agent);
-    let agents = scene
-        .agents
-        .iter()
-        .chain(late)
-        .flat_map(|agent| [agent.position, agent.goal]);
-    let sources = scene
-        .sources
-        .iter()
-        .flat_map(|source| [source.grid.min, source.grid.max]);
-    let lines = scene.entrances.iter();
-    let lines = lines.flat_map(|entrance| [entrance.line[0], entrance.line[1], entrance.goal]);
-    let margin = Vector::new(DEFAULT_MARGIN, DEFAULT_MARGIN);
-    let [low, high] = bounds(corners.chain(agents).chain(sources).chain(lines)).unwrap_or_default();
-    let period = scene.period;
-    let [low, high] = period.map_or([low, high], |period| period.clipped([low, high]));
-    Region {
-        min: low - margin,
-        max: high + margin,
-    }
 }
 
 /// A dozen ids spread evenly over `entering` agents, or all ids if there are fewer.

@@ -78,7 +78,9 @@ impl Draft {
     pub fn scenario(self) -> Result<Scenario, ScenarioError> {
         let Self { contents, origin } = self;
         let scenario = contents.scenario(Path::new(&origin.file));
-        scenario.map_err(|problem| origin.blame(problem))
+        let mut scenario = scenario.map_err(|problem| origin.blame(problem))?;
+        scenario.changes = origin.changes();
+        Ok(scenario)
     }
 
     /// The [`scenario`](Self::scenario) and the size of its run, if it fits into `there` bytes of memory (`None`: no
@@ -102,6 +104,20 @@ impl Draft {
 }
 
 impl Origin {
+    /// The settings whose values differ from those in the file, as typed.
+    fn changes(&self) -> Vec<String> {
+        let differs = |(path, setting): &&(String, Setting)| {
+            let before = self
+                .without
+                .as_ref()
+                .and_then(|file| setting.value_in(file));
+            // Elements that were added to a list have no value in the file.
+            path.ends_with(']') || before != Some(setting.value())
+        };
+        let changes = self.settings.iter().filter(differs);
+        changes.map(|(_, setting)| setting.brief()).collect()
+    }
+
     /// The error for a problem: it names the setting that put the value there, else the file, and the settings if the
     /// file is valid without them.
     fn blame(&self, problem: Problem) -> ScenarioError {

@@ -153,7 +153,7 @@ pub(super) struct File {
     pub measurements: Vec<Measurement>,
     /// Conditions for stopping early.
     pub stop: Stop,
-    /// The initial view of a recording. Default: the whole scene.
+    /// What pictures and recordings show.
     pub view: Option<View>,
     /// Ids of the agents whose forces a recording shows. Default: a dozen, spread over all agents.
     pub debug_agents: Option<Vec<u32>>,
@@ -326,16 +326,21 @@ pub struct Stop {
     pub idle_secs: Option<f64>,
 }
 
-/// The initial view of a recording.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+/// What pictures and recordings show.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
 pub(super) struct View {
-    /// The visible part of the plane.
-    pub region: Corners,
-    /// The time at which the recording opens, seconds.
-    #[serde(default)]
+    /// The visible part of the plane. Default: the whole scene.
+    pub region: Option<Corners>,
+    /// The time at which a recording opens, seconds. Default: the moment of the highest density.
     #[schemars(range(min = 0, max = LONGEST_TIME))]
-    pub opens_at_secs: f64,
+    pub opens_at_secs: Option<f64>,
+    /// The densities with the first and the last color, P/m². Default: 0 and 1.2 rest_density_max, at most 10.
+    #[schemars(inner(range(min = 0, max = 1e6)))]
+    pub density_range: Option<[f64; 2]>,
+    /// The speeds with the first and the last color, m/s. Default: 0 and the 99th percentile of the preferred speeds.
+    #[schemars(inner(range(min = 0, max = 1e6)))]
+    pub speed_range: Option<[f64; 2]>,
 }
 
 /// Grids whose agents enter once.

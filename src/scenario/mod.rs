@@ -51,6 +51,7 @@ mod settings;
 mod shapes;
 mod shipped;
 mod spots;
+mod view;
 mod wall_lists;
 mod ways;
 
@@ -67,6 +68,7 @@ pub use schema::schema;
 pub use setting::{Setting, SettingError};
 pub use settings::{SettingDoc, nested_settings, settings};
 pub use shipped::{SHIPPED, Shipped, built_in};
+pub use view::View;
 pub use ways::WayFinding;
 
 use std::io::ErrorKind;
@@ -74,7 +76,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::engine::scene::{Region, Scene};
+use crate::engine::scene::Scene;
 use crate::scenario::measurements::Measurement;
 
 /// The key that names a file, and the file: a floor plan or trajectories.
@@ -97,7 +99,7 @@ pub struct Scenario {
     pub stop: Stop,
     /// What to measure.
     pub measurements: Vec<Measurement>,
-    /// The initial view of a recording.
+    /// What pictures and recordings show.
     pub view: View,
     /// Ids of the agents whose forces a recording shows. Some of them may never enter.
     pub debug_agents: Vec<u32>,
@@ -109,17 +111,10 @@ pub struct Scenario {
     pub document: Value,
     /// The files that it names.
     pub files: Vec<PlanFile>,
+    /// The settings that differ from the file, as typed: `gas_constant=400`, `seed 2`.
+    pub changes: Vec<String>,
     /// What was changed to make it run, for readers of its results.
     pub notes: Vec<String>,
-}
-
-/// The initial view of a recording.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct View {
-    /// The visible part of the plane, meters.
-    pub region: Region,
-    /// The time at which it opens, seconds.
-    pub opens_at_secs: f64,
 }
 
 impl Scenario {

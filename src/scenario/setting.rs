@@ -82,6 +82,27 @@ impl Setting {
         &self.path
     }
 
+    /// The value that it sets.
+    pub(super) fn value(&self) -> &Value {
+        &self.value
+    }
+
+    /// The value at its path in a document.
+    pub(super) fn value_in<'a>(&self, document: &'a Value) -> Option<&'a Value> {
+        self.path
+            .iter()
+            .try_fold(document, |outer, segment| match outer {
+                Value::Array(list) => list.get(segment.parse::<usize>().ok()?),
+                outer => outer.get(segment),
+            })
+    }
+
+    /// Its name in titles: `viscosity=5`, `seed 5`.
+    pub(super) fn brief(&self) -> String {
+        let text = self.text.strip_prefix("--set ").unwrap_or(&self.text);
+        text.trim_start_matches("--").to_owned()
+    }
+
     /// The same setting under another name in messages: `--seed 5`.
     #[must_use]
     pub fn typed_as(self, text: String) -> Self {

@@ -9,6 +9,7 @@ use crate::engine::scene::Region;
 use crate::output::recording::{
     DebugAgents, MeasuredPerson, MeasuredRecorder, RecordingError, RecordingOptions,
 };
+use crate::runs::identity::Identity;
 use crate::scenario::trajectories::Tracks;
 
 /// With ids larger than this, the recording uses the people's numbers instead.
@@ -42,10 +43,12 @@ impl<'a> MomentRecorder<'a> {
         let ends = [tracks.frames.first(), tracks.frames.last()];
         let ends = ends.map(|frame| frame.map_or(0.0, |&frame| tracks.time(frame)));
         let title = folder.file_name().unwrap_or_default().to_string_lossy();
+        let document = document(tracks, measured);
         let options = RecordingOptions {
+            id: Identity::of("measurement", format!("{title} {document}")).to_string(),
             title: title.into_owned(),
             description: "A crowd that was measured, by its SPH density (§8).".to_owned(),
-            document: document(tracks, measured),
+            document,
             view: Region {
                 min: low - margin,
                 max: high + margin,

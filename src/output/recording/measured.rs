@@ -46,7 +46,7 @@ impl MeasuredRecorder {
             debug: DebugAgents::None,
             ..options.clone()
         };
-        let output = Output::open(&to.into(), &options.title, options.title.clone())?;
+        let output = Output::open(&to.into(), &options.title, options.id.clone())?;
         let log_own = |stream: &RecordingStream| {
             text::log_measurement(stream, &options)?;
             geometry::log_still(stream, walls.obstacles())?;

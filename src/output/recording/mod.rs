@@ -58,7 +58,9 @@ const SIM_TIME: &str = "sim_time";
 /// The texts and views of a recording, in addition to the simulation itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordingOptions {
-    /// Its title in the viewer, for example the scenario's name.
+    /// Its identity: the viewer merges recordings with the same one.
+    pub id: String,
+    /// Its title in the viewer, for example the scenario's name and the settings that differ from its file.
     pub title: String,
     /// A one-line description; may be empty.
     pub description: String,
@@ -101,8 +103,7 @@ impl Recorder {
         simulation: &Simulation,
         options: &RecordingOptions,
     ) -> Result<Self, RecordingError> {
-        let id = format!("{}-seed{}", options.title, simulation.scene().seed);
-        let output = Output::open(&to.into(), &options.title, id)?;
+        let output = Output::open(&to.into(), &options.title, options.id.clone())?;
         let (scene, agents) = (simulation.scene(), simulation.frame().agents);
         let log_own = |stream: &RecordingStream| {
             text::log_run(stream, scene, options)?;
