@@ -93,15 +93,15 @@ fn a_stopped_move_is_counted_and_loses_its_inward_velocity() {
         vector(9.0, 0.0),
     )];
     let mut simulation = Simulation::new(scene).unwrap();
-    assert_eq!(simulation.outcome().contained_moves, 0);
+    assert_eq!(simulation.outcome().contained.count, 0);
     run(&mut simulation, 1);
-    assert_eq!(simulation.outcome().contained_moves, 1);
+    assert_eq!(simulation.outcome().contained.count, 1);
     let (r, v) = common::state(&simulation, 0);
     assert!(r.x < 1.0 && r.x > 1.0 - 1e-5);
     assert_eq!(v.x, 0.0);
     run(&mut simulation, 1000);
     assert!(common::state(&simulation, 0).0.x < 1.0);
-    assert_eq!(simulation.outcome().contained_moves, 1001);
+    assert_eq!(simulation.outcome().contained.count, 1001);
 }
 
 proptest! {

@@ -188,7 +188,7 @@ fn agents_walk_at_their_own_speeds() {
         assert!((speed - own).abs() < 1e-6, "{own} {speed}");
         assert_eq!(agents.max_speed[i], own * (1.8 / 1.4));
     }
-    assert_eq!(simulation.outcome().clamped_speeds, 0);
+    assert_eq!(simulation.outcome().clamped.count, 0);
 }
 
 #[test]

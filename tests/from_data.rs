@@ -192,7 +192,7 @@ fn speeds_above_the_largest_are_clamped_and_counted() {
     let agents = simulation.frame().agents;
     let late = agents.id.iter().position(|&id| id == 2).unwrap();
     assert!((agents.velocity[late] - Vector::new(-2.0, 0.0)).norm() < 1e-12);
-    assert_eq!(simulation.outcome().clamped_speeds, 1);
+    assert_eq!(simulation.outcome().clamped.count, 1);
 }
 
 #[test]

@@ -48,7 +48,7 @@ fn agents_leave_at_the_nearest_exit_on_the_edge_of_the_walkable_area() {
     let left = Left::of(&simulation, None);
     assert_eq!((left.started, left.finished), (40, 40));
     assert!(left.t50_secs < left.t95_secs && left.t95_secs <= left.t100_secs);
-    assert_eq!(simulation.outcome().contained_moves, 0);
+    assert_eq!(simulation.outcome().contained.count, 0);
 }
 
 #[test]

@@ -199,8 +199,8 @@ fn what_walls_take_is_the_change_of_momentum() {
     };
     let (before, step) = (momentum(&simulation), simulation.frame().clock.time_step());
     simulation.integrate().unwrap();
-    assert_eq!(simulation.outcome().clamped_speeds, 0);
-    assert_eq!(simulation.outcome().contained_moves, 0);
+    assert_eq!(simulation.outcome().clamped.count, 0);
+    assert_eq!(simulation.outcome().contained.count, 0);
     let change = (momentum(&simulation) - before) / step;
     assert!(
         (change - on_people).norm() < 1e-10 * on_people.norm(),

@@ -207,7 +207,7 @@ fn a_hundred_people_leave_a_room_and_every_density_is_positive() {
     let arrivals = &simulation.outcome().arrivals;
     assert_eq!(arrivals.len(), 100);
     assert!(arrivals.windows(2).all(|pair| pair[0].time <= pair[1].time));
-    assert_eq!(simulation.outcome().contained_moves, 0);
+    assert_eq!(simulation.outcome().contained.count, 0);
 }
 
 /// The measurement of a flow until a time in seconds.

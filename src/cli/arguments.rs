@@ -12,6 +12,7 @@ use crate::scenario::Preset;
 
 /// Options that change a scenario and how it is computed.
 #[derive(Args)]
+#[command(next_help_heading = "Scenario")]
 pub struct SceneOptions {
     /// Default profile, for agents that name none: sf, rvo, sf+sph, rvo+sph, sph, sf->sph or rvo->sph (quote the
     /// arrow)
@@ -38,6 +39,7 @@ pub struct SceneOptions {
 
 /// Options of computing and reporting.
 #[derive(Args)]
+#[command(next_help_heading = "Program")]
 pub struct ProgramOptions {
     /// Number of threads; the results do not depend on it [default: all cores]
     #[arg(long, value_parser = threads)]
@@ -70,6 +72,7 @@ pub struct ResumeOptions {
 
 /// The length of a run and its output files.
 #[derive(Args)]
+#[command(next_help_heading = "Run")]
 pub struct OutputOptions {
     /// Time at which the run ends, seconds [default: the scenario's duration]
     #[arg(long, value_name = "SECS", allow_negative_numbers = true, value_parser = seconds)]
@@ -84,6 +87,7 @@ pub struct OutputOptions {
 
 /// Options of checkpoints.
 #[derive(Args)]
+#[command(next_help_heading = "Checkpoints")]
 pub struct CheckpointOptions {
     /// Write checkpoints to this file, each replacing the previous one; a run shorter than the interval writes one at
     /// its end
@@ -96,6 +100,7 @@ pub struct CheckpointOptions {
 
 /// Options of recordings.
 #[derive(Args)]
+#[command(next_help_heading = "Recording and live view")]
 #[command(group(ArgGroup::new("record").multiple(true).args(["save", "spawn", "connect"])))]
 pub struct RecordOptions {
     /// Write a recording for the Rerun viewer
@@ -133,6 +138,7 @@ pub struct RecordOptions {
 
 /// Options of trajectory files.
 #[derive(Args)]
+#[command(next_help_heading = "Trajectories")]
 pub struct TrajectoryOptions {
     /// Write the trajectories: .sqlite or .db for JuPedSim and PedPy, .txt, or .csv with all quantities; may be
     /// repeated

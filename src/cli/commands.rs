@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
 use super::arguments::{DrawOptions, InspectOptions, ResumeOptions, RunOptions};
-use super::{accuracy, bench, calibrate, measure, reproduce, stress, suite, sweep};
+use super::{accuracy, bench, calibrate, compare, measure, reproduce, stress, suite, sweep};
 use crate::lab::validate::VALIDATION;
 use crate::lab::verify::VERIFICATION;
 
@@ -118,12 +118,18 @@ pub enum Command {
         after_help = "Example: sandbox measure run.sqlite --line 21,9.6,21,10.4 --region 15,8,19,12"
     )]
     Measure(measure::MeasureOptions),
+    /// List what differs between two results: in settings and measurements, or between two trajectory files
+    #[command(after_help = "Example: sandbox compare one.json other.json")]
+    Compare(compare::CompareOptions),
     /// List the built-in scenarios and the profiles, or the settings that --set takes
     #[command(after_help = "Example: sandbox list --settings")]
     List {
         /// List the settings that --set takes, with meaning, unit, default and range
         #[arg(long)]
         settings: bool,
+        /// Print one JSON object instead of text
+        #[arg(long)]
+        json: bool,
     },
     /// Print a shell completion script
     #[command(

@@ -5,22 +5,23 @@ use std::path::Path;
 
 use indicatif::ProgressBar;
 
-use super::arguments::{OutputOptions, ProgramOptions, RecordOptions, ResumeOptions, RunOptions};
+use super::arguments::{OutputOptions, ProgramOptions, ResumeOptions, RunOptions};
 use super::checkpoint::Checkpoints;
 use super::interrupt::Interrupt;
-use super::output::{Recording, check, ids};
+use super::output::{Recording, check};
 use super::watch::bar;
-use super::{Failure, memory, report, scenario, setting, talk, tell, trajectory, use_threads};
+use super::{
+    Failure, memory, notes, report, scenario, setting, talk, tell, trajectory, use_threads,
+};
 use crate::analysis::stability::{FITTED, Mode, Scheme};
 use crate::engine::clock::{Clock, SHORTEST_TIME_STEP};
 use crate::engine::scene::Scene;
-use crate::engine::simulation::{EventKind, Simulation};
+use crate::engine::simulation::Simulation;
 use crate::lab::machine::main_memory;
 use crate::runs::case::Source;
 use crate::runs::checkpoint::Checkpoint;
 use crate::runs::drive::{End, Observer, Run};
 use crate::runs::outputs::Outputs;
-use crate::scenario::quote::shown;
 use crate::scenario::{Scenario, Setting, in_units};
 
 /// `sandbox evacuation|crossing|concert|plaza|run`.
@@ -128,17 +129,12 @@ fn go_on(
     // Close all files first, so that they are kept even if the run failed.
     let finished: Vec<_> = observers.into_iter().map(Observer::finish).collect();
     let end = driven.map_err(|failure| failure.laid_open(&mut run.simulation))?;
-    report_oddities(&run.simulation);
-    report_absent(&options.record, &run.simulation);
-    let interrupted = end == End::Interrupted;
-    tell(
-        program.json,
-        || report::json(&run, interrupted),
-        || report::text(&run, interrupted),
-    )?;
+    notes::print(&run.simulation);
+    notes::print_absent(&options.record, &run.simulation);
+    tell(program.json, || report::json(&run), || report::text(&run))?;
     finished.into_iter().collect::<Result<(), _>>()?;
     match interrupt.exit_code() {
-        Some(exit_code) if interrupted => {
+        Some(exit_code) if end == End::Interrupted => {
             let time = run.simulation.frame().clock.time();
             Err(Failure::Interrupted { time, exit_code })
         }
@@ -164,77 +160,6 @@ fn warn_of_the_step(scene: &Scene) {
             "warning: time_step_secs {step} is {:.1} times {largest:.4}, the largest step at which a crowd comes to \
              rest; {advice}",
             step / largest,
-        ));
-    }
-}
-
-/// Prints notes on displaced agents, stopped moves, clamped speeds, agents that waited for room and pushes without
-/// agents.
-fn report_oddities(simulation: &Simulation) {
-    let outcome = simulation.outcome();
-    if !outcome.displaced.is_empty() {
-        let count = outcome.displaced.len();
-        let (agent, obstacle) = outcome.displaced[0];
-        talk(&format!(
-            "note: {count} agent(s) entered inside an obstacle or outside of the walkable area and were moved \
-             to the nearest free point (the first: agent {agent}, obstacle {obstacle})"
-        ));
-    }
-    if outcome.contained_moves > 0 {
-        talk(&format!(
-            "note: {} move(s) would have crossed a wall and were stopped there",
-            outcome.contained_moves
-        ));
-    }
-    if outcome.clamped_speeds > 0 {
-        let frame = simulation.frame();
-        let (count, most) = (outcome.clamped_speeds, simulation.scene().max_speed);
-        let frames = frame.clock.frame();
-        let mut groups = simulation.scene().groups.iter();
-        let differ = groups.any(|group| group.traits.preferred_speed.is_some());
-        let most = match differ {
-            true => "the agents' largest speeds".to_owned(),
-            false => format!("{most} m/s"),
-        };
-        talk(&format!(
-            "note: speeds were clamped to {most} {count} time(s) in {frames} frames"
-        ));
-    }
-    for backlog in simulation.backlogs().filter(|one| one.largest > 0) {
-        let time = simulation.frame().clock.time_at(backlog.largest_frame);
-        let (name, largest) = (shown(backlog.name), backlog.largest);
-        let rest = match backlog.waiting {
-            0 => String::new(),
-            waiting => format!("; {waiting} still wait"),
-        };
-        talk(&format!(
-            "note: up to {largest} agent(s) waited for room at \"{name}\" (first at {time:.1} s){rest}"
-        ));
-    }
-    for event in simulation.events() {
-        if event.kind == EventKind::PushBegan(0) {
-            let name = shown(&event.name);
-            talk(&format!(
-                "note: no agents were in the region of \"{name}\" when it began"
-            ));
-        }
-    }
-}
-
-/// Prints which agents of `--debug-agents` never entered.
-fn report_absent(record: &RecordOptions, simulation: &Simulation) {
-    let entered = simulation.frame().agents.entered();
-    let asked = record.debug_agents.as_deref().map(ids);
-    let asked = asked.and_then(Result::ok).unwrap_or_default();
-    let absent: Vec<String> = asked
-        .iter()
-        .filter(|&&id| id >= entered)
-        .map(u32::to_string)
-        .collect();
-    if !absent.is_empty() {
-        talk(&format!(
-            "note: --debug-agents: {} never entered: only {entered} agents entered, with ids from 0",
-            absent.join(", ")
         ));
     }
 }

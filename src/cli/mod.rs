@@ -6,6 +6,7 @@ mod bench;
 mod calibrate;
 mod checkpoint;
 mod commands;
+mod compare;
 mod draw;
 mod drive;
 mod inspect;
@@ -15,6 +16,7 @@ mod manual;
 mod measure;
 mod memory;
 mod moment;
+mod notes;
 mod output;
 mod report;
 mod reproduce;
@@ -162,7 +164,8 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Schema => list::schema(),
         Command::Sweep(options) => sweep::run(&options),
         Command::Measure(options) => measure::run(&options),
-        Command::List { settings } => list::run(settings),
+        Command::Compare(options) => compare::run(&options),
+        Command::List { settings, json } => list::run(settings, json),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man { out } => manual::man(out.as_deref()),
     }

@@ -1,20 +1,31 @@
 //! The results of a run as text or JSON.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Map, Value, json};
 
+use crate::lab::reproduce::published_for;
 use crate::output::table::Table;
-use crate::runs::drive::Run;
+use crate::runs::drive::{End, Run};
+use crate::runs::identity::Identity;
 use crate::runs::summary::{JourneyResult, PlaceResult, Summary, value};
-use crate::scenario::measurements::Measurement;
+use crate::scenario::measurements::{Measurement, STUCK_AFTER, StuckGroup};
 use crate::scenario::quote::shown;
 
-/// The summary, with threads and run times.
-pub fn json(run: &Run, interrupted: bool) -> Value {
+/// The summary, with version, identity, all settings, threads and run times.
+pub fn json(run: &Run) -> Value {
     let stages = run.simulation.stages().ms_per_frame();
     let stages = stages.map(|(stage, ms)| (stage.name().to_owned(), json!(ms)));
     let [ms, real_time_factor] = speed(run);
     let mut report = json!(Summary::of(run));
-    report["interrupted"] = json!(interrupted);
+    report["version"] = json!(env!("CARGO_PKG_VERSION"));
+    report["identity"] = json!(Identity::of_run(&run.scenario));
+    report["settings"] = run.scenario.settings();
+    let published: BTreeMap<_, _> = published_for(&run.scenario).into_iter().collect();
+    if !published.is_empty() {
+        report["paper"] = json!(published);
+    }
+    report["interrupted"] = json!(run.end == Some(End::Interrupted));
     report["threads"] = json!(rayon::current_num_threads());
     report["ms_per_frame"] = json!(ms);
     report["real_time_factor"] = json!(real_time_factor);
@@ -25,20 +36,20 @@ pub fn json(run: &Run, interrupted: bool) -> Value {
 /// The least width of names.
 const NAME_WIDTH: usize = 24;
 
-/// The measurements and run times.
-pub fn text(run: &Run, interrupted: bool) -> String {
+/// The measurements and run times, and a sentence on how the run ended.
+pub fn text(run: &Run) -> String {
     let frame = run.simulation.frame();
     let mut text = format!(
-        "{} ({}), seed {}: {} agents, {:.2} s in {} frames{}\n",
+        "{} ({}), seed {}: {} agents, {:.2} s in {} frames\n",
         shown(&run.scenario.name),
         shown(&run.scenario.profile_name),
         run.scenario.seed,
         frame.agents.entered(),
         frame.clock.time(),
         frame.clock.frame(),
-        if interrupted { ", interrupted" } else { "" },
     );
     let metrics = run.metrics.results(&run.simulation);
+    let published = published_for(&run.scenario);
     let names = metrics.iter().map(|metric| metric.name.chars().count());
     let width = names.fold(NAME_WIDTH, usize::max);
     for metric in metrics {
@@ -47,7 +58,13 @@ pub fn text(run: &Run, interrupted: bool) -> String {
             (_, Some(value)) => format!("{value:.3}"),
             (_, None) => "–".to_owned(),
         };
-        text += &format!("  {:<width$} {value:>10} {}\n", metric.name, metric.unit);
+        let paper = published.iter().find(|(name, _)| *name == metric.name);
+        let paper = paper.map(|(_, paper)| format!("  (paper, Table 1: {paper})"));
+        let paper = paper.unwrap_or_default();
+        text += &format!(
+            "  {:<width$} {value:>10} {}{paper}\n",
+            metric.name, metric.unit
+        );
     }
     if run.scenario.measurements.iter().any(has_thresholds) {
         text += "  (thresholds are from the literature, not safety limits: docs/measurements.md)\n";
@@ -60,6 +77,52 @@ pub fn text(run: &Run, interrupted: bool) -> String {
     );
     for (stage, ms) in run.simulation.stages().ms_per_frame() {
         text += &format!("  {:<NAME_WIDTH$} {ms:>10.4} ms\n", stage.name());
+    }
+    text + &ending(run)
+}
+
+/// How many agents entered, arrived and remain, why the run ended, and which agents are stuck.
+fn ending(run: &Run) -> String {
+    /// The most causes to print.
+    const MOST: usize = 3;
+    let (frame, outcome) = (run.simulation.frame(), run.simulation.outcome());
+    let (entered, arrived) = (frame.agents.entered(), outcome.arrivals.len());
+    let (remain, time) = (frame.agents.len(), frame.clock.time());
+    let idle = run.scenario.stop.idle_secs.unwrap_or_default();
+    let reason = match run.end {
+        Some(End::Empty) => ": no agents were left".to_owned(),
+        Some(End::Idle) => format!(": no agent had arrived for {idle} s"),
+        Some(End::Interrupted) => ": it was interrupted".to_owned(),
+        Some(End::Duration) | None => ", its duration".to_owned(),
+    };
+    let mut text = format!(
+        "{entered} agents entered, {arrived} arrived, {remain} remain; the run ended at {time:.2} s{reason}.\n"
+    );
+    let groups = run.metrics.stuck(&run.simulation);
+    let stuck: usize = groups.iter().map(|group| group.agents).sum();
+    if stuck == 0 {
+        return text;
+    }
+    text += &format!(
+        "{stuck} of {remain} agents are stuck: they made no way towards their goals in the last {STUCK_AFTER} s.\n"
+    );
+    for StuckGroup {
+        cause,
+        agents,
+        agent,
+        at: [x, y],
+        for_secs,
+    } in groups.iter().take(MOST)
+    {
+        text += &format!(
+            "  {agents}: {cause} (agent {agent} at ({x:.2}, {y:.2}), for {for_secs:.0} s)\n"
+        );
+    }
+    if groups.len() > MOST {
+        text += &format!(
+            "  and {} more causes: --json lists them\n",
+            groups.len() - MOST
+        );
     }
     text
 }

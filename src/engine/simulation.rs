@@ -5,6 +5,7 @@ mod digest;
 mod entrances;
 mod evaluate;
 mod integrate;
+mod limited;
 mod loads;
 mod passing;
 mod queues;
@@ -15,6 +16,7 @@ mod trips;
 
 pub use choice::{Decision, Expected, Prospect, Reason};
 pub use entrances::Backlog;
+pub use limited::{Limited, SPOT_RADIUS};
 pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};
 pub use state::{State, StateError};
@@ -103,10 +105,12 @@ struct Buffers {
 pub struct Outcome {
     /// Agents that reached their goal and left, in order.
     pub arrivals: Vec<Arrival>,
-    /// Number of moves stopped at a wall that they would have crossed.
-    pub contained_moves: u64,
-    /// Number of times that a speed was clamped to s_max.
-    pub clamped_speeds: u64,
+    /// Number of moves so far: one per agent and frame.
+    pub moves: u64,
+    /// Moves stopped at a wall that they would have crossed.
+    pub contained: Limited,
+    /// Moves after which the speed was clamped to s_max.
+    pub clamped: Limited,
     /// Agents that entered inside an obstacle and were moved out of it: id and obstacle.
     pub displaced: Vec<(u32, usize)>,
 }

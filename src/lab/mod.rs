@@ -2,7 +2,7 @@
 //! ([`sweep`]), run time on this [`machine`] ([`mod@bench`]), hard cases and the largest stable time step ([`stress`]),
 //! run time against error ([`accuracy`]), cases with known answers ([`suite`], [`mod@verify`]), scenes of experiments
 //! ([`mod@validate`]), and the search for parameters that meet them ([`calibrate`]). [`measure`] finds densities, fields,
-//! fundamental diagrams and flows of any trajectory.
+//! fundamental diagrams and flows of any trajectory, [`differences`] what differs between two results.
 
 pub mod error;
 
@@ -11,6 +11,8 @@ pub mod jobs;
 pub mod machine;
 
 pub mod measure;
+
+pub mod differences;
 
 pub mod sweep;
 

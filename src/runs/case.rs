@@ -82,8 +82,6 @@ pub struct RunResult {
     pub summary: Summary,
     /// Number of counted arrivals.
     pub evacuated: usize,
-    /// Number of agents at the end.
-    pub remaining: usize,
     /// Computing time, seconds.
     pub wall_secs: f64,
 }
@@ -166,7 +164,6 @@ impl Case {
         Ok(RunResult {
             summary: Summary::of(&run),
             evacuated: arrivals.iter().filter(|arrival| arrival.counted).count(),
-            remaining: run.simulation.frame().agents.len(),
             wall_secs: start.elapsed().as_secs_f64(),
         })
     }

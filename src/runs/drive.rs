@@ -3,6 +3,8 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
+use serde::{Deserialize, Serialize};
+
 use crate::engine::simulation::{Fault, Simulation};
 use crate::scenario::Scenario;
 use crate::scenario::measurements::Metrics;
@@ -15,13 +17,20 @@ pub struct Run {
     pub simulation: Simulation,
     /// Its measurements.
     pub metrics: Metrics,
+    /// Why it ended; `None` until then.
+    pub end: Option<End>,
 }
 
 /// Why a run ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum End {
-    /// The scenario's duration is reached, or one of its [`stop`](Scenario::stop) conditions holds.
-    Over,
+    /// No agents are left and none will enter: [`stop.when_empty`](crate::scenario::Stop::when_empty).
+    Empty,
+    /// No agent has arrived for some time: [`stop.idle_secs`](crate::scenario::Stop::idle_secs).
+    Idle,
+    /// The scenario's duration is reached.
+    Duration,
     /// It was interrupted.
     Interrupted,
 }
@@ -56,6 +65,7 @@ impl Run {
             scenario,
             simulation,
             metrics,
+            end: None,
         })
     }
 
@@ -77,11 +87,13 @@ impl Run {
             let evaluated = start.elapsed();
             self.metrics.observe(&self.simulation);
             let is_last = self.simulation.frame().clock.frame() >= last_frame;
-            let then = match is_last || self.is_over() {
-                true => ControlFlow::Break(End::Over),
-                false if interrupted() => ControlFlow::Break(End::Interrupted),
-                false => ControlFlow::Continue(()),
-            };
+            self.end = self
+                .stops()
+                .or(is_last.then_some(End::Duration))
+                .or_else(|| interrupted().then_some(End::Interrupted));
+            let then = self
+                .end
+                .map_or(ControlFlow::Continue(()), ControlFlow::Break);
             for observer in &mut *observers {
                 observer.observe(self, ms, then)?;
             }
@@ -94,13 +106,16 @@ impl Run {
         }
     }
 
-    /// Does one of the scenario's [`stop`](Scenario::stop) conditions hold?
-    fn is_over(&self) -> bool {
+    /// Which of the scenario's [`stop`](crate::scenario::Scenario::stop) conditions holds?
+    fn stops(&self) -> Option<End> {
         let (frame, stop) = (self.simulation.frame(), &self.scenario.stop);
         let mut arrivals = self.simulation.outcome().arrivals.iter().rev();
         let last = arrivals.find(|arrival| arrival.counted);
         let idle = frame.clock.time() - last.map_or(0.0, |arrival| arrival.time);
-        let empty = frame.agents.is_empty() && !self.simulation.expects_agents();
-        stop.when_empty && empty || stop.idle_secs.is_some_and(|most| idle > most)
+        if stop.when_empty && frame.agents.is_empty() && !self.simulation.expects_agents() {
+            return Some(End::Empty);
+        }
+        let is_idle = stop.idle_secs.is_some_and(|most| idle > most);
+        is_idle.then_some(End::Idle)
     }
 }

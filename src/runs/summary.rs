@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 
 use crate::engine::journeys::{Kind, Place};
 use crate::engine::simulation::{self, PlaceState, Simulation};
-use crate::runs::drive::Run;
-use crate::scenario::measurements::{Left, Metric};
+use crate::runs::drive::{End, Run};
+use crate::scenario::measurements::{Left, Metric, StuckGroup};
 
 /// The results of a run, part of what `--json` reports.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -34,6 +34,17 @@ pub struct Summary {
     pub time_secs: f64,
     /// Number of agents that entered.
     pub agents: u32,
+    /// Number of agents that reached their goal and left.
+    pub arrived: usize,
+    /// Number of agents at the end.
+    pub remaining: usize,
+    /// Why the run ended; `None` if it has not.
+    pub end: Option<End>,
+    /// Number of agents at the end that had made no way towards their goal for 20 s.
+    pub stuck: usize,
+    /// These agents by the likely cause.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stuck_because: Vec<StuckGroup>,
     /// The measurements by name; counts are integers, missing values are `null`.
     pub metrics: BTreeMap<String, Value>,
     /// Data of measurements that have more than values, such as snapshots, by name.
@@ -81,6 +92,7 @@ impl Summary {
             at_end: of.waiting,
         };
         let measured = run.metrics.results(simulation).into_iter();
+        let stuck_because = run.metrics.stuck(simulation);
         Self {
             scenario: scenario.name.clone(),
             profile: scenario.profile_name.clone(),
@@ -91,12 +103,17 @@ impl Summary {
             frames: frame.clock.frame(),
             time_secs: frame.clock.time(),
             agents: frame.agents.entered(),
+            arrived: outcome.arrivals.len(),
+            remaining: frame.agents.len(),
+            end: run.end,
+            stuck: stuck_because.iter().map(|group| group.agents).sum(),
+            stuck_because,
             metrics: measured.map(|m| (m.name.clone(), value(&m))).collect(),
             data: run.metrics.data().collect(),
             journeys: JourneyResult::all(simulation),
             places: PlaceResult::all(simulation),
-            contained_moves: outcome.contained_moves,
-            clamped_speeds: outcome.clamped_speeds,
+            contained_moves: outcome.contained.count,
+            clamped_speeds: outcome.clamped.count,
             backlogs: simulation.backlogs().map(backlog).collect(),
             displaced_agents: outcome.displaced.len(),
         }

@@ -20,6 +20,17 @@ pub const NAMES: [&str; 7] = [
     "sf", "rvo", "sf+sph", "rvo+sph", "sph", "sf->sph", "rvo->sph",
 ];
 
+/// What the profiles of §5.5 do, in the order of their names.
+pub const ABOUT: [&str; NAMES.len()] = [
+    "social forces: agents push each other away from a distance; for crowds up to about 2 P/m²",
+    "velocity obstacles: agents choose velocities without collisions; for crowds up to about 2 P/m²",
+    "social forces and fluid forces at all densities",
+    "velocity obstacles and fluid forces at all densities",
+    "fluid forces and the way to the goal only, no avoidance; for dense crowds, from about 4 P/m²",
+    "social forces up to 2 P/m², fluid forces from 4 P/m², a blend between: for crowds of all densities",
+    "velocity obstacles up to 2 P/m², fluid forces from 4 P/m², a blend between: for crowds of all densities",
+];
+
 /// Other spellings of blends: a shell takes an unquoted `>` for a redirection.
 pub const ALIASES: [(&str, &str); 2] = [("sf-sph", "sf->sph"), ("rvo-sph", "rvo->sph")];
 

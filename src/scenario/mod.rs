@@ -32,6 +32,7 @@ mod crowds;
 mod distribution;
 mod document;
 mod draft;
+mod effective;
 mod entrances;
 mod error;
 mod file;

@@ -147,8 +147,9 @@ impl Crowd {
             match next.has_room(radius, self.bodies()) {
                 true => {
                     let agent = scene.slowed(next.agent, id);
-                    let is_slower = agent.velocity != next.agent.velocity;
-                    self.outcome.clamped_speeds += u64::from(is_slower);
+                    if agent.velocity != next.agent.velocity {
+                        self.outcome.clamped.add(agent.position);
+                    }
                     self.enter(scene, agent)?;
                 }
                 false => late.waiting.push(number),

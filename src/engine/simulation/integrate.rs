@@ -107,8 +107,14 @@ impl Simulation {
     /// Moves all agents by a whole frame; counts moves stopped by walls and clamped speeds.
     fn move_all(&mut self, motion: impl Fn(usize, Vector, Vector) -> Motion + Sync) {
         let moves = self.move_agents(self.crowd.clock.time_step(), motion);
-        self.crowd.outcome.contained_moves += moves.contained;
-        self.crowd.outcome.clamped_speeds += moves.clamped;
+        let outcome = &mut self.crowd.outcome;
+        outcome.moves += self.crowd.agents.len() as u64;
+        for p in moves.contained {
+            outcome.contained.add(p);
+        }
+        for p in moves.clamped {
+            outcome.clamped.add(p);
+        }
     }
 
     /// Moves all agents by `dt` seconds. `motion` maps index, velocity and acceleration to the motion of an agent.
@@ -236,10 +242,10 @@ struct Limits<'a> {
 /// Statistics of moves.
 #[derive(Default)]
 struct Moves {
-    /// Number of moves stopped at a wall.
-    contained: u64,
-    /// Number of clamped speeds.
-    clamped: u64,
+    /// Where moves began that were stopped at a wall, meters.
+    contained: Vec<Vector>,
+    /// Where moves began after which the speed was clamped, meters.
+    clamped: Vec<Vector>,
     /// Largest squared distance of any agent from its position at the last sort, m².
     farthest: f64,
 }
@@ -257,7 +263,9 @@ impl Moves {
     ) {
         let start = *position;
         *velocity = clamp_length(motion.velocity, limits.speed);
-        self.clamped += u64::from(*velocity != motion.velocity);
+        if *velocity != motion.velocity {
+            self.clamped.push(start);
+        }
         let target = start + clamp_length(motion.way, limits.speed) * dt;
         if limits.near.is_empty() {
             *position = target;
@@ -268,15 +276,14 @@ impl Moves {
         if let Some((_, wall)) = stopped {
             let normal = limits.walls.wall(wall).normal;
             *velocity -= normal * velocity.dot(&normal).min(0.0);
-            self.contained += 1;
+            self.contained.push(start);
         }
     }
 
-    fn and(self, other: Self) -> Self {
-        Self {
-            contained: self.contained + other.contained,
-            clamped: self.clamped + other.clamped,
-            farthest: self.farthest.max(other.farthest),
-        }
+    fn and(mut self, mut other: Self) -> Self {
+        self.contained.append(&mut other.contained);
+        self.clamped.append(&mut other.clamped);
+        self.farthest = self.farthest.max(other.farthest);
+        self
     }
 }

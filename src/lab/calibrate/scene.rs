@@ -114,7 +114,7 @@ impl Scene {
     fn stuck(&self, run: &RunResult, secs: f64) -> Option<String> {
         let waiting = run.summary.backlogs.iter();
         let waiting: u32 = waiting.map(|backlog| backlog.at_end).sum();
-        let left = run.remaining + waiting as usize;
+        let left = run.summary.remaining + waiting as usize;
         if !self.ends_empty || left == 0 {
             return None;
         }

@@ -22,6 +22,6 @@ pub use product::{Needs, Product};
 pub use published::{Published, PublishedRow, Table, Varied, published};
 pub use ranking::{Ranked, Ranking, rankings};
 pub use row::Row;
-pub use table1::rows as table1_rows;
+pub use table1::{published_for, rows as table1_rows};
 pub use table2::Table as CrossingTable;
 pub use text::put_between;

@@ -9,6 +9,7 @@ use super::row::{self, Row, compared, profiles};
 use crate::lab::error::LabError;
 use crate::lab::sweep::{Combination, Gathered};
 use crate::runs::store::Store;
+use crate::scenario::{Scenario, Setting};
 
 /// The table.
 pub const PRODUCT: Product = Product {
@@ -19,6 +20,9 @@ pub const PRODUCT: Product = Product {
     needs: Needs::Seeds,
     write,
 };
+
+/// The scenario.
+const EVACUATION: &str = "evacuation";
 
 /// The metrics of density, deviation and flow.
 const METRICS: [&str; 3] = ["density_mean_15s", "density_std_15s", "flow_per_s"];
@@ -41,6 +45,52 @@ pub fn rows(results: &Gathered) -> Result<Vec<Row>, LabError> {
     let ours = results.combinations();
     let paper = published()?.table1.rows.into_iter();
     Ok(paper.zip(&ours).map(row).collect())
+}
+
+/// The paper's values for a run of the evacuation with the settings of one of the table's rows, by the names of our
+/// measurements; empty for other runs.
+pub fn published_for(scenario: &Scenario) -> Vec<(&'static str, f64)> {
+    let row = published().ok().and_then(|published| {
+        let mut rows = published.table1.rows.into_iter();
+        rows.find(|row| has_settings_of(scenario, row))
+    });
+    let Some(row) = row else {
+        return Vec::new();
+    };
+    let values = [row.density, row.deviation, row.flow];
+    METRICS.into_iter().zip(values).collect()
+}
+
+/// Does a scenario have the settings of a row, whatever its seeds and its view?
+fn has_settings_of(scenario: &Scenario, row: &PublishedRow) -> bool {
+    /// Keys that do not tell runs of a row apart.
+    const FREE: [&str; 5] = [
+        "seed",
+        "population_seed",
+        "behavior_seed",
+        "view",
+        "debug_agents",
+    ];
+    if scenario.name != EVACUATION || scenario.profile_name != row.profile {
+        return false;
+    }
+    let varied = row
+        .varied
+        .iter()
+        .map(|of| format!("{}={}", of.setting, of.value));
+    let settings = varied.chain([format!("profile={}", row.profile)]);
+    let settings: Result<Vec<Setting>, _> = settings.map(|text| text.parse()).collect();
+    let ours = settings
+        .ok()
+        .and_then(|settings| Scenario::shipped(EVACUATION, &settings).ok());
+    let fixed = |scenario: &Scenario| {
+        let mut settings = scenario.settings();
+        for key in FREE {
+            settings[key].take();
+        }
+        settings
+    };
+    ours.is_some_and(|ours| fixed(&ours) == fixed(scenario))
 }
 
 /// "kept", or the quantities outside of their bands.

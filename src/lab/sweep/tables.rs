@@ -13,9 +13,10 @@ use crate::runs::case::RunResult;
 type Count = (&'static str, fn(&RunResult) -> table::Cell);
 
 /// Columns about the run itself, between the metrics and the computing time.
-const COUNTS: [Count; 8] = [
+const COUNTS: [Count; 9] = [
     ("entered", |result| result.summary.agents.into()),
-    ("remaining", |result| result.remaining.into()),
+    ("remaining", |result| result.summary.remaining.into()),
+    ("stuck", |result| result.summary.stuck.into()),
     ("frames", |result| result.summary.frames.into()),
     ("time_secs", |result| result.summary.time_secs.into()),
     ("contained_moves", |result| {

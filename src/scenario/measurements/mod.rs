@@ -23,6 +23,7 @@ mod oscillation;
 mod service_levels;
 mod snapshot;
 mod speed_by_density;
+mod stuck;
 mod walks;
 mod wall_forces;
 mod wave;
@@ -52,6 +53,7 @@ pub use oscillation::Oscillation;
 pub use service_levels::ServiceLevels;
 pub use snapshot::{Snapshot, SnapshotAt};
 pub use speed_by_density::SpeedByDensity;
+pub use stuck::{STUCK_AFTER, StuckGroup};
 pub use walks::{Walk, Walks};
 pub use wall_forces::WallForces;
 pub use wave::{Wave, WaveData};
@@ -61,6 +63,7 @@ use super::range::region;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use mean::Mean;
+use stuck::Stuck;
 
 /// The keys of a measurement. They do not change during a run; what the measurement has seen is its `Seen`.
 pub trait Measure: fmt::Debug + Clone + Send + Sync + 'static {
@@ -242,6 +245,8 @@ pub struct Metric {
 /// The measurements of one run.
 pub struct Metrics {
     running: Vec<Box<dyn Running>>,
+    /// Observed in every run.
+    stuck: (Stuck, <Stuck as Measure>::Seen),
     /// The number of the last observed frame.
     observed: Option<u64>,
 }
@@ -256,6 +261,7 @@ impl Metrics {
         }
         Self {
             running,
+            stuck: (Stuck, Vec::new()),
             observed: None,
         }
     }
@@ -269,6 +275,12 @@ impl Metrics {
         for measurement in &mut self.running {
             measurement.observe(simulation);
         }
+        self.stuck.observe(simulation);
+    }
+
+    /// The agents that are [stuck](Stuck) now, grouped by the likely cause, the largest group first.
+    pub fn stuck(&self, simulation: &Simulation) -> Vec<StuckGroup> {
+        stuck::groups(&self.stuck.1, simulation)
     }
 
     /// The values measured so far.
@@ -291,13 +303,15 @@ impl Metrics {
     /// What each measurement has seen so far, as JSON.
     pub fn seen(&self) -> Vec<String> {
         let seen = self.running.iter().map(|one| one.seen().to_string());
-        seen.collect()
+        seen.chain([self.stuck.seen().to_string()]).collect()
     }
 
     /// Restores what was [`seen`](Self::seen) up to and in frame number `frame`; what does not match is ignored.
     pub fn resume(&mut self, seen: &[String], frame: u64) {
         self.observed = Some(frame);
-        for (measurement, seen) in self.running.iter_mut().zip(seen) {
+        let running = self.running.iter_mut().map(AsMut::as_mut);
+        let stuck: &mut dyn Running = &mut self.stuck;
+        for (measurement, seen) in running.chain([stuck]).zip(seen) {
             measurement.resume(seen);
         }
     }

@@ -1,0 +1,77 @@
+//! `sandbox compare`: what differs between two results.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde_json::Value;
+
+use super::{Failure, talk, tell};
+use crate::lab::differences::{Differences, of_reports, of_tracks};
+use crate::scenario::input;
+use crate::scenario::quote::shown;
+use crate::scenario::trajectories::{ReadOptions, Tracks, read};
+
+#[derive(Args)]
+pub struct CompareOptions {
+    /// A: the result of a run as --json printed it, or trajectories (SQLite, text, CSV)
+    pub a: PathBuf,
+    /// B: a file of the same kind
+    pub b: PathBuf,
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// A file to compare.
+enum Input {
+    Report(Box<Value>),
+    Tracks(Box<Tracks>),
+}
+
+pub fn run(options: &CompareOptions) -> Result<(), Failure> {
+    let (a, b) = (open(&options.a)?, open(&options.b)?);
+    let differences: Differences = match (&a, &b) {
+        (Input::Report(a), Input::Report(b)) => {
+            for (path, report) in [(&options.a, a), (&options.b, b)] {
+                if report.get("settings").is_none() {
+                    let file = path.display();
+                    talk(&format!(
+                        "note: {file} has no settings: an earlier version wrote it; run it again to compare them"
+                    ));
+                }
+            }
+            of_reports(a, b).map_err(|error| {
+                let [a, b] = [&options.a, &options.b].map(|path| path.display());
+                Failure::Input(format!("{a} or {b}: {error}"))
+            })?
+        }
+        (Input::Tracks(a), Input::Tracks(b)) => of_tracks(a, b),
+        _ => {
+            let [a, b] = [&options.a, &options.b].map(|path| path.display());
+            return Err(Failure::Input(format!(
+                "{a} and {b}: one is the result of a run, the other has trajectories; give two of a kind"
+            )));
+        }
+    };
+    tell(options.json, || differences.json(), || differences.text())
+}
+
+/// Reads a file of any kind.
+fn open(path: &Path) -> Result<Input, Failure> {
+    let is_json = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("json"));
+    if !is_json {
+        let tracks = read(path, &ReadOptions::default())?;
+        for note in &tracks.notes {
+            talk(&format!("note: {}: {note}", path.display()));
+        }
+        return Ok(Input::Tracks(Box::new(tracks)));
+    }
+    let refused = |reason: String| Failure::Input(format!("{}: {reason}", path.display()));
+    let text = input::text(path).map_err(|error| refused(format!("cannot be read: {error}")))?;
+    let report = serde_json::from_str(&text);
+    let report =
+        report.map_err(|error| refused(format!("no JSON: {}", shown(&error.to_string()))))?;
+    Ok(Input::Report(Box::new(report)))
+}

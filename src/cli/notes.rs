@@ -1,0 +1,94 @@
+//! Notes on a run that has ended: what a reader of its results should know.
+
+use super::arguments::RecordOptions;
+use super::output::ids;
+use super::talk;
+use crate::engine::simulation::{EventKind, Limited, SPOT_RADIUS, Simulation};
+use crate::scenario::quote::shown;
+
+/// Prints notes on displaced agents, stopped moves, clamped speeds, agents that waited for room and pushes without
+/// agents.
+pub fn print(simulation: &Simulation) {
+    let outcome = simulation.outcome();
+    if !outcome.displaced.is_empty() {
+        let count = outcome.displaced.len();
+        let (agent, obstacle) = outcome.displaced[0];
+        talk(&format!(
+            "note: {count} agent(s) entered inside an obstacle or outside of the walkable area and were moved \
+             to the nearest free point (the first: agent {agent}, obstacle {obstacle})"
+        ));
+    }
+    if outcome.contained.count > 0 {
+        let moves = limited(&outcome.contained, outcome.moves);
+        talk(&format!(
+            "note: walls stopped {moves}, which would have crossed them"
+        ));
+    }
+    if outcome.clamped.count > 0 {
+        let scene = simulation.scene();
+        let mut groups = scene.groups.iter();
+        let differ = groups.any(|group| group.traits.preferred_speed.is_some());
+        let most = match differ {
+            true => "the agents' own max_speed".to_owned(),
+            false => format!("max_speed, {} m/s", scene.max_speed),
+        };
+        let moves = limited(&outcome.clamped, outcome.moves);
+        talk(&format!("note: {most}, limited {moves}"));
+    }
+    for backlog in simulation.backlogs().filter(|one| one.largest > 0) {
+        let time = simulation.frame().clock.time_at(backlog.largest_frame);
+        let (name, largest) = (shown(backlog.name), backlog.largest);
+        let rest = match backlog.waiting {
+            0 => String::new(),
+            waiting => format!("; {waiting} still wait"),
+        };
+        talk(&format!(
+            "note: up to {largest} agent(s) waited for room at \"{name}\" (first at {time:.1} s){rest}"
+        ));
+    }
+    for event in simulation.events() {
+        if event.kind == EventKind::PushBegan(0) {
+            let name = shown(&event.name);
+            talk(&format!(
+                "note: no agents were in the region of \"{name}\" when it began"
+            ));
+        }
+    }
+}
+
+/// Prints which agents of `--debug-agents` never entered.
+pub fn print_absent(record: &RecordOptions, simulation: &Simulation) {
+    let entered = simulation.frame().agents.entered();
+    let asked = record.debug_agents.as_deref().map(ids);
+    let asked = asked.and_then(Result::ok).unwrap_or_default();
+    let absent: Vec<String> = asked
+        .iter()
+        .filter(|&&id| id >= entered)
+        .map(u32::to_string)
+        .collect();
+    if !absent.is_empty() {
+        talk(&format!(
+            "note: --debug-agents: {} never entered: only {entered} agents entered, with ids from 0",
+            absent.join(", ")
+        ));
+    }
+}
+
+/// How many of all `moves` were limited, and where most of them began.
+fn limited(limited: &Limited, moves: u64) -> String {
+    let count = limited.count;
+    let percent = 100.0 * count as f64 / moves.max(1) as f64;
+    let share = match percent {
+        0.095.. => format!("{percent:.1} % of all moves"),
+        _ => format!("{count} of {moves} moves"),
+    };
+    let place = limited.spot().map(|(at, there)| {
+        let part = match there {
+            there if there == count => "all of them".to_owned(),
+            there if 2 * there > count => "most of them".to_owned(),
+            there => format!("{:.0} % of them", 100.0 * there as f64 / count as f64),
+        };
+        format!(", {part} within {SPOT_RADIUS} m of ({}, {})", at.x, at.y)
+    });
+    share + &place.unwrap_or_default()
+}

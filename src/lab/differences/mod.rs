@@ -1,0 +1,175 @@
+//! What differs between two results: two runs as `--json` reports them, or two trajectory files.
+
+mod reports;
+mod tracks;
+
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+use crate::output::table::Table;
+
+pub use reports::{NotAReport, of_reports};
+pub use tracks::of_tracks;
+
+/// The most differences of a kind that are printed.
+const MOST: usize = 40;
+
+/// A value that differs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Difference {
+    /// Its name: the path of a setting, a measurement, a quantity with its unit.
+    pub name: String,
+    /// Its value in the first result; `null` if it is missing there.
+    pub a: Value,
+    /// Its value in the second result; `null` if it is missing there.
+    pub b: Value,
+}
+
+/// What differs between two results A and B.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Differences {
+    /// Settings; empty for trajectories.
+    pub settings: Vec<Difference>,
+    /// Measurements and other results.
+    pub results: Vec<Difference>,
+    /// The number of results that are equal.
+    pub equal: usize,
+}
+
+impl Difference {
+    /// B − A, if both are numbers.
+    pub fn change(&self) -> Option<f64> {
+        Some(self.b.as_f64()? - self.a.as_f64()?)
+    }
+
+    /// The change in percent of A, if both are numbers and A is not 0.
+    pub fn percent(&self) -> Option<f64> {
+        let a = self.a.as_f64().filter(|&a| a != 0.0)?;
+        Some(100.0 * self.change()? / a.abs())
+    }
+}
+
+impl Differences {
+    /// The differences of two objects, key by key.
+    fn add_results(&mut self, a: &Map<String, Value>, b: &Map<String, Value>) {
+        let (differ, equal) = different(a, b);
+        self.results.extend(differ);
+        self.equal += equal;
+    }
+
+    /// As one JSON object; its numbers have the change, too.
+    pub fn json(&self) -> Value {
+        let entry = |one: &Difference| {
+            let mut entry = json!(one);
+            entry["change"] = json!(one.change());
+            entry["percent"] = json!(one.percent());
+            entry
+        };
+        json!({
+            "settings": self.settings,
+            "results": self.results.iter().map(entry).collect::<Vec<_>>(),
+            "equal_results": self.equal,
+        })
+    }
+
+    /// As tables for a terminal.
+    pub fn text(&self) -> String {
+        let mut text = match self.settings.as_slice() {
+            [] => String::new(),
+            settings => {
+                let table = Table::of(shown(settings))
+                    .column("setting", |one| one.name.as_str())
+                    .column("A", |one| brief(&one.a))
+                    .column("B", |one| brief(&one.b));
+                table.table().text() + &more(settings) + "\n"
+            }
+        };
+        if !self.results.is_empty() {
+            let table = Table::of(shown(&self.results))
+                .column("result", |one| one.name.as_str())
+                .column("A", |one| brief(&one.a))
+                .column("B", |one| brief(&one.b))
+                .column("B − A", |one| one.change().map(|change| rounded(change)))
+                .fixed("%", 1, Difference::percent);
+            text += &(table.table().text() + &more(&self.results));
+        }
+        let differ = self.results.len();
+        text + &format!("{differ} result(s) differ, {} are equal\n", self.equal)
+    }
+}
+
+/// The values that differ between two objects, and the number of values that are equal. Objects and lists inside are
+/// compared value by value.
+fn different(a: &Map<String, Value>, b: &Map<String, Value>) -> (Vec<Difference>, usize) {
+    let [a, b] = [a, b].map(|values| {
+        let mut all = Map::new();
+        for (key, value) in values {
+            flatten(key, value, &mut all);
+        }
+        all
+    });
+    let missing = b.keys().filter(|key| !a.contains_key(*key));
+    let names = a.keys().chain(missing);
+    let value = |of: &Map<String, Value>, name: &String| of.get(name).cloned().unwrap_or_default();
+    let all = names.map(|name| Difference {
+        name: name.clone(),
+        a: value(&a, name),
+        b: value(&b, name),
+    });
+    let (equal, differ): (Vec<_>, Vec<_>) = all.partition(|one| one.a == one.b);
+    (differ, equal.len())
+}
+
+/// Adds the values in `value` by their paths, as in `sources[0].rows`.
+fn flatten(path: &str, value: &Value, all: &mut Map<String, Value>) {
+    match value {
+        Value::Object(object) if !object.is_empty() => {
+            for (key, value) in object {
+                flatten(&format!("{path}.{key}"), value, all);
+            }
+        }
+        Value::Array(list) if list.iter().any(|item| item.is_object() || item.is_array()) => {
+            for (k, value) in list.iter().enumerate() {
+                flatten(&format!("{path}[{k}]"), value, all);
+            }
+        }
+        value => {
+            all.insert(path.to_owned(), value.clone());
+        }
+    }
+}
+
+fn shown(all: &[Difference]) -> &[Difference] {
+    &all[..all.len().min(MOST)]
+}
+
+fn more(all: &[Difference]) -> String {
+    match all.len().saturating_sub(MOST) {
+        0 => String::new(),
+        more => format!("… and {more} more; --json lists them all\n"),
+    }
+}
+
+/// A value for a terminal: long texts are cut, numbers have six digits.
+fn brief(value: &Value) -> String {
+    /// The most characters of a value.
+    const WIDTH: usize = 32;
+    let text = match value {
+        Value::Null => return "–".to_owned(),
+        Value::String(text) => text.clone(),
+        Value::Number(number) if !number.is_i64() && !number.is_u64() => {
+            rounded(number.as_f64().unwrap_or(f64::NAN))
+        }
+        other => other.to_string(),
+    };
+    match text.chars().count() {
+        ..=WIDTH => text,
+        _ => text.chars().take(WIDTH - 1).chain(['…']).collect(),
+    }
+}
+
+/// A number with at most six significant digits.
+fn rounded(x: f64) -> String {
+    let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+    rounded.to_string()
+}
