@@ -17,6 +17,7 @@ mod crowds;
 mod determinism;
 mod distributions;
 mod enclosures;
+mod endings;
 mod entrances;
 mod errands;
 mod exposure;

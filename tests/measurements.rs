@@ -223,3 +223,28 @@ fn a_walk_starts_after_the_time_before_it_and_not_with_a_shove() {
     let shoved = summary.metric("walks_start_delay_secs").unwrap();
     assert!((shoved - off).abs() < 1e-12);
 }
+
+/// The keys of all measurements, from the schema.
+fn all_measurements() -> Vec<String> {
+    let schema = sandbox::scenario::schema();
+    let ways = schema["$defs"]["Measurement"]["oneOf"].as_array().unwrap();
+    let keys = ways
+        .iter()
+        .map(|way| way["required"][0].as_str().unwrap().to_owned());
+    keys.collect()
+}
+
+#[test]
+fn one_page_defines_every_measurement() {
+    let page = include_str!("../docs/measurements.md");
+    let table = page.split("## All measurements").nth(1).unwrap();
+    let first_cells: String = table
+        .lines()
+        .filter_map(|line| line.split('|').nth(1))
+        .collect();
+    let measurements = all_measurements();
+    assert!(measurements.len() >= 25, "{measurements:?}");
+    for key in measurements {
+        assert!(first_cells.contains(&format!("`{key}`")), "{key}");
+    }
+}

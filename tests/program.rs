@@ -13,6 +13,7 @@ mod checkpoint_robustness;
 mod cli;
 mod cli_geometry;
 mod command_lines;
+mod differences;
 mod from_runs;
 mod interrupts;
 mod killed;

@@ -215,6 +215,7 @@ const RELATIONS: &[&str] = &[
     "is already measured",
     "would stand at one point",
     "encloses no area",
+    "must be less than the second",
     "is listed twice",
     "give one of ",
     "no goal",

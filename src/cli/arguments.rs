@@ -14,8 +14,8 @@ use crate::scenario::Preset;
 #[derive(Args)]
 #[command(next_help_heading = "Scenario")]
 pub struct SceneOptions {
-    /// Default profile, for agents that name none: sf, rvo, sf+sph, rvo+sph, sph, sf->sph or rvo->sph (quote the
-    /// arrow)
+    /// Default profile, for agents that name none; `sandbox list` says what each profile does (quote the arrow of
+    /// `sf->sph`, or write sf-sph)
     #[arg(long, value_name = "NAME")]
     pub profile: Option<String>,
     /// Seed of all random numbers

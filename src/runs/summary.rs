@@ -35,12 +35,15 @@ pub struct Summary {
     /// Number of agents that entered.
     pub agents: u32,
     /// Number of agents that reached their goal and left.
+    #[serde(default)]
     pub arrived: usize,
     /// Number of agents at the end.
+    #[serde(default)]
     pub remaining: usize,
     /// Why the run ended; `None` if it has not.
     pub end: Option<End>,
     /// Number of agents at the end that had made no way towards their goal for 20 s.
+    #[serde(default)]
     pub stuck: usize,
     /// These agents by the likely cause.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

@@ -19,14 +19,10 @@ impl Scenario {
         parameters.extend(own.cloned().unwrap_or_default());
         let parameters = filled(names::<Parameters>(), parameters);
         all.insert("parameters".to_owned(), Value::Object(parameters));
-        all.insert(
-            "profile".to_owned(),
-            json!(
-                self.document
-                    .get("profile")
-                    .unwrap_or(&json!(self.profile_name))
-            ),
-        );
+        // A profile that is defined in full stays as it is.
+        if !all.get("profile").is_some_and(Value::is_object) {
+            all.insert("profile".to_owned(), json!(self.profile_name));
+        }
         all.insert(
             "time_step_secs".to_owned(),
             json!(self.scene.clock.time_step()),

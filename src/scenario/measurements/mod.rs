@@ -20,6 +20,7 @@ mod jitter;
 mod line_flow;
 mod mean;
 mod oscillation;
+mod running;
 mod service_levels;
 mod snapshot;
 mod speed_by_density;
@@ -63,6 +64,7 @@ use super::range::region;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use mean::Mean;
+use running::{Running, started};
 use stuck::Stuck;
 
 /// The keys of a measurement. They do not change during a run; what the measurement has seen is its `Seen`.
@@ -313,60 +315,6 @@ impl Metrics {
         let stuck: &mut dyn Running = &mut self.stuck;
         for (measurement, seen) in running.chain([stuck]).zip(seen) {
             measurement.resume(seen);
-        }
-    }
-}
-
-/// A measurement during a run, whatever it measures: the methods of [`Measure`].
-trait Running: Send + Sync {
-    fn check(&self) -> Result<(), Problem>;
-    fn names(&self) -> Vec<(String, &'static str)>;
-    fn needs_density_until(&self) -> Option<f64>;
-    fn observe(&mut self, simulation: &Simulation);
-    fn values(&self, simulation: &Simulation) -> Vec<Option<f64>>;
-    fn data(&self) -> Option<(String, Value)>;
-    fn seen(&self) -> Value;
-    fn resume(&mut self, seen: &str);
-}
-
-/// A measurement that has seen nothing yet.
-fn started<M: Measure>(keys: &M) -> Box<dyn Running> {
-    Box::new((keys.clone(), M::Seen::default()))
-}
-
-/// The keys of a measurement, and what it has seen.
-impl<M: Measure> Running for (M, M::Seen) {
-    fn check(&self) -> Result<(), Problem> {
-        self.0.check()
-    }
-
-    fn names(&self) -> Vec<(String, &'static str)> {
-        self.0.names()
-    }
-
-    fn needs_density_until(&self) -> Option<f64> {
-        self.0.needs_density_until()
-    }
-
-    fn observe(&mut self, simulation: &Simulation) {
-        self.0.observe(&mut self.1, simulation);
-    }
-
-    fn values(&self, simulation: &Simulation) -> Vec<Option<f64>> {
-        self.0.values(&self.1, simulation)
-    }
-
-    fn data(&self) -> Option<(String, Value)> {
-        self.0.data(&self.1)
-    }
-
-    fn seen(&self) -> Value {
-        serde_json::to_value(&self.1).unwrap_or_default()
-    }
-
-    fn resume(&mut self, seen: &str) {
-        if let Ok(seen) = serde_json::from_str(seen) {
-            self.1 = seen;
         }
     }
 }

@@ -1,0 +1,61 @@
+//! Measurements during a run, whatever they measure.
+
+use serde_json::Value;
+
+use super::Measure;
+use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+
+/// A measurement during a run, whatever it measures: the methods of [`Measure`].
+pub trait Running: Send + Sync {
+    fn check(&self) -> Result<(), Problem>;
+    fn names(&self) -> Vec<(String, &'static str)>;
+    fn needs_density_until(&self) -> Option<f64>;
+    fn observe(&mut self, simulation: &Simulation);
+    fn values(&self, simulation: &Simulation) -> Vec<Option<f64>>;
+    fn data(&self) -> Option<(String, Value)>;
+    fn seen(&self) -> Value;
+    fn resume(&mut self, seen: &str);
+}
+
+/// A measurement that has seen nothing yet.
+pub fn started<M: Measure>(keys: &M) -> Box<dyn Running> {
+    Box::new((keys.clone(), M::Seen::default()))
+}
+
+/// The keys of a measurement, and what it has seen.
+impl<M: Measure> Running for (M, M::Seen) {
+    fn check(&self) -> Result<(), Problem> {
+        self.0.check()
+    }
+
+    fn names(&self) -> Vec<(String, &'static str)> {
+        self.0.names()
+    }
+
+    fn needs_density_until(&self) -> Option<f64> {
+        self.0.needs_density_until()
+    }
+
+    fn observe(&mut self, simulation: &Simulation) {
+        self.0.observe(&mut self.1, simulation);
+    }
+
+    fn values(&self, simulation: &Simulation) -> Vec<Option<f64>> {
+        self.0.values(&self.1, simulation)
+    }
+
+    fn data(&self) -> Option<(String, Value)> {
+        self.0.data(&self.1)
+    }
+
+    fn seen(&self) -> Value {
+        serde_json::to_value(&self.1).unwrap_or_default()
+    }
+
+    fn resume(&mut self, seen: &str) {
+        if let Ok(seen) = serde_json::from_str(seen) {
+            self.1 = seen;
+        }
+    }
+}
