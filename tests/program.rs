@@ -35,6 +35,7 @@ mod stability;
 mod stress;
 mod study_robustness;
 mod sweep;
+mod sweep_pictures;
 mod sweep_program;
 mod sweep_study;
 mod tables;

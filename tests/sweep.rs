@@ -59,7 +59,7 @@ fn run_in(study: &Study, out: &Path, shard: Shard) -> (Tally, Log) {
 
 fn write(study: &Study, out: &Path) {
     let store = Store::at(out);
-    Gathered::of(study, &store).write(&store).unwrap();
+    Gathered::of(study, &store).write(&store, None).unwrap();
 }
 
 #[test]

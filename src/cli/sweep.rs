@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::watch::Watch;
 use super::{Failure, say, talk, tell, use_threads};
 use crate::lab::machine::main_memory;
-use crate::lab::sweep::{Gathered, Shard, State, Study, run as run_shard};
+use crate::lab::sweep::{Drawing, Gathered, Shard, State, Study, run as run_shard};
 use crate::runs::job::Tally;
 use crate::runs::outputs::{Manner, Outputs};
 use crate::runs::store::Store;
@@ -24,6 +24,7 @@ pub const EXAMPLE: &str = r#"A study, JSON:
 
 Examples:
   sandbox sweep study.json
+  sandbox sweep study.json --merge --draw flow_per_s --over gas_constant
   sandbox sweep study.json --list
   sandbox sweep study.json --shard 2/8 --out /shared/study
   sandbox sweep study.json --merge --out /shared/study"#;
@@ -45,6 +46,12 @@ pub struct SweepOptions {
     /// Folder for the results; cells finished there are not run again [default: the study's name]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Draw this measurement only; may be repeated [default: all, at most 12]
+    #[arg(long, value_name = "MEASUREMENT", conflicts_with_all = ["list", "shard"])]
+    pub draw: Vec<String>,
+    /// Draw over this varied setting, or over two settings as a map [default: the first one with numbers]
+    #[arg(long, value_name = "KEY[,KEY]", value_delimiter = ',', conflicts_with_all = ["list", "shard"])]
+    pub over: Vec<String>,
     /// Number of cells to compute at once, each on one thread [default: all cores]
     #[arg(long, value_parser = super::values::threads)]
     pub threads: Option<usize>,
@@ -62,6 +69,8 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let computes = !options.list && !options.merge;
     let memory = computes.then(main_memory).flatten();
     let study = Study::open(&options.file, memory)?;
+    let checked = drawing(options).check(&study);
+    checked.map_err(|error| Failure::Input(error.to_string()))?;
     let folder = options.out.clone();
     let folder = folder.unwrap_or_else(|| PathBuf::from(&study.name));
     let store = Store::at(&folder);
@@ -120,13 +129,25 @@ fn list(gathered: &Gathered, options: &SweepOptions) -> Result<(), Failure> {
     say(gathered.list(shard))
 }
 
+/// What the options ask to draw.
+fn drawing(options: &SweepOptions) -> Drawing {
+    Drawing {
+        measurements: options.draw.clone(),
+        over: options.over.clone(),
+    }
+}
+
 /// Merges the finished cells.
 fn merge(study: &Study, store: &Store, options: &SweepOptions) -> Result<(), Failure> {
     let gathered = Gathered::of(study, store);
-    for path in gathered.write(store)? {
+    // What was computed is written even if it cannot be drawn as asked for.
+    let sheet = gathered.sheet(&drawing(options));
+    let drawn = sheet.as_ref().ok().and_then(Option::as_ref);
+    for path in gathered.write(store, drawn)? {
         talk(&format!("note: {} written", path.display()));
     }
     tell(options.json, || gathered.json(), || gathered.text())?;
+    sheet.map_err(|error| Failure::Input(error.to_string()))?;
     let (mut missing, mut failed) = (Vec::new(), Vec::new());
     for (cell, state) in study.cells.iter().zip(&gathered.states) {
         match state {

@@ -9,6 +9,7 @@ use super::Study;
 use super::cell::Cell;
 use crate::analysis::statistics::MeanStd;
 use crate::lab::error::LabError;
+use crate::output::plot::Sheet;
 use crate::runs::case::RunResult;
 use crate::runs::identity::ENGINE;
 use crate::runs::store::Store;
@@ -83,17 +84,23 @@ impl<'a> Gathered<'a> {
         ["finished", "failed", "missing"].map(|name| names().filter(|&own| own == name).count())
     }
 
-    /// Writes `NAME.csv`, `NAME-summary.csv` and `NAME-results.json` into the store's folder.
+    /// Writes `NAME.csv`, `NAME-summary.csv` and `NAME-results.json` into the store's folder, and the picture as
+    /// `NAME.svg` and `NAME.png`, if there is one.
     ///
     /// # Errors
     /// They cannot be written.
-    pub fn write(&self, store: &Store) -> Result<Vec<PathBuf>, LabError> {
-        let [csv, summary, json] = self.study.files();
-        Ok(vec![
+    pub fn write(&self, store: &Store, sheet: Option<&Sheet>) -> Result<Vec<PathBuf>, LabError> {
+        let [csv, summary, json, svg, png] = self.study.files();
+        let mut written = vec![
             store.write(&csv, &self.cells_csv()?)?,
             store.write(&summary, &self.summary_csv()?)?,
             store.write(&json, format!("{:#}\n", self.json()).as_bytes())?,
-        ])
+        ];
+        if let Some(sheet) = sheet {
+            sheet.save(&store.folder().join(&self.study.name))?;
+            written.extend([svg, png].map(|file| store.folder().join(file)));
+        }
+        Ok(written)
     }
 
     /// All results as one object.

@@ -2,7 +2,7 @@
 //!
 //! A [`Study`] is a list of [`Cell`]s, numbered from 1. Each cell is one run: a scenario with its settings and seed.
 //! [`run`] computes the cells of a [`Shard`] that are not in the store yet, in parallel, each on a single thread.
-//! [`Gathered`] is the state of all cells, as tables. A failed cell is recorded, and the others continue; the next call
+//! [`Gathered`] is the state of all cells, as tables and pictures. A failed cell is recorded, and the others continue; the next call
 //! tries it again. Any number of processes may work on the same folder at the same time.
 //!
 //! The file is a JSON object; an unknown key is an error:
@@ -25,6 +25,7 @@ mod cell;
 mod choice;
 mod entries;
 mod gathered;
+mod pictures;
 mod plan;
 mod seeds;
 mod shard;
@@ -35,6 +36,7 @@ pub use cell::Cell;
 pub(in crate::lab) use choice::{Root, source};
 pub(in crate::lab) use entries::Entries;
 pub use gathered::{Combination, Gathered, State};
+pub use pictures::{Drawing, DrawingError};
 pub(in crate::lab) use seeds::Seeds;
 pub use shard::Shard;
 pub use study::Study;

@@ -36,9 +36,10 @@ const COUNTS: [Count; 9] = [
 type Row<'a> = (&'a Cell, &'a State);
 
 impl Study {
-    /// The names of the result files: one row per cell, means over seeds, and everything as JSON.
-    pub fn files(&self) -> [String; 3] {
-        [".csv", "-summary.csv", "-results.json"].map(|end| format!("{}{end}", self.name))
+    /// The names of the result files: one row per cell, means over seeds, and everything as JSON; then the pictures.
+    pub fn files(&self) -> [String; 5] {
+        let ends = [".csv", "-summary.csv", "-results.json", ".svg", ".png"];
+        ends.map(|end| format!("{}{end}", self.name))
     }
 }
 

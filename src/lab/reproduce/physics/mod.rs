@@ -29,7 +29,7 @@ fn write(
 ) -> Result<String, LabError> {
     let study = only(studies)?;
     let (rows, name) = (study.combinations(), &study.study.name);
-    study.write(store)?;
+    study.write(store, None)?;
     save(&sheet(&rows), store, name)?;
     Ok(table(&rows).markdown())
 }
