@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::arguments::PrintOptions;
 use super::values::threads;
 use super::{Failure, use_threads};
 use crate::lab::reproduce::put_between;
@@ -24,6 +25,8 @@ pub struct CaseOptions {
     /// Number of cases to compute at once, each on one thread [default: all cores]
     #[arg(long, value_parser = threads)]
     pub threads: Option<usize>,
+    #[command(flatten)]
+    pub print: PrintOptions,
 }
 
 impl CaseOptions {
@@ -31,6 +34,7 @@ impl CaseOptions {
     /// `tables` at least, and that no result replaces it.
     pub fn store(&self, tables: &[&str]) -> Result<Store, Failure> {
         use_threads(self.threads)?;
+        self.print.apply();
         if let Some(file) = &self.update {
             let place = fs::canonicalize(file).map_err(|error| failed(file, &error))?;
             let mut outputs = Outputs::new(true);

@@ -99,17 +99,71 @@ pub fn recording() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
-/// A path with the extension of a picture.
+/// A path with the extension of a picture or an animation.
 pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| {
         let extension = path.extension().unwrap_or_default();
-        let known = ["svg", "png"].iter();
-        match known
-            .into_iter()
-            .any(|known| extension.eq_ignore_ascii_case(known))
-        {
+        let mut known = ["svg", "png", "pdf", "gif", "mp4", "webm"].iter();
+        match known.any(|known| extension.eq_ignore_ascii_case(known)) {
             true => Ok(path),
-            false => Err("a picture's name must end in .svg or .png"),
+            false => Err("a picture's name must end in .svg, .png or .pdf, that of an animation in .gif, .png, .mp4 or .webm"),
         }
     })
+}
+
+/// The width of a picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Width {
+    Millimeters(f64),
+    Pixels(f64),
+}
+
+impl Width {
+    /// In points, with so many pixels per inch.
+    pub fn points(self, dpi: f64) -> f64 {
+        match self {
+            Self::Millimeters(length) => length * 72.0 / 25.4,
+            Self::Pixels(count) => count * 72.0 / dpi,
+        }
+    }
+}
+
+pub fn width(text: &str) -> Result<Width, &'static str> {
+    const OTHERWISE: &str =
+        "not a width in millimeters (30 to 2000), such as 85, or in pixels, such as 1200px";
+    match text.strip_suffix("px") {
+        Some(count) => within(count, 100.0..=20_000.0, OTHERWISE).map(Width::Pixels),
+        None => {
+            let length = text.strip_suffix("mm").unwrap_or(text);
+            within(length, 30.0..=2000.0, OTHERWISE).map(Width::Millimeters)
+        }
+    }
+}
+
+pub fn millimeters(text: &str) -> Result<f64, &'static str> {
+    within(
+        text,
+        50.0..=500.0,
+        "not a width between 50 and 500 millimeters",
+    )
+}
+
+pub fn dpi(text: &str) -> Result<f64, &'static str> {
+    within(
+        text,
+        20.0..=2400.0,
+        "not a number of pixels per inch between 20 and 2400",
+    )
+}
+
+/// Two numbers, the first less than the second.
+pub fn range(text: &str) -> Result<[f64; 2], &'static str> {
+    let ends = text.split_once(',');
+    let ends = ends.map(|(low, high)| [low, high].map(|end| end.trim().parse::<f64>()));
+    match ends {
+        Some([Ok(low), Ok(high)]) if low < high && low.is_finite() && high.is_finite() => {
+            Ok([low, high])
+        }
+        _ => Err("expected two numbers FROM,TO, the first less than the second"),
+    }
 }

@@ -8,7 +8,7 @@ use clap::builder::PossibleValuesParser;
 use crate::analysis::crossing::Line;
 use crate::engine::scene::Region;
 
-use super::super::arguments::ProgramOptions;
+use super::super::arguments::{PrintOptions, ProgramOptions};
 use super::super::values::{frame_rate, length, line, moment, positive_seconds, region};
 
 #[derive(Args)]
@@ -61,6 +61,8 @@ pub struct MeasureOptions {
     /// Folder for the results [default: the file's name with -measured appended]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub print: PrintOptions,
     #[command(flatten)]
     pub program: ProgramOptions,
 }

@@ -25,6 +25,7 @@ const NO_WALLS: &str = "none";
 pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     check_enabled()?;
     use_threads(options.program.threads)?;
+    options.print.apply();
     let folder = folder(options);
     check_outputs(options, &folder)?;
     let tracks = read(
@@ -37,7 +38,7 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     for note in &tracks.notes {
         talk(&format!("note: {}: {note}", options.trajectory.display()));
     }
-    let site = site(options, &tracks)?;
+    let site = site(&options.trajectory, options.geometry.as_deref(), &tracks)?;
     let what = what(options, &tracks);
     check(&tracks, &what)?;
     let mut results = Results::create(&folder)?;
@@ -124,19 +125,19 @@ fn what(options: &MeasureOptions, tracks: &Tracks) -> Options {
     }
 }
 
-/// The walls, from a floor plan or else from the trajectory file.
-fn site(options: &MeasureOptions, tracks: &Tracks) -> Result<Site, Failure> {
-    let plan = match (&options.geometry, tracks.walkable.as_slice()) {
+/// The walls, from the floor plan `geometry` or else from the trajectory file at `path`.
+pub fn site(path: &Path, geometry: Option<&Path>, tracks: &Tracks) -> Result<Site, Failure> {
+    let plan = match (geometry, tracks.walkable.as_slice()) {
         (Some(path), _) if path.as_os_str() == NO_WALLS => None,
         (Some(path), _) => {
             let plan = floor_plan::read(path);
             Some(plan.map_err(|error| Failure::Input(format!("--geometry {error}")))?)
         }
         (None, []) => None,
-        (None, [text]) => Some(floor_plan::parse_wkt(text).map_err(|error| own(options, &error))?),
+        (None, [text]) => Some(floor_plan::parse_wkt(text).map_err(|error| own(path, &error))?),
         (None, several) => {
             let problem = format!("{} geometries, one after the other", several.len());
-            return Err(own(options, &problem));
+            return Err(own(path, &problem));
         }
     };
     let solids = plan.map_or(Ok(Vec::new()), FloorPlan::solids);
@@ -144,9 +145,9 @@ fn site(options: &MeasureOptions, tracks: &Tracks) -> Result<Site, Failure> {
     Ok(Site::new(solids))
 }
 
-/// The error for a problem with the geometry in the trajectory file.
-fn own(options: &MeasureOptions, problem: &dyn std::fmt::Display) -> Failure {
-    let path = options.trajectory.display();
+/// The error for a problem with the geometry in a trajectory file.
+fn own(path: &Path, problem: &dyn std::fmt::Display) -> Failure {
+    let path = path.display();
     Failure::Input(format!(
         "{path}: its geometry: {problem}; give another one with --geometry, or use --geometry {NO_WALLS}"
     ))

@@ -122,6 +122,11 @@ impl Fields {
         }
     }
 
+    /// Forgets all people.
+    pub fn clear(&mut self) {
+        self.sums.fill(Sums::default());
+    }
+
     /// Adds people of some frames. Bands of cells are summed in parallel, each in the order of the people, so that the
     /// result is the same on any number of threads.
     pub fn add(&mut self, people: &[&Person], site: &Site) {

@@ -8,7 +8,7 @@ use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 use crate::output::colors::{ColorMap, DENSITY, SPEED};
 use crate::output::plot::{
-    Axis, BLACK, Cells, ColorBar, Corner, GRAY, LINES, Mark, Panel, PlotError, Point, Sheet, Style,
+    Axis, BLACK, Cells, ColorBar, Corner, LINES, Mark, Panel, PlotError, Point, Sheet, Style,
 };
 
 /// Length of the longer side of a map, points.
@@ -56,7 +56,7 @@ fn maps(measured: &Measured, walls: &Walls) -> Sheet {
         })];
         marks.extend(walls.iter().map(|wall| {
             let ends = [wall.start, wall.end].map(|p| [p.x, p.y]);
-            Mark::Line(ends.to_vec(), Style::full(GRAY, 1.2, ""))
+            Mark::Line(ends.to_vec(), Style::full(BLACK, 1.2, ""))
         }));
         Panel {
             bar: Some(ColorBar {

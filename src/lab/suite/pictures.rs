@@ -4,7 +4,8 @@ use super::Case;
 use crate::engine::simulation::{Fault, Simulation};
 use crate::lab::error::LabError;
 use crate::lab::sweep::Cell;
-use crate::output::picture::Picture;
+use crate::output::picture::{Crowd, Picture};
+use crate::output::plot::Print;
 use crate::runs::job::Listener;
 use crate::runs::parallel::side_by_side;
 use crate::runs::store::Store;
@@ -26,14 +27,13 @@ pub fn save(
         let scenario = scenario.map_err(|error| LabError::of(label, error))?;
         let mut simulation = Simulation::new(scenario.scene.clone()).map_err(failed)?;
         go_to(at, &mut simulation).map_err(failed)?;
+        let (crowd, title) = (Crowd::of(&simulation), format!("{}: {label}", cases[k].id));
         let picture = Picture {
-            title: format!("{}: {label}", cases[k].id),
-            simulation: &simulation,
-            view: scenario.view.region,
-            paths: Vec::new(),
             body_mass: scenario.mass_on_walls(),
+            ..Picture::of(&simulation, &crowd, title, scenario.view.region)
         };
-        picture.save(&store.path(&format!("{}.png", cases[k].id)))?;
+        let path = store.path(&format!("{}.png", cases[k].id));
+        picture.save(&path, &Print::of_program())?;
         Ok(())
     })
 }

@@ -3,12 +3,14 @@
 use super::{Frame, TEXT_HEIGHT, dark};
 use crate::engine::math::Vector;
 use crate::output::colors::Rgb;
-use crate::output::plot::{LABEL_SIZE, Label, Mark};
+use crate::output::plot::{Label, Mark, Style, label_width};
 
-/// The mean width of a letter, as a part of the text's size.
-const LETTER: f64 = 0.58;
 /// Labels keep this distance from their points, points.
 const GAP: f64 = 4.0;
+/// Where no place beside its point is free, a label is up to so many times its height away, with a line to its point.
+const FARTHEST: u32 = 7;
+/// The width of that line, points.
+const LEADER: f64 = 0.4;
 /// Longer texts are cut.
 const MOST_LETTERS: usize = 48;
 
@@ -25,15 +27,25 @@ pub const AROUND: [[i8; 2]; 9] = [
     [0, 0],
 ];
 
-/// The width of a text, points.
-pub fn width_of(text: &str) -> f64 {
-    LETTER * LABEL_SIZE * text.chars().count() as f64
-}
+/// The corners of a box, meters.
+type Corners = [Vector; 2];
 
 /// The labels of a panel.
 pub struct Labels<'a> {
     frame: &'a Frame,
-    placed: Vec<([Vector; 2], Label)>,
+    placed: Vec<(Corners, Label)>,
+    /// Lines from labels to their points.
+    leaders: Vec<Mark>,
+}
+
+/// A possible place of a label.
+struct Place {
+    around: Corners,
+    /// The point that it belongs to.
+    point: Vector,
+    side: [i8; 2],
+    /// The distance from that point, points.
+    distance: f64,
 }
 
 impl<'a> Labels<'a> {
@@ -41,57 +53,104 @@ impl<'a> Labels<'a> {
         Self {
             frame,
             placed: Vec::new(),
+            leaders: Vec::new(),
         }
     }
 
-    /// Adds a label at the first of `places` where it fits into the panel and covers no other label; else at the first
-    /// where it fits into the panel.
+    /// Adds a label at the first of `places` where it fits into the panel and covers no other label, or farther away
+    /// with a line to its point. Where nothing is free there is no label.
     pub fn add(&mut self, text: &str, color: Rgb, places: &[(Vector, [i8; 2])]) {
         let mut text = text.to_owned();
         if text.chars().count() > MOST_LETTERS {
             text = text.chars().take(MOST_LETTERS - 1).chain(['…']).collect();
         }
-        let boxes = places
-            .iter()
-            .map(|&(p, side)| (self.around(&text, p, side), p, side));
-        let frame = self.frame;
-        let fits = |[low, high]: &[Vector; 2]| {
-            low.x >= frame.min.x
-                && low.y >= frame.min.y
-                && high.x <= frame.max.x
-                && high.y <= frame.max.y
-        };
-        let inside: Vec<_> = boxes.filter(|(around, ..)| fits(around)).collect();
-        let overlaps = |[low, high]: &[Vector; 2]| {
-            let covers = |([l, h], _): &([Vector; 2], Label)| {
-                low.x < h.x && l.x < high.x && low.y < h.y && l.y < high.y
-            };
-            self.placed.iter().any(covers)
-        };
-        let free = inside.iter().find(|(around, ..)| !overlaps(around));
-        let Some(&(around, p, side)) = free.or(inside.first()) else {
+        let width = label_width(&text);
+        let rings = (0..FARTHEST).map(|ring| GAP + f64::from(ring) * TEXT_HEIGHT);
+        let candidates = rings.flat_map(|distance| {
+            let outward = places.iter();
+            let outward = outward.filter(move |(_, side)| *side != [0, 0] || distance == GAP);
+            outward.map(move |&(point, side)| (point, side, distance))
+        });
+        let mut candidates =
+            candidates.map(|(point, side, distance)| self.place(width, point, side, distance));
+        let Some(found) = candidates.find(|place| self.is_free(place)) else {
             return;
         };
-        let gap = Vector::from(side.map(f64::from)) * frame.meters(GAP);
+        drop(candidates);
+        let at = self.beside(&found);
+        if found.distance > GAP {
+            let style = Style::full(color, LEADER, "");
+            let ends = [found.point, at].map(Into::into).to_vec();
+            self.leaders.push(Mark::Line(ends, style));
+        }
         let label = Label {
-            at: (p + gap).into(),
-            side,
+            at: at.into(),
+            side: found.side,
             text,
             color: dark(color),
         };
-        self.placed.push((around, label));
+        self.placed.push((found.around, label));
     }
 
-    /// The corners of the box around a text beside `p`.
-    fn around(&self, text: &str, p: Vector, side: [i8; 2]) -> [Vector; 2] {
-        let size = [width_of(text), TEXT_HEIGHT].map(|points| self.frame.meters(points));
+    /// The point of the label that is nearest to the point that it belongs to.
+    fn beside(&self, place: &Place) -> Vector {
+        let side = Vector::from(place.side.map(f64::from));
+        place.point + side * self.frame.meters(place.distance)
+    }
+
+    fn place(&self, width: f64, point: Vector, side: [i8; 2], distance: f64) -> Place {
+        let size = [width, TEXT_HEIGHT].map(|points| self.frame.meters(points));
         let half = Vector::from(size) * 0.5;
+        let mut place = Place {
+            around: [point; 2],
+            point,
+            side,
+            distance,
+        };
         let side = Vector::from(side.map(f64::from));
-        let center = p + side * self.frame.meters(GAP) + side.component_mul(&half);
-        [center - half, center + half]
+        let center = self.beside(&place) + side.component_mul(&half);
+        place.around = [center - half, center + half];
+        place
+    }
+
+    /// Whether a label fits there into the panel, and covers no other label.
+    fn is_free(&self, place: &Place) -> bool {
+        let [low, high] = place.around;
+        let [least, most] = self.frame.inside();
+        let covers = |([l, h], _): &(Corners, Label)| {
+            low.x < h.x && l.x < high.x && low.y < h.y && l.y < high.y
+        };
+        let fits = low == low.sup(&least) && high == high.inf(&most);
+        fits && !self.placed.iter().any(covers)
     }
 
     pub fn into_marks(self) -> impl Iterator<Item = Mark> {
-        self.placed.into_iter().map(|(_, label)| Mark::Label(label))
+        let labels = self.placed.into_iter();
+        let labels = labels.map(|(_, label)| Mark::Label(label));
+        self.leaders.into_iter().chain(labels)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_of_one_point_never_overlap_and_stay_inside() {
+        let frame = Frame::around([Vector::zeros(), Vector::new(10.0, 10.0)], [400.0, 400.0]);
+        let mut labels = Labels::new(&frame);
+        let places = AROUND.map(|side| (Vector::new(5.0, 5.0), side));
+        for k in 0..60 {
+            labels.add(&format!("label {k}"), [0; 3], &places);
+        }
+        assert!(labels.placed.len() > 12, "{}", labels.placed.len());
+        let [least, most] = frame.inside();
+        for (k, ([low, high], _)) in labels.placed.iter().enumerate() {
+            assert!(low.x >= least.x && low.y >= least.y && high.x <= most.x && high.y <= most.y);
+            for ([l, h], _) in &labels.placed[..k] {
+                let apart = h.x <= low.x || high.x <= l.x || h.y <= low.y || high.y <= l.y;
+                assert!(apart);
+            }
+        }
     }
 }

@@ -1,25 +1,35 @@
-//! A picture of a scene at one moment: floor and walls, places, zones, agents; and the ways to a destination.
+//! A picture of a crowd at one moment: floor and walls, places, zones, agents, their paths, a field; or the ways to a
+//! destination.
 
+mod agents;
+mod crowd;
 mod forces;
 mod labels;
 mod paths;
+mod regions;
 mod scene;
 
+pub use crowd::{Crowd, Trails};
 pub use paths::Paths;
 
 use crate::engine::math::{Vector, bounds};
-use crate::engine::scene::Region;
+use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
 use crate::output::colors::Rgb;
-use crate::output::plot::{Axis, LABEL_SIZE, Label, Mark, Panel, PlotError, Sheet};
+use crate::output::plot::{
+    Axis, Cells, ColorBar, LABEL_SIZE, Label, Mark, Panel, PlotError, Print, Sheet, label_width,
+};
 use crate::output::scenery;
-use labels::{Labels, width_of};
+use crate::scenario::measurements::Observed;
+use labels::Labels;
 
 /// The largest panel, points: alone, and one of several.
 const ALONE: [f64; 2] = [640.0, 460.0];
 const OF_SEVERAL: [f64; 2] = [440.0, 340.0];
+/// What the axes and color bars beside a panel of a sheet of given width need, points.
+const BESIDE: f64 = 70.0;
 /// The smallest panel, points.
-const SMALLEST: [f64; 2] = [200.0, 110.0];
+const SMALLEST: [f64; 2] = [150.0, 90.0];
 /// Around what is shown, points.
 const MARGIN: f64 = 10.0;
 /// Below it, for the scale bar and the legend, points.
@@ -27,18 +37,49 @@ const FOOT: f64 = 22.0;
 /// The scale bar is at most this part of the panel's width.
 const SCALE_BAR: f64 = 0.2;
 
-/// A picture of a scene.
+/// A picture of a crowd.
 pub struct Picture<'a> {
     /// Its title.
     pub title: String,
-    /// What it shows, in its current frame, which must be evaluated.
-    pub simulation: &'a Simulation,
+    /// Walls and places.
+    pub scene: &'a Scene,
+    /// The people.
+    pub crowd: &'a Crowd,
+    /// The simulation of these people, in the same order, if there is one: for what they do, for open and closed
+    /// places, for ways and forces on walls. Its frame must be evaluated.
+    pub simulation: Option<&'a Simulation>,
     /// The part of the plane that it shows at least.
     pub view: Region,
+    /// The colors of people; `None`: by what they do.
+    pub coloring: Option<Coloring>,
+    /// A field below the people, who are small then.
+    pub field: Option<Field>,
+    /// The paths of the last seconds.
+    pub trails: Option<&'a Trails>,
+    /// What measurements observe, with names.
+    pub observed: &'a [(String, Observed)],
     /// The ways that it shows, each in its own panel.
     pub paths: Vec<Paths>,
     /// The mass of an average person, kg, if walls are colored by the force on them.
     pub body_mass: Option<f64>,
+}
+
+/// The colors of people by a quantity.
+#[derive(Debug, Clone)]
+pub struct Coloring {
+    /// The value of each person; NaN if unknown.
+    pub values: Vec<f64>,
+    /// The meaning of the colors.
+    pub bar: ColorBar,
+}
+
+/// A field.
+#[derive(Debug, Clone)]
+pub struct Field {
+    /// Its values.
+    pub cells: Cells,
+    /// The meaning of the colors.
+    pub bar: ColorBar,
 }
 
 /// The part of the plane that a panel shows, and its size.
@@ -66,6 +107,12 @@ impl Frame {
         }
     }
 
+    /// The corners of the part above the scale bar and the legend.
+    fn inside(&self) -> [Vector; 2] {
+        let foot = Vector::new(0.0, self.meters(FOOT - 4.0));
+        [self.min + foot, self.max]
+    }
+
     /// A length in points, in meters.
     fn meters(&self, points: f64) -> f64 {
         points / self.scale
@@ -76,22 +123,51 @@ impl Frame {
     }
 }
 
-impl Picture<'_> {
-    /// Writes the picture: a PNG if the name ends in .png, else an SVG.
+impl<'a> Picture<'a> {
+    /// A simulation in its current frame, which must be evaluated, with agents in the colors of what they do.
+    pub fn of(simulation: &'a Simulation, crowd: &'a Crowd, title: String, view: Region) -> Self {
+        Self {
+            simulation: Some(simulation),
+            ..Self::of_scene((simulation.scene(), crowd), title, view)
+        }
+    }
+
+    /// People in a scene, all in one color.
+    pub fn of_scene((scene, crowd): (&'a Scene, &'a Crowd), title: String, view: Region) -> Self {
+        Self {
+            title,
+            scene,
+            crowd,
+            simulation: None,
+            view,
+            coloring: None,
+            field: None,
+            trails: None,
+            observed: &[],
+            paths: Vec::new(),
+            body_mass: None,
+        }
+    }
+
+    /// Writes the picture: a PNG, PDF or SVG, by the extension.
     ///
     /// # Errors
     /// It cannot be drawn, or the file cannot be written.
-    pub fn save(&self, path: &std::path::Path) -> Result<(), PlotError> {
-        self.sheet().save_as(path)
+    pub fn save(&self, path: &std::path::Path, print: &Print) -> Result<(), PlotError> {
+        self.sheet(print).save_as(path, print)
     }
 
     /// The picture as a sheet.
-    pub fn sheet(&self) -> Sheet {
+    pub fn sheet(&self, print: &Print) -> Sheet {
         let shown = self.shown();
-        let most = if self.paths.len() > 1 {
-            OF_SEVERAL
-        } else {
-            ALONE
+        let columns = if self.paths.len() > 1 { 2 } else { 1 };
+        let most = match (columns, print.width) {
+            (1, None) => ALONE,
+            (_, None) => OF_SEVERAL,
+            (columns, Some(width)) => {
+                let width = (width / f64::from(columns) - BESIDE).max(SMALLEST[0]);
+                [width, width]
+            }
         };
         let frame = Frame::around(shown, most);
         let panels = match self.paths.as_slice() {
@@ -103,7 +179,7 @@ impl Picture<'_> {
         };
         Sheet {
             title: self.title.clone(),
-            columns: if panels.len() > 1 { 2 } else { 1 },
+            columns: columns as usize,
             panel_size: frame.size(),
             panels,
             ..Sheet::default()
@@ -113,7 +189,7 @@ impl Picture<'_> {
     /// The view, with all places and zones.
     fn shown(&self) -> [Vector; 2] {
         let Region { min, max } = self.view;
-        let journeys = &self.simulation.scene().journeys;
+        let journeys = &self.scene.journeys;
         let places = journeys.places.iter().flat_map(scenery::lines);
         let zones = journeys.zones.iter().flat_map(|zone| zone.area.points());
         let points = places.chain(zones.copied()).chain([min, max]);
@@ -121,10 +197,12 @@ impl Picture<'_> {
     }
 
     fn panel(&self, frame: &Frame, paths: Option<&Paths>) -> Panel {
+        let scene = self.scene;
         let mut labels = Labels::new(frame);
-        let mut below = scene::ground(self.simulation);
+        let mut below = scene::ground(scene);
         let mut above = Vec::new();
-        let drawn = paths.map(|paths| paths.draw(self.simulation, frame));
+        let drawn = paths.zip(self.simulation);
+        let drawn = drawn.map(|(paths, simulation)| paths.draw(simulation, frame));
         let (title, bar) = match drawn {
             Some(drawn) => {
                 below.extend(drawn.field);
@@ -132,26 +210,27 @@ impl Picture<'_> {
                 (drawn.title, Some(drawn.bar))
             }
             None => {
-                below.extend(scene::tints(self.simulation));
-                let bar = self.body_mass.map(|_| forces::bar());
-                (scene::summary(self.simulation), bar)
+                below.extend(scene::tints(scene));
+                let field = self.field.as_ref();
+                below.extend(field.map(|field| Mark::Overlay(field.cells.clone())));
+                below.extend(agents::trails(self));
+                (agents::summary(self), self.bar())
             }
         };
-        below.extend(scene::agents(self.simulation, paths.is_some()));
+        below.extend(agents::agents(self, paths.is_some()));
         let mut marks = vec![Mark::Group(below)];
-        marks.extend(scene::walls(self.simulation));
-        let body_mass = self.body_mass.filter(|_| paths.is_none());
-        marks.extend(
-            body_mass
-                .into_iter()
-                .flat_map(|mass| forces::marks(self.simulation, mass)),
-        );
-        let inside = paths.is_none();
-        marks.extend(scene::zones(self.simulation, frame, inside, &mut labels));
-        marks.extend(scene::sources(self.simulation, &mut labels));
+        marks.extend(scene::walls(scene));
+        if let (None, Some(simulation), Some(mass)) = (paths, self.simulation, self.wall_mass()) {
+            marks.extend(forces::marks(simulation, mass));
+        }
+        marks.extend(scene::zones(scene, frame, paths.is_none(), &mut labels));
+        marks.extend(scene::sources(scene, &mut labels));
         marks.append(&mut above);
-        marks.extend(scene::places(self.simulation, frame, &mut labels));
-        marks.extend(scene::goals(self.simulation, frame, &mut labels));
+        marks.extend(scene::places(self, frame, &mut labels));
+        marks.extend(scene::goals(self, frame, &mut labels));
+        if paths.is_none() {
+            marks.extend(regions::marks(self.observed, &mut labels));
+        }
         marks.extend(labels.into_marks());
         marks.extend(self.foot(frame, paths.is_some()));
         Panel {
@@ -162,6 +241,19 @@ impl Picture<'_> {
             bar,
             legend: None,
         }
+    }
+
+    /// The mass of an average person, kg, if walls are colored: there is one color bar only.
+    fn wall_mass(&self) -> Option<f64> {
+        let is_free = self.field.is_none() && self.coloring.is_none();
+        self.body_mass.filter(|_| is_free)
+    }
+
+    fn bar(&self) -> Option<ColorBar> {
+        let field = self.field.as_ref().map(|field| &field.bar);
+        let coloring = self.coloring.as_ref().map(|coloring| &coloring.bar);
+        let walls = || self.wall_mass().map(|_| forces::bar());
+        field.or(coloring).cloned().or_else(walls)
     }
 
     /// The scale bar and the legend.
@@ -177,7 +269,7 @@ impl Picture<'_> {
             .unwrap_or(decade);
         let mut marks = scene::scale_bar([x, y], length, frame);
         let mut text = |x: f64, text: String, color: Rgb| {
-            let width = frame.meters(width_of(&text));
+            let width = frame.meters(label_width(&text));
             marks.push(Mark::Label(Label {
                 at: [x, y],
                 side: [1, 0],
@@ -192,10 +284,10 @@ impl Picture<'_> {
             [0; 3],
         );
         x += frame.meters(16.0);
-        let entries = scene::legend(self.simulation, has_paths);
+        let entries = agents::legend(self, has_paths);
         let mut samples = Vec::new();
         for entry in entries {
-            let width = frame.meters(14.0 + width_of(&entry.text));
+            let width = frame.meters(14.0 + label_width(&entry.text));
             if x + width > frame.max.x {
                 break;
             }

@@ -51,7 +51,7 @@ impl Paths {
         let map = ColorMap::pale([0.0, bands.end() as f32], bands.count);
         let size = Vector::new(grid.columns as f64, grid.rows as f64) * grid.cell;
         let cells = |values, map| {
-            Mark::Cells(Cells {
+            Mark::Overlay(Cells {
                 extent: [xy(grid.min), xy(grid.min + size)],
                 columns: grid.columns,
                 values,

@@ -1,14 +1,15 @@
-//! The marks of a scene: ground, walls, places, zones, sources, goals and agents.
+//! The marks of a scene: ground, walls, places, zones, sources and goals.
 
 use super::labels::{AROUND, Labels};
-use super::paths::BORDER;
-use super::{Frame, dark, light, xy};
-use crate::engine::journeys::{Kind, Place, Status};
+use super::{Frame, Picture, dark, light, xy};
+use crate::engine::agents::Agents;
+use crate::engine::geometry::Walls;
+use crate::engine::journeys::{Kind, Place};
 use crate::engine::math::{Vector, bounds, direction, perpendicular};
-use crate::engine::simulation::Simulation;
+use crate::engine::scene::Scene;
 use crate::output::colors::Rgb;
-use crate::output::plot::{BLACK, Disc, Mark, Style};
-use crate::output::scenery::{self, WALKING, ZONE};
+use crate::output::plot::{BLACK, Mark, Style};
+use crate::output::scenery::{self, ZONE};
 
 const FLOOR: Rgb = [252, 252, 249];
 const OUTSIDE: Rgb = [222, 222, 217];
@@ -16,8 +17,6 @@ const SOLID: Rgb = [176, 176, 172];
 const WALL: Rgb = [52, 54, 60];
 const GOAL: Rgb = [213, 94, 0];
 const SOURCE: Rgb = [0, 150, 180];
-/// The color of agents in pictures of ways.
-const FAINT: Rgb = [150, 154, 162];
 /// Far enough to cover the panel, meters.
 const FAR: f64 = 1e7;
 /// Up to this many goals get labels.
@@ -30,8 +29,8 @@ const NARROW: f64 = 50.0;
 const BEHIND: f64 = 3.5;
 
 /// Outside, floor and solid bodies.
-pub fn ground(simulation: &Simulation) -> Vec<Mark> {
-    let obstacles = simulation.scene().walls.obstacles();
+pub fn ground(scene: &Scene) -> Vec<Mark> {
+    let obstacles = scene.walls.obstacles();
     let is_enclosed = obstacles.iter().any(|obstacle| obstacle.is_unbounded());
     let whole = vec![[-FAR, -FAR], [FAR, -FAR], [FAR, FAR], [-FAR, FAR]];
     let first = Mark::Area(whole, if is_enclosed { OUTSIDE } else { FLOOR });
@@ -54,8 +53,8 @@ fn signed_area(ring: &[Vector]) -> f64 {
 }
 
 /// Waiting areas and zones as tinted areas.
-pub fn tints(simulation: &Simulation) -> Vec<Mark> {
-    let journeys = &simulation.scene().journeys;
+pub fn tints(scene: &Scene) -> Vec<Mark> {
+    let journeys = &scene.journeys;
     let area = |corners: &[Vector], color| {
         Mark::Area(corners.iter().map(|&p| xy(p)).collect(), light(color, 0.22))
     };
@@ -74,8 +73,8 @@ pub fn tints(simulation: &Simulation) -> Vec<Mark> {
 }
 
 /// The outlines of all walls.
-pub fn walls(simulation: &Simulation) -> Vec<Mark> {
-    let obstacles = simulation.scene().walls.obstacles();
+pub fn walls(scene: &Scene) -> Vec<Mark> {
+    let obstacles = scene.walls.obstacles();
     let rings = obstacles.iter().flat_map(|obstacle| obstacle.rings());
     let outlines = rings.map(|ring| {
         let corners = ring.iter().chain(ring.first()).map(|&p| xy(p));
@@ -85,14 +84,9 @@ pub fn walls(simulation: &Simulation) -> Vec<Mark> {
 }
 
 /// Zones, hatched, with their names in the middle if `inside`, else around them.
-pub fn zones(
-    simulation: &Simulation,
-    frame: &Frame,
-    inside: bool,
-    labels: &mut Labels,
-) -> Vec<Mark> {
+pub fn zones(scene: &Scene, frame: &Frame, inside: bool, labels: &mut Labels) -> Vec<Mark> {
     let mut marks = Vec::new();
-    for zone in &simulation.scene().journeys.zones {
+    for zone in &scene.journeys.zones {
         let style = |width| Style::full(light(ZONE, 0.7), width, "");
         let outline = scenery::closed(&zone.area).into_iter().map(xy);
         marks.push(Mark::Line(outline.collect(), style(0.8)));
@@ -106,9 +100,9 @@ pub fn zones(
 }
 
 /// Where agents enter later.
-pub fn sources(simulation: &Simulation, labels: &mut Labels) -> Vec<Mark> {
+pub fn sources(scene: &Scene, labels: &mut Labels) -> Vec<Mark> {
     let mut marks = Vec::new();
-    for source in &simulation.scene().sources {
+    for source in &scene.sources {
         let (low, high) = (source.grid.min, source.grid.max);
         let corners = [
             low,
@@ -127,7 +121,7 @@ pub fn sources(simulation: &Simulation, labels: &mut Labels) -> Vec<Mark> {
             &around(&corners, false),
         );
     }
-    for entrance in &simulation.scene().entrances {
+    for entrance in &scene.entrances {
         let [a, b] = entrance.line;
         marks.push(Mark::Line(
             [a, b].map(xy).to_vec(),
@@ -140,7 +134,7 @@ pub fn sources(simulation: &Simulation, labels: &mut Labels) -> Vec<Mark> {
 }
 
 /// Places for the label of an area: above, below, beside, and if `inside` first in the middle.
-fn around(corners: &[Vector], inside: bool) -> Vec<(Vector, [i8; 2])> {
+pub fn around(corners: &[Vector], inside: bool) -> Vec<(Vector, [i8; 2])> {
     let [low, high] = bounds(corners.iter().copied()).unwrap_or_default();
     let middle = (low + high) * 0.5;
     let at = |[x, y]: [i8; 2]| {
@@ -156,13 +150,14 @@ fn around(corners: &[Vector], inside: bool) -> Vec<(Vector, [i8; 2])> {
 }
 
 /// Exits, waypoints, waiting areas and queues with their names.
-pub fn places(simulation: &Simulation, frame: &Frame, labels: &mut Labels) -> Vec<Mark> {
+pub fn places(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark> {
     let mut marks = Vec::new();
-    for (k, place) in simulation.scene().journeys.places.iter().enumerate() {
+    for (k, place) in picture.scene.journeys.places.iter().enumerate() {
         let color = scenery::color(&place.kind);
         let lines: Vec<Vector> = scenery::lines(place);
         let points = || lines.iter().map(|&p| xy(p)).collect();
-        let state = simulation.progress().places.get(k);
+        let progress = picture.simulation.map(|simulation| simulation.progress());
+        let state = progress.and_then(|progress| progress.places.get(k));
         let is_closed = place.is_exit() && state.is_some_and(|state| !state.open);
         match &place.kind {
             Kind::Exit(_) if is_closed => {
@@ -187,7 +182,7 @@ pub fn places(simulation: &Simulation, frame: &Frame, labels: &mut Labels) -> Ve
         labels.add(
             &text,
             color,
-            &label_places(simulation, place, &lines, frame),
+            &label_places(&picture.scene.walls, place, &lines, frame),
         );
     }
     marks
@@ -195,7 +190,7 @@ pub fn places(simulation: &Simulation, frame: &Frame, labels: &mut Labels) -> Ve
 
 /// Where the name of a place can be.
 fn label_places(
-    simulation: &Simulation,
+    walls: &Walls,
     place: &Place,
     lines: &[Vector],
     frame: &Frame,
@@ -204,7 +199,6 @@ fn label_places(
         Kind::Exit(_) | Kind::Line(_) => {
             let [a, b] = [lines[0], lines[1]];
             let (middle, aside) = ((a + b) * 0.5, perpendicular(direction(b - a)));
-            let walls = &simulation.scene().walls;
             let is_out = |way: &Vector| walls.obstacle_at(middle + way * BEHIND).is_some();
             let out = [aside, -aside].into_iter().find(is_out).unwrap_or(aside);
             let side = |way: Vector| {
@@ -236,10 +230,21 @@ fn label_places(
     }
 }
 
+/// The goals and groups of the initial agents.
+fn initial(scene: &Scene) -> Agents {
+    let mut agents = Agents::default();
+    agents.goal = scene.agents.iter().map(|agent| agent.goal).collect();
+    agents.group = scene.agents.iter().map(|agent| agent.group).collect();
+    agents
+}
+
 /// Goals of agents without journeys, as crosses.
-pub fn goals(simulation: &Simulation, frame: &Frame, labels: &mut Labels) -> Vec<Mark> {
-    let (scene, agents) = (simulation.scene(), simulation.frame().agents);
-    let goals = scenery::goals(scene, agents);
+pub fn goals(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark> {
+    let scene = picture.scene;
+    let goals = match picture.simulation {
+        Some(simulation) => scenery::goals(scene, simulation.frame().agents),
+        None => scenery::goals(scene, &initial(scene)),
+    };
     let names = scenery::goal_labels(scene, &goals);
     let half = frame.meters(CROSS);
     let mut marks = Vec::new();
@@ -260,112 +265,6 @@ pub fn goals(simulation: &Simulation, frame: &Frame, labels: &mut Labels) -> Vec
         }
     }
     marks
-}
-
-/// What agent `i` does, as far as pictures show it.
-fn doing(simulation: &Simulation, i: usize) -> (&'static str, Rgb) {
-    let (agents, clock) = (simulation.frame().agents, simulation.frame().clock);
-    if agents
-        .walks_from
-        .get(i)
-        .is_some_and(|&from| clock.time() < from)
-    {
-        return ("does not walk yet", [120, 150, 190]);
-    }
-    let trip = agents.trip.get(i).and_then(Option::as_ref);
-    match trip.map(|trip| trip.status) {
-        Some(Status::Waiting { .. }) => ("waiting", [200, 130, 0]),
-        Some(Status::Queued { .. }) => ("in a queue", [170, 80, 140]),
-        Some(Status::Finished) => ("has ended its journey", FAINT),
-        Some(Status::Walking) | None => ("walking", WALKING),
-    }
-}
-
-/// The agents.
-pub fn agents(simulation: &Simulation, faint: bool) -> Option<Mark> {
-    let agents = simulation.frame().agents;
-    let disc = |i: usize| Disc {
-        center: xy(agents.position[i]),
-        radius: agents.radius[i],
-        color: match faint {
-            true => FAINT,
-            false => doing(simulation, i).1,
-        },
-    };
-    let discs: Vec<Disc> = (0..agents.len()).map(disc).collect();
-    (!discs.is_empty()).then_some(Mark::Discs(discs))
-}
-
-/// The time, and how many agents and places there are.
-pub fn summary(simulation: &Simulation) -> String {
-    let frame = simulation.frame();
-    let count = frame.agents.len();
-    format!(
-        "{:.2} s, {count} agent{}",
-        frame.clock.time(),
-        if count == 1 { "" } else { "s" }
-    )
-}
-
-/// An entry of the legend.
-pub struct Entry {
-    pub text: String,
-    look: Look,
-}
-
-enum Look {
-    Agent(Rgb),
-    Dot(Rgb),
-    Line(Style),
-}
-
-impl Entry {
-    /// Its sample, which begins at a place.
-    pub fn sample(&self, [x, y]: [f64; 2], frame: &Frame) -> Vec<Mark> {
-        let at = |points: f64| [x + frame.meters(points), y];
-        match &self.look {
-            Look::Agent(color) => vec![Mark::dots([at(8.0)], Style::full(*color, 3.0, ""))],
-            Look::Dot(color) => vec![Mark::dots([at(8.0)], Style::full(*color, 1.7, ""))],
-            Look::Line(style) => vec![Mark::Line(vec![at(0.0), at(11.0)], style.clone())],
-        }
-    }
-}
-
-/// The entries of the legend.
-pub fn legend(simulation: &Simulation, has_paths: bool) -> Vec<Entry> {
-    let entry = |text: &str, look| Entry {
-        text: text.to_owned(),
-        look,
-    };
-    if has_paths {
-        return vec![
-            entry("agent", Look::Agent(FAINT)),
-            entry("shortest way", Look::Line(Style::full(BLACK, 0.9, ""))),
-            entry(
-                "border of cells with the same next corner",
-                Look::Line(Style::full(BORDER, 0.6, "")),
-            ),
-            entry("corner", Look::Dot(BORDER)),
-        ];
-    }
-    let agents = simulation.frame().agents;
-    let mut shown = Vec::new();
-    for i in 0..agents.len() {
-        let seen = doing(simulation, i);
-        if !shown.contains(&seen) {
-            shown.push(seen);
-        }
-    }
-    shown.sort_by_key(|(text, _)| std::cmp::Reverse(*text));
-    if let [(_, color)] = shown[..]
-        && simulation.scene().journeys.places.is_empty()
-    {
-        return vec![entry("agent", Look::Agent(color))];
-    }
-    shown
-        .into_iter()
-        .map(|(text, color)| entry(text, Look::Agent(color)))
-        .collect()
 }
 
 /// A bar of this length, meters, that begins at a place.

@@ -6,6 +6,9 @@ use indicatif::HumanFloatCount;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 
+use super::font::width_of;
+use super::layout::NUMBER;
+
 /// One axis of a panel.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Axis {
@@ -58,13 +61,35 @@ impl Axis {
         }
     }
 
+    /// The axis with ticks that fit into this length, points. Numbers of horizontal axes need their width.
+    pub(super) fn fitted(&self, length: f64, is_horizontal: bool) -> Self {
+        let apart = if is_horizontal { 32.0 } else { 24.0 };
+        let axis = self.with_ticks((length / apart) as i32);
+        let needed = (axis.widest() + 8.0) * axis.ticks.len() as f64;
+        if !is_horizontal || !self.ticks.is_empty() || needed <= length {
+            return axis;
+        }
+        self.with_ticks((length / (axis.widest() + 12.0)) as i32)
+    }
+
+    /// The width of the widest number, points.
+    pub(super) fn widest(&self) -> f64 {
+        let widths = self.ticks.iter().map(|(_, text)| width_of(text, NUMBER));
+        widths.fold(0.0, f64::max)
+    }
+
+    /// Whether the names on a horizontal axis of this length, points, fit only if they are turned.
+    pub(super) fn is_crowded(&self, length: f64) -> bool {
+        self.ticks.len() as f64 * (self.widest() + 4.0) > 1.1 * length
+    }
+
     /// The axis with ticks; about `most` fit.
-    pub(super) fn with_ticks(&self, most: i32) -> Self {
+    fn with_ticks(&self, most: i32) -> Self {
         let mut axis = self.clone();
         let [first, last] = self.range;
         if axis.ticks.is_empty() && (last - first).is_finite() {
             let values = match self.is_log {
-                false => linear_ticks(self.range, most),
+                false => linear_ticks(self.range, most.max(2)),
                 true => log_ticks(self.range, most),
             };
             axis.ticks = values.into_iter().map(|v| (v, number(v))).collect();

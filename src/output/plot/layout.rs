@@ -1,220 +1,296 @@
-//! The layout of a sheet.
+//! The layout of a sheet. All lengths are in points.
 
-use plotters::coord::Shift;
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use super::font::{LINE, lines, width_of};
+use super::{Axis, Cells, ColorBar, Corner, Mark, Panel, Print, Sheet, Style};
 
-use super::output::Drawn;
-use super::{Axis, Cells, ColorBar, Corner, Mark, Panel, Sheet, marks};
-
-/// Units of a picture per point. Backends draw in whole units, so there are several for each point.
-pub const SCALE: u32 = 4;
-
-// Lengths in points.
-const MARGIN: f64 = 8.0; // around the sheet
-const TITLE: f64 = 20.0; // for the title of the sheet
-const ROW_TITLE: f64 = 18.0; // for the titles of rows
-const ABOVE: f64 = 20.0; // above a panel, for its title
-const LEFT: f64 = 42.0; // left of an axis with numbers
-const BELOW: f64 = 25.0; // below an axis with numbers
+const MARGIN: f64 = 6.0; // around the sheet
 const GAP: f64 = 9.0; // between panels, color bars and legends
-const BAR: f64 = 48.0; // for a color bar with its numbers and label
-const BAR_WIDTH: f64 = 9.0; // of the color bar itself
-const LEGEND: f64 = 165.0; // for a legend beside a panel
-const SAMPLE: f64 = 18.0; // of a line in a legend
-const RIM: f64 = 0.6; // width of the lines around a panel
-const TICK: f64 = 2.5; // of a tick
-const LABEL: f64 = 8.5; // size of titles of panels and labels of axes
-const NUMBER: f64 = 7.5; // size of numbers and legends
+pub const TITLE: f64 = 12.0; // size of the title of a sheet
+pub const LABEL: f64 = 9.0; // size of titles of panels and labels of axes
+pub const NUMBER: f64 = 8.0; // size of numbers and legends
+pub const TICK: f64 = 2.5; // length of a tick
+pub const PAD: f64 = 2.5; // between a tick, its number and the label of the axis
+pub const BAR_WIDTH: f64 = 9.0; // of a color bar without its numbers
+pub const SAMPLE: f64 = 18.0; // of a line in a legend
+pub const NO_DATA: &str = "no data";
+/// Narrower panels are put below each other instead.
+const LEAST_PANEL: f64 = 90.0;
+/// Sheets are made wider than this only for panels of theirs that do not fit otherwise.
+const WIDEST: f64 = 1000.0;
+/// A legend beside panels takes this part of a sheet of given width at most; a wider one is below them.
+const BESIDE: f64 = 0.3;
+/// Panels of a sheet of given width are at most this many times as high as the sheet is wide.
+const HIGHEST: f64 = 1.1;
 
-type Area<DB> = DrawingArea<DB, Shift>;
-/// The chart of a panel.
-pub type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<Axis, Axis>>;
-
-pub fn centered(style: TextStyle) -> TextStyle {
-    style.pos(Pos::new(HPos::Center, VPos::Center))
-}
-
-/// A length in units of the picture.
-pub fn units(points: f64) -> i32 {
-    (points * f64::from(SCALE)).round() as i32
-}
-
-/// The font of a text.
-pub fn font(points: f64) -> FontDesc<'static> {
-    let size = points * f64::from(SCALE);
-    FontDesc::new(FontFamily::SansSerif, size, FontStyle::Normal)
-}
-
-fn only(when: bool, points: f64) -> f64 {
-    if when { points } else { 0.0 }
-}
-
-/// Where the panels of a sheet are.
+/// Where the parts of a sheet are.
+#[derive(Debug, Clone)]
 pub struct Layout {
-    columns: usize,
-    /// Upper left corners of the panels' axes, points.
-    corners: Vec<[f64; 2]>,
-    /// Width and height of the sheet, points.
-    pub size: [u32; 2],
+    /// Panels per row.
+    pub columns: usize,
+    /// Width and height of the panels' axes.
+    pub panel: [f64; 2],
+    /// Upper left corners of the panels' axes.
+    pub corners: Vec<[f64; 2]>,
+    /// Width and height of the sheet.
+    pub size: [f64; 2],
+    /// The lines of the sheet's title.
+    pub title: Vec<String>,
+    /// The upper left corner of the sheet's color bar.
+    pub bar: [f64; 2],
+    /// The upper left corner of the legend that is beside the panels, and its width.
+    pub legend: ([f64; 2], f64),
+}
+
+/// The space beside and below panels.
+struct Space {
+    left: f64,
+    below: f64,
+    above: f64,
+    bar: f64,
+    sheet_bar: f64,
+    rows: f64,
+    /// The width of the widest legend beside panels.
+    legend: f64,
+    entries: usize,
+}
+
+/// The height of some lines of text of this size.
+pub fn height_of(lines: usize, size: f64) -> f64 {
+    lines as f64 * size * LINE
+}
+
+/// The space that the numbers and the label of a vertical axis need; `bar`: of a color bar with them.
+pub fn beside(axis: &Axis, height: f64) -> f64 {
+    let label = lines(&axis.label, LABEL, height).len();
+    let label = height_of(label, LABEL) + if label > 0 { PAD } else { 0.0 };
+    TICK + PAD + axis.fitted(height, false).widest() + label
+}
+
+/// The space that the numbers and the label of a horizontal axis need.
+fn below(axis: &Axis, width: f64) -> f64 {
+    let label = lines(&axis.label, LABEL, width).len();
+    numbers_below(axis, width) + height_of(label, LABEL) + PAD
+}
+
+/// The space that the numbers of a horizontal axis need.
+pub fn numbers_below(axis: &Axis, width: f64) -> f64 {
+    let fitted = axis.fitted(width, true);
+    let numbers = match fitted.is_crowded(width) {
+        true => fitted.widest(),
+        false => NUMBER * 1.05,
+    };
+    TICK + PAD + numbers + PAD
+}
+
+/// The vertical axis of a color bar.
+pub fn bar_axis(bar: &ColorBar) -> Axis {
+    Axis::linear(&bar.label, bar.map.range().map(f64::from))
+}
+
+fn bar_width(bar: &ColorBar, height: f64, has_gaps: bool) -> f64 {
+    let no_data = if has_gaps {
+        BAR_WIDTH + PAD + width_of(NO_DATA, NUMBER)
+    } else {
+        0.0
+    };
+    (BAR_WIDTH + beside(&bar_axis(bar), height)).max(no_data)
+}
+
+/// The styles with labels, and whether they are lines.
+pub fn entries(panel: &Panel) -> Vec<(&Style, bool)> {
+    let labeled = panel.marks.iter().filter_map(|mark| match mark {
+        Mark::Line(_, style) => Some((style, true)),
+        Mark::Points(_, style) => Some((style, false)),
+        _ => None,
+    });
+    labeled
+        .filter(|(style, _)| !style.label.is_empty())
+        .collect()
+}
+
+/// The width of an entry of a legend.
+pub fn entry_width(entries: &[(&Style, bool)]) -> f64 {
+    let widths = entries
+        .iter()
+        .map(|(style, _)| width_of(&style.label, NUMBER));
+    SAMPLE + 4.0 + widths.fold(0.0, f64::max)
+}
+
+/// Whether a panel shows cells without a value.
+pub fn has_gaps(panel: &Panel) -> bool {
+    fn lacks(mark: &Mark) -> bool {
+        match mark {
+            Mark::Cells(Cells { values, .. }) => values.iter().any(Option::is_none),
+            Mark::Group(marks) => marks.iter().any(lacks),
+            _ => false,
+        }
+    }
+    panel.marks.iter().any(lacks)
+}
+
+/// The lines of a panel's title.
+pub fn title_of(panel: &Panel, sheet: &Sheet, print: &Print, width: f64) -> Vec<String> {
+    match print.titles || sheet.panels.len() > 1 {
+        true => lines(&panel.title, LABEL, width),
+        false => Vec::new(),
+    }
+}
+
+impl Space {
+    fn of(sheet: &Sheet, print: &Print, [width, height]: [f64; 2]) -> Self {
+        let most = |of: &dyn Fn(&Panel) -> f64| sheet.panels.iter().map(of).fold(0.0, f64::max);
+        let gaps = sheet.panels.iter().any(has_gaps);
+        let titles = most(&|panel| title_of(panel, sheet, print, width).len() as f64);
+        let legends = sheet.panels.iter();
+        let legends = legends.filter(|panel| panel.legend == Some(Corner::Beside));
+        let legends: Vec<_> = legends.map(entries).collect();
+        let of_bar = |bar: &Option<ColorBar>, gaps: bool| match bar {
+            Some(bar) => GAP + bar_width(bar, height, gaps),
+            None => 0.0,
+        };
+        let rows = sheet.row_titles.iter();
+        let rows = rows.map(|title| lines(title, LABEL, height).len()).max();
+        Self {
+            left: most(&|panel| beside(&panel.y, height)),
+            below: most(&|panel| below(&panel.x, width)),
+            above: (height_of(titles as usize, LABEL) + 3.0).max(GAP),
+            bar: most(&|panel| of_bar(&panel.bar, has_gaps(panel))),
+            sheet_bar: of_bar(&sheet.bar, gaps),
+            rows: rows.map_or(0.0, |lines| height_of(lines, LABEL) + PAD),
+            legend: legends
+                .iter()
+                .map(|own| entry_width(own))
+                .fold(0.0, f64::max),
+            entries: legends.iter().map(Vec::len).max().unwrap_or(0),
+        }
+    }
 }
 
 impl Layout {
-    pub fn new(sheet: &Sheet) -> Self {
-        let ([width, height], count) = (sheet.panel_size, sheet.panels.len().max(1));
-        let columns = sheet.columns.clamp(1, count);
-        let any = |has: fn(&Panel) -> bool| sheet.panels.iter().any(has);
-        let above = only(any(|panel| !panel.title.is_empty()), ABOVE).max(GAP);
-        let bar = GAP + only(any(|panel| panel.bar.is_some()), BAR + GAP);
-        let step = match sheet.shared_axes {
-            true => [width + GAP, above + height],
-            false => [LEFT + width + bar, above + height + BELOW],
+    pub fn new(sheet: &Sheet, print: &Print) -> Self {
+        let wanted = columns(sheet);
+        let Some(width) = print.width else {
+            return Self::with(sheet, print, wanted, sheet.panel_size);
         };
-        let left = MARGIN + only(!sheet.row_titles.is_empty(), ROW_TITLE) + LEFT;
-        let top = MARGIN + only(!sheet.title.is_empty(), TITLE) + above;
+        let count = sheet.panels.len().max(1);
+        let least = if sheet.row_titles.is_empty() {
+            1
+        } else {
+            wanted
+        };
+        let whole = |c: &usize| *c == wanted || count.is_multiple_of(*c);
+        let mut tried = (least..=wanted).rev().filter(whole).map(|columns| {
+            let mut layout = Self::with(sheet, print, columns, sheet.panel_size);
+            for _ in 0..4 {
+                layout = layout.widened(sheet, print, width);
+            }
+            layout.centered(width)
+        });
+        let fits = |layout: &Self| layout.panel[0] >= LEAST_PANEL || layout.columns == least;
+        let found = tried.find(fits);
+        found.unwrap_or_else(|| Self::with(sheet, print, wanted, sheet.panel_size))
+    }
+
+    /// The layout with panels as wide as `width` allows.
+    fn widened(&self, sheet: &Sheet, print: &Print, width: f64) -> Self {
+        let [own, high] = sheet.panel_size;
+        let others = self.size[0] - self.columns as f64 * self.panel[0];
+        let most = (width - others) / self.columns as f64;
+        let scale = (most / own).min(HIGHEST * width / high).max(0.05);
+        Self::with(sheet, print, self.columns, [own * scale, high * scale])
+    }
+
+    /// The layout in the middle of a sheet of this width.
+    fn centered(mut self, width: f64) -> Self {
+        let aside = (0.5 * (width - self.size[0])).max(0.0);
+        for corner in self
+            .corners
+            .iter_mut()
+            .chain([&mut self.bar, &mut self.legend.0])
+        {
+            corner[0] += aside;
+        }
+        self.size[0] = width;
+        self
+    }
+
+    fn with(sheet: &Sheet, print: &Print, columns: usize, panel: [f64; 2]) -> Self {
+        let ([width, height], count) = (panel, sheet.panels.len().max(1));
+        let space = Space::of(sheet, print, panel);
+        let step = match sheet.shared_axes {
+            true => [width + GAP, space.above + height],
+            false => [
+                space.left + width + space.bar.max(GAP),
+                space.above + height + space.below,
+            ],
+        };
+        let title = match print.titles {
+            true => {
+                let whole = columns as f64 * step[0] + space.sheet_bar;
+                lines(
+                    &sheet.title,
+                    TITLE,
+                    print.width.unwrap_or(whole) - 2.0 * MARGIN,
+                )
+            }
+            false => Vec::new(),
+        };
+        let left = MARGIN + space.rows + space.left;
+        let heading = height_of(title.len(), TITLE) + if title.is_empty() { 0.0 } else { 2.0 };
+        let top = MARGIN + heading + space.above - if heading > 0.0 { 0.0 } else { 2.0 };
         let at = |column, row| [left + column as f64 * step[0], top + row as f64 * step[1]];
         let [right, foot] = at(columns - 1, (count - 1) / columns);
-        let legend = only(any(|panel| panel.legend == Some(Corner::Beside)), LEGEND);
-        let beside = bar
-            .max(legend)
-            .max(only(sheet.bar.is_some(), GAP + BAR + GAP))
-            + MARGIN;
-        let size = [right + width + beside, foot + height + BELOW + MARGIN];
+        let mut size = [
+            right + width + space.bar.max(space.sheet_bar).max(10.0) + MARGIN,
+            foot + height + space.below + MARGIN,
+        ];
+        let bar = [right + width + GAP, top];
+        let empty = !count.is_multiple_of(columns);
+        let is_narrow = |most: f64| space.legend + GAP > BESIDE * most;
+        let legend = if space.entries == 0 {
+            ([0.0; 2], 0.0)
+        } else if empty {
+            (at(count % columns, count / columns), width)
+        } else if print.width.is_some_and(is_narrow) {
+            let place = [MARGIN + space.left, size[1]];
+            let room = size[0] - place[0] - MARGIN;
+            let rows = space.entries.div_ceil(per_row(space.legend, room));
+            size[1] += height_of(rows, NUMBER) + MARGIN;
+            (place, room)
+        } else {
+            let place = [right + width + space.bar.max(GAP), top];
+            size[0] = size[0].max(place[0] + space.legend + MARGIN);
+            (place, space.legend)
+        };
         Self {
             columns,
+            panel,
             corners: (0..count).map(|k| at(k % columns, k / columns)).collect(),
-            size: size.map(|length| length.ceil() as u32),
+            size,
+            title,
+            bar,
+            legend,
         }
     }
 }
 
-/// The part of an area with this upper left corner and this size, points.
-fn part<DB: DrawingBackend>(area: &Area<DB>, corner: [f64; 2], size: [f64; 2]) -> Area<DB> {
-    let [(x, y), (width, height)] = [corner, size].map(|lengths| lengths.map(units).into());
-    area.clone().shrink((x, y), (width, height))
+/// The number of entries of a legend that fit beside each other into this width.
+pub fn per_row(entry: f64, width: f64) -> usize {
+    ((width / (entry + GAP)) as usize).max(1)
 }
 
-/// Draws a sheet. Crowds are drawn as pixels, in groups of `alike` identical rows.
-pub fn draw<DB: DrawingBackend>(sheet: &Sheet, root: &Area<DB>, alike: u32) -> Drawn {
-    let layout = Layout::new(sheet);
-    let [width, height] = sheet.panel_size;
-    let [right, foot] = layout.size.map(|length| f64::from(length) - MARGIN);
-    part(root, [MARGIN; 2], [right - MARGIN, TITLE]).titled(&sheet.title, font(12.0))?;
-    for (k, (panel, &[x, y])) in sheet.panels.iter().zip(&layout.corners).enumerate() {
-        let lowest = k + layout.columns >= sheet.panels.len();
-        let left = only(k % layout.columns == 0 || !sheet.shared_axes, LEFT);
-        let below = only(lowest || !sheet.shared_axes, BELOW);
-        let area = part(root, [x - left, y], [left + width, height + below]);
-        draw_chart(panel, &area, [left, below, 0.0], alike)?;
-        part(root, [x, y - 12.0], [width, 12.0]).titled(&panel.title, font(LABEL))?;
-        if let Some(bar) = &panel.bar {
-            draw_bar(bar, &part(root, [x + width + GAP, y], [BAR, height]))?;
-        }
-        if let Some(corner) = panel.legend {
-            let x = x + only(corner == Corner::Beside, width + GAP);
-            draw_legend(panel, corner, &part(root, [x, y], sheet.panel_size))?;
-        }
+/// The number of panels per row, such that no more than the last place is empty: three panels are in a row or below
+/// each other.
+fn columns(sheet: &Sheet) -> usize {
+    let count = sheet.panels.len().max(1);
+    let wanted = sheet.columns.clamp(1, count);
+    let keeps = !sheet.row_titles.is_empty() || count.is_multiple_of(wanted);
+    let legend = |panel: &Panel| panel.legend == Some(Corner::Beside);
+    if keeps || sheet.panels.iter().any(legend) {
+        return wanted;
     }
-    let top = layout.corners[0][1];
-    if let Some(bar) = &sheet.bar {
-        let corner = [right - GAP - BAR, top];
-        draw_bar(bar, &part(root, corner, [BAR, foot - BELOW - top]))?;
-    }
-    let upward = font(LABEL).transform(FontTransform::Rotate270);
-    let upward = centered(upward.color(&BLACK));
-    let rows = layout.corners.iter().step_by(layout.columns);
-    for (title, [_, y]) in sheet.row_titles.iter().zip(rows) {
-        let at = [MARGIN + 5.0, y + height / 2.0].map(units).into();
-        root.draw_text(title, &upward, at)?;
-    }
-    Ok(())
-}
-
-/// Draws a panel's marks and axes. The given lengths are the space for numbers on the left, below and on the right.
-fn draw_chart<DB: DrawingBackend>(
-    panel: &Panel,
-    area: &Area<DB>,
-    space: [f64; 3],
-    alike: u32,
-) -> Drawn {
-    let [left, below, right] = space.map(units);
-    let mut builder = ChartBuilder::on(area);
-    builder.x_label_area_size(below).y_label_area_size(left);
-    builder.right_y_label_area_size(right);
-    let (width, height) = area.dim_in_pixel();
-    let [width, height] = [width as i32 - left - right, height as i32 - below];
-    let (x, y) = (
-        panel.x.with_ticks(width / units(32.0)),
-        panel.y.with_ticks(height / units(24.0)),
-    );
-    let mut chart = builder.build_cartesian_2d(x, y)?;
-    for mark in &panel.marks {
-        marks::draw(mark, panel, &mut chart, alike)?;
-    }
-    let line = marks::stroke(super::BLACK, RIM);
-    let mut axes = chart.configure_mesh();
-    axes.disable_mesh().set_all_tick_mark_size(units(TICK));
-    axes.axis_style(line);
-    axes.label_style(font(NUMBER)).axis_desc_style(font(LABEL));
-    axes.x_desc(&panel.x.label).y_desc(&panel.y.label).draw()?;
-    let rim = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
-    Ok(chart.plotting_area().draw(&PathElement::new(rim, line))?)
-}
-
-/// Draws a color bar: a chart of its colors with its axis on the right.
-fn draw_bar<DB: DrawingBackend>(bar: &ColorBar, area: &Area<DB>) -> Drawn {
-    let steps = bar.map.bands().unwrap_or(64);
-    let [first, last] = bar.map.range().map(f64::from);
-    let value = |step| first + (last - first) * (f64::from(step) + 0.5) / f64::from(steps);
-    let panel = Panel {
-        x: Axis::linear("", [0.0, 1.0]),
-        y: Axis::linear(&bar.label, [first, last]),
-        marks: vec![Mark::Cells(Cells {
-            extent: [[0.0, first], [1.0, last]],
-            columns: 1,
-            values: (0..steps).map(value).map(Some).collect(),
-            map: bar.map.clone(),
-        })],
-        ..Panel::default()
-    };
-    draw_chart(&panel, area, [0.0, 0.0, BAR - BAR_WIDTH], 1)
-}
-
-/// Draws the legend of a panel's labeled marks. It is a chart without axes, because plotters draws a chart's legend
-/// only inside of it, and ours may be beside the panel.
-fn draw_legend<DB: DrawingBackend>(panel: &Panel, corner: Corner, area: &Area<DB>) -> Drawn {
-    let mut chart = ChartBuilder::on(area).build_cartesian_2d(0.0..1.0, 0.0..1.0)?;
-    let mut empty = true;
-    for mark in &panel.marks {
-        let nothing = LineSeries::new([], BLACK);
-        match mark {
-            Mark::Line(_, style) if !style.label.is_empty() => {
-                let ends = |(x, y)| vec![(x, y), (x + units(SAMPLE), y)];
-                let entry = chart.draw_series(nothing)?.label(&style.label);
-                entry.legend(move |at| marks::line(ends(at), style));
-            }
-            Mark::Points(_, style) if !style.label.is_empty() => {
-                let middle = |(x, y)| (x + units(0.5 * SAMPLE), y);
-                let entry = chart.draw_series(nothing)?.label(&style.label);
-                entry.legend(move |at| marks::dot(middle(at), style));
-            }
-            _ => continue,
-        }
-        empty = false;
-    }
-    if empty {
-        return Ok(());
-    }
-    let mut legend = chart.configure_series_labels();
-    legend.position(match corner {
-        Corner::UpperLeft | Corner::Beside => SeriesLabelPosition::UpperLeft,
-        Corner::UpperRight => SeriesLabelPosition::UpperRight,
-        Corner::LowerLeft => SeriesLabelPosition::LowerLeft,
-        Corner::LowerRight => SeriesLabelPosition::LowerRight,
-    });
-    legend
-        .legend_area_size(units(SAMPLE + 4.0))
-        .margin(units(3.0));
-    legend.label_font(font(NUMBER)).background_style(WHITE);
-    Ok(legend.draw()?)
+    let width = |columns: usize| columns as f64 * (sheet.panel_size[0] + 100.0);
+    let whole = |columns: &usize| count.is_multiple_of(*columns) && width(*columns) <= WIDEST;
+    let mut others = (wanted + 1..=count.min(wanted + 1)).chain((1..wanted).rev());
+    others.find(whole).unwrap_or(wanted)
 }

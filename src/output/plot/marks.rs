@@ -5,11 +5,10 @@ use std::vec::IntoIter;
 use image::RgbImage;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::layout::{Chart, centered, font, units};
+use super::ink::{Ink, fill};
 use super::output::Drawn;
-use super::{Cells, Disc, LABEL_SIZE, Label, Mark, Panel, Style};
+use super::{Axis, Cells, Disc, LABEL_SIZE, Label, Mark, NO_DATA, Panel, Style};
 use crate::output::colors::Rgb;
 
 /// More discs or cells than this are drawn as pixels: as separate shapes, they would make an SVG too large for
@@ -18,44 +17,58 @@ const MOST_SHAPES: usize = 2000;
 const DASH: f64 = 3.0; // length of a dash and of the gap after it, points
 const RIM: f64 = 0.7; // width of the white rim of labels, points
 const ERROR_BAR: f64 = 0.8; // width of its lines, points
+const SMALL: f64 = 1.8; // discs with smaller radii have no outline, points
+const OUTLINE: f64 = 0.35; // width of the outline of a disc, points
+/// A line with so many points counts as one more shape.
+const LINE_POINTS: usize = 20;
 
 /// Right and up, from 0 to 1 inside of the plotting area.
 type Place = (f64, f64);
 
-fn fill([r, g, b]: Rgb) -> ShapeStyle {
-    RGBColor(r, g, b).filled()
-}
-
-pub fn stroke([r, g, b]: Rgb, width: f64) -> ShapeStyle {
-    RGBColor(r, g, b).stroke_width(units(width).max(1) as u32)
-}
+/// The chart of a panel.
+type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<Axis, Axis>>;
 
 /// A dot, filled or hollow.
-pub fn dot<C>(at: C, style: &Style) -> Circle<C, i32> {
+pub fn dot<C>(at: C, style: &Style, ink: Ink) -> Circle<C, i32> {
     let (radius, look) = match style.broken {
         // Half of the outline is outside of the circle.
-        true => (0.8 * style.width, stroke(style.color, 0.4 * style.width)),
+        true => (
+            0.8 * style.width,
+            ink.stroke(style.color, 0.4 * style.width),
+        ),
         false => (style.width, fill(style.color)),
     };
-    Circle::new(at, units(radius).max(1), look)
+    Circle::new(at, ink.units(radius).max(1), look)
 }
 
 /// A line: dashed, or a single dash.
-pub fn line<C: Clone>(path: Vec<C>, style: &Style) -> DashedPathElement<IntoIter<C>, i32> {
-    let dash = if style.broken { units(DASH) } else { i32::MAX };
-    DashedPathElement::new(path, dash, units(DASH), stroke(style.color, style.width))
+pub fn line<C: Clone>(
+    path: Vec<C>,
+    style: &Style,
+    ink: Ink,
+) -> DashedPathElement<IntoIter<C>, i32> {
+    let dash = if style.broken {
+        ink.units(DASH)
+    } else {
+        i32::MAX
+    };
+    DashedPathElement::new(
+        path,
+        dash,
+        ink.units(DASH),
+        ink.stroke(style.color, style.width),
+    )
 }
 
-/// Draws one mark. Pixels cover earlier marks even where they are white; those of discs are in groups of `alike`
-/// identical rows.
+/// Draws one mark. Pixels cover earlier marks even where they are white.
 pub fn draw<DB: DrawingBackend>(
     mark: &Mark,
     panel: &Panel,
     chart: &mut Chart<DB>,
-    alike: u32,
+    ink: Ink,
 ) -> Drawn {
     if shapes(mark, panel) <= MOST_SHAPES {
-        return draw_shapes(mark, panel, chart);
+        return draw_shapes(mark, panel, chart, ink);
     }
     let size @ (width, height) = chart.plotting_area().dim_in_pixel();
     let mut image = RgbImage::from_pixel(width, height, image::Rgb([255; 3]));
@@ -65,13 +78,14 @@ pub fn draw<DB: DrawingBackend>(
     };
     for mark in marks {
         match mark {
-            Mark::Discs(discs) => color_discs(discs, panel, &mut image, alike),
-            Mark::Cells(cells) => color_cells(cells, panel, &mut image),
+            Mark::Discs(discs) => color_discs(discs, panel, &mut image, ink),
+            Mark::Cells(cells) => color_cells(cells, panel, &mut image, Some(NO_DATA)),
+            Mark::Overlay(cells) => color_cells(cells, panel, &mut image, None),
             mark => {
                 let area = BitMapBackend::with_buffer(&mut image, size).into_drawing_area();
                 let (x, y) = (panel.x.clone(), panel.y.clone());
                 let mut chart = ChartBuilder::on(&area).build_cartesian_2d(x, y)?;
-                draw_shapes(mark, panel, &mut chart)?;
+                draw_shapes(mark, panel, &mut chart, ink)?;
             }
         }
     }
@@ -83,14 +97,15 @@ pub fn draw<DB: DrawingBackend>(
 fn shapes(mark: &Mark, panel: &Panel) -> usize {
     match mark {
         Mark::Discs(discs) => panel.shown(discs, |disc| disc.center).len(),
-        Mark::Cells(cells) => cells.values.len(),
+        Mark::Cells(cells) | Mark::Overlay(cells) => cells.values.len(),
+        Mark::Line(points, _) => points.len() / LINE_POINTS,
         Mark::Group(marks) => marks.iter().map(|mark| shapes(mark, panel)).sum(),
         _ => 0,
     }
 }
 
-/// Colors the pixels of cells that have a value.
-fn color_cells(cells: &Cells, panel: &Panel, image: &mut RgbImage) {
+/// Colors the pixels of cells; those without a value in the color `missing`, or not at all.
+fn color_cells(cells: &Cells, panel: &Panel, image: &mut RgbImage, missing: Option<Rgb>) {
     let (width, height) = image.dimensions();
     let rows = cells.values.len() / cells.columns.max(1);
     let [low, high] = cells.extent.map(|corner| panel.place(corner));
@@ -111,9 +126,9 @@ fn color_cells(cells: &Cells, panel: &Panel, image: &mut RgbImage) {
             continue;
         };
         for (x, column) in columns.iter().enumerate() {
-            let value = column.and_then(|column| cells.values[row * cells.columns + column]);
-            if let Some(value) = value {
-                let color = cells.map.color(value as f32);
+            let value = column.map(|column| cells.values[row * cells.columns + column]);
+            let color = value.and_then(|value| cells.color(value).or(missing));
+            if let Some(color) = color {
                 image.put_pixel(x as u32, y, image::Rgb(color));
             }
         }
@@ -121,32 +136,63 @@ fn color_cells(cells: &Cells, panel: &Panel, image: &mut RgbImage) {
 }
 
 /// Colors the pixels of discs. plotters' circles are too coarse for small discs: their radii are whole pixels.
-fn color_discs(discs: &[Disc], panel: &Panel, image: &mut RgbImage, alike: u32) {
+fn color_discs(discs: &[Disc], panel: &Panel, image: &mut RgbImage, ink: Ink) {
     let (width, height) = image.dimensions();
     for (disc, (x, y)) in panel.shown(discs, |disc| disc.center) {
         let (x, y) = (x * f64::from(width), (1.0 - y) * f64::from(height));
         let r = disc.radius * panel.scale(width);
+        let inside = r - rim(r, ink);
         let span = |at: f64, end: u32| (at - r - 1.0) as u32..((at + r) as u32 + 2).min(end);
         for row in span(y, height) {
             for column in span(x, width) {
-                let middle = f64::from(row / alike * alike) + 0.5 * f64::from(alike);
-                if (f64::from(column) + 0.5 - x).hypot(middle - y) <= r {
-                    image.put_pixel(column, row, image::Rgb(disc.color));
+                let middle = f64::from(row / ink.alike * ink.alike) + 0.5 * f64::from(ink.alike);
+                let distance = (f64::from(column) + 0.5 - x).hypot(middle - y);
+                if distance <= r {
+                    let color = match distance <= inside {
+                        true => disc.color,
+                        false => rim_color(disc.color),
+                    };
+                    image.put_pixel(column, row, image::Rgb(color));
                 }
             }
         }
     }
 }
 
-fn draw_shapes<DB: DrawingBackend>(mark: &Mark, panel: &Panel, chart: &mut Chart<DB>) -> Drawn {
+/// The width of the dark rim of a disc with this radius, in units; small discs have none.
+fn rim(radius: f64, ink: Ink) -> f64 {
+    let points = radius / ink.scale;
+    if points < SMALL {
+        0.0
+    } else {
+        OUTLINE * ink.scale
+    }
+}
+
+fn rim_color(color: Rgb) -> Rgb {
+    color.map(|value| (f64::from(value) * 0.5) as u8)
+}
+
+fn draw_shapes<DB: DrawingBackend>(
+    mark: &Mark,
+    panel: &Panel,
+    chart: &mut Chart<DB>,
+    ink: Ink,
+) -> Drawn {
     match mark {
         Mark::Discs(discs) => {
             let scale = panel.scale(chart.plotting_area().dim_in_pixel().0);
             let shown = panel.shown(discs, |disc| disc.center);
-            chart.draw_series(shown.into_iter().map(|(disc, at)| {
-                let radius = (disc.radius * scale).round().max(1.0) as i32;
-                Circle::new(at, radius, fill(disc.color))
-            }))?;
+            let circle = |at: Place, radius: f64, color: Rgb| {
+                Circle::new(at, radius.round().max(1.0) as i32, fill(color))
+            };
+            for (disc, at) in shown {
+                let radius = disc.radius * scale;
+                let rim = rim(radius, ink);
+                let outer = (rim > 0.0).then(|| circle(at, radius, rim_color(disc.color)));
+                let inner = circle(at, radius - rim, disc.color);
+                chart.draw_series(outer.into_iter().chain([inner]))?;
+            }
         }
         Mark::Area(corners, color) => {
             let rim = corners.iter().chain(corners.first());
@@ -156,11 +202,14 @@ fn draw_shapes<DB: DrawingBackend>(mark: &Mark, panel: &Panel, chart: &mut Chart
         Mark::Line(points, style) => {
             let path = with_crossings(points.iter().map(|&point| panel.place(point)).collect());
             let parts = path.split(|place| !is_inside(place));
-            chart.draw_series(parts.map(|part| line(part.to_vec(), style)))?;
+            chart.draw_series(parts.map(|part| line(part.to_vec(), style, ink)))?;
         }
         Mark::Points(points, style) => {
             let shown = panel.shown(points, |point| [point.x, point.y]);
-            let (look, ends) = (stroke(style.color, ERROR_BAR), units(1.6 * style.width));
+            let (look, ends) = (
+                ink.stroke(style.color, ERROR_BAR),
+                ink.units(1.6 * style.width),
+            );
             let uncertain = shown.iter().filter(|(point, _)| point.error > 0.0);
             chart.draw_series(uncertain.map(|&(point, (x, y))| {
                 let low = panel.y.place(point.y - point.error).max(0.0);
@@ -170,11 +219,12 @@ fn draw_shapes<DB: DrawingBackend>(mark: &Mark, panel: &Panel, chart: &mut Chart
             if style.broken {
                 // Error bars and lines do not show through hollow dots.
                 let white = Style::full([255; 3], 0.8 * style.width, "");
-                chart.draw_series(shown.iter().map(|&(_, at)| dot(at, &white)))?;
+                chart.draw_series(shown.iter().map(|&(_, at)| dot(at, &white, ink)))?;
             }
-            chart.draw_series(shown.iter().map(|&(_, at)| dot(at, style)))?;
+            chart.draw_series(shown.iter().map(|&(_, at)| dot(at, style, ink)))?;
         }
-        Mark::Cells(cells) => {
+        Mark::Cells(cells) | Mark::Overlay(cells) => {
+            let missing = matches!(mark, Mark::Cells(_)).then_some(NO_DATA);
             let [low, high] = cells.extent;
             let counts = [cells.columns, cells.values.len() / cells.columns.max(1)];
             let corner = |index: [usize; 2]| {
@@ -185,18 +235,18 @@ fn draw_shapes<DB: DrawingBackend>(mark: &Mark, panel: &Panel, chart: &mut Chart
             chart.draw_series(values.filter_map(|(k, value)| {
                 let (column, row) = (k % cells.columns, k / cells.columns);
                 let corners = [corner([column, row]), corner([column + 1, row + 1])];
-                let look = fill(cells.map.color((*value)? as f32));
-                Some(Rectangle::new(corners, look))
+                let color = cells.color(*value).or(missing)?;
+                Some(Rectangle::new(corners, fill(color)))
             }))?;
         }
-        Mark::Label(label) => draw_label(label, panel, chart)?,
+        Mark::Label(label) => draw_label(label, panel, chart, ink)?,
         Mark::Group(marks) => {
             for mark in marks {
-                draw_shapes(mark, panel, chart)?;
+                draw_shapes(mark, panel, chart, ink)?;
             }
         }
-        Mark::Text(at, text, [r, g, b]) => {
-            let style = centered(font(LABEL_SIZE).color(&RGBColor(*r, *g, *b)));
+        Mark::Text(at, text, color) => {
+            let style = ink.text(LABEL_SIZE, *color, [0, 0]);
             chart.draw_series([Text::new(text.clone(), panel.place(*at), style)])?;
         }
     }
@@ -204,24 +254,15 @@ fn draw_shapes<DB: DrawingBackend>(mark: &Mark, panel: &Panel, chart: &mut Chart
 }
 
 /// Draws the text in white around its place, then in its color.
-fn draw_label<DB: DrawingBackend>(label: &Label, panel: &Panel, chart: &mut Chart<DB>) -> Drawn {
-    let [h, v] = label.side;
-    let position = Pos::new(
-        match h {
-            -1 => HPos::Right,
-            0 => HPos::Center,
-            _ => HPos::Left,
-        },
-        match v {
-            -1 => VPos::Top,
-            0 => VPos::Center,
-            _ => VPos::Bottom,
-        },
-    );
-    let [r, g, b] = label.color;
+fn draw_label<DB: DrawingBackend>(
+    label: &Label,
+    panel: &Panel,
+    chart: &mut Chart<DB>,
+    ink: Ink,
+) -> Drawn {
     let (x, y) = panel.place(label.at);
     let (width, height) = chart.plotting_area().dim_in_pixel();
-    let rim = f64::from(units(RIM));
+    let rim = f64::from(ink.units(RIM));
     let around = [
         (-1.0, -1.0),
         (1.0, -1.0),
@@ -231,13 +272,11 @@ fn draw_label<DB: DrawingBackend>(label: &Label, panel: &Panel, chart: &mut Char
     ];
     for (right, up) in around {
         let color = if (right, up) == (0.0, 0.0) {
-            RGBColor(r, g, b)
+            label.color
         } else {
-            WHITE
+            [255; 3]
         };
-        let style = TextStyle::from(font(LABEL_SIZE))
-            .color(&color)
-            .pos(position);
+        let style = ink.text(LABEL_SIZE, color, label.side);
         let at = (
             x + right * rim / f64::from(width),
             y + up * rim / f64::from(height),
@@ -271,6 +310,12 @@ fn with_crossings(mut path: Vec<Place>) -> Vec<Place> {
         path = longer;
     }
     path
+}
+
+impl Cells {
+    fn color(&self, value: Option<f64>) -> Option<Rgb> {
+        value.map(|value| self.map.color(value as f32))
+    }
 }
 
 impl Panel {

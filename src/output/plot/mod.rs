@@ -1,16 +1,27 @@
-//! Pictures: sheets of panels with shared or separate axes, as SVG and PNG from the same drawing code. This is the
-//! only module that names plotters.
+//! Pictures: sheets of panels with shared or separate axes, as SVG, PDF and PNG from the same drawing code, and
+//! animations of such sheets. This is the only module that names plotters.
 //!
 //! A [`Sheet`] is plain data: panels in rows, each with two axes and marks in axis units. The caller decides what a
-//! sheet shows; this module decides the layout. Sizes are in points: one SVG unit or two PNG pixels per point.
+//! sheet shows; this module decides the layout; [`Print`] says how wide it is, with how many pixels, and whether with
+//! titles. Sizes are in points, 1/72 of an inch.
 
+mod animation;
 mod axis;
+mod draw;
+mod font;
+mod ink;
 mod layout;
 mod marks;
 mod output;
+mod pdf;
+mod pixels;
+mod print;
 
+pub use animation::Animation;
 pub use axis::Axis;
+pub use draw::label_width;
 pub use output::PlotError;
+pub use print::{PAPER_DPI, Print};
 
 use crate::output::colors::{ColorMap, Rgb};
 
@@ -34,9 +45,9 @@ pub const LINES: [Rgb; 7] = [
 pub struct Sheet {
     /// Title above the panels; may be empty.
     pub title: String,
-    /// Panels per row.
+    /// Panels per row; another number if that leaves fewer places empty or if the sheet must be narrow.
     pub columns: usize,
-    /// Width and height of each panel's axes, points.
+    /// Width and height of each panel's axes, points; with a given width of the sheet only their ratio counts.
     pub panel_size: [f64; 2],
     /// All panels have the same axes, so only the outer axes are labeled.
     pub shared_axes: bool,
@@ -164,7 +175,7 @@ pub struct Cells {
     pub extent: [[f64; 2]; 2],
     /// Cells per row.
     pub columns: usize,
-    /// Values row by row; `None` is left blank.
+    /// Values row by row; `None`: no data.
     pub values: Vec<Option<f64>>,
     /// Colors for the values.
     pub map: ColorMap,
@@ -184,7 +195,10 @@ pub struct Label {
 }
 
 /// The size of labels, points.
-pub const LABEL_SIZE: f64 = 7.0;
+pub const LABEL_SIZE: f64 = 8.0;
+
+/// The color of cells without a value.
+pub const NO_DATA: Rgb = [214, 214, 218];
 
 /// A mark in a panel, in axis units.
 #[derive(Debug, Clone)]
@@ -197,8 +211,10 @@ pub enum Mark {
     Line(Vec<[f64; 2]>, Style),
     /// Values with error bars.
     Points(Vec<Point>, Style),
-    /// A heat map.
+    /// A heat map; cells without a value are gray.
     Cells(Cells),
+    /// A heat map; earlier marks are seen through cells without a value.
+    Overlay(Cells),
     /// Text, centered at a position.
     Text([f64; 2], String, Rgb),
     /// Text beside a point.

@@ -2,16 +2,22 @@
 
 use std::path::{Path, PathBuf};
 
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ColorType, ImageEncoder, RgbImage, imageops};
+use image::{RgbImage, imageops};
 use plotters::drawing::DrawingAreaErrorKind;
 use plotters::prelude::*;
 
-use super::Sheet;
-use super::layout::{self, Layout, SCALE};
+use super::ink::Ink;
+use super::layout::Layout;
+use super::pdf::Pdf;
+use super::pixels::Pixels;
+use super::{Print, Sheet, draw, font};
 
-/// Pixels per point in a PNG. It is drawn larger and then scaled down, for smooth edges.
-const PNG_SCALE: u32 = 2;
+/// Units per point in an SVG.
+const SVG_SCALE: u32 = 4;
+/// Pixels are drawn this many times larger and then scaled down, for smooth edges.
+const FINER: u32 = 2;
+/// The most pixels of a picture, before it is scaled down.
+const MOST_PIXELS: f64 = 400e6;
 
 /// A picture cannot be drawn or written.
 #[derive(Debug, thiserror::Error)]
@@ -19,6 +25,9 @@ pub enum PlotError {
     /// It cannot be drawn.
     #[error("cannot draw: {0}")]
     Drawing(String),
+    /// It would have too many pixels.
+    #[error("the picture would have {0} × {1} pixels; give a lower resolution or a smaller width")]
+    Large(u32, u32),
     /// It cannot be written.
     #[error("cannot write {}: {reason}", path.display())]
     Writing {
@@ -27,6 +36,28 @@ pub enum PlotError {
         /// The reason.
         reason: std::io::Error,
     },
+    /// There is no program that writes videos.
+    #[error(
+        "cannot write {}: videos need the program ffmpeg, which is not installed or not in PATH ({reason}); install \
+         it, or write an animation as .gif or .png",
+        path.display()
+    )]
+    NoFfmpeg {
+        /// The file.
+        path: PathBuf,
+        /// The system's message.
+        reason: String,
+    },
+}
+
+impl PlotError {
+    /// A file that cannot be written.
+    pub(super) fn writing(path: &Path, reason: impl Into<std::io::Error>) -> Self {
+        Self::Writing {
+            path: path.to_owned(),
+            reason: reason.into(),
+        }
+    }
 }
 
 pub type Drawn = Result<(), PlotError>;
@@ -38,66 +69,130 @@ impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for PlotE
 }
 
 impl Sheet {
-    /// Writes `stem`.svg and `stem`.png.
+    /// Writes `stem`.svg and `stem`.png; for a paper, also `stem`.pdf. They are printed as [`Print::of_program`] says.
     ///
     /// # Errors
     /// The sheet cannot be drawn or a file cannot be written.
     pub fn save(&self, stem: &Path) -> Result<(), PlotError> {
-        self.save_as(&stem.with_extension("svg"))?;
-        self.save_as(&stem.with_extension("png"))
+        let print = Print::of_program();
+        let mut extensions = vec!["svg", "png"];
+        extensions.extend(print.width.map(|_| "pdf"));
+        let mut files = extensions.iter().map(|e| stem.with_extension(e));
+        files.try_for_each(|file| self.save_as(&file, &print))
     }
 
-    /// Writes one file: a PNG if its name ends in .png, else an SVG.
+    /// Writes one file: a PNG if its name ends in .png, a PDF if it ends in .pdf, else an SVG.
     ///
     /// # Errors
     /// The sheet cannot be drawn or the file cannot be written.
-    pub fn save_as(&self, path: &Path) -> Result<(), PlotError> {
-        // A font of our own makes pictures the same on every machine. Without it, drawing text is an error.
-        let regular = dejavu::sans::regular();
-        let _ = plotters::style::register_font("sans-serif", FontStyle::Normal, regular);
-        let is_png = path
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("png"));
-        let bytes = if is_png { self.png()? } else { self.svg()? };
-        std::fs::write(path, bytes).map_err(|reason| PlotError::Writing {
-            path: path.to_owned(),
-            reason,
-        })
+    pub fn save_as(&self, path: &Path, print: &Print) -> Result<(), PlotError> {
+        let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+        let bytes = match extension.to_str() {
+            Some("png") => png(&self.image(print)?, print)?,
+            Some("pdf") => self.pdf(print)?,
+            _ => self.svg(print)?,
+        };
+        std::fs::write(path, bytes).map_err(|reason| PlotError::writing(path, reason))
     }
 
-    fn svg(&self) -> Result<Vec<u8>, PlotError> {
-        let points = Layout::new(self).size;
-        let size @ [width, height] = points.map(|length| length * SCALE);
+    fn svg(&self, print: &Print) -> Result<Vec<u8>, PlotError> {
+        let layout = Layout::new(self, print);
+        let size = layout
+            .size
+            .map(|length| (length * f64::from(SVG_SCALE)).round() as u32);
+        let [width, height] = size;
+        let ink = Ink {
+            scale: f64::from(SVG_SCALE),
+            // The encoder of images in an SVG only finds repetitions of the row above: pairs of rows halve its size.
+            alike: 2,
+        };
         let mut text = String::new();
-        // The encoder of images in an SVG only finds repetitions of the row above: pairs of rows halve its size.
-        self.draw(SVGBackend::with_string(&mut text, (width, height)), 2)?;
-        let attributes = |[x, y]: [u32; 2]| format!(r#"width="{x}" height="{y}""#);
-        Ok(text
-            .replacen(&attributes(size), &attributes(points), 1)
-            .into_bytes())
+        let backend = SVGBackend::with_string(&mut text, (width, height));
+        self.draw(&layout, print, backend, ink)?;
+        let points = size.map(|units| f64::from(units) / f64::from(SVG_SCALE));
+        let text = text
+            .replacen(
+                &format!(r#"width="{width}" height="{height}""#),
+                &format!(r#"width="{}pt" height="{}pt""#, points[0], points[1]),
+                1,
+            )
+            // plotters' own type of images is unknown to some programs.
+            .replace("data:png;base64,", "data:image/png;base64,");
+        Ok(text.into_bytes())
     }
 
-    fn png(&self) -> Result<Vec<u8>, PlotError> {
-        let points = Layout::new(self).size;
-        let [width, height] = points.map(|length| length * SCALE);
+    /// The sheet as pixels.
+    ///
+    /// # Errors
+    /// The sheet cannot be drawn.
+    pub fn image(&self, print: &Print) -> Result<RgbImage, PlotError> {
+        let layout = Layout::new(self, print);
+        let scale = print.pixels_per_point();
+        let size = layout
+            .size
+            .map(|length| (length * scale).round().max(1.0) as u32);
+        let [width, height] = size.map(|length| length * FINER);
+        if f64::from(width) * f64::from(height) > MOST_PIXELS {
+            return Err(PlotError::Large(size[0], size[1]));
+        }
         let mut image = RgbImage::new(width, height);
-        self.draw(BitMapBackend::with_buffer(&mut image, (width, height)), 1)?;
-        let [width, height] = points.map(|length| length * PNG_SCALE);
-        let mut image = imageops::thumbnail(&image, width, height);
-        // Five bits per channel, and white stays white: the difference is invisible and the file a third smaller.
-        let values = image.iter_mut();
-        values.for_each(|value| *value = *value & 0xF8 | *value >> 5);
-        let mut bytes = Vec::new();
-        PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive)
-            .write_image(&image, width, height, ColorType::Rgb8)
-            .map_err(|error| PlotError::Drawing(error.to_string()))?;
-        Ok(bytes)
+        let ink = Ink {
+            scale: scale * f64::from(FINER),
+            alike: 1,
+        };
+        let backend = BitMapBackend::with_buffer(&mut image, (width, height));
+        self.draw(&layout, print, Pixels(backend), ink)?;
+        Ok(imageops::thumbnail(&image, size[0], size[1]))
     }
 
-    fn draw<DB: DrawingBackend>(&self, backend: DB, alike: u32) -> Drawn {
+    fn pdf(&self, print: &Print) -> Result<Vec<u8>, PlotError> {
+        let layout = Layout::new(self, print);
+        let ink = Ink {
+            scale: print.pixels_per_point() * f64::from(FINER),
+            alike: 1,
+        };
+        let mut pdf = Pdf::new(layout.size, ink.scale, FINER);
+        self.draw(&layout, print, pdf.backend(), ink)?;
+        pdf.finish().map_err(PlotError::Drawing)
+    }
+
+    fn draw<DB: DrawingBackend>(
+        &self,
+        layout: &Layout,
+        print: &Print,
+        backend: DB,
+        ink: Ink,
+    ) -> Drawn {
+        font::register();
         let root = backend.into_drawing_area();
         root.fill(&WHITE)?;
-        layout::draw(self, &root, alike)?;
+        draw::draw((self, layout), print, &root, ink)?;
         Ok(root.present()?)
+    }
+}
+
+/// A PNG that says its resolution.
+fn png(image: &RgbImage, print: &Print) -> Result<Vec<u8>, PlotError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, image.width(), image.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::Best);
+    encoder.set_filter(png::FilterType::Paeth);
+    encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
+    encoder.set_pixel_dims(Some(resolution(print)));
+    let failed = |error: png::EncodingError| PlotError::Drawing(error.to_string());
+    let mut writer = encoder.write_header().map_err(failed)?;
+    writer.write_image_data(image).map_err(failed)?;
+    writer.finish().map_err(failed)?;
+    Ok(bytes)
+}
+
+/// The resolution as a PNG says it, in pixels per meter.
+pub(super) fn resolution(print: &Print) -> png::PixelDimensions {
+    let per_meter = (print.dpi / 0.0254).round() as u32;
+    png::PixelDimensions {
+        xppu: per_meter,
+        yppu: per_meter,
+        unit: png::Unit::Meter,
     }
 }

@@ -43,6 +43,14 @@ pub enum RecordingError {
         /// The reason.
         reason: String,
     },
+    /// A recording cannot be read back.
+    #[error("{}: cannot be read as a recording: {reason}", path.display())]
+    Unread {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// The file is incomplete.
     #[error("the recording {} is not complete: {reason}", path.display())]
     Incomplete {

@@ -26,6 +26,7 @@ mod layers;
 mod measured;
 mod output;
 mod places;
+mod read;
 mod relay;
 mod session;
 mod snapshot;
@@ -40,6 +41,7 @@ pub use error::RecordingError;
 pub use layers::METERS_PER_ACCELERATION;
 pub use measured::{MeasuredPerson, MeasuredRecorder};
 pub use output::{Destination, check_enabled};
+pub use read::{Recorded, RecordedCrowd};
 pub use viewer::{Address, AddressError, Viewer};
 
 use rerun::RecordingStream;

@@ -88,6 +88,16 @@ impl LineFlow {
         Line { start, end }
     }
 
+    /// Its name in pictures.
+    pub(super) fn line_name(&self) -> String {
+        self.name().to_owned()
+    }
+
+    /// The ends of the line, meters.
+    pub(super) fn ends(&self) -> [Vector; 2] {
+        self.line.map(Vector::from)
+    }
+
     pub(super) fn around_line(&self) -> Region {
         let Line { start, end } = self.line();
         Region {

@@ -8,6 +8,7 @@
 //!
 //! Results are in meters and seconds. Frame f is at the time f / fps.
 
+mod columns;
 mod error;
 mod line;
 mod places;
@@ -16,6 +17,7 @@ mod sqlite;
 mod text;
 mod tracks;
 
+pub use columns::{Column, columns};
 pub use error::ReadError;
 pub use tracks::{TOO_FAST, Tracks};
 

@@ -64,6 +64,44 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
     Tracks::new(path, contents, options)
 }
 
+/// The names of the columns of trajectories.
+pub fn names(path: &Path) -> rusqlite::Result<Vec<String>> {
+    let connection = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
+    columns(&connection, "trajectory_data")
+}
+
+/// The person, the frame and the values of some columns of each row; NaN where a value is not a number.
+pub fn values(path: &Path, names: &[&str]) -> Result<Vec<(i64, i64, Vec<f64>)>, ReadError> {
+    let read = || -> rusqlite::Result<Vec<(i64, i64, Vec<f64>)>> {
+        let connection = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
+        let quoted = names
+            .iter()
+            .map(|name| format!("\"{}\"", name.replace('"', "\"\"")));
+        let columns: Vec<String> = quoted.collect();
+        let query = format!(
+            "SELECT id, frame, {} FROM trajectory_data",
+            columns.join(", ")
+        );
+        let mut query = connection.prepare(&query)?;
+        let row = |row: &Row| {
+            let values = (2..2 + names.len()).map(|column| {
+                Ok(match row.get_ref(column)? {
+                    ValueRef::Real(number) => number,
+                    ValueRef::Integer(number) => number as f64,
+                    _ => f64::NAN,
+                })
+            });
+            Ok((
+                row.get(0)?,
+                row.get(1)?,
+                values.collect::<rusqlite::Result<_>>()?,
+            ))
+        };
+        query.query_map([], row)?.collect()
+    };
+    read().map_err(|error| ReadError::file(path, shown_message(&error.to_string())))
+}
+
 fn entry(row: &Row, line: u64) -> Result<Entry, String> {
     let whole = |column: usize, what: &str| {
         row.get::<_, i64>(column)

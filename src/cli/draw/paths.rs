@@ -1,74 +1,18 @@
-//! `sandbox draw`: a picture of a scene.
+//! The ways to a place or a point, as `--paths` names them.
 
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::json;
 
-use super::arguments::DrawOptions;
-use super::moment::{self, Moment};
-use super::{Failure, tell, use_threads};
+use super::super::Failure;
 use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
 use crate::engine::ways::{Destination, Ways};
-use crate::output::picture::{Paths, Picture};
-use crate::output::plot::PlotError;
-use crate::runs::outputs::{Manner, Outputs};
+use crate::output::picture::Paths;
 use crate::scenario::quote::shown;
 use crate::scenario::{Scenario, WayFinding, suggestion};
 
-pub fn run(options: &DrawOptions) -> Result<(), Failure> {
-    let program = &options.scene.program;
-    use_threads(program.threads)?;
-    let mut outputs = Outputs::new(program.force);
-    let moment = Moment {
-        scenario: &options.scenario,
-        scene: &options.scene,
-        at: options.at,
-    };
-    let scenario = moment::scenario(&moment, 0, &mut outputs)?;
-    let out = options
-        .out
-        .clone()
-        .unwrap_or_else(|| own_name(&options.scenario));
-    outputs.writes("--out", &out, Manner::InPlace);
-    outputs.check()?;
-    let paths = options.paths.iter().map(|text| paths(text, &scenario));
-    let paths = paths.collect::<Result<Vec<_>, _>>()?;
-    let mut simulation = Simulation::new(scenario.scene.clone())?;
-    let went = rayon::scope(|_| moment::go_to(options.at, &mut simulation));
-    went.map_err(|failure| failure.laid_open(&mut simulation))?;
-    let picture = Picture {
-        title: scenario.name.clone(),
-        simulation: &simulation,
-        view: scenario.view.region,
-        paths,
-        body_mass: scenario.mass_on_walls(),
-    };
-    picture.save(&out)?;
-    let (clock, count) = (simulation.frame().clock, simulation.frame().agents.len());
-    let (file, time) = (out.display().to_string(), clock.time());
-    tell(
-        program.json,
-        || json!({"file": file, "time_secs": time, "agents": count}),
-        || format!("{file}: {count} agents at {time:.2} s\n"),
-    )
-}
-
-/// The name of the picture of a scenario, in the working directory.
-fn own_name(scenario: &str) -> PathBuf {
-    let stem = Path::new(scenario).file_stem().unwrap_or_default();
-    Path::new(stem).with_added_extension("svg")
-}
-
-impl From<PlotError> for Failure {
-    fn from(error: PlotError) -> Self {
-        Self::Output(error.to_string())
-    }
-}
-
 /// The ways to the place or point that `text` names.
-fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
+pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
     let refused = |reason: String| Failure::Input(format!("--paths {}: {reason}", shown(text)));
     let scene = &scenario.scene;
     let places = &scene.journeys.places;

@@ -1,0 +1,194 @@
+//! What a picture shows of a crowd: colors by a quantity, a field, paths of the last seconds.
+
+use super::super::Failure;
+use super::frames::{Run, kernel, usual};
+use crate::engine::math::Vector;
+use crate::lab::measure::{Fields, Grid, Person, Site};
+use crate::output::colors::ColorMap;
+use crate::output::picture::{Coloring, Field};
+use crate::output::plot::{Cells, ColorBar};
+use crate::scenario::quote::shown;
+use crate::scenario::suggestion;
+
+/// `--color` for agents in the colors of what they do.
+pub const NONE: &str = "none";
+/// Cells along the longer side of a field.
+const CELLS: f64 = 400.0;
+/// The smallest side of a cell, meters.
+const LEAST_CELL: f64 = 0.05;
+
+/// The units of quantities.
+const UNITS: [(&str, &str); 14] = [
+    ("density", "P/m²"),
+    ("mean_density", "P/m²"),
+    ("rest_density", "P/m²"),
+    ("density_from_walls", "P/m²"),
+    ("pressure", "1/s²"),
+    ("speed", "m/s"),
+    ("preferred_speed", "m/s"),
+    ("max_speed", "m/s"),
+    ("vel_x", "m/s"),
+    ("vel_y", "m/s"),
+    ("acceleration", "m/s²"),
+    ("acc_x", "m/s²"),
+    ("acc_y", "m/s²"),
+    ("radius", "m"),
+];
+
+/// The quantity of a field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    Density,
+    Speed,
+}
+
+impl Quantity {
+    pub fn named(name: &str) -> Self {
+        match name {
+            "speed" => Self::Speed,
+            _ => Self::Density,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Density => "density",
+            Self::Speed => "speed",
+        }
+    }
+}
+
+/// How crowds are colored in all pictures of a run.
+pub struct Look {
+    /// The column; `None`: by what agents do.
+    column: Option<(String, ColorBar)>,
+    field: Option<(Quantity, ColorBar, Fields, Site)>,
+}
+
+impl Look {
+    /// The look of the pictures of a run, in whose current frame ranges are found.
+    pub fn new(
+        run: &Run,
+        color: &str,
+        field: Option<Quantity>,
+        range: Option<[f64; 2]>,
+    ) -> Result<Self, Failure> {
+        let column = match color {
+            NONE => None,
+            name => Some((name.to_owned(), bar(run, name, range)?)),
+        };
+        let field = match field {
+            None => None,
+            Some(quantity) => {
+                let site = Site::new(run.frames.scene().walls.obstacles().to_vec());
+                let (low, high) = (run.view.min, run.view.max);
+                let cell = ((high - low).max() / CELLS).max(LEAST_CELL);
+                let grid = Grid::over(low, high, cell);
+                let grid =
+                    grid.ok_or_else(|| Failure::Input("the view is too large".to_owned()))?;
+                let fields = Fields::new(grid, &site, kernel(run.support_radius));
+                Some((quantity, bar(run, quantity.name(), range)?, fields, site))
+            }
+        };
+        Ok(Self { column, field })
+    }
+
+    /// The colors of the people in the current frame.
+    pub fn coloring(&self, run: &Run) -> Result<Option<Coloring>, Failure> {
+        let Some((name, bar)) = &self.column else {
+            return Ok(None);
+        };
+        let values = values(run, name)?;
+        let bar = bar.clone();
+        Ok(Some(Coloring { values, bar }))
+    }
+
+    /// The field in the current frame.
+    pub fn field(&mut self, run: &Run) -> Option<Field> {
+        let (quantity, bar, fields, site) = self.field.as_mut()?;
+        fields.clear();
+        let people = people(run, site);
+        fields.add(&people.iter().collect::<Vec<_>>(), site);
+        let value = |mean: crate::lab::measure::Mean| match quantity {
+            Quantity::Density => Some(mean.density),
+            Quantity::Speed => mean.speed,
+        };
+        let values = fields.means(1).map(|mean| value(mean?)).collect();
+        let grid = &fields.grid;
+        let size = Vector::new(grid.columns as f64, grid.rows as f64) * grid.cell;
+        Some(Field {
+            cells: Cells {
+                extent: [grid.min, grid.min + size].map(Into::into),
+                columns: grid.columns,
+                values,
+                map: bar.map.clone(),
+            },
+            bar: bar.clone(),
+        })
+    }
+}
+
+/// The people in the current frame, as measurements see them.
+fn people(run: &Run, site: &Site) -> Vec<Person> {
+    let crowd = run.frames.crowd();
+    let (kernel, mut near) = (kernel(run.support_radius), Vec::new());
+    let person = |i: usize| {
+        let position = crowd.position[i];
+        let eye = match site.is_inside(position) {
+            true => {
+                site.walls.near(position, kernel.support_radius, &mut near);
+                site.hidden(position, &mut near, &kernel).eye
+            }
+            false => position,
+        };
+        Person {
+            number: i as u32,
+            id: crowd.id[i],
+            position,
+            eye,
+            mass: crowd.mass[i],
+            velocity: crowd.velocity[i],
+            density: 0.0,
+            density_from_walls: 0.0,
+        }
+    };
+    (0..crowd.len()).map(person).collect()
+}
+
+fn values(run: &Run, name: &str) -> Result<Vec<f64>, Failure> {
+    run.frames.column(name)?.ok_or_else(|| {
+        let known = run.frames.columns();
+        let near = suggestion(name, known.iter().map(String::as_str));
+        let known: Vec<String> = known
+            .iter()
+            .map(|name| format!("`{}`", shown(name)))
+            .collect();
+        Failure::Input(format!(
+            "--color {}: no such column{near}; there are {} and `{NONE}`",
+            shown(name),
+            known.join(", ")
+        ))
+    })
+}
+
+/// The meaning of the colors for a quantity.
+fn bar(run: &Run, name: &str, range: Option<[f64; 2]>) -> Result<ColorBar, Failure> {
+    let of_frame = || -> Result<[f64; 2], Failure> { Ok(usual(&values(run, name)?)) };
+    let range = match (range, name) {
+        (Some(range), _) => range,
+        (None, "density") => run.density_range,
+        (None, "speed") => run.speed_range,
+        (None, _) => of_frame()?,
+    };
+    let ends = range.map(|end| end as f32);
+    let map = match name {
+        "speed" => ColorMap::inferno(ends),
+        _ => ColorMap::viridis(ends),
+    };
+    let unit = UNITS.iter().find(|(own, _)| *own == name);
+    let unit = unit.map_or(String::new(), |(_, unit)| format!(" [{unit}]"));
+    Ok(ColorBar {
+        label: format!("{}{unit}", name.replace('_', " ")),
+        map,
+    })
+}

@@ -1,0 +1,383 @@
+//! `sandbox draw`: pictures and animations of a run, without a viewer.
+//!
+//! A run is a scenario, which is simulated until then, a trajectory file or a recording: [`frames::Frames`].
+
+mod frames;
+mod look;
+mod paths;
+mod recorded;
+mod simulated;
+mod tracked;
+
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+
+use super::arguments::{DrawOptions, SceneOptions};
+use super::moment::{self, Moment};
+use super::watch::bar;
+use super::{Failure, tell, use_threads};
+use crate::output::picture::{Paths, Picture, Trails};
+use crate::output::plot::{Animation, PlotError, Print};
+use crate::runs::outputs::{Manner, Outputs};
+use crate::scenario::Scenario;
+use crate::scenario::trajectories::{ReadOptions, Unit};
+use frames::Run;
+use look::{Look, NONE, Quantity};
+
+/// The width of pictures without another one, millimeters: two columns of a paper.
+const WIDTH_MM: f64 = 180.0;
+/// The resolution of animations without another one, pixels per inch.
+const ANIMATION_DPI: f64 = 100.0;
+/// The longest time between two points of a path, seconds.
+const TRAIL_STEP: f64 = 0.1;
+/// The most frames of an animation.
+const MOST_FRAMES: f64 = 100_000.0;
+/// The fastest GIFs: its times are hundredths of a second, and programs show shorter ones than two more slowly.
+const FASTEST_GIF: f64 = 50.0;
+
+/// What kind of run a name stands for.
+enum Kind {
+    Scenario,
+    Trajectory,
+    Recording,
+}
+
+impl Kind {
+    fn of(run: &str) -> Self {
+        let extension = Path::new(run).extension().unwrap_or_default();
+        let is = |names: &[&str]| {
+            names
+                .iter()
+                .any(|name| extension.eq_ignore_ascii_case(name))
+        };
+        if is(&["rrd"]) {
+            Self::Recording
+        } else if is(&["sqlite", "db", "txt", "csv"]) {
+            Self::Trajectory
+        } else {
+            Self::Scenario
+        }
+    }
+}
+
+/// The moments to draw: one, or several for an animation.
+struct Times {
+    from: f64,
+    count: u32,
+    fps: f64,
+    is_animation: bool,
+}
+
+impl Times {
+    fn of(options: &DrawOptions, out: &Path) -> Result<Self, Failure> {
+        let (Some(from), Some(to)) = (options.from, options.to) else {
+            return Ok(Self {
+                from: options.at,
+                count: 1,
+                fps: options.fps,
+                is_animation: false,
+            });
+        };
+        let count = ((to - from) * options.fps).round();
+        if !(1.0..=MOST_FRAMES).contains(&count) {
+            return Err(Failure::Input(format!(
+                "--from {from} --to {to} --fps {} are {count} frames; an animation has 1 to {MOST_FRAMES}",
+                options.fps
+            )));
+        }
+        let is_gif = out
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("gif"));
+        if is_gif && options.fps > FASTEST_GIF {
+            return Err(Failure::Input(format!(
+                "--fps {}: a GIF has at most {FASTEST_GIF} frames per second",
+                options.fps
+            )));
+        }
+        Ok(Self {
+            from,
+            count: count as u32,
+            fps: options.fps,
+            is_animation: true,
+        })
+    }
+
+    fn at(&self, k: u32) -> f64 {
+        self.from + f64::from(k) / self.fps
+    }
+}
+
+pub fn run(options: &DrawOptions) -> Result<(), Failure> {
+    let program = &options.scene.program;
+    use_threads(program.threads)?;
+    let mut outputs = Outputs::new(program.force);
+    let out = options.out.clone();
+    let out = out.unwrap_or_else(|| own_name(&options.run));
+    let times = Times::of(options, &out)?;
+    check_format(&out, times.is_animation)?;
+    if times.is_animation {
+        Animation::check(&out)?;
+    }
+    let (mut run, paths) = open(options, &times, &mut outputs)?;
+    outputs.writes("--out", &out, Manner::InPlace);
+    outputs.check()?;
+    check_times(&run, &times)?;
+    let drawn = rayon::scope(|_| draw(options, (&mut run, paths), &times, &out))?;
+    let (file, count) = (out.display().to_string(), times.count);
+    let [time, people] = [drawn.0, drawn.1 as f64];
+    tell(
+        program.json,
+        || {
+            let mut result = json!({"file": file, "time_secs": time, "agents": people as u64});
+            if times.is_animation {
+                result["frames"] = json!(count);
+            }
+            result
+        },
+        || match times.is_animation {
+            true => format!(
+                "{file}: {count} frames from {:.2} s to {time:.2} s\n",
+                times.from
+            ),
+            false => format!("{file}: {people} agents at {time:.2} s\n"),
+        },
+    )
+}
+
+/// The name of the picture of a run, in the working directory.
+fn own_name(run: &str) -> PathBuf {
+    let stem = Path::new(run).file_stem().unwrap_or_default();
+    Path::new(stem).with_added_extension("svg")
+}
+
+/// Rejects pictures of one moment as videos, and animations as drawings.
+fn check_format(out: &Path, is_animation: bool) -> Result<(), Failure> {
+    let extension = out.extension().unwrap_or_default().to_ascii_lowercase();
+    let moves = ["gif", "mp4", "webm"].iter().any(|name| extension == *name);
+    let stands = ["svg", "pdf"].iter().any(|name| extension == *name);
+    let problem = match is_animation {
+        true if stands => "is no format of animations; use .gif, .png, .mp4 or .webm",
+        false if moves => {
+            "is a format of animations; give --from and --to, or use .svg, .png or .pdf"
+        }
+        _ => return Ok(()),
+    };
+    let extension = extension.to_string_lossy();
+    Err(Failure::Input(format!(
+        "--out {}: .{extension} {problem}",
+        out.display()
+    )))
+}
+
+/// Opens the run, with the ways that are asked for.
+fn open(
+    options: &DrawOptions,
+    times: &Times,
+    outputs: &mut Outputs,
+) -> Result<(Run, Vec<Paths>), Failure> {
+    let kind = Kind::of(&options.run);
+    let path = Path::new(&options.run);
+    if !matches!(kind, Kind::Scenario) {
+        refuse_settings(options, &options.scene)?;
+    }
+    match kind {
+        Kind::Scenario => simulate(options, times, outputs),
+        Kind::Trajectory => {
+            outputs.reads("the trajectories", path);
+            let plan = options.scene.geometry.as_deref();
+            if let Some(plan) = plan.filter(|plan| plan.as_os_str() != "none") {
+                outputs.reads("--geometry", plan);
+            }
+            let read = ReadOptions {
+                unit: options.unit.as_deref().and_then(Unit::named),
+                fps: options.trajectory_fps,
+            };
+            Ok((
+                tracked::open(path, &read, plan, color(options))?,
+                Vec::new(),
+            ))
+        }
+        Kind::Recording => {
+            outputs.reads("the recording", path);
+            Ok((recorded::open(path)?, Vec::new()))
+        }
+    }
+}
+
+fn simulate(
+    options: &DrawOptions,
+    times: &Times,
+    outputs: &mut Outputs,
+) -> Result<(Run, Vec<Paths>), Failure> {
+    if options.unit.is_some() || options.trajectory_fps.is_some() {
+        let reason = "--unit and --trajectory-fps are for trajectory files, not for scenarios";
+        return Err(Failure::Input(reason.to_owned()));
+    }
+    let until = times.at(times.count - 1);
+    let moment = Moment {
+        scenario: &options.run,
+        scene: &options.scene,
+        at: until,
+    };
+    let scenario: Scenario = moment::scenario(&moment, 0, outputs)?;
+    let paths = options.paths.iter();
+    let paths = paths.map(|text| paths::paths(text, &scenario));
+    let paths = paths.collect::<Result<Vec<_>, _>>()?;
+    let option = match times.is_animation {
+        true => format!("--to {}", options.to.unwrap_or(until)),
+        false => format!("--at {}", options.at),
+    };
+    Ok((simulated::open(&scenario, until, option)?, paths))
+}
+
+/// Rejects settings of scenarios for runs that are not simulated.
+fn refuse_settings(options: &DrawOptions, scene: &SceneOptions) -> Result<(), Failure> {
+    let given = [
+        ("--profile", scene.profile.is_some()),
+        ("--seed", scene.seed.is_some()),
+        ("--preset", scene.preset.is_some()),
+        ("--time-step", scene.time_step.is_some()),
+        ("--set", !scene.set.is_empty()),
+        ("--paths", !options.paths.is_empty()),
+    ];
+    match given.iter().find(|(_, is_given)| *is_given) {
+        Some((option, _)) => Err(Failure::Input(format!(
+            "{option} needs a scenario; {} holds a run that is over",
+            options.run
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Rejects times that a file does not have.
+fn check_times(run: &Run, times: &Times) -> Result<(), Failure> {
+    let Some([first, last]) = run.times else {
+        return Ok(());
+    };
+    let (from, to) = (times.from, times.at(times.count - 1));
+    let slack = 0.5;
+    // Without --at, the first frame is drawn.
+    let is_default = !times.is_animation && from == 0.0;
+    if is_default || (from >= first - slack && to <= last + slack) {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "no frames from {from} s to {to} s; there are frames from {first:.2} s to {last:.2} s"
+    )))
+}
+
+/// What colors agents.
+fn color(options: &DrawOptions) -> &str {
+    let is_plain = !options.paths.is_empty() || options.field.is_some();
+    match &options.color {
+        Some(name) => name,
+        None if is_plain => NONE,
+        None => "density",
+    }
+}
+
+fn print(options: &DrawOptions, is_animation: bool) -> Print {
+    let dpi = if is_animation {
+        ANIMATION_DPI
+    } else {
+        Print::default().dpi
+    };
+    let dpi = options.dpi.unwrap_or(dpi);
+    let paper = options.paper.map(Print::paper);
+    let width = options.width.map(|width| width.points(dpi));
+    Print {
+        width: width
+            .or(paper.and_then(|paper| paper.width))
+            .or(Print::paper(WIDTH_MM).width),
+        dpi,
+        titles: options.paper.is_none(),
+    }
+}
+
+/// Draws all moments; returns the last time and its number of people.
+fn draw(
+    options: &DrawOptions,
+    (run, mut paths): (&mut Run, Vec<Paths>),
+    times: &Times,
+    out: &Path,
+) -> Result<(f64, usize), Failure> {
+    let print = print(options, times.is_animation);
+    let mut trails = options.trails.map(Trails::new);
+    let before = trails.as_ref().map_or(0.0, |trails| trails.secs);
+    let start = (times.from - before).max(0.0);
+    let mut animation = None;
+    let mut look = None;
+    let length = u64::from(if times.is_animation { times.count } else { 0 });
+    let progress = bar(length, "{bar:30} {pos} of {len} frames, {eta} left");
+    for k in 0..times.count {
+        let time = times.at(k);
+        if let Some(trails) = &mut trails {
+            let from = if k == 0 { start } else { times.at(k - 1) };
+            approach(run, trails, from, time)?;
+        }
+        run.frames.go_to(time)?;
+        if let Some(trails) = &mut trails {
+            trails.add(run.frames.crowd());
+        }
+        let look = match &mut look {
+            Some(look) => look,
+            none => {
+                let field = options.field.as_deref().map(Quantity::named);
+                none.insert(Look::new(run, color(options), field, options.range)?)
+            }
+        };
+        let picture = Picture {
+            simulation: run.frames.simulation(),
+            coloring: look.coloring(run)?,
+            field: look.field(run),
+            trails: trails.as_ref(),
+            observed: &run.observed,
+            paths: std::mem::take(&mut paths),
+            body_mass: run.body_mass,
+            ..Picture::of_scene(
+                (run.frames.scene(), run.frames.crowd()),
+                run.title.clone(),
+                run.view,
+            )
+        };
+        if !times.is_animation {
+            picture.save(out, &print)?;
+            break;
+        }
+        let image = picture.sheet(&print).image(&print)?;
+        paths = picture.paths;
+        let animation = match &mut animation {
+            Some(animation) => animation,
+            none => {
+                let length = (times.count, times.fps);
+                none.insert(Animation::create(out, &image, length, &print)?)
+            }
+        };
+        animation.add(image)?;
+        progress.inc(1);
+    }
+    animation.map_or(Ok(()), Animation::finish)?;
+    let crowd = run.frames.crowd();
+    Ok((crowd.time, crowd.len()))
+}
+
+/// Adds to the paths where people are between two times, without the second one.
+fn approach(run: &mut Run, trails: &mut Trails, from: f64, to: f64) -> Result<(), Failure> {
+    let steps = ((to - from) / TRAIL_STEP - 1e-6).ceil().max(1.0);
+    for k in 0..steps as u32 {
+        let time = from + (to - from) * f64::from(k) / steps;
+        run.frames.go_to(time)?;
+        trails.add(run.frames.crowd());
+    }
+    Ok(())
+}
+
+impl From<PlotError> for Failure {
+    fn from(error: PlotError) -> Self {
+        match error {
+            PlotError::Large(..) | PlotError::NoFfmpeg { .. } => Self::Input(error.to_string()),
+            error => Self::Output(error.to_string()),
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Frames of a simulation.
+
+use super::super::Failure;
+use super::super::drive::Progress;
+use super::frames::{Frames, Run, speeds};
+use crate::engine::scene::Scene;
+use crate::engine::simulation::Simulation;
+use crate::output::picture::Crowd;
+use crate::scenario::Scenario;
+
+/// The value of agent `i` in an evaluated frame.
+type Value = fn(&Simulation, usize) -> f64;
+
+/// All quantities but the speed.
+const COLUMNS: [(&str, Value); 12] = [
+    ("density", |s, i| s.frame().fields.density[i]),
+    ("pressure", |s, i| s.frame().fields.pressure[i]),
+    ("rest_density", |s, i| s.frame().fields.rest_density[i]),
+    ("mean_density", |s, i| s.frame().fields.mean_density[i]),
+    ("density_from_walls", |s, i| {
+        s.frame().fields.density_from_walls[i]
+    }),
+    ("acceleration", |s, i| {
+        s.frame().fields.acceleration[i].norm()
+    }),
+    ("radius", |s, i| s.frame().agents.radius[i]),
+    ("mass", |s, i| s.frame().agents.mass[i]),
+    ("preferred_speed", |s, i| {
+        let own = s.frame().agents.preferred_speed.get(i).copied();
+        own.unwrap_or(s.scene().preferred_speed)
+    }),
+    ("max_speed", |s, i| s.scene().max_speed(s.frame().agents, i)),
+    ("group", |s, i| f64::from(s.frame().agents.group[i])),
+    ("id", |s, i| f64::from(s.frame().agents.id[i])),
+];
+
+struct Simulated {
+    simulation: Simulation,
+    crowd: Crowd,
+    progress: Progress,
+    /// The option that asks for the time at which agents must be left.
+    option: String,
+    until: f64,
+}
+
+/// The run of a scenario until a time, seconds, which `option` asks for.
+pub fn open(scenario: &Scenario, until: f64, option: String) -> Result<Run, Failure> {
+    let mut simulation = Simulation::new(scenario.scene.clone())?;
+    let last = simulation.frame().clock.frame_at(until);
+    simulation.request_density_until(last + 1);
+    simulation.evaluate()?;
+    let support = scenario.scene.groups.iter();
+    let support = support.map(|group| group.blend.sph.support_radius);
+    let frames = Simulated {
+        crowd: Crowd::of(&simulation),
+        simulation,
+        progress: Progress::new(until),
+        option,
+        until,
+    };
+    let view = &scenario.view;
+    Ok(Run {
+        frames: Box::new(frames),
+        title: scenario.name.clone(),
+        view: view.region,
+        density_range: view.density_range,
+        speed_range: view.speed_range,
+        support_radius: support.reduce(f64::max).unwrap_or(1.0),
+        observed: scenario
+            .measurements
+            .iter()
+            .flat_map(|one| one.observed())
+            .collect(),
+        body_mass: scenario.mass_on_walls(),
+        times: None,
+    })
+}
+
+impl Frames for Simulated {
+    fn scene(&self) -> &Scene {
+        self.simulation.scene()
+    }
+
+    fn simulation(&self) -> Option<&Simulation> {
+        Some(&self.simulation)
+    }
+
+    fn go_to(&mut self, time: f64) -> Result<(), Failure> {
+        let simulation = &mut self.simulation;
+        let last = simulation.frame().clock.frame_at(time.min(self.until));
+        while simulation.frame().clock.frame() < last {
+            self.progress.show(simulation);
+            simulation.step()?;
+            if simulation.frame().agents.is_empty() && !simulation.expects_agents() {
+                let (option, time) = (&self.option, simulation.frame().clock.time());
+                return Err(Failure::Input(format!(
+                    "{option}: no agents are left at that time: the last one leaves at {time:.2} s"
+                )));
+            }
+        }
+        simulation.evaluate()?;
+        self.crowd = Crowd::of(simulation);
+        Ok(())
+    }
+
+    fn crowd(&self) -> &Crowd {
+        &self.crowd
+    }
+
+    fn columns(&self) -> Vec<String> {
+        let names = COLUMNS.iter().map(|(name, _)| *name);
+        names.chain(["speed"]).map(str::to_owned).collect()
+    }
+
+    fn column(&self, name: &str) -> Result<Option<Vec<f64>>, Failure> {
+        if name == "speed" {
+            return Ok(Some(speeds(&self.crowd)));
+        }
+        let of = COLUMNS.iter().find(|(own, _)| *own == name);
+        let count = self.crowd.len();
+        Ok(of.map(|(_, value)| (0..count).map(|i| value(&self.simulation, i)).collect()))
+    }
+}

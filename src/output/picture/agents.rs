@@ -1,0 +1,189 @@
+//! The marks of agents and their paths, and the legend.
+
+use super::paths::BORDER;
+use super::{Coloring, Field, Frame, Picture, xy};
+use crate::engine::journeys::Status;
+use crate::engine::simulation::Simulation;
+use crate::output::colors::Rgb;
+use crate::output::plot::{BLACK, Disc, Mark, Style};
+use crate::output::scenery::WALKING;
+
+/// The color of agents in pictures of ways, and of those without a value.
+pub const FAINT: Rgb = [150, 154, 162];
+const TRAIL: Rgb = [104, 116, 142];
+/// The width of paths, and with many people, points.
+const TRAIL_WIDTH: f64 = 0.6;
+const THIN: f64 = 0.3;
+/// With more people paths are thin.
+const MANY: usize = 1000;
+/// The radius of agents in pictures of a field, in parts of their own.
+const SMALL: f64 = 0.4;
+/// Colors of more than this lightness, from 0 to 255, have black dots on them.
+const LIGHT: f64 = 120.0;
+
+/// What agent `i` does, as far as pictures show it.
+fn doing(simulation: Option<&Simulation>, i: usize) -> (&'static str, Rgb) {
+    let Some(simulation) = simulation else {
+        return ("walking", WALKING);
+    };
+    let (agents, clock) = (simulation.frame().agents, simulation.frame().clock);
+    if agents
+        .walks_from
+        .get(i)
+        .is_some_and(|&from| clock.time() < from)
+    {
+        return ("does not walk yet", [120, 150, 190]);
+    }
+    let trip = agents.trip.get(i).and_then(Option::as_ref);
+    match trip.map(|trip| trip.status) {
+        Some(Status::Waiting { .. }) => ("waiting", [200, 130, 0]),
+        Some(Status::Queued { .. }) => ("in a queue", [170, 80, 140]),
+        Some(Status::Finished) => ("has ended its journey", FAINT),
+        Some(Status::Walking) | None => ("walking", WALKING),
+    }
+}
+
+impl Coloring {
+    fn color(&self, i: usize) -> Rgb {
+        let value = self.values.get(i).copied().unwrap_or(f64::NAN);
+        match value.is_nan() {
+            true => FAINT,
+            false => self.bar.map.color(value as f32),
+        }
+    }
+}
+
+impl Field {
+    /// Black or white, to be seen on the color at a place.
+    fn contrast(&self, [x, y]: [f64; 2]) -> Rgb {
+        let cells = &self.cells;
+        let [low, high] = cells.extent;
+        let rows = cells.values.len() / cells.columns.max(1);
+        let part = |at: f64, k: usize, count: usize| {
+            let part = (at - low[k]) / (high[k] - low[k]);
+            ((part * count as f64).max(0.0) as usize).min(count.saturating_sub(1))
+        };
+        let k = part(y, 1, rows) * cells.columns + part(x, 0, cells.columns);
+        let value = cells.values.get(k).copied().flatten();
+        let color = value.map_or([255; 3], |value| cells.map.color(value as f32));
+        let [r, g, b] = color.map(f64::from);
+        match 0.3 * r + 0.59 * g + 0.11 * b > LIGHT {
+            true => BLACK,
+            false => [255; 3],
+        }
+    }
+}
+
+/// The agents of a picture; `faint`: in a picture of ways.
+pub fn agents(picture: &Picture, faint: bool) -> Option<Mark> {
+    let crowd = picture.crowd;
+    let disc = |i: usize| {
+        let (center, radius) = (xy(crowd.position[i]), crowd.radius[i]);
+        let (radius, color) = match (&picture.field, &picture.coloring) {
+            _ if faint => (radius, FAINT),
+            (Some(field), _) => (SMALL * radius, field.contrast(center)),
+            (None, Some(coloring)) => (radius, coloring.color(i)),
+            (None, None) => (radius, doing(picture.simulation, i).1),
+        };
+        Disc {
+            center,
+            radius,
+            color,
+        }
+    };
+    let discs: Vec<Disc> = (0..crowd.len()).map(disc).collect();
+    (!discs.is_empty()).then_some(Mark::Discs(discs))
+}
+
+/// The paths of the last seconds.
+pub fn trails(picture: &Picture) -> Vec<Mark> {
+    let Some(trails) = picture.trails else {
+        return Vec::new();
+    };
+    let many = picture.crowd.len() > MANY;
+    let style = Style::full(TRAIL, if many { THIN } else { TRAIL_WIDTH }, "");
+    let lines = trails
+        .lines()
+        .map(|line| line.into_iter().map(xy).collect());
+    lines.map(|line| Mark::Line(line, style.clone())).collect()
+}
+
+/// The time, and how many agents there are.
+pub fn summary(picture: &Picture) -> String {
+    let count = picture.crowd.len();
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{:.2} s, {count} agent{ending}", picture.crowd.time)
+}
+
+/// An entry of the legend.
+pub struct Entry {
+    pub text: String,
+    look: Look,
+}
+
+enum Look {
+    Agent(Rgb),
+    Dot(Rgb),
+    Line(Style),
+}
+
+impl Entry {
+    /// Its sample, which begins at a place.
+    pub fn sample(&self, [x, y]: [f64; 2], frame: &Frame) -> Vec<Mark> {
+        let at = |points: f64| [x + frame.meters(points), y];
+        match &self.look {
+            Look::Agent(color) => vec![Mark::dots([at(8.0)], Style::full(*color, 3.0, ""))],
+            Look::Dot(color) => vec![Mark::dots([at(8.0)], Style::full(*color, 1.7, ""))],
+            Look::Line(style) => vec![Mark::Line(vec![at(0.0), at(11.0)], style.clone())],
+        }
+    }
+}
+
+/// The entries of the legend.
+pub fn legend(picture: &Picture, has_paths: bool) -> Vec<Entry> {
+    let entry = |text: &str, look| Entry {
+        text: text.to_owned(),
+        look,
+    };
+    if has_paths {
+        return vec![
+            entry("agent", Look::Agent(FAINT)),
+            entry("shortest way", Look::Line(Style::full(BLACK, 0.9, ""))),
+            entry(
+                "border of cells with the same next corner",
+                Look::Line(Style::full(BORDER, 0.6, "")),
+            ),
+            entry("corner", Look::Dot(BORDER)),
+        ];
+    }
+    let path = picture.trails.map(|trails| {
+        let text = format!("path of the last {} s", trails.secs);
+        entry(&text, Look::Line(Style::full(TRAIL, TRAIL_WIDTH, "")))
+    });
+    if let Some(coloring) = &picture.coloring {
+        let unknown = coloring.values.iter().any(|value| value.is_nan());
+        let unknown = unknown.then(|| entry("no data", Look::Agent(FAINT)));
+        return unknown.into_iter().chain(path).collect();
+    }
+    if picture.field.is_some() {
+        return path.into_iter().collect();
+    }
+    let mut shown = Vec::new();
+    for i in 0..picture.crowd.len() {
+        let seen = doing(picture.simulation, i);
+        if !shown.contains(&seen) {
+            shown.push(seen);
+        }
+    }
+    shown.sort_by_key(|(text, _)| std::cmp::Reverse(*text));
+    if let [(text, _)] = &mut shown[..]
+        && picture.scene.journeys.places.is_empty()
+    {
+        *text = "agent";
+    }
+    let shown = shown.into_iter();
+    shown
+        .map(|(text, color)| entry(text, Look::Agent(color)))
+        .chain(path)
+        .collect()
+}

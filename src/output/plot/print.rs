@@ -1,0 +1,57 @@
+//! How sheets are printed: width, resolution, titles.
+
+use std::sync::OnceLock;
+
+/// Points per millimeter.
+const POINTS_PER_MM: f64 = 72.0 / 25.4;
+/// The resolution of pictures in papers, pixels per inch.
+pub const PAPER_DPI: f64 = 300.0;
+
+/// How a sheet is printed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Print {
+    /// The width of the sheet, points; `None`: as wide as its panels need.
+    pub width: Option<f64>,
+    /// The resolution of pixels, in files of pixels and of those in other files, pixels per inch.
+    pub dpi: f64,
+    /// Whether titles are drawn. Figures of papers have captions instead. Panels keep theirs if there are several.
+    pub titles: bool,
+}
+
+impl Default for Print {
+    fn default() -> Self {
+        Self {
+            width: None,
+            dpi: PAPER_DPI,
+            titles: true,
+        }
+    }
+}
+
+static OF_PROGRAM: OnceLock<Print> = OnceLock::new();
+
+impl Print {
+    /// For a column of a paper that is this wide, millimeters.
+    pub fn paper(width_mm: f64) -> Self {
+        Self {
+            width: Some(width_mm * POINTS_PER_MM),
+            titles: false,
+            ..Self::default()
+        }
+    }
+
+    /// Prints all sheets that are saved without a print of their own like this. The first call counts.
+    pub fn for_all_sheets(self) {
+        let _ = OF_PROGRAM.set(self);
+    }
+
+    /// How sheets without a print of their own are printed.
+    pub fn of_program() -> Self {
+        OF_PROGRAM.get().copied().unwrap_or_default()
+    }
+
+    /// Pixels per point.
+    pub(super) fn pixels_per_point(&self) -> f64 {
+        self.dpi / 72.0
+    }
+}

@@ -1,0 +1,155 @@
+//! Other columns of a trajectory file than positions, for pictures.
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::path::Path;
+
+use super::Tracks;
+use super::error::ReadError;
+use super::line::Columns;
+
+/// Columns that are not values of people.
+const OTHERS: [&str; 8] = ["id", "frame", "time", "x", "y", "pos_x", "pos_y", "z"];
+
+/// A column of a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Its name in the file.
+    pub name: String,
+    /// The value of each row of the tracks, NaN where there is no number; empty if it was not read.
+    pub values: Vec<f64>,
+}
+
+/// A row's person and frame, and its values.
+type Row = (i64, i64, Vec<f64>);
+
+/// The columns with values of people of a CSV or SQLite file; the values of `wanted` and of the radius are read. Text
+/// files have no such columns.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn columns(path: &Path, wanted: &str, tracks: &Tracks) -> Result<Vec<Column>, ReadError> {
+    let is_csv = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+    let names = match is_csv {
+        true => csv_names(path)?,
+        false => sqlite_names(path),
+    };
+    let names = names.into_iter();
+    let names: Vec<String> = names
+        .filter(|name| !OTHERS.contains(&name.as_str()))
+        .collect();
+    let read = |name: &&String| *name == wanted || *name == "radius";
+    let needed: Vec<&str> = names.iter().filter(read).map(String::as_str).collect();
+    let values = match needed.is_empty() {
+        true => Vec::new(),
+        false => {
+            let rows = match is_csv {
+                true => csv_rows(path, &needed)?,
+                false => sqlite_rows(path, &needed)?,
+            };
+            in_order(rows, needed.len(), tracks)
+        }
+    };
+    let mut values: HashMap<String, Vec<f64>> =
+        needed.into_iter().map(str::to_owned).zip(values).collect();
+    let column = names.into_iter().map(|name| Column {
+        values: values.remove(&name).unwrap_or_default(),
+        name,
+    });
+    Ok(column.collect())
+}
+
+/// The values of some columns in the order of the tracks' rows.
+fn in_order(rows: Vec<Row>, count: usize, tracks: &Tracks) -> Vec<Vec<f64>> {
+    let mut values = vec![vec![f64::NAN; tracks.len()]; count];
+    let rows: HashMap<(i64, i64), Vec<f64>> = rows
+        .into_iter()
+        .map(|(id, frame, own)| ((id, frame), own))
+        .collect();
+    for (k, &frame) in tracks.frames.iter().enumerate() {
+        for row in tracks.rows(k) {
+            let id = tracks.ids[tracks.person[row] as usize];
+            for (column, value) in values
+                .iter_mut()
+                .zip(rows.get(&(id, frame)).into_iter().flatten())
+            {
+                column[row] = *value;
+            }
+        }
+    }
+    // A column of text has no numbers at all.
+    for column in &mut values {
+        if column.iter().all(|value| value.is_nan()) {
+            column.clear();
+        }
+    }
+    values
+}
+
+fn reader(path: &Path) -> Result<csv::Reader<File>, ReadError> {
+    let file = File::open(path);
+    let file = file.map_err(|error| ReadError::file(path, format!("cannot be read: {error}")))?;
+    let mut builder = csv::ReaderBuilder::new();
+    builder
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .flexible(true);
+    Ok(builder.from_reader(file))
+}
+
+fn csv_names(path: &Path) -> Result<Vec<String>, ReadError> {
+    let mut reader = reader(path)?;
+    let header = reader.headers();
+    let header = header.map_err(|error| ReadError::file(path, error.to_string()))?;
+    Ok(header.iter().map(str::to_owned).collect())
+}
+
+fn csv_rows(path: &Path, names: &[&str]) -> Result<Vec<Row>, ReadError> {
+    let mut reader = reader(path)?;
+    let failed = |error: csv::Error| ReadError::file(path, error.to_string());
+    let header = reader.headers().map_err(failed)?.clone();
+    let header: Vec<&str> = header.iter().collect();
+    let found = Columns::named(&header).map_err(|problem| ReadError::file(path, problem))?;
+    let Some((columns, _)) = found else {
+        return Ok(Vec::new());
+    };
+    let places = names.iter();
+    let places = places.filter_map(|name| header.iter().position(|own| own == name));
+    let places: Vec<usize> = places.collect();
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(failed)?;
+        let cells: Vec<&str> = record.iter().collect();
+        let line = record.position().map_or(0, csv::Position::line);
+        let entry = columns.entry(&cells, line);
+        let entry = entry.map_err(|problem| ReadError::line(path, line, problem))?;
+        let values = places.iter().map(|&place| {
+            let value = cells.get(place).and_then(|cell| cell.parse().ok());
+            value.unwrap_or(f64::NAN)
+        });
+        rows.push((entry.id, entry.frame, values.collect()));
+    }
+    Ok(rows)
+}
+
+#[cfg(feature = "program")]
+fn sqlite_names(path: &Path) -> Vec<String> {
+    super::sqlite::names(path).unwrap_or_default()
+}
+
+#[cfg(feature = "program")]
+fn sqlite_rows(path: &Path, names: &[&str]) -> Result<Vec<Row>, ReadError> {
+    super::sqlite::values(path, names)
+}
+
+#[cfg(not(feature = "program"))]
+fn sqlite_names(_: &Path) -> Vec<String> {
+    Vec::new()
+}
+
+#[cfg(not(feature = "program"))]
+fn sqlite_rows(_: &Path, _: &[&str]) -> Result<Vec<Row>, ReadError> {
+    Ok(Vec::new())
+}
