@@ -134,9 +134,9 @@ fn ways_that_cannot_be_drawn_are_refused_with_advice() {
         &["`navigation` is `straight`"],
     );
     refused(
-        &["draw", file, "--out", "picture.pdf"],
+        &["draw", file, "--out", "picture.jpg"],
         2,
-        &["must end in .svg or .png"],
+        &["must end in .svg, .png or .pdf"],
     );
 }
 

@@ -8,7 +8,7 @@ use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 use crate::output::colors::{ColorMap, DENSITY, SPEED};
 use crate::output::plot::{
-    Axis, BLACK, Cells, ColorBar, Corner, LINES, Mark, Panel, PlotError, Point, Sheet, Style,
+    Axis, BLACK, Cells, ColorBar, Corner, GRAY, LINES, Mark, Panel, PlotError, Point, Sheet, Style,
 };
 
 /// Length of the longer side of a map, points.
@@ -47,13 +47,24 @@ fn maps(measured: &Measured, walls: &Walls) -> Sheet {
     let (width, height) = (x[1] - x[0], y[1] - y[0]);
     let scale = MAP_SIDE / width.max(height);
     let map = |title: &str, label: &str, map: &ColorMap, value: fn(&Mean) -> Option<f64>| {
-        let values = means.iter().map(|mean| value(mean.as_ref()?));
+        // Obstacles cover the cells in them.
+        let values = means.iter().map(|mean| match mean {
+            Some(mean) => value(mean),
+            None => Some(0.0),
+        });
         let mut marks = vec![Mark::Cells(Cells {
             extent: [[x[0], y[0]], [x[1], y[1]]],
             columns: grid.columns,
             values: values.collect(),
             map: map.clone(),
         })];
+        let solid = means.iter().map(|mean| mean.is_none().then_some(0.0));
+        marks.push(Mark::Overlay(Cells {
+            extent: [[x[0], y[0]], [x[1], y[1]]],
+            columns: grid.columns,
+            values: solid.collect(),
+            map: ColorMap::plain(GRAY),
+        }));
         marks.extend(walls.iter().map(|wall| {
             let ends = [wall.start, wall.end].map(|p| [p.x, p.y]);
             Mark::Line(ends.to_vec(), Style::full(BLACK, 1.2, ""))

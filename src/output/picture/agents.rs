@@ -150,7 +150,7 @@ pub fn legend(picture: &Picture, has_paths: bool) -> Vec<Entry> {
             entry("agent", Look::Agent(FAINT)),
             entry("shortest way", Look::Line(Style::full(BLACK, 0.9, ""))),
             entry(
-                "border of cells with the same next corner",
+                "border of the same next corner",
                 Look::Line(Style::full(BORDER, 0.6, "")),
             ),
             entry("corner", Look::Dot(BORDER)),

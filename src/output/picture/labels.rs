@@ -36,6 +36,8 @@ pub struct Labels<'a> {
     placed: Vec<(Corners, Label)>,
     /// Lines from labels to their points.
     leaders: Vec<Mark>,
+    /// Points that labels cover only if they find no other place nearby, by x.
+    avoided: Vec<Vector>,
 }
 
 /// A possible place of a label.
@@ -49,16 +51,19 @@ struct Place {
 }
 
 impl<'a> Labels<'a> {
-    pub fn new(frame: &'a Frame) -> Self {
+    pub fn new(frame: &'a Frame, mut avoided: Vec<Vector>) -> Self {
+        avoided.sort_by(|a, b| a.x.total_cmp(&b.x));
         Self {
             frame,
             placed: Vec::new(),
             leaders: Vec::new(),
+            avoided,
         }
     }
 
     /// Adds a label at the first of `places` where it fits into the panel and covers no other label, or farther away
-    /// with a line to its point. Where nothing is free there is no label.
+    /// with a line to its point; if possible, at one where it covers no agents and walls. Where nothing is free there
+    /// is no label.
     pub fn add(&mut self, text: &str, color: Rgb, places: &[(Vector, [i8; 2])]) {
         let mut text = text.to_owned();
         if text.chars().count() > MOST_LETTERS {
@@ -71,13 +76,14 @@ impl<'a> Labels<'a> {
             let outward = outward.filter(move |(_, side)| *side != [0, 0] || distance == GAP);
             outward.map(move |&(point, side)| (point, side, distance))
         });
-        let mut candidates =
+        let candidates =
             candidates.map(|(point, side, distance)| self.place(width, point, side, distance));
-        let Some(found) = candidates.find(|place| self.is_free(place)) else {
+        let free: Vec<Place> = candidates.filter(|place| self.is_free(place)).collect();
+        let empty = free.iter().find(|place| self.is_empty(place));
+        let Some(found) = empty.or(free.first()) else {
             return;
         };
-        drop(candidates);
-        let at = self.beside(&found);
+        let at = self.beside(found);
         if found.distance > GAP {
             let style = Style::full(color, LEADER, "");
             let ends = [found.point, at].map(Into::into).to_vec();
@@ -124,6 +130,14 @@ impl<'a> Labels<'a> {
         fits && !self.placed.iter().any(covers)
     }
 
+    /// Whether a label there covers none of the points to avoid.
+    fn is_empty(&self, place: &Place) -> bool {
+        let [low, high] = place.around;
+        let first = self.avoided.partition_point(|p| p.x < low.x);
+        let column = self.avoided[first..].iter().take_while(|p| p.x <= high.x);
+        !column.into_iter().any(|p| (low.y..=high.y).contains(&p.y))
+    }
+
     pub fn into_marks(self) -> impl Iterator<Item = Mark> {
         let labels = self.placed.into_iter();
         let labels = labels.map(|(_, label)| Mark::Label(label));
@@ -138,7 +152,7 @@ mod tests {
     #[test]
     fn labels_of_one_point_never_overlap_and_stay_inside() {
         let frame = Frame::around([Vector::zeros(), Vector::new(10.0, 10.0)], [400.0, 400.0]);
-        let mut labels = Labels::new(&frame);
+        let mut labels = Labels::new(&frame, Vec::new());
         let places = AROUND.map(|side| (Vector::new(5.0, 5.0), side));
         for k in 0..60 {
             labels.add(&format!("label {k}"), [0; 3], &places);

@@ -198,7 +198,7 @@ impl<'a> Picture<'a> {
 
     fn panel(&self, frame: &Frame, paths: Option<&Paths>) -> Panel {
         let scene = self.scene;
-        let mut labels = Labels::new(frame);
+        let mut labels = Labels::new(frame, self.avoided(frame));
         let mut below = scene::ground(scene);
         let mut above = Vec::new();
         let drawn = paths.zip(self.simulation);
@@ -241,6 +241,17 @@ impl<'a> Picture<'a> {
             bar,
             legend: None,
         }
+    }
+
+    /// Where agents and walls are.
+    fn avoided(&self, frame: &Frame) -> Vec<Vector> {
+        let apart = frame.meters(0.5 * TEXT_HEIGHT);
+        let walls = self.scene.walls.iter().flat_map(|wall| {
+            let count = (wall.length() / apart).ceil().clamp(1.0, 1e4);
+            (0..=count as u32)
+                .map(move |k| wall.start + (wall.end - wall.start) * (f64::from(k) / count))
+        });
+        walls.chain(self.crowd.position.iter().copied()).collect()
     }
 
     /// The mass of an average person, kg, if walls are colored: there is one color bar only.

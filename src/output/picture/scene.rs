@@ -77,7 +77,9 @@ pub fn walls(scene: &Scene) -> Vec<Mark> {
     let obstacles = scene.walls.obstacles();
     let rings = obstacles.iter().flat_map(|obstacle| obstacle.rings());
     let outlines = rings.map(|ring| {
-        let corners = ring.iter().chain(ring.first()).map(|&p| xy(p));
+        // The line begins and ends within an edge, where it needs no join.
+        let middle = ring.first().zip(ring.last()).map(|(a, b)| (a + b) * 0.5);
+        let corners = middle.iter().chain(ring).chain(&middle).map(|&p| xy(p));
         Mark::Line(corners.collect(), Style::full(WALL, 1.2, ""))
     });
     outlines.collect()

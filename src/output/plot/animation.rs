@@ -1,5 +1,7 @@
 //! Animations: GIF, animated PNG, and videos by ffmpeg.
 
+use std::cmp::Reverse;
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::{BufWriter, IntoInnerError, Write};
 use std::path::{Path, PathBuf};
@@ -10,11 +12,15 @@ use image::RgbImage;
 
 use super::Print;
 use super::output::{PlotError, resolution};
+use crate::output::colors::Rgb;
 
-/// How well colors of a GIF are chosen, from 1 (slow and good) to 30.
-const GIF_SPEED: i32 = 10;
+/// The most colors in a frame of a GIF, without the transparent one.
+const COLORS: usize = 255;
 /// Hundredths of a second: the unit of the times in a GIF.
 const GIF_UNITS: f64 = 100.0;
+
+/// The number of grays among them.
+const GRAYS: usize = 16;
 
 /// An animation while it is written.
 pub struct Animation {
@@ -227,20 +233,56 @@ fn changed(image: &RgbImage, before: Option<&RgbImage>, delay: u16) -> gif::Fram
     if high == [0, 0] {
         (low, high) = ([0, 0], [1, 1]);
     }
-    let mut pixels = Vec::new();
-    for y in low[1]..high[1] {
-        for x in low[0]..high[0] {
-            let [r, g, b] = image.get_pixel(x, y).0;
-            match differs(x, y) {
-                true => pixels.extend([r, g, b, 255]),
-                false => pixels.extend([0; 4]),
-            }
-        }
-    }
+    let places = (low[1]..high[1]).flat_map(|y| (low[0]..high[0]).map(move |x| (x, y)));
+    let color = |(x, y)| differs(x, y).then(|| image.get_pixel(x, y).0);
+    let colors: Vec<Option<Rgb>> = places.map(color).collect();
+    let palette = most_frequent(colors.iter().flatten().copied());
+    let mut known: HashMap<Rgb, u8> = HashMap::new();
+    let mut index = |color: Rgb| {
+        *known
+            .entry(color)
+            .or_insert_with(|| nearest(&palette, color))
+    };
+    let pixels: Vec<u8> = colors
+        .iter()
+        .map(|color| color.map_or(COLORS as u8, &mut index))
+        .collect();
     let [width, height] = [0, 1].map(|k| (high[k] - low[k]) as u16);
-    let mut frame = gif::Frame::from_rgba_speed(width, height, &mut pixels, GIF_SPEED);
+    let palette = palette.concat();
+    let clear = Some(COLORS as u8);
+    let mut frame = gif::Frame::from_palette_pixels(width, height, pixels, palette, clear);
     (frame.left, frame.top) = (low[0] as u16, low[1] as u16);
     frame.delay = delay;
     frame.dispose = DisposalMethod::Keep;
     frame
+}
+
+/// The most frequent colors, as many as a palette has, and grays for the edges of letters. Agents and marks keep their own colors: only the many colors of
+/// smooth edges are changed.
+fn most_frequent(colors: impl Iterator<Item = Rgb>) -> Vec<Rgb> {
+    let mut counts: HashMap<Rgb, u32> = HashMap::new();
+    for color in colors {
+        *counts.entry(color).or_insert(0) += 1;
+    }
+    let mut counts: Vec<(Rgb, u32)> = counts.into_iter().collect();
+    counts.sort_by_key(|&(color, count)| (Reverse(count), color));
+    let step = 255 / (GRAYS as u8 - 1);
+    let grays = (0..GRAYS as u8).map(|k| [k * step; 3]);
+    let frequent = counts.into_iter().map(|(color, _)| color);
+    let mut palette: Vec<Rgb> = frequent.take(COLORS - GRAYS).chain(grays).collect();
+    palette.resize(COLORS + 1, [255; 3]);
+    palette
+}
+
+/// The index of the color of a palette that is most like another color.
+fn nearest(palette: &[Rgb], color: Rgb) -> u8 {
+    let distance = |other: &Rgb| -> i32 {
+        let parts = other.iter().zip(color);
+        parts
+            .map(|(&a, b)| (i32::from(a) - i32::from(b)).pow(2))
+            .sum()
+    };
+    let colors = (0..COLORS as u8).zip(palette);
+    let nearest = colors.min_by_key(|(_, other)| distance(other));
+    nearest.map_or(0, |(index, _)| index)
 }

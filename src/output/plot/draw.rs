@@ -109,7 +109,7 @@ impl<DB: DrawingBackend> Page<'_, DB> {
 
     fn rim(&self, ([x, y], [width, height]): Rect) -> Drawn {
         let (right, foot) = (x + width, y + height);
-        let corners = [[x, y], [right, y], [right, foot], [x, foot], [x, y]];
+        let corners = [[x, foot], [right, foot], [right, y], [x, y], [x, foot]];
         let corners = corners.map(|corner| self.ink.at(corner));
         let line = self.ink.stroke(BLACK, RIM);
         Ok(self.root.draw(&PathElement::new(corners, line))?)
@@ -119,14 +119,13 @@ impl<DB: DrawingBackend> Page<'_, DB> {
     fn panel(&self, panel: &Panel, rect: Rect, [below, left]: [bool; 2]) -> Drawn {
         let ([x, y], [width, height]) = rect;
         self.marks(panel, rect)?;
-        self.rim(rect)?;
         if below {
             self.x_axis(&panel.x, [x, y + height], width)?;
         }
         if left {
             self.y_axis(&panel.y, rect, true)?;
         }
-        Ok(())
+        self.rim(rect)
     }
 
     fn marks(&self, panel: &Panel, (corner, size): Rect) -> Drawn {

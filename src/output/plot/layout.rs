@@ -5,6 +5,7 @@ use super::{Axis, Cells, ColorBar, Corner, Mark, Panel, Print, Sheet, Style};
 
 const MARGIN: f64 = 6.0; // around the sheet
 const GAP: f64 = 9.0; // between panels, color bars and legends
+const BETWEEN: f64 = 5.0; // between a color bar and the next panel
 pub const TITLE: f64 = 12.0; // size of the title of a sheet
 pub const LABEL: f64 = 9.0; // size of titles of panels and labels of axes
 pub const NUMBER: f64 = 8.0; // size of numbers and legends
@@ -15,6 +16,8 @@ pub const SAMPLE: f64 = 18.0; // of a line in a legend
 pub const NO_DATA: &str = "no data";
 /// Narrower panels are put below each other instead.
 const LEAST_PANEL: f64 = 90.0;
+/// The same for panels of a grid.
+pub const LEAST_CELL: f64 = 60.0;
 /// Sheets are made wider than this only for panels of theirs that do not fit otherwise.
 const WIDEST: f64 = 1000.0;
 /// A legend beside panels takes this part of a sheet of given width at most; a wider one is below them.
@@ -45,7 +48,6 @@ pub struct Layout {
 struct Space {
     left: f64,
     below: f64,
-    above: f64,
     bar: f64,
     sheet_bar: f64,
     rows: f64,
@@ -137,10 +139,9 @@ pub fn title_of(panel: &Panel, sheet: &Sheet, print: &Print, width: f64) -> Vec<
 }
 
 impl Space {
-    fn of(sheet: &Sheet, print: &Print, [width, height]: [f64; 2]) -> Self {
+    fn of(sheet: &Sheet, [width, height]: [f64; 2]) -> Self {
         let most = |of: &dyn Fn(&Panel) -> f64| sheet.panels.iter().map(of).fold(0.0, f64::max);
         let gaps = sheet.panels.iter().any(has_gaps);
-        let titles = most(&|panel| title_of(panel, sheet, print, width).len() as f64);
         let legends = sheet.panels.iter();
         let legends = legends.filter(|panel| panel.legend == Some(Corner::Beside));
         let legends: Vec<_> = legends.map(entries).collect();
@@ -153,7 +154,6 @@ impl Space {
         Self {
             left: most(&|panel| beside(&panel.y, height)),
             below: most(&|panel| below(&panel.x, width)),
-            above: (height_of(titles as usize, LABEL) + 3.0).max(GAP),
             bar: most(&|panel| of_bar(&panel.bar, has_gaps(panel))),
             sheet_bar: of_bar(&sheet.bar, gaps),
             rows: rows.map_or(0.0, |lines| height_of(lines, LABEL) + PAD),
@@ -216,17 +216,17 @@ impl Layout {
 
     fn with(sheet: &Sheet, print: &Print, columns: usize, panel: [f64; 2]) -> Self {
         let ([width, height], count) = (panel, sheet.panels.len().max(1));
-        let space = Space::of(sheet, print, panel);
-        let step = match sheet.shared_axes {
-            true => [width + GAP, space.above + height],
+        let space = Space::of(sheet, panel);
+        let [step, below] = match sheet.shared_axes {
+            true => [width + GAP, 0.0],
             false => [
-                space.left + width + space.bar.max(GAP),
-                space.above + height + space.below,
+                space.left + width + (space.bar + BETWEEN).max(GAP),
+                space.below,
             ],
         };
         let title = match print.titles {
             true => {
-                let whole = columns as f64 * step[0] + space.sheet_bar;
+                let whole = columns as f64 * step + space.sheet_bar;
                 lines(
                     &sheet.title,
                     TITLE,
@@ -237,8 +237,17 @@ impl Layout {
         };
         let left = MARGIN + space.rows + space.left;
         let heading = height_of(title.len(), TITLE) + if title.is_empty() { 0.0 } else { 2.0 };
-        let top = MARGIN + heading + space.above - if heading > 0.0 { 0.0 } else { 2.0 };
-        let at = |column, row| [left + column as f64 * step[0], top + row as f64 * step[1]];
+        let mut y = MARGIN + heading - if heading > 0.0 { 0.0 } else { 2.0 };
+        let mut rows = Vec::new();
+        for row in 0..=(count / columns) {
+            let panels = sheet.panels.iter().skip(row * columns).take(columns);
+            let titles = panels.map(|panel| title_of(panel, sheet, print, width).len());
+            y += (height_of(titles.max().unwrap_or(0), LABEL) + 3.0).max(GAP);
+            rows.push(y);
+            y += height + below;
+        }
+        let top = rows[0];
+        let at = |column, row: usize| [left + column as f64 * step, rows[row]];
         let [right, foot] = at(columns - 1, (count - 1) / columns);
         let mut size = [
             right + width + space.bar.max(space.sheet_bar).max(10.0) + MARGIN,

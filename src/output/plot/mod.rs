@@ -12,6 +12,7 @@ mod font;
 mod ink;
 mod layout;
 mod marks;
+mod narrow;
 mod output;
 mod pdf;
 mod pixels;

@@ -96,7 +96,8 @@ impl Sheet {
     }
 
     fn svg(&self, print: &Print) -> Result<Vec<u8>, PlotError> {
-        let layout = Layout::new(self, print);
+        let sheet = self.for_print(print);
+        let layout = Layout::new(&sheet, print);
         let size = layout
             .size
             .map(|length| (length * f64::from(SVG_SCALE)).round() as u32);
@@ -108,7 +109,7 @@ impl Sheet {
         };
         let mut text = String::new();
         let backend = SVGBackend::with_string(&mut text, (width, height));
-        self.draw(&layout, print, backend, ink)?;
+        sheet.draw(&layout, print, backend, ink)?;
         let points = size.map(|units| f64::from(units) / f64::from(SVG_SCALE));
         let text = text
             .replacen(
@@ -126,7 +127,8 @@ impl Sheet {
     /// # Errors
     /// The sheet cannot be drawn.
     pub fn image(&self, print: &Print) -> Result<RgbImage, PlotError> {
-        let layout = Layout::new(self, print);
+        let sheet = self.for_print(print);
+        let layout = Layout::new(&sheet, print);
         let scale = print.pixels_per_point();
         let size = layout
             .size
@@ -141,18 +143,19 @@ impl Sheet {
             alike: 1,
         };
         let backend = BitMapBackend::with_buffer(&mut image, (width, height));
-        self.draw(&layout, print, Pixels(backend), ink)?;
+        sheet.draw(&layout, print, Pixels(backend), ink)?;
         Ok(imageops::thumbnail(&image, size[0], size[1]))
     }
 
     fn pdf(&self, print: &Print) -> Result<Vec<u8>, PlotError> {
-        let layout = Layout::new(self, print);
+        let sheet = self.for_print(print);
+        let layout = Layout::new(&sheet, print);
         let ink = Ink {
             scale: print.pixels_per_point() * f64::from(FINER),
             alike: 1,
         };
         let mut pdf = Pdf::new(layout.size, ink.scale, FINER);
-        self.draw(&layout, print, pdf.backend(), ink)?;
+        sheet.draw(&layout, print, pdf.backend(), ink)?;
         pdf.finish().map_err(PlotError::Drawing)
     }
 
