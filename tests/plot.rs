@@ -106,8 +106,8 @@ fn an_svg_has_all_texts_and_both_formats_have_the_same_size() {
         assert!(svg.contains(word), "{word}");
     }
     let points = ["width", "height"].map(|name| attribute(&svg, name));
-    // 300 pixels per inch.
-    let pixels = points.map(|size| size * 300.0 / 72.0);
+    // 150 pixels per inch.
+    let pixels = points.map(|size| size * 150.0 / 72.0);
     let differ = [0, 1].map(|k| (f64::from(png_size(&png)[k]) - pixels[k]).abs());
     assert!(differ[0] < 1.0 && differ[1] < 1.0, "{differ:?}");
 }
@@ -287,8 +287,8 @@ fn a_crowd_covers_the_area_of_its_discs() {
             .map(|p| f64::from(255 - p.0[0]) / 255.0)
             .sum::<f64>()
     };
-    // 300 / 72 pixels per point, and 150 points for 10 m.
-    let area = 2500.0 * std::f64::consts::PI * (0.08_f64 * 62.5).powi(2);
+    // 150 / 72 pixels per point, and 150 points for 10 m.
+    let area = 2500.0 * std::f64::consts::PI * (0.08_f64 * 31.25).powi(2);
     let drawn = black(2500) - black(0);
     assert!((drawn / area - 1.0).abs() < 0.03, "{drawn} of {area}");
 }

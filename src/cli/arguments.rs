@@ -9,7 +9,7 @@ use super::values::{
     Width, dpi, every_frames, frame_rate, id, millimeters, picture, positive_seconds, range,
     recording, seconds, seed, threads, width,
 };
-use crate::output::plot::{PAPER_DPI, Print};
+use crate::output::plot::Print;
 use crate::scenario::Preset;
 
 /// Options that change a scenario and how it is computed.
@@ -195,7 +195,8 @@ pub struct DrawOptions {
     /// Frames of an animation per second
     #[arg(long, value_name = "N", default_value_t = 25.0, requires = "from", value_parser = frame_rate)]
     pub fps: f64,
-    /// Color agents by density, speed, pressure or another quantity; none: by what they do [default: density]
+    /// Color agents by density, speed, pressure or another quantity; none: by what they do [default: density, or
+    /// none if the scenario measures forces on walls, which are colored then]
     #[arg(long, value_name = "COLUMN", conflicts_with_all = ["field", "paths"])]
     pub color: Option<String>,
     /// The values with the first and the last color [default: the scenario's view.density_range and
@@ -234,9 +235,9 @@ pub struct PrintOptions {
     /// Draw pictures for a column of a paper that is this wide, millimeters: without titles, as SVG, PNG and PDF
     #[arg(long, value_name = "MM", value_parser = millimeters)]
     pub paper: Option<f64>,
-    /// Pixels per inch of PNG files
-    #[arg(long, value_name = "N", default_value_t = PAPER_DPI, value_parser = dpi)]
-    pub dpi: f64,
+    /// Pixels per inch of PNG files [default: 300 with --paper, else 150]
+    #[arg(long, value_name = "N", value_parser = dpi)]
+    pub dpi: Option<f64>,
 }
 
 impl PrintOptions {
@@ -244,7 +245,7 @@ impl PrintOptions {
     pub fn apply(&self) {
         let print = self.paper.map_or_else(Print::default, Print::paper);
         let print = Print {
-            dpi: self.dpi,
+            dpi: self.dpi.unwrap_or(print.dpi),
             ..print
         };
         print.for_all_sheets();

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
+use super::arguments::PrintOptions;
 use super::values::{repeats, threads};
 use super::{Failure, talk, tell, use_threads};
 use crate::lab::bench::{BENCHMARKS, Plan, files};
@@ -42,6 +43,8 @@ pub struct BenchOptions {
     /// Number of threads, unless the benchmark varies it [default: all cores]
     #[arg(long, value_parser = threads)]
     pub threads: Option<usize>,
+    #[command(flatten)]
+    pub print: PrintOptions,
     /// scaling: size of the largest crowd
     #[arg(long, value_name = "AGENTS", default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(1_000..))]
     pub largest: u32,
@@ -78,6 +81,7 @@ pub fn run(options: &BenchOptions) -> Result<(), Failure> {
         outputs.check()?;
     }
     use_threads(options.threads)?;
+    options.print.apply();
     let plan = Plan {
         repeats: options.repeats.unwrap_or(if options.quick { 2 } else { 7 }),
         quick: options.quick,

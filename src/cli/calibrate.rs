@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
+use super::arguments::PrintOptions;
 use super::watch::Watch;
 use super::{Failure, tell, use_threads};
 use crate::lab::calibrate::{Calibration, FILES, Target, run as search};
@@ -52,6 +53,8 @@ pub struct CalibrateOptions {
     /// Number of runs to compute at once, each on one thread [default: all cores]
     #[arg(long, value_parser = super::values::threads)]
     pub threads: Option<usize>,
+    #[command(flatten)]
+    pub print: PrintOptions,
     /// Replace existing files with the results' names in a folder that does not belong to a study
     #[arg(long)]
     pub force: bool,
@@ -62,6 +65,7 @@ pub struct CalibrateOptions {
 
 pub fn run(options: &CalibrateOptions) -> Result<(), Failure> {
     use_threads(options.threads)?;
+    options.print.apply();
     let calibration = Calibration::open(&options.file, main_memory())?;
     if options.list {
         return tell(

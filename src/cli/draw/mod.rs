@@ -18,7 +18,7 @@ use super::moment::{self, Moment};
 use super::watch::bar;
 use super::{Failure, tell, use_threads};
 use crate::output::picture::{Paths, Picture, Trails};
-use crate::output::plot::{Animation, PlotError, Print};
+use crate::output::plot::{Animation, PAPER_DPI, PlotError, Print};
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::Scenario;
 use crate::scenario::trajectories::{ReadOptions, Unit};
@@ -194,7 +194,7 @@ fn open(
                 fps: options.trajectory_fps,
             };
             Ok((
-                tracked::open(path, &read, plan, color(options))?,
+                tracked::open(path, &read, plan, color(options, false))?,
                 Vec::new(),
             ))
         }
@@ -267,9 +267,9 @@ fn check_times(run: &Run, times: &Times) -> Result<(), Failure> {
     )))
 }
 
-/// What colors agents.
-fn color(options: &DrawOptions) -> &str {
-    let is_plain = !options.paths.is_empty() || options.field.is_some();
+/// What colors agents; `has_colors`: if walls are colored by the force on them, agents are not by default.
+fn color(options: &DrawOptions, has_colors: bool) -> &str {
+    let is_plain = has_colors || !options.paths.is_empty() || options.field.is_some();
     match &options.color {
         Some(name) => name,
         None if is_plain => NONE,
@@ -281,7 +281,7 @@ fn print(options: &DrawOptions, is_animation: bool) -> Print {
     let dpi = if is_animation {
         ANIMATION_DPI
     } else {
-        Print::default().dpi
+        PAPER_DPI
     };
     let dpi = options.dpi.unwrap_or(dpi);
     let paper = options.paper.map(Print::paper);
@@ -324,7 +324,8 @@ fn draw(
             Some(look) => look,
             none => {
                 let field = options.field.as_deref().map(Quantity::named);
-                none.insert(Look::new(run, color(options), field, options.range)?)
+                let color = color(options, run.body_mass.is_some());
+                none.insert(Look::new(run, color, field, options.range)?)
             }
         };
         let picture = Picture {

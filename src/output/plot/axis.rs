@@ -9,6 +9,9 @@ use plotters::coord::types::RangedCoordf64;
 use super::font::width_of;
 use super::layout::NUMBER;
 
+/// More numbers on an axis would not make it clearer.
+const MOST_TICKS: i32 = 10;
+
 /// One axis of a panel.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Axis {
@@ -64,7 +67,7 @@ impl Axis {
     /// The axis with ticks that fit into this length, points. Numbers of horizontal axes need their width.
     pub(super) fn fitted(&self, length: f64, is_horizontal: bool) -> Self {
         let apart = if is_horizontal { 32.0 } else { 24.0 };
-        let axis = self.with_ticks((length / apart) as i32);
+        let axis = self.with_ticks(((length / apart) as i32).min(MOST_TICKS));
         let needed = (axis.widest() + 8.0) * axis.ticks.len() as f64;
         if !is_horizontal || !self.ticks.is_empty() || needed <= length {
             return axis;
@@ -89,7 +92,14 @@ impl Axis {
         let [first, last] = self.range;
         if axis.ticks.is_empty() && (last - first).is_finite() {
             let values = match self.is_log {
-                false => linear_ticks(self.range, most.max(2)),
+                false => {
+                    let ticks = linear_ticks(self.range, most.max(2));
+                    // One number does not say how long the axis is.
+                    match ticks.len() {
+                        0 | 1 => linear_ticks(self.range, 2 * most.max(2)),
+                        _ => ticks,
+                    }
+                }
                 true => log_ticks(self.range, most),
             };
             axis.ticks = values.into_iter().map(|v| (v, number(v))).collect();

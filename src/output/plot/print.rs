@@ -6,6 +6,8 @@ use std::sync::OnceLock;
 const POINTS_PER_MM: f64 = 72.0 / 25.4;
 /// The resolution of pictures in papers, pixels per inch.
 pub const PAPER_DPI: f64 = 300.0;
+/// The resolution of pictures for screens, which are as wide as their panels need, pixels per inch.
+const SCREEN_DPI: f64 = 150.0;
 
 /// How a sheet is printed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,7 +24,7 @@ impl Default for Print {
     fn default() -> Self {
         Self {
             width: None,
-            dpi: PAPER_DPI,
+            dpi: SCREEN_DPI,
             titles: true,
         }
     }
@@ -35,8 +37,8 @@ impl Print {
     pub fn paper(width_mm: f64) -> Self {
         Self {
             width: Some(width_mm * POINTS_PER_MM),
+            dpi: PAPER_DPI,
             titles: false,
-            ..Self::default()
         }
     }
 
