@@ -61,6 +61,7 @@ mod skips;
 mod social;
 mod sound;
 mod statistics;
+mod voronoi;
 mod walking;
 mod walking_profiles;
 mod walls;

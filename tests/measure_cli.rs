@@ -109,13 +109,32 @@ fn a_corridor_is_measured_into_a_folder() {
     assert!(
         diagram["people"]
             .iter()
-            .all(|&people| (1.0..=3.0).contains(&people))
+            .all(|&people| (0.0..=3.0).contains(&people))
     );
+    for (classic, people) in diagram["classic"].iter().zip(&diagram["people"]) {
+        assert!((2.0 * classic - people).abs() < 1e-6, "2 m²");
+    }
     let classes = columns(&folder.join("fundamental_classes.csv"));
     let pairs: f64 = classes["count"].iter().sum();
     let people: f64 = diagram["people"].iter().sum();
-    assert_eq!(pairs, people + diagram["people"].len() as f64);
-    for name in ["fields.svg", "fundamental_diagram.png", "flow.svg"] {
+    let known = ["sph_at_people", "voronoi"].len() as f64 * people;
+    let frames = |kind: &str, speed: &str| {
+        let pairs = diagram[kind].iter().zip(&diagram[speed]);
+        pairs
+            .filter(|(density, speed)| !(*density + *speed).is_nan())
+            .count() as f64
+    };
+    let by_speed = ["sph_at_people", "sph_field", "classic"].map(|kind| frames(kind, "speed"));
+    let by_voronoi = frames("voronoi", "voronoi_speed");
+    assert_eq!(pairs, known + by_speed.iter().sum::<f64>() + by_voronoi);
+    let regions = columns(&folder.join("regions.csv"));
+    assert_eq!(regions["walkable_m2"].len(), 4);
+    for name in [
+        "fields.svg",
+        "fundamental_diagram.png",
+        "flow.svg",
+        "regions.png",
+    ] {
         assert!(folder.join(name).metadata().unwrap().len() > 1000);
     }
 
@@ -184,6 +203,18 @@ fn invalid_arguments_are_refused_with_the_fix() {
         (
             vec![&*trajectory, "--from", "99"],
             "no agents from 99 s to inf s; there are agents from 0 s",
+        ),
+        (
+            vec![&*trajectory, "--region", "90,0,91,1", "--geometry", &*plan],
+            "region 1 is outside of the walkable area",
+        ),
+        (
+            vec![&*trajectory, "--voronoi-cutoff", "none"],
+            "nothing limits the Voronoi cells",
+        ),
+        (
+            vec![&*trajectory, "--flow-of", "90..10"],
+            "expected two parts of all passages such as 10%..90%",
         ),
         (
             vec![&*trajectory, "--cell", "0.001"],

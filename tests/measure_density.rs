@@ -2,35 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use crate::common::tracks::tracks;
+use crate::common::tracks::{options, tracks};
 use crate::common::{blend, block, rectangle, room, scene, vector};
 use rusqlite::Connection;
 use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::kernel;
 use sandbox::engine::scene::Region;
 use sandbox::engine::simulation::Simulation;
-use sandbox::lab::measure::{
-    Behind, Kernel, MeasureError, Measured, Moment, Options, Site, measure,
-};
+use sandbox::lab::measure::{Behind, MeasureError, Measured, Moment, Options, Site, measure};
 use sandbox::output::trajectory::Trajectory;
 use sandbox::scenario::floor_plan::parse_wkt;
 use sandbox::scenario::trajectories::{ReadOptions, Tracks, read};
-
-fn options() -> Options {
-    Options {
-        kernel: Kernel {
-            support_radius: 1.0,
-            walls: WallMethod::Union,
-        },
-        behind: Behind::Same,
-        speed_reach: 5,
-        times: [f64::NEG_INFINITY, f64::INFINITY],
-        cell: 0.25,
-        regions: Vec::new(),
-        lines: Vec::new(),
-        sample_every: 1.0,
-    }
-}
 
 fn measured(tracks: &Tracks, site: &Site, options: &Options) -> (Measured, Vec<Moment>) {
     let mut all = Vec::new();

@@ -1,20 +1,18 @@
 //! Velocities, crossings and fundamental diagrams of known motions.
 
-use std::collections::BTreeMap;
-
-use crate::common::tracks::tracks;
+use crate::common::tracks::{self, tracks};
 use crate::common::vector;
 use proptest::prelude::*;
-use sandbox::analysis::crossing::Line;
-use sandbox::engine::boundary::WallMethod;
+use sandbox::analysis::crossing::{Line, Passages};
 use sandbox::engine::math::Vector;
 use sandbox::engine::scene::Region;
 use sandbox::lab::measure::{
-    Behind, CLASS, Class, Crossings, Kernel, MeasureError, Measured, Options, Site, measure, speed,
+    CLASS, Classes, Crossings, Density, MeasureError, Measured, Options, Site, measure, speed,
 };
 use sandbox::scenario::trajectories::Tracks;
 
 const ALWAYS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+const PART: Passages = Passages::Parts([0.1, 0.9]);
 
 fn line(start: [f64; 2], end: [f64; 2]) -> Line {
     Line {
@@ -30,17 +28,9 @@ fn gate() -> Line {
 
 fn measured(tracks: &Tracks, regions: Vec<Region>, lines: Vec<Line>) -> Measured {
     let options = Options {
-        sample_every: 1.0,
-        kernel: Kernel {
-            support_radius: 1.0,
-            walls: WallMethod::Union,
-        },
-        behind: Behind::Same,
-        speed_reach: 5,
-        times: ALWAYS,
-        cell: 0.25,
         regions,
         lines,
+        ..tracks::options()
     };
     measure(tracks, &Site::new(Vec::new()), &options, |_| {
         Ok::<(), MeasureError>(())
@@ -75,8 +65,10 @@ fn a_column_has_the_flow_of_its_line_density_times_its_speed() {
         assert!(crossing.x.abs() < 1e-12 && (crossing.y - 0.1).abs() < 1e-12);
         assert_eq!((crossing.direction, crossing.forward), (1, k as u64 + 1));
     }
-    assert!((crossings.way(1).flow_per_s.unwrap() - v / spacing).abs() < 1e-12);
-    assert_eq!(crossings.way(-1).flow_per_s, None);
+    assert!((crossings.way(1, PART).flow_per_s.unwrap() - v / spacing).abs() < 1e-12);
+    assert_eq!(crossings.way(-1, PART).flow_per_s, None);
+    let between = crossings.way(1, Passages::Ranks([11, 31])).part.unwrap();
+    assert!((between.flow_per_s - v / spacing).abs() < 1e-12);
     // Only crossings in the given time interval count.
     let later = Crossings::of(&tracks, 1, gate(), [10.0, 15.0]);
     let within = crossings
@@ -208,26 +200,32 @@ fn a_region_has_the_density_and_speed_of_the_people_in_it() {
     let [walking, standing, empty] = found.diagrams.as_slice() else {
         panic!("three regions");
     };
-    assert!(empty.frames.is_empty() && empty.of_persons.is_empty());
-    for frame in &standing.frames {
-        assert_eq!(
-            (frame.people, frame.speed, frame.flow),
-            (1, Some(0.0), Some(0.0))
-        );
-        assert!((frame.density - 4.0 / std::f64::consts::PI).abs() < 1e-12);
+    assert!(empty.frames.iter().all(|frame| frame.people == 0));
+    assert!(empty.of_persons.is_empty());
+    for frame in standing.frames.iter().filter(|frame| frame.people > 0) {
+        assert_eq!((frame.people, frame.speed), (1, Some(0.0)));
+        assert_eq!(frame.sph_at_people, Some(0.0), "nobody else is near");
+        assert_eq!(frame.classic, Some(1.0 / 4.0));
     }
-    for frame in &walking.frames {
-        let (speed, flow) = (frame.speed.unwrap(), frame.flow.unwrap());
-        assert!((speed - 1.0).abs() < 1e-12 && (flow - frame.density).abs() < 1e-12);
+    for frame in walking.frames.iter().filter(|frame| frame.people > 0) {
+        let (speed, flow) = (frame.speed.unwrap(), frame.flow(Density::Classic).unwrap());
+        assert!((speed - 1.0).abs() < 1e-12 && (flow - frame.people as f64 / 4.0).abs() < 1e-12);
     }
     for diagram in &found.diagrams {
-        let count = |classes: &BTreeMap<usize, Class>| -> usize {
-            classes.values().map(|class| class.density.count).sum()
+        let count = |classes: Option<&Classes>| -> usize {
+            let classes = classes.into_iter().flat_map(|classes| classes.values());
+            classes.map(|class| class.density.count).sum()
         };
         let people: usize = diagram.frames.iter().map(|frame| frame.people).sum();
-        assert_eq!(count(&diagram.of_persons), people);
-        assert_eq!(count(&diagram.of_frames), diagram.frames.len());
-        for (&k, class) in &diagram.of_persons {
+        for kind in [Density::SphAtPeople, Density::Voronoi] {
+            assert_eq!(count(diagram.of_persons.get(&kind)), people);
+        }
+        let with_people = diagram.frames.iter().filter(|frame| frame.people > 0);
+        let with_people = with_people.count();
+        for kind in [Density::SphAtPeople, Density::SphField, Density::Classic] {
+            assert_eq!(count(diagram.of_frames.get(&kind)), with_people);
+        }
+        for (&k, class) in diagram.of_persons.values().flatten() {
             let within = k as f64 * CLASS..(k + 1) as f64 * CLASS;
             assert!(class.density.count == 0 || within.contains(&class.density.mean));
         }

@@ -1,25 +1,14 @@
 //! Exposure, alarms, level of service, crowd pressure and departures in trajectories.
 
-use crate::common::tracks::tracks;
-use sandbox::engine::boundary::WallMethod;
-use sandbox::lab::measure::{
-    Behind, Kernel, MeasureError, Measured, Options, Report, Site, measure,
-};
+use crate::common::tracks::{self, tracks};
+use sandbox::lab::measure::{MeasureError, Measured, Options, Report, Site, measure};
 use sandbox::scenario::trajectories::Tracks;
 
 fn options(sample_every: f64) -> Options {
     Options {
-        kernel: Kernel {
-            support_radius: 1.0,
-            walls: WallMethod::Union,
-        },
-        behind: Behind::Same,
-        speed_reach: 5,
-        times: [f64::NEG_INFINITY, f64::INFINITY],
         cell: 1.0,
-        regions: Vec::new(),
-        lines: Vec::new(),
         sample_every,
+        ..tracks::options()
     }
 }
 

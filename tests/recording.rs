@@ -12,7 +12,7 @@ use sandbox::engine::math::Vector;
 use sandbox::engine::scene::{Group, Region, Scene};
 use sandbox::engine::simulation::Simulation;
 use sandbox::output::recording::{
-    DebugAgents, METERS_PER_ACCELERATION, MeasuredRecorder, Recorder, RecordingError,
+    DebugAgents, METERS_PER_ACCELERATION, Marked, MeasuredRecorder, Recorder, RecordingError,
     RecordingOptions,
 };
 use sandbox::scenario::catalog::{self, Parameters};
@@ -242,7 +242,8 @@ impl Raster {
             Walls::new(vec![obstacle.clone()]),
             options(DebugAgents::None),
         );
-        let recorder = MeasuredRecorder::create(path.as_path(), &walls, 0.2, &options);
+        let marked = Marked::default();
+        let recorder = MeasuredRecorder::create(path.as_path(), (&walls, marked), 0.2, &options);
         recorder.unwrap().finish().unwrap();
         let recording = Recording::read(&path);
         let entity = "world/geometry/obstacles";

@@ -53,3 +53,45 @@ impl Balance {
         is_new
     }
 }
+
+/// Which passages of a line a flow counts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Passages {
+    /// From one part of all passages to another, 0 to 1, as 0.1 and 0.9.
+    Parts([f64; 2]),
+    /// From one passage to another, counted from 1.
+    Ranks([usize; 2]),
+}
+
+/// The flow between two passages.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FlowBetween {
+    /// Numbers n and m of the passages, from 1.
+    pub passages: [usize; 2],
+    /// Their times, seconds.
+    pub secs: [f64; 2],
+    /// (m − n) / (t_m − t_n), P/s.
+    pub flow_per_s: f64,
+}
+
+impl Passages {
+    /// The flow between two of the passages at `times`, ascending, seconds. `None` if there are fewer passages, or if
+    /// they are at the same time.
+    pub fn flow(self, times: &[f64]) -> Option<FlowBetween> {
+        let last = times.len().checked_sub(1)?;
+        let [n, m] = match self {
+            Self::Parts(parts) => parts.map(|part| (part * last as f64).round() as usize + 1),
+            Self::Ranks(ranks) => ranks,
+        };
+        let secs = [
+            *times.get(n.checked_sub(1)?)?,
+            *times.get(m.checked_sub(1)?)?,
+        ];
+        let span = secs[1] - secs[0];
+        (span > 0.0).then(|| FlowBetween {
+            passages: [n, m],
+            secs,
+            flow_per_s: (m as f64 - n as f64) / span,
+        })
+    }
+}

@@ -6,7 +6,8 @@ use std::str::FromStr;
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
-use crate::analysis::crossing::Line;
+use super::measure::CutOff;
+use crate::analysis::crossing::{Line, Passages};
 use crate::engine::scene::Region;
 use crate::scenario::trajectories::FRAME_RATES;
 
@@ -88,6 +89,42 @@ pub fn line(text: &str) -> Result<Line, &'static str> {
             end: [x1, y1].into(),
         }),
         _ => Err("expected four numbers x0,y0,x1,y1, the ends of a line"),
+    }
+}
+
+pub fn segments(text: &str) -> Result<u32, &'static str> {
+    within(text, 1..=100, "not a number of edges between 1 and 100")
+}
+
+/// A length, or `none`.
+pub fn cut_off(text: &str) -> Result<CutOff, &'static str> {
+    match text {
+        "none" => Ok(CutOff(None)),
+        text => length(text)
+            .map(|radius| CutOff(Some(radius)))
+            .map_err(|_| "neither a number between 0.001 and 1000 nor `none`"),
+    }
+}
+
+/// The first and the last passage: parts such as 10%..90%, or numbers such as 10..90.
+pub fn passages(text: &str) -> Result<Passages, &'static str> {
+    let otherwise = "expected two parts of all passages such as 10%..90%, or two numbers of passages from 1 such as \
+                     10..90, the smaller one first";
+    let (first, last) = text.split_once("..").ok_or(otherwise)?;
+    let part = |text: &str| {
+        let percent: f64 = text.trim().strip_suffix('%')?.parse().ok()?;
+        (0.0..=100.0).contains(&percent).then_some(percent / 100.0)
+    };
+    if let (Some(first), Some(last)) = (part(first), part(last)) {
+        let parts = [first, last];
+        return (first < last)
+            .then_some(Passages::Parts(parts))
+            .ok_or(otherwise);
+    }
+    let [first, last] = [first, last].map(|text| within(text.trim(), 1.., otherwise));
+    match (first?, last?) {
+        (first, last) if first < last => Ok(Passages::Ranks([first, last])),
+        _ => Err(otherwise),
     }
 }
 

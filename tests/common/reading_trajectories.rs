@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
-use sandbox::analysis::crossing::Line;
+use sandbox::analysis::crossing::{Line, Passages};
 use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::math::Vector;
-use sandbox::lab::measure::{Behind, Kernel, MeasureError, Options, Site, measure, speed};
+use sandbox::lab::measure::{
+    Behind, CellLimit, Kernel, MeasureError, Options, Site, measure, speed,
+};
 use sandbox::scenario::trajectories::{FRAME_RATES, ReadError, ReadOptions, Tracks, read_text};
 
 /// Trajectories with more rows than this are not measured.
@@ -88,12 +90,15 @@ fn check_measured(tracks: &Tracks) {
         speed_reach: speed::FRAMES,
         times: [f64::NEG_INFINITY, f64::INFINITY],
         cell: ((high - low).amax() / MAX_CELLS).max(1.0),
+        cells: CellLimit::default(),
         regions: Vec::new(),
         lines: vec![line],
+        flow_of: Passages::Parts([0.1, 0.9]),
     };
     let measured = measure(tracks, &Site::new(Vec::new()), &options, |moments| {
         for person in moments.iter().flat_map(|moment| &moment.people) {
             assert!(person.density.is_finite() && person.velocity.is_none_or(is_finite));
+            assert!(person.voronoi.is_some_and(f64::is_finite));
         }
         Ok::<(), MeasureError>(())
     })

@@ -3,6 +3,9 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
+use sandbox::analysis::crossing::Passages;
+use sandbox::engine::boundary::WallMethod;
+use sandbox::lab::measure::{Behind, CellLimit, Kernel, Options};
 use sandbox::scenario::trajectories::{ReadError, ReadOptions, Tracks, read};
 
 /// Writes a file with this name and text; returns its folder and its path.
@@ -27,4 +30,23 @@ pub fn tracks(fps: f64, rows: &[(i64, i64, f64, f64)]) -> Tracks {
         writeln!(text, "{id} {frame} {x} {y}").unwrap();
     }
     read_as("rows.txt", &text, &ReadOptions::default()).unwrap()
+}
+
+/// What `sandbox measure` measures without options, but without regions and lines.
+pub fn options() -> Options {
+    Options {
+        kernel: Kernel {
+            support_radius: 1.0,
+            walls: WallMethod::Union,
+        },
+        behind: Behind::Same,
+        speed_reach: 5,
+        times: [f64::NEG_INFINITY, f64::INFINITY],
+        cell: 0.25,
+        cells: CellLimit::default(),
+        regions: Vec::new(),
+        lines: Vec::new(),
+        flow_of: Passages::Parts([0.1, 0.9]),
+        sample_every: 1.0,
+    }
 }

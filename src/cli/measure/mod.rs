@@ -2,7 +2,7 @@
 
 mod arguments;
 
-pub use arguments::MeasureOptions;
+pub use arguments::{CutOff, MeasureOptions};
 
 use std::path::{Path, PathBuf};
 
@@ -11,8 +11,8 @@ use super::{Failure, talk, tell, use_threads};
 use crate::engine::boundary::WallMethod;
 use crate::lab::error::LabError;
 use crate::lab::measure::{
-    Behind, Kernel, MOST_HIDDEN, Measured, MomentRecorder, Options, Report, Results, Site, check,
-    files, measure, pictures, speed,
+    Behind, CellLimit, Kernel, MOST_HIDDEN, Measured, MomentRecorder, Options, Report, Results,
+    Site, check, files, measure, pictures, speed,
 };
 use crate::output::recording::check_enabled;
 use crate::runs::outputs::{Manner, Outputs};
@@ -40,7 +40,7 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     }
     let site = site(&options.trajectory, options.geometry.as_deref(), &tracks)?;
     let what = what(options, &tracks);
-    check(&tracks, &what)?;
+    check(&tracks, &site, &what)?;
     let mut results = Results::create(&folder)?;
     let mut recording = MomentRecorder::create(&folder, (&tracks, &site), &what)?;
     if !recording.has_own_ids {
@@ -119,8 +119,13 @@ fn what(options: &MeasureOptions, tracks: &Tracks) -> Options {
             options.until.unwrap_or(f64::INFINITY),
         ],
         cell: options.cell,
+        cells: CellLimit {
+            cut_off: options.voronoi_cutoff.0,
+            quad_segments: options.voronoi_segments,
+        },
         regions: options.region.clone(),
         lines: options.line.clone(),
+        flow_of: options.flow_of,
         sample_every: options.sample_every,
     }
 }

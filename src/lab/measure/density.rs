@@ -3,6 +3,7 @@
 use crate::analysis::site::{Hidden, Kernel, Site};
 use crate::analysis::surroundings::{MOST_HIDDEN, Surroundings};
 use crate::engine::density::SphParameters;
+use crate::engine::kernel;
 use crate::engine::math::Vector;
 
 /// The density assumed behind walls: ρ_i⁰ in Eq. 10.
@@ -50,20 +51,37 @@ pub fn parts(
 /// The moving averages for [`Behind::Rest`].
 pub struct History {
     behind: Behind,
+    /// h, meters.
+    support_radius: f64,
     sph: SphParameters,
     /// ρ̂ of each person, and its frame.
     kept: Vec<Option<(i64, f64)>>,
 }
 
 impl History {
-    /// No averages yet, for `people` people.
-    pub fn new(behind: Behind, people: usize) -> Self {
+    /// No averages yet, for `people` people and a kernel of this radius, meters.
+    pub fn new(behind: Behind, support_radius: f64, people: usize) -> Self {
         let mut sph = SphParameters::default();
         if let Behind::Rest(max) = behind {
             sph.rest_density_max = max;
         }
         let kept = vec![None; people];
-        Self { behind, sph, kept }
+        Self {
+            behind,
+            support_radius,
+            sph,
+            kept,
+        }
+    }
+
+    /// The part of ρ_i of a person of this mass that its own weight makes, P/m². Behind walls, the crowd that is assumed
+    /// to be as dense as at the person's position includes it.
+    pub fn own_part(&self, parts: &Parts, mass: f64) -> f64 {
+        let own = mass * kernel::density(0.0, self.support_radius);
+        match self.behind {
+            Behind::Same => own / (1.0 - parts.hidden.share.min(MOST_HIDDEN)),
+            Behind::Rest(_) => own,
+        }
     }
 
     /// The walls' part of ρ_i of a person in a frame, P/m². `step` frame numbers take `interval` seconds. Frames must

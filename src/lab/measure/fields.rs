@@ -90,30 +90,44 @@ pub struct Fields {
     views: Vec<Option<View>>,
 }
 
-/// The visibility from the center of a cell outside obstacles.
+/// The visibility from a point outside obstacles.
 #[derive(Debug, Clone, Default)]
-struct View {
+pub struct View {
     /// The share of the kernel that walls hide.
     hidden: f64,
     /// The walls within reach.
     near: Box<[u32]>,
 }
 
+impl View {
+    /// The visibility from `p`; `None` inside obstacles.
+    pub fn new(site: &Site, kernel: &Kernel, p: Vector) -> Option<Self> {
+        if site.is_inside(p) {
+            return None;
+        }
+        let mut near = Vec::new();
+        site.walls.near(p, kernel.support_radius, &mut near);
+        Some(Self {
+            hidden: site.share(p, &near, kernel),
+            near: near.into_boxed_slice(),
+        })
+    }
+
+    /// The share of the kernel that is visible.
+    pub fn visible(&self) -> f64 {
+        1.0 - self.hidden.min(MOST_HIDDEN)
+    }
+
+    /// Whether `eye` is visible from the point `p` of this view.
+    pub fn sees(&self, site: &Site, p: Vector, eye: Vector) -> bool {
+        self.near.is_empty() || site.sees(p, eye, &self.near)
+    }
+}
+
 impl Fields {
     /// Fields without any sums yet.
     pub fn new(grid: Grid, site: &Site, kernel: Kernel) -> Self {
-        let view = |k| {
-            let p = grid.center(k);
-            if site.is_inside(p) {
-                return None;
-            }
-            let mut near = Vec::new();
-            site.walls.near(p, kernel.support_radius, &mut near);
-            Some(View {
-                hidden: site.share(p, &near, &kernel),
-                near: near.into_boxed_slice(),
-            })
-        };
+        let view = |k| View::new(site, &kernel, grid.center(k));
         Self {
             views: (0..grid.cells()).into_par_iter().map(view).collect(),
             sums: vec![Sums::default(); grid.cells()],
@@ -147,7 +161,7 @@ impl Fields {
     pub fn means(&self, frames: u64) -> impl Iterator<Item = Option<Mean>> + '_ {
         let places = self.sums.iter().zip(&self.views);
         places.map(move |(sums, view)| {
-            let seen = 1.0 - view.as_ref()?.hidden.min(MOST_HIDDEN);
+            let seen = view.as_ref()?.visible();
             let is_known = sums.moving > 0.0;
             Some(Mean {
                 density: sums.mass / seen / frames as f64,
@@ -181,9 +195,8 @@ fn spread(
             let k = row * grid.columns + column;
             let sums = &mut sums[k - rows.start * grid.columns];
             sums.people += u64::from(own == [column as f64, row as f64]);
-            let seen = views[k].as_ref().is_some_and(|view| {
-                view.near.is_empty() || site.sees(grid.center(k), person.eye, &view.near)
-            });
+            let view = views[k].as_ref();
+            let seen = view.is_some_and(|view| view.sees(site, grid.center(k), person.eye));
             if weight == 0.0 || !seen {
                 continue;
             }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::analysis::crossing::{Balance, Line};
+use crate::analysis::crossing::{Balance, FlowBetween, Line, Passages};
 use crate::scenario::trajectories::Tracks;
 
 /// A person crosses a line.
@@ -99,8 +99,8 @@ impl Crossings {
         }
     }
 
-    /// The crossings in a direction: 1 forward, −1 backward.
-    pub fn way(&self, direction: i8) -> Way {
+    /// The crossings in a direction: 1 forward, −1 backward; and the flow between two of its passages.
+    pub fn way(&self, direction: i8, part: Passages) -> Way {
         let all = self.list.iter().filter(|c| c.direction == direction);
         let times: Vec<f64> = self.passages(direction).collect();
         let (first, last) = (times.first(), times.last());
@@ -114,6 +114,7 @@ impl Crossings {
             last_secs: last.copied(),
             flow_per_s: flow,
             specific_flow_per_m_s: flow.map(|flow| flow / self.line.length()),
+            part: part.flow(&times),
         }
     }
 
@@ -141,4 +142,6 @@ pub struct Way {
     pub flow_per_s: Option<f64>,
     /// The flow divided by the length of the line, P/(m s).
     pub specific_flow_per_m_s: Option<f64>,
+    /// The flow between the two passages that the options name.
+    pub part: Option<FlowBetween>,
 }

@@ -1,9 +1,9 @@
-//! The SPH density of §8 and quantities derived from it, measured in real or simulated trajectories: density and
-//! velocity of each person, mean fields, fundamental diagrams, flow across lines.
+//! Densities, speeds and flows in real or simulated trajectories: the SPH density of §8, the classic and the Voronoi
+//! density, and the velocity of each person, mean fields, fundamental diagrams, regions, flow across lines.
 //!
-//! A person's density is Eq. 9, including the person's own mass. Where walls hide part of the kernel, the crowd behind
-//! them is assumed to be as dense as at the person's position, or as in the engine ([`Behind`]); fields always use the
-//! former. For velocities see [`speed::velocities`], for crossings [`Crossings`]. Time is frame number divided by
+//! A person's SPH density is Eq. 9, with and without the person's own mass. Where walls hide part of the kernel, the
+//! crowd behind them is assumed to be as dense as at the person's position, or as in the engine ([`Behind`]); fields
+//! always use the former. For Voronoi cells see [`Tessellation`], for densities of regions [`RegionState`]. For velocities see [`speed::velocities`], for crossings [`Crossings`]. Time is frame number divided by
 //! frame rate.
 
 mod density;
@@ -13,27 +13,32 @@ mod line;
 mod output;
 pub mod pictures;
 mod record;
+mod region_report;
+mod regions;
 mod report;
 mod safety;
 mod safety_report;
 pub mod speed;
+mod tessellation;
 
 pub use crate::analysis::site::{Hidden, Kernel, Site};
 pub use crate::analysis::surroundings::MOST_HIDDEN;
 pub use density::{Behind, Parts, parts};
-pub use diagram::{CLASS, Class, Diagram, FrameMean};
+pub use diagram::{CLASS, Class, Classes, Density, Diagram, FrameMean};
 pub use fields::{Fields, Grid, MOST_CELLS, Mean};
 pub use line::{Crossing, Crossings, Way};
 pub use output::{Results, files};
 pub use record::MomentRecorder;
+pub use regions::{Body, Frame, RegionState, Regions};
 pub use report::Report;
 pub use safety::{Departures, Safety, Sample};
+pub use tessellation::{CellLimit, OwnCell, Tessellation};
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::analysis::crossing::Line;
+use crate::analysis::crossing::{Line, Passages};
 use crate::analysis::statistics::MeanStd;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::Region;
@@ -56,10 +61,14 @@ pub struct Options {
     pub times: [f64; 2],
     /// Side of the cells of mean fields, meters.
     pub cell: f64,
+    /// How far Voronoi cells reach.
+    pub cells: CellLimit,
     /// Regions of the fundamental diagrams; if empty, one diagram covers everything.
     pub regions: Vec<Region>,
     /// The lines across which flow is measured.
     pub lines: Vec<Line>,
+    /// The passages of a line between which flow is also measured.
+    pub flow_of: Passages,
     /// Time between samples of exposure, level of service and crowd pressure, seconds.
     pub sample_every: f64,
 }
@@ -79,8 +88,12 @@ pub struct Person {
     pub mass: f64,
     /// m/s; `None` if unknown.
     pub velocity: Option<Vector>,
-    /// ρ_i, P/m².
+    /// ρ_i, P/m², with the person's own weight.
     pub density: f64,
+    /// ρ_i without the person's own weight, P/m².
+    pub density_of_others: f64,
+    /// 1 / the area of the person's Voronoi cell, P/m²; `None` deep inside an obstacle.
+    pub voronoi: Option<f64>,
     /// The walls' part of `density`, P/m².
     pub density_from_walls: f64,
 }
@@ -94,6 +107,8 @@ pub struct Moment {
     pub time: f64,
     /// All people in the frame, by id.
     pub people: Vec<Person>,
+    /// One per region.
+    pub regions: Vec<RegionState>,
 }
 
 /// Summary of a measurement.
@@ -111,6 +126,10 @@ pub struct Overview {
     pub times: [f64; 2],
     /// Over all rows, P/m².
     pub density: MeanStd,
+    /// The same without the own weight, P/m².
+    pub density_of_others: MeanStd,
+    /// Over all rows with a Voronoi cell, P/m².
+    pub voronoi: MeanStd,
     /// Over all rows with a known velocity, m/s.
     pub speed: MeanStd,
     /// The person with the highest density; the frame and its time, seconds.
@@ -143,6 +162,17 @@ pub enum MeasureError {
     /// No frame is in the requested time.
     #[error("no agents from {0} s to {1} s; there are agents from {2} s to {3} s")]
     Nobody(f64, f64, f64, f64),
+    /// No distance and no floor limit Voronoi cells.
+    #[error(
+        "nothing limits the Voronoi cells: there is no walkable area; give one with --geometry, or a distance with --voronoi-cutoff"
+    )]
+    Unlimited,
+    /// The number of a region, from 1, that is outside of the walkable area.
+    #[error("region {0} is outside of the walkable area; give another --region")]
+    Unwalkable(usize),
+    /// The walkable area cannot be cut, with the reason.
+    #[error("the walkable area: {0}")]
+    Floor(String),
     /// Too many cells.
     #[error("fields would have more than {MOST_CELLS} cells of {0} m; give a larger --cell")]
     Cells(f64),
@@ -165,12 +195,19 @@ pub fn measure<E: From<MeasureError>>(
         [] => vec![None],
         regions => regions.iter().copied().map(Some).collect(),
     };
+    let places = Regions::new(site, options)?;
+    let mut walkable = places.walkable().into_iter();
     let diagram = |region| Diagram {
         region,
+        walkable: walkable.next(),
         ..Diagram::default()
     };
     let mut diagrams: Vec<Diagram> = regions.into_iter().map(diagram).collect();
-    let mut history = History::new(options.behind, tracks.ids.len());
+    let mut history = History::new(
+        options.behind,
+        options.kernel.support_radius,
+        tracks.ids.len(),
+    );
     let mut overview = overview(tracks, chosen.clone());
     let mut seen = vec![false; tracks.ids.len()];
     let first = tracks.frames[chosen.start];
@@ -182,16 +219,18 @@ pub fn measure<E: From<MeasureError>>(
         while next < chosen.end && (next == begin || tracks.rows(next).end - first < BATCH) {
             next += 1;
         }
-        let parts = (begin..next).into_par_iter().map(|k| {
+        let seen_parts = (begin..next).into_par_iter().map(|k| {
             let rows = tracks.rows(k);
             let masses = tracks.mass.get(rows.clone()).unwrap_or(&[]);
             let how = (&options.kernel, options.behind);
-            parts(site, &tracks.position[rows], masses, how)
+            let parts = parts(site, &tracks.position[rows.clone()], masses, how);
+            let frame = places.measure(&bodies(tracks, rows, &parts, &velocities));
+            (parts, frame)
         });
-        let parts: Vec<Vec<Parts>> = parts.collect();
-        let moments = (begin..next).zip(parts).map(|(k, parts)| {
+        let seen_parts: Vec<(Vec<Parts>, Frame)> = seen_parts.collect();
+        let moments = (begin..next).zip(seen_parts).map(|(k, (parts, frame))| {
             overview.look_at(&parts);
-            moment(tracks, k, &parts, &velocities, &mut history)
+            moment((tracks, k), &parts, frame, &velocities, &mut history)
         });
         let moments: Vec<Moment> = moments.collect();
         for moment in &moments {
@@ -224,9 +263,10 @@ pub fn measure<E: From<MeasureError>>(
 /// Checks that there is something to measure.
 ///
 /// # Errors
-/// There are no people in the requested time, or there are too many cells.
-pub fn check(tracks: &Tracks, options: &Options) -> Result<(), MeasureError> {
+/// There are no people in the requested time, there are too many cells, or those of [`Regions::new`].
+pub fn check(tracks: &Tracks, site: &Site, options: &Options) -> Result<(), MeasureError> {
     let chosen = chosen(tracks, options)?;
+    Regions::new(site, options)?;
     grid(tracks, options, chosen).map(|_| ())
 }
 
@@ -263,18 +303,36 @@ fn overview(tracks: &Tracks, chosen: Range<usize>) -> Overview {
     }
 }
 
-fn moment(
+/// The people in these rows, as regions need them.
+fn bodies(
     tracks: &Tracks,
-    k: usize,
+    rows: Range<usize>,
     parts: &[Parts],
+    velocities: &[Option<Vector>],
+) -> Vec<Body> {
+    let bodies = rows.zip(parts).map(|(row, parts)| Body {
+        position: tracks.position[row],
+        eye: parts.hidden.eye,
+        mass: tracks.mass_of(row),
+        velocity: velocities[row],
+    });
+    bodies.collect()
+}
+
+fn moment(
+    (tracks, k): (&Tracks, usize),
+    parts: &[Parts],
+    Frame { voronoi, regions }: Frame,
     velocities: &[Option<Vector>],
     history: &mut History,
 ) -> Moment {
     let frame = tracks.frames[k];
     let pace = (tracks.step, tracks.interval());
-    let people = tracks.rows(k).zip(parts).map(|(row, parts)| {
+    let people = tracks.rows(k).zip(parts).zip(voronoi);
+    let people = people.map(|((row, parts), voronoi)| {
         let number = tracks.person[row];
         let from_walls = history.walls_part((number as usize, frame), parts, pace);
+        let density = parts.from_people + from_walls;
         Person {
             number,
             id: tracks.ids[number as usize],
@@ -282,7 +340,9 @@ fn moment(
             eye: parts.hidden.eye,
             mass: tracks.mass_of(row),
             velocity: velocities[row],
-            density: parts.from_people + from_walls,
+            density,
+            density_of_others: (density - history.own_part(parts, tracks.mass_of(row))).max(0.0),
+            voronoi,
             density_from_walls: from_walls,
         }
     });
@@ -290,6 +350,7 @@ fn moment(
         frame,
         time: tracks.time(frame),
         people: people.collect(),
+        regions,
     }
 }
 
@@ -307,6 +368,11 @@ impl Overview {
         for person in &moment.people {
             self.rows += 1;
             self.density.add(person.density);
+            self.density_of_others.add(person.density_of_others);
+            person
+                .voronoi
+                .into_iter()
+                .for_each(|density| self.voronoi.add(density));
             if let Some(velocity) = person.velocity {
                 self.speed.add(velocity.norm());
             }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::pictures::STEMS;
 use super::record::RECORDING;
-use super::{CLASS, Class, Measured, Moment, Safety};
+use super::{CLASS, Class, Classes, Density, Measured, Moment, Safety, region_report};
 use crate::analysis::exposure::PersonExposure;
 use crate::analysis::statistics::MeanStd;
 use crate::engine::math::Vector;
@@ -21,17 +21,18 @@ const AGENTS: &str = "agents.csv";
 const FIELDS: &str = "fields.csv";
 const DIAGRAM: &str = "fundamental_diagram.csv";
 const CLASSES: &str = "fundamental_classes.csv";
+const REGIONS: &str = "regions.csv";
 const FLOW: &str = "flow.csv";
 const EXPOSURE: &str = "exposure.csv";
 const ALARMS: &str = "alarms.csv";
 
-const AGENT_COLUMNS: &str = "frame,time,id,x,y,vel_x,vel_y,speed,density,density_from_walls";
+const AGENT_COLUMNS: &str = "frame,time,id,x,y,vel_x,vel_y,speed,density,density_from_walls,density_of_others,voronoi_density";
 const FIELD_COLUMNS: &str = "x,y,density,vel_x,vel_y,speed,flow_x,flow_y,people";
 
 /// The names of all files that a measurement may write, with its recording and its pictures.
 pub fn files() -> impl Iterator<Item = String> {
     let tables = [
-        AGENTS, FIELDS, DIAGRAM, CLASSES, FLOW, EXPOSURE, ALARMS, RECORDING,
+        AGENTS, FIELDS, DIAGRAM, CLASSES, REGIONS, FLOW, EXPOSURE, ALARMS, RECORDING,
     ];
     let pictures = STEMS.map(|stem| ["svg", "png"].map(|kind| format!("{stem}.{kind}")));
     let tables = tables.into_iter().map(str::to_owned);
@@ -70,7 +71,11 @@ impl Results {
         let rows = moments.iter().flat_map(|moment| {
             moment.people.iter().map(|person| {
                 let (velocity, speed) = (parts(person.velocity), person.velocity.map(|v| v.norm()));
-                let densities = [person.density, person.density_from_walls];
+                let densities = [
+                    person.density,
+                    person.density_from_walls,
+                    person.density_of_others,
+                ];
                 let when = (moment.frame, moment.time, person.id);
                 (
                     when,
@@ -78,6 +83,7 @@ impl Results {
                     velocity,
                     speed,
                     densities,
+                    person.voronoi,
                 )
             })
         });
@@ -100,6 +106,7 @@ impl Results {
         let frames = diagrams.iter().flat_map(|diagram| &diagram.frames);
         store.write(DIAGRAM, &csv_lines(&frames.collect::<Vec<_>>(), true)?)?;
         store.write(CLASSES, &classes(measured).csv()?)?;
+        store.write(REGIONS, &region_report::table(measured).csv()?)?;
         store.write(EXPOSURE, &exposure(&measured.safety, tracks).csv()?)?;
         store.write(ALARMS, &csv_lines(&measured.safety.samples, true)?)?;
         if !crossings.is_empty() {
@@ -155,21 +162,29 @@ fn exposure(safety: &Safety, tracks: &Tracks) -> Table {
         .table()
 }
 
-/// One row per region, kind of values and density class.
+/// One row per region, kind of values, density and density class.
 fn classes(measured: &Measured) -> Table {
     let regions = measured.diagrams.iter().zip(1_usize..);
     let classes = regions.flat_map(|(diagram, region)| {
-        let persons = diagram.of_persons.iter().map(|class| ("persons", class));
-        let frames = diagram.of_frames.iter().map(|class| ("frames", class));
-        let both = persons.chain(frames);
-        both.map(move |(of, (&k, class))| (region, of, k, class))
+        let persons = diagram
+            .of_persons
+            .iter()
+            .map(|classes| ("persons", classes));
+        let frames = diagram.of_frames.iter().map(|classes| ("frames", classes));
+        persons
+            .chain(frames)
+            .flat_map(move |(of, (kind, classes)): (_, (&Density, &Classes))| {
+                let classes = classes.iter();
+                classes.map(move |(&k, class)| (region, [of, kind.key()], k, class))
+            })
     });
-    let rows: Vec<(usize, &str, usize, &Class)> = classes.collect();
+    let rows: Vec<(usize, [&str; 2], usize, &Class)> = classes.collect();
     let parts = ["_mean", "_std"];
     let spread = |of: MeanStd| Cell::Spread(of.mean, Some(of.population_std()));
     Table::of(&rows)
         .column("region", |row| row.0)
-        .column("of", |row| row.1)
+        .column("of", |row| row.1[0])
+        .column("by", |row| row.1[1])
         .column("density_from", |row| row.2 as f64 * CLASS)
         .column("density_to", |row| (row.2 as f64 + 1.0) * CLASS)
         .column("count", |row| row.3.density.count)

@@ -2,13 +2,17 @@
 
 use std::path::Path;
 
-use super::{Class, Crossings, Diagram, FrameMean, Mean, Measured, Site, safety_report};
+use super::{
+    Class, Crossings, Density, Diagram, FrameMean, Mean, Measured, Site, region_report,
+    safety_report,
+};
 use crate::analysis::statistics::MeanStd;
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 use crate::output::colors::{ColorMap, DENSITY, SPEED};
 use crate::output::plot::{
-    Axis, BLACK, Cells, ColorBar, Corner, GRAY, LINES, Mark, Panel, PlotError, Point, Sheet, Style,
+    Axis, BLACK, Cells, ColorBar, Corner, GRAY, LINES, Label, Mark, Panel, PlotError, Point, Sheet,
+    Style,
 };
 
 /// Length of the longer side of a map, points.
@@ -21,17 +25,20 @@ const MOST_DOTS: usize = 1500;
 const NOBODY: f64 = 1e-3;
 
 /// The file names of the pictures, without extension.
-pub const STEMS: [&str; 4] = ["fields", "fundamental_diagram", "flow", "safety"];
+pub const STEMS: [&str; 5] = ["fields", "fundamental_diagram", "flow", "safety", "regions"];
 
 /// Draws all pictures into `folder`, as SVG and PNG.
 ///
 /// # Errors
 /// A picture cannot be written.
 pub fn save(folder: &Path, measured: &Measured, site: &Site) -> Result<(), PlotError> {
-    let [fields, diagram, flow, safety] = STEMS;
+    let [fields, diagram, flow, safety, regions] = STEMS;
     maps(measured, &site.walls).save(&folder.join(fields))?;
     diagrams(&measured.diagrams).save(&folder.join(diagram))?;
     safety_report::picture(&measured.safety).save(&folder.join(safety))?;
+    if let Some(sheet) = region_report::picture(measured) {
+        sheet.save(&folder.join(regions))?;
+    }
     if !measured.crossings.is_empty() {
         counts(&measured.crossings).save(&folder.join(flow))?;
     }
@@ -69,6 +76,7 @@ fn maps(measured: &Measured, walls: &Walls) -> Sheet {
             let ends = [wall.start, wall.end].map(|p| [p.x, p.y]);
             Mark::Line(ends.to_vec(), Style::full(BLACK, 1.2, ""))
         }));
+        marks.extend(places(measured));
         Panel {
             bar: Some(ColorBar {
                 label: label.to_owned(),
@@ -93,56 +101,118 @@ fn maps(measured: &Measured, walls: &Walls) -> Sheet {
     sheet(columns, size, vec![density, speed])
 }
 
-/// Speed and flow over density: means of frames as dots, classes of people with standard deviations.
+/// The outlines of regions and the lines, with their numbers.
+fn places(measured: &Measured) -> Vec<Mark> {
+    let regions = measured.diagrams.iter().enumerate();
+    let regions = regions.filter_map(|(k, diagram)| {
+        let [a, b, c, d] = diagram.region?.corners();
+        Some((vec![a, b, c, d, a], [0, 0], format!("region {}", k + 1)))
+    });
+    let lines = measured.crossings.iter().enumerate();
+    let lines = lines.map(|(k, crossings)| {
+        let ends = vec![crossings.line.start, crossings.line.end];
+        (ends, [-1, 0], format!("line {}", k + 1))
+    });
+    let marks = regions.chain(lines);
+    let marks = marks.flat_map(|(path, side, text): (Vec<Vector>, [i8; 2], String)| {
+        let middle = path.iter().sum::<Vector>() / path.len() as f64;
+        let path: Vec<[f64; 2]> = path.iter().map(|p| [p.x, p.y]).collect();
+        // Black and white are visible on all colors of a map.
+        [
+            Mark::Line(path.clone(), Style::full(BLACK, 2.0, "")),
+            Mark::Line(path, Style::full([255; 3], 1.0, "")),
+            Mark::Label(Label {
+                at: middle.into(),
+                side,
+                text,
+                color: BLACK,
+            }),
+        ]
+    });
+    marks.collect()
+}
+
+/// Speed and flow over each density that is known, side by side: frames as dots, classes with standard deviations.
 fn diagrams(diagrams: &[Diagram]) -> Sheet {
-    let panel = |title: &str,
-                 label: &str,
-                 frame: fn(&FrameMean) -> Option<f64>,
-                 class: fn(&Class) -> MeanStd| {
+    let known = |kind: &Density| diagrams.iter().any(|all| all.classes(*kind).is_some());
+    let kinds: Vec<Density> = Density::ALL.into_iter().filter(known).collect();
+    let right = values(diagrams, &kinds, |class| class.density.mean);
+    let top = |of: OfClass, frame: OfFrame| {
+        let top = |class: &Class| of(class).mean + of(class).population_std();
+        let frames = diagrams.iter().flat_map(|diagram| &diagram.frames);
+        let frames = frames.flat_map(|mean| kinds.iter().filter_map(|&kind| frame(mean, kind)));
+        1.1 * values(diagrams, &kinds, top)
+            .chain(frames)
+            .fold(0.1, f64::max)
+    };
+    let right = 1.3 * right.fold(0.5, f64::max); // room for the legend
+    let panel = |kind: Density, (label, top): (&str, f64), (frame, class): (OfFrame, OfClass)| {
         let mut marks = Vec::new();
         for (k, diagram) in diagrams.iter().enumerate() {
             let pale = LINES[k % LINES.len()].map(|channel| channel / 3 + 170);
             // Thinned: more dots would hide each other.
             let every = diagram.frames.len().div_ceil(MOST_DOTS).max(1);
             let frames = diagram.frames.iter().step_by(every);
-            let dots = frames.filter_map(|mean| Some([mean.density, frame(mean)?]));
+            let dots = frames.filter_map(|mean| Some([mean.density(kind)?, frame(mean, kind)?]));
             marks.push(Mark::dots(dots, Style::full(pale, 1.0, "")));
         }
         for (k, diagram) in diagrams.iter().enumerate() {
-            let classes = diagram.of_persons.values();
-            let points = classes.filter(|of| class(of).count > 0).map(|of| Point {
+            let classes = diagram.classes(kind).into_iter();
+            let classes = classes.flat_map(|(_, classes)| classes.values());
+            let points = classes.map(|of| Point {
                 x: of.density.mean,
                 y: class(of).mean,
                 error: class(of).population_std(),
             });
-            let name = match diagram.region {
-                None => "everywhere".to_owned(),
-                Some(_) => format!("region {}", k + 1),
-            };
-            let style = Style::full(LINES[k % LINES.len()], 2.6, &name);
+            let style = Style::full(LINES[k % LINES.len()], 2.6, &name(diagram, k));
             marks.push(Mark::Points(points.collect(), style));
         }
-        let points = marks.iter().flat_map(|mark| match mark {
-            Mark::Points(points, _) => points.as_slice(),
-            _ => &[],
-        });
-        let top = points.map(|point| point.y + point.error);
-        let classes = diagrams.iter().flat_map(|all| all.of_persons.values());
-        let right = classes.map(|class| class.density.mean);
-        let x = Axis::linear("density [P/m²]", [0.0, 1.1 * right.fold(0.5, f64::max)]);
-        let y = Axis::linear(label, [0.0, 1.1 * top.fold(0.1, f64::max)]);
-        Panel::new(title, x, y, marks)
+        let x = Axis::linear("density [P/m²]", [0.0, right]);
+        let of = diagrams.iter().find_map(|diagram| diagram.classes(kind));
+        let title = match of {
+            Some(("rows", _)) => format!("{}: people ± deviation", kind.name()),
+            _ => format!("{}: frames ± deviation", kind.name()),
+        };
+        let mut panel = Panel::new(&title, x, Axis::linear(label, [0.0, top]), marks);
+        panel.legend = Some(Corner::UpperRight);
+        panel
     };
-    let title = "speed: persons ± deviation, frames as dots";
-    let mut speed = panel(title, "speed [m/s]", |mean| mean.speed, |class| class.speed);
-    speed.legend = Some(Corner::UpperRight);
-    let flow = panel(
-        "flow",
-        "flow [1/(m s)]",
-        |mean| mean.flow,
-        |class| class.flow,
-    );
-    sheet(2, [240.0, 200.0], vec![speed, flow])
+    let speed: (OfFrame, OfClass) = (|mean, kind| mean.speed(kind), |class| class.speed);
+    let flow: (OfFrame, OfClass) = (|mean, kind| mean.flow(kind), |class| class.flow);
+    let axes = [
+        ("speed [m/s]", top(speed.1, speed.0)),
+        ("flow [1/(m s)]", top(flow.1, flow.0)),
+    ];
+    let speeds = kinds.iter().map(|&kind| panel(kind, axes[0], speed));
+    let flows = kinds.iter().map(|&kind| panel(kind, axes[1], flow));
+    let panels = speeds.chain(flows).collect();
+    sheet(kinds.len().max(1), [210.0, 180.0], panels)
+}
+
+/// A value of a frame by a density.
+type OfFrame = fn(&FrameMean, Density) -> Option<f64>;
+/// A value of a class.
+type OfClass = fn(&Class) -> MeanStd;
+
+/// A value of all classes of all diagrams.
+fn values<'a>(
+    diagrams: &'a [Diagram],
+    kinds: &'a [Density],
+    value: impl Fn(&Class) -> f64 + 'a,
+) -> impl Iterator<Item = f64> + 'a {
+    let classes = kinds.iter().flat_map(move |&kind| {
+        let classes = diagrams.iter().filter_map(move |all| all.classes(kind));
+        classes.flat_map(|(_, classes)| classes.values())
+    });
+    classes.map(value)
+}
+
+/// The name of a diagram in a legend.
+fn name(diagram: &Diagram, k: usize) -> String {
+    match diagram.region {
+        None => "everywhere".to_owned(),
+        Some(_) => format!("region {}", k + 1),
+    }
 }
 
 /// N(t) for every line; dashed for passages backward.

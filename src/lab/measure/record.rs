@@ -7,7 +7,7 @@ use crate::engine::agents::REFERENCE_RADIUS;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::Region;
 use crate::output::recording::{
-    DebugAgents, MeasuredPerson, MeasuredRecorder, RecordingError, RecordingOptions,
+    DebugAgents, Marked, MeasuredPerson, MeasuredRecorder, RecordingError, RecordingOptions,
 };
 use crate::runs::identity::Identity;
 use crate::scenario::trajectories::Tracks;
@@ -58,10 +58,15 @@ impl<'a> MomentRecorder<'a> {
             debug: DebugAgents::None,
             body_mass: None,
         };
-        let (path, walls) = (folder.join(RECORDING), &site.walls);
+        let path = folder.join(RECORDING);
+        let marked = Marked {
+            regions: &measured.regions,
+            lines: &measured.lines,
+        };
+        let drawn = (&site.walls, marked);
         Ok(Self {
             tracks,
-            recorder: MeasuredRecorder::create(path.as_path(), walls, REFERENCE_RADIUS, &options)?,
+            recorder: MeasuredRecorder::create(path.as_path(), drawn, REFERENCE_RADIUS, &options)?,
             has_own_ids: tracks.ids.iter().all(|id| (0..=LARGEST_ID).contains(id)),
             next: None,
         })

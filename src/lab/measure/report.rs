@@ -4,7 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Value, json};
 
-use super::{CLASS, Class, Crossings, Diagram, Measured, Options, Way, safety_report};
+use super::{
+    CLASS, Class, Classes, Crossings, Density, Diagram, Measured, Options, Way, region_report,
+    safety_report,
+};
+use crate::analysis::crossing::Passages;
 use crate::analysis::statistics::MeanStd;
 use crate::output::table::{Cell, Table};
 use crate::scenario::trajectories::Tracks;
@@ -34,14 +38,23 @@ impl Report<'_> {
             overview.people, overview.rows, overview.frames, self.tracks.fps,
         );
         text += &format!(
-            "  density  {} P/m² over all rows, h = {} m\n",
+            "  density  at people, over all rows\n\
+             \u{20}          SPH, own weight included  {} P/m², h = {} m (Eq. 9)\n\
+             \u{20}          SPH of the others         {} P/m²\n\
+             \u{20}          Voronoi, 1 / cell         {} P/m²{}\n",
             spread(&overview.density),
             self.options.kernel.support_radius,
+            spread(&overview.density_of_others),
+            spread(&overview.voronoi),
+            match self.options.cells.cut_off {
+                Some(radius) => format!(", cut off at {radius} m"),
+                None => String::new(),
+            },
         );
         if let Some((person, frame, time)) = overview.densest {
             let place = person.position;
             text += &format!(
-                "           at most {:.3} P/m²: person {} at ({:.2}, {:.2}) m, {time:.2} s, frame {frame}\n",
+                "           SPH at most {:.3} P/m²: person {} at ({:.2}, {:.2}) m, {time:.2} s, frame {frame}\n",
                 person.density, person.id, place.x, place.y,
             );
         }
@@ -54,8 +67,10 @@ impl Report<'_> {
         };
         text += &format!("\n{}", safety_report::text(self.measured));
         if !self.measured.crossings.is_empty() {
-            text += &format!("\n{}", flows(&self.measured.crossings).text());
+            let flow_of = self.options.flow_of;
+            text += &format!("\n{}", flows(&self.measured.crossings, flow_of).text());
         }
+        text += &region_report::text(self.measured);
         for (k, diagram) in self.measured.diagrams.iter().enumerate() {
             let place = diagram.region.map(|region| {
                 let [min, max] = [region.min, region.max].map(|p| format!("({}, {})", p.x, p.y));
@@ -63,7 +78,7 @@ impl Report<'_> {
             });
             let place = place.unwrap_or_else(|| "everywhere".to_owned());
             let classes = classes(diagram).text();
-            text += &format!("\nfundamental diagram, {place}\n{classes}");
+            text += &format!("\nfundamental diagram, {place}: speeds by density\n{classes}");
         }
         text
     }
@@ -76,7 +91,9 @@ impl Report<'_> {
     /// As a JSON object.
     pub fn json(&self) -> Value {
         let overview = &self.measured.overview;
-        let kernel = self.options.kernel;
+        let (kernel, cells) = (self.options.kernel, self.options.cells);
+        let lines = self.measured.crossings.iter();
+        let lines = lines.map(|crossings| line(crossings, self.options.flow_of));
         json!({
             "people": overview.people,
             "rows": overview.rows,
@@ -89,7 +106,11 @@ impl Report<'_> {
             "wall_method": kernel.walls,
             "speed_window_secs": 2.0 * self.reach(),
             "rows_inside_obstacles": overview.inside.0,
+            "voronoi_cutoff": cells.cut_off,
+            "voronoi_quad_segments": cells.quad_segments,
             "density": mean_and_std(&overview.density),
+            "density_of_others": mean_and_std(&overview.density_of_others),
+            "voronoi_density": mean_and_std(&overview.voronoi),
             "speed": mean_and_std(&overview.speed),
             "densest": overview.densest.map(|(person, frame, time)| json!({
                 "density": person.density,
@@ -100,7 +121,8 @@ impl Report<'_> {
                 "frame": frame,
             })),
             "safety": safety_report::json(self.measured),
-            "lines": self.measured.crossings.iter().map(line).collect::<Vec<_>>(),
+            "lines": lines.collect::<Vec<_>>(),
+            "regions": region_report::json(self.measured),
             "fundamental_diagrams": self.measured.diagrams.iter().map(diagram).collect::<Vec<_>>(),
             "notes": self.tracks.notes,
         })
@@ -108,12 +130,17 @@ impl Report<'_> {
 }
 
 /// Two rows per line: forward and backward.
-fn flows(crossings: &[Crossings]) -> Table {
+fn flows(crossings: &[Crossings], flow_of: Passages) -> Table {
     let lines = crossings.iter().zip(1_usize..);
     let ways = lines.flat_map(|(line, number)| {
-        [(1, "forward"), (-1, "backward")].map(|(way, name)| (number, name, line.way(way)))
+        let directions = [(1, "forward"), (-1, "backward")];
+        directions.map(|(way, name)| (number, name, line.way(way, flow_of)))
     });
     let ways: Vec<(usize, &str, Way)> = ways.collect();
+    let passages = |way: &Way| {
+        let between = way.part.map(|part| part.passages);
+        between.map_or("–".to_owned(), |[n, m]| format!("{n}–{m}"))
+    };
     Table::of(&ways)
         .column("line", |row| row.0)
         .column("direction", |row| row.1)
@@ -123,67 +150,84 @@ fn flows(crossings: &[Crossings]) -> Table {
         .fixed("last [s]", 2, |row| row.2.last_secs)
         .fixed("flow [1/s]", 3, |row| row.2.flow_per_s)
         .fixed("flow [1/(m s)]", 3, |row| row.2.specific_flow_per_m_s)
+        .column("passages n–m", |row| passages(&row.2))
+        .fixed("flow n–m [1/s]", 3, |row| {
+            row.2.part.map(|part| part.flow_per_s)
+        })
         .table()
 }
 
-/// One row per density class, with values of people and of frames.
+/// One row per density class, and for each density the number of values and their speeds.
 fn classes(diagram: &Diagram) -> Table {
-    let class = |classes: &BTreeMap<usize, Class>, k| classes.get(k).copied().unwrap_or_default();
-    let numbers = diagram.of_persons.keys().chain(diagram.of_frames.keys());
-    let numbers: BTreeSet<&usize> = numbers.collect();
-    let both = |k| [&diagram.of_persons, &diagram.of_frames].map(|classes| class(classes, k));
-    let rows = numbers.into_iter().map(|k| (*k as f64 * CLASS, both(k)));
-    let rows: Vec<(f64, [Class; 2])> = rows.collect();
-    let spread =
-        |of: MeanStd| (of.count > 0).then(|| Cell::Spread(of.mean, Some(of.population_std())));
-    Table::of(&rows)
-        .column("density [P/m²]", |row| {
-            format!("{:.1}–{:.1}", row.0, row.0 + CLASS)
-        })
-        .column("rows", |(_, [persons, _])| persons.density.count)
-        .fixed("speed [m/s]", 3, |(_, [persons, _])| spread(persons.speed))
-        .fixed("flow [1/(m s)]", 3, |(_, [persons, _])| {
-            spread(persons.flow)
-        })
-        .column("frames", |(_, [_, frames])| frames.density.count)
-        .fixed("speed [m/s]", 3, |(_, [_, frames])| spread(frames.speed))
-        .table()
+    let known = Density::ALL.into_iter();
+    let known = known.filter_map(|kind| Some((kind, diagram.classes(kind)?)));
+    let known: Vec<(Density, (&str, &Classes))> = known.collect();
+    let numbers = known.iter().flat_map(|(_, (_, classes))| classes.keys());
+    let rows: Vec<usize> = numbers
+        .copied()
+        .collect::<BTreeSet<_>>()
+        .into_iter()
+        .collect();
+    let columns = Table::of(&rows).column("density [P/m²]", |&k| {
+        let from = k as f64 * CLASS;
+        format!("{from:.1}–{:.1}", from + CLASS)
+    });
+    let columns = known
+        .iter()
+        .fold(columns, |columns, (kind, (of, classes))| {
+            let count = format!("{} [{of}]", kind.name());
+            columns
+                .column(&count, |k| {
+                    classes.get(k).map_or(0, |class| class.density.count)
+                })
+                .fixed("speed [m/s]", 3, |k| spread(classes.get(k)?.speed))
+        });
+    columns.table()
+}
+
+/// A mean and its standard deviation; `None` without values.
+pub(super) fn spread(of: MeanStd) -> Option<Cell> {
+    (of.count > 0).then(|| Cell::Spread(of.mean, Some(of.population_std())))
 }
 
 /// `null` without values.
-fn mean_and_std(of: &MeanStd) -> Option<Value> {
+pub(super) fn mean_and_std(of: &MeanStd) -> Option<Value> {
     (of.count > 0).then(|| json!({"mean": of.mean, "std": of.population_std()}))
 }
 
-fn line(crossings: &Crossings) -> Value {
+fn line(crossings: &Crossings, flow_of: Passages) -> Value {
     let ends = [crossings.line.start, crossings.line.end].map(|p| [p.x, p.y]);
     json!({
         "ends": ends,
         "length": crossings.line.length(),
-        "forward": crossings.way(1),
-        "backward": crossings.way(-1),
+        "forward": crossings.way(1, flow_of),
+        "backward": crossings.way(-1, flow_of),
         "across_gaps": crossings.across_gaps,
     })
 }
 
 fn diagram(diagram: &Diagram) -> Value {
-    let kind = |classes: &BTreeMap<usize, Class>| {
-        let class = |(&k, class): (&usize, &Class)| {
-            json!({
-                "density_from": k as f64 * CLASS,
-                "density_to": (k as f64 + 1.0) * CLASS,
-                "count": class.density.count,
-                "density": mean_and_std(&class.density),
-                "speed": mean_and_std(&class.speed),
-                "flow": mean_and_std(&class.flow),
-            })
-        };
-        classes.iter().map(class).collect::<Vec<_>>()
+    let class = |(&k, class): (&usize, &Class)| {
+        json!({
+            "density_from": k as f64 * CLASS,
+            "density_to": (k as f64 + 1.0) * CLASS,
+            "count": class.density.count,
+            "density": mean_and_std(&class.density),
+            "speed": mean_and_std(&class.speed),
+            "flow": mean_and_std(&class.flow),
+        })
     };
+    let kinds = |kinds: &BTreeMap<Density, Classes>| -> BTreeMap<&str, Vec<Value>> {
+        let kinds = kinds.iter();
+        kinds
+            .map(|(kind, classes)| (kind.key(), classes.iter().map(class).collect()))
+            .collect()
+    };
+    let with_people = diagram.frames.iter().filter(|frame| frame.people > 0);
     json!({
         "region": diagram.region.map(|region| [region.min, region.max].map(|p| [p.x, p.y])),
-        "frames_with_people": diagram.frames.len(),
-        "persons": kind(&diagram.of_persons),
-        "frames": kind(&diagram.of_frames),
+        "frames_with_people": with_people.count(),
+        "persons": kinds(&diagram.of_persons),
+        "frames": kinds(&diagram.of_frames),
     })
 }

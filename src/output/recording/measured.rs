@@ -7,7 +7,7 @@ use super::error::RecordingError;
 use super::output::{Destination, Output};
 use super::session::Session;
 use super::snapshot::Snapshot;
-use super::{DebugAgents, RecordingOptions, geometry, text};
+use super::{DebugAgents, Marked, RecordingOptions, geometry, marked, text};
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 
@@ -31,14 +31,14 @@ pub struct MeasuredRecorder {
 }
 
 impl MeasuredRecorder {
-    /// Begins a recording. Every person is a disc of `radius` meters. There are no debug agents, whatever the options
+    /// Begins a recording. Every person is a disc of `radius` meters; `marked` regions and lines are drawn. There are no debug agents, whatever the options
     /// say.
     ///
     /// # Errors
     /// The file cannot be written, or no viewer answers.
     pub fn create(
         to: impl Into<Destination>,
-        walls: &Walls,
+        (walls, marked): (&Walls, Marked),
         radius: f64,
         options: &RecordingOptions,
     ) -> Result<Self, RecordingError> {
@@ -50,6 +50,7 @@ impl MeasuredRecorder {
         let log_own = |stream: &RecordingStream| {
             text::log_measurement(stream, &options)?;
             geometry::log_still(stream, walls.obstacles())?;
+            marked::log(stream, &marked)?;
             Ok(Vec::new())
         };
         let session = Session::begin(output, options.clone(), Content::Measurement, log_own)?;

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `world/geometry/{walls,obstacles,goals}` | static |
 //! | `world/geometry/{exits,waypoints,waiting_areas,queues,queue_spots,zones,entrances,names}` | static |
+//! | `world/geometry/measured_{regions,lines}` | static; where a crowd was measured |
 //! | `world/wall_forces` | walls colored by the force on them, if the run measures it |
 //! | `world/ways/…` | the lengths of the ways to each place and goal as an image, hidden at first |
 //! | `world/agents` | the crowd: positions, radii, density and speed colors, `agent:…` values |
@@ -23,6 +24,7 @@ mod error;
 mod file;
 mod geometry;
 mod layers;
+mod marked;
 mod measured;
 mod output;
 mod places;
@@ -39,6 +41,7 @@ mod writer;
 pub use debug::DebugAgents;
 pub use error::RecordingError;
 pub use layers::METERS_PER_ACCELERATION;
+pub use marked::Marked;
 pub use measured::{MeasuredPerson, MeasuredRecorder};
 pub use output::{Destination, check_enabled};
 pub use read::{Recorded, RecordedCrowd};

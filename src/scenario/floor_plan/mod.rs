@@ -17,7 +17,7 @@ mod unite;
 mod wkt;
 
 pub use error::FloorPlanError;
-pub use unite::{Rings, free, outlines};
+pub use unite::{Rings, free, outlines, rings};
 pub use wkt::to_wkt;
 
 use std::path::Path;

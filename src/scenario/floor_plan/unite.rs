@@ -53,7 +53,7 @@ pub fn free(floors: &[Rings], bodies: &Rings) -> Result<Vec<Area>, FloorPlanErro
 }
 
 /// The rings of `areas`: outlines counterclockwise, holes clockwise.
-fn rings(areas: &[Area]) -> Rings {
+pub fn rings(areas: &[Area]) -> Rings {
     let reversed = |hole: &Ring| hole.points().iter().rev().copied().collect();
     let rings = areas.iter().flat_map(|area| {
         let holes = area.holes.iter().map(reversed);

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::Measure;
-use crate::analysis::crossing::{Balance, Line};
+use crate::analysis::crossing::{Balance, Line, Passages};
 use crate::engine::clock::Clock;
 use crate::engine::math::Vector;
 use crate::engine::period::Period;
@@ -108,14 +108,8 @@ impl LineFlow {
 
     /// The times of the first and the last passage that count, and the flow between them, P/s.
     fn flow(&self, times: &[f64]) -> Option<([f64; 2], f64)> {
-        let last = times.len().checked_sub(1)? as f64;
-        let [first, last] = self
-            .part
-            .unwrap_or(PART)
-            .map(|part| (part * last).round() as usize);
-        let ends = [times[first], times[last]];
-        let span = ends[1] - ends[0];
-        (span > 0.0).then(|| (ends, (last - first) as f64 / span))
+        let flow = Passages::Parts(self.part.unwrap_or(PART)).flow(times)?;
+        Some((flow.secs, flow.flow_per_s))
     }
 }
 
