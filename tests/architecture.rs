@@ -205,6 +205,8 @@ fn each_foreign_crate_is_used_in_one_place() {
         ("parry2d", "engine/geometry"),
         ("wkt", "scenario/floor_plan"),
         ("geojson", "scenario/floor_plan"),
+        ("roxmltree", "scenario/floor_plan"),
+        ("hdf5_pure", "scenario/trajectories"),
         ("rerun", "output/recording"),
         ("clap", "cli"),
         ("clap_complete", "cli"),

@@ -26,6 +26,7 @@ mod floor_plan_areas;
 mod floor_plan_pieces;
 mod floor_plan_robustness;
 mod floor_plan_unions;
+mod floor_plan_xml;
 mod forces;
 mod from_data;
 mod front;

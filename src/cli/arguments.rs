@@ -29,7 +29,7 @@ pub struct SceneOptions {
     /// Time step Δt_fine in seconds, or `auto`: the largest step that is safely stable
     #[arg(long, value_name = "SECS|auto")]
     pub time_step: Option<String>,
-    /// A floor plan that replaces the scenario's walkable area and obstacles, WKT or GeoJSON in meters
+    /// A floor plan that replaces the scenario's walkable area and obstacles: WKT, GeoJSON or JuPedSim XML
     #[arg(long, value_name = "FILE")]
     pub geometry: Option<PathBuf>,
     /// Change a setting of the scenario (see `sandbox list --settings`); may be repeated

@@ -109,11 +109,11 @@ pub(super) struct File {
     /// Parameters of all profiles; they override those given in a profile.
     pub parameters: Parameters,
     /// Where agents can walk, corners in meters: a list of polygons, each a list of rings (the outline, then the
-    /// holes), or the name of a WKT or GeoJSON file. Everything around it is solid. Default: everywhere.
+    /// holes), or the name of a WKT, GeoJSON or JuPedSim XML file. Everything around it is solid. Default: everywhere.
     #[schemars(schema_with = "walkable_area")]
     pub walkable_area: Option<Vec<Vec<Ring>>>,
     /// Solid bodies, corners in meters, in either orientation: a list of polygons, each a list of corners or of rings
-    /// (the outline, then the holes), or the name of a WKT or GeoJSON file.
+    /// (the outline, then the holes), or the name of a WKT, GeoJSON or JuPedSim XML file.
     #[schemars(schema_with = "obstacles")]
     pub obstacles: Vec<Obstacle>,
     /// The scene repeats itself without end.
@@ -377,5 +377,5 @@ fn obstacles(generator: &mut SchemaGenerator) -> Schema {
 }
 
 fn floor_plan() -> Value {
-    json!({"type": "string", "description": "A WKT or GeoJSON file, relative to this file's folder."})
+    json!({"type": "string", "description": "A WKT, GeoJSON or JuPedSim XML file, relative to this file's folder."})
 }

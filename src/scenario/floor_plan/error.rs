@@ -18,10 +18,10 @@ pub enum FloorPlanError {
     /// The file cannot be read; with the system's message.
     #[error("cannot be read: {0}")]
     Unreadable(String),
-    /// The text is not valid WKT or GeoJSON.
+    /// The text is not valid WKT, GeoJSON or XML.
     #[error("not valid {format}: {}", shown_message(reason))]
     Syntax {
-        /// WKT or GeoJSON.
+        /// WKT, GeoJSON or XML.
         format: &'static str,
         /// The parser's message, with the place.
         reason: String,

@@ -1,4 +1,4 @@
-//! Floor plans: walkable areas and obstacles from WKT and GeoJSON files.
+//! Floor plans: walkable areas and obstacles from WKT, GeoJSON and JuPedSim's XML files.
 //!
 //! | | WKT | GeoJSON |
 //! |---|---|---|
@@ -15,6 +15,7 @@ mod geojson;
 mod shape;
 mod unite;
 mod wkt;
+mod xml;
 
 pub use error::FloorPlanError;
 pub use unite::{Rings, free, outlines, rings};
@@ -44,7 +45,7 @@ pub struct FloorPlan {
     pub obstacles: Vec<Area>,
 }
 
-/// Reads a file: GeoJSON if it begins with `{`, else WKT.
+/// Reads a file: GeoJSON if it begins with `{`, JuPedSim's XML if it begins with `<`, else WKT.
 ///
 /// # Errors
 /// The file cannot be read, is neither format, or is not a valid floor plan. The message has the file and the place.
@@ -66,7 +67,7 @@ pub fn read_obstacles(path: &Path) -> Result<FloorPlan, FloorPlanError> {
     })
 }
 
-/// Reads GeoJSON if `text` begins with `{`, else WKT.
+/// Reads GeoJSON if `text` begins with `{`, JuPedSim's XML if it begins with `<`, else WKT.
 ///
 /// # Errors
 /// Those of [`read`].
@@ -96,12 +97,12 @@ fn in_file(
     parse(text.trim_start_matches('\u{feff}')).map_err(within)
 }
 
-/// The polygons of GeoJSON or WKT.
+/// The polygons of GeoJSON, XML or WKT.
 fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
-    if text.trim_start().starts_with('{') {
-        geojson::shapes(text)
-    } else {
-        wkt::shapes(text)
+    match text.trim_start().bytes().next() {
+        Some(b'{') => geojson::shapes(text),
+        Some(b'<') => xml::shapes(text.trim_start()),
+        _ => wkt::shapes(text),
     }
 }
 

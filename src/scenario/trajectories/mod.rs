@@ -3,6 +3,7 @@
 //! | file | from | what is read |
 //! |---|---|---|
 //! | SQLite | JuPedSim 1 and 2, the sandbox | `trajectory_data`, `fps`, the walkable area, `mass` if present |
+//! | HDF5 | Pedestrian Dynamics Data Archive, PedPy | dataset `trajectory`, its `fps`, `wkt_geometry` |
 //! | `.csv` | the sandbox, others | by name: `id`, `frame`, `x` and `y` or `pos_x` and `pos_y`; `time`, `mass` |
 //! | other text | PeTrack, Pedestrian Dynamics Data Archive | `id frame x y`, or by the names in a header |
 //!
@@ -10,6 +11,8 @@
 
 mod columns;
 mod error;
+#[cfg(feature = "program")]
+mod hdf5;
 mod line;
 mod places;
 #[cfg(feature = "program")]
@@ -31,6 +34,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::scenario::quote::shown;
+
+/// The first bytes of an HDF5 file.
+const HDF5_MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 /// Valid frame rates, frames per second.
 pub const FRAME_RATES: RangeInclusive<f64> = 1e-6..=1e6;
@@ -110,6 +116,15 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
         return Err(ReadError::file(
             path,
             "a SQLite file, which is read with the feature `program` only; convert it to CSV",
+        ));
+    }
+    if start.starts_with(HDF5_MAGIC) {
+        #[cfg(feature = "program")]
+        return hdf5::read(path, options);
+        #[cfg(not(feature = "program"))]
+        return Err(ReadError::file(
+            path,
+            "an HDF5 file, which is read with the feature `program` only; convert it to CSV",
         ));
     }
     read_text(path, Read::chain(start.as_slice(), file), options)
