@@ -8,7 +8,7 @@ use super::{
 };
 use crate::analysis::statistics::MeanStd;
 use crate::engine::geometry::Walls;
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, bounds};
 use crate::output::colors::{ColorMap, DENSITY, SPEED};
 use crate::output::plot::{
     Axis, BLACK, Cells, ColorBar, Corner, GRAY, LINES, Label, Mark, Panel, PlotError, Point, Sheet,
@@ -115,7 +115,8 @@ fn places(measured: &Measured) -> Vec<Mark> {
     });
     let marks = regions.chain(lines);
     let marks = marks.flat_map(|(path, side, text): (Vec<Vector>, [i8; 2], String)| {
-        let middle = path.iter().sum::<Vector>() / path.len() as f64;
+        let [low, high] = bounds(path.iter().copied()).unwrap_or_default();
+        let middle = (low + high) / 2.0;
         let path: Vec<[f64; 2]> = path.iter().map(|p| [p.x, p.y]).collect();
         // Black and white are visible on all colors of a map.
         [

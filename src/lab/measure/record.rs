@@ -116,6 +116,7 @@ fn document(tracks: &Tracks, options: &Options) -> String {
     format!(
         "## Measurement\n\
          * {} persons, {} rows, {} frames per second\n\
+         * Colors and time series: SPH density with the own weight of each person (Eq. 9)\n\
          * Kernel radius h = {} m, walls by `{:?}`, the crowd behind them {behind}\n\
          * Velocities from {reach:.2} s before to {reach:.2} s after\n",
         tracks.ids.len(),
