@@ -7,14 +7,16 @@ use super::arguments::{OutputOptions, RecordOptions};
 use super::interrupt::Interrupt;
 use super::values::region;
 use super::{Failure, talk, trajectory};
+use crate::engine::clock::Clock;
 use crate::engine::simulation::Simulation;
 use crate::output::recording::{
-    DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer,
+    DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer, record_moment,
 };
 use crate::runs::drive::{End, Observer, Run};
 use crate::runs::identity::Identity;
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::Scenario;
+use crate::scenario::measurements::Measurement;
 
 /// Rejects outputs that cannot be written, before any file is touched.
 pub fn check(
@@ -58,6 +60,9 @@ pub struct Recording {
     from: u64,
     /// Number of frames recorded so far.
     recorded: u64,
+    /// The clock at the last frame, and whether it was said why the run ended there.
+    last: Clock,
+    ended: bool,
 }
 
 impl Recording {
@@ -78,21 +83,36 @@ impl Recording {
             every: record.record_every,
             from: run.simulation.frame().clock.frame_at(record.record_from),
             recorded: 0,
+            last: run.simulation.frame().clock.clone(),
+            ended: false,
         }))
     }
 }
 
 impl Observer<Failure> for Recording {
-    fn observe(&mut self, run: &Run, ms: f64, _: ControlFlow<End>) -> Result<(), Failure> {
-        let frame = run.simulation.frame().clock.frame();
+    fn observe(&mut self, run: &Run, ms: f64, then: ControlFlow<End>) -> Result<(), Failure> {
+        self.last.clone_from(run.simulation.frame().clock);
+        let frame = self.last.frame();
         if frame >= self.from && frame.is_multiple_of(self.every) {
             self.recorder.log(&run.simulation, ms)?;
             self.recorded += 1;
         }
+        if then.is_break() {
+            self.ended = true;
+            let end = format!("The run ends: {}.", run.reason());
+            self.recorder.note(&self.last, &end)?;
+        }
         Ok(())
     }
 
-    fn finish(self: Box<Self>) -> Result<(), Failure> {
+    fn finish(mut self: Box<Self>) -> Result<(), Failure> {
+        if !self.ended {
+            let said = self
+                .recorder
+                .note(&self.last, "The run ends with an error.");
+            // The recording's own error is reported when it is finished.
+            said.ok();
+        }
         if self.recorded == 0 {
             talk(
                 "note: no frame was recorded: the run ended before the first frame that --record-from and \
@@ -141,31 +161,36 @@ pub fn save_moment(
 ) -> Result<(), Failure> {
     let now = simulation.frame().clock.time();
     let mut options = recording_options(scenario, DebugAgents::Ids(ids), now);
-    options.opens_at = now;
+    options.opens_at = Some(now);
     options.ends_at = now;
-    let mut recorder = Recorder::create(path, simulation, &options)?;
-    recorder.log(simulation, 0.0)?;
-    Ok(recorder.finish()?)
+    Ok(record_moment(path, simulation, &options)?)
 }
 
 /// The options of a recording that begins at the time `from`.
 fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> RecordingOptions {
-    let recorded = from..scenario.duration_secs;
-    let opens_at = scenario.view.opens_at_secs.unwrap_or(from);
+    let (view, recorded) = (scenario.view, from..scenario.duration_secs);
+    let measured = scenario.measurements.iter().flat_map(Measurement::observed);
     RecordingOptions {
         id: Identity::of_run(scenario).to_string(),
+        application: format!("sandbox {}", scenario.name),
         title: title(scenario),
         description: scenario.description.clone(),
         document: format!("## Scenario\n```json\n{}\n```\n", scenario.to_text()),
-        view: scenario.view.region,
-        opens_at: if recorded.contains(&opens_at) {
-            opens_at
-        } else {
-            from
-        },
+        view: view.region,
+        density_range: view.density_range,
+        speed_range: view.speed_range,
+        // A later start shows its own beginning.
+        opens_at: view
+            .opens_at_secs
+            .map(|at| if recorded.contains(&at) { at } else { from }),
+        begins_at: from,
         ends_at: scenario.duration_secs,
         debug,
         body_mass: scenario.mass_on_walls(),
+        measured: measured
+            .map(|(name, place)| (name, place.outline()))
+            .collect(),
+        entering: scenario.entering,
     }
 }
 

@@ -88,15 +88,9 @@ fn ending(run: &Run) -> String {
     let (frame, outcome) = (run.simulation.frame(), run.simulation.outcome());
     let (entered, arrived) = (frame.agents.entered(), outcome.arrivals.len());
     let (remain, time) = (frame.agents.len(), frame.clock.time());
-    let idle = run.scenario.stop.idle_secs.unwrap_or_default();
-    let reason = match run.end {
-        Some(End::Empty) => ": no agents were left".to_owned(),
-        Some(End::Idle) => format!(": no agent had arrived for {idle} s"),
-        Some(End::Interrupted) => ": it was interrupted".to_owned(),
-        Some(End::Duration) | None => ", its duration".to_owned(),
-    };
     let mut text = format!(
-        "{entered} agents entered, {arrived} arrived, {remain} remain; the run ended at {time:.2} s{reason}.\n"
+        "{entered} agents entered, {arrived} arrived, {remain} remain; the run ended at {time:.2} s: {}.\n",
+        run.reason(),
     );
     let groups = run.metrics.stuck(&run.simulation);
     let stuck: usize = groups.iter().map(|group| group.agents).sum();

@@ -16,6 +16,22 @@ pub const SPEED_RANGE: f32 = 1.8;
 /// Force on walls mapped to the last color, N/m.
 pub const WALL_FORCE_RANGE: f32 = 3000.0;
 
+/// The colors of the terms of an acceleration, in words and as RGB; white is for their sum. Any two of these colors
+/// differ by at least 20 (CIE76, ΔE*ab), for normal vision and for simulated protanopia and deuteranopia (Machado,
+/// Oliveira and Fernandes 2009, severity 1.0).
+pub const TERMS: [(&str, Rgb); 10] = [
+    ("pale green", [201, 255, 181]),
+    ("yellow", [251, 252, 3]),
+    ("azure", [8, 164, 255]),
+    ("slate blue", [74, 109, 172]),
+    ("cyan", [66, 220, 244]),
+    ("sand", [220, 175, 73]),
+    ("brown", [176, 99, 16]),
+    ("gray violet", [151, 140, 168]),
+    ("salmon", [230, 159, 157]),
+    ("sea green", [47, 123, 92]),
+];
+
 /// Few enough that equal colors repeat in a file, more than the eye can tell apart.
 const STEPS: usize = 64;
 
@@ -41,26 +57,29 @@ impl ColorMap {
         }
     }
 
+    /// The colors at these places of a gradient, evenly spread.
+    fn part<const N: usize>(
+        whole: &(impl Gradient + 'static),
+        places: [f32; N],
+        range: [f32; 2],
+    ) -> Self {
+        let part = colorgrad::GradientBuilder::new()
+            .colors(&places.map(|at| whole.at(at)))
+            .build::<colorgrad::LinearGradient>();
+        part.map_or_else(|_| Self::new(whole, range), |part| Self::new(&part, range))
+    }
+
     /// Light yellow to blue, in this many bands of equal color: for pictures with dark lines and text on them.
     pub fn pale(range: [f32; 2], bands: u32) -> Self {
-        let whole = preset::yl_gn_bu();
-        let part = colorgrad::GradientBuilder::new()
-            .colors(&[0.0, 0.15, 0.3, 0.45, 0.6].map(|at| whole.at(at)))
-            .build::<colorgrad::LinearGradient>();
-        let map = part.map_or_else(|_| Self::new(&whole, range), |part| Self::new(&part, range));
         Self {
             bands: Some(bands.max(1)),
-            ..map
+            ..Self::part(&preset::yl_gn_bu(), [0.0, 0.15, 0.3, 0.45, 0.6], range)
         }
     }
 
     /// Yellow to dark red.
     fn heat(range: [f32; 2]) -> Self {
-        let whole = preset::yl_or_rd();
-        let part = colorgrad::GradientBuilder::new()
-            .colors(&[0.15, 0.35, 0.55, 0.7, 0.85].map(|at| whole.at(at)))
-            .build::<colorgrad::LinearGradient>();
-        part.map_or_else(|_| Self::new(&whole, range), |part| Self::new(&part, range))
+        Self::part(&preset::yl_or_rd(), [0.15, 0.35, 0.55, 0.7, 0.85], range)
     }
 
     /// One color for all values.
@@ -80,6 +99,12 @@ impl ColorMap {
     /// Inferno, dark to light.
     pub fn inferno(range: [f32; 2]) -> Self {
         Self::new(&preset::inferno(), range)
+    }
+
+    /// Inferno without its darkest quarter, from purple to pale yellow: for marks on dark ground.
+    pub fn bright_inferno(range: [f32; 2]) -> Self {
+        let places = std::array::from_fn::<f32, 16, _>(|k| 0.25 + 0.05 * k as f32);
+        Self::part(&preset::inferno(), places, range)
     }
 
     /// The color of `value`, clamped to the range.

@@ -106,6 +106,20 @@ impl Run {
         }
     }
 
+    /// Why it ended, in words.
+    pub fn reason(&self) -> String {
+        match self.end {
+            Some(End::Empty) => "no agents are left".to_owned(),
+            Some(End::Idle) => {
+                let secs = self.scenario.stop.idle_secs.unwrap_or_default();
+                format!("no agent has arrived for {secs} s")
+            }
+            Some(End::Duration) => "its duration is over".to_owned(),
+            Some(End::Interrupted) => "it was interrupted".to_owned(),
+            None => "it has not ended".to_owned(),
+        }
+    }
+
     /// Which of the scenario's [`stop`](crate::scenario::Scenario::stop) conditions holds?
     fn stops(&self) -> Option<End> {
         let (frame, stop) = (self.simulation.frame(), &self.scenario.stop);

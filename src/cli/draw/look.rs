@@ -149,6 +149,8 @@ fn people(run: &Run, site: &Site) -> Vec<Person> {
             mass: crowd.mass[i],
             velocity: crowd.velocity[i],
             density: 0.0,
+            density_of_others: 0.0,
+            voronoi: None,
             density_from_walls: 0.0,
         }
     };

@@ -1,6 +1,6 @@
 //! Text output of a breakdown.
 
-use std::fmt::{self, Display, Formatter};
+use std::fmt::{self, Display, Formatter, Write};
 
 use super::{Alternative, Breakdown, Doing};
 
@@ -50,7 +50,16 @@ impl Display for Breakdown {
 }
 
 impl Breakdown {
-    fn write_way(&self, f: &mut Formatter) -> fmt::Result {
+    /// What it says about the agent's way and journey, line by line; empty without both.
+    pub fn way_and_visit(&self) -> String {
+        let mut text = String::new();
+        // Writing to a string cannot fail.
+        self.write_way(&mut text).ok();
+        self.write_visit(&mut text).ok();
+        text
+    }
+
+    fn write_way(&self, f: &mut impl Write) -> fmt::Result {
         let Some(way) = &self.way else {
             return Ok(());
         };
@@ -69,7 +78,7 @@ impl Breakdown {
         )
     }
 
-    fn write_visit(&self, f: &mut Formatter) -> fmt::Result {
+    fn write_visit(&self, f: &mut impl Write) -> fmt::Result {
         if let Some(from) = self.walks_from_secs {
             writeln!(f, "  does not walk before {from:.2} s")?;
         }

@@ -15,6 +15,11 @@ use crate::scenario::trajectories::Tracks;
 /// With ids larger than this, the recording uses the people's numbers instead.
 const LARGEST_ID: i64 = 1 << 22;
 
+/// The densities with the first and the last color, P/m².
+const DENSITIES: [f64; 2] = [0.0, 8.0];
+/// The speeds with the first and the last color, m/s.
+const SPEEDS: [f64; 2] = [0.0, 1.8];
+
 /// The name of the recording in the folder of results.
 pub(super) const RECORDING: &str = "measured.rrd";
 
@@ -46,6 +51,7 @@ impl<'a> MomentRecorder<'a> {
         let document = document(tracks, measured);
         let options = RecordingOptions {
             id: Identity::of("measurement", format!("{title} {document}")).to_string(),
+            application: format!("sandbox measure {title}"),
             title: title.into_owned(),
             description: "A crowd that was measured, by its SPH density (§8).".to_owned(),
             document,
@@ -53,10 +59,15 @@ impl<'a> MomentRecorder<'a> {
                 min: low - margin,
                 max: high + margin,
             },
-            opens_at: measured.times[0].max(ends[0]),
+            density_range: DENSITIES,
+            speed_range: SPEEDS,
+            opens_at: Some(measured.times[0].max(ends[0])),
+            begins_at: ends[0],
             ends_at: measured.times[1].min(ends[1]),
             debug: DebugAgents::None,
             body_mass: None,
+            measured: Vec::new(),
+            entering: 0,
         };
         let path = folder.join(RECORDING);
         let marked = Marked {

@@ -17,16 +17,13 @@ pub fn marks(observed: &[(String, Observed)], labels: &mut Labels) -> Vec<Mark> 
         if observed[..k].iter().any(|(_, other)| other == place) {
             continue;
         }
-        let corners = match place {
-            Observed::Region(region) => region.corners().to_vec(),
-            Observed::Line(ends) => ends.to_vec(),
-        };
-        let rim = corners.iter().chain(&corners[..1]).map(|&p| xy(p));
-        marks.push(Mark::Line(rim.collect(), Style::broken(OBSERVED, 0.8, "")));
+        let outline = place.outline();
+        let rim = outline.iter().map(|&p| xy(p)).collect();
+        marks.push(Mark::Line(rim, Style::broken(OBSERVED, 0.8, "")));
         let names = observed[k..].iter().filter(|(_, other)| other == place);
         let mut names: Vec<&str> = names.map(|(name, _)| name.as_str()).collect();
         names.dedup();
-        labels.add(&names.join(", "), OBSERVED, &around(&corners, false));
+        labels.add(&names.join(", "), OBSERVED, &around(&outline, false));
     }
     marks
 }

@@ -5,13 +5,14 @@
 
 use std::sync::Arc;
 
-use rerun::external::arrow::array::{ArrayRef, Float16Array, Float32Array, UInt32Array};
+use rerun::external::arrow::array::{ArrayRef, Float16Array, UInt32Array};
 use rerun::external::arrow::datatypes::{ArrowPrimitiveType, Float16Type};
 use rerun::{AsComponents, Color, DynamicArchetype, Points2D, Radius, RecordingStream};
 
+use super::RecordingOptions;
 use super::error::Cause;
 use super::snapshot::Snapshot;
-use crate::output::colors::{self, ColorMap};
+use crate::output::colors::ColorMap;
 
 type F16 = <Float16Type as ArrowPrimitiveType>::Native;
 
@@ -25,9 +26,28 @@ pub const SPEED_COLORS: &str = "agent:speed_colors";
 /// The component with the colors by stage of the journey.
 pub const STAGE_COLORS: &str = "agent:stage_colors";
 
+/// The color maps of a recording.
+#[derive(Clone)]
+pub struct Maps {
+    /// Of densities in P/m².
+    pub density: ColorMap,
+    /// Of speeds in m/s.
+    pub speed: ColorMap,
+}
+
+impl Maps {
+    pub fn new(options: &RecordingOptions) -> Self {
+        let single = |range: [f64; 2]| range.map(|x| x as f32);
+        Self {
+            density: ColorMap::viridis(single(options.density_range)),
+            speed: ColorMap::bright_inferno(single(options.speed_range)),
+        }
+    }
+}
+
 /// Logs the crowd.
-#[derive(Default)]
 pub struct Crowd {
+    maps: Maps,
     logged_ids: Vec<u32>,
 }
 
@@ -42,31 +62,36 @@ pub fn log_style(stream: &RecordingStream) -> Result<(), Cause> {
 }
 
 impl Crowd {
+    pub fn new(maps: Maps) -> Self {
+        Self {
+            maps,
+            logged_ids: Vec::new(),
+        }
+    }
+
     pub fn log(&mut self, stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
         let mut rows: Vec<usize> = (0..snapshot.ids.len()).collect();
         rows.sort_unstable_by_key(|&i| snapshot.ids[i]);
         self.log_bodies(stream, snapshot, &rows)?;
         let positions = rows.iter().map(|&i| snapshot.positions[i]);
         let mut points = Points2D::update_fields().with_positions(positions);
-        let speed = |&i: &usize| {
-            let [x, y] = snapshot.velocities[i];
-            color(&colors::SPEED, x.hypot(y))
-        };
+        let speeds = snapshot.velocities.iter().map(|[x, y]| x.hypot(*y));
+        let speeds: Vec<f32> = speeds.collect();
+        let speed_colors = rows.iter().map(|&i| color(&self.maps.speed, speeds[i]));
         let mut values = DynamicArchetype::new(ARCHETYPE)
-            .with_component::<rerun::components::Color>("speed_colors", rows.iter().map(speed));
+            .with_component::<rerun::components::Color>("speed_colors", speed_colors)
+            .with_component_from_data("speed", halves(&rows, &speeds));
         if snapshot.densities.is_empty() {
             points = points.with_colors([Color::from_rgb(128, 128, 128)]);
         } else {
-            let density = |&i: &usize| color(&colors::DENSITY, snapshot.densities[i]);
+            let density = |&i: &usize| color(&self.maps.density, snapshot.densities[i]);
             points = points.with_colors(rows.iter().map(density));
             values = values.with_component_from_data("density", halves(&rows, &snapshot.densities));
         }
         if !snapshot.pressures.is_empty() {
-            let pressure = rows.iter().map(|&i| snapshot.pressures[i]);
-            let pressure = Arc::new(Float32Array::from_iter_values(pressure)) as ArrayRef;
             values = values
                 .with_component_from_data("rest_density", halves(&rows, &snapshot.rest_densities))
-                .with_component_from_data("pressure", pressure);
+                .with_component_from_data("pressure", halves(&rows, &snapshot.pressures));
         }
         if !snapshot.stages.is_empty() {
             let stage = |&i: &usize| {
@@ -101,8 +126,11 @@ impl Crowd {
     }
 }
 
-/// Half precision: three significant digits of a density in half the bytes.
+/// Half precision: three significant digits of a value in half the bytes, up to ±65504.
 fn halves(rows: &[usize], values: &[f32]) -> ArrayRef {
-    let halves = rows.iter().map(|&i| F16::from_f32(values[i]));
+    let most = F16::MAX.to_f32();
+    let halves = rows
+        .iter()
+        .map(|&i| F16::from_f32(values[i].clamp(-most, most)));
     Arc::new(Float16Array::from_iter_values(halves))
 }

@@ -10,17 +10,13 @@ use crate::engine::simulation::Simulation;
 
 /// Number of segments of an arc in the outline of a hidden region.
 const ARC_STEPS: usize = 24;
-/// Half the side of the debug view around an agent, meters.
-const FOCUS: f64 = 3.0;
-/// Margin of the debug view around a rectangle, relative to its sides.
-const MARGIN: f64 = 0.05;
 
 /// Selects the debug agents.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DebugAgents {
     /// The agents with these ids, while they are present.
     Ids(Vec<u32>),
-    /// The agents inside a rectangle, selected anew in each frame.
+    /// The agents inside a rectangle, selected anew in each frame, and the one that is followed.
     Region(Region),
     /// All agents: about 1.5 kB per agent and frame.
     All,
@@ -29,39 +25,30 @@ pub enum DebugAgents {
 }
 
 impl DebugAgents {
-    /// The breakdowns of the debug agents in the current frame, in the order of their ids; empty if the frame has no
-    /// densities.
-    pub(super) fn open(&self, simulation: &Simulation) -> Vec<Open> {
+    /// Is agent `i` of the current frame a debug agent?
+    pub(super) fn includes(&self, simulation: &Simulation, i: usize) -> bool {
         let agents = simulation.frame().agents;
-        let is_chosen = |&i: &usize| match self {
+        match self {
             Self::Ids(ids) => ids.contains(&agents.id[i]),
             Self::Region(region) => region.contains(agents.position[i]),
             Self::All => true,
             Self::None => false,
+        }
+    }
+
+    /// The breakdowns of the debug agents in the current frame, and of the agents `also` that are present, in the order
+    /// of their ids; empty if the frame has no densities.
+    pub(super) fn open(&self, simulation: &Simulation, also: &[Option<u32>]) -> Vec<Open> {
+        let agents = simulation.frame().agents;
+        let is_chosen =
+            |&i: &usize| self.includes(simulation, i) || also.contains(&Some(agents.id[i]));
+        let mut chosen: Vec<usize> = match self {
+            Self::None => Vec::new(),
+            _ => (0..agents.len()).filter(is_chosen).collect(),
         };
-        let mut chosen: Vec<usize> = (0..agents.len()).filter(is_chosen).collect();
         chosen.sort_unstable_by_key(|&i| agents.id[i]);
         let chosen = chosen.into_iter();
         chosen.filter_map(|i| Open::of(simulation, i)).collect()
-    }
-
-    /// The region to show: the selected rectangle with a margin, or the surroundings of the first selected id that is
-    /// present.
-    pub(super) fn focus(&self, simulation: &Simulation) -> Option<Region> {
-        let agents = simulation.frame().agents;
-        let (min, max, margin) = match self {
-            Self::Region(Region { min, max }) => (*min, *max, (max - min) * MARGIN),
-            Self::Ids(ids) => {
-                let first = ids.iter().find_map(|&id| agents.index_of(id))?;
-                let position = agents.position[first];
-                (position, position, Vector::repeat(FOCUS))
-            }
-            Self::All | Self::None => return None,
-        };
-        Some(Region {
-            min: min - margin,
-            max: max + margin,
-        })
     }
 }
 

@@ -12,6 +12,7 @@ use crate::engine::geometry::Polygon;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::period::Axis;
 use crate::engine::scene::{Region, Scene};
+use crate::output::colors::Rgb;
 use crate::output::scenery;
 
 /// The filled obstacles: an image below everything else.
@@ -24,6 +25,16 @@ const RASTER_CELL: f64 = 0.05;
 const SOLID_MARGIN: f64 = 1.0;
 /// Up to this many goals get labels.
 const NAMED_GOALS: usize = 8;
+
+/// The tones of the ground, of obstacles, and of what is outside of the walkable area.
+pub const GROUND: Rgb = [16, 17, 22];
+const OBSTACLE: Rgb = [100, 102, 114];
+pub const OUTSIDE: Rgb = [44, 46, 55];
+
+/// The classes of pixels.
+const FREE: u8 = 0;
+const SOLID: u8 = 1;
+const BEYOND: u8 = 2;
 
 const WALL: Color = Color(Rgba32::from_rgb(214, 214, 222));
 const GOAL: Color = Color(Rgba32::from_rgb(95, 211, 120));
@@ -44,6 +55,11 @@ pub fn log_still(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), 
         log_obstacles(stream, obstacles)?;
     }
     Ok(())
+}
+
+/// Does the walkable area have an outside?
+pub fn has_outside(obstacles: &[Polygon]) -> bool {
+    obstacles.iter().any(Polygon::is_unbounded)
 }
 
 /// Logs a line at each end of the period.
@@ -81,9 +97,20 @@ fn log_walls(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), Caus
 
 fn log_obstacles(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), Cause> {
     let raster = Raster::of(obstacles);
+    let tone = |[r, g, b]: Rgb| Rgba32::from_rgb(r, g, b);
+    // Around an unbounded obstacle, the view's background has the tone of what is outside.
+    let free = match has_outside(obstacles) {
+        true => tone(GROUND),
+        false => Rgba32::TRANSPARENT,
+    };
     let classes = AnnotationContext::new([
-        (0, "free", Rgba32::TRANSPARENT),
-        (1, "obstacle", Rgba32::from_rgb(84, 86, 98)),
+        (u16::from(FREE), "free", free),
+        (u16::from(SOLID), "obstacle", tone(OBSTACLE)),
+        (
+            u16::from(BEYOND),
+            "outside of the walkable area",
+            tone(OUTSIDE),
+        ),
     ]);
     let format = ImageFormat::from_color_model(
         [raster.columns as u32, raster.rows as u32],
@@ -101,7 +128,7 @@ fn log_obstacles(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), 
     Ok(stream.log_static(OBSTACLES, &parts)?)
 }
 
-/// The obstacles as an image, 1 inside; rows go up from the lowest y.
+/// The classes of the plane as an image; rows go up from the lowest y.
 struct Raster {
     min: Vector,
     cell: f64,
@@ -114,8 +141,11 @@ impl Raster {
     fn of(obstacles: &[Polygon]) -> Self {
         let points = obstacles.iter().flat_map(Polygon::points);
         let [min, max] = bounds(points.copied()).unwrap_or_default();
-        let unbounded = obstacles.iter().any(Polygon::is_unbounded);
-        let margin = Vector::repeat(if unbounded { SOLID_MARGIN } else { 0.0 });
+        let margin = Vector::repeat(if has_outside(obstacles) {
+            SOLID_MARGIN
+        } else {
+            0.0
+        });
         let (min, max) = (min - margin, max + margin);
         let cell = ((max - min).max() / RASTER_SIDE).max(RASTER_CELL);
         let cells = |length: f64| (length / cell).ceil().max(1.0) as usize;
@@ -127,10 +157,35 @@ impl Raster {
             rows,
             pixels: vec![0; columns * rows],
         };
-        for obstacle in obstacles {
+        for obstacle in obstacles.iter().filter(|one| one.is_unbounded()) {
+            raster.fill(obstacle);
+        }
+        raster.mark_outside();
+        for obstacle in obstacles.iter().filter(|one| !one.is_unbounded()) {
             raster.fill(obstacle);
         }
         raster
+    }
+
+    /// Marks the solid pixels that are connected with the border: the others are obstacles inside the walkable area.
+    fn mark_outside(&mut self) {
+        let (columns, rows) = (self.columns, self.rows);
+        let on_border = |k: &usize| {
+            let (column, row) = (k % columns, k / columns);
+            column == 0 || row == 0 || column + 1 == columns || row + 1 == rows
+        };
+        let mut next: Vec<usize> = (0..self.pixels.len()).filter(on_border).collect();
+        while let Some(k) = next.pop() {
+            if self.pixels[k] != SOLID {
+                continue;
+            }
+            self.pixels[k] = BEYOND;
+            let (column, row) = (k % columns, k / columns);
+            next.extend((column > 0).then(|| k - 1));
+            next.extend((column + 1 < columns).then_some(k + 1));
+            next.extend((row > 0).then(|| k - columns));
+            next.extend((row + 1 < rows).then_some(k + columns));
+        }
     }
 
     /// Fills each row between successive pairs of crossings of its center line with the outline.
@@ -150,7 +205,7 @@ impl Raster {
                 // Pixels whose centers lie inside; `as` saturates at 0.
                 let column = |x: f64| ((x - self.min.x) / self.cell + 0.5) as usize;
                 let (from, to) = (column(inside[0]), column(inside[1]).min(self.columns));
-                self.pixels[row * self.columns..][from.min(to)..to].fill(1);
+                self.pixels[row * self.columns..][from.min(to)..to].fill(SOLID);
             }
         }
     }

@@ -4,12 +4,12 @@ use rerun::{
     Arrows2D, AsComponents, Color, Ellipses2D, LineStrips2D, Points2D, Radius, RecordingStream,
 };
 
+use super::arrows;
 use super::debug::{DebugAgents, Open};
 use super::error::Cause;
 use super::geometry::xy;
 use crate::engine::boundary::WallMethod;
 use crate::engine::math::Vector;
-use crate::engine::profile::Term;
 use crate::engine::scene::Scene;
 use crate::output::colors::Rgb;
 
@@ -18,32 +18,12 @@ const MOST_LABELS: usize = 40;
 
 const WHITE: Rgb = [255; 3];
 
-/// The color of ways.
-const WAY: Rgb = [240, 200, 90];
-
-/// Length of an arrow in meters per m/s² of acceleration: 0.5 m for the goal force of an average person at rest.
-pub const METERS_PER_ACCELERATION: f64 = 0.2;
-
-/// The colors of terms in their order; the last ones are for terms to come.
-const COLORS: [(&str, [u8; 3]); 12] = [
-    ("green", [95, 211, 120]),
-    ("lime", [190, 240, 60]),
-    ("light blue", [86, 180, 233]),
-    ("blue", [70, 120, 255]),
-    ("cyan", [60, 220, 220]),
-    ("orange", [255, 150, 30]),
-    ("red", [255, 70, 60]),
-    ("purple", [170, 110, 255]),
-    ("yellow", [250, 230, 80]),
-    ("pink", [255, 120, 190]),
-    ("brown", [190, 130, 80]),
-    ("white", [240, 240, 240]),
-];
-
-/// The color of a term's arrows, in words and as RGB.
-pub fn color(term: Term) -> (&'static str, [u8; 3]) {
-    COLORS[(term as usize).min(COLORS.len() - 1)]
-}
+/// The colors of ways, hidden regions, lines to walls, nearest and representative points.
+pub const WAY: Rgb = [240, 200, 90];
+pub const HIDDEN: Rgb = [220, 120, 200];
+pub const LINK: Rgb = [190, 110, 110];
+pub const NEAREST: Rgb = [255, 90, 80];
+pub const REPRESENTATIVE: Rgb = [255, 190, 80];
 
 /// The data of one frame, and its number of elements.
 type Data = (Box<dyn AsComponents>, usize);
@@ -99,38 +79,32 @@ pub fn begin(
     add("kernels", &style, Box::new(kernels))?;
     let walls = !scene.walls.is_empty();
     if walls {
-        let style = line_style([220, 120, 200], 0.8);
+        let style = line_style(HIDDEN, 0.8);
         add("walls/hidden_regions", &style, Box::new(hidden_regions))?;
-        let style = line_style([190, 110, 110], 0.4);
+        let style = line_style(LINK, 0.4);
         add("walls/links", &style, Box::new(links))?;
-        let style = point_style([255, 90, 80], 3.0);
+        let style = point_style(NEAREST, 3.0);
         add("walls/nearest_points", &style, Box::new(nearest_points))?;
     }
     if walls && scene.wall_method == WallMethod::Representative {
         let (name, style) = (
             "walls/representative_points",
-            point_style([255, 190, 80], 3.0),
+            point_style(REPRESENTATIVE, 3.0),
         );
         add(name, &style, Box::new(representative_points))?;
     }
     if scene.ways.is_some() {
         add("ways", &line_style(WAY, 1.0), Box::new(ways))?;
     }
-    for term in Term::all().filter(|&term| acts(term, scene)) {
-        let style = arrow_style(color(term).1, 1.2).with_draw_order(13.0);
-        let data = move |open: &[Open]| arrows(open, |agent| agent.force(term));
+    for term in arrows::acting(scene) {
+        let style = arrow_style(arrows::color(term).1, 1.2).with_draw_order(13.0);
+        let data = move |open: &[Open]| arrows_of(open, |agent| agent.force(term));
         add(&format!("forces/{}", term.name()), &style, Box::new(data))?;
     }
-    let style = arrow_style(WHITE, 1.6).with_draw_order(14.0);
-    let data = |open: &[Open]| arrows(open, |agent| agent.breakdown.acceleration.into());
+    let style = arrow_style(arrows::TOTAL, 1.6).with_draw_order(14.0);
+    let data = |open: &[Open]| arrows_of(open, |agent| agent.breakdown.acceleration.into());
     add("forces/total", &style, Box::new(data))?;
     Ok(layers)
-}
-
-/// Does some profile of `scene` have this force?
-fn acts(term: Term, scene: &Scene) -> bool {
-    let mut steps = scene.groups.iter().flat_map(|group| group.blend.steps());
-    (!term.is_of_walls() || !scene.walls.is_empty()) && steps.any(|step| step.profile.has(term))
 }
 
 fn point_style([r, g, b]: Rgb, radius: f32) -> Points2D {
@@ -229,12 +203,12 @@ fn dots(points: impl Iterator<Item = [f32; 2]>) -> Data {
 }
 
 /// Arrows for the nonzero accelerations.
-fn arrows(open: &[Open], acceleration: impl Fn(&Open) -> Vector) -> (Box<dyn AsComponents>, usize) {
+fn arrows_of(open: &[Open], acceleration: impl Fn(&Open) -> Vector) -> Data {
     let (origins, vectors): (Vec<_>, Vec<_>) = open
         .iter()
         .map(|agent| (xy(agent.position), acceleration(agent)))
         .filter(|(_, acceleration)| *acceleration != Vector::zeros())
-        .map(|(origin, acceleration)| (origin, xy(acceleration * METERS_PER_ACCELERATION)))
+        .map(|(origin, acceleration)| (origin, xy(arrows::arrow(acceleration))))
         .unzip();
     let count = origins.len();
     let arrows = Arrows2D::update_fields()

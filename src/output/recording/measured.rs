@@ -2,11 +2,12 @@
 
 use rerun::RecordingStream;
 
-use super::blueprint::Content;
 use super::error::RecordingError;
+use super::layout::{Content, Kind};
 use super::output::{Destination, Output};
 use super::session::Session;
 use super::snapshot::Snapshot;
+use super::writer::Debug;
 use super::{DebugAgents, Marked, RecordingOptions, geometry, marked, text};
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
@@ -46,14 +47,14 @@ impl MeasuredRecorder {
             debug: DebugAgents::None,
             ..options.clone()
         };
-        let output = Output::open(&to.into(), &options.title, options.id.clone())?;
+        let output = Output::open(&to.into(), &options)?;
         let log_own = |stream: &RecordingStream| {
-            text::log_measurement(stream, &options)?;
             geometry::log_still(stream, walls.obstacles())?;
             marked::log(stream, &marked)?;
-            Ok(Vec::new())
+            Ok((text::of_measurement(stream, &options)?, Debug::default()))
         };
-        let session = Session::begin(output, options.clone(), Content::Measurement, log_own)?;
+        let content = Content::new(Kind::Measurement, geometry::has_outside(walls.obstacles()));
+        let session = Session::begin(output, options.clone(), content, log_own)?;
         Ok(Self { session, radius })
     }
 
@@ -88,6 +89,6 @@ impl MeasuredRecorder {
     /// # Errors
     /// Data could not be written, for example because the disk is full; or the viewer is gone or took no data for 2 s.
     pub fn finish(self) -> Result<(), RecordingError> {
-        self.session.finish(None)
+        self.session.finish(None, None)
     }
 }

@@ -9,23 +9,35 @@
 //! | `world/geometry/{walls,obstacles,goals}` | static |
 //! | `world/geometry/{exits,waypoints,waiting_areas,queues,queue_spots,zones,entrances,names}` | static |
 //! | `world/geometry/measured_{regions,lines}` | static; where a crowd was measured |
+//! | `world/geometry/{sources,pushes,measured}` | outlines with names, static |
+//! | `world/legend/{density,speed}` | color bars, static |
 //! | `world/wall_forces` | walls colored by the force on them, if the run measures it |
 //! | `world/ways/…` | the lengths of the ways to each place and goal as an image, hidden at first |
 //! | `world/agents` | the crowd: positions, radii, density and speed colors, `agent:…` values |
 //! | `world/debug/…` | the debug agents: kernels, hidden regions, wall points, forces, ways |
+//! | `focus/ID/…` | a followed agent in its own frame, with its forces as arrows and as time series |
 //! | `stats/…` | time series; those of places are in `stats/places` |
 //! | `info/scenario` | the scenario and a legend, as text |
-//! | `log` | events: entries and pushes |
+//! | `info/agents/ID` | the numbers of an agent, in the recording of a single moment |
+//! | `log` | events: entries, exits, pushes, arrivals, the end |
 
+mod arrows;
+mod bars;
 mod blueprint;
 mod crowd;
 mod debug;
 mod error;
+mod events;
 mod file;
+mod focus;
+mod follow;
 mod geometry;
 mod layers;
+mod layout;
 mod marked;
+mod markers;
 mod measured;
+mod moment;
 mod output;
 mod places;
 mod read;
@@ -35,27 +47,34 @@ mod snapshot;
 mod stats;
 mod text;
 mod viewer;
+mod views;
 mod wall_forces;
 mod writer;
 
+pub use arrows::arrow_length;
 pub use debug::DebugAgents;
 pub use error::RecordingError;
-pub use layers::METERS_PER_ACCELERATION;
 pub use marked::Marked;
 pub use measured::{MeasuredPerson, MeasuredRecorder};
 pub use output::{Destination, check_enabled};
 pub use read::{Recorded, RecordedCrowd};
 pub use viewer::{Address, AddressError, Viewer};
 
-use rerun::RecordingStream;
+use rerun::{RecordingStream, TextLogLevel};
 
 use crate::analysis::wall_forces::Outlines;
-use crate::engine::scene::Region;
+use crate::engine::clock::Clock;
+use crate::engine::math::Vector;
+use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
-use blueprint::{Content, Journeys};
-use output::{APPLICATION, Output};
+use events::{Events, Line};
+use focus::Focus;
+use follow::{Follow, Moment};
+use layout::{Content, Kind};
+use output::Output;
 use session::Session;
 use snapshot::Snapshot;
+use writer::Debug;
 
 const FRAME: &str = "frame";
 const SIM_TIME: &str = "sim_time";
@@ -65,6 +84,9 @@ const SIM_TIME: &str = "sim_time";
 pub struct RecordingOptions {
     /// Its identity: the viewer merges recordings with the same one.
     pub id: String,
+    /// What it is of, for example the scenario's name: the viewer keeps one layout for all recordings with the same
+    /// name. Not empty.
+    pub application: String,
     /// Its title in the viewer, for example the scenario's name and the settings that differ from its file.
     pub title: String,
     /// A one-line description; may be empty.
@@ -73,14 +95,25 @@ pub struct RecordingOptions {
     pub document: String,
     /// The part of the plane that the crowd views show.
     pub view: Region,
-    /// The time that the viewer shows first, seconds.
-    pub opens_at: f64,
+    /// The densities with the first and the last color, P/m².
+    pub density_range: [f64; 2],
+    /// The speeds with the first and the last color, m/s.
+    pub speed_range: [f64; 2],
+    /// The time that the viewer shows first, seconds; `None`: the time of the highest density. At a measurement: the
+    /// beginning.
+    pub opens_at: Option<f64>,
+    /// The time of the first frame, seconds.
+    pub begins_at: f64,
     /// The end of the run as far as it is known; the loop that plays first does not go beyond it.
     pub ends_at: f64,
     /// The debug agents.
     pub debug: DebugAgents,
     /// The mass of an average person, kg, if walls are colored by the force on them.
     pub body_mass: Option<f64>,
+    /// The outlines of what is measured, meters, each with its name.
+    pub measured: Vec<(String, Vec<Vector>)>,
+    /// Upper bound on the agents that enter: with many, fewer arrivals are in the log of events.
+    pub entering: u64,
 }
 
 /// Writes a recording, frame by frame.
@@ -88,14 +121,12 @@ pub struct RecordingOptions {
 /// [`log`](Self::log) only copies; one thread turns the copies into rows, another compresses and writes them.
 pub struct Recorder {
     session: Session,
-    /// Whether the time to show first has been reached.
-    opened: bool,
-    /// Region of the debug view.
-    focus: Option<Region>,
+    follow: Follow,
+    /// The moment to show first.
+    moment: Moment,
     /// Cells of the walls, if they are colored by force.
     outlines: Option<Outlines>,
-    /// Number of events that were recorded or left out; `None` before the first frame.
-    events: Option<usize>,
+    events: Events,
 }
 
 impl Recorder {
@@ -108,31 +139,44 @@ impl Recorder {
         simulation: &Simulation,
         options: &RecordingOptions,
     ) -> Result<Self, RecordingError> {
-        let output = Output::open(&to.into(), &options.title, options.id.clone())?;
-        let (scene, agents) = (simulation.scene(), simulation.frame().agents);
+        Self::begin(&to.into(), simulation, options, Kind::Run)
+    }
+
+    fn begin(
+        to: &Destination,
+        simulation: &Simulation,
+        options: &RecordingOptions,
+        kind: Kind,
+    ) -> Result<Self, RecordingError> {
+        let output = Output::open(to, options)?;
+        let follow = Follow::new(&options.debug);
+        let names = follow.names();
+        let scene = simulation.scene();
         let log_own = |stream: &RecordingStream| {
-            text::log_run(stream, scene, options)?;
-            geometry::log(stream, scene, agents)?;
-            stats::log_entrances(stream, scene)?;
-            places::log(stream, scene)?;
-            places::log_ways(stream, scene)?;
-            places::log_series(stream, scene)?;
-            if options.body_mass.is_some() {
-                wall_forces::log_style(stream)?;
-            }
-            layers::begin(stream, scene, &options.debug)
+            let document = text::of_run(stream, scene, options)?;
+            log_scene(stream, simulation, options)?;
+            let terms = arrows::acting(scene);
+            let focuses = names.iter();
+            let focuses = focuses.map(|name| Focus::begin(stream, name.clone(), &terms));
+            let debug = Debug {
+                layers: layers::begin(stream, scene, &options.debug)?,
+                focuses: focuses.collect::<Result<_, _>>()?,
+            };
+            Ok((document, debug))
         };
-        let content = Content::Run(Journeys {
-            begin: !scene.journeys.places.is_empty(),
+        let content = Content {
+            has_journeys: !scene.journeys.places.is_empty(),
             fields: places::fields(scene),
-            wall_forces: options.body_mass.is_some(),
-        });
+            has_wall_forces: options.body_mass.is_some(),
+            followed: names.clone(),
+            ..Content::new(kind, geometry::has_outside(scene.walls.obstacles()))
+        };
         Ok(Self {
             session: Session::begin(output, options.clone(), content, log_own)?,
-            opened: false,
-            focus: None,
+            follow,
+            moment: Moment::new(options.opens_at),
             outlines: (options.body_mass).map(|_| Outlines::new(&scene.walls)),
-            events: None,
+            events: Events::new(options.entering),
         })
     }
 
@@ -148,38 +192,99 @@ impl Recorder {
         simulation: &Simulation,
         ms_per_frame: f64,
     ) -> Result<(), RecordingError> {
+        let snapshot = self.snapshot(simulation, ms_per_frame);
+        self.session.write(snapshot)
+    }
+
+    fn snapshot(&mut self, simulation: &Simulation, ms_per_frame: f64) -> Snapshot {
         let options = &mut self.session.options;
-        let mut snapshot = Snapshot::of(simulation, &options.debug);
+        let time = simulation.frame().clock.time();
+        let opens_here = self.moment.is_asked(time);
+        self.follow.update(simulation, &options.debug, opens_here);
+        let mut snapshot = Snapshot::of(simulation, &options.debug, &self.follow.ids());
         snapshot.ms_per_frame = Some(ms_per_frame);
         if let (Some(outlines), Some(mass)) = (&self.outlines, options.body_mass) {
             snapshot.wall_forces = Some(wall_forces::parts(outlines, simulation, mass));
         }
-        let arrivals = simulation.outcome().arrivals.iter();
-        snapshot.evacuated = Some(arrivals.filter(|arrival| arrival.counted).count());
-        let (clock, events) = (simulation.frame().clock, simulation.events());
-        let before = self.events.replace(events.len());
-        let new = events[before.unwrap_or(0)..].iter();
-        // Events before a late start are left out: they would only stretch the time line.
-        let new = new.filter(|event| before.is_some() || event.frame == clock.frame());
-        let new = new.map(|event| (clock.time_at(event.frame), event.clone()));
-        snapshot.events = new.collect();
-        snapshot.opens_here = !self.opened && snapshot.time >= options.opens_at;
-        // A run may end before that time; the debug view then shows an agent that was present earlier.
-        if snapshot.opens_here || self.focus.is_none() {
-            self.focus = options.debug.focus(simulation).or(self.focus);
-        }
-        self.opened |= snapshot.opens_here;
-        options.ends_at = snapshot.time;
-        self.session.write(snapshot)
+        snapshot.events = self.events.new_lines(simulation);
+        snapshot.evacuated = Some(self.events.evacuated);
+        self.moment.see(&snapshot);
+        options.ends_at = time;
+        snapshot
+    }
+
+    /// Adds a line to the log of events, for example on the end of the run, at the clock's current time.
+    ///
+    /// # Errors
+    /// An earlier frame could not be written.
+    pub fn note(&mut self, clock: &Clock, text: &str) -> Result<(), RecordingError> {
+        self.session.note(vec![Line {
+            frame: clock.frame().cast_signed(),
+            time: clock.time(),
+            text: text.to_owned(),
+            level: TextLogLevel::INFO,
+        }])
     }
 
     /// Sends the buffered data, closes the file and checks that it is complete.
     ///
     /// # Errors
     /// Data could not be written, for example because the disk is full; or the viewer is gone or took no data for 2 s.
-    pub fn finish(self) -> Result<(), RecordingError> {
-        self.session.finish(self.focus)
+    pub fn finish(mut self) -> Result<(), RecordingError> {
+        let found = self.moment.at;
+        if let Some((frame, time)) = found {
+            // A click on this line goes there.
+            self.session.note(vec![Line {
+                frame,
+                time,
+                text: "Look here first.".to_owned(),
+                level: TextLogLevel::INFO,
+            }])?;
+        }
+        self.session
+            .finish(found.map(|(_, time)| time), self.moment.view)
     }
+}
+
+/// Records one evaluated frame: the debug agents, each in the middle of a view of its own, beside a table of its
+/// numbers. More than a dozen have neither.
+///
+/// # Errors
+/// The file cannot be written, or no viewer answers.
+pub fn record_moment(
+    to: impl Into<Destination>,
+    simulation: &Simulation,
+    options: &RecordingOptions,
+) -> Result<(), RecordingError> {
+    let mut recorder = Recorder::begin(&to.into(), simulation, options, Kind::Moment)?;
+    let snapshot = recorder.snapshot(simulation, 0.0);
+    let followed = snapshot.followed.iter().flatten();
+    let followed: Vec<_> = followed.map(|&k| &snapshot.open[k]).collect();
+    recorder.session.log_static(|stream| {
+        let mut agents = followed.iter();
+        agents.try_for_each(|agent| moment::log(stream, agent))
+    })?;
+    recorder.session.write(snapshot)?;
+    recorder.finish()
+}
+
+/// Logs what is known of a scene before the first frame.
+fn log_scene(
+    stream: &RecordingStream,
+    simulation: &Simulation,
+    options: &RecordingOptions,
+) -> Result<(), error::Cause> {
+    let scene: &Scene = simulation.scene();
+    geometry::log(stream, scene, simulation.frame().agents)?;
+    stats::log_entrances(stream, scene)?;
+    places::log(stream, scene)?;
+    places::log_ways(stream, scene)?;
+    places::log_series(stream, scene)?;
+    markers::log(stream, scene, options)?;
+    if options.body_mass.is_some() {
+        wall_forces::log_style(stream)?;
+    }
+    Ok(())
 }
 
 fn set_time(stream: &RecordingStream, frame: i64, time: f64) {

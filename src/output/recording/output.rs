@@ -8,16 +8,16 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use rerun::external::re_log_encoding::{Decodable as _, StreamFooter};
+use rerun::external::re_log_types::ApplicationId;
 use rerun::log::ChunkBatcherConfig;
 use rerun::sink::LogSink;
 use rerun::{RecordingStream, RecordingStreamBuilder};
 
+use super::RecordingOptions;
 use super::error::{Cause, RecordingError};
 use super::file::{Failure, FileSink};
 use super::viewer::{Address, Viewer};
 
-/// Application id; the viewer keeps its settings per application.
-pub const APPLICATION: &str = "sandbox";
 /// The most that a killed run loses, besides the chunk being written.
 const FILE_TICK: Duration = Duration::from_secs(1);
 /// Lag of a live viewer.
@@ -43,6 +43,11 @@ impl From<&Path> for Destination {
     }
 }
 
+/// The application id of a recording: the viewer keeps one layout per application.
+pub fn application(options: &RecordingOptions) -> Result<ApplicationId, Cause> {
+    Ok(ApplicationId::try_new(options.application.as_str())?)
+}
+
 /// A rerun stream to a destination.
 pub struct Output {
     file: Option<PathBuf>,
@@ -55,9 +60,9 @@ pub struct Output {
 }
 
 impl Output {
-    /// Opens a recording called `name`. A viewer merges files with the same `id` into one recording; a live
-    /// recording gets an id of its own.
-    pub fn open(to: &Destination, name: &str, id: String) -> Result<Self, RecordingError> {
+    /// Opens a recording. A viewer merges files with the same id into one recording; a live recording gets an id of
+    /// its own.
+    pub fn open(to: &Destination, options: &RecordingOptions) -> Result<Self, RecordingError> {
         check_enabled()?;
         let sink = to.viewer.as_ref();
         let sink = sink.map(|viewer| viewer.connect(&to.interrupted));
@@ -81,17 +86,18 @@ impl Output {
                 flush_tick: if is_live { VIEWER_TICK } else { FILE_TICK },
                 ..ChunkBatcherConfig::DEFAULT
             };
-            let builder = RecordingStreamBuilder::new(APPLICATION).batcher_config(batches);
+            let builder = RecordingStreamBuilder::new(application(options)?);
+            let builder = builder.batcher_config(batches);
             // In a live viewer, a second run with the same id would become part of the first.
             let builder = if is_live {
                 builder
             } else {
-                builder.recording_id(id)
+                builder.recording_id(options.id.as_str())
             };
             let stream = builder.set_sinks(sinks)?;
             stream.set_log_tick_enabled(false);
             stream.set_log_time_enabled(false);
-            stream.send_recording_name(name)?;
+            stream.send_recording_name(options.title.as_str())?;
             Ok(stream)
         };
         let stream =

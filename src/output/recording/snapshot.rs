@@ -3,11 +3,12 @@
 use rerun::EntityPath;
 
 use super::debug::{DebugAgents, Open};
+use super::events::Line;
 use super::geometry::xy;
 use super::places;
 use super::wall_forces::Part;
 use crate::engine::math::Vector;
-use crate::engine::simulation::{Event, Simulation};
+use crate::engine::simulation::Simulation;
 use crate::output::colors::Rgb;
 use crate::output::scenery::stage_color;
 
@@ -38,19 +39,19 @@ pub struct Snapshot {
     pub evacuated: Option<usize>,
     /// How many agents wait at each entrance.
     pub waiting: Vec<u32>,
-    /// Events since the last snapshot, each with its time.
-    pub events: Vec<(f64, Event)>,
+    /// The log of events since the last snapshot.
+    pub events: Vec<Line>,
     /// The parts of walls with a force on them; `None` if they are not colored.
     pub wall_forces: Option<Vec<Part>>,
     /// The debug agents.
     pub open: Vec<Open>,
-    /// Whether this is the frame to show first.
-    pub opens_here: bool,
+    /// The places of the followed agents among the debug agents; `None` for absent ones.
+    pub followed: Vec<Option<usize>>,
 }
 
 impl Snapshot {
-    /// The crowd of the current frame.
-    pub fn of(simulation: &Simulation, debug: &DebugAgents) -> Self {
+    /// The crowd of the current frame, with the debug agents and the followed ones.
+    pub fn of(simulation: &Simulation, debug: &DebugAgents, followed: &[Option<u32>]) -> Self {
         let frame = simulation.frame();
         let (agents, fields) = (frame.agents, frame.fields);
         let vectors = |values: &[Vector]| values.iter().map(|&v| xy(v)).collect();
@@ -58,7 +59,13 @@ impl Snapshot {
         let trips = &agents.trip;
         let stages = (0..agents.len()).filter(|_| !trips.is_empty());
         let stages = stages.map(|i| stage_color(trips.get(i).and_then(Option::as_ref)));
+        let open = debug.open(simulation, followed);
+        let place = |id: u32| {
+            open.binary_search_by_key(&id, |agent| agent.breakdown.id)
+                .ok()
+        };
         Self {
+            followed: followed.iter().map(|id| id.and_then(place)).collect(),
             frame: frame.clock.frame().cast_signed(),
             time: frame.clock.time(),
             ids: agents.id.clone(),
@@ -71,7 +78,7 @@ impl Snapshot {
             pressures: numbers(&fields.pressure),
             stages: stages.collect(),
             places: places::values(simulation),
-            open: debug.open(simulation),
+            open,
             waiting: simulation.backlogs().map(|one| one.waiting).collect(),
             ..Self::default()
         }

@@ -1,13 +1,11 @@
-//! Time series and the log of events.
+//! Time series.
 
-use rerun::{Color, RecordingStream, Scalars, SeriesLines, TextLog, TextLogLevel};
+use rerun::{Color, RecordingStream, Scalars, SeriesLines};
 
 use super::error::Cause;
-use super::set_time;
 use super::snapshot::Snapshot;
 use crate::analysis::statistics::MeanStd;
 use crate::engine::scene::Scene;
-use crate::engine::simulation::{Event, EventKind};
 
 /// The time series: entity, name in the plot, and color.
 const SERIES: [(&str, &str, [u8; 3]); 7] = [
@@ -54,8 +52,7 @@ fn waiting(k: usize) -> String {
     format!("stats/crowd/waiting/{k}")
 }
 
-/// Logs the values of one frame. If it is the frame to show first, it is marked in the log of events; a click on the
-/// mark goes there.
+/// Logs the values of one frame.
 pub fn log(stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
     let squares = || {
         let velocities = snapshot.velocities.iter();
@@ -88,35 +85,5 @@ pub fn log(stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
     for (entity, value) in &snapshot.places {
         stream.log(entity.clone(), &Scalars::single(*value))?;
     }
-    if snapshot.opens_here {
-        log_line(stream, "Look here first.".to_owned(), TextLogLevel::INFO)?;
-    }
     Ok(())
-}
-
-/// Logs events, each at its own time.
-pub fn log_events(stream: &RecordingStream, events: &[(f64, Event)]) -> Result<(), Cause> {
-    for (time, event) in events {
-        let name = &event.name;
-        let (text, level) = match event.kind {
-            EventKind::Entered(count) => {
-                (format!("{name}: {count} agents enter"), TextLogLevel::INFO)
-            }
-            EventKind::PushBegan(count) => {
-                let text = format!("{name}: {count} agents begin to push");
-                (text, TextLogLevel::WARN)
-            }
-            EventKind::Opened => (format!("{name} opens"), TextLogLevel::INFO),
-            EventKind::Closed => (format!("{name} closes"), TextLogLevel::WARN),
-            EventKind::Released => (format!("{name}: agents wait no longer"), TextLogLevel::INFO),
-            EventKind::PushEnded => (format!("{name}: the push is over"), TextLogLevel::WARN),
-        };
-        set_time(stream, event.frame.cast_signed(), *time);
-        log_line(stream, text, level)?;
-    }
-    Ok(())
-}
-
-fn log_line(stream: &RecordingStream, text: String, level: &'static str) -> Result<(), Cause> {
-    Ok(stream.log("log", &TextLog::new(text).with_level(level))?)
 }

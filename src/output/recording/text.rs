@@ -6,37 +6,78 @@ use rerun::external::arrow::array::{ArrayRef, Float64Array, StringArray, UInt64A
 use rerun::{AnyValues, RecordingStream, TextDocument};
 
 use super::error::Cause;
-use super::layers::{METERS_PER_ACCELERATION, color};
-use super::{DebugAgents, RecordingOptions};
+use super::{DebugAgents, RecordingOptions, arrows, bars};
 use crate::engine::profile::Term;
 use crate::engine::scene::Scene;
-use crate::output::colors::{DENSITY_RANGE, SPEED_RANGE, WALL_FORCE_RANGE};
+use crate::output::colors::WALL_FORCE_RANGE;
 use crate::output::scenery;
 
 pub const DOCUMENT: &str = "info/scenario";
 
-/// Logs the text document, with `mass` after the units and `agents` as the rest of the legend, and the program's
-/// version among the properties that the viewer lists.
-fn log(
+/// The text document of a recording. Only one sentence of it, on the moment that the recording opens at, changes once
+/// that moment is known.
+pub struct Document {
+    before: String,
+    after: String,
+    /// The sentence until then; `None`: never any.
+    opening: Option<String>,
+}
+
+impl Document {
+    /// A document with `mass` after the units, and `agents` on what a click shows.
+    fn new(
+        options: &RecordingOptions,
+        [mass, agents]: [&str; 2],
+        rest: &str,
+        opening: Option<String>,
+    ) -> Self {
+        let [density, speed] = [options.density_range, options.speed_range];
+        let at = |[first, last]: [f64; 2], part: f64| bars::brief(first + (last - first) * part);
+        let before = format!(
+            "# {}\n\n{}\n\n\
+             ## Legend\n\
+             * Meters, seconds, y up{mass}. (The viewer's own *hover position* counts y down.)\n\
+             * Density colors (viridis): dark purple {}, green {}, yellow {} P/m² and more.\n\
+             * Speed colors (inferno): purple {}, orange {}, pale yellow {} m/s and more.\n\
+             * Click an agent: {agents}\n",
+            options.title,
+            options.description,
+            at(density, 0.0),
+            at(density, 0.6),
+            at(density, 1.0),
+            at(speed, 0.0),
+            at(speed, 0.6),
+            at(speed, 1.0),
+        );
+        let after = format!("{rest}\n{}\n", options.document.trim_end());
+        Self {
+            before,
+            after,
+            opening,
+        }
+    }
+
+    /// Logs it; `opens_at`: the moment that the recording opens at, seconds, once it is known.
+    pub fn log(&self, stream: &RecordingStream, opens_at: Option<f64>) -> Result<(), Cause> {
+        let opening = match (&self.opening, opens_at) {
+            (Some(_), Some(time)) => {
+                let time = (time * 100.0).round() / 100.0;
+                format!("* Look first at t = {time} s, where the marked loop begins.\n")
+            }
+            (Some(until_then), None) => until_then.clone(),
+            (None, _) => String::new(),
+        };
+        let text = format!("{}{opening}{}", self.before, self.after);
+        Ok(stream.log_static(DOCUMENT, &TextDocument::from_markdown(text))?)
+    }
+}
+
+/// Logs the properties that the viewer lists, with the program's version.
+fn log_properties(
     stream: &RecordingStream,
-    options: &RecordingOptions,
-    [mass, agents]: [&str; 2],
-    (name, properties): (&str, AnyValues),
+    name: &str,
+    properties: AnyValues,
 ) -> Result<(), Cause> {
-    let text = format!(
-        "# {}\n\n{}\n\n\
-         ## Legend\n\
-         * Meters, seconds, y up{mass}. (The viewer's own *hover position* counts y down.)\n\
-         * Density colors (viridis): dark purple 0, green {:.0}, yellow {DENSITY_RANGE} P/m² and more.\n\
-         * Speed colors (inferno): black 0, red {:.1}, pale yellow {SPEED_RANGE} m/s and more.\n\
-         * Click an agent: {agents}\n{}\n",
-        options.title,
-        options.description,
-        0.6 * DENSITY_RANGE,
-        0.5 * SPEED_RANGE,
-        options.document.trim_end(),
-    );
-    stream.log_static(DOCUMENT, &TextDocument::from_markdown(text))?;
     let version = text_array(env!("CARGO_PKG_VERSION"));
     let properties = properties.with_component_from_data("sandbox_version", version);
     Ok(stream.send_property(name, &properties)?)
@@ -46,64 +87,89 @@ fn text_array(text: &str) -> ArrayRef {
     Arc::new(StringArray::from(vec![text]))
 }
 
-/// Logs the text document of a measurement and the properties that the viewer lists.
-pub fn log_measurement(stream: &RecordingStream, options: &RecordingOptions) -> Result<(), Cause> {
-    let agents = "`agent:id`, `agent:density` in P/m² (three digits).\n";
-    log(
-        stream,
-        options,
-        ["", agents],
-        ("measurement", AnyValues::default()),
-    )
+/// The text document of a measurement; logs the properties that the viewer lists.
+pub fn of_measurement(
+    stream: &RecordingStream,
+    options: &RecordingOptions,
+) -> Result<Document, Cause> {
+    log_properties(stream, "measurement", AnyValues::default())?;
+    let agents =
+        "`agent:id`, `agent:density` in P/m² and `agent:speed` in m/s (three digits each).\n";
+    Ok(Document::new(options, ["", agents], "", None))
 }
 
-/// Logs the text document of a run and the properties that the viewer lists.
-pub fn log_run(
+/// The text document of a run; logs the properties that the viewer lists.
+pub fn of_run(
     stream: &RecordingStream,
     scene: &Scene,
     options: &RecordingOptions,
-) -> Result<(), Cause> {
-    let mut agents = format!(
-        "`agent:id`, `agent:density` ρ and `agent:rest_density` ρ⁰ in P/m² (three digits), `agent:pressure` \
-         p = k (ρ − ρ⁰).\n\
-         * Look first at t = {} s, where the marked loop begins.\n",
-        options.opens_at,
-    );
+) -> Result<Document, Cause> {
+    let agents = "`agent:id`, `agent:density` ρ and `agent:rest_density` ρ⁰ in P/m², `agent:pressure` \
+                  p = k (ρ − ρ⁰) in 1/s², `agent:speed` in m/s (three digits each).";
+    let mut rest = String::new();
     if !scene.journeys.places.is_empty() {
         let names = scenery::STAGES.map(|(name, _)| name).join(", ");
-        agents +=
-            &format!("* Colors by stage of the journey, from stage 1: {names}; gray: ended.\n");
+        rest += &format!("* Colors by stage of the journey, from stage 1: {names}; gray: ended.\n");
     }
     if let Some(mass) = options.body_mass {
-        agents += &format!(
+        rest += &format!(
             "* Force on walls (`world/wall_forces`), the mean over 1 m for people of {mass} kg: yellow 0, orange {:.0}, \
              dark red {WALL_FORCE_RANGE} N/m and more. Not a safety limit.\n",
             0.5 * WALL_FORCE_RANGE,
         );
     }
     if scene.ways.is_some() {
-        agents += "* Lengths of ways (`world/ways`), hidden at first: click the eye beside a place in the list of \
-                   the view's entities.\n";
+        rest += "* Lengths of ways (`world/ways`), hidden at first: click the eye beside a place in the list of \
+                 the view's entities.\n";
     }
     if options.debug != DebugAgents::None {
-        agents += &format!(
-            "* Agents laid open (`world/debug`): circle = kernel of radius h; tinted outline = hidden \
-             region P_k behind a wall; dots at walls = nearest point r*, between = representative point \
-             r°. Arrows: each force's weighted acceleration, {METERS_PER_ACCELERATION} m long per m/s²; \
-             white = their sum.\n"
-        );
-        for term in Term::all() {
-            agents += &format!("  * `{}`: {}\n", term.name(), color(term).0);
-        }
+        rest += &on_debug_agents(&options.debug);
     }
+    let opening = match options.opens_at {
+        Some(time) => format!("* Look first at t = {time} s.\n"),
+        None => "* Look first at the moment of the highest density.\n".to_owned(),
+    };
+    log_run(stream, scene)?;
+    let mass = "; mass 1 = an average person";
+    Ok(Document::new(options, [mass, agents], &rest, Some(opening)))
+}
+
+/// The legend of the debug agents.
+fn on_debug_agents(debug: &DebugAgents) -> String {
+    let followed = match debug {
+        DebugAgents::Ids(_) => "each of these agents has a tab",
+        _ => "the densest of these agents at the moment that the recording opens at is followed",
+    };
+    let mut text = format!(
+        "* Agents laid open (`world/debug`): circle = kernel of radius h; tinted outline = hidden \
+         region P_k behind a wall; dots at walls = nearest point r*, between = representative point \
+         r°; yellow line = way.\n\
+         * Followed agents (`focus`): {followed}. The agent is bright and stays in the middle; its neighbors are \
+         dark. Beside it: the magnitudes of its accelerations over time.\n\
+         * Arrows: the weighted acceleration a of each force; white = their sum. Length: {}.\n",
+        arrows::law(),
+    );
+    for term in Term::all() {
+        text += &format!("  * `{}`: {}\n", term.name(), arrows::color(term).0);
+    }
+    text
+}
+
+/// Logs the properties of a run.
+fn log_run(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
     let blends = scene.groups.iter().map(|group| group.blend.name.as_str());
     let profiles = blends.collect::<Vec<_>>().join(", ");
     let number = |x: f64| Arc::new(Float64Array::from(vec![x])) as ArrayRef;
     let properties = AnyValues::default()
         .with_component_from_data("seed", Arc::new(UInt64Array::from(vec![scene.seed])))
         .with_component_from_data("profiles", text_array(&profiles))
-        .with_component_from_data("time_step_secs", number(scene.clock.time_step()))
-        .with_component_from_data("opens_at_secs", number(options.opens_at));
-    let mass = "; mass 1 = an average person";
-    log(stream, options, [mass, &agents], ("run", properties))
+        .with_component_from_data("time_step_secs", number(scene.clock.time_step()));
+    log_properties(stream, "run", properties)
+}
+
+/// Adds the moment that a recording opens at to the properties of its run.
+pub fn log_opening(stream: &RecordingStream, time: f64) -> Result<(), Cause> {
+    let time = Arc::new(Float64Array::from(vec![time])) as ArrayRef;
+    let property = AnyValues::default().with_component_from_data("opens_at_secs", time);
+    Ok(stream.send_property("run", &property)?)
 }

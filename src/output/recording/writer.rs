@@ -5,37 +5,64 @@ use std::thread::JoinHandle;
 
 use rerun::RecordingStream;
 
-use super::crowd::Crowd;
+use super::crowd::{Crowd, Maps};
 use super::error::Cause;
+use super::events::Line;
+use super::focus::Focus;
 use super::layers::Layer;
 use super::snapshot::Snapshot;
-use super::{file, set_time, stats, wall_forces};
+use super::{events, file, set_time, stats, wall_forces};
 
 /// Maximum number of queued snapshots; the simulation waits when the queue is full.
 const QUEUE: usize = 4;
 
+/// What shows the debug agents.
+#[derive(Default)]
+pub struct Debug {
+    /// The layers with all of them.
+    pub layers: Vec<Layer>,
+    /// The followed ones.
+    pub focuses: Vec<Focus>,
+}
+
+/// What the thread writes.
+enum Item {
+    Frame(Box<Snapshot>),
+    Lines(Vec<Line>),
+}
+
 /// The simulation's side of the queue.
 pub struct Writer {
     /// `None` once the thread has been asked to end.
-    snapshots: Option<SyncSender<Snapshot>>,
+    items: Option<SyncSender<Item>>,
     thread: Option<JoinHandle<Result<(), Cause>>>,
 }
 
 impl Writer {
     /// Starts the thread.
-    pub fn start(stream: RecordingStream, mut layers: Vec<Layer>) -> Result<Self, Cause> {
-        let (snapshots, queue) = sync_channel::<Snapshot>(QUEUE);
+    pub fn start(stream: RecordingStream, maps: Maps, mut debug: Debug) -> Result<Self, Cause> {
+        let (items, queue) = sync_channel::<Item>(QUEUE);
         let write_all = move || {
-            let mut crowd = Crowd::default();
-            for snapshot in queue {
-                stats::log_events(&stream, &snapshot.events)?;
+            let mut crowd = Crowd::new(maps);
+            for item in queue {
+                let snapshot = match item {
+                    Item::Frame(snapshot) => snapshot,
+                    Item::Lines(lines) => {
+                        events::log(&stream, &lines)?;
+                        continue;
+                    }
+                };
+                events::log(&stream, &snapshot.events)?;
                 set_time(&stream, snapshot.frame, snapshot.time);
                 crowd.log(&stream, &snapshot)?;
                 if let Some(parts) = &snapshot.wall_forces {
                     wall_forces::log(&stream, parts)?;
                 }
-                for layer in &mut layers {
+                for layer in &mut debug.layers {
                     layer.log(&stream, &snapshot.open)?;
+                }
+                for (focus, place) in debug.focuses.iter_mut().zip(&snapshot.followed) {
+                    focus.log(&stream, place.map(|k| &snapshot.open[k]))?;
                 }
                 stats::log(&stream, &snapshot)?;
             }
@@ -43,15 +70,24 @@ impl Writer {
         };
         let thread = std::thread::Builder::new().name("recording".to_owned());
         Ok(Self {
-            snapshots: Some(snapshots),
+            items: Some(items),
             thread: Some(thread.spawn(write_all)?),
         })
     }
 
     /// Queues a snapshot. Errors of earlier snapshots are reported here or by [`finish`](Self::finish).
     pub fn write(&mut self, snapshot: Snapshot) -> Result<(), Cause> {
-        let queue = self.snapshots.as_ref();
-        if queue.is_some_and(|queue| queue.send(snapshot).is_ok()) {
+        self.send(Item::Frame(Box::new(snapshot)))
+    }
+
+    /// Queues lines for the log of events.
+    pub fn note(&mut self, lines: Vec<Line>) -> Result<(), Cause> {
+        self.send(Item::Lines(lines))
+    }
+
+    fn send(&mut self, item: Item) -> Result<(), Cause> {
+        let queue = self.items.as_ref();
+        if queue.is_some_and(|queue| queue.send(item).is_ok()) {
             return Ok(());
         }
         self.finish()?;
@@ -60,7 +96,7 @@ impl Writer {
 
     /// Waits until everything is written.
     pub fn finish(&mut self) -> Result<(), Cause> {
-        self.snapshots = None;
+        self.items = None;
         let joined = self.thread.take().map(JoinHandle::join);
         joined.map_or(Ok(()), |result| result.unwrap_or(Err(file::GONE.into())))
     }

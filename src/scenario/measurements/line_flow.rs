@@ -84,13 +84,8 @@ impl LineFlow {
     }
 
     fn line(&self) -> Line {
-        let [start, end] = self.line.map(Vector::from);
+        let [start, end] = self.ends();
         Line { start, end }
-    }
-
-    /// Its name in pictures.
-    pub(super) fn line_name(&self) -> String {
-        self.name().to_owned()
     }
 
     /// The ends of the line, meters.

@@ -19,6 +19,7 @@ mod integrity;
 mod jitter;
 mod line_flow;
 mod mean;
+mod observed;
 mod oscillation;
 mod running;
 mod service_levels;
@@ -50,6 +51,7 @@ pub use front::{Front, FrontData, Reached};
 pub use integrity::{Integrity, Watched};
 pub use jitter::Jitter;
 pub use line_flow::LineFlow;
+pub use observed::Observed;
 pub use oscillation::Oscillation;
 pub use service_levels::ServiceLevels;
 pub use snapshot::{Snapshot, SnapshotAt};
@@ -61,7 +63,6 @@ pub use wave::{Wave, WaveData};
 
 use super::error::{Problem, Under};
 use super::range::region;
-use crate::engine::math::Vector;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use mean::Mean;
@@ -162,15 +163,6 @@ pub enum Measurement {
     FrameTime(FrameTime),
 }
 
-/// Where a measurement observes people.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Observed {
-    /// A rectangle.
-    Region(Region),
-    /// A line between two points, meters.
-    Line([Vector; 2]),
-}
-
 impl Measurement {
     /// This measurement before the first frame.
     fn started(&self) -> Box<dyn Running> {
@@ -226,21 +218,6 @@ impl Measurement {
         let found =
             |(key, corners): (&'static str, Option<_>)| Some((key, region("", corners?).ok()?));
         places.into_iter().filter_map(found).collect()
-    }
-
-    /// The regions and the line that it observes, with names for pictures.
-    pub fn observed(&self) -> Vec<(String, Observed)> {
-        let place = |(key, region): (&'static str, Region)| {
-            let name = key.split('.').next().unwrap_or(key).replace('_', " ");
-            match self {
-                Self::LineFlow(keys) if key == "line_flow.line" => {
-                    (keys.line_name(), Observed::Line(keys.ends()))
-                }
-                Self::LineFlow(keys) => (keys.line_name(), Observed::Region(region)),
-                _ => (name, Observed::Region(region)),
-            }
-        };
-        self.places().into_iter().map(place).collect()
     }
 
     /// The mass of an average person, kg, if it measures forces on walls.

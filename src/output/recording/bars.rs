@@ -1,0 +1,128 @@
+//! Color bars beside the crowd.
+
+use rerun::{AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStream};
+
+use super::crowd::Maps;
+use super::error::Cause;
+use crate::engine::math::Vector;
+use crate::engine::scene::Region;
+use crate::output::colors::ColorMap;
+
+/// The entities of the bars.
+pub const DENSITY: &str = "world/legend/density";
+pub const SPEED: &str = "world/legend/speed";
+/// Distance from the visible region to the bar, width of the bar, and distance from its left side to the middle of the
+/// numbers; as parts of the region's longest side.
+const GAP: f64 = 0.02;
+const WIDTH: f64 = 0.02;
+const NUMBERS: f64 = 0.045;
+/// The width of bar and numbers together, as a part of that side.
+const ROOM: f64 = 0.1;
+/// How far above a number its point is, as the viewer writes it below; as a part of that side.
+const RAISED: f64 = 0.012;
+/// The part of the region's height that the bar has.
+const HEIGHT: f64 = 0.8;
+/// Bands of color of a bar.
+const BANDS: u16 = 64;
+/// The most steps between numbers.
+const MOST_STEPS: f64 = 5.0;
+const TEXT: Color = Color(rerun::Rgba32::from_rgb(214, 214, 222));
+
+/// The region with its bar.
+pub fn with_bar(view: &Region) -> Region {
+    let room = Vector::new(longest(view) * ROOM, 0.0);
+    Region {
+        min: view.min,
+        max: view.max + room,
+    }
+}
+
+fn longest(view: &Region) -> f64 {
+    (view.max - view.min).max()
+}
+
+/// Logs the bars of densities and of speeds.
+pub fn log(stream: &RecordingStream, view: &Region, maps: &Maps) -> Result<(), Cause> {
+    log_bar(stream, DENSITY, (view, &maps.density, "P/m²"))?;
+    log_bar(stream, SPEED, (view, &maps.speed, "m/s"))
+}
+
+fn log_bar(
+    stream: &RecordingStream,
+    entity: &str,
+    (view, map, unit): (&Region, &ColorMap, &str),
+) -> Result<(), Cause> {
+    let side = longest(view);
+    let [first, last] = map.range().map(f64::from);
+    let height = HEIGHT * (view.max.y - view.min.y);
+    let low = 0.5 * (view.min.y + view.max.y - height);
+    let left = view.max.x + GAP * side;
+    let right = left + WIDTH * side;
+    let band = height / f64::from(BANDS);
+    let line = |from: f64, to: f64, y: f64| [[from as f32, y as f32], [to as f32, y as f32]];
+    let bands = (0..BANDS).map(|k| {
+        let part = (f64::from(k) + 0.5) / f64::from(BANDS);
+        let value = first + (last - first) * part;
+        let [r, g, b] = map.color(value as f32);
+        let strip = line(left, right, low + height * part);
+        (
+            strip,
+            Color::from_rgb(r, g, b),
+            Radius::new_scene_units(0.55 * band as f32),
+        )
+    });
+    let numbers = numbers([first, last]);
+    let at = |value: f64| low + height * (value - first) / (last - first);
+    let ticks = numbers.iter().map(|&value| {
+        let tick = line(right, right + 0.006 * side, at(value));
+        (tick, TEXT, Radius::new_ui_points(0.6))
+    });
+    let (mut strips, mut colors, mut radii) = (Vec::new(), Vec::new(), Vec::new());
+    for (strip, color, radius) in bands.chain(ticks) {
+        strips.push(strip);
+        colors.push(color);
+        radii.push(radius);
+    }
+    let bar = LineStrips2D::new(strips)
+        .with_colors(colors)
+        .with_radii(radii)
+        .with_draw_order(30.0);
+    let middle = (left + NUMBERS * side) as f32;
+    let raised = |y: f64| [middle, (y + RAISED * side) as f32];
+    let above = [
+        0.5 * (left + right) as f32,
+        (low + height + 0.045 * side) as f32,
+    ];
+    let places = numbers.iter().map(|&value| raised(at(value)));
+    let texts = numbers.iter().map(|&value| brief(value));
+    let names = Points2D::new(places.chain([above]))
+        .with_labels(texts.chain([unit.to_owned()]))
+        .with_colors([TEXT])
+        .with_radii([Radius::new_ui_points(0.0)])
+        .with_show_labels(true)
+        .with_draw_order(31.0);
+    let parts: [&dyn AsComponents; 2] = [&bar, &names];
+    Ok(stream.log_static(entity, &parts)?)
+}
+
+/// Round numbers in a range.
+fn numbers([first, last]: [f64; 2]) -> Vec<f64> {
+    let rough = (last - first) / MOST_STEPS;
+    let decade = 10_f64.powf(rough.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|k| k * decade);
+    let step = steps.into_iter().find(|&step| step >= 0.999 * rough);
+    let step = step.unwrap_or(10.0 * decade);
+    let (from, to) = ((first / step - 1e-6).ceil(), (last / step + 1e-6).floor());
+    let count = (to - from).max(0.0) as u32;
+    (0..=count).map(|k| (from + f64::from(k)) * step).collect()
+}
+
+/// A number with at most four significant digits.
+pub fn brief(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let decimals = 3 - value.abs().log10().floor() as i32;
+    let unit = 10_f64.powi(decimals);
+    format!("{}", (value * unit).round() / unit)
+}

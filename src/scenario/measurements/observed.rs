@@ -1,0 +1,59 @@
+//! Where measurements are taken, as pictures and recordings show it.
+
+use super::Measurement;
+use crate::engine::math::Vector;
+use crate::engine::scene::Region;
+
+/// Where a measurement observes people.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Observed {
+    /// A rectangle.
+    Region(Region),
+    /// A line between two points, meters.
+    Line([Vector; 2]),
+}
+
+impl Observed {
+    /// Its outline, closed, or the line, meters.
+    pub fn outline(&self) -> Vec<Vector> {
+        match self {
+            Self::Line(ends) => ends.to_vec(),
+            Self::Region(region) => {
+                let corners = region.corners();
+                corners.into_iter().chain([corners[0]]).collect()
+            }
+        }
+    }
+}
+
+impl Measurement {
+    /// The line and the regions that it observes, each with the words that the names of its values begin with.
+    pub fn observed(&self) -> Vec<(String, Observed)> {
+        let common = common_words(&self.names());
+        let place = |(key, region): (&'static str, Region)| {
+            let kind = key.split('.').next().unwrap_or(key).replace('_', " ");
+            let name = if common.is_empty() {
+                kind
+            } else {
+                common.clone()
+            };
+            let place = match self {
+                Self::LineFlow(keys) if key.ends_with(".line") => Observed::Line(keys.ends()),
+                _ => Observed::Region(region),
+            };
+            (name, place)
+        };
+        self.places().into_iter().map(place).collect()
+    }
+}
+
+/// The words that all names begin with, without underscores; of a single name all words.
+fn common_words(names: &[String]) -> String {
+    let mut names = names.iter().map(|name| name.split('_'));
+    let mut common: Vec<&str> = names.next().into_iter().flatten().collect();
+    for other in names {
+        let equal = common.iter().zip(other).take_while(|(a, b)| *a == b);
+        common.truncate(equal.count());
+    }
+    common.join(" ")
+}
