@@ -224,7 +224,12 @@ fn a_line_that_leaves_the_panel_stays_straight_and_ends_at_the_rim() {
     let log = || Axis::log("", [1.0, 100.0]);
     let line = Mark::Line(vec![[0.1, 0.1], [1e3, 1e3]], Style::full(LINES[0], 1.0, ""));
     let drawn = shape(&svg_of(log(), log(), vec![line]), "<polyline", LINES[0]);
-    assert_eq!(drawn, [[0.0, 0.0], [1.0, 1.0]]);
+    let off = drawn.iter().zip([0.0, 1.0]);
+    let off = off.flat_map(|(at, end)| at.map(|x| (x - end).abs()));
+    assert!(
+        drawn.len() == 2 && off.fold(0.0, f64::max) < 0.005,
+        "{drawn:?}"
+    );
 }
 
 #[test]

@@ -90,7 +90,7 @@ impl Axis {
     fn with_ticks(&self, most: i32) -> Self {
         let mut axis = self.clone();
         let [first, last] = self.range;
-        if axis.ticks.is_empty() && (last - first).is_finite() {
+        if axis.ticks.is_empty() && (last - first).is_finite() && first != last {
             let values = match self.is_log {
                 false => {
                     let ticks = linear_ticks(self.range, most.max(2));
