@@ -1,5 +1,6 @@
 //! The density of people in a frame (§8): Eqs. 9 and 10 without a simulation.
 
+use super::Options;
 use crate::analysis::site::{Hidden, Kernel, Site};
 use crate::analysis::surroundings::{MOST_HIDDEN, Surroundings};
 use crate::engine::density::SphParameters;
@@ -59,8 +60,9 @@ pub struct History {
 }
 
 impl History {
-    /// No averages yet, for `people` people and a kernel of this radius, meters.
-    pub fn new(behind: Behind, support_radius: f64, people: usize) -> Self {
+    /// No averages yet, for `people` people.
+    pub fn new(options: &Options, people: usize) -> Self {
+        let (behind, support_radius) = (options.behind, options.kernel.support_radius);
         let mut sph = SphParameters::default();
         if let Behind::Rest(max) = behind {
             sph.rest_density_max = max;

@@ -191,35 +191,15 @@ pub fn measure<E: From<MeasureError>>(
     let chosen = chosen(tracks, options)?;
     let velocities = speed::velocities(tracks, options.speed_reach);
     let mut fields = Fields::new(grid(tracks, options, chosen.clone())?, site, options.kernel);
-    let regions: Vec<Option<Region>> = match options.regions.as_slice() {
-        [] => vec![None],
-        regions => regions.iter().copied().map(Some).collect(),
-    };
     let places = Regions::new(site, options)?;
-    let mut walkable = places.walkable().into_iter();
-    let diagram = |region| Diagram {
-        region,
-        walkable: walkable.next(),
-        ..Diagram::default()
-    };
-    let mut diagrams: Vec<Diagram> = regions.into_iter().map(diagram).collect();
-    let mut history = History::new(
-        options.behind,
-        options.kernel.support_radius,
-        tracks.ids.len(),
-    );
+    let mut diagrams = diagrams(options, &places);
+    let mut history = History::new(options, tracks.ids.len());
     let mut overview = overview(tracks, chosen.clone());
     let mut seen = vec![false; tracks.ids.len()];
     let first = tracks.frames[chosen.start];
     let mut safety = Safety::new(tracks, first, options.sample_every);
-    let mut next = chosen.start;
-    while next < chosen.end {
-        let begin = next;
-        let first = tracks.rows(begin).start;
-        while next < chosen.end && (next == begin || tracks.rows(next).end - first < BATCH) {
-            next += 1;
-        }
-        let seen_parts = (begin..next).into_par_iter().map(|k| {
+    for batch in batches(tracks, chosen) {
+        let found = batch.clone().into_par_iter().map(|k| {
             let rows = tracks.rows(k);
             let masses = tracks.mass.get(rows.clone()).unwrap_or(&[]);
             let how = (&options.kernel, options.behind);
@@ -227,8 +207,8 @@ pub fn measure<E: From<MeasureError>>(
             let frame = places.measure(&bodies(tracks, rows, &parts, &velocities));
             (parts, frame)
         });
-        let seen_parts: Vec<(Vec<Parts>, Frame)> = seen_parts.collect();
-        let moments = (begin..next).zip(seen_parts).map(|(k, (parts, frame))| {
+        let found: Vec<(Vec<Parts>, Frame)> = found.collect();
+        let moments = batch.zip(found).map(|(k, (parts, frame))| {
             overview.look_at(&parts);
             moment((tracks, k), &parts, frame, &velocities, &mut history)
         });
@@ -257,6 +237,33 @@ pub fn measure<E: From<MeasureError>>(
         crossings: crossings.collect(),
         departures: safety.departures(tracks),
         safety,
+    })
+}
+
+/// Diagrams without frames: one per region, or one for everywhere.
+fn diagrams(options: &Options, places: &Regions) -> Vec<Diagram> {
+    if options.regions.is_empty() {
+        return vec![Diagram::default()];
+    }
+    let regions = options.regions.iter().zip(places.walkable());
+    let diagrams = regions.map(|(&region, walkable)| Diagram {
+        region: Some(region),
+        walkable: Some(walkable),
+        ..Diagram::default()
+    });
+    diagrams.collect()
+}
+
+/// Frames that are measured at a time, in order.
+fn batches(tracks: &Tracks, chosen: Range<usize>) -> impl Iterator<Item = Range<usize>> + '_ {
+    let mut next = chosen.start;
+    std::iter::from_fn(move || {
+        let begin = Some(next).filter(|&next| next < chosen.end)?;
+        let first = tracks.rows(begin).start;
+        while next < chosen.end && (next == begin || tracks.rows(next).end - first < BATCH) {
+            next += 1;
+        }
+        Some(begin..next)
     })
 }
 
