@@ -2,26 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use crate::common::tracks::{options, tracks};
+use crate::common::tracks::{measured, options, tracks};
 use crate::common::{blend, block, rectangle, room, scene, vector};
 use rusqlite::Connection;
 use sandbox::engine::boundary::WallMethod;
 use sandbox::engine::kernel;
 use sandbox::engine::scene::Region;
 use sandbox::engine::simulation::Simulation;
-use sandbox::lab::measure::{Behind, MeasureError, Measured, Moment, Options, Site, measure};
+use sandbox::lab::measure::{Behind, Measured, Options, Site};
 use sandbox::output::trajectory::Trajectory;
 use sandbox::scenario::floor_plan::parse_wkt;
 use sandbox::scenario::trajectories::{ReadOptions, Tracks, read};
-
-fn measured(tracks: &Tracks, site: &Site, options: &Options) -> (Measured, Vec<Moment>) {
-    let mut all = Vec::new();
-    let measured = measure(tracks, site, options, |moments: &[Moment]| {
-        all.extend_from_slice(moments);
-        Ok::<(), MeasureError>(())
-    });
-    (measured.unwrap(), all)
-}
 
 /// Runs a crowd through a door, writes every frame, and measures the file with its walls and masses and with the
 /// engine's rest density.

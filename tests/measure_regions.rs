@@ -1,6 +1,6 @@
 //! Densities of regions side by side: people per area, Voronoi cells between walls, the mean of the SPH field.
 
-use crate::common::tracks::{options, tracks};
+use crate::common::tracks::{measured, options, tracks};
 use crate::common::vector;
 use sandbox::analysis::crossing::Passages;
 use sandbox::engine::math::Vector;
@@ -24,15 +24,6 @@ fn square(side: f64) -> Site {
 fn region(min: [f64; 2], max: [f64; 2]) -> Region {
     let [min, max] = [min, max].map(|p| p.into());
     Region { min, max }
-}
-
-fn measured(tracks: &Tracks, site: &Site, options: &Options) -> (Measured, Vec<Moment>) {
-    let mut all = Vec::new();
-    let measured = measure(tracks, site, options, |moments: &[Moment]| {
-        all.extend_from_slice(moments);
-        Ok::<(), MeasureError>(())
-    });
-    (measured.unwrap(), all)
 }
 
 /// The areas of the cells of people, limited by walls alone.

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 
 use sandbox::analysis::crossing::Passages;
 use sandbox::engine::boundary::WallMethod;
-use sandbox::lab::measure::{Behind, CellLimit, Kernel, Options};
+use sandbox::lab::measure::{
+    Behind, CellLimit, Kernel, MeasureError, Measured, Moment, Options, Site, measure,
+};
 use sandbox::scenario::trajectories::{ReadError, ReadOptions, Tracks, read};
 
 /// Writes a file with this name and text; returns its folder and its path.
@@ -49,4 +51,14 @@ pub fn options() -> Options {
         flow_of: Passages::Parts([0.1, 0.9]),
         sample_every: 1.0,
     }
+}
+
+/// Measures trajectories; also returns all frames.
+pub fn measured(tracks: &Tracks, site: &Site, options: &Options) -> (Measured, Vec<Moment>) {
+    let mut all = Vec::new();
+    let measured = measure(tracks, site, options, |moments: &[Moment]| {
+        all.extend_from_slice(moments);
+        Ok::<(), MeasureError>(())
+    });
+    (measured.unwrap(), all)
 }
