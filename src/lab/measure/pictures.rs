@@ -59,19 +59,16 @@ fn maps(measured: &Measured, walls: &Walls) -> Sheet {
             Some(mean) => value(mean),
             None => Some(0.0),
         });
-        let mut marks = vec![Mark::Cells(Cells {
+        let cells = |values, map| Cells {
             extent: [[x[0], y[0]], [x[1], y[1]]],
             columns: grid.columns,
-            values: values.collect(),
-            map: map.clone(),
-        })];
+            values,
+            map,
+        };
         let solid = means.iter().map(|mean| mean.is_none().then_some(0.0));
-        marks.push(Mark::Overlay(Cells {
-            extent: [[x[0], y[0]], [x[1], y[1]]],
-            columns: grid.columns,
-            values: solid.collect(),
-            map: ColorMap::plain(GRAY),
-        }));
+        let solid = cells(solid.collect(), ColorMap::plain(GRAY));
+        let field = Mark::Cells(cells(values.collect(), map.clone()));
+        let mut marks = vec![Mark::Group(vec![field, Mark::Overlay(solid)])];
         marks.extend(walls.iter().map(|wall| {
             let ends = [wall.start, wall.end].map(|p| [p.x, p.y]);
             Mark::Line(ends.to_vec(), Style::full(BLACK, 1.2, ""))

@@ -12,6 +12,7 @@ use super::{
 };
 
 const RIM: f64 = 0.6; // width of the lines around a panel
+const LARGEST_DOT: f64 = 3.6; // radius of a dot in a legend
 const SWATCH: f64 = 7.0; // side of the sample of a color
 
 type Area<DB> = DrawingArea<DB, Shift>;
@@ -42,12 +43,14 @@ pub fn draw<DB: DrawingBackend>(
             let gaps = layout::has_gaps(panel);
             page.bar(bar, ([x + width + 9.0, y], [BAR_WIDTH, height]), gaps)?;
         }
-        match panel.legend {
-            Some(Corner::Beside) => page.legend(panel, layout.legend.0, layout.legend.1)?,
-            Some(corner) => page.legend_inside(panel, corner, rect)?,
-            None => {}
+        if let Some(corner) = panel.legend
+            && layout::has_own_legend(panel, layout.panel, print)
+        {
+            page.legend_inside(panel, corner, rect)?;
         }
     }
+    let legend = layout::shared_entries(sheet, layout.panel, print);
+    page.entries(&legend, layout.legend.0, layout.legend.1)?;
     let foot = layout
         .corners
         .last()
@@ -223,10 +226,7 @@ impl<DB: DrawingBackend> Page<'_, DB> {
             return Ok(());
         }
         let ([x, y], [width, height]) = rect;
-        let size = [
-            layout::entry_width(&entries) + 2.0 * PAD,
-            height_of(entries.len(), NUMBER) + PAD,
-        ];
+        let size = layout::legend_size(&entries);
         let (right, foot) = (x + width - size[0] - PAD, y + height - size[1] - PAD);
         let [x, y] = match corner {
             Corner::UpperLeft | Corner::Beside => [x + PAD, y + PAD],
@@ -239,11 +239,7 @@ impl<DB: DrawingBackend> Page<'_, DB> {
         self.entries(&entries, [x + PAD, y + 0.5 * PAD], size[0])
     }
 
-    /// The legend outside of the panels.
-    fn legend(&self, panel: &Panel, corner: [f64; 2], width: f64) -> Drawn {
-        self.entries(&layout::entries(panel), corner, width)
-    }
-
+    /// The entries of a legend.
     fn entries(&self, entries: &[(&Style, bool)], corner: [f64; 2], width: f64) -> Drawn {
         let each = layout::entry_width(entries);
         let columns = layout::per_row(each, width);
@@ -259,7 +255,9 @@ impl<DB: DrawingBackend> Page<'_, DB> {
                 }
                 false => {
                     let at = self.ink.at([x + 0.5 * SAMPLE, y]);
-                    self.root.draw(&marks::dot(at, style, self.ink))?;
+                    let mut sample = (*style).clone();
+                    sample.width = sample.width.min(LARGEST_DOT);
+                    self.root.draw(&marks::dot(at, &sample, self.ink))?;
                 }
             }
             self.text(&style.label, [x + SAMPLE + 4.0, y], NUMBER, [1, 0])?;

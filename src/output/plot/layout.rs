@@ -22,6 +22,8 @@ pub const LEAST_CELL: f64 = 60.0;
 const WIDEST: f64 = 1000.0;
 /// A legend beside panels takes this part of a sheet of given width at most; a wider one is below them.
 const BESIDE: f64 = 0.3;
+/// A legend hides this part of a panel at most.
+const HIDDEN: f64 = 0.2;
 /// Panels of a sheet of given width are at most this many times as high as the sheet is wide.
 const HIGHEST: f64 = 1.1;
 
@@ -51,7 +53,7 @@ struct Space {
     bar: f64,
     sheet_bar: f64,
     rows: f64,
-    /// The width of the widest legend beside panels.
+    /// The width and the number of the entries of the legend outside of panels.
     legend: f64,
     entries: usize,
 }
@@ -110,6 +112,35 @@ pub fn entries(panel: &Panel) -> Vec<(&Style, bool)> {
         .collect()
 }
 
+/// The size of the legend in a panel.
+pub fn legend_size(entries: &[(&Style, bool)]) -> [f64; 2] {
+    let height = height_of(entries.len(), NUMBER) + PAD;
+    [entry_width(entries) + 2.0 * PAD, height]
+}
+
+/// Whether a panel's legend is in a corner of it: on sheets of given width, not if it would hide much of the panel.
+pub fn has_own_legend(panel: &Panel, [width, height]: [f64; 2], print: &Print) -> bool {
+    let [w, h] = legend_size(&entries(panel));
+    let is_large = print.width.is_some() && w * h > HIDDEN * width * height;
+    panel.legend.is_some_and(|corner| corner != Corner::Beside) && !is_large
+}
+
+/// The entries of the legend outside of panels, each once.
+pub fn shared_entries<'a>(
+    sheet: &'a Sheet,
+    panel: [f64; 2],
+    print: &Print,
+) -> Vec<(&'a Style, bool)> {
+    let mut shared: Vec<(&Style, bool)> = Vec::new();
+    let outside = |one: &&Panel| one.legend.is_some() && !has_own_legend(one, panel, print);
+    for entry in sheet.panels.iter().filter(outside).flat_map(entries) {
+        if !shared.contains(&entry) {
+            shared.push(entry);
+        }
+    }
+    shared
+}
+
 /// The width of an entry of a legend.
 pub fn entry_width(entries: &[(&Style, bool)]) -> f64 {
     let widths = entries
@@ -139,12 +170,10 @@ pub fn title_of(panel: &Panel, sheet: &Sheet, print: &Print, width: f64) -> Vec<
 }
 
 impl Space {
-    fn of(sheet: &Sheet, [width, height]: [f64; 2]) -> Self {
+    fn of(sheet: &Sheet, print: &Print, [width, height]: [f64; 2]) -> Self {
         let most = |of: &dyn Fn(&Panel) -> f64| sheet.panels.iter().map(of).fold(0.0, f64::max);
         let gaps = sheet.panels.iter().any(has_gaps);
-        let legends = sheet.panels.iter();
-        let legends = legends.filter(|panel| panel.legend == Some(Corner::Beside));
-        let legends: Vec<_> = legends.map(entries).collect();
+        let legend = shared_entries(sheet, [width, height], print);
         let of_bar = |bar: &Option<ColorBar>, gaps: bool| match bar {
             Some(bar) => GAP + bar_width(bar, height, gaps),
             None => 0.0,
@@ -157,11 +186,8 @@ impl Space {
             bar: most(&|panel| of_bar(&panel.bar, has_gaps(panel))),
             sheet_bar: of_bar(&sheet.bar, gaps),
             rows: rows.map_or(0.0, |lines| height_of(lines, LABEL) + PAD),
-            legend: legends
-                .iter()
-                .map(|own| entry_width(own))
-                .fold(0.0, f64::max),
-            entries: legends.iter().map(Vec::len).max().unwrap_or(0),
+            legend: entry_width(&legend),
+            entries: legend.len(),
         }
     }
 }
@@ -216,7 +242,7 @@ impl Layout {
 
     fn with(sheet: &Sheet, print: &Print, columns: usize, panel: [f64; 2]) -> Self {
         let ([width, height], count) = (panel, sheet.panels.len().max(1));
-        let space = Space::of(sheet, panel);
+        let space = Space::of(sheet, print, panel);
         let [step, below] = match sheet.shared_axes {
             true => [width + GAP, 0.0],
             false => [

@@ -214,7 +214,7 @@ pub enum Mark {
     Points(Vec<Point>, Style),
     /// A heat map; cells without a value are gray.
     Cells(Cells),
-    /// A heat map; earlier marks are seen through cells without a value.
+    /// A heat map; earlier marks of its group are seen through cells without a value.
     Overlay(Cells),
     /// Text, centered at a position.
     Text([f64; 2], String, Rgb),
