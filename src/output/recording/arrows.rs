@@ -1,6 +1,6 @@
 //! The arrows of forces: their lengths, colors and names.
 
-use rerun::{Arrows2D, Color, Points2D};
+use rerun::{Arrows2D, Color, Points2D, Radius};
 
 use super::debug::Open;
 use super::geometry::xy;
@@ -15,12 +15,17 @@ const PER_DECADE: f64 = 0.6;
 const SMALL: f64 = 0.1;
 /// The color of the sum of all forces.
 pub const TOTAL: Rgb = [255; 3];
+/// Half the widths of the arrows of the sum and of forces, pixels: where both are one, both can be seen.
+const BROAD: f32 = 3.5;
+const THIN: f32 = 1.6;
 /// The color of forces from outside the crate.
 const OWN: Rgb = [170; 3];
-/// The distance from the tip of an arrow to the middle of its name, meters.
-const GAP: f64 = 0.22;
+/// The distance from the tip of an arrow to the middle of its name along x and y, meters.
+const GAP: [f64; 2] = [0.5, 0.22];
+/// The names of short arrows are as far from the agent as if the arrows had this length, meters.
+const SHORT: f64 = 0.3;
 /// The size of a name, meters: two names closer than this in x and y would cover each other.
-const NAME: [f64; 2] = [1.5, 0.24];
+const NAME: [f64; 2] = [1.2, 0.24];
 
 /// The length of the arrow of an acceleration in m/s²: 0.6 m × log₁₀(1 + a / 0.1 m/s²), in meters. 0.2 m/s² and
 /// 20 m/s² can both be seen.
@@ -58,7 +63,7 @@ pub fn acting(scene: &Scene) -> Vec<Term> {
 /// A force on an agent: its name, its acceleration in m/s², and the color of its arrow.
 pub type Force = (String, Vector, Rgb);
 
-/// The forces on an agent that are not zero, and at last their sum.
+/// The sum of the forces on an agent, and the forces that are not zero.
 pub fn forces(agent: &Open, terms: &[Term]) -> Vec<Force> {
     let of_term = |&term: &Term| (in_words(term), agent.force(term), color(term).1);
     let own = agent.breakdown.own_forces.iter();
@@ -68,7 +73,9 @@ pub fn forces(agent: &Open, terms: &[Term]) -> Vec<Force> {
         agent.breakdown.acceleration.into(),
         TOTAL,
     );
-    let all = terms.iter().map(of_term).chain(own).chain([total]);
+    let all = std::iter::once(total)
+        .chain(terms.iter().map(of_term))
+        .chain(own);
     all.filter(|(_, acceleration, _)| *acceleration != Vector::zeros())
         .collect()
 }
@@ -78,23 +85,28 @@ pub fn in_words(term: Term) -> String {
     term.name().replace('_', " ")
 }
 
-/// The arrows of these forces at the origin, and their names beside the tips. Arrows too short to see have no names.
+/// The arrows of these forces at the origin, the first one broad, and their names beside the tips. Arrows too short to see have no names.
 pub fn named(forces: &[Force]) -> (Arrows2D, Points2D) {
     let rgb = |[r, g, b]: Rgb| Color::from_rgb(r, g, b);
     let vectors: Vec<Vector> = forces.iter().map(|force| arrow(force.1)).collect();
     let arrows = Arrows2D::update_fields()
         .with_origins(vectors.iter().map(|_| [0.0, 0.0]))
         .with_vectors(vectors.iter().map(|&vector| xy(vector)))
+        .with_radii(
+            (0..vectors.len()).map(|k| Radius::new_ui_points(if k == 0 { BROAD } else { THIN })),
+        )
         .with_colors(forces.iter().map(|force| rgb(force.2)));
     let long = || {
         let both = forces.iter().zip(&vectors);
         both.filter(|(_, vector)| vector.norm() > 0.05)
     };
-    let tips: Vec<Vector> = long()
-        .map(|(_, vector)| vector + direction(*vector) * GAP)
-        .collect();
+    let beside = |vector: &Vector| {
+        let way = direction(*vector);
+        way * vector.norm().max(SHORT) + way.component_mul(&Vector::from(GAP))
+    };
+    let places: Vec<Vector> = long().map(|(_, vector)| beside(vector)).collect();
     let names = Points2D::update_fields()
-        .with_positions(apart(&tips).into_iter().map(xy))
+        .with_positions(apart(&places).into_iter().map(xy))
         .with_labels(long().map(|(force, _)| force.0.as_str()))
         .with_colors(long().map(|(force, _)| rgb(force.2)));
     (arrows, names)

@@ -1,6 +1,8 @@
 //! Color bars beside the crowd.
 
-use rerun::{AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStream};
+use rerun::{
+    AsComponents, Color, Image, LineStrips2D, Points2D, Radius, RecordingStream, Transform3D,
+};
 
 use super::crowd::Maps;
 use super::error::Cause;
@@ -22,6 +24,9 @@ const ROOM: f64 = 0.1;
 const RAISED: f64 = 0.012;
 /// The part of the region's height that the bar has.
 const HEIGHT: f64 = 0.8;
+/// The length of a tick, and the height of the unit above the bar, as parts of that side.
+const TICK: f64 = 0.006;
+const UNIT: f64 = 0.045;
 /// Bands of color of a bar.
 const BANDS: u16 = 64;
 /// The most steps between numbers.
@@ -58,42 +63,37 @@ fn log_bar(
     let low = 0.5 * (view.min.y + view.max.y - height);
     let left = view.max.x + GAP * side;
     let right = left + WIDTH * side;
-    let band = height / f64::from(BANDS);
-    let line = |from: f64, to: f64, y: f64| [[from as f32, y as f32], [to as f32, y as f32]];
-    let bands = (0..BANDS).map(|k| {
+    let colors = (0..BANDS).flat_map(|k| {
         let part = (f64::from(k) + 0.5) / f64::from(BANDS);
-        let value = first + (last - first) * part;
-        let [r, g, b] = map.color(value as f32);
-        let strip = line(left, right, low + height * part);
-        (
-            strip,
-            Color::from_rgb(r, g, b),
-            Radius::new_scene_units(0.55 * band as f32),
-        )
+        map.color((first + (last - first) * part) as f32)
     });
+    let image = Image::from_rgb24(colors.collect::<Vec<u8>>(), [1, BANDS.into()]);
+    let place = Transform3D::from_translation_scale(
+        [left as f32, low as f32, 0.0],
+        [
+            (right - left) as f32,
+            (height / f64::from(BANDS)) as f32,
+            1.0,
+        ],
+    );
+    let image = image.with_draw_order(30.0);
+    let parts: [&dyn AsComponents; 2] = [&place, &image];
+    stream.log_static(format!("{entity}/colors"), &parts)?;
     let numbers = numbers([first, last]);
     let at = |value: f64| low + height * (value - first) / (last - first);
     let ticks = numbers.iter().map(|&value| {
-        let tick = line(right, right + 0.006 * side, at(value));
-        (tick, TEXT, Radius::new_ui_points(0.6))
+        let y = at(value) as f32;
+        [[right as f32, y], [(right + TICK * side) as f32, y]]
     });
-    let (mut strips, mut colors, mut radii) = (Vec::new(), Vec::new(), Vec::new());
-    for (strip, color, radius) in bands.chain(ticks) {
-        strips.push(strip);
-        colors.push(color);
-        radii.push(radius);
-    }
-    let bar = LineStrips2D::new(strips)
-        .with_colors(colors)
-        .with_radii(radii)
+    let ticks = LineStrips2D::new(ticks)
+        .with_colors([TEXT])
+        .with_radii([Radius::new_ui_points(0.6)])
         .with_draw_order(30.0);
     let middle = (left + NUMBERS * side) as f32;
-    let raised = |y: f64| [middle, (y + RAISED * side) as f32];
-    let above = [
-        0.5 * (left + right) as f32,
-        (low + height + 0.045 * side) as f32,
-    ];
-    let places = numbers.iter().map(|&value| raised(at(value)));
+    let above = [0.5 * (left + right), low + height + UNIT * side].map(|x| x as f32);
+    let places = numbers
+        .iter()
+        .map(|&value| [middle, (at(value) + RAISED * side) as f32]);
     let texts = numbers.iter().map(|&value| brief(value));
     let names = Points2D::new(places.chain([above]))
         .with_labels(texts.chain([unit.to_owned()]))
@@ -101,7 +101,7 @@ fn log_bar(
         .with_radii([Radius::new_ui_points(0.0)])
         .with_show_labels(true)
         .with_draw_order(31.0);
-    let parts: [&dyn AsComponents; 2] = [&bar, &names];
+    let parts: [&dyn AsComponents; 2] = [&ticks, &names];
     Ok(stream.log_static(entity, &parts)?)
 }
 

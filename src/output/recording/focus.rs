@@ -26,7 +26,7 @@ use crate::engine::scene::Region;
 use crate::output::colors::Rgb;
 
 /// Half the side of the view around an agent, meters.
-pub const REACH: f64 = 3.0;
+pub const REACH: f64 = 2.5;
 /// The color of the followed agent: no force and no other agent has it.
 const AGENT: Rgb = [255, 244, 214];
 const KERNEL: Rgb = [150, 160, 220];
@@ -72,12 +72,10 @@ impl Focus {
         let names = terms.iter().map(|&term| arrows::in_words(term));
         let colors = terms.iter().map(|&term| arrows::color(term).1);
         let series = SeriesLines::new()
-            .with_names(names.chain(["total".to_owned()]))
-            .with_colors(colors.chain([TOTAL]).map(rgb))
+            .with_names(["total".to_owned()].into_iter().chain(names))
+            .with_colors([TOTAL].into_iter().chain(colors).map(rgb))
             .with_widths(vec![1.5; terms.len() + 1]);
-        let style = Arrows2D::update_fields()
-            .with_radii([Radius::new_ui_points(1.8)])
-            .with_draw_order(21.0);
+        let style = Arrows2D::update_fields().with_draw_order(21.0);
         let names = Points2D::update_fields()
             .with_radii([Radius::new_ui_points(0.0)])
             .with_show_labels(true)
@@ -130,7 +128,7 @@ impl Focus {
         let values = agent.map(|agent| {
             let total = Vector::from(agent.breakdown.acceleration).norm();
             let values = self.terms.iter().map(|&term| agent.force(term).norm());
-            Scalars::new(values.chain([total]))
+            Scalars::new([total].into_iter().chain(values))
         });
         let mut parts: Vec<&dyn AsComponents> = vec![&arrows, &names];
         parts.extend(values.as_ref().map(|values| values as &dyn AsComponents));

@@ -180,7 +180,7 @@ fn below(
     tabs.push(everywhere);
     let [plots, texts] = others;
     Horizontal::new([Tabs::new(tabs).into(), plots, texts])
-        .with_column_shares([2.0, 1.0, 1.0])
+        .with_column_shares([9.0, 4.0, 4.0])
         .into()
 }
 

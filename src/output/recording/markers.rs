@@ -33,7 +33,7 @@ pub fn log(
         )
     });
     let pushes = scene.pushes.iter();
-    let pushes = pushes.map(|push| (format!("push {}", push.name), closed(&push.region)));
+    let pushes = pushes.map(|push| (named("push", &push.name), closed(&push.region)));
     let measured = options.measured.iter().map(|(name, outline)| {
         let name = format!("measured: {name}");
         (name, outline.clone())
@@ -44,6 +44,14 @@ pub fn log(
     log_outlines(stream, "pushes", (&pushes.collect(), PUSH), whole)?;
     let dashed = |outline: &[Vector]| dashes(outline, dash);
     log_outlines(stream, "measured", (&measured.collect(), MEASURED), dashed)
+}
+
+/// The kind before a name that does not begin with it.
+fn named(kind: &str, name: &str) -> String {
+    match name.starts_with(kind) {
+        true => name.to_owned(),
+        false => format!("{kind} {name}"),
+    }
 }
 
 fn closed(region: &Region) -> Vec<Vector> {

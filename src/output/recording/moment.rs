@@ -50,7 +50,7 @@ fn markdown(of: &Breakdown) -> String {
     }
     text += &rest(of.walls.len());
     text += &format!(
-        "\n## {} neighbors within the kernel\n\n",
+        "\n## Neighbors within the kernel: {}\n\n",
         of.neighbors.len()
     );
     if !of.neighbors.is_empty() {
