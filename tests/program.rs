@@ -12,6 +12,7 @@ mod checkpoint;
 mod checkpoint_robustness;
 mod cli;
 mod cli_geometry;
+mod colors;
 mod command_lines;
 mod differences;
 mod draw;

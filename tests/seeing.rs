@@ -193,6 +193,44 @@ fn a_recording_has_places_ways_and_time_series() {
     );
 }
 
+#[test]
+fn a_recording_has_sources_measurements_color_ranges_and_the_end_of_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, rrd) = (
+        folder.path().join("room.json"),
+        folder.path().join("room.rrd"),
+    );
+    let measurements = r#""duration_secs": 6, "measurements": [
+        {"density": {"at_secs": 2, "region": [[1,1],[5,5]]}},
+        {"line_flow": {"name": "door", "line": [[9.2,6],[9.2,10]]}}],"#;
+    fs::write(&file, ROOM.replace("\"duration_secs\": 40,", measurements)).unwrap();
+    let run = ["run", text(&file), "--save", text(&rrd), "--json"];
+    run_json(&[&run[..], &["--set", "view.speed_range=[0,0.5]"]].concat());
+    let recording = Recording::read(&rrd);
+    let names = |entity: &str| recording.static_texts(entity, "Points2D:labels");
+    assert_eq!(names("/world/geometry/sources"), ["source bus"]);
+    let measured = names("/world/geometry/measured");
+    assert_eq!(measured, ["measured: density", "measured: door"]);
+    let layout = Recording::layout(&rrd);
+    for name in [
+        "Speed 0–0.5 m/s",
+        "Forces on agent 0",
+        "Agent 0",
+        "All debug agents",
+        "Events",
+    ] {
+        assert!(layout.contains(name), "{name}: {layout:?}");
+    }
+    let lines = recording.texts("/log", "TextLog:text");
+    let last = &lines.last().unwrap().1[0];
+    assert_eq!(last, "The run ends: its duration of 6 s is over.");
+    assert!(
+        lines
+            .iter()
+            .any(|(_, line)| line[0].contains("bus: 2 agents enter"))
+    );
+}
+
 fn agent(file: &str, id: &str, at: &str) -> Value {
     let moment = run_json(&["inspect", file, "--agent", id, "--at", at, "--json"]);
     moment["agents"][0].clone()

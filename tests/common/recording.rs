@@ -52,17 +52,68 @@ impl Recording {
             .collect()
     }
 
-    /// The pairs in a component of an entity, by frame: positions or vectors.
-    pub fn pairs(&self, entity: &str, component: &str) -> Vec<(i64, Vec<[f64; 2]>)> {
-        let pair = |values: &[f64]| -> Vec<[f64; 2]> {
-            values.chunks_exact(2).map(|xy| [xy[0], xy[1]]).collect()
-        };
+    /// The names of the views and containers of its layout.
+    pub fn layout(path: &Path) -> BTreeSet<String> {
+        let mut file = File::open(path).unwrap();
+        let stores = ChunkStore::from_rrd_reader(&ChunkStoreConfig::DEFAULT, &mut file).unwrap();
+        let layouts = stores.into_iter();
+        let layouts = layouts.filter(|(id, _)| id.kind() == StoreKind::Blueprint);
+        let names = [
+            "ViewBlueprint:display_name",
+            "ContainerBlueprint:display_name",
+        ];
+        let mut found = BTreeSet::new();
+        for (_, store) in layouts {
+            for chunk in store.iter_physical_chunks() {
+                for name in names {
+                    let name = ComponentIdentifier::try_new(name).unwrap();
+                    let rows = 0..chunk.num_rows();
+                    let values = rows.filter_map(|row| chunk.component_batch_raw(name, row)?.ok());
+                    found.extend(values.flat_map(|values| strings(&values)));
+                }
+            }
+        }
+        found
+    }
+
+    /// The texts in a component of an entity, by frame.
+    pub fn texts(&self, entity: &str, component: &str) -> Vec<(i64, Vec<String>)> {
+        let rows = self.rows(entity, component).into_iter();
+        rows.map(|(frame, row)| (frame, strings(&row))).collect()
+    }
+
+    /// The texts in a static component.
+    pub fn static_texts(&self, entity: &str, component: &str) -> Vec<String> {
+        let component = ComponentIdentifier::try_new(component).unwrap();
+        let entity = EntityPath::from(entity);
+        let chunks = self.store.iter_physical_chunks();
+        let own = chunks.filter(|chunk| chunk.is_static() && *chunk.entity_path() == entity);
+        // What was logged last counts.
+        let mut found: Vec<_> = own
+            .filter_map(|chunk| {
+                let row = chunk.num_rows().checked_sub(1)?;
+                let values = chunk.component_batch_raw(component, row)?.ok()?;
+                Some((chunk.row_ids().last(), strings(&values)))
+            })
+            .collect();
+        found.sort();
+        found.pop().map(|(_, texts)| texts).unwrap_or_default()
+    }
+
+    /// The coordinates in a component of an entity, by frame.
+    pub fn coordinates(&self, entity: &str, component: &str) -> Vec<(i64, Vec<f64>)> {
         let rows = self.rows(entity, component).into_iter();
         rows.filter_map(|(frame, row)| {
-            let coordinates = row.as_fixed_size_list_opt()?.values();
-            Some((frame, pair(&numbers(coordinates)?)))
+            Some((frame, numbers(row.as_fixed_size_list_opt()?.values())?))
         })
         .collect()
+    }
+
+    /// The pairs in a component of an entity, by frame: positions or vectors.
+    pub fn pairs(&self, entity: &str, component: &str) -> Vec<(i64, Vec<[f64; 2]>)> {
+        let rows = self.coordinates(entity, component).into_iter();
+        let pairs = |values: Vec<f64>| values.chunks_exact(2).map(|xy| [xy[0], xy[1]]).collect();
+        rows.map(|(frame, values)| (frame, pairs(values))).collect()
     }
 
     /// The numbers in a component of an entity, by frame.
@@ -95,6 +146,11 @@ impl Recording {
         rows.sort_by_key(|&(frame, _)| frame);
         rows
     }
+}
+
+fn strings(array: &ArrayRef) -> Vec<String> {
+    let texts = array.as_string_opt::<i32>().into_iter().flatten();
+    texts.flatten().map(str::to_owned).collect()
 }
 
 fn numbers(array: &ArrayRef) -> Option<Vec<f64>> {
