@@ -83,7 +83,7 @@ impl Recording {
             every: record.record_every,
             from: run.simulation.frame().clock.frame_at(record.record_from),
             recorded: 0,
-            last: run.simulation.frame().clock.clone(),
+            last: *run.simulation.frame().clock,
             ended: false,
         }))
     }

@@ -89,7 +89,7 @@ impl Differences {
                 .column("result", |one| one.name.as_str())
                 .column("A", |one| brief(&one.a))
                 .column("B", |one| brief(&one.b))
-                .column("B − A", |one| one.change().map(|change| rounded(change)))
+                .column("B − A", |one| one.change().map(rounded))
                 .fixed("%", 1, Difference::percent);
             text += &(table.table().text() + &more(&self.results));
         }
