@@ -179,10 +179,7 @@ fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> Reco
         view: view.region,
         density_range: view.density_range,
         speed_range: view.speed_range,
-        // A later start shows its own beginning.
-        opens_at: view
-            .opens_at_secs
-            .map(|at| if recorded.contains(&at) { at } else { from }),
+        opens_at: view.opens_at_secs.filter(|at| recorded.contains(at)),
         begins_at: from,
         ends_at: scenario.duration_secs,
         debug,

@@ -84,16 +84,19 @@ impl Densest {
     }
 }
 
-/// The moment that a recording opens at.
+/// The moment that a recording opens at: the time that was asked for, or else that of the highest density.
 #[derive(Default)]
 pub struct Moment {
-    /// The time that was asked for, seconds; `None`: the time of the highest density.
+    /// The time that was asked for, seconds.
     asked: Option<f64>,
-    /// The frame and its time; `None` before it.
+    /// Was it reached?
+    is_settled: bool,
+    /// The frame and its time. Until the time that was asked for: the moment of the highest density so far, in case the
+    /// run ends before.
     pub at: Option<(i64, f64)>,
     /// The highest density so far, P/m².
     density: f32,
-    /// The first view whose agent is present then, or before if the moment has not come.
+    /// The first view whose agent is present then, or was before.
     pub view: Option<usize>,
 }
 
@@ -105,25 +108,24 @@ impl Moment {
         }
     }
 
-    /// Is this the time that was asked for?
+    /// Is this the first frame at or after the time that was asked for?
     pub fn is_asked(&self, time: f64) -> bool {
-        self.at.is_none() && self.asked.is_some_and(|asked| time >= asked)
+        !self.is_settled && self.asked.is_some_and(|asked| time >= asked)
     }
 
     /// Looks at a frame.
     pub fn see(&mut self, snapshot: &Snapshot) {
         let density = snapshot.densities.iter().copied().fold(0.0, f32::max);
-        let here = match self.asked {
-            Some(_) => self.is_asked(snapshot.time),
-            None => self.at.is_none() || density > self.density,
-        };
-        if here {
+        let is_asked = self.is_asked(snapshot.time);
+        let is_denser = !self.is_settled && (self.at.is_none() || density > self.density);
+        if is_asked || is_denser {
             self.at = Some((snapshot.frame, snapshot.time));
             self.density = density;
         }
-        if here || self.view.is_none() {
+        if is_asked || is_denser || self.view.is_none() {
             let present = snapshot.followed.iter().position(Option::is_some);
             self.view = present.or(self.view);
         }
+        self.is_settled |= is_asked;
     }
 }
