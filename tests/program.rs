@@ -32,6 +32,7 @@ mod plot;
 mod read;
 mod read_hdf5;
 mod recording;
+mod recording_views;
 mod reproduction;
 mod scenario_geometry;
 mod seeing;

@@ -82,7 +82,7 @@ fn a_picture_of_ways_has_a_panel_for_each_destination() {
         "Ways to exit east",
         "Ways to (3, 2)",
         "length of the", // in two lines where the panel is low
-        "shortest way",
+        "shortest",
         "next corner",
     ] {
         assert!(picture.contains(words), "{words}");

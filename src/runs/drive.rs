@@ -114,7 +114,9 @@ impl Run {
                 let secs = self.scenario.stop.idle_secs.unwrap_or_default();
                 format!("no agent has arrived for {secs} s")
             }
-            Some(End::Duration) => "its duration is over".to_owned(),
+            Some(End::Duration) => {
+                format!("its duration of {} s is over", self.scenario.duration_secs)
+            }
             Some(End::Interrupted) => "it was interrupted".to_owned(),
             None => "it has not ended".to_owned(),
         }

@@ -20,6 +20,8 @@ pub mod reading_studies;
 #[cfg(feature = "program")]
 pub mod reading_trajectories;
 #[cfg(feature = "program")]
+pub mod recorded;
+#[cfg(feature = "program")]
 pub mod recording;
 pub mod ring;
 pub mod simulated;

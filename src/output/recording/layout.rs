@@ -48,6 +48,8 @@ pub struct Content {
     pub kind: Kind,
     /// Do agents visit places?
     pub has_journeys: bool,
+    /// Are there queues or waiting areas?
+    pub has_waiting: bool,
     /// The entities with the lengths of ways, which are hidden at first.
     pub fields: Vec<EntityPath>,
     /// Are walls colored by the force on them?
@@ -64,6 +66,7 @@ impl Content {
         Self {
             kind,
             has_journeys: false,
+            has_waiting: false,
             fields: Vec::new(),
             has_wall_forces: false,
             has_outside,
@@ -246,9 +249,11 @@ fn plots(content: &Content) -> ContainerLike {
     let crowd = stack("Agents and energy", [agents, energy]);
     let places = || {
         let of = |what: &str| format!("/stats/places/{what}");
-        let present = plot("Agents in queues and waiting areas", &of(places::PRESENT));
+        let present = (content.has_waiting)
+            .then(|| plot("Agents in queues and waiting areas", &of(places::PRESENT)));
         let passed = plot("Agents that have passed exits", &of(places::PASSED));
-        stack("Places", [present, passed])
+        let plots = present.into_iter().chain([passed]);
+        Vertical::new(plots).with_name("Places").into()
     };
     let places = content.has_journeys.then(places);
     let time = plot("Computing time", "/stats/time");

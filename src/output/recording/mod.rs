@@ -166,6 +166,7 @@ impl Recorder {
         };
         let content = Content {
             has_journeys: !scene.journeys.places.is_empty(),
+            has_waiting: places::has_waiting(scene),
             fields: places::fields(scene),
             has_wall_forces: options.body_mass.is_some(),
             followed: names.clone(),
