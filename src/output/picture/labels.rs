@@ -151,7 +151,11 @@ mod tests {
 
     #[test]
     fn labels_of_one_point_never_overlap_and_stay_inside() {
-        let frame = Frame::around([Vector::zeros(), Vector::new(10.0, 10.0)], [400.0, 400.0]);
+        let frame = Frame::around(
+            [Vector::zeros(), Vector::new(10.0, 10.0)],
+            [400.0, 400.0],
+            22.0,
+        );
         let mut labels = Labels::new(&frame, Vec::new());
         let places = AROUND.map(|side| (Vector::new(5.0, 5.0), side));
         for k in 0..60 {

@@ -3,6 +3,7 @@
 
 mod agents;
 mod crowd;
+mod foot;
 mod forces;
 mod labels;
 mod paths;
@@ -17,7 +18,7 @@ use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
 use crate::output::colors::Rgb;
 use crate::output::plot::{
-    Axis, Cells, ColorBar, LABEL_SIZE, Label, Mark, Panel, PlotError, Print, Sheet, label_width,
+    Axis, Cells, ColorBar, LABEL_SIZE, Mark, Panel, PlotError, Print, Sheet,
 };
 use crate::output::scenery;
 use crate::scenario::measurements::Observed;
@@ -32,10 +33,6 @@ const BESIDE: f64 = 70.0;
 const SMALLEST: [f64; 2] = [150.0, 90.0];
 /// Around what is shown, points.
 const MARGIN: f64 = 10.0;
-/// Below it, for the scale bar and the legend, points.
-const FOOT: f64 = 22.0;
-/// The scale bar is at most this part of the panel's width.
-const SCALE_BAR: f64 = 0.2;
 
 /// A picture of a crowd.
 pub struct Picture<'a> {
@@ -89,27 +86,30 @@ struct Frame {
     max: Vector,
     /// Points per meter.
     scale: f64,
+    /// The height of the space for the scale bar and the legend, points.
+    foot: f64,
 }
 
 impl Frame {
-    /// Around a part of the plane, in a panel of at most `most` points.
-    fn around([low, high]: [Vector; 2], most: [f64; 2]) -> Self {
-        let room = [most[0] - 2.0 * MARGIN, most[1] - MARGIN - FOOT];
+    /// Around a part of the plane, in a panel of at most `most` points, of which `foot` are below it.
+    fn around([low, high]: [Vector; 2], most: [f64; 2], foot: f64) -> Self {
+        let room = [most[0] - 2.0 * MARGIN, most[1] - MARGIN - foot];
         let extent = high - low;
         let scale = (room[0] / extent.x).min(room[1] / extent.y);
         let lengths = [0, 1].map(|k| (extent[k] * scale).max(SMALLEST[k]) / scale);
         let more = (Vector::from(lengths) - extent) * 0.5;
         let margin = |x: f64, y: f64| Vector::new(x, y) / scale;
         Self {
-            min: low - more - margin(MARGIN, FOOT),
+            min: low - more - margin(MARGIN, foot),
             max: high + more + margin(MARGIN, MARGIN),
             scale,
+            foot,
         }
     }
 
     /// The corners of the part above the scale bar and the legend.
     fn inside(&self) -> [Vector; 2] {
-        let foot = Vector::new(0.0, self.meters(FOOT - 4.0));
+        let foot = Vector::new(0.0, self.meters(self.foot - 4.0));
         [self.min + foot, self.max]
     }
 
@@ -169,7 +169,7 @@ impl<'a> Picture<'a> {
                 [width, width]
             }
         };
-        let frame = Frame::around(shown, most);
+        let frame = self.frame(shown, most);
         let panels = match self.paths.as_slice() {
             [] => vec![self.panel(&frame, None)],
             paths => paths
@@ -184,6 +184,13 @@ impl<'a> Picture<'a> {
             panels,
             ..Sheet::default()
         }
+    }
+
+    /// The frame of each panel, with room for all entries of the legend.
+    fn frame(&self, shown: [Vector; 2], most: [f64; 2]) -> Frame {
+        let one = Frame::around(shown, most, foot::height(1));
+        let rows = foot::rows(self, &one, !self.paths.is_empty()).len();
+        Frame::around(shown, most, foot::height(rows))
     }
 
     /// The view, with all places and zones.
@@ -232,7 +239,7 @@ impl<'a> Picture<'a> {
             marks.extend(regions::marks(self.observed, &mut labels));
         }
         marks.extend(labels.into_marks());
-        marks.extend(self.foot(frame, paths.is_some()));
+        marks.extend(foot::marks(self, frame, paths.is_some()));
         Panel {
             title,
             x: Axis::linear("x [m]", [frame.min.x, frame.max.x]),
@@ -265,48 +272,6 @@ impl<'a> Picture<'a> {
         let coloring = self.coloring.as_ref().map(|coloring| &coloring.bar);
         let walls = || self.wall_mass().map(|_| forces::bar());
         field.or(coloring).cloned().or_else(walls)
-    }
-
-    /// The scale bar and the legend.
-    fn foot(&self, frame: &Frame, has_paths: bool) -> Vec<Mark> {
-        let y = frame.min.y + frame.meters(0.5 * FOOT - 2.0);
-        let mut x = frame.min.x + frame.meters(MARGIN);
-        let longest = SCALE_BAR * (frame.max.x - frame.min.x);
-        let decade = 10_f64.powf(longest.log10().floor());
-        let steps = [5.0, 2.0, 1.0].map(|factor| factor * decade);
-        let length = steps
-            .into_iter()
-            .find(|step| *step <= longest)
-            .unwrap_or(decade);
-        let mut marks = scene::scale_bar([x, y], length, frame);
-        let mut text = |x: f64, text: String, color: Rgb| {
-            let width = frame.meters(label_width(&text));
-            marks.push(Mark::Label(Label {
-                at: [x, y],
-                side: [1, 0],
-                text,
-                color,
-            }));
-            x + width
-        };
-        x = text(
-            x + length + frame.meters(4.0),
-            format!("{length} m"),
-            [0; 3],
-        );
-        x += frame.meters(16.0);
-        let entries = agents::legend(self, has_paths);
-        let mut samples = Vec::new();
-        for entry in entries {
-            let width = frame.meters(14.0 + label_width(&entry.text));
-            if x + width > frame.max.x {
-                break;
-            }
-            samples.push(entry.sample([x, y], frame));
-            x = text(x + frame.meters(14.0), entry.text, [0; 3]) + frame.meters(12.0);
-        }
-        marks.extend(samples.into_iter().flatten());
-        marks
     }
 }
 
