@@ -91,7 +91,7 @@ impl Recording {
 
 impl Observer<Failure> for Recording {
     fn observe(&mut self, run: &Run, ms: f64, then: ControlFlow<End>) -> Result<(), Failure> {
-        self.last.clone_from(run.simulation.frame().clock);
+        self.last = *run.simulation.frame().clock;
         let frame = self.last.frame();
         if frame >= self.from && frame.is_multiple_of(self.every) {
             self.recorder.log(&run.simulation, ms)?;

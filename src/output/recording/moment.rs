@@ -38,7 +38,7 @@ fn markdown(of: &Breakdown) -> String {
         }
     }
     text += &format!(
-        "\n## {} walls that hide a part of the kernel\n\n",
+        "\n## Walls that hide a part of the kernel: {}\n\n",
         of.walls.len()
     );
     if !of.walls.is_empty() {
