@@ -156,7 +156,7 @@ pub enum Width {
 }
 
 impl Width {
-    /// In points, with so many pixels per inch.
+    /// In points, with this number of pixels per inch.
     pub fn points(self, dpi: f64) -> f64 {
         match self {
             Self::Millimeters(length) => length * 72.0 / 25.4,

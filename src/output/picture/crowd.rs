@@ -62,7 +62,7 @@ pub struct Trails {
 }
 
 impl Trails {
-    /// Paths of so many seconds.
+    /// The length of paths, seconds.
     pub fn new(secs: f64) -> Self {
         Self {
             secs,

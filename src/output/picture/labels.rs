@@ -7,7 +7,7 @@ use crate::output::plot::{Label, Mark, Style, label_width};
 
 /// Labels keep this distance from their points, points.
 const GAP: f64 = 4.0;
-/// Where no place beside its point is free, a label is up to so many times its height away, with a line to its point.
+/// Where no place beside its point is free, a label is at most this many times its height away, with a line to its point.
 const FARTHEST: u32 = 7;
 /// The width of that line, points.
 const LEADER: f64 = 0.4;

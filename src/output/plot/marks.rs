@@ -19,7 +19,7 @@ const RIM: f64 = 0.7; // width of the white rim of labels, points
 const ERROR_BAR: f64 = 0.8; // width of its lines, points
 const SMALL: f64 = 1.8; // discs with smaller radii have no outline, points
 const OUTLINE: f64 = 0.35; // width of the outline of a disc, points
-/// A line with so many points counts as one more shape.
+/// A line with this number of points counts as one more shape.
 const LINE_POINTS: usize = 20;
 
 /// Right and up, from 0 to 1 inside of the plotting area.

@@ -41,7 +41,7 @@ pub struct Pdf {
     size: [f64; 2],
     /// Units per point.
     scale: f64,
-    /// Images come with so many pixels for each of theirs, in both directions.
+    /// Images are enlarged by this factor in both directions.
     finer: u32,
     content: Content,
     images: Vec<RgbImage>,
