@@ -16,7 +16,7 @@ pub use paths::Paths;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
-use crate::output::colors::Rgb;
+use crate::output::colors::{ColorMap, Rgb};
 use crate::output::plot::{
     Axis, Cells, ColorBar, LABEL_SIZE, Mark, Panel, PlotError, Print, Sheet,
 };
@@ -27,8 +27,8 @@ use labels::Labels;
 /// The largest panel, points: alone, and one of several.
 const ALONE: [f64; 2] = [640.0, 460.0];
 const OF_SEVERAL: [f64; 2] = [440.0, 340.0];
-/// What the axes and color bars beside a panel of a sheet of given width need, points.
-const BESIDE: f64 = 70.0;
+/// Scenes that are more times as wide as high are wide.
+const WIDE: f64 = 1.3;
 /// The smallest panel, points.
 const SMALLEST: [f64; 2] = [150.0, 90.0];
 /// Around what is shown, points.
@@ -113,6 +113,13 @@ impl Frame {
         [self.min + foot, self.max]
     }
 
+    fn axes(&self) -> [Axis; 2] {
+        [
+            Axis::linear("x [m]", [self.min.x, self.max.x]),
+            Axis::linear("y [m]", [self.min.y, self.max.y]),
+        ]
+    }
+
     /// A length in points, in meters.
     fn meters(&self, points: f64) -> f64 {
         points / self.scale
@@ -160,16 +167,20 @@ impl<'a> Picture<'a> {
     /// The picture as a sheet.
     pub fn sheet(&self, print: &Print) -> Sheet {
         let shown = self.shown();
-        let columns = if self.paths.len() > 1 { 2 } else { 1 };
+        let columns = self.columns(shown, print);
         let most = match (columns, print.width) {
             (1, None) => ALONE,
             (_, None) => OF_SEVERAL,
-            (columns, Some(width)) => {
-                let width = (width / f64::from(columns) - BESIDE).max(SMALLEST[0]);
-                [width, width]
-            }
+            (columns, Some(width)) => [width / columns as f64; 2],
         };
-        let frame = self.frame(shown, most);
+        let mut frame = self.frame(shown, most);
+        if print.width.is_some() {
+            // Labels have sizes in points, so they must know the size that is left for a panel.
+            for _ in 0..3 {
+                let panel = self.draft(&frame, columns).printed_panel(print);
+                frame = self.frame(shown, panel);
+            }
+        }
         let panels = match self.paths.as_slice() {
             [] => vec![self.panel(&frame, None)],
             paths => paths
@@ -179,9 +190,39 @@ impl<'a> Picture<'a> {
         };
         Sheet {
             title: self.title.clone(),
-            columns: columns as usize,
+            columns,
             panel_size: frame.size(),
             panels,
+            ..Sheet::default()
+        }
+    }
+
+    /// Panels per row: on narrow sheets, wide ones are below each other.
+    fn columns(&self, [low, high]: [Vector; 2], print: &Print) -> usize {
+        let is_wide = high.x - low.x > WIDE * (high.y - low.y);
+        match self.paths.len() {
+            0 | 1 => 1,
+            _ if is_wide && print.width.is_some() => 1,
+            _ => 2,
+        }
+    }
+
+    /// The sheet without marks.
+    fn draft(&self, frame: &Frame, columns: usize) -> Sheet {
+        let title = agents::summary(self);
+        let [x, y] = frame.axes();
+        let bar = match self.paths.is_empty() {
+            true => self.bar(),
+            false => Some(paths::bar(ColorMap::pale([0.0, 100.0], 10))),
+        };
+        let panel = Panel {
+            bar,
+            ..Panel::new(&title, x, y, Vec::new())
+        };
+        Sheet {
+            columns,
+            panel_size: frame.size(),
+            panels: vec![panel; self.paths.len().max(1)],
             ..Sheet::default()
         }
     }
@@ -240,10 +281,11 @@ impl<'a> Picture<'a> {
         }
         marks.extend(labels.into_marks());
         marks.extend(foot::marks(self, frame, paths.is_some()));
+        let [x, y] = frame.axes();
         Panel {
             title,
-            x: Axis::linear("x [m]", [frame.min.x, frame.max.x]),
-            y: Axis::linear("y [m]", [frame.min.y, frame.max.y]),
+            x,
+            y,
             marks,
             bar,
             legend: None,

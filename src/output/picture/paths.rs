@@ -43,6 +43,14 @@ pub struct Drawn {
     pub bar: ColorBar,
 }
 
+/// The colors of lengths.
+pub fn bar(map: ColorMap) -> ColorBar {
+    ColorBar {
+        label: "length of the shortest way [m]".to_owned(),
+        map,
+    }
+}
+
 impl Paths {
     pub(super) fn draw(&self, simulation: &Simulation, frame: &Frame) -> Drawn {
         let grid = Grid::over([frame.min, frame.max], frame.meters(CELL));
@@ -73,10 +81,7 @@ impl Paths {
             title: format!("Ways to {}", self.name),
             field: vec![cells(field.lengths, map.clone()), borders],
             lines,
-            bar: ColorBar {
-                label: "length of the shortest way [m]".to_owned(),
-                map,
-            },
+            bar: bar(map),
         }
     }
 

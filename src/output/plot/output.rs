@@ -95,6 +95,11 @@ impl Sheet {
         std::fs::write(path, bytes).map_err(|reason| PlotError::writing(path, reason))
     }
 
+    /// The size of a panel's axes when the sheet is printed, points.
+    pub fn printed_panel(&self, print: &Print) -> [f64; 2] {
+        Layout::new(&self.for_print(print), print).panel
+    }
+
     fn svg(&self, print: &Print) -> Result<Vec<u8>, PlotError> {
         let sheet = self.for_print(print);
         let layout = Layout::new(&sheet, print);
