@@ -9,7 +9,7 @@ use image::Rgb;
 use crate::common::program::{refused, run, run_json, stderr, text};
 use sandbox::output::colors::ColorMap;
 
-/// Four agents far from each other who stand, and one who walks to the right at 1 m/s along y = 1.
+/// Four standing agents far from each other, and one agent that walks to the right at 1 m/s along y = 1.
 const HALL: &str = r#"{"name": "hall", "duration_secs": 20, "profile": "sph", "preferred_speed": 1,
     "walkable_area": [[[[0,0],[20,0],[20,10],[0,10]]]],
     "view": {"region": [[0,0],[20,10]], "density_range": [0, 4]},

@@ -204,7 +204,7 @@ fn a_region_has_the_density_and_speed_of_the_people_in_it() {
     assert!(empty.of_persons.is_empty());
     for frame in standing.frames.iter().filter(|frame| frame.people > 0) {
         assert_eq!((frame.people, frame.speed), (1, Some(0.0)));
-        assert_eq!(frame.sph_at_people, Some(0.0), "nobody else is near");
+        assert_eq!(frame.sph_at_people, Some(0.0), "no other agent is near");
         assert_eq!(frame.classic, Some(1.0 / 4.0));
     }
     for frame in walking.frames.iter().filter(|frame| frame.people > 0) {

@@ -11,6 +11,7 @@ use crate::analysis::exposure::PersonExposure;
 use crate::analysis::statistics::MeanStd;
 use crate::engine::math::Vector;
 use crate::lab::error::LabError;
+use crate::output::plot::Print;
 use crate::output::table::{Cell, Table, csv_lines};
 use crate::runs::error::StoreError;
 use crate::runs::store::Store;
@@ -34,7 +35,11 @@ pub fn files() -> impl Iterator<Item = String> {
     let tables = [
         AGENTS, FIELDS, DIAGRAM, CLASSES, REGIONS, FLOW, EXPOSURE, ALARMS, RECORDING,
     ];
-    let pictures = STEMS.map(|stem| ["svg", "png"].map(|kind| format!("{stem}.{kind}")));
+    let kinds: Vec<&str> = Print::of_program().extensions().collect();
+    let pictures = STEMS.map(|stem| {
+        let files = kinds.iter().map(|kind| format!("{stem}.{kind}"));
+        files.collect::<Vec<_>>()
+    });
     let tables = tables.into_iter().map(str::to_owned);
     tables.chain(pictures.into_iter().flatten())
 }

@@ -70,7 +70,7 @@ impl Trails {
         }
     }
 
-    /// Adds the positions of a later moment, and forgets people who are gone.
+    /// Adds the positions of a later moment, and forgets people that have left.
     pub fn add(&mut self, crowd: &Crowd) {
         let mut before = std::mem::take(&mut self.places);
         for (id, &position) in crowd.id.iter().zip(&crowd.position) {

@@ -49,7 +49,7 @@ pub struct Picture<'a> {
     pub view: Region,
     /// The colors of people; `None`: by what they do.
     pub coloring: Option<Coloring>,
-    /// A field below the people, who are small then.
+    /// A field below the people; their discs are then small.
     pub field: Option<Field>,
     /// The paths of the last seconds.
     pub trails: Option<&'a Trails>,

@@ -75,9 +75,7 @@ impl Sheet {
     /// The sheet cannot be drawn or a file cannot be written.
     pub fn save(&self, stem: &Path) -> Result<(), PlotError> {
         let print = Print::of_program();
-        let mut extensions = vec!["svg", "png"];
-        extensions.extend(print.width.map(|_| "pdf"));
-        let mut files = extensions.iter().map(|e| stem.with_extension(e));
+        let mut files = print.extensions().map(|e| stem.with_extension(e));
         files.try_for_each(|file| self.save_as(&file, &print))
     }
 

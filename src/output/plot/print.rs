@@ -47,6 +47,11 @@ impl Print {
         let _ = OF_PROGRAM.set(self);
     }
 
+    /// The extensions of the files that a sheet of results is written to: PDF, too, if a width is given.
+    pub fn extensions(&self) -> impl Iterator<Item = &'static str> + use<> {
+        ["svg", "png"].into_iter().chain(self.width.map(|_| "pdf"))
+    }
+
     /// How sheets without a print of their own are printed.
     pub fn of_program() -> Self {
         OF_PROGRAM.get().copied().unwrap_or_default()
