@@ -152,7 +152,7 @@ fn the_program_compares_files_of_one_kind() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).display().to_string();
     for (name, seed) in [("a", "1"), ("b", "2")] {
-        let csv = path(&format!("{name}.csv"));
+        let [csv, rrd] = ["csv", "rrd"].map(|extension| path(&format!("{name}.{extension}")));
         let run = [
             "evacuation",
             "--until",
@@ -161,6 +161,8 @@ fn the_program_compares_files_of_one_kind() {
             seed,
             "--trajectory",
             &csv,
+            "--save",
+            &rrd,
             "--json",
         ];
         std::fs::write(path(&format!("{name}.json")), text(&run)).unwrap();
@@ -171,6 +173,31 @@ fn the_program_compares_files_of_one_kind() {
     assert!(text(&["compare", &a, &b]).contains("seed"));
     assert!(text(&["compare", &path("a.csv"), &path("b.csv")]).contains("positions differ from"));
     refused(&["compare", &a, &path("b.csv")], 2, &["give two of a kind"]);
+    // A recording has the result of its run.
+    let recorded = |name: &str| path(&format!("{name}.rrd"));
+    let same = run_json(&["compare", &a, &recorded("a"), "--json"]);
+    assert_eq!([&same["settings"], &same["results"]], [&json!([]); 2]);
+    let other = run_json(&["compare", &recorded("a"), &recorded("b"), "--json"]);
+    assert_eq!(
+        [&other["settings"], &other["results"]],
+        [&found["settings"], &found["results"]]
+    );
+    let moment = path("moment.rrd");
+    run(&[
+        "inspect",
+        "evacuation",
+        "--agent",
+        "1",
+        "--at",
+        "0.1",
+        "--save",
+        &moment,
+    ]);
+    refused(
+        &["compare", &a, &moment],
+        2,
+        &["moment.rrd: the recording has no results"],
+    );
 }
 
 #[test]

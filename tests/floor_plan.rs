@@ -4,8 +4,9 @@ use std::fs;
 
 use sandbox::engine::geometry::Polygon;
 use sandbox::engine::math::Vector;
-use sandbox::scenario::floor_plan::{self, FloorPlan, FloorPlanError, parse_wkt};
+use sandbox::scenario::floor_plan::{self, FloorPlan, FloorPlanError, Label, parse, parse_wkt};
 use sandbox::scenario::quote::shown;
+use sandbox::scenario::{Scenario, Setting};
 use serde_json::{Value, json};
 
 fn read(name: &str, text: &str) -> Result<FloorPlan, FloorPlanError> {
@@ -91,6 +92,65 @@ fn all_ways_of_writing_a_room_with_a_pillar_give_the_same_walls() {
     ] {
         assert_eq!(walls(json(&document).unwrap()), expected, "{document}");
     }
+}
+
+#[test]
+fn names_of_features_lie_inside_of_them() {
+    // An L, whose middle is outside, and a room around a pillar, which is not named.
+    let l = json!([[[0, 0], [9, 0], [9, 1], [1, 1], [1, 9], [0, 9], [0, 0]]]);
+    let square = json!([[[10, 0], [20, 0], [20, 10], [10, 10], [10, 0]]]);
+    let pillar = json!([[[13, 3], [17, 3], [17, 7], [13, 7], [13, 3]]]);
+    let named = |coordinates: &Value, name: &str, kind: &str| {
+        let mut feature = feature(coordinates.clone(), kind);
+        feature["properties"]["name"] = json!(name);
+        feature
+    };
+    let features = [
+        named(&l, "corridor", "floor"),
+        named(&square, "room", "floor"),
+    ];
+    let mut features = features.to_vec();
+    features.push(feature(pillar, "obstacle"));
+    let plan = json(&json!({"type": "FeatureCollection", "features": features})).unwrap();
+    let label = |text: &str, [x, y, width]: [f64; 3]| Label {
+        text: text.to_owned(),
+        at: Vector::new(x, y),
+        width: Some(width),
+    };
+    let expected = [
+        label("corridor", [0.5, 4.5, 1.0]),
+        label("room", [15.0, 5.0, 10.0]),
+    ];
+    assert_eq!(plan.names, expected);
+}
+
+#[test]
+fn a_scenario_takes_the_names_of_its_plans_as_labels() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut room = feature(json!([[[0, 0], [8, 0], [8, 8], [0, 8], [0, 0]]]), "floor");
+    room["properties"]["name"] = json!("hall");
+    std::fs::write(folder.path().join("plan.geojson"), room.to_string()).unwrap();
+    let own = json!({"walkable_area": "plan.geojson", "labels": [{"text": "here", "at": [1, 2]}]});
+    let file = folder.path().join("own.json");
+    std::fs::write(&file, own.to_string()).unwrap();
+    let scenario = Scenario::load(&file, &[]).unwrap();
+    let label = |text: &str, [x, y]: [f64; 2], width| Label {
+        text: text.to_owned(),
+        at: Vector::new(x, y),
+        width,
+    };
+    let expected = [
+        label("here", [1.0, 2.0], None),
+        label("hall", [4.0, 4.0], Some(8.0)),
+    ];
+    assert_eq!(scenario.labels, expected);
+    // The document of a recording or checkpoint has them without the file.
+    let again = Scenario::parse(&scenario.to_text(), "again.json", &[]).unwrap();
+    assert_eq!(again.labels, scenario.labels);
+    // Another plan replaces them.
+    let plan = parse("POLYGON ((0 0, 9 0, 9 9, 0 9))").unwrap();
+    let settings = Setting::floor_plan(&plan, "--geometry other.wkt");
+    assert_eq!(Scenario::load(&file, &settings).unwrap().labels, []);
 }
 
 #[test]

@@ -91,6 +91,23 @@ fn doors_join_the_subrooms_on_their_two_sides() {
 }
 
 #[test]
+fn captions_name_rooms_and_those_of_the_editor_do_not() {
+    let named = |caption: &str| {
+        let room = format!(
+            "<room id=\"0\" caption=\"{caption}\"><subroom id=\"1\">{}</subroom></room>",
+            path("polygon", &SQUARE)
+        );
+        let names = parse(&plan("m", &room, "")).unwrap().names;
+        names
+            .into_iter()
+            .map(|label| (label.text, label.at))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(named("hall"), [("hall".to_owned(), [2.0, 2.0].into())]);
+    assert_eq!([named("room"), named(" ")], [[], []]);
+}
+
+#[test]
 fn errors_name_the_place_and_the_fix() {
     let wall = path("polygon", &[[0.0, 0.0], [4.0, 0.0]]);
     let far = path("polygon", &[[9.0, 9.0], [9.0, 5.0]]);

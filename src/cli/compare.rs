@@ -7,15 +7,16 @@ use serde_json::Value;
 
 use super::{Failure, talk, tell};
 use crate::lab::differences::{Differences, of_reports, of_tracks};
+use crate::output::recording::Recorded;
 use crate::scenario::input;
 use crate::scenario::quote::shown;
 use crate::scenario::trajectories::{ReadOptions, Tracks, read};
 
 #[derive(Args)]
 pub struct CompareOptions {
-    /// A: the result of a run as --json printed it, or trajectories (SQLite, text, CSV)
+    /// A: the result of a run as --json printed it, a recording (.rrd), or trajectories (SQLite, text, CSV)
     pub a: PathBuf,
-    /// B: a file of the same kind
+    /// B: a file of the same kind; a result and a recording can be compared, too
     pub b: PathBuf,
     /// Print one JSON object instead of text
     #[arg(long)]
@@ -58,18 +59,31 @@ pub fn run(options: &CompareOptions) -> Result<(), Failure> {
 
 /// Reads a file of any kind.
 fn open(path: &Path) -> Result<Input, Failure> {
-    let is_json = path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    if !is_json {
-        let tracks = read(path, &ReadOptions::default())?;
-        for note in &tracks.notes {
-            talk(&format!("note: {}: {note}", path.display()));
-        }
-        return Ok(Input::Tracks(Box::new(tracks)));
-    }
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     let refused = |reason: String| Failure::Input(format!("{}: {reason}", path.display()));
-    let text = input::text(path).map_err(|error| refused(format!("cannot be read: {error}")))?;
+    let text = match extension.to_str() {
+        Some("json") => {
+            input::text(path).map_err(|error| refused(format!("cannot be read: {error}")))?
+        }
+        Some("rrd") => {
+            let recorded = Recorded::read(path)?;
+            let report = recorded.report().map(str::to_owned);
+            report.ok_or_else(|| {
+                refused(
+                    "the recording has no results: its run did not end, or an earlier version wrote it; \
+                     record the run again"
+                        .to_owned(),
+                )
+            })?
+        }
+        _ => {
+            let tracks = read(path, &ReadOptions::default())?;
+            for note in &tracks.notes {
+                talk(&format!("note: {}: {note}", path.display()));
+            }
+            return Ok(Input::Tracks(Box::new(tracks)));
+        }
+    };
     let report = serde_json::from_str(&text);
     let report =
         report.map_err(|error| refused(format!("no JSON: {}", shown(&error.to_string()))))?;

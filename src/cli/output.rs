@@ -6,7 +6,7 @@ use std::path::Path;
 use super::arguments::{OutputOptions, RecordOptions};
 use super::interrupt::Interrupt;
 use super::values::region;
-use super::{Failure, talk, trajectory};
+use super::{Failure, report, talk, trajectory};
 use crate::engine::clock::Clock;
 use crate::engine::simulation::Simulation;
 use crate::output::recording::{
@@ -101,6 +101,8 @@ impl Observer<Failure> for Recording {
             self.ended = true;
             let end = format!("The run ends: {}.", run.reason());
             self.recorder.note(&self.last, &end)?;
+            let json = report::json(run).to_string();
+            self.recorder.results(&report::text(run), &json)?;
         }
         Ok(())
     }
@@ -187,6 +189,7 @@ fn recording_options(scenario: &Scenario, debug: DebugAgents, from: f64) -> Reco
         measured: measured
             .map(|(name, place)| (name, place.outline()))
             .collect(),
+        labels: scenario.labels.clone(),
         entering: scenario.entering,
     }
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
+use super::arguments::PrintOptions;
 use super::watch::Watch;
 use super::{Failure, say, talk, tell, use_threads};
 use crate::lab::machine::main_memory;
@@ -52,6 +53,8 @@ pub struct SweepOptions {
     /// Draw over this varied setting, or over two settings as a map [default: the first one with numbers]
     #[arg(long, value_name = "KEY[,KEY]", value_delimiter = ',', conflicts_with_all = ["list", "shard"])]
     pub over: Vec<String>,
+    #[command(flatten)]
+    pub print: PrintOptions,
     /// Number of cells to compute at once, each on one thread [default: all cores]
     #[arg(long, value_parser = super::values::threads)]
     pub threads: Option<usize>,
@@ -65,6 +68,7 @@ pub struct SweepOptions {
 
 pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     use_threads(options.threads)?;
+    options.print.apply();
     // For --list and --merge the cells may have been computed on a larger machine.
     let computes = !options.list && !options.merge;
     let memory = computes.then(main_memory).flatten();

@@ -32,8 +32,12 @@ pub const TERMS: [(&str, Rgb); 10] = [
     ("sea green", [47, 123, 92]),
 ];
 
-/// Few enough that equal colors repeat in a file, more than the eye can tell apart.
-const STEPS: usize = 64;
+/// The colors of a map: more than the eye can tell apart on a smooth field.
+const STEPS: usize = FEW * EACH - EACH + 1;
+/// The colors of a map in recordings: few enough that equal ones repeat in the file.
+const FEW: usize = 64;
+/// The steps of a map from one of these few to the next.
+const EACH: usize = 4;
 
 /// A color map for a range of values.
 #[derive(Debug, Clone)]
@@ -109,6 +113,16 @@ impl ColorMap {
 
     /// The color of `value`, clamped to the range.
     pub fn color(&self, value: f32) -> Rgb {
+        self.nearest(value, 1)
+    }
+
+    /// The color of `value`, clamped to the range, in 64 steps.
+    pub fn one_of_few(&self, value: f32) -> Rgb {
+        self.nearest(value, EACH)
+    }
+
+    /// The nearest of every `each`-th color.
+    fn nearest(&self, value: f32, each: usize) -> Rgb {
         let [first, last] = self.range;
         let part = (value - first) / (last - first);
         let part = match self.bands {
@@ -119,7 +133,8 @@ impl ColorMap {
             None => part,
         };
         // `as` saturates and maps NaN to the first color.
-        self.colors[((part * (STEPS - 1) as f32 + 0.5) as usize).min(STEPS - 1)]
+        let last = (STEPS - 1) / each;
+        self.colors[((part * last as f32 + 0.5) as usize).min(last) * each]
     }
 
     /// The number of bands of equal color, if it has bands.

@@ -83,6 +83,14 @@ pub fn spots(queue: &Queue) -> Vec<Vector> {
         .collect()
 }
 
+/// The kind before a name that does not begin with it.
+pub fn named(kind: &str, name: &str) -> String {
+    match name.starts_with(kind) {
+        true => name.to_owned(),
+        false => format!("{kind} {name}"),
+    }
+}
+
 /// The name of a zone with its factor.
 pub fn zone_name(zone: &Zone) -> String {
     format!("{}: speed × {}", zone.name, zone.speed_factor)

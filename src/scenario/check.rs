@@ -104,6 +104,7 @@ impl Contents {
             stop: keys.stop.clone(),
             measurements: keys.measurements.clone(),
             view: view::of(keys.view.as_ref(), &scene).under("view")?,
+            labels: keys.labels.iter().map(Into::into).collect(),
             changes: Vec::new(),
             debug_agents: match &keys.debug_agents {
                 Some(ids) => without_repetition(ids)?,

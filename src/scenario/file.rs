@@ -18,7 +18,7 @@ use super::places::{Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
 use super::preset::Preset;
 use super::profiles::ProfileChoice;
 use super::schema::word;
-use super::shapes::{Corners, Obstacle, Point, Ring};
+use super::shapes::{Corners, Label, Obstacle, Point, Ring};
 use super::ways::{PASSABLE, WayFinding};
 use crate::engine::boundary::WallMethod;
 use crate::engine::clock::{PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
@@ -155,6 +155,8 @@ pub(super) struct File {
     pub stop: Stop,
     /// What pictures and recordings show.
     pub view: Option<View>,
+    /// Texts in pictures and recordings. The names in floor plan files are added.
+    pub labels: Vec<Label>,
     /// Ids of the agents whose forces a recording shows. Default: a dozen, spread over all agents.
     pub debug_agents: Option<Vec<u32>>,
 }

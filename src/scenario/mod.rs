@@ -78,6 +78,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use crate::engine::scene::Scene;
+use crate::scenario::floor_plan::Label;
 use crate::scenario::measurements::Measurement;
 
 /// The key that names a file, and the file: a floor plan or trajectories.
@@ -102,6 +103,8 @@ pub struct Scenario {
     pub measurements: Vec<Measurement>,
     /// What pictures and recordings show.
     pub view: View,
+    /// Texts in them.
+    pub labels: Vec<Label>,
     /// Ids of the agents whose forces a recording shows. Some of them may never enter.
     pub debug_agents: Vec<u32>,
     /// Upper bound on the agents that enter during the run; all ids are lower.

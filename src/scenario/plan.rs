@@ -13,12 +13,14 @@ use super::shapes::{Obstacle, Point, Ring as GivenRing};
 use crate::engine::geometry::{Area, Polygon, Ring};
 use crate::engine::math::{Vector, direction, perpendicular};
 use crate::engine::period::Period;
-use crate::scenario::floor_plan::{self, FloorPlan, FloorPlanError};
+use crate::scenario::floor_plan::{self, FloorPlan, FloorPlanError, Label};
 use crate::scenario::quote::shown;
 
 /// The keys that may name a file.
 const WALKABLE_AREA: &str = "walkable_area";
 const OBSTACLES: &str = "obstacles";
+/// The key that gets the names in these files.
+const LABELS: &str = "labels";
 
 /// Most corners of one ring: the search for crossing edges compares all nearby pairs.
 const MOST_CORNERS: usize = 20_000;
@@ -59,13 +61,21 @@ pub(super) fn fill(document: &mut Value, folder: &Path) -> Result<Vec<PlanFile>,
             _ => walkable_value(&plan),
         };
         document.insert(key.to_owned(), value);
+        if !plan.names.is_empty() {
+            let labels = document.entry(LABELS).or_insert_with(|| json!([]));
+            // Anything else is rejected later.
+            if let Value::Array(labels) = labels {
+                labels.extend(labels_of(&plan));
+            }
+        }
     }
     Ok(files)
 }
 
 impl Setting {
-    /// Settings that replace a scenario's walkable area and obstacles with `plan`; messages call them `text`.
-    pub fn floor_plan(plan: &FloorPlan, text: &str) -> [Self; 2] {
+    /// Settings that replace a scenario's walkable area, obstacles and labels with those of `plan`; messages call them
+    /// `text`.
+    pub fn floor_plan(plan: &FloorPlan, text: &str) -> [Self; 3] {
         let walkable = match plan.walkable.is_empty() {
             true => Value::Null,
             false => walkable_value(plan),
@@ -73,6 +83,7 @@ impl Setting {
         [
             Self::of(WALKABLE_AREA, walkable, text),
             Self::of(OBSTACLES, obstacles_value(plan), text),
+            Self::of(LABELS, labels_of(plan).collect(), text),
         ]
     }
 }
@@ -87,6 +98,12 @@ fn obstacles_value(plan: &FloorPlan) -> Value {
         false => rings_value(area),
     };
     plan.obstacles.iter().map(obstacle).collect()
+}
+
+/// The names of a plan as labels.
+fn labels_of(plan: &FloorPlan) -> impl Iterator<Item = Value> {
+    let names = plan.names.iter();
+    names.map(|Label { text, at, width }| json!({"text": text, "at": [at.x, at.y], "width": width}))
 }
 
 fn rings_value(area: &Area) -> Value {

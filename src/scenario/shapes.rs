@@ -5,6 +5,7 @@ use serde::Deserialize;
 
 use super::file::FARTHEST;
 use crate::engine::math::Vector;
+use crate::scenario::floor_plan;
 
 /// A point [x, y] in meters
 #[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
@@ -34,3 +35,27 @@ pub(super) enum Obstacle {
 #[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Corners(pub [Point; 2]);
+
+/// A text at a point
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Label {
+    /// The text.
+    #[schemars(length(min = 1))]
+    pub text: String,
+    /// Its middle.
+    pub at: Point,
+    /// The room for it, meters: it is left out where it is wider. Default: it is always shown.
+    #[schemars(range(min = 0, max = FARTHEST))]
+    pub width: Option<f64>,
+}
+
+impl From<&Label> for floor_plan::Label {
+    fn from(given: &Label) -> Self {
+        Self {
+            text: given.text.clone(),
+            at: given.at.into(),
+            width: given.width,
+        }
+    }
+}

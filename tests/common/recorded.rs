@@ -51,6 +51,7 @@ pub fn options(debug: DebugAgents) -> RecordingOptions {
         debug,
         body_mass: None,
         measured: Vec::new(),
+        labels: Vec::new(),
         entering: 49,
     }
 }

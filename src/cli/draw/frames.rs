@@ -7,6 +7,7 @@ use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
 use crate::lab::measure::{Behind, Kernel, MOST_HIDDEN, Site, parts};
 use crate::output::picture::Crowd;
+use crate::scenario::floor_plan::Label;
 use crate::scenario::measurements::Observed;
 
 /// The crowd at the moments of a run.
@@ -47,6 +48,8 @@ pub struct Run {
     pub support_radius: f64,
     /// What its measurements observe.
     pub observed: Vec<(String, Observed)>,
+    /// Texts.
+    pub labels: Vec<Label>,
     /// The mass of an average person, kg, if forces on walls are measured.
     pub body_mass: Option<f64>,
     /// The times of the first and the last frame, seconds, if they are known.

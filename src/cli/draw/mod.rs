@@ -334,6 +334,7 @@ fn draw(
             field: look.field(run),
             trails: trails.as_ref(),
             observed: &run.observed,
+            labels: &run.labels,
             paths: std::mem::take(&mut paths),
             body_mass: run.body_mass,
             ..Picture::of_scene(

@@ -78,6 +78,7 @@ pub fn open(path: &Path) -> Result<Run, Failure> {
         speed_range: speed_range.unwrap_or([0.0, SPEED_RANGE.into()]),
         support_radius,
         observed: observed.flat_map(|one| one.observed()).collect(),
+        labels: scenario.map_or(Vec::new(), |scenario| scenario.labels.clone()),
         body_mass: None,
         times: first.zip(last).map(Into::into),
     })

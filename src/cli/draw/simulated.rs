@@ -71,6 +71,7 @@ pub fn open(scenario: &Scenario, until: f64, option: String) -> Result<Run, Fail
             .iter()
             .flat_map(|one| one.observed())
             .collect(),
+        labels: scenario.labels.clone(),
         body_mass: scenario.mass_on_walls(),
         times: None,
     })

@@ -73,6 +73,7 @@ pub fn open(
         speed_range: [0.0, SPEED_RANGE.into()],
         support_radius: SUPPORT,
         observed: Vec::new(),
+        labels: Vec::new(),
         body_mass: None,
         times: Some(times),
         frames: Box::new(tracked),

@@ -67,6 +67,7 @@ impl<'a> MomentRecorder<'a> {
             debug: DebugAgents::None,
             body_mass: None,
             measured: Vec::new(),
+            labels: Vec::new(),
             entering: 0,
         };
         let path = folder.join(RECORDING);

@@ -30,6 +30,7 @@ pub fn save(
         let (crowd, title) = (Crowd::of(&simulation), format!("{}: {label}", cases[k].id));
         let picture = Picture {
             body_mass: scenario.mass_on_walls(),
+            labels: &scenario.labels,
             ..Picture::of(&simulation, &crowd, title, scenario.view.region)
         };
         let path = store.path(&format!("{}.png", cases[k].id));

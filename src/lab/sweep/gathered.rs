@@ -90,15 +90,16 @@ impl<'a> Gathered<'a> {
     /// # Errors
     /// They cannot be written.
     pub fn write(&self, store: &Store, sheet: Option<&Sheet>) -> Result<Vec<PathBuf>, LabError> {
-        let [csv, summary, json, svg, png] = self.study.files();
-        let mut written = vec![
-            store.write(&csv, &self.cells_csv()?)?,
-            store.write(&summary, &self.summary_csv()?)?,
-            store.write(&json, format!("{:#}\n", self.json()).as_bytes())?,
-        ];
+        let json = format!("{:#}\n", self.json()).into_bytes();
+        let tables = [self.cells_csv()?, self.summary_csv()?, json];
+        let mut files = self.study.files().into_iter();
+        let mut written = Vec::new();
+        for (table, file) in tables.iter().zip(&mut files) {
+            written.push(store.write(&file, table)?);
+        }
         if let Some(sheet) = sheet {
             sheet.save(&store.folder().join(&self.study.name))?;
-            written.extend([svg, png].map(|file| store.folder().join(file)));
+            written.extend(files.map(|file| store.folder().join(file)));
         }
         Ok(written)
     }

@@ -6,6 +6,7 @@ use super::cell::{Cell, plain, short};
 use super::gathered::{Combination, Gathered, State};
 use super::{Shard, Study};
 use crate::lab::error::LabError;
+use crate::output::plot::Print;
 use crate::output::table::{self, Columns, Table};
 use crate::runs::case::RunResult;
 
@@ -35,11 +36,16 @@ const COUNTS: [Count; 9] = [
 
 type Row<'a> = (&'a Cell, &'a State);
 
+/// The ends of the names of the tables.
+const TABLES: [&str; 3] = [".csv", "-summary.csv", "-results.json"];
+
 impl Study {
     /// The names of the result files: one row per cell, means over seeds, and everything as JSON; then the pictures.
-    pub fn files(&self) -> [String; 5] {
-        let ends = [".csv", "-summary.csv", "-results.json", ".svg", ".png"];
-        ends.map(|end| format!("{}{end}", self.name))
+    pub fn files(&self) -> Vec<String> {
+        let tables = TABLES.into_iter().map(str::to_owned);
+        let pictures = Print::of_program().extensions();
+        let ends = tables.chain(pictures.map(|extension| format!(".{extension}")));
+        ends.map(|end| format!("{}{end}", self.name)).collect()
     }
 }
 

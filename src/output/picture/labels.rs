@@ -4,6 +4,7 @@ use super::{Frame, TEXT_HEIGHT, dark};
 use crate::engine::math::Vector;
 use crate::output::colors::Rgb;
 use crate::output::plot::{Label, Mark, Style, label_width};
+use crate::scenario::floor_plan::Label as GivenLabel;
 
 /// Labels keep this distance from their points, points.
 const GAP: f64 = 4.0;
@@ -96,6 +97,18 @@ impl<'a> Labels<'a> {
             color: dark(color),
         };
         self.placed.push((found.around, label));
+    }
+
+    /// Adds a text in the middle of its room, or a line above or below, if it fits there.
+    pub fn add_within(&mut self, label: &GivenLabel, color: Rgb) {
+        let room = label
+            .width
+            .map_or(f64::INFINITY, |width| width * self.frame.scale);
+        if label_width(&label.text) <= room {
+            let line = Vector::new(0.0, self.frame.meters(TEXT_HEIGHT));
+            let places = [0.0, 1.0, -1.0].map(|lines| (label.at + line * lines, [0, 0]));
+            self.add(&label.text, color, &places);
+        }
     }
 
     /// The point of the label that is nearest to the point that it belongs to.

@@ -21,6 +21,7 @@ use crate::output::plot::{
     Axis, Cells, ColorBar, LABEL_SIZE, Mark, Panel, PlotError, Print, Sheet,
 };
 use crate::output::scenery;
+use crate::scenario::floor_plan::Label;
 use crate::scenario::measurements::Observed;
 use labels::Labels;
 
@@ -31,6 +32,8 @@ const OF_SEVERAL: [f64; 2] = [440.0, 340.0];
 const WIDE: f64 = 1.3;
 /// The smallest panel, points.
 const SMALLEST: [f64; 2] = [150.0, 90.0];
+/// The color of texts.
+const NAME: Rgb = [90, 92, 100];
 /// Around what is shown, points.
 const MARGIN: f64 = 10.0;
 
@@ -55,6 +58,8 @@ pub struct Picture<'a> {
     pub trails: Option<&'a Trails>,
     /// What measurements observe, with names.
     pub observed: &'a [(String, Observed)],
+    /// Texts.
+    pub labels: &'a [Label],
     /// The ways that it shows, each in its own panel.
     pub paths: Vec<Paths>,
     /// The mass of an average person, kg, if walls are colored by the force on them.
@@ -151,6 +156,7 @@ impl<'a> Picture<'a> {
             field: None,
             trails: None,
             observed: &[],
+            labels: &[],
             paths: Vec::new(),
             body_mass: None,
         }
@@ -278,6 +284,9 @@ impl<'a> Picture<'a> {
         marks.extend(scene::goals(self, frame, &mut labels));
         if paths.is_none() {
             marks.extend(regions::marks(self.observed, &mut labels));
+        }
+        for label in self.labels {
+            labels.add_within(label, NAME);
         }
         marks.extend(labels.into_marks());
         marks.extend(foot::marks(self, frame, paths.is_some()));

@@ -95,7 +95,7 @@ pub fn zones(scene: &Scene, frame: &Frame, inside: bool, labels: &mut Labels) ->
         let hatching = scenery::hatching(&zone.area, frame.meters(7.0));
         let lines = hatching.into_iter().map(|line| line.map(xy).to_vec());
         marks.extend(lines.map(|line| Mark::Line(line, style(0.4))));
-        let name = format!("zone {}", scenery::zone_name(zone));
+        let name = scenery::named("zone", &scenery::zone_name(zone));
         labels.add(&name, ZONE, &around(zone.area.points(), inside));
     }
     marks
@@ -118,7 +118,7 @@ pub fn sources(scene: &Scene, labels: &mut Labels) -> Vec<Mark> {
             Style::broken(SOURCE, 1.2, ""),
         ));
         labels.add(
-            &format!("source {}", source.name),
+            &scenery::named("source", &source.name),
             SOURCE,
             &around(&corners, false),
         );
@@ -129,7 +129,7 @@ pub fn sources(scene: &Scene, labels: &mut Labels) -> Vec<Mark> {
             [a, b].map(xy).to_vec(),
             Style::broken(SOURCE, 2.6, ""),
         ));
-        let name = format!("entrance {}", entrance.name);
+        let name = scenery::named("entrance", &entrance.name);
         labels.add(&name, SOURCE, &AROUND.map(|side| ((a + b) * 0.5, side)));
     }
     marks
@@ -179,7 +179,7 @@ pub fn places(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark
             }
         }
         let closed = if is_closed { " (closed)" } else { "" };
-        let text = format!("{} {}{closed}", place.kind.name(), place.name);
+        let text = scenery::named(place.kind.name(), &place.name) + closed;
         let color = if is_closed { [190, 40, 40] } else { color };
         labels.add(
             &text,

@@ -75,7 +75,7 @@ impl Sheet {
     /// The sheet cannot be drawn or a file cannot be written.
     pub fn save(&self, stem: &Path) -> Result<(), PlotError> {
         let print = Print::of_program();
-        let mut files = print.extensions().map(|e| stem.with_extension(e));
+        let mut files = print.extensions().map(|e| stem.with_added_extension(e));
         files.try_for_each(|file| self.save_as(&file, &print))
     }
 

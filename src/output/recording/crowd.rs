@@ -52,7 +52,7 @@ pub struct Crowd {
 }
 
 fn color(map: &ColorMap, value: f32) -> Color {
-    let [r, g, b] = map.color(value);
+    let [r, g, b] = map.one_of_few(value);
     Color::from_rgb(r, g, b)
 }
 

@@ -264,14 +264,19 @@ fn plots(content: &Content) -> ContainerLike {
 }
 
 fn texts(content: &Content) -> ContainerLike {
-    let document = |name: &str| -> ContainerLike {
-        let origin = format!("/{}", text::DOCUMENT);
-        TextDocumentView::new(name).with_origin(origin).into()
+    let document = |name: &str, entity: &str| -> ContainerLike {
+        let view = TextDocumentView::new(name);
+        view.with_origin(format!("/{entity}")).into()
     };
     let events = || TextLogView::new("Events").with_origin(format!("/{}", events::ENTITY));
     match content.kind {
-        Kind::Run => Tabs::new([document("Scenario"), events().into()]).into(),
-        Kind::Moment => document("Scenario"),
-        Kind::Measurement => document("Measurement"),
+        Kind::Run => Tabs::new([
+            document("Scenario", text::DOCUMENT),
+            events().into(),
+            document("Results", text::RESULTS),
+        ])
+        .into(),
+        Kind::Moment => document("Scenario", text::DOCUMENT),
+        Kind::Measurement => document("Measurement", text::DOCUMENT),
     }
 }

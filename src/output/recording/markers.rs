@@ -8,6 +8,7 @@ use super::geometry::xy;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Region, Scene};
 use crate::output::colors::Rgb;
+use crate::output::scenery::named;
 
 /// The colors of sources, pushes and measurements.
 const SOURCE: Rgb = [0, 170, 200];
@@ -15,6 +16,12 @@ const PUSH: Rgb = [230, 110, 90];
 const MEASURED: Rgb = [200, 196, 150];
 /// The length of a dash and of the gap after it, as a part of the longest side of the visible region.
 const DASH: f64 = 0.008;
+
+/// The usual width of a view of the crowd, and of a letter in it, pixels: the room for texts before zooming in.
+const PANEL: f64 = 700.0;
+const LETTER: f64 = 8.0;
+/// The height of a label below its point, pixels.
+const LABEL: f64 = 25.0;
 
 /// Outlines with names.
 type Named = Vec<(String, Vec<Vector>)>;
@@ -27,10 +34,7 @@ pub fn log(
 ) -> Result<(), Cause> {
     let sources = scene.sources.iter().map(|source| {
         let (min, max) = (source.grid.min, source.grid.max);
-        (
-            format!("source {}", source.name),
-            closed(&Region { min, max }),
-        )
+        (named("source", &source.name), closed(&Region { min, max }))
     });
     let pushes = scene.pushes.iter();
     let pushes = pushes.map(|push| (named("push", &push.name), closed(&push.region)));
@@ -40,18 +44,33 @@ pub fn log(
     });
     let dash = DASH * (options.view.max - options.view.min).max();
     let whole = |outline: &[Vector]| vec![outline.to_vec()];
-    log_outlines(stream, "sources", (&sources.collect(), SOURCE), whole)?;
-    log_outlines(stream, "pushes", (&pushes.collect(), PUSH), whole)?;
+    let log =
+        |entity: &str, named: (&Named, Rgb), strips: &dyn Fn(&[Vector]) -> Vec<Vec<Vector>>| {
+            log_outlines((stream, &options.view), entity, named, strips)
+        };
+    log("sources", (&sources.collect(), SOURCE), &whole)?;
+    log("pushes", (&pushes.collect(), PUSH), &whole)?;
     let dashed = |outline: &[Vector]| dashes(outline, dash);
-    log_outlines(stream, "measured", (&measured.collect(), MEASURED), dashed)
+    log("measured", (&measured.collect(), MEASURED), &dashed)
 }
 
-/// The kind before a name that does not begin with it.
-fn named(kind: &str, name: &str) -> String {
-    match name.starts_with(kind) {
-        true => name.to_owned(),
-        false => format!("{kind} {name}"),
-    }
+/// The width of a text in a view, meters, before zooming in.
+pub fn text_width(text: &str, view: &Region) -> f64 {
+    LETTER * text.chars().count() as f64 * (view.max.x - view.min.x) / PANEL
+}
+
+/// The point of the label of something with these corners: below it, but so that the view does not cut the label.
+pub fn label_place(
+    text: &str,
+    corners: impl IntoIterator<Item = Vector>,
+    view: &Region,
+) -> [f32; 2] {
+    let [low, high] = bounds(corners).unwrap_or_default();
+    let height = LABEL * (view.max.x - view.min.x) / PANEL;
+    let margin = Vector::new(0.5 * text_width(text, view), height);
+    let (least, most) = (view.min + margin, view.max - margin);
+    let below = Vector::new(0.5 * (low.x + high.x), low.y);
+    xy(below.sup(&least).inf(&most))
 }
 
 fn closed(region: &Region) -> Vec<Vector> {
@@ -60,10 +79,10 @@ fn closed(region: &Region) -> Vec<Vector> {
 }
 
 fn log_outlines(
-    stream: &RecordingStream,
+    (stream, view): (&RecordingStream, &Region),
     entity: &str,
     (named, [r, g, b]): (&Named, Rgb),
-    strips: impl Fn(&[Vector]) -> Vec<Vec<Vector>>,
+    strips: &dyn Fn(&[Vector]) -> Vec<Vec<Vector>>,
 ) -> Result<(), Cause> {
     if named.is_empty() {
         return Ok(());
@@ -74,10 +93,8 @@ fn log_outlines(
         .with_radii([Radius::new_ui_points(1.0)])
         .with_colors([color])
         .with_draw_order(3.0);
-    let places = named.iter().map(|(_, outline)| {
-        let [low, high] = bounds(outline.iter().copied()).unwrap_or_default();
-        xy(Vector::new(0.5 * (low.x + high.x), low.y))
-    });
+    let places = named.iter();
+    let places = places.map(|(name, outline)| label_place(name, outline.iter().copied(), view));
     let names = Points2D::new(places)
         .with_labels(named.iter().map(|(name, _)| name.as_str()))
         .with_colors([color])

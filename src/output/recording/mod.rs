@@ -18,6 +18,7 @@
 //! | `focus/ID/…` | a followed agent in its own frame, with its forces as arrows and as time series |
 //! | `stats/…` | time series; those of places are in `stats/places` |
 //! | `info/scenario` | the scenario and a legend, as text |
+//! | `info/{results,report}` | the results of the run, as text and as JSON, once it has ended |
 //! | `info/agents/ID` | the numbers of an agent, in the recording of a single moment |
 //! | `log` | events: entries, exits, pushes, arrivals, the end |
 
@@ -67,6 +68,7 @@ use crate::engine::clock::Clock;
 use crate::engine::math::Vector;
 use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
+use crate::scenario::floor_plan::Label;
 use events::{Events, Line};
 use focus::Focus;
 use follow::{Follow, Moment};
@@ -112,6 +114,8 @@ pub struct RecordingOptions {
     pub body_mass: Option<f64>,
     /// The outlines of what is measured, meters, each with its name.
     pub measured: Vec<(String, Vec<Vector>)>,
+    /// Texts.
+    pub labels: Vec<Label>,
     /// Upper bound on the agents that enter: with many, fewer arrivals are in the log of events.
     pub entering: u64,
 }
@@ -227,6 +231,15 @@ impl Recorder {
         }])
     }
 
+    /// Adds the results of the run, in words and as JSON.
+    ///
+    /// # Errors
+    /// An earlier frame could not be written.
+    pub fn results(&mut self, text: &str, json: &str) -> Result<(), RecordingError> {
+        let log = |stream: &RecordingStream| text::log_results(stream, text, json);
+        self.session.log_static(log)
+    }
+
     /// Sends the buffered data, closes the file and checks that it is complete.
     ///
     /// # Errors
@@ -278,7 +291,7 @@ fn log_scene(
     let scene: &Scene = simulation.scene();
     geometry::log(stream, scene, simulation.frame().agents)?;
     stats::log_entrances(stream, scene)?;
-    places::log(stream, scene)?;
+    places::log(stream, scene, options)?;
     places::log_ways(stream, scene)?;
     places::log_series(stream, scene)?;
     markers::log(stream, scene, options)?;

@@ -7,8 +7,10 @@ use rerun::{
     entity_path,
 };
 
+use super::RecordingOptions;
 use super::error::Cause;
 use super::geometry::xy;
+use super::markers::{label_place, text_width};
 use crate::analysis::way_field::{Grid, WayField};
 use crate::engine::journeys::{Kind, Place, Status};
 use crate::engine::math::{Vector, bounds};
@@ -17,12 +19,16 @@ use crate::engine::simulation::Simulation;
 use crate::engine::ways::Destination;
 use crate::output::colors::{ColorMap, Rgb};
 use crate::output::scenery;
+use crate::scenario::floor_plan::Label;
 
 /// The time series of places: agents in queues and waiting areas, and agents that have passed exits.
 pub const PRESENT: &str = "present";
 pub const PASSED: &str = "passed";
 /// The color of entrances.
 const ENTRANCE: Rgb = [0, 170, 200];
+/// The color of texts.
+const LABEL: Rgb = [200, 200, 200];
+
 /// The distance between the lines of a hatched zone, meters.
 const HATCHING: f64 = 0.8;
 /// The longest side of a picture of ways, pixels, and the smallest pixel, meters.
@@ -54,8 +60,12 @@ fn strips(lines: Vec<Vec<[f32; 2]>>, color: Rgb, width: f32) -> LineStrips2D {
         .with_draw_order(4.0)
 }
 
-/// Logs the places and zones of a scene.
-pub fn log(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
+/// Logs the places and zones of a scene, and the texts of the options.
+pub fn log(
+    stream: &RecordingStream,
+    scene: &Scene,
+    options: &RecordingOptions,
+) -> Result<(), Cause> {
     let places = &scene.journeys.places;
     for (name, is_kind) in KINDS {
         let own = places.iter().filter(|place| is_kind(&place.kind));
@@ -78,7 +88,7 @@ pub fn log(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
     }
     log_spots(stream, scene)?;
     log_zones(stream, scene)?;
-    log_names(stream, scene)
+    log_names(stream, scene, options)
 }
 
 /// Logs the spots of queues.
@@ -121,41 +131,53 @@ fn log_zones(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
     Ok(stream.log_static("world/geometry/zones", &strips.with_draw_order(-1.0))?)
 }
 
-/// Logs the names of places and zones below them; the viewer writes labels below their points.
-fn log_names(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
+/// Logs the names of places and zones below them, and texts; the viewer writes labels below their points.
+fn log_names(
+    stream: &RecordingStream,
+    scene: &Scene,
+    options: &RecordingOptions,
+) -> Result<(), Cause> {
     let journeys = &scene.journeys;
-    let below = |points: Vec<Vector>| {
-        let [low, high] = bounds(points).unwrap_or_default();
-        xy(Vector::new(0.5 * (low.x + high.x), low.y))
-    };
+    let below = |text: &str, points: Vec<Vector>| label_place(text, points, &options.view);
     let places = journeys.places.iter().map(|place| {
+        let text = scenery::named(place.kind.name(), &place.name);
         let at = match &place.kind {
             Kind::Queue(queue) => xy(queue.path[0]),
-            _ => below(scenery::lines(place)),
+            _ => below(&text, scenery::lines(place)),
         };
-        let text = format!("{} {}", place.kind.name(), place.name);
         (at, text, scenery::color(&place.kind))
     });
     let zones = journeys.zones.iter().map(|zone| {
-        let at = below(zone.area.points().to_vec());
-        (
-            at,
-            format!("zone {}", scenery::zone_name(zone)),
-            scenery::ZONE,
-        )
+        let text = scenery::named("zone", &scenery::zone_name(zone));
+        let at = below(&text, zone.area.points().to_vec());
+        (at, text, scenery::ZONE)
     });
     let entrances = scene.entrances.iter().map(|entrance| {
-        let at = below(entrance.line.to_vec());
-        (at, format!("entrance {}", entrance.name), ENTRANCE)
+        let text = scenery::named("entrance", &entrance.name);
+        let at = below(&text, entrance.line.to_vec());
+        (at, text, ENTRANCE)
     });
-    let all: Vec<_> = places.chain(zones).chain(entrances).collect();
+    let labels = options.labels.iter();
+    let fits = |label: &&Label| {
+        let length = text_width(&label.text, &options.view);
+        label.width.is_none_or(|width| width >= length)
+    };
+    let labels = labels.filter(fits);
+    let labels: Vec<_> = labels
+        .map(|label| (xy(label.at), label.text.clone(), LABEL))
+        .collect();
+    let named = places.chain(zones).chain(entrances);
+    let all: Vec<_> = named.chain(labels.iter().cloned()).collect();
     if all.is_empty() {
         return Ok(());
     }
+    let dots = all.len() - labels.len();
+    let radius = |k| Radius::new_ui_points(if k < dots { 2.0 } else { 0.0 });
+    let radii = (0..all.len()).map(radius);
     let points = Points2D::new(all.iter().map(|(at, ..)| *at))
         .with_labels(all.iter().map(|(_, text, _)| text.as_str()))
         .with_colors(all.iter().map(|(.., color)| colored(*color)))
-        .with_radii([Radius::new_ui_points(2.0)])
+        .with_radii(radii)
         .with_show_labels(true)
         .with_draw_order(7.0);
     Ok(stream.log_static("world/geometry/names", &points)?)

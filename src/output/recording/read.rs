@@ -1,4 +1,4 @@
-//! Reads recordings back: the crowd in every frame, the outlines of walls, the scenario.
+//! Reads recordings back: the crowd in every frame, the outlines of walls, the scenario, the results.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -36,6 +36,7 @@ pub struct Recorded {
     crowd: BTreeMap<String, Rows>,
     walls: Vec<Vec<Vector>>,
     text: String,
+    report: Option<String>,
 }
 
 /// The crowd in a frame of a recording.
@@ -70,6 +71,7 @@ impl Recorded {
             crowd: BTreeMap::new(),
             walls: Vec::new(),
             text: String::new(),
+            report: None,
         };
         recorded.take(&store);
         match recorded.frames.is_empty() {
@@ -80,8 +82,8 @@ impl Recorded {
 
     /// Takes the rows of the crowd, the walls and the text.
     fn take(&mut self, store: &ChunkStore) {
-        let [agents, walls, document] =
-            [crowd::ENTITY, WALLS, text::DOCUMENT].map(EntityPath::from);
+        let [agents, walls, document, report] =
+            [crowd::ENTITY, WALLS, text::DOCUMENT, text::REPORT].map(EntityPath::from);
         let [frame, time] = [FRAME, SIM_TIME].map(TimelineName::from_static_str);
         for chunk in store.iter_physical_chunks() {
             let entity = chunk.entity_path();
@@ -93,6 +95,7 @@ impl Recorded {
                     TEXT if *entity == document => {
                         self.text.extend(row(0).as_ref().and_then(words))
                     }
+                    TEXT if *entity == report => self.report = row(0).as_ref().and_then(words),
                     name if *entity == agents => {
                         let (Some(frames), Some(secs)) = (times(frame), times(time)) else {
                             continue;
@@ -165,6 +168,11 @@ impl Recorded {
         let [begin, end] = DOCUMENT;
         let (_, rest) = self.text.split_once(begin)?;
         rest.split_once(end).map(|(scenario, _)| scenario)
+    }
+
+    /// The results of the run, in JSON, if it has ended.
+    pub fn report(&self) -> Option<&str> {
+        self.report.as_deref()
     }
 
     /// The title.

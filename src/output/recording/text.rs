@@ -13,6 +13,9 @@ use crate::output::colors::WALL_FORCE_RANGE;
 use crate::output::scenery;
 
 pub const DOCUMENT: &str = "info/scenario";
+/// The results of the run, for people; and as JSON, which no view shows.
+pub const RESULTS: &str = "info/results";
+pub const REPORT: &str = "info/report";
 
 /// The text document of a recording. Only one sentence of it, on the moment that the recording opens at, changes once
 /// that moment is known.
@@ -165,6 +168,14 @@ fn log_run(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
         .with_component_from_data("profiles", text_array(&profiles))
         .with_component_from_data("time_step_secs", number(scene.clock.time_step()));
     log_properties(stream, "run", properties)
+}
+
+/// Logs the results of a run, as text and as JSON.
+pub fn log_results(stream: &RecordingStream, text: &str, json: &str) -> Result<(), Cause> {
+    let text = TextDocument::from_markdown(format!("```text\n{text}```\n"));
+    stream.log_static(RESULTS, &text)?;
+    let json = TextDocument::new(json).with_media_type("application/json");
+    Ok(stream.log_static(REPORT, &json)?)
 }
 
 /// Adds the moment that a recording opens at to the properties of its run.

@@ -13,7 +13,7 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
     refuse_degrees(&document)?;
     let mut shapes = Vec::new();
     match serde_json::from_value(document).map_err(|error| syntax(&error))? {
-        GeoJson::Geometry(geometry) => collect(&geometry, "", false, &mut shapes)?,
+        GeoJson::Geometry(geometry) => collect(&geometry, "", (None, false), &mut shapes)?,
         GeoJson::Feature(one) => feature(&one, "", &mut shapes)?,
         GeoJson::FeatureCollection(collection) => {
             for (k, one) in collection.features.iter().enumerate() {
@@ -44,10 +44,13 @@ fn refuse_degrees(document: &Value) -> Result<(), FloorPlanError> {
     Ok(())
 }
 
+fn name(feature: &Feature) -> Option<&str> {
+    feature.properties.as_ref()?.get("name")?.as_str()
+}
+
 /// The name of feature `k` in messages: its number from 1, and its `name` if it has one.
 fn named(feature: &Feature, k: usize) -> String {
-    let properties = feature.properties.as_ref();
-    match properties.and_then(|properties| properties.get("name")?.as_str()) {
+    match name(feature) {
         Some(name) => format!("feature {} ({name})", k + 1),
         None => format!("feature {}", k + 1),
     }
@@ -58,7 +61,7 @@ fn feature(feature: &Feature, place: &str, shapes: &mut Vec<Shape>) -> Result<()
     let kind = properties.and_then(|properties| properties.get("kind")?.as_str());
     let is_obstacle = kind.is_some_and(|kind| kind.eq_ignore_ascii_case("obstacle"));
     match &feature.geometry {
-        Some(geometry) => collect(geometry, place, is_obstacle, shapes),
+        Some(geometry) => collect(geometry, place, (name(feature), is_obstacle), shapes),
         None => Err(FloorPlanError::EmptyGeometry(place.to_owned())),
     }
 }
@@ -66,11 +69,17 @@ fn feature(feature: &Feature, place: &str, shapes: &mut Vec<Shape>) -> Result<()
 fn collect(
     geometry: &Geometry,
     place: &str,
-    is_obstacle: bool,
+    (name, is_obstacle): (Option<&str>, bool),
     shapes: &mut Vec<Shape>,
 ) -> Result<(), FloorPlanError> {
-    parts(geometry).polygons(place, &mut |rings, place| {
-        shapes.push(shape(rings, place, is_obstacle)?);
+    parts(geometry).polygons(place, &mut |polygon, place| {
+        let rings = rings(polygon, &place)?;
+        shapes.push(Shape {
+            place,
+            name: name.map(str::to_owned),
+            rings,
+            is_obstacle,
+        });
         Ok(())
     })
 }
@@ -90,15 +99,12 @@ fn parts(geometry: &Geometry) -> Parts<&[Vec<Position>]> {
     }
 }
 
-fn shape(
-    rings: &[Vec<Position>],
-    place: String,
-    is_obstacle: bool,
-) -> Result<Shape, FloorPlanError> {
+/// The rings of a polygon, meters.
+fn rings(rings: &[Vec<Position>], place: &str) -> Result<Vec<Vec<[f64; 2]>>, FloorPlanError> {
     let point = |r: usize, k: usize, position: &Position| match position.as_slice() {
         [x, y, ..] => Ok([*x, *y]),
         few => Err(FloorPlanError::Geometry {
-            place: part(&part(&place, "ring", r), "position", k),
+            place: part(&part(place, "ring", r), "position", k),
             reason: format!("has {} number(s); write [x, y]", few.len()),
         }),
     };
@@ -106,11 +112,5 @@ fn shape(
         let positions = ring.iter().enumerate();
         positions.map(|(k, one)| point(r, k, one)).collect()
     };
-    let rings = rings.iter().enumerate().map(ring);
-    let rings = rings.collect::<Result<_, _>>()?;
-    Ok(Shape {
-        place,
-        rings,
-        is_obstacle,
-    })
+    rings.iter().enumerate().map(ring).collect()
 }

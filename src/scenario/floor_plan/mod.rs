@@ -5,7 +5,7 @@
 //! | geometries | one or more of `POLYGON`, `MULTIPOLYGON`, `GEOMETRYCOLLECTION` of these | `Polygon`, `MultiPolygon`, `GeometryCollection`; `Feature`, `FeatureCollection` |
 //! | obstacles | none | features with `"properties": {"kind": "obstacle"}` |
 //!
-//! All other polygons are walkable area. Coordinates are in meters; degrees are rejected. Areas that touch or overlap
+//! All other polygons are walkable area. The property `name` of a feature is its name in pictures. Coordinates are in meters; degrees are rejected. Areas that touch or overlap
 //! are united, and obstacles are subtracted, so the result does not depend on how a plan is cut into pieces.
 //! Orientation, third coordinates, a closing point and repeated points do not matter.
 
@@ -18,6 +18,7 @@ mod wkt;
 mod xml;
 
 pub use error::FloorPlanError;
+pub use shape::Label;
 pub use unite::{Rings, free, outlines, rings};
 pub use wkt::to_wkt;
 
@@ -43,6 +44,8 @@ pub struct FloorPlan {
     pub walkable: Vec<Area>,
     /// The obstacles of a plan without walkable area; they may overlap.
     pub obstacles: Vec<Area>,
+    /// The names of rooms and obstacles.
+    pub names: Vec<Label>,
 }
 
 /// Reads a file: GeoJSON if it begins with `{`, JuPedSim's XML if it begins with `<`, else WKT.
@@ -116,6 +119,7 @@ impl FloorPlan {
         let numbered = polygons.iter().enumerate();
         let shapes = numbered.map(|(k, rings)| Shape {
             place: format!("[{k}]"),
+            name: None,
             rings: rings.clone(),
             is_obstacle: false,
         });
@@ -129,6 +133,7 @@ impl FloorPlan {
     pub fn obstacle(rings: &[Vec<[f64; 2]>]) -> Result<Area, FloorPlanError> {
         let shape = Shape {
             place: String::new(),
+            name: None,
             rings: rings.to_vec(),
             is_obstacle: true,
         };
@@ -155,8 +160,10 @@ impl FloorPlan {
             return Err(FloorPlanError::Empty);
         }
         let (mut walkable, mut obstacles) = (Vec::new(), Vec::new());
+        let mut names = Vec::new();
         for shape in shapes {
             let area = shape.area()?;
+            names.extend(shape.label(&area));
             if shape.is_obstacle {
                 obstacles.push(area);
             } else {
@@ -171,6 +178,7 @@ impl FloorPlan {
             return Ok(Self {
                 walkable,
                 obstacles,
+                names,
             });
         }
         let largest = |areas: &[Area]| areas.iter().map(Area::area).fold(0.0, f64::max);
@@ -198,6 +206,7 @@ impl FloorPlan {
         Ok(Self {
             walkable,
             obstacles: Vec::new(),
+            names,
         })
     }
 }

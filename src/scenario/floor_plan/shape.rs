@@ -2,18 +2,31 @@
 
 use super::error::FloorPlanError;
 use crate::engine::geometry::{Area, Polygon, PolygonError, Ring};
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, bounds};
 
 /// Largest |x| and |y|, meters. Beyond this, walls and contacts lose precision.
 const FARTHEST: f64 = 1e6;
 /// Points closer than this are merged, meters: the engine does not resolve shorter lengths.
 pub const SAME: f64 = 1e-6;
 
+/// A text at a point in pictures and recordings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Label {
+    /// The text, not empty.
+    pub text: String,
+    /// Its middle, meters.
+    pub at: Vector,
+    /// The room for it, meters: it is left out where it is wider.
+    pub width: Option<f64>,
+}
+
 /// A polygon of a file.
 #[derive(Debug, Clone)]
 pub struct Shape {
     /// Its name in messages.
     pub place: String,
+    /// Its own name in the file.
+    pub name: Option<String>,
     /// The outline, then the holes, meters.
     pub rings: Vec<Vec<[f64; 2]>>,
     /// Is it an obstacle, not walkable area?
@@ -92,6 +105,36 @@ impl Shape {
             Polygon::filling(area.clone()).map_err(|error| self.wrong(&error.to_string()))?;
         }
         Ok(area)
+    }
+
+    /// The middle of the widest part halfway up, and its width, meters.
+    fn middle(area: &Area) -> (Vector, f64) {
+        let [low, high] = bounds(area.exterior.points().iter().copied()).unwrap_or_default();
+        let y = 0.5 * (low.y + high.y);
+        let edges = area.rings().flat_map(|ring| {
+            let points = ring.points();
+            points.iter().zip(points.iter().cycle().skip(1))
+        });
+        let crossings = edges.filter(|(a, b)| (a.y > y) != (b.y > y));
+        let crossings = crossings.map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y));
+        let mut crossings: Vec<f64> = crossings.collect();
+        crossings.sort_by(f64::total_cmp);
+        let width = |side: &&[f64]| side[1] - side[0];
+        let widest = crossings.chunks_exact(2);
+        let widest = widest.max_by(|a, b| width(a).total_cmp(&width(b)));
+        let [left, right] = widest.map_or([low.x, high.x], |side| [side[0], side[1]]);
+        (Vector::new(0.5 * (left + right), y), right - left)
+    }
+
+    /// Its name, with a place inside.
+    pub fn label(&self, area: &Area) -> Option<Label> {
+        let text = self.name.clone()?;
+        let (at, width) = Self::middle(area);
+        Some(Label {
+            text,
+            at,
+            width: Some(width),
+        })
     }
 
     fn wrong(&self, reason: &str) -> FloorPlanError {

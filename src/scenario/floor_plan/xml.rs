@@ -48,6 +48,7 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
             shapes.push(Shape {
                 rings: vec![outline(walls, own, &place)?],
                 place: place.clone(),
+                name: caption(room),
                 is_obstacle: false,
             });
             for obstacle in elements(subroom, "obstacle") {
@@ -56,6 +57,7 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
                     shapes.push(Shape {
                         rings: vec![vertices(polygon, &place, meters)?],
                         place,
+                        name: caption(obstacle),
                         is_obstacle: true,
                     });
                 }
@@ -100,6 +102,13 @@ fn elements<'a>(node: Node<'a, 'a>, name: &'static str) -> impl Iterator<Item = 
 /// The id of an element, for messages and doors.
 fn id<'a>(node: Node<'a, 'a>) -> &'a str {
     node.attribute("id").unwrap_or("?").trim()
+}
+
+/// The caption of an element; JuPedSim's editor gives those without one the name of their kind.
+fn caption(node: Node) -> Option<String> {
+    let caption = node.attribute("caption")?.trim();
+    let is_own = !caption.is_empty() && caption != node.tag_name().name();
+    is_own.then(|| caption.to_owned())
 }
 
 /// The vertices of an element, meters.
