@@ -10,6 +10,8 @@ use crate::scenario::floor_plan::Label as GivenLabel;
 const GAP: f64 = 4.0;
 /// Where no place beside its point is free, a label is at most this many times its height away, with a line to its point.
 const FARTHEST: u32 = 7;
+/// More similar things than this have labels only where there is room.
+const FEW: usize = 8;
 /// The width of that line, points.
 const LEADER: f64 = 0.4;
 /// Longer texts are cut.
@@ -66,12 +68,29 @@ impl<'a> Labels<'a> {
     /// with a line to its point; if possible, at one where it covers no agents and walls. Where nothing is free there
     /// is no label.
     pub fn add(&mut self, text: &str, color: Rgb, places: &[(Vector, [i8; 2])]) {
+        self.add_near((text, FARTHEST), color, places);
+    }
+
+    /// Adds the label of one of `count` similar things. If there are many, only where it covers nothing beside its point.
+    pub fn add_of(
+        &mut self,
+        count: usize,
+        text: &str,
+        (color, places): (Rgb, &[(Vector, [i8; 2])]),
+    ) {
+        let rings = if count > FEW { 1 } else { FARTHEST };
+        self.add_near((text, rings), color, places);
+    }
+
+    /// Adds a label in one of this many rings around `places`.
+    fn add_near(&mut self, (text, rings): (&str, u32), color: Rgb, places: &[(Vector, [i8; 2])]) {
         let mut text = text.to_owned();
         if text.chars().count() > MOST_LETTERS {
             text = text.chars().take(MOST_LETTERS - 1).chain(['…']).collect();
         }
         let width = label_width(&text);
-        let rings = (0..FARTHEST).map(|ring| GAP + f64::from(ring) * TEXT_HEIGHT);
+        let is_crowded = rings < FARTHEST;
+        let rings = (0..rings).map(|ring| GAP + f64::from(ring) * TEXT_HEIGHT);
         let candidates = rings.flat_map(|distance| {
             let outward = places.iter();
             let outward = outward.filter(move |(_, side)| *side != [0, 0] || distance == GAP);
@@ -81,7 +100,7 @@ impl<'a> Labels<'a> {
             candidates.map(|(point, side, distance)| self.place(width, point, side, distance));
         let free: Vec<Place> = candidates.filter(|place| self.is_free(place)).collect();
         let empty = free.iter().find(|place| self.is_empty(place));
-        let Some(found) = empty.or(free.first()) else {
+        let Some(found) = empty.or(free.first().filter(|_| !is_crowded)) else {
             return;
         };
         let at = self.beside(found);
@@ -118,7 +137,8 @@ impl<'a> Labels<'a> {
     }
 
     fn place(&self, width: f64, point: Vector, side: [i8; 2], distance: f64) -> Place {
-        let size = [width, TEXT_HEIGHT].map(|points| self.frame.meters(points));
+        // Some room between two labels in a row.
+        let size = [width + 0.5 * TEXT_HEIGHT, TEXT_HEIGHT].map(|points| self.frame.meters(points));
         let half = Vector::from(size) * 0.5;
         let mut place = Place {
             around: [point; 2],

@@ -130,7 +130,8 @@ pub fn sources(scene: &Scene, labels: &mut Labels) -> Vec<Mark> {
             Style::broken(SOURCE, 2.6, ""),
         ));
         let name = scenery::named("entrance", &entrance.name);
-        labels.add(&name, SOURCE, &AROUND.map(|side| ((a + b) * 0.5, side)));
+        let around = AROUND.map(|side| ((a + b) * 0.5, side));
+        labels.add_of(scene.entrances.len(), &name, (SOURCE, &around));
     }
     marks
 }
@@ -154,7 +155,8 @@ pub fn around(corners: &[Vector], inside: bool) -> Vec<(Vector, [i8; 2])> {
 /// Exits, waypoints, waiting areas and queues with their names.
 pub fn places(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark> {
     let mut marks = Vec::new();
-    for (k, place) in picture.scene.journeys.places.iter().enumerate() {
+    let all = &picture.scene.journeys.places;
+    for (k, place) in all.iter().enumerate() {
         let color = scenery::color(&place.kind);
         let lines: Vec<Vector> = scenery::lines(place);
         let points = || lines.iter().map(|&p| xy(p)).collect();
@@ -181,11 +183,11 @@ pub fn places(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark
         let closed = if is_closed { " (closed)" } else { "" };
         let text = scenery::named(place.kind.name(), &place.name) + closed;
         let color = if is_closed { [190, 40, 40] } else { color };
-        labels.add(
-            &text,
-            color,
-            &label_places(&picture.scene.walls, place, &lines, frame),
-        );
+        let similar = all
+            .iter()
+            .filter(|other| other.kind.name() == place.kind.name());
+        let around = label_places(&picture.scene.walls, place, &lines, frame);
+        labels.add_of(similar.count(), &text, (color, &around));
     }
     marks
 }
