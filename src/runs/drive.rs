@@ -78,18 +78,14 @@ impl Run {
         observers: &mut [Box<O>],
         interrupted: impl Fn() -> bool,
     ) -> Result<End, E> {
-        let clock = self.simulation.frame().clock;
-        let last_frame = clock.frame_at(self.scenario.duration_secs);
         let mut ms = 0.0;
         loop {
             let start = Instant::now();
             self.simulation.evaluate()?;
             let evaluated = start.elapsed();
-            self.metrics.observe(&self.simulation);
-            let is_last = self.simulation.frame().clock.frame() >= last_frame;
+            self.measure();
             self.end = self
-                .stops()
-                .or(is_last.then_some(End::Duration))
+                .end
                 .or_else(|| interrupted().then_some(End::Interrupted));
             let then = self
                 .end
@@ -104,6 +100,14 @@ impl Run {
             self.simulation.integrate()?;
             ms = 1e3 * (evaluated + start.elapsed()).as_secs_f64();
         }
+    }
+
+    /// Lets the measurements observe the evaluated frame, once per frame, and notes why the run ends here, if it does.
+    pub fn measure(&mut self) {
+        self.metrics.observe(&self.simulation);
+        let clock = self.simulation.frame().clock;
+        let is_last = clock.frame() >= clock.frame_at(self.scenario.duration_secs);
+        self.end = self.stops().or(is_last.then_some(End::Duration));
     }
 
     /// Why it ended, in words.
