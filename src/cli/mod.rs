@@ -28,6 +28,9 @@ mod update;
 mod values;
 mod watch;
 
+pub use report::json as json_report;
+
+use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
@@ -131,17 +134,27 @@ impl Failure {
     }
 }
 
-/// Runs the program. Results go to stdout, messages to stderr. Exit codes: 0 success, 1 the command failed, 2 invalid
-/// input, 130 and 143 interrupted.
+/// Runs the program with the arguments of this process; see [`main_with`].
 pub fn main() -> ExitCode {
-    let command = Arguments::parse().command;
-    match run(command) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            talk(&format!("error: {failure}"));
-            ExitCode::from(failure.exit_code())
+    ExitCode::from(main_with(std::env::args_os()))
+}
+
+/// Runs the program with these arguments, the first of which is its name, and returns the exit code: 0 success, 1 the
+/// command failed, 2 invalid input, 130 and 143 interrupted. Results go to stdout, messages to stderr.
+pub fn main_with(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let failure = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => run(arguments.command).err(),
+        Err(error) => {
+            error.print().ok();
+            return u8::try_from(error.exit_code()).unwrap_or(2);
         }
-    }
+    };
+    // Where the program is not the main function of its process, nothing else does.
+    std::io::stdout().flush().ok();
+    failure.map_or(0, |failure| {
+        talk(&format!("error: {failure}"));
+        failure.exit_code()
+    })
 }
 
 fn run(command: Command) -> Result<(), Failure> {
