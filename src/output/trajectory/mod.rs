@@ -14,11 +14,13 @@
 mod area;
 mod error;
 mod lines;
+mod memory;
 mod row;
 mod sqlite;
 
-pub use error::TrajectoryError;
-pub use row::Row;
+pub use error::{Cause, TrajectoryError};
+pub use memory::{Collected, Column, Columns, walkable_area};
+pub use row::{Cell, Row};
 pub use sqlite::journal;
 
 use std::fs::{self, File};
@@ -28,7 +30,6 @@ use crate::engine::clock::Clock;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use area::WalkableArea;
-use error::Cause;
 use lines::Lines;
 use sqlite::Sqlite;
 

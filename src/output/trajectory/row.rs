@@ -1,7 +1,7 @@
 //! One agent in one frame.
 
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::ser::{Serialize, SerializeStruct, Serializer};
 
 use crate::engine::agents::Agents;
 use crate::engine::frame::Frame;
@@ -12,7 +12,7 @@ use crate::engine::simulation::Simulation;
 const STANDING: f64 = 0.01;
 
 /// All quantities of one agent in one frame. The fields are the columns of a CSV file. SI units.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Row<'a> {
     /// The frame's number at the file's own rate, from 0.
     pub frame: u64,
@@ -69,6 +69,118 @@ pub struct Row<'a> {
     pub acc_x: f64,
     /// Its y component.
     pub acc_y: f64,
+}
+
+/// The value of a field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Cell<'a> {
+    /// A whole number.
+    Count(u64),
+    /// A number.
+    Number(f64),
+    /// A name; `None` if there is none.
+    Name(Option<&'a str>),
+}
+
+/// Number of fields of a [`Row`].
+pub const FIELDS: usize = 27;
+
+impl<'a> Row<'a> {
+    /// The name, the meaning with its unit, and the value of each field.
+    pub fn cells(&self) -> [(&'static str, &'static str, Cell<'a>); FIELDS] {
+        use Cell::{Count, Name, Number};
+        [
+            (
+                "frame",
+                "number of the frame at the file's own rate",
+                Count(self.frame),
+            ),
+            ("time", "time, s", Number(self.time)),
+            (
+                "id",
+                "the agent, from 0 in the order of entry",
+                Count(self.id.into()),
+            ),
+            ("group", "name of the agent's group", Name(Some(self.group))),
+            (
+                "push",
+                "name of the push that the agent takes part in",
+                Name(self.push),
+            ),
+            ("pos_x", "position, m", Number(self.pos_x)),
+            ("pos_y", "position, m", Number(self.pos_y)),
+            ("vel_x", "velocity, m/s", Number(self.vel_x)),
+            ("vel_y", "velocity, m/s", Number(self.vel_y)),
+            ("speed", "speed, m/s", Number(self.speed)),
+            (
+                "ori_x",
+                "direction in which the agent faces, of length 1",
+                Number(self.ori_x),
+            ),
+            (
+                "ori_y",
+                "direction in which the agent faces, of length 1",
+                Number(self.ori_y),
+            ),
+            ("goal_x", "goal, m", Number(self.goal_x)),
+            ("goal_y", "goal, m", Number(self.goal_y)),
+            ("radius", "radius of the body, m", Number(self.radius)),
+            ("mass", "mass, 1 = an average person", Number(self.mass)),
+            ("density", "density, P/m²", Number(self.density)),
+            (
+                "density_from_walls",
+                "the walls' part of the density, P/m²",
+                Number(self.density_from_walls),
+            ),
+            (
+                "mean_density",
+                "mean density of the last seconds, P/m²",
+                Number(self.mean_density),
+            ),
+            (
+                "rest_density",
+                "rest density, P/m²",
+                Number(self.rest_density),
+            ),
+            ("pressure", "pressure, 1/s²", Number(self.pressure)),
+            (
+                "wall_gradient_x",
+                "gradient of the kernel over the walls, 1/m",
+                Number(self.wall_gradient_x),
+            ),
+            (
+                "wall_gradient_y",
+                "gradient of the kernel over the walls, 1/m",
+                Number(self.wall_gradient_y),
+            ),
+            (
+                "preferred_vel_x",
+                "preferred velocity, m/s",
+                Number(self.preferred_vel_x),
+            ),
+            (
+                "preferred_vel_y",
+                "preferred velocity, m/s",
+                Number(self.preferred_vel_y),
+            ),
+            ("acc_x", "acceleration, m/s²", Number(self.acc_x)),
+            ("acc_y", "acceleration, m/s²", Number(self.acc_y)),
+        ]
+    }
+}
+
+impl Serialize for Row<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut row = serializer.serialize_struct("Row", FIELDS)?;
+        for (name, _, cell) in self.cells() {
+            match cell {
+                Cell::Count(count) => row.serialize_field(name, &count)?,
+                Cell::Number(number) => row.serialize_field(name, &number)?,
+                Cell::Name(text) => row.serialize_field(name, &text)?,
+            }
+        }
+        row.end()
+    }
 }
 
 /// All agents in an evaluated frame with the number `number`, by id.

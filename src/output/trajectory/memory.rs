@@ -1,0 +1,166 @@
+//! Trajectories in memory, column by column.
+
+use super::area::WalkableArea;
+use super::error::Cause;
+use super::row::{Cell, Row, rows};
+use super::{TrajectoryError, frames_between};
+use crate::engine::scene::Region;
+use crate::engine::simulation::Simulation;
+
+/// The values of a column, row by row.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Column {
+    /// Whole numbers.
+    Counts(Vec<u64>),
+    /// Numbers.
+    Numbers(Vec<f64>),
+    /// Names.
+    Names {
+        /// The number of the name of each row; -1: none.
+        codes: Vec<i32>,
+        /// The different names, in the order of their first rows.
+        names: Vec<String>,
+    },
+}
+
+/// The columns of a CSV file, some of them or all.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Columns {
+    /// The number of the field of a [`Row`], its name, and the values.
+    kept: Vec<(usize, &'static str, Column)>,
+}
+
+impl Columns {
+    /// The names of all columns, with their meanings and units.
+    pub fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
+        let cells = Row::default().cells().into_iter();
+        cells.map(|(name, meaning, _)| (name, meaning))
+    }
+
+    /// No rows yet, of the columns for which `is_kept` holds.
+    pub fn new(is_kept: impl Fn(&str) -> bool) -> Self {
+        let cells = Row::default().cells().into_iter().enumerate();
+        let kept = cells.filter(|(_, (name, ..))| is_kept(name));
+        let begun = kept.map(|(k, (name, _, cell))| (k, name, Column::of(cell)));
+        Self {
+            kept: begun.collect(),
+        }
+    }
+
+    /// Adds all agents of an evaluated frame with the number `number`, by id.
+    pub fn add(&mut self, simulation: &Simulation, number: u64) {
+        self.append(&rows(simulation, number));
+    }
+
+    fn append(&mut self, rows: &[Row<'_>]) {
+        for row in rows {
+            let cells = row.cells();
+            for (k, _, column) in &mut self.kept {
+                column.push(cells[*k].2);
+            }
+        }
+    }
+
+    /// The names of the columns, and their values.
+    pub fn into_values(self) -> impl Iterator<Item = (&'static str, Column)> {
+        let kept = self.kept.into_iter();
+        kept.map(|(_, name, column)| (name, column))
+    }
+}
+
+impl Column {
+    /// An empty column of cells such as this one.
+    fn of(cell: Cell<'_>) -> Self {
+        match cell {
+            Cell::Count(_) => Self::Counts(Vec::new()),
+            Cell::Number(_) => Self::Numbers(Vec::new()),
+            Cell::Name(_) => Self::Names {
+                codes: Vec::new(),
+                names: Vec::new(),
+            },
+        }
+    }
+
+    fn push(&mut self, cell: Cell<'_>) {
+        match (self, cell) {
+            (Self::Counts(values), Cell::Count(value)) => values.push(value),
+            (Self::Numbers(values), Cell::Number(value)) => values.push(value),
+            (Self::Names { codes, names }, Cell::Name(name)) => codes.push(code(names, name)),
+            // A field has one type.
+            _ => {}
+        }
+    }
+}
+
+/// The number of a name, which is added to `names` if it is new.
+fn code(names: &mut Vec<String>, name: Option<&str>) -> i32 {
+    let Some(name) = name else {
+        return -1;
+    };
+    let known = names.iter().position(|known| known == name);
+    let code = known.unwrap_or_else(|| {
+        names.push(name.to_owned());
+        names.len() - 1
+    });
+    code as i32
+}
+
+/// The trajectories of a run in memory.
+pub struct Collected {
+    every: u64,
+    area: WalkableArea,
+    columns: Columns,
+}
+
+impl Collected {
+    /// Begins with `fps` frames per second. From now on every frame has densities. The walkable area includes `view`.
+    ///
+    /// # Errors
+    /// `fps` does not divide the simulation's rate.
+    pub fn new(
+        simulation: &mut Simulation,
+        view: Region,
+        fps: f64,
+        columns: Columns,
+    ) -> Result<Self, TrajectoryError> {
+        let every = frames_between(simulation.frame().clock, fps)?;
+        simulation.request_density_until(u64::MAX);
+        Ok(Self {
+            every,
+            area: WalkableArea::new(simulation, view),
+            columns,
+        })
+    }
+
+    /// Adds the current frame, which must be evaluated, if it is due.
+    pub fn log(&mut self, simulation: &Simulation) {
+        let frame = simulation.frame().clock.frame();
+        if frame.is_multiple_of(self.every) {
+            let rows = rows(simulation, frame / self.every);
+            self.area.reach(&rows);
+            self.columns.append(&rows);
+        }
+    }
+
+    /// The walkable area as WKT: it includes all agents so far.
+    ///
+    /// # Errors
+    /// The obstacles cannot be cut out of the area.
+    pub fn area(&self) -> Result<String, Cause> {
+        self.area.cut_out().map(|(wkt, _)| wkt)
+    }
+
+    /// The columns.
+    pub fn into_columns(self) -> Columns {
+        self.columns
+    }
+}
+
+/// The walkable area of a simulation in its current state, as WKT; it includes `view`.
+///
+/// # Errors
+/// The obstacles cannot be cut out of the area.
+pub fn walkable_area(simulation: &Simulation, view: Region) -> Result<String, Cause> {
+    let area = WalkableArea::new(simulation, view);
+    area.cut_out().map(|(wkt, _)| wkt)
+}
