@@ -6,7 +6,7 @@ use super::arguments::InspectOptions;
 use super::moment::Moment;
 use super::{Failure, memory, moment, output, say, use_threads};
 use crate::engine::breakdown::Breakdown;
-use crate::engine::simulation::Simulation;
+use crate::engine::simulation::{Absent, Simulation};
 use crate::output::recording::check_enabled;
 use crate::runs::outputs::{Manner, Outputs};
 
@@ -51,7 +51,10 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
         false => format!("t = {time:.2} s, frame {frame}\n"),
     })?;
     for (k, &(id, i)) in inspected.iter().enumerate() {
-        let breakdown = Breakdown::of(&simulation, i).ok_or_else(|| absent(&simulation, id))?;
+        let breakdown = Breakdown::of(&simulation, i).ok_or_else(|| {
+            let reason = format!("--agent {id}: the frame has no densities");
+            Failure::Output(reason)
+        })?;
         say(match as_json {
             true => format!("{}{}", if k > 0 { "," } else { "" }, json!(breakdown)),
             false => format!("\n{breakdown}"),
@@ -78,22 +81,12 @@ fn inspected(
         return Ok(all);
     }
     let index = |&id: &u32| {
-        let i = agents.index_of(id).ok_or_else(|| absent(simulation, id))?;
+        let i = simulation.present(id).map_err(|why| absent(id, why))?;
         Ok((id, i))
     };
     options.agent.iter().map(index).collect()
 }
 
-fn absent(simulation: &Simulation, id: u32) -> Failure {
-    let frame = simulation.frame();
-    let time = frame.clock.time();
-    let entered = frame.agents.entered();
-    let reason = if id >= entered {
-        format!("only {entered} agents have entered, with ids from 0")
-    } else {
-        "it has left".to_owned()
-    };
-    Failure::Input(format!(
-        "--agent {id}: not present at {time:.2} s: {reason}"
-    ))
+fn absent(id: u32, why: Absent) -> Failure {
+    Failure::Input(format!("--agent {id}: {why}"))
 }

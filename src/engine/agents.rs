@@ -252,9 +252,9 @@ impl Agents {
                 let walker = Walker {
                     id: ids[i],
                     position,
-                    to: trip.map_or(Destination::Goal(goals[i]), |trip| {
-                        Destination::Place(trip.place)
-                    }),
+                    to: trip
+                        .and_then(Trip::place_ahead)
+                        .map_or(Destination::Goal(goals[i]), Destination::Place),
                     radius: radii[i],
                 };
                 *aim = ways.aim(&walker, route, seed);

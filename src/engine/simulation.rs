@@ -4,6 +4,7 @@ mod choice;
 mod digest;
 mod entrances;
 mod evaluate;
+mod goals;
 mod integrate;
 mod limited;
 mod loads;
@@ -16,6 +17,7 @@ mod trips;
 
 pub use choice::{Decision, Expected, Prospect, Reason};
 pub use entrances::Backlog;
+pub use goals::{Absent, GoalError};
 pub use limited::{Limited, SPOT_RADIUS};
 pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};

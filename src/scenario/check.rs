@@ -115,6 +115,7 @@ impl Contents {
             document: self.document,
             files: self.plans,
             notes,
+            passage_width: ways::passable(keys),
             scene,
         })
     }

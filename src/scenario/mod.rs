@@ -78,6 +78,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use crate::engine::scene::Scene;
+use crate::engine::ways::Ways;
 use crate::scenario::floor_plan::Label;
 use crate::scenario::measurements::Measurement;
 
@@ -119,6 +120,8 @@ pub struct Scenario {
     pub changes: Vec<String>,
     /// What was changed to make it run, for readers of its results.
     pub notes: Vec<String>,
+    /// Agents find ways through passages of at least this width, meters; `None`: they walk straight.
+    pub passage_width: Option<f64>,
 }
 
 impl Scenario {
@@ -132,6 +135,20 @@ impl Scenario {
         self.measurements
             .iter()
             .find_map(Measurement::mass_on_walls)
+    }
+
+    /// The floor without path maps, for goals that agents get during the run; `None` if agents walk straight, or see
+    /// everything.
+    ///
+    /// # Errors
+    /// The walls cross, or lie too far away.
+    pub fn floor(&self) -> Result<Option<Ways>, ScenarioError> {
+        let width = self.passage_width.filter(|_| !self.scene.walls.is_empty());
+        let floor = width.map(|width| ways::floor(&self.scene, width));
+        floor.transpose().map_err(|problem| ScenarioError::Invalid {
+            file: self.name.clone(),
+            problem,
+        })
     }
 
     /// Reads a scenario from JSON; see [`Draft::read`].

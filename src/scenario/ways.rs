@@ -95,6 +95,24 @@ pub(super) fn ways(keys: &File, scene: &Scene) -> Result<Option<Arc<Ways>>, Prob
     Ok((has_journeys || ways.bend()).then(|| Arc::new(ways)))
 }
 
+/// The floor of a scene that has no path maps, for goals that agents get later; `width`: the least of passages.
+pub(super) fn floor(scene: &Scene, width: f64) -> Result<Ways, Problem> {
+    let prepared = Prepared {
+        scene,
+        starts: &starts(scene),
+        places: &[],
+        goals: &[],
+        width,
+    };
+    prepared.ways(width)
+}
+
+/// The width below which agents take no passage, meters; `None`: they walk straight.
+pub(super) fn passable(keys: &File) -> Option<f64> {
+    let finds = keys.navigation == WayFinding::Paths;
+    finds.then(|| keys.min_passage_width.unwrap_or(PASSABLE))
+}
+
 /// The goals that need path maps: those of several agents, and those behind walls.
 fn goals(scene: &Scene, starts: &[Start]) -> Result<Vec<Vector>, Problem> {
     let mut seen = BTreeSet::new();

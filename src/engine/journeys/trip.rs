@@ -27,6 +27,14 @@ pub struct Trip {
     pub waited: f64,
 }
 
+impl Trip {
+    /// The place that the agent walks to or is at; `None` once it has left the journey for a goal of its own.
+    pub fn place_ahead(&self) -> Option<u16> {
+        let has_left = self.status == Status::Finished && self.hold.is_none();
+        (!has_left).then_some(self.place)
+    }
+}
+
 /// What an agent on a journey does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Status {
@@ -50,6 +58,6 @@ pub enum Status {
         /// The frame in which it has been served, once it is being served.
         until: Option<u64>,
     },
-    /// It has ended its journey and stays.
+    /// It has ended its journey and stays; or it has left it, `hold` is `None`, and it walks to its goal.
     Finished,
 }

@@ -91,6 +91,13 @@ impl PlaceState {
         self.taken[spot] = true;
         spot
     }
+
+    /// The agent at a spot of the waiting area leaves it.
+    pub(super) fn leave_spot(&mut self, spot: u32) {
+        if let Some(taken) = self.taken.get_mut(spot as usize) {
+            *taken = false;
+        }
+    }
 }
 
 impl Progress {
@@ -188,7 +195,7 @@ impl Crowd {
         self.agents.trip[i].is_none() && scene.groups[group].journey.is_some()
     }
 
-    fn begin(&mut self, scene: &Scene, i: usize) {
+    pub(super) fn begin(&mut self, scene: &Scene, i: usize) {
         let group = usize::from(self.agents.group[i]);
         let Some(journey) = scene.groups[group].journey else {
             return;
@@ -358,9 +365,7 @@ impl Crowd {
             return;
         };
         let state = &mut self.progress.places[usize::from(trip.place)];
-        if let Some(taken) = state.taken.get_mut(spot as usize) {
-            *taken = false;
-        }
+        state.leave_spot(spot);
         self.count_wait(i, since);
         self.go_on(scene, i);
     }

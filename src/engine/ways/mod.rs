@@ -32,6 +32,9 @@ pub use steer::around;
 
 use crate::engine::math::Vector;
 
+/// The most goals that are added later.
+const MOST_GOALS: usize = 1000;
+
 /// Why ways cannot be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WayError {
@@ -44,4 +47,7 @@ pub enum WayError {
     /// This point of a goal lies in a wall or outside of the floor.
     #[error("({}, {}) is not on the floor", .0.x, .0.y)]
     NotOnFloor(Vector),
+    /// There are too many goals.
+    #[error("agents walk to {MOST_GOALS} different goals already; give them common ones")]
+    TooMany,
 }

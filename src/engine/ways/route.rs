@@ -3,13 +3,13 @@
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
-use super::WayError;
 use super::corner::Bend;
 use super::floor::Floor;
 use super::goal::Goal;
 use super::map::{Next, PathMap, SLACK, Way};
 use super::mesh::side;
 use super::steer::{around, between_borders};
+use super::{MOST_GOALS, WayError};
 use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
 
@@ -33,6 +33,8 @@ pub struct Ways {
     /// The number of places; their maps come first.
     places: usize,
     goals: Vec<Vector>,
+    /// The number of goals from the beginning; the others were added.
+    first_goals: usize,
     maps: Vec<PathMap>,
 }
 
@@ -108,9 +110,36 @@ impl Ways {
         Ok(Self {
             floor,
             places: places.len(),
+            first_goals: goals.len(),
             goals,
             maps,
         })
+    }
+
+    /// Adds a path map to a goal, in place of an added one that is no longer used.
+    ///
+    /// # Errors
+    /// The goal is not on the floor, or there are too many.
+    pub fn add_goal(
+        &mut self,
+        goal: Vector,
+        is_used: impl Fn(Vector) -> bool,
+    ) -> Result<(), WayError> {
+        let map = PathMap::new(&self.floor, &[Goal::Point(goal)], LINE_MARGIN)?;
+        let mut added = self.first_goals..self.goals.len();
+        let is_full = added.len() >= MOST_GOALS;
+        match added.find(|&k| !is_used(self.goals[k])) {
+            Some(k) => {
+                self.goals[k] = goal;
+                self.maps[self.places + k] = map;
+            }
+            None if is_full => return Err(WayError::TooMany),
+            None => {
+                self.goals.push(goal);
+                self.maps.push(map);
+            }
+        }
+        Ok(())
     }
 
     /// The way from `p` to a destination; `None` if there is none, or no map of it.

@@ -1,0 +1,228 @@
+//! New goals for agents, given between two frames from outside.
+
+use std::sync::Arc;
+
+use super::{Crowd, Simulation};
+use crate::engine::journeys::Status;
+use crate::engine::math::Vector;
+use crate::engine::scene::Scene;
+use crate::engine::ways::{Destination, WayError, Ways};
+
+/// An agent is not present.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Absent {
+    /// Seconds.
+    time: f64,
+    /// The number of agents that have entered, if the agent has not.
+    entered: Option<u32>,
+}
+
+impl std::fmt::Display for Absent {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "not present at {:.2} s: ", self.time)?;
+        match self.entered {
+            Some(entered) => write!(f, "only {entered} agents have entered, with ids from 0"),
+            None => f.write_str("it has left"),
+        }
+    }
+}
+
+/// Why an agent cannot get a goal.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum GoalError {
+    /// There is no such agent.
+    #[error("agent {0}: {1}")]
+    Absent(u32, Absent),
+    /// The agent's group walks in a direction.
+    #[error("agent {0} walks in a direction, not to a point")]
+    Directed(u32),
+    /// The goal is not in the walkable area.
+    #[error(
+        "({}, {}) lies in an obstacle or outside of the walkable area; give a goal on the floor",
+        .0.x, .0.y
+    )]
+    NotOnFloor(Vector),
+    /// Walls close the goal off.
+    #[error(
+        "no way leads from agent {agent} at ({:.2}, {:.2}) to ({}, {}); give a goal that it can reach",
+        from.x, from.y, goal.x, goal.y
+    )]
+    NoWay {
+        /// The agent's id.
+        agent: u32,
+        /// Its position, meters.
+        from: Vector,
+        /// The goal, meters.
+        goal: Vector,
+    },
+    /// No path map can be made.
+    #[error(transparent)]
+    Way(#[from] WayError),
+}
+
+impl Simulation {
+    /// The index of agent `id` in the current frame.
+    ///
+    /// # Errors
+    /// It has not entered yet, or has left.
+    pub fn present(&self, id: u32) -> Result<usize, Absent> {
+        let agents = &self.crowd.agents;
+        agents.index_of(id).ok_or_else(|| self.absent(id))
+    }
+
+    fn absent(&self, id: u32) -> Absent {
+        let entered = self.crowd.agents.entered();
+        Absent {
+            time: self.crowd.clock.time(),
+            entered: (id >= entered).then_some(entered),
+        }
+    }
+
+    /// Gives agents, by id, new goals in meters, to which they walk from the next frame on: around walls if the scene has
+    /// path maps. An agent on a journey leaves it and stays at its goal; other agents leave there if their group does.
+    ///
+    /// # Errors
+    /// An agent is absent or walks in a direction, or a goal is not on the floor or cannot be reached. No agent has a new
+    /// goal then.
+    pub fn set_goals(&mut self, new: &[(u32, Vector)]) -> Result<(), GoalError> {
+        let new = self.indexed(new)?;
+        self.find_ways(&new)?;
+        for &(i, goal) in &new {
+            self.crowd.leave_journey(&self.fixed.scene, i);
+            let agents = &mut self.crowd.agents;
+            agents.goal[i] = goal;
+            if let Some(route) = agents.route.get_mut(i) {
+                *route = None;
+                agents.lacks_routes = true;
+            }
+        }
+        Ok(())
+    }
+
+    /// Agents find their ways on this floor from now on, if they have walked straight toward their goals so far.
+    pub fn add_ways(&mut self, ways: Ways) {
+        self.fixed.scene.ways.get_or_insert_with(|| Arc::new(ways));
+    }
+
+    /// The indices of the agents, with their new goals.
+    fn indexed(&self, new: &[(u32, Vector)]) -> Result<Vec<(usize, Vector)>, GoalError> {
+        let (scene, agents) = (&self.fixed.scene, &self.crowd.agents);
+        let mut places = vec![None; agents.entered() as usize];
+        for (i, &id) in agents.id.iter().enumerate() {
+            places[id as usize] = Some(i);
+        }
+        let mut last = None;
+        let indexed = new.iter().map(|&(id, goal)| {
+            let place = places.get(id as usize).copied().flatten();
+            let i = place.ok_or_else(|| GoalError::Absent(id, self.absent(id)))?;
+            if scene.groups[usize::from(agents.group[i])]
+                .direction
+                .is_some()
+            {
+                return Err(GoalError::Directed(id));
+            }
+            let is_checked = last.replace(goal) == Some(goal);
+            let is_number = goal.x.is_finite() && goal.y.is_finite();
+            if !is_checked && (!is_number || scene.walls.obstacle_at(goal).is_some()) {
+                return Err(GoalError::NotOnFloor(goal));
+            }
+            Ok((i, goal))
+        });
+        indexed.collect()
+    }
+
+    /// Makes path maps to goals of several agents, and to those behind walls.
+    fn find_ways(&mut self, new: &[(usize, Vector)]) -> Result<(), GoalError> {
+        let scene = &mut self.fixed.scene;
+        let agents = &self.crowd.agents;
+        let Some(ways) = &mut scene.ways else {
+            return Ok(());
+        };
+        let mut last = None;
+        for &(i, goal) in new {
+            let to = Destination::Goal(goal);
+            let is_shared = last.replace(goal) == Some(goal);
+            let position = agents.position[i];
+            let is_blocked = || {
+                let near = scene.walls.near_any(&[position, goal], 0.0);
+                let crossing = scene.walls.first_crossing(position, goal, &near);
+                crossing.is_some()
+            };
+            if !ways.leads_to(to) {
+                if !is_shared && !is_blocked() {
+                    continue;
+                }
+                let is_used = |other| {
+                    agents.goal.contains(&other) || new.iter().any(|&(_, goal)| goal == other)
+                };
+                let made = Arc::make_mut(ways).add_goal(goal, is_used);
+                made.map_err(|error| match error {
+                    WayError::NotOnFloor(_) => GoalError::NotOnFloor(goal),
+                    error => error.into(),
+                })?;
+            }
+            if ways.way(position, to).is_none() {
+                return Err(GoalError::NoWay {
+                    agent: agents.id[i],
+                    from: position,
+                    goal,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Crowd {
+    /// Agent `i` gives up its journey: its place in a queue or waiting area becomes free.
+    fn leave_journey(&mut self, scene: &Scene, i: usize) {
+        let group = usize::from(self.agents.group[i]);
+        if scene.groups[group].journey.is_none() {
+            return;
+        }
+        self.agents.trip.resize(self.agents.len(), None);
+        if self.agents.trip[i].is_none() {
+            // It entered since the last coarse frame.
+            self.begin(scene, i);
+        }
+        let Some(trip) = self.agents.trip[i] else {
+            return;
+        };
+        let state = &mut self.progress.places[usize::from(trip.place)];
+        match trip.status {
+            Status::Walking => {}
+            Status::Waiting { spot, since, .. } => {
+                state.leave_spot(spot);
+                self.count_wait(i, since);
+            }
+            Status::Queued { ticket, since, .. } => {
+                self.count_wait(i, since);
+                self.close_ranks(trip.place, ticket);
+            }
+            Status::Finished => {}
+        }
+        if trip.status != Status::Finished {
+            let bound = &mut self.progress.places[usize::from(trip.place)].bound;
+            *bound = bound.saturating_sub(1);
+        }
+        if let Some(trip) = &mut self.agents.trip[i] {
+            trip.status = Status::Finished;
+            trip.hold = None;
+            trip.chooses_at = u64::MAX;
+        }
+    }
+
+    /// The agents behind a ticket of a queue move up by one.
+    fn close_ranks(&mut self, queue: u16, gone: u32) {
+        for trip in self.agents.trip.iter_mut().flatten() {
+            if let Status::Queued { ticket, .. } = &mut trip.status
+                && trip.place == queue
+                && *ticket > gone
+            {
+                *ticket -= 1;
+            }
+        }
+        let tickets = &mut self.progress.places[usize::from(queue)].tickets;
+        *tickets = tickets.saturating_sub(1);
+    }
+}
