@@ -1,0 +1,80 @@
+"""Scenarios, studies and settings as the native part takes them."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from collections.abc import Mapping
+from typing import Any
+
+from . import _native
+
+Scenario = Mapping[str, Any] | str | os.PathLike[str]
+"""A scenario: a dict as in a scenario file, the path of such a file, or a name of `scenarios()`."""
+
+
+def to_json(value: Any) -> str:
+    """JSON, also of NumPy's arrays and numbers; NaN and infinity are errors."""
+
+    def plain(other: Any) -> Any:
+        if isinstance(other, Mapping):
+            return dict(other)
+        if hasattr(other, "tolist"):
+            return other.tolist()
+        raise TypeError(f"{type(other).__name__} is not JSON: {str(other)[:100]}")
+
+    try:
+        return json.dumps(value, allow_nan=False, default=plain)
+    except RecursionError:
+        raise _native.Error("the value is nested too deeply") from None
+
+
+def path_of(path: Any) -> str:
+    """A path as text."""
+    if not isinstance(path, (str, os.PathLike)):
+        raise TypeError(f"expected a path, not {type(path).__name__}")
+    text = os.fspath(path)
+    if not isinstance(text, str):
+        raise TypeError("expected a path in text, not in bytes")
+    text.encode()  # no lone surrogates
+    return text
+
+
+def native(
+    scenario: Scenario,
+    geometry: str | os.PathLike[str] | None,
+    settings: dict[str, Any],
+    collect: tuple[float, list[str] | None] | None = None,
+) -> _native.Native:
+    """A run before its second frame."""
+    if isinstance(scenario, Mapping):
+        name, text = "scenario", to_json(dict(scenario))
+    elif isinstance(scenario, (str, os.PathLike)):
+        name, text = path_of(scenario), None
+    else:
+        raise TypeError(
+            f"a scenario is a dict or a path, not {type(scenario).__name__}"
+        )
+    begun = _native.Native(
+        {
+            "name": name,
+            "text": text,
+            "settings": [_setting(key, value) for key, value in settings.items()],
+            "geometry": None if geometry is None else path_of(geometry),
+        },
+        collect,
+    )
+    for note in begun.notes:
+        warnings.warn(note, stacklevel=3)
+    return begun
+
+
+KEYS = {"until": "duration_secs", "time_step": "time_step_secs"}
+"""Short names of settings, as the program has them."""
+
+
+def _setting(key: str, value: Any) -> tuple[str, str, str]:
+    text = to_json(value)
+    shown = text if len(text) <= 60 else text[:60] + "…"
+    return KEYS.get(key, key), text, f"{key}={shown}"

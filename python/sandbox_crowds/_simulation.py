@@ -1,0 +1,152 @@
+"""A simulation step by step."""
+
+from __future__ import annotations
+
+import json
+import operator
+import os
+from typing import TYPE_CHECKING, Any
+
+from . import _given, _tables
+from ._native import Error
+
+if TYPE_CHECKING:
+    import numpy
+    import pandas
+    import shapely
+
+SLICE = 0.05
+"""The native part returns after so many seconds, and Python sees Ctrl-C."""
+
+
+class Simulation:
+    """A crowd, frame by frame. Between calls, everything matches: positions, densities and forces are of the same frame.
+
+    The same calls give the same bits, on any number of threads. Reading never changes the results. Arrays are copies,
+    with one row per agent that is present, in the order of `ids`.
+
+    Other threads of Python run during `step`; a simulation may be used by one thread at a time.
+    """
+
+    def __init__(
+        self,
+        scenario: _given.Scenario,
+        *,
+        geometry: str | os.PathLike[str] | None = None,
+        **settings: Any,
+    ) -> None:
+        """A simulation of `scenario` in its first frame.
+
+        `geometry` is the path of a floor plan that replaces the scenario's. `settings` are keys of the scenario; `until`
+        is its duration in seconds.
+
+        Raises `Error` with the place and the fix if something is invalid.
+        """
+        self._native = _given.native(scenario, geometry, settings)
+
+    def step(self, frames: int = 1) -> None:
+        """Simulates `frames` frames, also beyond the end of the scenario.
+
+        After Ctrl-C, fewer frames are simulated, and the simulation can go on.
+        """
+        left = operator.index(frames)
+        if left < 0:
+            raise Error(f"frames={left}: give 0 or more")
+        while left > 0:
+            left -= self._native.advance(min(left, 1 << 62), SLICE, False)
+
+    @property
+    def frame(self) -> int:
+        """The number of the current frame, from 0."""
+        return self._native.frame
+
+    @property
+    def time(self) -> float:
+        """The time of the current frame, s."""
+        return self._native.time
+
+    @property
+    def time_step(self) -> float:
+        """The time between two frames, s."""
+        return self._native.time_step
+
+    @property
+    def end(self) -> str | None:
+        """Why a run of the scenario would end at the current frame, in words; `None` if it would go on."""
+        return self._native.end
+
+    def __len__(self) -> int:
+        """The number of agents that are present."""
+        return self._native.agents
+
+    @property
+    def ids(self) -> numpy.ndarray:
+        """The ids of the agents that are present, ascending: uint32 of shape (agents,)."""
+        return _tables.array(self._native.ids(), "uint32")
+
+    @property
+    def positions(self) -> numpy.ndarray:
+        """Positions, m: float64 of shape (agents, 2). A copy."""
+        return _tables.array(self._native.positions(), "float64", -1, 2)
+
+    @property
+    def velocities(self) -> numpy.ndarray:
+        """Velocities, m/s: float64 of shape (agents, 2). A copy."""
+        return _tables.array(self._native.velocities(), "float64", -1, 2)
+
+    @property
+    def densities(self) -> numpy.ndarray:
+        """Densities by SPH, P/m²: float64 of shape (agents,). A copy."""
+        return _tables.array(self._native.densities(), "float64")
+
+    def agents(self) -> pandas.DataFrame:
+        """Every quantity of every agent, one row per agent: `columns()` has their meanings and units."""
+        return _tables.frame(self._native.table())
+
+    def set_goal(self, ids: Any, goal: Any) -> None:
+        """Gives agents a new goal, to which they walk from the next frame on, around walls.
+
+        `ids` is an id or a sequence of ids; `goal` a point [x, y] for all of them, or one point for each (shape
+        (len(ids), 2)), m. An agent on a journey leaves it, and stays at its goal. Other agents leave the simulation at
+        their goal if their group does (`remove_within`).
+
+        Raises `Error` if an agent is not present, or a goal is not on the floor or cannot be reached; no agent has a new
+        goal then.
+        """
+        import numpy
+
+        ids = numpy.atleast_1d(numpy.asarray(ids))
+        if ids.ndim != 1 or (ids.size > 0 and ids.dtype.kind not in "iu"):
+            raise TypeError("ids: give an agent's id, or a sequence of ids")
+        points = numpy.asarray(goal, dtype="float64")
+        if points.shape == (2,):
+            points = numpy.broadcast_to(points, (len(ids), 2))
+        if points.shape != (len(ids), 2):
+            raise Error(f"goal: a point [x, y], or one for each of {len(ids)} agents, not an array of shape {points.shape}")
+        self._native.set_goals(list(zip(ids.tolist(), points.tolist())))
+
+    def inspect(self, agent: int) -> dict[str, Any]:
+        """Every force on an agent in the current frame, as `sandbox inspect --json` prints them: accelerations in m/s²,
+        by profile and term, neighbors, walls, its way and its journey."""
+        return json.loads(self._native.inspect(operator.index(agent)))
+
+    @property
+    def measurements(self) -> dict[str, Any]:
+        """The results so far, as `sandbox run --json` prints them; the scenario's measurements are in `["metrics"]`."""
+        return json.loads(self._native.report())
+
+    @property
+    def state_sha256(self) -> str:
+        """A SHA-256 of the state; equal states have equal ones."""
+        return self._native.digest()
+
+    @property
+    def geometry(self) -> shapely.Geometry:
+        """The walkable area, m, as a polygon of shapely; several polygons if obstacles divide it."""
+        import shapely
+
+        return shapely.from_wkt(self._native.area())
+
+    def __repr__(self) -> str:
+        name, time = self._native.name, self._native.time
+        return f"<Simulation of {name!r}: {len(self)} agents at {time:.2f} s>"

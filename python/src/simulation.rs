@@ -1,0 +1,307 @@
+//! A run, frame by frame. Between calls, its current frame is evaluated: positions, densities and forces match.
+
+use std::time::{Duration, Instant};
+
+use pyo3::prelude::*;
+use pyo3::types::{PyByteArray, PyDict};
+use sandbox::cli::json_report;
+use sandbox::engine::breakdown::Breakdown;
+use sandbox::engine::frame::Frame;
+use sandbox::engine::simulation::Fault;
+use sandbox::output::trajectory::{Collected, Columns, walkable_area};
+use sandbox::runs::drive::Run;
+
+use crate::error;
+use crate::given::{Given, check_memory};
+use crate::values::{array, column, vector};
+
+/// A run, frame by frame.
+#[pyclass(module = "sandbox_crowds._native")]
+pub struct Native {
+    run: Run,
+    collected: Option<Collected>,
+    /// The agents of the current frame by id, once they have been asked for.
+    order: Option<Vec<u32>>,
+}
+
+#[pymethods]
+impl Native {
+    /// `collect`: frames per second of trajectories in memory, and their columns; all if there are none.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        given: Given,
+        collect: Option<(f64, Option<Vec<String>>)>,
+    ) -> PyResult<Self> {
+        py.detach(|| rayon::scope(|_| Self::begun(given, collect)))
+    }
+
+    /// Simulates `frames` frames, or as many as end within `seconds`, and returns their number. `to_end`: not beyond the
+    /// end of the run.
+    fn advance(
+        &mut self,
+        py: Python<'_>,
+        frames: u64,
+        seconds: f64,
+        to_end: bool,
+    ) -> PyResult<u64> {
+        let most = Duration::try_from_secs_f64(seconds).unwrap_or_default();
+        self.order = None;
+        let advanced = py.detach(|| {
+            // On a thread of the pool, parallel work starts without handing it over to the pool first.
+            rayon::scope(|_| {
+                let start = Instant::now();
+                let mut done = 0;
+                while done < frames && !(to_end && self.run.end.is_some()) {
+                    self.step()?;
+                    done += 1;
+                    if start.elapsed() >= most {
+                        break;
+                    }
+                }
+                Ok(done)
+            })
+        });
+        advanced.map_err(|fault| self.laid_open(fault))
+    }
+
+    /// The number of the current frame.
+    #[getter]
+    fn frame(&self) -> u64 {
+        self.now().clock.frame()
+    }
+
+    /// Seconds.
+    #[getter]
+    fn time(&self) -> f64 {
+        self.now().clock.time()
+    }
+
+    /// Seconds.
+    #[getter]
+    fn time_step(&self) -> f64 {
+        self.now().clock.time_step()
+    }
+
+    /// Seconds.
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.run.scenario.duration_secs
+    }
+
+    /// Why the run ends here.
+    #[getter]
+    fn end(&self) -> Option<String> {
+        self.run.end.map(|_| self.run.reason())
+    }
+
+    /// The current number of agents.
+    #[getter]
+    fn agents(&self) -> usize {
+        self.now().agents.len()
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.run.scenario.name
+    }
+
+    /// The scenario with all settings, as JSON.
+    #[getter]
+    fn document(&self) -> String {
+        self.run.scenario.to_text()
+    }
+
+    /// What was changed to make the scenario run.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.run.scenario.notes.clone()
+    }
+
+    /// What `sandbox run --json` reports.
+    fn report(&self) -> String {
+        json_report(&self.run).to_string()
+    }
+
+    /// The SHA-256 of the state.
+    fn digest(&self) -> String {
+        self.run.simulation.digest()
+    }
+
+    /// The walkable area as WKT.
+    fn area(&self, py: Python<'_>) -> PyResult<String> {
+        let run = &self.run;
+        let area = py.detach(|| match &self.collected {
+            Some(collected) => collected.area(),
+            None => walkable_area(&run.simulation, run.scenario.view.region),
+        });
+        area.map_err(error)
+    }
+
+    /// The ids of all agents, ascending: uint32.
+    fn ids<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyByteArray>> {
+        let order = self.order();
+        let ids = &self.now().agents.id;
+        array(py, order.len(), |k| ids[order[k] as usize].to_ne_bytes())
+    }
+
+    /// The positions by id: pairs of float64.
+    fn positions<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyByteArray>> {
+        let order = self.order();
+        let positions = &self.now().agents.position;
+        array(py, order.len(), |k| vector(positions[order[k] as usize]))
+    }
+
+    /// The velocities by id: pairs of float64.
+    fn velocities<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyByteArray>> {
+        let order = self.order();
+        let velocities = &self.now().agents.velocity;
+        array(py, order.len(), |k| vector(velocities[order[k] as usize]))
+    }
+
+    /// The densities by id: float64.
+    fn densities<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyByteArray>> {
+        let order = self.order();
+        let densities = &self.now().fields.density;
+        array(py, order.len(), |k| {
+            densities[order[k] as usize].to_ne_bytes()
+        })
+    }
+
+    /// All quantities of all agents in the current frame, as columns.
+    fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let simulation = &self.run.simulation;
+        let mut columns = Columns::new(|_| true);
+        py.detach(|| columns.add(simulation, simulation.frame().clock.frame()));
+        dictionary(py, columns)
+    }
+
+    /// The trajectories, which are then no longer kept; `None` if there are none.
+    fn take_trajectory<'py>(&mut self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let taken = self.collected.take().map(Collected::into_columns);
+        taken.map(|columns| dictionary(py, columns)).transpose()
+    }
+
+    /// Gives agents new goals, meters.
+    fn set_goals(&mut self, py: Python<'_>, goals: Vec<(u32, [f64; 2])>) -> PyResult<()> {
+        py.detach(|| {
+            let simulation = &mut self.run.simulation;
+            if simulation.scene().ways.is_none()
+                && let Some(floor) = self.run.scenario.floor().map_err(error)?
+            {
+                simulation.add_ways(floor);
+            }
+            let goals = goals.into_iter().map(|(id, goal)| (id, goal.into()));
+            let goals: Vec<_> = goals.collect();
+            simulation.set_goals(&goals).map_err(error)
+        })
+    }
+
+    /// Every force on an agent, as JSON.
+    fn inspect(&self, id: u32) -> PyResult<String> {
+        let simulation = &self.run.simulation;
+        let i = simulation.present(id);
+        let i = i.map_err(|why| error(format!("agent {id}: {why}")))?;
+        match Breakdown::of(simulation, i) {
+            Some(breakdown) => serde_json::to_string(&breakdown).map_err(error),
+            None => Err(error("the frame has no densities")),
+        }
+    }
+}
+
+/// Columns by name.
+fn dictionary(py: Python<'_>, columns: Columns) -> PyResult<Bound<'_, PyDict>> {
+    let all = PyDict::new(py);
+    for (name, values) in columns.into_values() {
+        all.set_item(name, column(py, values)?)?;
+    }
+    Ok(all)
+}
+
+impl Native {
+    fn begun(given: Given, collect: Option<(f64, Option<Vec<String>>)>) -> PyResult<Self> {
+        let scenario = given.scenario()?;
+        let columns = match collect {
+            Some((fps, wanted)) => Some((fps, columns(wanted)?)),
+            None => None,
+        };
+        if let Some((fps, columns)) = &columns {
+            check_memory(&scenario, *fps, columns.len())?;
+        }
+        let mut run = Run::new(scenario).map_err(error)?;
+        let collected = columns.map(|(fps, names)| {
+            let columns = Columns::new(|name| names.contains(&name));
+            let view = run.scenario.view.region;
+            let collected = Collected::new(&mut run.simulation, view, fps, columns);
+            collected.map_err(|reason| error(format!("fps: {reason}")))
+        });
+        let collected = collected.transpose()?;
+        // Densities depend on those before, so every frame needs them.
+        run.simulation.request_density_until(u64::MAX);
+        let mut new = Self {
+            run,
+            collected,
+            order: None,
+        };
+        new.evaluate().map_err(|fault| new.laid_open(fault))?;
+        Ok(new)
+    }
+
+    fn now(&self) -> Frame<'_> {
+        self.run.simulation.frame()
+    }
+
+    fn step(&mut self) -> Result<(), Fault> {
+        self.run.simulation.integrate()?;
+        self.evaluate()
+    }
+
+    fn evaluate(&mut self) -> Result<(), Fault> {
+        self.run.simulation.evaluate()?;
+        self.run.measure();
+        if let Some(collected) = &mut self.collected {
+            collected.log(&self.run.simulation);
+        }
+        Ok(())
+    }
+
+    /// The indices of all agents by id.
+    fn order(&mut self) -> Vec<u32> {
+        let new = || {
+            let agents = self.run.simulation.frame().agents;
+            // Ids are small numbers: no need to compare them.
+            let mut places = vec![u32::MAX; agents.entered() as usize];
+            for (i, &id) in (0..).zip(&agents.id) {
+                places[id as usize] = i;
+            }
+            places.retain(|&place| place != u32::MAX);
+            places
+        };
+        self.order.get_or_insert_with(new).clone()
+    }
+
+    /// The error of a fault, with the forces on the agent concerned.
+    fn laid_open(&mut self, fault: Fault) -> PyErr {
+        match Breakdown::of_fault(&mut self.run.simulation, &fault) {
+            Some(agent) => error(format!("{fault}\n{agent}")),
+            None => error(fault),
+        }
+    }
+}
+
+/// The names of the columns, all if none are given.
+fn columns(wanted: Option<Vec<String>>) -> PyResult<Vec<&'static str>> {
+    let all = Columns::all().map(|(name, _)| name);
+    let Some(wanted) = wanted else {
+        return Ok(all.collect());
+    };
+    let all: Vec<&str> = all.collect();
+    if let Some(unknown) = wanted.iter().find(|name| !all.contains(&name.as_str())) {
+        let known = all.join(", ");
+        return Err(error(format!(
+            "columns: no column `{unknown}`; there are {known}"
+        )));
+    }
+    let is_wanted = |name: &&str| wanted.iter().any(|wanted| wanted == name);
+    Ok(all.into_iter().filter(is_wanted).collect())
+}
