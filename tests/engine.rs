@@ -62,6 +62,7 @@ mod skips;
 mod social;
 mod sound;
 mod statistics;
+mod steering;
 mod voronoi;
 mod walking;
 mod walking_profiles;

@@ -1,0 +1,175 @@
+"""Whole runs: results, pictures, files, PedPy."""
+
+import json
+import subprocess
+import sys
+import threading
+
+import numpy
+import pandas
+import pytest
+
+import sandbox_crowds as sc
+
+
+def program(*words):
+    return subprocess.run(
+        [sys.executable, "-m", "sandbox_crowds", *map(str, words)],
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+
+
+def test_a_run_has_the_results_of_the_program():
+    run = sc.run("evacuation", until=3, viscosity=5)
+    said = program("evacuation", "--until", 3, "--set", "viscosity=5", "--json")
+    said = json.loads(said)
+    for key in ("state_sha256", "identity", "metrics", "settings", "frames"):
+        assert run.measurements[key] == said[key], key
+
+
+def test_the_trajectory_has_the_columns_and_digits_of_a_csv_file(tmp_path, corridor):
+    run = sc.run(corridor, fps=5)
+    run.save(tmp_path / "run.csv", trajectory_fps=5)
+    read = pandas.read_csv(tmp_path / "run.csv")
+    assert list(read) == list(sc.columns())
+    for name in read:
+        ours = run.trajectory[name]
+        if ours.dtype.kind in "uf":
+            numpy.testing.assert_array_equal(ours, read[name], err_msg=name)
+        else:
+            assert [str(one) for one in ours] == [str(one) for one in read[name]], name
+
+
+def test_agents_of_a_time_are_those_of_the_nearest_frame(corridor):
+    run = sc.run(corridor)
+    agents = run.agents(at=2.04)
+    assert set(agents["time"]) == {2.0}
+    assert list(agents["id"]) == sorted(agents["id"]) and len(agents) == 8
+    with pytest.raises(sc.Error, match="the run ended at 4.00 s"):
+        run.agents(at=5)
+
+
+def test_columns_can_be_chosen(corridor):
+    run = sc.run(corridor, columns=["pos_x", "frame"])
+    assert list(run.trajectory) == ["frame", "pos_x"]
+    with pytest.raises(sc.Error, match="no column `speeed`"):
+        sc.run(corridor, columns=["speeed"])
+
+
+def test_pedpy_takes_the_trajectories(corridor):
+    pedpy = pytest.importorskip("pedpy")
+    data, area = sc.run(corridor).to_pedpy()
+    assert data.frame_rate == 10
+    assert area.polygon.area >= 40.0
+    speeds = pedpy.compute_individual_speed(traj_data=data, frame_step=5)
+    assert 0.5 < speeds.speed.mean() < 2.0
+
+
+def test_a_run_can_be_drawn_saved_and_inspected(tmp_path, corridor):
+    run = sc.run(corridor)
+    assert run.draw(at=1, color="speed")._repr_png_().startswith(b"\x89PNG")
+    run.draw(at=1, out=tmp_path / "run.svg")
+    assert "<svg" in (tmp_path / "run.svg").read_text()
+    run.save(tmp_path / "run.rrd", record_every=25)
+    assert (tmp_path / "run.rrd").stat().st_size > 1000
+    with pytest.raises(sc.Error, match="already exists"):
+        run.save(tmp_path / "run.rrd")
+    found = run.inspect(3, at=1)
+    assert found["id"] == 3 and found["profiles"]
+
+
+def test_settings_are_keys_of_the_scenario(corridor):
+    run = sc.run(corridor, until=1, seed=7, profile="rvo", **{"grids.0.rows": 1})
+    found = run.measurements
+    assert (found["time_secs"], found["seed"], found["agents"]) == (1.0, 7, 4)
+    assert found["profile"] == "rvo"
+
+
+def test_numbers_of_numpy_are_numbers(corridor):
+    corridor["grids"][0]["max"] = numpy.array([4.0, 1.5])
+    run = sc.run(corridor, until=numpy.float64(0.5), seed=numpy.int64(3))
+    assert run.measurements["seed"] == 3
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"viscosty": 5}, "unknown setting `viscosty`; did you mean `viscosity`"),
+        ({"viscosity": -5}, "viscosity=-5"),
+        ({"viscosity": "5"}, "viscosity"),
+        ({"until": 5, "duration_secs": 6}, "set the same key"),
+        ({"geometry": "no/such.wkt"}, "geometry no/such.wkt"),
+        ({"fps": 7}, "fps: 7 frames per second do not divide"),
+    ],
+)
+def test_errors_are_those_of_the_program(settings, message):
+    with pytest.raises(sc.Error) as error:
+        sc.run("evacuation", **settings)
+    assert message in str(error.value)
+
+
+def test_values_that_are_not_json_are_errors(corridor):
+    with pytest.raises(ValueError, match="JSON"):
+        sc.run(corridor | {"goal": [float("nan"), 1]})
+    with pytest.raises(TypeError, match="not JSON"):
+        sc.run(corridor | {"goal": object()})
+    with pytest.raises(sc.Error, match="no/such.json"):
+        sc.run("no/such.json")
+
+
+def test_trajectories_that_do_not_fit_into_memory_are_refused():
+    with pytest.raises(sc.Error, match="would take .* of memory"):
+        sc.run("concert", until=1e6, fps=50)
+
+
+def test_a_sweep_is_a_table(corridor):
+    study = {"scenario": corridor, "grid": {"preferred_speed": [1.0, 1.5]}, "seeds": 2}
+    table = sc.sweep(study, progress=False)
+    assert len(table) == 4
+    assert set(table["status"]) == {"finished"}
+    assert list(table["preferred_speed"]) == [1.0, 1.0, 1.5, 1.5]
+    with pytest.raises(sc.Error, match="seeds"):
+        sc.sweep(study | {"seeds": -1})
+
+
+def test_validation_is_a_table():
+    table = sc.validate("single-file", profile="walk+sph", progress=False)
+    assert {"case", "profile", "quantity", "value", "least", "most", "passed"} <= set(table)
+    assert len(table) > 0
+    with pytest.raises(sc.Error, match="no such case"):
+        sc.validate("nowhere")
+
+
+def test_other_threads_run_meanwhile():
+    seen = []
+    done = threading.Event()
+
+    def watch():
+        while not done.wait(0.01):
+            seen.append(1)
+
+    thread = threading.Thread(target=watch)
+    thread.start()
+    sc.run("evacuation", until=10, progress=False)
+    done.set()
+    thread.join()
+    assert len(seen) > 3
+
+
+def test_the_program_starts_without_pandas():
+    code = "import sys, sandbox_crowds; print('pandas' in sys.modules, 'numpy' in sys.modules)"
+    said = subprocess.check_output([sys.executable, "-c", code], text=True)
+    assert said.split() == ["False", "False"]
+
+
+def test_exit_codes_are_those_of_the_program():
+    def code(*words):
+        words = [sys.executable, "-m", "sandbox_crowds", *words]
+        return subprocess.run(words, capture_output=True).returncode
+
+    assert code("list") == 0
+    assert code("run", "no/such.json") == 2
+    assert code("--nonsense") == 2
+    assert code("--version") == 0
