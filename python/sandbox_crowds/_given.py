@@ -53,9 +53,7 @@ def native(
     elif isinstance(scenario, (str, os.PathLike)):
         name, text = path_of(scenario), None
     else:
-        raise TypeError(
-            f"a scenario is a dict or a path, not {type(scenario).__name__}"
-        )
+        raise TypeError(f"a scenario is a dict or a path, not {type(scenario).__name__}")
     begun = _native.Native(
         {
             "name": name,

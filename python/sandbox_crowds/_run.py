@@ -115,9 +115,7 @@ class Run:
         names = {"pos_x": "x", "pos_y": "y"}
         data = table[["id", "frame", "pos_x", "pos_y"]].rename(columns=names)
         data = data.astype({"id": "int64", "frame": "int64"})
-        return pedpy.TrajectoryData(data=data, frame_rate=self.fps), pedpy.WalkableArea(
-            self.geometry
-        )
+        return pedpy.TrajectoryData(data=data, frame_rate=self.fps), pedpy.WalkableArea(self.geometry)
 
     def draw(self, at: float = 0.0, out: Any = None, **options: Any) -> Picture | None:
         """The crowd at the time `at` in seconds as a picture, which a notebook shows.

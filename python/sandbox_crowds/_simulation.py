@@ -122,7 +122,9 @@ class Simulation:
         if points.shape == (2,):
             points = numpy.broadcast_to(points, (len(ids), 2))
         if points.shape != (len(ids), 2):
-            raise Error(f"goal: a point [x, y], or one for each of {len(ids)} agents, not an array of shape {points.shape}")
+            raise Error(
+                f"goal: a point [x, y], or one for each of {len(ids)} agents, not an array of shape {points.shape}"
+            )
         self._native.set_goals(list(zip(ids.tolist(), points.tolist())))
 
     def inspect(self, agent: int) -> dict[str, Any]:

@@ -41,7 +41,7 @@ def sweep(
             path = Path(folder, "study.json")
             path.write_text(text, encoding="utf-8")
         else:
-            path = _given.path_of(study)
+            path = Path(_given.path_of(study))
         results = Path(folder, "results") if out is None else _given.path_of(out)
         options = options | {"out": results, "json": True}
         text = _watched("sweep", str(path), options=options, progress=progress)
@@ -87,9 +87,7 @@ def _written(file: Path) -> int | None:
     return file.stat().st_mtime_ns if file.exists() else None
 
 
-def _watched(
-    command: str, *arguments: str, options: dict[str, Any], progress: bool | None
-) -> str:
+def _watched(command: str, *arguments: str, options: dict[str, Any], progress: bool | None) -> str:
     """The output of a command that says how far it is."""
     with Bar(100, "%", progress) as bar:
 

@@ -89,8 +89,7 @@ def test_forces_sum_up_to_the_acceleration(corridor):
     simulation.step(100)
     found = simulation.inspect(2)
     total = sum(
-        share["weight"] * numpy.sum(list(share["accelerations"].values()), axis=0)
-        for share in found["profiles"]
+        share["weight"] * numpy.sum(list(share["accelerations"].values()), axis=0) for share in found["profiles"]
     )
     numpy.testing.assert_allclose(total, found["acceleration"], atol=1e-3)
 
@@ -108,9 +107,7 @@ def test_ctrl_c_interrupts_and_the_simulation_goes_on():
             simulation.step(2)
             print("interrupted", simulation.frame - before)
     """
-    process = subprocess.Popen(
-        [sys.executable, "-c", textwrap.dedent(code)], stdout=subprocess.PIPE, text=True
-    )
+    process = subprocess.Popen([sys.executable, "-c", textwrap.dedent(code)], stdout=subprocess.PIPE, text=True)
     assert process.stdout.readline() == "ready\n"
     time.sleep(0.5)
     process.send_signal(signal.SIGINT)
