@@ -47,18 +47,21 @@ impl Default for SphParameters {
 
 impl SphParameters {
     /// Eq. 8: the moving average ρ̂ after one step.
+    #[inline]
     pub fn averaged(&self, mean_density: f64, density: f64, time_step: f64) -> f64 {
         let alpha = (time_step / self.averaging_time).min(1.0);
         (1.0 - alpha) * mean_density + alpha * density
     }
 
     /// ρ⁰: the moving average ρ̂, clamped to its allowed range (§4.2).
+    #[inline]
     pub fn rest_density(&self, mean_density: f64) -> f64 {
         mean_density.clamp(self.rest_density_min, self.rest_density_max)
     }
 
     /// The density from walls (Eq. 10) and the moving average ρ̂ (Eq. 8), P/m². `hidden` is Σ_k ∫ W over P_k. `kept` is
     /// the average `time_step` seconds earlier; `None` for a newcomer.
+    #[inline]
     pub fn from_walls_and_mean(
         &self,
         from_agents: f64,
@@ -73,12 +76,14 @@ impl SphParameters {
     }
 
     /// Eq. 5: p_i, 1/s².
+    #[inline]
     pub fn pressure(&self, density: f64, rest_density: f64) -> f64 {
         self.gas_constant * (density - rest_density)
     }
 }
 
 /// ρ̂ of the previous frame, P/m²: `kept` or, for a newcomer, the density `from_agents` alone (Eq. 9).
+#[inline]
 pub fn mean_density_before(kept: Option<f64>, from_agents: f64) -> f64 {
     kept.unwrap_or(from_agents)
 }
@@ -136,6 +141,56 @@ fn sums<R: Real, S: Simd>(simd: S, bodies: &Bodies<R>, block: &ClusterBlock, out
     }
 }
 
+/// What the densities of a block follow from.
+struct Given<'a> {
+    /// Seconds since the moving average was last stored.
+    time_step: f64,
+    /// Is the moving average still unset?
+    newcomer: &'a [bool],
+    /// The moving average, P/m².
+    before: &'a [f64],
+    mass: &'a [f64],
+}
+
+/// The densities of a block. Before they are complete, `density` is that from agents alone, and `from_walls` Σ_k ∫ W
+/// over P_k.
+struct Found<'a> {
+    density: &'a mut [f64],
+    from_walls: &'a mut [f64],
+    mean: &'a mut [f64],
+    rest: &'a mut [f64],
+    pressure: &'a mut [f64],
+}
+
+/// Eqs. 10, 8 and 5 for the agents of a block, and their packed volumes and pressures.
+#[inline(always)]
+fn complete<R: Real>(
+    parameters: impl Fn(usize) -> SphParameters,
+    given: &Given,
+    found: Found,
+    (volume, packed): (&mut [R], &mut [R]),
+) {
+    let count = given.mass.len();
+    let (newcomer, before) = (&given.newcomer[..count], &given.before[..count]);
+    let (density, from_walls) = (&mut found.density[..count], &mut found.from_walls[..count]);
+    let (mean, rest) = (&mut found.mean[..count], &mut found.rest[..count]);
+    let pressure = &mut found.pressure[..count];
+    for k in 0..count {
+        let sph = parameters(k);
+        let kept = (!newcomer[k]).then_some(before[k]);
+        [from_walls[k], mean[k]] =
+            sph.from_walls_and_mean(density[k], from_walls[k], kept, given.time_step);
+        density[k] += from_walls[k];
+        rest[k] = sph.rest_density(mean[k]);
+        pressure[k] = sph.pressure(density[k], rest[k]);
+    }
+    let (volume, packed) = (&mut volume[..count], &mut packed[..count]);
+    for k in 0..count {
+        volume[k] = R::of(given.mass[k] / density[k]);
+        packed[k] = R::of(pressure[k]);
+    }
+}
+
 /// What step 1B reads.
 #[derive(Clone, Copy)]
 pub struct Input<'a, P> {
@@ -180,19 +235,27 @@ impl<'a, P: Fn(u16) -> &'a SphParameters + Sync> Input<'a, P> {
                 let newcomer = &self.agents.newcomer[agents.clone()];
                 let before = &self.agents.mean_density[agents.clone()];
                 let mass = &self.agents.mass[agents];
-                for k in 0..mass.len() {
-                    let sph = shared.unwrap_or_else(|| *(self.parameters)(group[k]));
-                    let kept = (!newcomer[k]).then_some(before[k]);
-                    let hidden = from_walls[k];
-                    [from_walls[k], mean[k]] =
-                        sph.from_walls_and_mean(density[k], hidden, kept, self.time_step);
-                    density[k] += from_walls[k];
-                    rest[k] = sph.rest_density(mean[k]);
-                    pressure[k] = sph.pressure(density[k], rest[k]);
-                }
-                for k in 0..mass.len() {
-                    volume[k] = R::of(mass[k] / density[k]);
-                    packed[k] = R::of(pressure[k]);
+                let given = Given {
+                    time_step: self.time_step,
+                    newcomer,
+                    before,
+                    mass,
+                };
+                let found = Found {
+                    density,
+                    from_walls,
+                    mean,
+                    rest,
+                    pressure,
+                };
+                match shared {
+                    Some(sph) => dispatch!(Level::new(), _simd => {
+                        complete(|_| sph, &given, found, (volume, packed));
+                    }),
+                    None => {
+                        let own = |k: usize| *(self.parameters)(group[k]);
+                        complete(own, &given, found, (volume, packed));
+                    }
                 }
             });
     }

@@ -9,6 +9,7 @@ pub fn perpendicular(v: Vector) -> Vector {
 }
 
 /// `v / |v|`, or zero for the zero vector.
+#[inline]
 pub fn direction(v: Vector) -> Vector {
     let length = v.norm();
     if length > 0.0 {
@@ -59,6 +60,7 @@ pub fn unit_vector(turn: u32) -> Vector {
 const QUARTERS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
 
 /// `v`, clamped to length `limit`.
+#[inline]
 pub fn clamp_length(v: Vector, limit: f64) -> Vector {
     let squared = v.norm_squared();
     if squared > limit * limit {
@@ -74,6 +76,9 @@ pub fn bounds(points: impl IntoIterator<Item = Vector>) -> Option<[Vector; 2]> {
     corners.reduce(|[low, high], [p, _]| [low.inf(&p), high.sup(&p)])
 }
 
+/// Sums that the checks below compute side by side.
+const SUMS: usize = 8;
+
 /// Are both coordinates finite?
 pub fn is_finite(v: Vector) -> bool {
     v.x.is_finite() && v.y.is_finite()
@@ -81,12 +86,26 @@ pub fn is_finite(v: Vector) -> bool {
 
 /// Are all coordinates finite?
 pub fn are_finite(vectors: &[Vector]) -> bool {
-    // Zero times an infinity or a NaN is NaN, and NaN propagates through the sum: one comparison is enough.
-    let zero: Vector = vectors.iter().map(|v| v * 0.0).sum();
-    zero == Vector::zeros()
+    // Zero times an infinity or a NaN is NaN, and NaN propagates through a sum. Several sums do not wait for each other.
+    let (whole, rest) = vectors.as_chunks::<SUMS>();
+    let mut zeros = [Vector::zeros(); SUMS];
+    for some in whole {
+        for (zero, v) in zeros.iter_mut().zip(some) {
+            *zero += v * 0.0;
+        }
+    }
+    let last: Vector = rest.iter().map(|v| v * 0.0).sum();
+    zeros == [Vector::zeros(); SUMS] && last == Vector::zeros()
 }
 
 /// Are all numbers finite?
 pub fn numbers_are_finite(numbers: &[f64]) -> bool {
-    numbers.iter().map(|number| number * 0.0).sum::<f64>() == 0.0
+    let (whole, rest) = numbers.as_chunks::<SUMS>();
+    let mut zeros = [0.0; SUMS];
+    for some in whole {
+        for (zero, number) in zeros.iter_mut().zip(some) {
+            *zero += number * 0.0;
+        }
+    }
+    zeros == [0.0; SUMS] && rest.iter().map(|number| number * 0.0).sum::<f64>() == 0.0
 }

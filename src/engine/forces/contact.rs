@@ -8,7 +8,7 @@ use std::ops::Range;
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Columns, Lanes, Real, Simd, lanes_from, load, splat};
+use crate::engine::pairs::{Columns, Lanes, Real, Simd, add_quotients, lanes_from, load, splat};
 
 /// Distance in meters below which a center is taken to lie on a wall. Coordinates up to 10⁶ m round by less;
 /// without it, rounding would decide the direction of the push.
@@ -69,9 +69,7 @@ pub fn add_coefficients(
     stiffness: f64,
     coefficients: &mut [f64],
 ) {
-    for (sum, &mass) in coefficients.iter_mut().zip(&frame.agents.mass[agents]) {
-        *sum += stiffness / mass;
-    }
+    add_quotients(stiffness, &frame.agents.mass[agents], coefficients);
 }
 
 /// Eq. 23 for the part of the radius that counts, summed over all of `walls` that overlap the disc and divided by the

@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use crate::engine::frame::Frame;
 use crate::engine::math::{Vector, direction};
+use crate::engine::neighbors::BLOCK;
+use crate::engine::pairs::{Level, dispatch};
 
 /// Parameters of Eq. 17.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
@@ -30,7 +32,7 @@ impl GoalForce {
         self.goal_scale / self.relaxation_time
     }
 
-    /// Eq. 17, divided by the mass, for each of `agents`.
+    /// Eq. 17, divided by the mass, for each of `agents`, which are of one block.
     #[inline]
     pub fn accelerations(
         &self,
@@ -42,13 +44,29 @@ impl GoalForce {
         let preferred = &frame.fields.preferred_velocity[agents.clone()];
         let velocity = &frame.agents.velocity[agents.clone()];
         let mass = &frame.agents.mass[agents.clone()];
-        for (((i, wish), v), m) in agents.zip(preferred).zip(velocity).zip(mass) {
-            take(i, (wish - v) * (rate / m));
+        let mut all = [Vector::zeros(); BLOCK];
+        let all = &mut all[..mass.len()];
+        dispatch!(Level::new(), _simd => accelerate(rate, (preferred, velocity, mass), all));
+        for (i, &acceleration) in agents.zip(&*all) {
+            take(i, acceleration);
         }
     }
 }
 
+#[inline(always)]
+fn accelerate(
+    rate: f64,
+    (preferred, velocity, mass): (&[Vector], &[Vector], &[f64]),
+    all: &mut [Vector],
+) {
+    let agents = preferred.iter().zip(velocity).zip(mass);
+    for (acceleration, ((wish, v), m)) in all.iter_mut().zip(agents) {
+        *acceleration = (wish - v) * (rate / m);
+    }
+}
+
 /// v^pref: `preferred_speed` (m/s) straight toward the goal, zero at the goal.
+#[inline]
 pub fn preferred_velocity(position: Vector, goal: Vector, preferred_speed: f64) -> Vector {
     direction(goal - position) * preferred_speed
 }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Columns, Lanes, Real, Simd, lanes_from, load, splat};
+use crate::engine::pairs::{Columns, Lanes, Level, Real, Simd, dispatch, lanes_from, load, splat};
 
 /// Eq. 11 for eight agents i: −Σ_j m_j (p_i + p_j)/(2ρ_j) ∇W, times a coefficient.
 pub struct FromAgents<R: Real, S: Simd> {
@@ -46,12 +46,18 @@ pub fn add_coefficients(
 ) {
     let density = &frame.fields.density[agents.clone()];
     let rest_density = &frame.fields.rest_density[agents];
+    dispatch!(Level::new(), _simd => add(weight, (density, rest_density), coefficients));
+}
+
+#[inline(always)]
+fn add(weight: f64, (density, rest_density): (&[f64], &[f64]), coefficients: &mut [f64]) {
     for ((sum, &density), &rest_density) in coefficients.iter_mut().zip(density).zip(rest_density) {
         *sum += coefficient(density, rest_density) * weight;
     }
 }
 
 /// 1/ρ_i, or zero below the rest density, where an agent feels no pressure (§5.2).
+#[inline]
 fn coefficient(density: f64, rest_density: f64) -> f64 {
     let felt = if density >= rest_density { 1.0 } else { 0.0 };
     felt / density

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::engine::frame::Frame;
 use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Columns, Lanes, Real, Simd, lanes_from, load, splat};
+use crate::engine::pairs::{Columns, Lanes, Real, Simd, add_quotients, lanes_from, load, splat};
 
 /// The viscosity force of one profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,9 +24,7 @@ impl Viscosity {
         coefficients: &mut [f64],
     ) {
         let density = &frame.fields.density[agents];
-        for (sum, &density) in coefficients.iter_mut().zip(density) {
-            *sum += self.coefficient * weight / density;
-        }
+        add_quotients(self.coefficient * weight, density, coefficients);
     }
 }
 

@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Simd, prelude::*};
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use super::columns::Bodies;
 use super::real::{LANES, Lanes, Real};
@@ -90,4 +90,16 @@ pub fn store<R: Real, S: Simd>(lanes: Lanes<R, S>) -> [f64; LANES] {
         *double = number.into();
     }
     doubles
+}
+
+/// Adds `numerator` divided by each of `denominators` to `sums`.
+pub fn add_quotients(numerator: f64, denominators: &[f64], sums: &mut [f64]) {
+    dispatch!(Level::new(), _simd => quotients(numerator, denominators, sums));
+}
+
+#[inline(always)]
+fn quotients(numerator: f64, denominators: &[f64], sums: &mut [f64]) {
+    for (sum, denominator) in sums.iter_mut().zip(denominators) {
+        *sum += numerator / denominator;
+    }
 }

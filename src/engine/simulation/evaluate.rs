@@ -15,7 +15,7 @@ use crate::engine::forces::walking;
 use crate::engine::frame::{Frame, velocity_range};
 use crate::engine::math::{Vector, are_finite, clamp_length, direction, numbers_are_finite};
 use crate::engine::neighbors::{BLOCK, CLUSTER, ListPolicy, TASK};
-use crate::engine::pairs::each;
+use crate::engine::pairs::{Level, dispatch, each};
 use crate::engine::profile::{Blend, Override};
 
 impl Simulation {
@@ -327,10 +327,15 @@ fn straight_at(speed: f64, positions: &[Vector], aims: &[Vector], preferred: &mu
     );
     let blocks = blocks.into_par_iter().with_min_len(TASK);
     blocks.for_each(|(preferred, positions, aims)| {
-        for ((v, &r), &g) in preferred.iter_mut().zip(positions).zip(aims) {
-            *v = goal::preferred_velocity(r, g, speed);
-        }
+        dispatch!(Level::new(), _simd => walk_straight(speed, (positions, aims), preferred));
     });
+}
+
+#[inline(always)]
+fn walk_straight(speed: f64, (positions, aims): (&[Vector], &[Vector]), preferred: &mut [Vector]) {
+    for ((v, &r), &g) in preferred.iter_mut().zip(positions).zip(aims) {
+        *v = goal::preferred_velocity(r, g, speed);
+    }
 }
 
 fn block_is_finite(frame: &Frame, b: usize, acceleration: &[Vector]) -> bool {

@@ -117,11 +117,11 @@ impl Simulation {
         }
     }
 
-    /// Moves all agents by `dt` seconds. `motion` maps index, velocity and acceleration to the motion of an agent.
+    /// Moves all agents by `dt` seconds. `motion_of` maps index, velocity and acceleration to the motion of an agent.
     fn move_agents(
         &mut self,
         dt: f64,
-        motion: impl Fn(usize, Vector, Vector) -> Motion + Sync,
+        motion_of: impl Fn(usize, Vector, Vector) -> Motion + Sync,
     ) -> Moves {
         let (scene, agents) = (&self.fixed.scene, &mut self.crowd.agents);
         let (walls, max_speeds) = (&scene.walls, &agents.max_speed);
@@ -135,25 +135,44 @@ impl Simulation {
         let moves = self.stages.time(Stage::Integration, || {
             let blocks = blocks.into_par_iter().with_min_len(TASK).enumerate();
             let moved = blocks.map(|(b, (positions, velocities, accelerations, sorted_at))| {
-                let mut moves = Moves::default();
                 let from = b * BLOCK;
                 let walled = neighbors.agents_near_walls(from..from + positions.len());
                 let mut walled = walled.peekable();
-                let states = positions.iter_mut().zip(velocities);
-                let states = states.zip(accelerations).zip(sorted_at);
-                for (k, (((position, velocity), &acceleration), start)) in states.enumerate() {
-                    let near = walled.next_if(|&(i, _)| i == from + k);
-                    let near = near.map_or(&[][..], |(_, near)| near);
-                    let most = max_speeds.get(from + k).copied();
-                    let limits = Limits {
-                        speed: most.unwrap_or(scene.max_speed),
-                        walls,
-                        near,
-                    };
-                    let motion = motion(from + k, *velocity, acceleration);
-                    moves.make(&limits, dt, motion, position, velocity);
-                    moves.farthest = moves.farthest.max((*position - start).norm_squared());
+                let mut motions = [Motion::default(); BLOCK];
+                let motions = &mut motions[..positions.len()];
+                let states = velocities.iter().zip(accelerations).enumerate();
+                for (motion, (k, (&v, &a))) in motions.iter_mut().zip(states) {
+                    *motion = motion_of(from + k, v, a);
                 }
+                let mut moves = Moves::default();
+                let is_free = max_speeds.is_empty() && walled.peek().is_none();
+                if is_free
+                    && motions
+                        .iter()
+                        .all(|motion| motion.is_within(scene.max_speed))
+                {
+                    let states = positions.iter_mut().zip(velocities);
+                    for ((position, velocity), motion) in states.zip(motions) {
+                        *velocity = motion.velocity;
+                        *position += motion.way * dt;
+                    }
+                } else {
+                    let states = positions.iter_mut().zip(velocities).enumerate();
+                    for ((k, (position, velocity)), motion) in states.zip(motions) {
+                        let near = walled.next_if(|&(i, _)| i == from + k);
+                        let near = near.map_or(&[][..], |(_, near)| near);
+                        let most = max_speeds.get(from + k).copied();
+                        let limits = Limits {
+                            speed: most.unwrap_or(scene.max_speed),
+                            walls,
+                            near,
+                        };
+                        moves.make(&limits, dt, *motion, position, velocity);
+                    }
+                }
+                let ways = positions.iter().zip(sorted_at);
+                let ways = ways.map(|(position, start)| (position - start).norm_squared());
+                moves.farthest = ways.fold(0.0, |most, way| if way > most { way } else { most });
                 moves
             });
             moved.reduce(Moves::default, Moves::and)
@@ -223,11 +242,20 @@ impl Crowd {
 }
 
 /// The motion of an agent. Both velocities are clamped to s_max.
+#[derive(Clone, Copy, Default)]
 struct Motion {
     /// The velocity during the move, m/s.
     way: Vector,
     /// The velocity after it, m/s.
     velocity: Vector,
+}
+
+impl Motion {
+    /// Whether neither velocity is above `limit`, m/s.
+    fn is_within(&self, limit: f64) -> bool {
+        let is_within = |v: Vector| v.norm_squared() <= limit * limit;
+        is_within(self.way) & is_within(self.velocity)
+    }
 }
 
 /// What limits a move.
