@@ -125,6 +125,23 @@ fn names_of_features_lie_inside_of_them() {
 }
 
 #[test]
+fn empty_names_are_no_names_and_the_largest_of_several_polygons_has_the_name() {
+    let small = json!([[[20, 0], [21, 0], [21, 1], [20, 1], [20, 0]]]);
+    let large = json!([[[0, 0], [8, 0], [8, 8], [0, 8], [0, 0]]]);
+    let named = |name: &str| {
+        let document = json!({"type": "Feature", "properties": {"name": name},
+            "geometry": {"type": "MultiPolygon", "coordinates": [small, large]}});
+        json(&document).unwrap().names
+    };
+    assert_eq!([named(""), named(" ")], [[], []]);
+    let [label] = named(" hall ").try_into().unwrap();
+    assert_eq!(
+        (label.text.as_str(), label.at),
+        ("hall", Vector::new(4.0, 4.0))
+    );
+}
+
+#[test]
 fn a_scenario_takes_the_names_of_its_plans_as_labels() {
     let folder = tempfile::tempdir().unwrap();
     let mut room = feature(json!([[[0, 0], [8, 0], [8, 8], [0, 8], [0, 0]]]), "floor");

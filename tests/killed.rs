@@ -55,6 +55,11 @@ fn kill_one(seed: u64) {
     std::thread::sleep(Duration::from_secs_f64(pause));
     let safe = last_frame(&csv);
     std::thread::sleep(SAFE);
+    // On a busy machine the run may have had no time of its own since then.
+    let later = last_frame(&csv);
+    while last_frame(&csv) < later + 2 * 50 {
+        std::thread::sleep(Duration::from_millis(10));
+    }
     child.kill().unwrap(); // SIGKILL
     child.wait().unwrap();
 

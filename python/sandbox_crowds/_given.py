@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
 import warnings
 from collections.abc import Mapping
@@ -28,6 +29,8 @@ def to_json(value: Any) -> str:
         return json.dumps(value, allow_nan=False, default=plain)
     except RecursionError:
         raise _native.Error("the value is nested too deeply") from None
+    except ValueError as problem:
+        raise _native.Error(f"{problem}; give finite numbers, and no value inside of itself") from None
 
 
 def path_of(path: Any) -> str:
@@ -39,6 +42,14 @@ def path_of(path: Any) -> str:
         raise TypeError("expected a path in text, not in bytes")
     text.encode()  # no lone surrogates
     return text
+
+
+def agent_id(agent: Any) -> int:
+    """The id of an agent."""
+    number = operator.index(agent)
+    if not 0 <= number < 1 << 32:
+        raise _native.Error(f"agent {number}: ids are whole numbers from 0")
+    return number
 
 
 def native(
@@ -73,6 +84,9 @@ KEYS = {"until": "duration_secs", "time_step": "time_step_secs"}
 
 
 def _setting(key: str, value: Any) -> tuple[str, str, str]:
-    text = to_json(value)
+    try:
+        text = to_json(value)
+    except _native.Error as problem:
+        raise _native.Error(f"{key}: {problem}") from None
     shown = text if len(text) <= 60 else text[:60] + "…"
     return KEYS.get(key, key), text, f"{key}={shown}"

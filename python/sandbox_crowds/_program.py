@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -19,6 +20,9 @@ def flags(options: dict[str, Any]) -> list[str]:
     given = []
     for name, value in options.items():
         option = "--" + name.replace("_", "-")
+        if hasattr(value, "tolist"):  # of NumPy
+            value = value.tolist()
+            value = tuple(value) if isinstance(value, list) else value
         for one in value if isinstance(value, list) else [value]:
             if one is True:
                 given.append(option)
@@ -50,6 +54,7 @@ def call(
             text=True,
             encoding="utf-8",
             errors="replace",
+            env=os.environ | {"PYTHONSAFEPATH": "1"},  # no module of the working directory
         )
         assert program.stderr is not None
         try:

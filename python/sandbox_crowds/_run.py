@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import socket
 import tempfile
 from collections.abc import Iterable
 from pathlib import Path
@@ -68,6 +69,7 @@ class Run:
         self._area = native.area()
         self._table: Any = native.take_trajectory()
         self._trajectory: pandas.DataFrame | None = None
+        self._shown: Any = None
         self.fps = fps
         """Frames per second of the trajectories."""
 
@@ -89,7 +91,11 @@ class Run:
         table = self.trajectory
         if "frame" not in table:
             raise Error("columns: `frame` is needed to find the agents of a time")
-        if not isinstance(at, (int, float)) or not 0 <= at <= 1e9:
+        try:
+            at = float(at)
+        except ValueError:
+            raise Error(f"at={at!r}: not a time in seconds, 0 or later") from None
+        if not 0 <= at <= 1e9:
             raise Error(f"at={at!r}: not a time in seconds, 0 or later")
         frame, end = round(at * self.fps), self.measurements["time_secs"]
         if frame > end * self.fps + 0.5:
@@ -151,12 +157,25 @@ class Run:
         found = self._program("inspect", {"agent": agent, "at": at, "json": True})
         return json.loads(found)["agents"][0]
 
-    def view(self, **options: Any) -> Any:
-        """The run in a Rerun viewer, in a notebook; needs `rerun-sdk[notebook]`. `options` are those of `save`."""
+    def view(self, live: bool = False, **options: Any) -> Any:
+        """The run in a Rerun viewer, in a notebook; needs `rerun-sdk[notebook]`. `options` are those of `save`.
+
+        `live`: the viewer shows the run while the program repeats it. The browser must be on this machine.
+        """
         import rerun
         from rerun.notebook import Viewer
 
         recording = rerun.RecordingStream(self._name)
+        if live:
+            with socket.socket() as free:
+                free.bind(("127.0.0.1", 0))
+                port = free.getsockname()[1]
+            address = recording.serve_grpc(grpc_port=port)
+            viewer = Viewer(url=address)
+            viewer.display()
+            self._program("run", options | {"connect": address})
+            self._shown = recording  # the viewer has its data as long as this exists
+            return None
         viewer = Viewer(recording=recording)
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "run.rrd")

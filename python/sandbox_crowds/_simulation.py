@@ -118,19 +118,25 @@ class Simulation:
         ids = numpy.atleast_1d(numpy.asarray(ids))
         if ids.ndim != 1 or (ids.size > 0 and ids.dtype.kind not in "iu"):
             raise TypeError("ids: give an agent's id, or a sequence of ids")
-        points = numpy.asarray(goal, dtype="float64")
+        if ids.size == 0:
+            return
+        numbers = [_given.agent_id(one) for one in ids.tolist()]
+        try:
+            points = numpy.asarray(goal, dtype="float64")
+        except ValueError as problem:
+            raise Error(f"goal: give a point [x, y], or one for each agent: {problem}") from None
         if points.shape == (2,):
             points = numpy.broadcast_to(points, (len(ids), 2))
         if points.shape != (len(ids), 2):
             raise Error(
                 f"goal: a point [x, y], or one for each of {len(ids)} agents, not an array of shape {points.shape}"
             )
-        self._native.set_goals(list(zip(ids.tolist(), points.tolist())))
+        self._native.set_goals(list(zip(numbers, points.tolist())))
 
     def inspect(self, agent: int) -> dict[str, Any]:
         """Every force on an agent in the current frame, as `sandbox inspect --json` prints them: accelerations in m/s²,
         by profile and term, neighbors, walls, its way and its journey."""
-        return json.loads(self._native.inspect(operator.index(agent)))
+        return json.loads(self._native.inspect(_given.agent_id(agent)))
 
     @property
     def measurements(self) -> dict[str, Any]:

@@ -35,22 +35,30 @@ def sweep(
     """
     import pandas
 
+    names: dict[str, str] = {}
     with tempfile.TemporaryDirectory() as folder:
         if isinstance(study, Mapping):
-            text = _given.to_json(_with_files(dict(study), Path(folder)))
+            text = _given.to_json(_with_files(dict(study), Path(folder), names))
             path = Path(folder, "study.json")
             path.write_text(text, encoding="utf-8")
         else:
             path = Path(_given.path_of(study))
         results = Path(folder, "results") if out is None else _given.path_of(out)
         options = options | {"out": results, "json": True}
-        text = _watched("sweep", str(path), options=options, progress=progress)
+        try:
+            text = _watched("sweep", str(path), options=options, progress=progress)
+        except _native.Error as problem:
+            # Files of a dict are gone when the message is read.
+            raise _native.Error(str(problem).replace(f"{folder}{os.sep}", "")) from None
     rows = []
     for cell in json.loads(text)["cells"]:
         result = cell.get("result") or {}
         own = {"evacuated": result.get("evacuated"), "time_secs": result.get("time_secs")}
         row = {name: cell.get(name) for name in ("cell", "seed", "status")}
-        rows.append(row | cell["settings"] | own | result.get("metrics", {}))
+        settings = dict(cell["settings"])
+        if "scenario" in settings:
+            settings["scenario"] = names.get(settings["scenario"], settings["scenario"])
+        rows.append(row | settings | own | result.get("metrics", {}))
     return pandas.DataFrame(rows)
 
 
@@ -98,32 +106,45 @@ def _watched(command: str, *arguments: str, options: dict[str, Any], progress: b
         return _program.call(command, *arguments, options=options, said=said)
 
 
-def _with_files(value: Any, folder: Path) -> Any:
-    """The study with scenarios as files: those that are dicts are written to `folder`."""
+def _with_files(value: Any, folder: Path, names: dict[str, str]) -> Any:
+    """The study with scenarios as files: those that are dicts are written to `folder`. `names` gets their names."""
     if isinstance(value, list):
-        return [_with_files(one, folder) for one in value]
+        return [_with_files(one, folder, names) for one in value]
     if not isinstance(value, Mapping):
         return value
     found = {}
     for key, one in value.items():
         if key in ("list", "grid"):
-            one = _with_files(one, folder)
+            one = _with_files(one, folder, names)
         if key == "scenario":
             many = isinstance(one, list)
-            files = [_file(scenario, folder) for scenario in (one if many else [one])]
+            files = [_file(scenario, folder, names) for scenario in (one if many else [one])]
             one = files if many else files[0]
         found[key] = one
     return found
 
 
-def _file(scenario: Any, folder: Path) -> Any:
+def _file(scenario: Any, folder: Path, names: dict[str, str]) -> Any:
     """The path of a scenario."""
     if isinstance(scenario, Mapping):
         name = str(scenario.get("name", "scenario"))
-        name = re.sub(r"\W+", "-", name)[:50]
-        path = folder / f"{name}-{len(list(folder.iterdir()))}.json"
-        path.write_text(_given.to_json(dict(scenario)), encoding="utf-8")
+        stem = re.sub(r"\W+", "-", name)[:50]
+        path = folder / f"{stem}-{len(list(folder.iterdir()))}.json"
+        path.write_text(_given.to_json(_absolute(scenario)), encoding="utf-8")
+        names[str(path)] = name
         return str(path)
     if isinstance(scenario, (str, os.PathLike)) and scenario not in _native.scenarios():
         return os.path.abspath(_given.path_of(scenario))
     return scenario
+
+
+def _absolute(scenario: Mapping[str, Any]) -> dict[str, Any]:
+    """The scenario with absolute paths of the files that it names."""
+    found = dict(scenario)
+    for key in ("walkable_area", "obstacles"):
+        if isinstance(found.get(key), str):
+            found[key] = os.path.abspath(found[key])
+    data = found.get("from")
+    if isinstance(data, Mapping) and isinstance(data.get("trajectory"), str):
+        found["from"] = dict(data) | {"trajectory": os.path.abspath(data["trajectory"])}
+    return found

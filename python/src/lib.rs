@@ -6,6 +6,7 @@ mod simulation;
 mod values;
 
 use std::ffi::OsString;
+use std::sync::OnceLock;
 
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
@@ -26,6 +27,19 @@ create_exception!(
 /// The error with this message.
 fn error(message: impl ToString) -> PyErr {
     Error::new_err(message.to_string())
+}
+
+/// Refuses to simulate in a process that was forked from one that has simulated: it does not have its threads.
+fn check_process() -> PyResult<()> {
+    static FIRST: OnceLock<u32> = OnceLock::new();
+    let own = std::process::id();
+    if *FIRST.get_or_init(|| own) == own {
+        return Ok(());
+    }
+    Err(error(
+        "this process was forked from one that has simulated, and has no threads: start it with \
+         multiprocessing.get_context(\"spawn\")",
+    ))
 }
 
 /// Runs the program with these arguments and returns its exit code.

@@ -8,12 +8,12 @@ use sandbox::cli::json_report;
 use sandbox::engine::breakdown::Breakdown;
 use sandbox::engine::frame::Frame;
 use sandbox::engine::simulation::Fault;
-use sandbox::output::trajectory::{Collected, Columns, walkable_area};
+use sandbox::output::trajectory::{Collected, Columns, frames_between, walkable_area};
 use sandbox::runs::drive::Run;
 
-use crate::error;
 use crate::given::{Given, check_memory};
 use crate::values::{array, column, vector};
+use crate::{check_process, error};
 
 /// A run, frame by frame.
 #[pyclass(module = "sandbox_crowds._native")]
@@ -33,6 +33,7 @@ impl Native {
         given: Given,
         collect: Option<(f64, Option<Vec<String>>)>,
     ) -> PyResult<Self> {
+        check_process()?;
         py.detach(|| rayon::scope(|_| Self::begun(given, collect)))
     }
 
@@ -45,6 +46,7 @@ impl Native {
         seconds: f64,
         to_end: bool,
     ) -> PyResult<u64> {
+        check_process()?;
         let most = Duration::try_from_secs_f64(seconds).unwrap_or_default();
         self.order = None;
         let advanced = py.detach(|| {
@@ -130,6 +132,7 @@ impl Native {
 
     /// The walkable area as WKT.
     fn area(&self, py: Python<'_>) -> PyResult<String> {
+        check_process()?;
         let run = &self.run;
         let area = py.detach(|| match &self.collected {
             Some(collected) => collected.area(),
@@ -170,6 +173,7 @@ impl Native {
 
     /// All quantities of all agents in the current frame, as columns.
     fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        check_process()?;
         let simulation = &self.run.simulation;
         let mut columns = Columns::new(|_| true);
         py.detach(|| columns.add(simulation, simulation.frame().clock.frame()));
@@ -184,6 +188,7 @@ impl Native {
 
     /// Gives agents new goals, meters.
     fn set_goals(&mut self, py: Python<'_>, goals: Vec<(u32, [f64; 2])>) -> PyResult<()> {
+        check_process()?;
         py.detach(|| {
             let simulation = &mut self.run.simulation;
             if simulation.scene().ways.is_none()
@@ -226,6 +231,11 @@ impl Native {
             None => None,
         };
         if let Some((fps, columns)) = &columns {
+            if !(fps.is_finite() && *fps > 0.0) {
+                return Err(error(format!("fps={fps}: give a number above 0")));
+            }
+            let every = frames_between(&scenario.scene.clock, *fps);
+            every.map_err(|reason| error(format!("fps: {reason}")))?;
             check_memory(&scenario, *fps, columns.len())?;
         }
         let mut run = Run::new(scenario).map_err(error)?;

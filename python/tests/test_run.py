@@ -134,6 +134,29 @@ def test_a_sweep_is_a_table(corridor):
         sc.sweep(study | {"seeds": -1})
 
 
+def test_scenarios_of_a_sweep_have_their_names_and_find_their_files(tmp_path, corridor, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "plan.wkt").write_text("POLYGON ((0 0, 12 0, 12 10, 10 10, 10 2, 0 2))")
+    own = corridor | {"name": "my corridor", "walkable_area": "plan.wkt"}
+    table = sc.sweep({"list": [{"scenario": own, "label": "one"}]}, progress=False)
+    assert table["scenario"].tolist() == ["my corridor"] and table["status"].tolist() == ["finished"]
+
+
+def test_times_may_be_numbers_of_numpy(corridor):
+    run = sc.run(corridor)
+    one = run.agents(1)
+    for at in [numpy.int64(1), numpy.float32(1), numpy.float64(1)]:
+        assert run.agents(at).equals(one)
+    with pytest.raises(sc.Error, match="not a time"):
+        run.agents(float("nan"))
+
+
+@pytest.mark.parametrize("fps", [0, -1, float("nan"), float("inf"), 1e300])
+def test_frame_rates_that_are_none_are_refused(corridor, fps):
+    with pytest.raises(sc.Error, match="fps"):
+        sc.run(corridor, fps=fps)
+
+
 def test_validation_is_a_table():
     table = sc.validate("single-file", profile="walk+sph", progress=False)
     assert {"case", "profile", "quantity", "value", "least", "most", "passed"} <= set(table)

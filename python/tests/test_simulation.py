@@ -84,6 +84,37 @@ def test_errors_of_goals(corridor, ids, goal, message):
     assert message in str(error.value)
 
 
+def test_no_agents_need_no_goal(corridor):
+    simulation = sc.Simulation(corridor)
+    before = simulation.state_sha256
+    simulation.set_goal([], [])
+    assert simulation.state_sha256 == before
+
+
+@pytest.mark.parametrize("agent", [-1, 2**40, 2**70])
+def test_ids_are_whole_numbers_from_0(corridor, agent):
+    with pytest.raises(sc.Error, match="ids are whole numbers from 0"):
+        sc.Simulation(corridor).inspect(agent)
+
+
+def test_a_forked_process_is_refused_instead_of_waiting_forever():
+    script = """
+        import os
+        import sandbox_crowds as sc
+        sc.run("evacuation", until=0.1)
+        child = os.fork()
+        if child == 0:
+            try:
+                sc.run("evacuation", until=0.1)
+            except sc.Error as error:
+                os._exit(7 if "spawn" in str(error) else 1)
+            os._exit(0)
+        raise SystemExit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+        """
+    code = [sys.executable, "-W", "ignore", "-c", textwrap.dedent(script)]
+    assert subprocess.run(code, timeout=60).returncode == 7
+
+
 def test_forces_sum_up_to_the_acceleration(corridor):
     simulation = sc.Simulation(corridor)
     simulation.step(100)

@@ -83,11 +83,23 @@ pub fn spots(queue: &Queue) -> Vec<Vector> {
         .collect()
 }
 
-/// The kind before a name that does not begin with it.
+/// Longer texts are cut.
+const MOST_LETTERS: usize = 48;
+
+/// A text, cut if it is long.
+pub fn brief(text: &str) -> String {
+    match text.char_indices().nth(MOST_LETTERS) {
+        Some(_) => text.chars().take(MOST_LETTERS - 1).chain(['…']).collect(),
+        None => text.to_owned(),
+    }
+}
+
+/// The kind before a name that does not begin with this word or its plural, as `sources[0]` does.
 pub fn named(kind: &str, name: &str) -> String {
-    match name.starts_with(kind) {
-        true => name.to_owned(),
-        false => format!("{kind} {name}"),
+    let goes_on = |rest: &str| rest.starts_with(|c: char| c.is_alphanumeric() && c != 's');
+    match name.strip_prefix(kind) {
+        Some(rest) if !goes_on(rest) => name.to_owned(),
+        _ => format!("{kind} {name}"),
     }
 }
 

@@ -115,7 +115,9 @@ impl Origin {
             path.ends_with(']') || before != Some(setting.value())
         };
         let changes = self.settings.iter().filter(differs);
-        changes.map(|(_, setting)| setting.brief()).collect()
+        let mut changes: Vec<_> = changes.map(|(_, setting)| setting.brief()).collect();
+        changes.dedup(); // a floor plan sets several keys
+        changes
     }
 
     /// The error for a problem: it names the setting that put the value there, else the file, and the settings if the
@@ -131,10 +133,9 @@ impl Origin {
             let path = Path::new(&self.file);
             let alone = Contents::of(document.clone(), path);
             if alone.and_then(|contents| contents.scenario(path)).is_ok() {
-                let settings = self
-                    .settings
-                    .iter()
-                    .map(|(_, setting)| format!(" {setting}"));
+                let settings = self.settings.iter();
+                let mut settings: Vec<_> = settings.map(|(_, one)| format!(" {one}")).collect();
+                settings.dedup();
                 file.push_str(" with");
                 file.extend(settings);
             }

@@ -45,7 +45,7 @@ pub(super) struct Label {
     pub text: String,
     /// Its middle.
     pub at: Point,
-    /// The room for it, meters: it is left out where it is wider. Default: it is always shown.
+    /// The width of its room, meters; a wider text is left out. Default: no limit.
     #[schemars(range(min = 0, max = FARTHEST))]
     pub width: Option<f64>,
 }

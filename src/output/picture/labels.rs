@@ -4,6 +4,7 @@ use super::{Frame, TEXT_HEIGHT, dark};
 use crate::engine::math::Vector;
 use crate::output::colors::Rgb;
 use crate::output::plot::{Label, Mark, Style, label_width};
+use crate::output::scenery::brief;
 use crate::scenario::floor_plan::Label as GivenLabel;
 
 /// Labels keep this distance from their points, points.
@@ -14,8 +15,6 @@ const FARTHEST: u32 = 7;
 const FEW: usize = 8;
 /// The width of that line, points.
 const LEADER: f64 = 0.4;
-/// Longer texts are cut.
-const MOST_LETTERS: usize = 48;
 
 /// All eight sides of a point and its center, the best first.
 pub const AROUND: [[i8; 2]; 9] = [
@@ -84,10 +83,7 @@ impl<'a> Labels<'a> {
 
     /// Adds a label in one of this many rings around `places`.
     fn add_near(&mut self, (text, rings): (&str, u32), color: Rgb, places: &[(Vector, [i8; 2])]) {
-        let mut text = text.to_owned();
-        if text.chars().count() > MOST_LETTERS {
-            text = text.chars().take(MOST_LETTERS - 1).chain(['…']).collect();
-        }
+        let text = brief(text);
         let width = label_width(&text);
         let is_crowded = rings < FARTHEST;
         let rings = (0..rings).map(|ring| GAP + f64::from(ring) * TEXT_HEIGHT);
@@ -123,7 +119,7 @@ impl<'a> Labels<'a> {
         let room = label
             .width
             .map_or(f64::INFINITY, |width| width * self.frame.scale);
-        if label_width(&label.text) <= room {
+        if label_width(&brief(&label.text)) <= room {
             let line = Vector::new(0.0, self.frame.meters(TEXT_HEIGHT));
             let places = [0.0, 1.0, -1.0].map(|lines| (label.at + line * lines, [0, 0]));
             self.add(&label.text, color, &places);

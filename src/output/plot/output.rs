@@ -121,7 +121,9 @@ impl Sheet {
                 1,
             )
             // plotters' own type of images is unknown to some programs.
-            .replace("data:png;base64,", "data:image/png;base64,");
+            .replace("data:png;base64,", "data:image/png;base64,")
+            // XML has no control characters; names may.
+            .replace(|c: char| c.is_control() && c != '\n' && c != '\t', " ");
         Ok(text.into_bytes())
     }
 

@@ -159,12 +159,12 @@ fn log_names(
     });
     let labels = options.labels.iter();
     let fits = |label: &&Label| {
-        let length = text_width(&label.text, &options.view);
+        let length = text_width(&scenery::brief(&label.text), &options.view);
         label.width.is_none_or(|width| width >= length)
     };
     let labels = labels.filter(fits);
     let labels: Vec<_> = labels
-        .map(|label| (xy(label.at), label.text.clone(), LABEL))
+        .map(|label| (xy(label.at), scenery::brief(&label.text), LABEL))
         .collect();
     let named = places.chain(zones).chain(entrances);
     let all: Vec<_> = named.chain(labels.iter().cloned()).collect();

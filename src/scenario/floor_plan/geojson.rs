@@ -13,7 +13,7 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
     refuse_degrees(&document)?;
     let mut shapes = Vec::new();
     match serde_json::from_value(document).map_err(|error| syntax(&error))? {
-        GeoJson::Geometry(geometry) => collect(&geometry, "", (None, false), &mut shapes)?,
+        GeoJson::Geometry(geometry) => collect(&geometry, "", false, &mut shapes)?,
         GeoJson::Feature(one) => feature(&one, "", &mut shapes)?,
         GeoJson::FeatureCollection(collection) => {
             for (k, one) in collection.features.iter().enumerate() {
@@ -45,7 +45,8 @@ fn refuse_degrees(document: &Value) -> Result<(), FloorPlanError> {
 }
 
 fn name(feature: &Feature) -> Option<&str> {
-    feature.properties.as_ref()?.get("name")?.as_str()
+    let name = feature.properties.as_ref()?.get("name")?.as_str()?.trim();
+    (!name.is_empty()).then_some(name)
 }
 
 /// The name of feature `k` in messages: its number from 1, and its `name` if it has one.
@@ -61,7 +62,17 @@ fn feature(feature: &Feature, place: &str, shapes: &mut Vec<Shape>) -> Result<()
     let kind = properties.and_then(|properties| properties.get("kind")?.as_str());
     let is_obstacle = kind.is_some_and(|kind| kind.eq_ignore_ascii_case("obstacle"));
     match &feature.geometry {
-        Some(geometry) => collect(geometry, place, (name(feature), is_obstacle), shapes),
+        Some(geometry) => {
+            let first = shapes.len();
+            collect(geometry, place, is_obstacle, shapes)?;
+            // Of several polygons, the largest has the name.
+            let parts = shapes[first..].iter_mut();
+            let largest = parts.max_by(|a, b| a.extent().total_cmp(&b.extent()));
+            if let Some(largest) = largest {
+                largest.name = name(feature).map(str::to_owned);
+            }
+            Ok(())
+        }
         None => Err(FloorPlanError::EmptyGeometry(place.to_owned())),
     }
 }
@@ -69,14 +80,14 @@ fn feature(feature: &Feature, place: &str, shapes: &mut Vec<Shape>) -> Result<()
 fn collect(
     geometry: &Geometry,
     place: &str,
-    (name, is_obstacle): (Option<&str>, bool),
+    is_obstacle: bool,
     shapes: &mut Vec<Shape>,
 ) -> Result<(), FloorPlanError> {
     parts(geometry).polygons(place, &mut |polygon, place| {
         let rings = rings(polygon, &place)?;
         shapes.push(Shape {
             place,
-            name: name.map(str::to_owned),
+            name: None,
             rings,
             is_obstacle,
         });

@@ -16,7 +16,7 @@ pub struct Label {
     pub text: String,
     /// Its middle, meters.
     pub at: Vector,
-    /// The room for it, meters: it is left out where it is wider.
+    /// The width of its room, meters; a wider text is left out.
     pub width: Option<f64>,
 }
 
@@ -124,6 +124,13 @@ impl Shape {
         let widest = widest.max_by(|a, b| width(a).total_cmp(&width(b)));
         let [left, right] = widest.map_or([low.x, high.x], |side| [side[0], side[1]]);
         (Vector::new(0.5 * (left + right), y), right - left)
+    }
+
+    /// The area of the rectangle around its outline, m².
+    pub fn extent(&self) -> f64 {
+        let outline = self.rings.iter().take(1).flatten();
+        let [low, high] = bounds(outline.map(|&p| p.into())).unwrap_or_default();
+        (high.x - low.x) * (high.y - low.y)
     }
 
     /// Its name, with a place inside.
