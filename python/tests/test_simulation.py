@@ -127,8 +127,11 @@ def test_forces_sum_up_to_the_acceleration(corridor):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_ctrl_c_interrupts_and_the_simulation_goes_on():
+    # Processes that a shell starts in the background ignore Ctrl-C unless they say otherwise.
     code = """
+        import signal
         import sandbox_crowds as sc
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         simulation = sc.Simulation("evacuation")
         print("ready", flush=True)
         try:
