@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import shapely
 
 SLICE = 0.05
-"""The native part returns after so many seconds, and Python sees Ctrl-C."""
+"""The longest time in the native part before Python sees Ctrl-C, seconds."""
 
 
 class Simulation:

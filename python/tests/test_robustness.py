@@ -125,7 +125,7 @@ def test_random_calls_raise_exceptions_and_never_panic(corridor):
         lambda run: sc.sweep({"scenario": 3}),
         lambda run: sc.sweep({"scenario": "evacuation", "grid": {"viscosity": [float("inf")]}}),
         lambda run: sc.validate("--out"),
-        lambda run: sc.validate(profile="nobody"),
+        lambda run: sc.validate(profile="unknown"),
     ],
 )
 def test_wrong_options_of_the_program_raise_its_messages(corridor, use):
