@@ -1,54 +1,49 @@
 //! The choice of RVO compared with an exhaustive search, and which agents and walls it considers.
 
+use std::ops::Range;
+
 use crate::common;
 use crate::common::{
     acceleration, blend, block, breakdown, evaluated, person, rectangle, run, scene, vector, walker,
 };
+use crate::rvo_contact::{meeting, meeting_wall};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sandbox::engine::agents::NewAgent;
-use sandbox::engine::forces::rvo::{Candidate, MovingDisc, Rvo, Scratch, Search, Situation, Wish};
-use sandbox::engine::geometry::{Polygon, Wall, Walls};
+use sandbox::engine::forces::rvo::{
+    Candidate, Limits, MovingDisc, Rvo, Scratch, Search, Situation, Surroundings, Wish,
+};
+use sandbox::engine::geometry::{Polygon, Walls};
 use sandbox::engine::math::Vector;
 use sandbox::engine::simulation::Simulation;
 
-/// The time when two discs meet, from the roots of |offset − velocity t|² = reach².
-fn meeting(offset: Vector, velocity: Vector, reach: f64) -> f64 {
-    if offset.norm() <= reach || velocity.norm() == 0.0 {
-        return f64::INFINITY;
-    }
-    let a = velocity.x * velocity.x + velocity.y * velocity.y;
-    let b = -2.0 * (offset.x * velocity.x + offset.y * velocity.y);
-    let c = offset.x * offset.x + offset.y * offset.y - reach * reach;
-    let roots = [-1.0, 1.0].map(|sign| (-b + sign * (b * b - 4.0 * a * c).sqrt()) / (2.0 * a));
-    let future = roots.into_iter().filter(|&time| time >= 0.0);
-    future.fold(f64::INFINITY, f64::min)
+/// A situation with discs at known places.
+#[derive(Debug, Clone)]
+struct Case {
+    situation: Situation,
+    discs: Vec<MovingDisc>,
 }
 
-/// The time when a disc meets a wall, in coordinates of the wall: s along it and d in front of it.
-pub fn meeting_wall(wall: &Wall, position: Vector, velocity: Vector, radius: f64) -> f64 {
-    let way = wall.end - wall.start;
-    let length = (way.x * way.x + way.y * way.y).sqrt();
-    let coordinates = |v: Vector| {
-        let s = (v.x * way.x + v.y * way.y) / length;
-        let d = (v.x * way.y - v.y * way.x) / length;
-        (s, d)
-    };
-    let ((s, d), (ds, dd)) = (coordinates(position - wall.start), coordinates(velocity));
-    let mut first = f64::INFINITY;
-    let time = (radius - d) / dd;
-    if dd < 0.0 && time >= 0.0 && s + ds * time >= 0.0 && s + ds * time <= length {
-        first = time;
+impl Surroundings for Case {
+    fn limits(&self) -> Limits {
+        let greatest = |of: fn(&MovingDisc) -> f64| self.discs.iter().map(of).fold(0.0, f64::max);
+        Limits {
+            longest_reach: greatest(|disc| disc.reach),
+            highest_speed: greatest(|disc| disc.velocity.norm()),
+            farthest: greatest(|disc| disc.offset.norm()),
+        }
     }
-    for end in [wall.start, wall.end] {
-        first = first.min(meeting(end - position, velocity, radius));
+
+    fn read(&self, squared: Range<f64>, discs: &mut Vec<MovingDisc>) {
+        let is_wanted = |disc: &&MovingDisc| squared.contains(&disc.offset.norm_squared());
+        discs.extend(self.discs.iter().filter(is_wanted));
     }
-    first
 }
 
 /// Evaluates Eq. 20 for every candidate; returns the first one with the lowest cost.
-fn exhaustive(situation: &Situation, candidates: &[Candidate], collision_weight: f64) -> Vector {
+fn exhaustive(case: &Case, candidates: &[Candidate], collision_weight: f64) -> Vector {
+    let situation = &case.situation;
     let mut costs = Vec::new();
     for candidate in candidates {
         let candidate = candidate.velocity(situation.velocity);
@@ -57,7 +52,7 @@ fn exhaustive(situation: &Situation, candidates: &[Candidate], collision_weight:
         }
         let velocity = 2.0 * candidate - situation.velocity;
         let mut contact = f64::INFINITY;
-        for disc in &situation.discs {
+        for disc in &case.discs {
             contact = contact.min(meeting(disc.offset, velocity - disc.velocity, disc.reach));
         }
         for wall in &situation.walls {
@@ -83,7 +78,7 @@ fn disc_of(rng: &mut ChaCha8Rng, radius: f64) -> Vector {
     vector(angle.cos(), angle.sin()) * length
 }
 
-fn random_situation(rng: &mut ChaCha8Rng) -> Situation {
+fn random_case(rng: &mut ChaCha8Rng) -> Case {
     let position = disc_of(rng, 50.0);
     let radius = rng.random_range(0.215..0.265);
     // Few or hundreds of discs, fast or nearly still, some nearly touching: errors of single precision must not
@@ -116,15 +111,15 @@ fn random_situation(rng: &mut ChaCha8Rng) -> Situation {
     let free = walls.iter().filter(|wall| {
         wall.faces(position) && (wall.nearest_point(position).point - position).norm() > radius
     });
-    Situation {
+    let situation = Situation {
         position,
         velocity: disc_of(rng, fastest),
         preferred_velocity: disc_of(rng, 1.8),
         radius,
         max_speed: 1.8,
-        discs,
         walls: free.copied().collect(),
-    }
+    };
+    Case { situation, discs }
 }
 
 #[test]
@@ -132,15 +127,11 @@ fn the_choice_is_that_of_an_exhaustive_search() {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let mut search = Search::default();
     for round in 0..100_000 {
-        let situation = random_situation(&mut rng);
+        let case = random_case(&mut rng);
         let candidates = candidates(&mut rng, 120);
         let weight = [1.0, 0.2, 5.0][round % 3];
-        let found = search.best(&situation, &candidates, weight);
-        assert_eq!(
-            found,
-            exhaustive(&situation, &candidates, weight),
-            "{situation:?}"
-        );
+        let found = search.best(&case.situation, &case, &candidates, weight);
+        assert_eq!(found, exhaustive(&case, &candidates, weight), "{case:?}");
     }
 }
 
@@ -152,19 +143,22 @@ fn candidates(rng: &mut ChaCha8Rng, count: usize) -> Vec<Candidate> {
     (0..count).map(any).collect()
 }
 
-fn best(situation: &Situation, candidates: &[Candidate]) -> Vector {
-    Search::default().best(situation, candidates, 1.0)
+fn best(case: &Case, candidates: &[Candidate]) -> Vector {
+    Search::default().best(&case.situation, case, candidates, 1.0)
 }
 
-fn open_field() -> Situation {
-    Situation {
+fn open_field() -> Case {
+    let situation = Situation {
         position: Vector::zeros(),
         velocity: Vector::zeros(),
         preferred_velocity: Vector::zeros(),
         radius: 0.24,
         max_speed: 1.8,
-        discs: Vec::new(),
         walls: Vec::new(),
+    };
+    Case {
+        situation,
+        discs: Vec::new(),
     }
 }
 
@@ -185,12 +179,12 @@ fn the_first_of_equal_costs_is_chosen() {
 fn the_order_of_neighbors_does_not_change_the_choice() {
     let mut rng = ChaCha8Rng::seed_from_u64(2);
     for _ in 0..500 {
-        let situation = random_situation(&mut rng);
+        let case = random_case(&mut rng);
         let candidates = candidates(&mut rng, 60);
-        let mut turned = situation.clone();
+        let mut turned = case.clone();
         turned.discs.reverse();
-        turned.walls.reverse();
-        let [a, b] = [&situation, &turned].map(|s| best(s, &candidates));
+        turned.situation.walls.reverse();
+        let [a, b] = [&case, &turned].map(|case| best(case, &candidates));
         assert_eq!(a, b);
     }
 }

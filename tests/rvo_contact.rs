@@ -7,7 +7,39 @@ use sandbox::engine::geometry::Wall;
 use sandbox::engine::math::{Vector, perpendicular};
 use sandbox::engine::random::{Purpose, stream};
 
-use crate::rvo::meeting_wall;
+/// The time when two discs meet, from the roots of |offset − velocity t|² = reach².
+pub fn meeting(offset: Vector, velocity: Vector, reach: f64) -> f64 {
+    if offset.norm() <= reach || velocity.norm() == 0.0 {
+        return f64::INFINITY;
+    }
+    let a = velocity.x * velocity.x + velocity.y * velocity.y;
+    let b = -2.0 * (offset.x * velocity.x + offset.y * velocity.y);
+    let c = offset.x * offset.x + offset.y * offset.y - reach * reach;
+    let roots = [-1.0, 1.0].map(|sign| (-b + sign * (b * b - 4.0 * a * c).sqrt()) / (2.0 * a));
+    let future = roots.into_iter().filter(|&time| time >= 0.0);
+    future.fold(f64::INFINITY, f64::min)
+}
+
+/// The time when a disc meets a wall, in coordinates of the wall: s along it and d in front of it.
+pub fn meeting_wall(wall: &Wall, position: Vector, velocity: Vector, radius: f64) -> f64 {
+    let way = wall.end - wall.start;
+    let length = (way.x * way.x + way.y * way.y).sqrt();
+    let coordinates = |v: Vector| {
+        let s = (v.x * way.x + v.y * way.y) / length;
+        let d = (v.x * way.y - v.y * way.x) / length;
+        (s, d)
+    };
+    let ((s, d), (ds, dd)) = (coordinates(position - wall.start), coordinates(velocity));
+    let mut first = f64::INFINITY;
+    let time = (radius - d) / dd;
+    if dd < 0.0 && time >= 0.0 && s + ds * time >= 0.0 && s + ds * time <= length {
+        first = time;
+    }
+    for end in [wall.start, wall.end] {
+        first = first.min(meeting(end - position, velocity, radius));
+    }
+    first
+}
 
 /// Random numbers in [−1, 1).
 fn numbers(seed: u32) -> impl FnMut() -> f64 {

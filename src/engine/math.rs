@@ -36,6 +36,7 @@ const SERIES: [[f64; 2]; 9] = {
 ///
 /// Computes sine and cosine by Taylor series up to an eighth of a turn, and by symmetry beyond. Unlike library
 /// functions, this gives the same bits on all platforms.
+#[inline(always)]
 pub fn unit_vector(turn: u32) -> Vector {
     // The nearest quarter turn, and the angle from there in radians.
     let quarter = turn.wrapping_add(1 << 29) >> 30;
@@ -49,15 +50,17 @@ pub fn unit_vector(turn: u32) -> Vector {
         sine = sine * minus_squared + odd;
     }
     let sine = sine * x;
-    let [along, across] = QUARTERS[quarter as usize];
+    // The cosine and the sine of the quarter turns, chosen without a table: loops over this function use vectors.
+    let [along, across] = [0, 1].map(|odd| match quarter.wrapping_sub(odd) & 3 {
+        0 => 1.0,
+        2 => -1.0,
+        _ => 0.0,
+    });
     Vector::new(
         along * cosine - across * sine,
         across * cosine + along * sine,
     )
 }
-
-/// Cosines and sines of 0 to 3 quarter turns.
-const QUARTERS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
 
 /// `v`, clamped to length `limit`.
 #[inline]

@@ -1,16 +1,20 @@
 //! Reciprocal velocity obstacles (§5.3.2, Eqs. 20 and 21).
 
+mod candidates;
 mod rings;
 mod search;
+mod surroundings;
 
-pub use rings::MovingDisc;
+pub use candidates::Candidate;
 pub use search::Search;
+pub use surroundings::{Limits, MovingDisc, Surroundings};
 
-use rand::Rng;
+use candidates::Draws;
+use surroundings::Around;
 
 use crate::engine::frame::Frame;
 use crate::engine::geometry::Wall;
-use crate::engine::math::{Vector, unit_vector};
+use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
 
 /// Parameters of Eq. 20 and of its sampling.
@@ -35,7 +39,7 @@ impl Default for Rvo {
     }
 }
 
-/// Everything that an agent's choice of velocity depends on.
+/// Everything that an agent's choice of velocity depends on, except the moving discs around it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Situation {
     /// r_i, meters.
@@ -48,8 +52,6 @@ pub struct Situation {
     pub radius: f64,
     /// s_max, m/s.
     pub max_speed: f64,
-    /// Agents in range and not in contact.
-    pub discs: Vec<MovingDisc>,
     /// Walls in range and not in contact, whose free side the agent is on.
     pub walls: Vec<Wall>,
 }
@@ -74,7 +76,7 @@ impl Rvo {
     ) -> Vector {
         let Scratch {
             situation,
-            candidates,
+            draws,
             search,
         } = scratch;
         situation.see(frame, i, self.avoidance_radius, wish);
@@ -84,8 +86,9 @@ impl Rvo {
             frame.agents.id[i],
             frame.clock.coarse_frame(),
         );
-        draw(self.candidates, situation, rng, candidates);
-        let best = search.best(situation, candidates, self.collision_weight);
+        let candidates = draws.draw(self.candidates, situation, rng);
+        let around = Around::new(frame, i, self.avoidance_radius);
+        let best = search.best(situation, &around, candidates, self.collision_weight);
         (best - situation.velocity) / frame.clock.coarse_step()
     }
 }
@@ -94,46 +97,12 @@ impl Rvo {
 #[derive(Debug, Default)]
 pub struct Scratch {
     situation: Situation,
-    candidates: Vec<Candidate>,
+    draws: Draws,
     search: Search,
 }
 
-/// A candidate velocity, relative to the current one.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Candidate {
-    /// Distance from the current velocity, m/s.
-    pub length: f64,
-    /// Direction, in units of 2⁻³² turns.
-    pub turn: u32,
-}
-
-impl Candidate {
-    /// The velocity in m/s, if the current one is `from`.
-    pub fn velocity(self, from: Vector) -> Vector {
-        from + unit_vector(self.turn) * self.length
-    }
-}
-
-/// Replaces `candidates` with `count` draws: direction and distance from the current velocity are uniform, the
-/// distance up to 2 s_max. Leaves out draws that exceed s_max in every direction.
-fn draw(count: u32, situation: &Situation, mut rng: impl Rng, candidates: &mut Vec<Candidate>) {
-    let farthest = situation.velocity.norm() + situation.max_speed;
-    let per_step = 2.0 * situation.max_speed / f64::from(u32::MAX);
-    let (length, turn) = (0.0, 0);
-    candidates.resize(count as usize, Candidate { length, turn });
-    let mut kept = 0;
-    for _ in 0..count {
-        let bits: u64 = rng.random();
-        let length = per_step * f64::from((bits >> 32) as u32);
-        let turn = bits as u32;
-        candidates[kept] = Candidate { length, turn };
-        kept += usize::from(length <= farthest); // branchless: a branch would be unpredictable
-    }
-    candidates.truncate(kept);
-}
-
 impl Situation {
-    /// Sets this to the surroundings of agent `i` of a frozen frame within `radius` meters.
+    /// Sets this to the state of agent `i` of a frozen frame, and the walls within `radius` meters.
     pub fn see(&mut self, frame: &Frame, i: usize, radius: f64, wish: Wish) {
         let agents = frame.agents;
         self.position = agents.position[i];
@@ -141,23 +110,6 @@ impl Situation {
         self.preferred_velocity = wish.preferred_velocity;
         self.radius = agents.radius[i];
         self.max_speed = wish.max_speed;
-        self.discs.clear();
-        for run in frame.neighbors.around(self.position, radius) {
-            let place = frame.neighbors.seen_from(self.position, run.laps);
-            for j in run.indices() {
-                let offset = agents.position[j] - place;
-                let reach = self.radius + agents.radius[j];
-                let squared = offset.norm_squared();
-                // Ignores agents in contact, and with them agent i itself.
-                if squared < radius * radius && squared > reach * reach {
-                    self.discs.push(MovingDisc {
-                        offset,
-                        velocity: agents.velocity[j],
-                        reach,
-                    });
-                }
-            }
-        }
         self.walls.clear();
         for &k in frame.neighbors.far_walls(i) {
             let wall = frame.walls.wall(k);

@@ -1,19 +1,9 @@
 //! Collision tests in single precision: the discs that a moving agent may meet before a given time.
 
+use super::surroundings::{Limits, MovingDisc, Surroundings};
 use crate::engine::math::Vector;
 use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{LANES, Level, Simd, dispatch, f32x8};
-
-/// A moving disc, relative to agent i.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MovingDisc {
-    /// r_j − r_i, meters.
-    pub offset: Vector,
-    /// v_j, m/s.
-    pub velocity: Vector,
-    /// D_i + D_j, meters.
-    pub reach: f64,
-}
+use crate::engine::pairs::{LANES, Simd, f32x8};
 
 /// The number of rings, and the area of each ring over π, m²; the last ring is unbounded.
 const RINGS: usize = 16;
@@ -22,46 +12,24 @@ const RING_AREA: f64 = 1.5;
 /// A generous bound on single-precision rounding errors of lengths and speeds, relative to the largest ones.
 const ROUNDING: f64 = 4e-6;
 
+/// The first ring after each band; the discs of a band are read together, when the first of its rings is needed.
+const BANDS: [usize; 3] = [2, 6, RINGS];
+
 /// Discs sorted into rings around an agent by the distances of their centers, innermost ring first.
 #[derive(Debug, Default)]
 pub struct Rings {
     rings: [Ring; RINGS],
-    ring_of: Vec<u8>,
-    /// The numbers of the discs, ring by ring; the last eight of each ring is padded with zeros.
-    members: Vec<u32>,
-    eights: Vec<Eight>,
-    /// The greatest D_i + D_j, meters, and the highest speed, m/s.
-    longest_reach: f64,
-    highest_speed: f64,
-    /// The distance of the farthest center, meters.
-    farthest: f64,
+    /// The number of bands that have been read.
+    bands: usize,
+    discs: Vec<MovingDisc>,
+    limits: Limits,
 }
 
-/// The maxima over some discs.
-#[derive(Default)]
-struct Longest {
-    reach: f64,
-    speed_squared: f64,
-    offset_squared: f64,
-}
-
-impl Longest {
-    #[inline]
-    fn take(&mut self, disc: &MovingDisc, offset_squared: f64) {
-        let greater = |a: f64, b: f64| if b > a { b } else { a }; // no NaNs here
-        self.reach = greater(self.reach, disc.reach);
-        self.speed_squared = greater(self.speed_squared, disc.velocity.norm_squared());
-        self.offset_squared = greater(self.offset_squared, offset_squared);
-    }
-}
-
-/// The position of a ring's discs.
-#[derive(Debug, Default, Clone, Copy)]
+/// The discs of a ring.
+#[derive(Debug, Default)]
 struct Ring {
-    /// The index of its first eight.
-    start: usize,
-    /// The number of discs.
     len: usize,
+    eights: Vec<Eight>,
 }
 
 /// Eight discs in single precision. Unused lanes hold a dummy disc. No test finds it certainly met; if one finds it
@@ -74,14 +42,17 @@ struct Eight {
     velocity_y: [f32; LANES],
     /// |offset|² − reach², m².
     gap: [f32; LANES],
+    /// The numbers of the discs.
+    discs: [u32; LANES],
 }
 
-const NOBODY: Eight = Eight {
+const EMPTY: Eight = Eight {
     x: [0.0; LANES],
     y: [0.0; LANES],
     velocity_x: [0.0; LANES],
     velocity_y: [0.0; LANES],
     gap: [1.0; LANES],
+    discs: [0; LANES],
 };
 
 /// Whether a ring begins farther away than `seen` meters.
@@ -94,115 +65,132 @@ fn splat<S: Simd>(simd: S, value: f64) -> f32x8<S> {
     f32x8::splat(simd, value as f32)
 }
 
-impl Rings {
-    /// Sorts `discs` into rings.
-    pub fn sort(&mut self, discs: &[MovingDisc]) {
-        let mut counts = [0; RINGS];
-        let mut longest = Longest::default();
-        self.ring_of.clear();
-        for disc in discs {
-            let squared = disc.offset.norm_squared();
-            let ring = ((squared * (1.0 / RING_AREA)) as usize).min(RINGS - 1);
-            counts[ring] += 1;
-            self.ring_of.push(ring as u8);
-            longest.take(disc, squared);
+impl Ring {
+    fn push(&mut self, number: u32, disc: &MovingDisc, squared: f64) {
+        let lane = self.len % LANES;
+        if lane == 0 {
+            self.eights.push(EMPTY);
         }
-        self.longest_reach = longest.reach;
-        self.highest_speed = longest.speed_squared.sqrt();
-        self.farthest = longest.offset_squared.sqrt();
-        let mut end = 0;
-        for (ring, len) in self.rings.iter_mut().zip(counts) {
-            *ring = Ring { start: end, len };
-            end += len.div_ceil(LANES);
-        }
-        self.place(discs, end);
-    }
-
-    /// Puts every disc into its ring; `eights` is the number of eights in all rings.
-    fn place(&mut self, discs: &[MovingDisc], eights: usize) {
-        self.eights.clear();
-        self.eights.resize(eights, NOBODY);
-        self.members.clear();
-        self.members.resize(eights * LANES, 0);
-        let mut places = self.rings.map(|ring| ring.start * LANES);
-        for ((k, disc), &ring) in (0..).zip(discs).zip(&self.ring_of) {
-            let place = places[usize::from(ring)];
-            places[usize::from(ring)] += 1;
-            self.members[place] = k;
-            let (eight, lane) = (&mut self.eights[place / LANES], place % LANES);
+        self.len += 1;
+        if let Some(eight) = self.eights.last_mut() {
             eight.x[lane] = disc.offset.x as f32;
             eight.y[lane] = disc.offset.y as f32;
             eight.velocity_x[lane] = disc.velocity.x as f32;
             eight.velocity_y[lane] = disc.velocity.y as f32;
-            eight.gap[lane] = (disc.offset.norm_squared() - disc.reach * disc.reach) as f32;
+            eight.gap[lane] = (squared - disc.reach * disc.reach) as f32;
+            eight.discs[lane] = number;
+        }
+    }
+}
+
+impl Rings {
+    /// Removes all discs, and sets the limits of those that follow.
+    pub fn begin(&mut self, limits: Limits) {
+        for ring in &mut self.rings {
+            ring.len = 0;
+            ring.eights.clear();
+        }
+        self.bands = 0;
+        self.discs.clear();
+        self.limits = limits;
+    }
+
+    /// Reads the discs of all bands up to that of a ring.
+    #[inline(always)]
+    fn read(&mut self, ring: usize, surroundings: &impl Surroundings) {
+        while self.bands == 0 || BANDS[self.bands - 1] <= ring {
+            self.read_band(surroundings);
         }
     }
 
-    /// Whether a disc is certainly met at `velocity` (m/s) before the time `before` (seconds).
-    pub fn certainly_met(&self, velocity: Vector, before: f64) -> bool {
-        dispatch!(Level::new(), simd => self.certainly_met_by(simd, velocity, before))
+    #[inline(never)]
+    fn read_band(&mut self, surroundings: &impl Surroundings) {
+        let first = self.bands.checked_sub(1).map_or(0, |last| BANDS[last]);
+        let next = BANDS[self.bands];
+        self.bands += 1;
+        let nearest = first as f64 * RING_AREA;
+        let farthest = if next < RINGS {
+            next as f64 * RING_AREA
+        } else {
+            f64::INFINITY
+        };
+        let known = self.discs.len();
+        surroundings.read(nearest..farthest, &mut self.discs);
+        for (k, disc) in self.discs.iter().enumerate().skip(known) {
+            let squared = disc.offset.norm_squared();
+            // Rounding must not put a disc into a ring that has been searched.
+            let ring = ((squared * (1.0 / RING_AREA)) as usize).clamp(first, next - 1);
+            self.rings[ring].push(k as u32, disc, squared);
+        }
     }
 
+    /// A disc by its number.
+    pub fn disc(&self, number: u32) -> &MovingDisc {
+        &self.discs[number as usize]
+    }
+
+    /// Whether a disc is certainly met at `velocity` (m/s) before the time `before` (seconds).
     #[inline(always)]
-    fn certainly_met_by<S: Simd>(&self, simd: S, velocity: Vector, before: f64) -> bool {
-        let way = Way::new(simd, self, velocity, before, ROUNDING);
-        for (number, ring) in self.rings.iter().enumerate() {
+    pub fn certainly_met<S: Simd>(
+        &mut self,
+        simd: S,
+        surroundings: &impl Surroundings,
+        velocity: Vector,
+        before: f64,
+    ) -> bool {
+        let way = Way::new(simd, &self.limits, velocity, before, ROUNDING);
+        for number in 0..RINGS {
             if is_beyond(number, way.seen) {
                 return false;
             }
-            for eight in self.eights(ring) {
-                if way.lowest(simd, eight).simd_lt(splat(simd, 0.0)).any_true() {
-                    return true;
-                }
+            self.read(number, surroundings);
+            // The whole ring before the branch: at which eight a candidate fails is unpredictable.
+            let mut lowest = splat(simd, 0.0);
+            for eight in &self.rings[number].eights {
+                lowest = lowest.min(way.lowest(simd, eight));
+            }
+            if lowest.simd_lt(splat(simd, 0.0)).any_true() {
+                return true;
             }
         }
         false
     }
 
-    /// The number of rings, from the innermost, whose discs may be met at `velocity` (m/s) before the time `before`
-    /// (seconds).
-    pub fn within(&self, velocity: Vector, before: f64) -> usize {
-        let seen = self.seen(velocity, before);
-        (0..RINGS)
-            .take_while(|&ring| !is_beyond(ring, seen))
-            .count()
-    }
-
-    /// Replaces `found` by the numbers of all discs of a ring that are met at `velocity` (m/s) before the time
-    /// `before` (seconds), and possibly others.
-    pub fn perhaps_met(&self, ring: usize, velocity: Vector, before: f64, found: &mut Vec<u32>) {
-        found.clear();
-        let ring = &self.rings[ring];
-        dispatch!(Level::new(), simd => self.perhaps_met_by(simd, ring, velocity, before, found));
-    }
-
+    /// Whether a disc of a ring or of one beyond may be met at `velocity` (m/s) before the time `before` (seconds).
     #[inline(always)]
-    fn perhaps_met_by<S: Simd>(
-        &self,
+    pub fn may_meet(&self, ring: usize, velocity: Vector, before: f64) -> bool {
+        ring < RINGS && !is_beyond(ring, self.limits.seen(velocity, before))
+    }
+
+    /// Replaces `found` by the numbers of all discs of a ring that are met at a velocity (m/s) before a time (seconds),
+    /// and possibly others.
+    #[inline(always)]
+    pub fn perhaps_met<S: Simd>(
+        &mut self,
         simd: S,
-        ring: &Ring,
-        velocity: Vector,
-        before: f64,
+        ring: usize,
+        (velocity, before): (Vector, f64),
+        surroundings: &impl Surroundings,
         found: &mut Vec<u32>,
     ) {
-        let way = Way::new(simd, self, velocity, before, -ROUNDING);
-        let members = &self.members[ring.start * LANES..];
-        for (eight, members) in self.eights(ring).iter().zip(members.chunks(LANES)) {
+        found.clear();
+        self.read(ring, surroundings);
+        let way = Way::new(simd, &self.limits, velocity, before, -ROUNDING);
+        for eight in &self.rings[ring].eights {
             // Not `simd_lt`: a NaN counts as possibly met.
             let apart = way.lowest(simd, eight).simd_gt(splat(simd, 0.0));
             let mut met = !apart.to_bitmask() & ((1 << LANES) - 1);
             while met != 0 {
-                found.push(members[met.trailing_zeros() as usize]);
+                found.push(eight.discs[met.trailing_zeros() as usize]);
                 met &= met - 1;
             }
         }
     }
+}
 
-    fn eights(&self, ring: &Ring) -> &[Eight] {
-        &self.eights[ring.start..ring.start + ring.len.div_ceil(LANES)]
-    }
-
+impl Limits {
     /// The distance of centers, in meters, beyond which no disc is met before the time `before` (seconds).
+    #[inline(always)]
     fn seen(&self, velocity: Vector, before: f64) -> f64 {
         (velocity.norm() + self.highest_speed) * before + self.longest_reach
     }
@@ -226,17 +214,17 @@ impl<S: Simd> Way<S> {
     /// `rounding` is relative to the largest lengths and speeds. If positive it makes contacts appear later, if
     /// negative earlier.
     #[inline(always)]
-    fn new(simd: S, rings: &Rings, velocity: Vector, before: f64, rounding: f64) -> Self {
-        let fastest = velocity.norm() + rings.highest_speed;
-        let length = rounding * rings.farthest;
+    fn new(simd: S, limits: &Limits, velocity: Vector, before: f64, rounding: f64) -> Self {
+        let fastest = velocity.norm() + limits.highest_speed;
+        let length = rounding * limits.farthest;
         Self {
             x: splat(simd, velocity.x),
             y: splat(simd, velocity.y),
             before: splat(simd, before * (1.0 - rounding)),
-            gap: splat(simd, length * rings.farthest),
+            gap: splat(simd, length * limits.farthest),
             approach: splat(simd, -length * fastest),
             squared: splat(simd, rounding * fastest * fastest),
-            seen: rings.seen(velocity, before),
+            seen: limits.seen(velocity, before),
         }
     }
 

@@ -1,11 +1,11 @@
 //! Branch and bound for the cheapest candidate; gives the same result as an exhaustive search.
 
+use super::candidates::{Allowed, Candidate, Sorted};
 use super::rings::Rings;
-use super::{Candidate, Situation, time_to_contact};
+use super::surroundings::Surroundings;
+use super::{Situation, time_to_contact};
 use crate::engine::math::Vector;
-
-/// Width in m/s of the buckets by which candidates are sorted; candidates in a bucket are unordered.
-const WIDTH: f64 = 0.1;
+use crate::engine::pairs::{Level, Simd, dispatch};
 
 /// Safety margin far above the rounding errors of deviations and times, so that no bound excludes a candidate
 /// that could be best.
@@ -14,188 +14,144 @@ const ROUNDING: f64 = 1e-9;
 /// Buffers, reused from search to search.
 #[derive(Debug, Default)]
 pub struct Search {
-    /// Candidates with their numbers, sorted by a lower bound of their deviation from the preferred velocity.
-    candidates: Buckets<(u32, Candidate)>,
-    /// Velocities of the current bucket with their numbers, m/s.
-    velocities: Vec<(u32, Vector)>,
+    candidates: Sorted,
     rings: Rings,
     /// Indices of discs.
     perhaps: Vec<u32>,
 }
 
+/// The cheapest candidate so far.
+struct Best {
+    velocity: Vector,
+    number: u32,
+    cost: f64,
+}
+
 impl Search {
     /// The cheapest of `candidates` (Eq. 20), or the first of several with equal costs. Zero if all are too fast.
     ///
-    /// Candidates are visited in order of a lower bound of their cost, | |v′ − v| − |v^pref − v| |, until it exceeds
-    /// the best cost found. The bound does not depend on the direction of v′ − v. The best cost minus the deviation
-    /// gives a time before which a contact makes the candidate too expensive: this rejects most candidates after
-    /// testing the nearest discs, eight at a time. For the others the first contact is searched from the innermost
-    /// ring outward, until discs farther away cannot be met before the earliest contact found.
+    /// Candidates are visited in order of their deviation from the preferred velocity, until it exceeds the best cost
+    /// found. The best cost minus the deviation gives a time before which a contact makes the candidate too expensive:
+    /// this rejects most candidates after testing the nearest discs, eight at a time. For the others the first contact
+    /// is searched from the innermost ring outward, until discs farther away cannot be met before the earliest contact
+    /// found. Discs are read from the surroundings only as far as these searches go.
     pub fn best(
         &mut self,
         situation: &Situation,
+        surroundings: &impl Surroundings,
         candidates: &[Candidate],
         collision_weight: f64,
     ) -> Vector {
-        self.sort(situation, candidates);
+        dispatch!(Level::new(), simd => {
+            self.best_by(simd, (situation, surroundings), candidates, collision_weight)
+        })
+    }
+
+    #[inline(always)]
+    fn best_by<S: Simd>(
+        &mut self,
+        simd: S,
+        (situation, surroundings): (&Situation, &impl Surroundings),
+        candidates: &[Candidate],
+        collision_weight: f64,
+    ) -> Vector {
         let Self {
             candidates: sorted,
             rings,
             perhaps,
-            velocities,
         } = self;
-        let max_squared = situation.max_speed * situation.max_speed;
-        let (mut best, mut first) = (Vector::zeros(), u32::MAX);
-        let mut best_cost = f64::INFINITY;
-        for (least, candidates) in sorted.iter() {
-            if least - ROUNDING > best_cost {
+        sorted.take(situation, candidates);
+        rings.begin(surroundings.limits());
+        let mut best = Best {
+            velocity: Vector::zeros(),
+            number: u32::MAX,
+            cost: f64::INFINITY,
+        };
+        for (least, bucket) in sorted.iter() {
+            if least * (1.0 - ROUNDING) - ROUNDING > best.cost {
                 break;
             }
-            // Compute all velocities of the bucket first, so that none waits for the test of another.
-            velocities.clear();
-            velocities.extend(
-                candidates
-                    .iter()
-                    .map(|(k, candidate)| (*k, candidate.velocity(situation.velocity))),
-            );
-            for &(k, candidate) in velocities.iter() {
-                if candidate.norm_squared() > max_squared {
-                    continue;
-                }
-                let deviation = (candidate - situation.preferred_velocity).norm();
-                if deviation > best_cost {
+            for candidate in bucket {
+                let Allowed {
+                    number, deviation, ..
+                } = *candidate;
+                if deviation > best.cost {
                     continue;
                 }
                 // Agent i moves at 2v′ − v_i.
-                let velocity = candidate * 2.0 - situation.velocity;
+                let velocity = candidate.velocity * 2.0 - situation.velocity;
                 // After rounding, a cost this close to the best may be equal to it.
-                let left = best_cost - deviation + f64::EPSILON * best_cost;
-                let latest = collision_weight / left;
-                if rings.certainly_met(velocity, latest * (1.0 - ROUNDING)) {
+                let left = best.cost - deviation + f64::EPSILON * best.cost;
+                let latest = collision_weight / left * (1.0 - ROUNDING);
+                if rings.certainly_met(simd, surroundings, velocity, latest) {
                     continue;
                 }
                 let cost = |time: f64| deviation + collision_weight / time;
-                let too_early = |time: f64| cost(time) > best_cost;
-                let Some(time) = first_contact(situation, rings, perhaps, velocity, too_early)
-                else {
+                let bound = best.cost;
+                let search = Contact {
+                    situation,
+                    surroundings,
+                    velocity,
+                    too_early: |time: f64| cost(time) > bound,
+                };
+                let Some(time) = search.first(simd, rings, perhaps) else {
                     continue;
                 };
-                if cost(time) < best_cost || k < first {
-                    (best, first, best_cost) = (candidate, k, cost(time));
+                if cost(time) < best.cost || number < best.number {
+                    best = Best {
+                        velocity: candidate.velocity,
+                        number,
+                        cost: cost(time),
+                    };
                 }
             }
         }
-        best
-    }
-
-    /// Sorts the candidates by a lower bound of their deviation, and the discs into rings.
-    fn sort(&mut self, situation: &Situation, candidates: &[Candidate]) {
-        let preferred = (situation.preferred_velocity - situation.velocity).norm();
-        let numbered = (0..).zip(candidates.iter().copied());
-        let bounded =
-            numbered.map(|(k, candidate)| ((candidate.length - preferred).abs(), (k, candidate)));
-        self.candidates.sort(WIDTH, bounded);
-        self.rings.sort(&situation.discs);
+        best.velocity
     }
 }
 
-/// The time in seconds of the earliest contact when moving at `velocity`, infinite if there is none. Returns
-/// `None` as soon as a contact is found that is too early. `rings` holds the discs of the situation.
-fn first_contact(
-    situation: &Situation,
-    rings: &Rings,
-    perhaps: &mut Vec<u32>,
+/// The search for the earliest contact of an agent that moves at `velocity`, m/s.
+struct Contact<'a, D, E> {
+    situation: &'a Situation,
+    surroundings: &'a D,
     velocity: Vector,
-    too_early: impl Fn(f64) -> bool,
-) -> Option<f64> {
-    let walls = situation.walls.iter();
-    let walls = walls.map(|wall| situation.time_to_wall(wall, velocity));
-    let mut first = walls.fold(f64::INFINITY, f64::min);
-    if too_early(first) {
-        return None;
-    }
-    let mut ring = 0;
-    while ring < rings.within(velocity, first) {
-        rings.perhaps_met(ring, velocity, first, perhaps);
-        for &k in perhaps.iter() {
-            let disc = &situation.discs[k as usize];
-            let time = time_to_contact(disc.offset, velocity - disc.velocity, disc.reach);
-            if time < first {
-                first = time;
-                if too_early(first) {
-                    return None;
+    /// Is a contact at this time, in seconds, too early to look further?
+    too_early: E,
+}
+
+impl<D: Surroundings, E: Fn(f64) -> bool> Contact<'_, D, E> {
+    /// The time of the earliest contact, seconds; infinite if there is none. Returns `None` as soon as a contact is
+    /// found that is too early.
+    #[inline(always)]
+    fn first<S: Simd>(&self, simd: S, rings: &mut Rings, perhaps: &mut Vec<u32>) -> Option<f64> {
+        let walls = self.situation.walls.iter();
+        let walls = walls.map(|wall| self.situation.time_to_wall(wall, self.velocity));
+        let mut first = walls.fold(f64::INFINITY, f64::min);
+        if (self.too_early)(first) {
+            return None;
+        }
+        let mut ring = 0;
+        while rings.may_meet(ring, self.velocity, first) {
+            rings.perhaps_met(
+                simd,
+                ring,
+                (self.velocity, first),
+                self.surroundings,
+                perhaps,
+            );
+            for &k in perhaps.iter() {
+                let disc = rings.disc(k);
+                let velocity = self.velocity - disc.velocity;
+                let time = time_to_contact(disc.offset, velocity, disc.reach);
+                if time < first {
+                    first = time;
+                    if (self.too_early)(first) {
+                        return None;
+                    }
                 }
             }
+            ring += 1;
         }
-        ring += 1;
-    }
-    Some(first)
-}
-
-/// Items sorted by key into buckets, unordered within a bucket.
-#[derive(Debug)]
-struct Buckets<T> {
-    width: f64,
-    arrivals: Vec<(u32, T)>,
-    items: Vec<T>,
-    /// The end of each bucket in `items`.
-    ends: Vec<u32>,
-}
-
-impl<T> Default for Buckets<T> {
-    fn default() -> Self {
-        Self {
-            width: 1.0,
-            arrivals: Vec::new(),
-            items: Vec::new(),
-            ends: Vec::new(),
-        }
-    }
-}
-
-/// Number of buckets. The last one also holds all larger keys.
-const BUCKETS: usize = 64;
-
-impl<T: Copy> Buckets<T> {
-    /// Sorts pairs of a key and an item into buckets of width `width`.
-    fn sort(&mut self, width: f64, things: impl Iterator<Item = (f64, T)>) {
-        self.width = width;
-        let per_width = 1.0 / width;
-        let mut counts = [0_u32; BUCKETS];
-        self.arrivals.clear();
-        for (key, thing) in things {
-            let bucket = ((key * per_width) as usize).min(BUCKETS - 1);
-            counts[bucket] += 1;
-            self.arrivals.push((bucket as u32, thing));
-        }
-        let mut start = 0;
-        for count in &mut counts {
-            start += std::mem::replace(count, start);
-        }
-        let mut places = counts;
-        self.items.clear();
-        self.items
-            .extend(self.arrivals.iter().map(|&(_, thing)| thing));
-        for &(bucket, thing) in &self.arrivals {
-            let place = &mut places[bucket as usize];
-            self.items[*place as usize] = thing;
-            *place += 1;
-        }
-        self.ends.clear();
-        self.ends.extend(places);
-    }
-
-    /// The non-empty buckets, each with a lower bound of its keys.
-    fn iter(&self) -> impl Iterator<Item = (f64, &[T])> {
-        let mut start = 0;
-        self.ends
-            .iter()
-            .enumerate()
-            .filter_map(move |(bucket, &end)| {
-                let things = &self.items[start as usize..end as usize];
-                start = end;
-                (!things.is_empty())
-                    .then_some((bucket as f64 * self.width * (1.0 - ROUNDING), things))
-            })
+        Some(first)
     }
 }
