@@ -53,7 +53,7 @@ fn every_report_has_the_machine_and_the_spread_of_every_time() {
         (
             "stages",
             &["crowd", "profile", "agents", "stages_ms"],
-            &["ms_per_frame"],
+            &["ms_per_frame", "measurements_ms"],
         ),
         (
             "threads",

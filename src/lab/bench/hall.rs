@@ -20,12 +20,18 @@ const DOOR: f64 = 6.0;
 const LOBBY: f64 = 24.0;
 
 /// A hall of `columns` × `rows` bays of 156 agents, with a pillar on the left of each, after `frames` frames. All agents
-/// walk to one goal, in a lobby behind a door.
+/// walk to one goal, in a lobby behind a door, under a walking law.
 ///
 /// # Errors
 /// The simulation fails.
-pub fn settled([columns, rows]: [u32; 2], frames: u64) -> Result<Simulation, LabError> {
-    let text = scenario(columns, rows).to_string();
+pub fn settled(
+    [columns, rows]: [u32; 2],
+    frames: u64,
+    walking_law: &str,
+) -> Result<Simulation, LabError> {
+    let mut scenario = scenario(columns, rows);
+    scenario["parameters"] = json!({ "walking_law": walking_law });
+    let text = scenario.to_string();
     let scenario = Scenario::parse(&text, "hall", &[]);
     let scenario = scenario.map_err(|error| LabError::of("hall", error))?;
     let mut simulation = Simulation::new(scenario.scene).map_err(failed)?;

@@ -56,7 +56,7 @@ const TURN: u64 = 10;
 const LISTING: &[Stage] = &[Stage::Sort, Stage::Neighbors];
 
 /// All skips that can be undone.
-pub const SKIPS: [Skip; 10] = [
+pub const SKIPS: [Skip; 11] = [
     Skip {
         name: "density",
         about: "density and pressure where nothing reads them",
@@ -106,6 +106,11 @@ pub const SKIPS: [Skip; 10] = [
         name: "ways",
         about: "looking up ways on path maps where agents walk straight",
         undo: |simulation| Ok(Undone::Work(work::ways(simulation)?, &[])),
+    },
+    Skip {
+        name: "integrity",
+        about: "following each agent's path past all walls, as the measurement `integrity` does where it is asked for",
+        undo: |_| Ok(Undone::Work(work::integrity(), &[])),
     },
 ];
 

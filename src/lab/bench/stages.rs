@@ -1,6 +1,7 @@
 //! The time of a frame by stage, the tasks of Fig. 11: for each shipped scenario and for dense crowds.
 
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 use serde::Serialize;
 use serde_json::json;
@@ -16,11 +17,12 @@ use crate::engine::simulation::{Simulation, Stage, StageTimes};
 use crate::lab::error::LabError;
 use crate::output::plot::{Axis, BLACK, Mark, Sheet};
 use crate::output::table::Table;
+use crate::scenario::measurements::{Measurement, Metrics};
 use crate::scenario::{Scenario, Setting};
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "stages",
-    about: "time per stage of a frame, at the busiest stretch of each shipped scenario, in dense crowds that avoid, and in a dense hall",
+    about: "time per stage of a frame, of shipped scenarios, dense crowds that avoid, and a dense hall with walking laws",
     run,
 };
 
@@ -28,17 +30,25 @@ pub const BENCHMARK: Benchmark = Benchmark {
 pub type Stretch = (&'static str, f64, f64);
 
 /// The busiest stretches: in the evacuation all agents have gathered at the door; in the crossing the streams meet; in
-/// the concert the crowd is pushed.
-const BUSIEST: [Stretch; 4] = [
+/// the concert the crowd is pushed; on the platforms and at the festival people go through stages of journeys around
+/// obstacles.
+const BUSIEST: [Stretch; 6] = [
     ("evacuation", 10.0, 10.0),
     ("crossing", 40.0, 10.0),
+    ("platforms", 60.0, 10.0),
     ("concert", 150.0, 10.0),
+    ("festival", 60.0, 2.0),
     ("plaza", 10.0, 0.5),
 ];
+/// The number of small scenes among them, which come first.
+const SMALL: usize = 3;
+
+/// The walking laws of the hall.
+const LAWS: [&str; 4] = ["none", "headway", "density-ahead", "drag"];
 
 /// The stretches of a plan: all, or those of the small scenes if the plan is quick.
 pub fn busiest(plan: &Plan) -> &'static [Stretch] {
-    plan.choose(&BUSIEST, &BUSIEST[..3])
+    plan.choose(&BUSIEST, &BUSIEST[..SMALL])
 }
 
 /// A crowd at the start of the timed frames.
@@ -46,6 +56,7 @@ pub struct Started {
     pub name: &'static str,
     pub profile: String,
     pub simulation: Simulation,
+    pub measurements: Vec<Measurement>,
     pub frames: u64,
 }
 
@@ -65,6 +76,7 @@ pub fn begin(stretch: &Stretch, plan: &Plan, profile: Option<&str>) -> Result<St
         name,
         profile: scenario.profile_name,
         simulation,
+        measurements: scenario.measurements,
         frames: clock.frame_at(lasting),
     })
 }
@@ -79,6 +91,8 @@ struct Row {
     ms_per_frame: Range,
     /// The stages that run, by name.
     stages_ms: BTreeMap<&'static str, Range>,
+    /// The scenario's measurements, and those of every run; beside the stages.
+    measurements_ms: Range,
 }
 
 fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
@@ -94,18 +108,25 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
             name: "streams, 4 P/m²",
             profile: profile.to_owned(),
             simulation: Crowd::streams(agents, profile).settled(plan.choose(50, 5))?,
+            measurements: Vec::new(),
             frames: plan.choose(25, 5),
         };
         rows.push(measure(started, plan)?);
     }
-    say("hall with pillars");
-    let started = Started {
-        name: "hall with pillars",
-        profile: "sph".to_owned(),
-        simulation: hall::settled(plan.choose([13, 5], [2, 1]), plan.choose(50, 5))?,
-        frames: plan.choose(100, 5),
-    };
-    rows.push(measure(started, plan)?);
+    for law in LAWS {
+        say(&format!("hall with pillars, walking law {law}"));
+        let started = Started {
+            name: "hall with pillars",
+            profile: match law {
+                "none" => "sph".to_owned(),
+                law => format!("sph, {law}"),
+            },
+            simulation: hall::settled(plan.choose([13, 5], [2, 1]), plan.choose(50, 5), law)?,
+            measurements: Vec::new(),
+            frames: plan.choose(100, 5),
+        };
+        rows.push(measure(started, plan)?);
+    }
     let stretches =
         BUSIEST.map(|(name, from, lasting)| format!("{name} {from}–{} s", from + lasting));
     let stretches = stretches.join(", ");
@@ -116,24 +137,21 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
         notes: vec![format!(
             "Stages are medians, in ms per frame; every repeat takes the same frames. Scenarios as shipped: {stretches}. \
              Streams: {agents} agents after their first second, half of them walking to the right and half to the left. \
-             Hall: 65 pillars stand between the agents, at 4.7 P/m², and their goal; from 1 to 3 s. \
-             – : a stage that never runs."
+             Hall: 65 pillars stand between the agents, at 4.7 P/m², and their goal; from 1 to 3 s, without and with a \
+             walking law. Measuring: the scenario's measurements and the search for agents that stand, as in every run; \
+             it is not part of the frame. – : a stage that never runs."
         )],
     })
 }
 
 fn measure(started: Started, plan: &Plan) -> Result<Row, LabError> {
-    let replay = |_| {
-        let mut simulation = warmed(&started.simulation)?;
-        ms_per_frame(&mut simulation, started.frames)?;
-        Ok(simulation.stages().clone())
-    };
-    let times: Result<Vec<StageTimes>, LabError> = (0..plan.repeats).map(replay).collect();
-    let times = times?;
+    let replays = (0..plan.repeats).map(|_| replay(&started));
+    let times: Vec<(StageTimes, f64)> = replays.collect::<Result<_, LabError>>()?;
     let range = |ms: &dyn Fn(&StageTimes) -> f64| {
-        let values: Vec<f64> = times.iter().map(ms).collect();
+        let values: Vec<f64> = times.iter().map(|(times, _)| ms(times)).collect();
         Range::of(&values)
     };
+    let measuring: Vec<f64> = times.iter().map(|&(_, ms)| ms).collect();
     let stages = Stage::ALL.map(|stage| (stage.name(), range(&|times| ms_of(times, stage))));
     let stages = stages.into_iter().filter(|(_, range)| range.maximum > 0.0);
     Ok(Row {
@@ -143,7 +161,24 @@ fn measure(started: Started, plan: &Plan) -> Result<Row, LabError> {
         frames: started.frames,
         ms_per_frame: range(&StageTimes::total_ms_per_frame),
         stages_ms: stages.collect(),
+        measurements_ms: Range::of(&measuring),
     })
+}
+
+/// The times of the stages, and the milliseconds per frame of the measurements.
+fn replay(started: &Started) -> Result<(StageTimes, f64), LabError> {
+    let mut simulation = warmed(&started.simulation)?;
+    let mut metrics = Metrics::new(&started.measurements, &mut simulation);
+    let mut seconds = 0.0;
+    for _ in 0..started.frames {
+        simulation.evaluate().map_err(failed)?;
+        let start = Instant::now();
+        metrics.observe(&simulation);
+        seconds += start.elapsed().as_secs_f64();
+        simulation.integrate().map_err(failed)?;
+    }
+    let measuring = 1e3 * seconds / started.frames as f64;
+    Ok((simulation.stages().clone(), measuring))
 }
 
 impl Row {
@@ -163,7 +198,9 @@ fn table(rows: &[Row]) -> Table {
         let name = stage.name().split('_').next().unwrap_or_default();
         table = table.fixed(name, 4, |row| row.median(stage));
     }
-    table.table()
+    table
+        .fixed("measuring", 4, |row| row.measurements_ms.median)
+        .table()
 }
 
 /// Bars of equal height, divided by the shares of the stages.

@@ -16,6 +16,7 @@ use crate::engine::simulation::{Simulation, StageTimes};
 use crate::engine::ways::{Floor, Route, Ways};
 use crate::lab::bench::timing::{failed, ms_of, warmed};
 use crate::lab::error::LabError;
+use crate::scenario::measurements::{Integrity, Measure, Watched};
 
 /// Does the work for an evaluated frame, and returns the seconds that it took.
 pub type Work = Box<dyn FnMut(&Simulation) -> f64>;
@@ -193,6 +194,12 @@ pub fn walking_law(simulation: &Simulation) -> Result<Work, &'static str> {
         };
         seconds(|| blocks.enumerate().for_each(decide))
     }))
+}
+
+/// The measurement of integrity.
+pub fn integrity() -> Work {
+    let (keys, mut seen) = (Integrity {}, Watched::default());
+    Box::new(move |simulation| seconds(|| keys.observe(&mut seen, simulation)))
 }
 
 /// The most goals with a path map.
