@@ -3,6 +3,7 @@
 use crate::common::program;
 use nalgebra::{Matrix3, Vector3};
 use sandbox::analysis::stability::{Constants, FITTED, Mode, Scheme, time_step};
+use sandbox::engine::clock::PAPER_COARSE_STEP;
 use sandbox::engine::scene::{Integrator, Scene};
 use sandbox::lab::stress::{Cell, Condition, Detail, Law, Limit, Rest, fit};
 use sandbox::scenario::Scenario;
@@ -97,8 +98,9 @@ fn a_scenario_uses_the_automatic_step_and_refuses_it_where_it_is_unknown() {
     assert_eq!(step(r#"{"time_step_secs": 1}"#), 1.0);
     let thick = |integrator: &str| {
         step(&format!(
-            r#"{{"time_step_secs": "auto", "integrator": "{integrator}", "goal": [9, 0],
-                "agents": [{{"position": [0, 0]}}], "parameters": {{"viscosity": 100}}}}"#
+            r#"{{"time_step_secs": "auto", "coarse_every": 5, "integrator": "{integrator}",
+                "goal": [9, 0], "agents": [{{"position": [0, 0]}}],
+                "parameters": {{"viscosity": 100}}}}"#
         ))
     };
     let ratio = thick("semi-implicit") / thick("velocity-verlet");
@@ -118,6 +120,63 @@ fn a_scenario_uses_the_automatic_step_and_refuses_it_where_it_is_unknown() {
         word.contains("time_step_secs") && word.contains("auto"),
         "{word}"
     );
+}
+
+#[test]
+fn the_automatic_step_is_the_longest_fraction_of_the_coarse_step_that_is_stable() {
+    let clock = |more: &str| {
+        let text = format!(
+            r#"{{"time_step_secs": "auto", "goal": [9, 0], "agents": [{{"position": [0, 0]}}]{more}}}"#
+        );
+        Scenario::parse(&text, "f.json", &[]).unwrap().scene.clock
+    };
+    for stiffness in [20, 50, 100, 200, 1000, 5000, 12_800] {
+        let parameters = format!(r#", "parameters": {{"gas_constant": {stiffness}}}"#);
+        let whole = clock(&parameters);
+        let frames = f64::from(whole.coarse_every());
+        assert!((whole.coarse_step() - PAPER_COARSE_STEP).abs() < 1e-12);
+        // With frames of its own choice per coarse step, a scene takes the longest stable step itself.
+        let stable = clock(&format!("{parameters}, \"coarse_every\": 5")).time_step();
+        assert!(whole.time_step() <= stable, "{stiffness}");
+        let longer = PAPER_COARSE_STEP / (frames - 1.0);
+        assert!(
+            longer > stable || frames == 1.0,
+            "{stiffness}: {longer} {stable}"
+        );
+        // A limit counts like the stable step.
+        let limited = clock(&format!("{parameters}, \"longest_step_secs\": 0.03")).time_step();
+        assert!(limited <= 0.03 && limited <= whole.time_step());
+    }
+    // Decimal limits are not missed by rounding.
+    for (limit, frames) in [(0.05, 2), (0.025, 4), (0.02, 5), (0.01, 10)] {
+        let clock = clock(&format!(", \"longest_step_secs\": {limit}"));
+        assert_eq!((clock.time_step(), clock.coarse_every()), (limit, frames));
+    }
+}
+
+#[test]
+fn the_automatic_integrator_depends_on_what_agents_do() {
+    let choice = |more: &str| {
+        let text = format!(
+            r#"{{"integrator": "auto", "goal": [9, 0], "grids": [{{"min": [0, 0], "max": [1, 1],
+                "columns": 2, "rows": 2{more}}}]}}"#
+        );
+        let scenario = Scenario::parse(&text, "f.json", &[]).unwrap();
+        let named = scenario.settings()["integrator"].clone();
+        assert_eq!(
+            named,
+            serde_json::to_value(scenario.scene.integrator).unwrap()
+        );
+        scenario.scene.integrator
+    };
+    assert_eq!(choice(""), Integrator::VelocityVerlet);
+    for leaves_or_avoids in [
+        r#", "remove_within": 1"#,
+        r#", "profile": "sf->sph""#,
+        r#", "profile": "rvo""#,
+    ] {
+        assert_eq!(choice(leaves_or_avoids), Integrator::SemiImplicit);
+    }
 }
 
 #[test]

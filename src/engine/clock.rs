@@ -31,6 +31,18 @@ impl Clock {
         (PAPER_COARSE_STEP / time_step).round().max(1.0) as u32
     }
 
+    /// A clock at frame 0 with the paper's Δt_coarse and the longest Δt_fine up to `longest` seconds of which a whole
+    /// number makes it: pushes and entries then happen at the times of the paper's clock. Steps longer than the paper's
+    /// Δt_coarse are coarse frames themselves.
+    pub fn up_to(longest: f64) -> Self {
+        if longest >= PAPER_COARSE_STEP {
+            return Self::new(longest, 1);
+        }
+        // Decimal steps are rarely exact fractions.
+        let frames = (PAPER_COARSE_STEP / longest - 1e-6).ceil().max(1.0);
+        Self::new(PAPER_COARSE_STEP / frames, frames as u32)
+    }
+
     /// The current frame, from 0.
     pub fn frame(&self) -> u64 {
         self.frame

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::crowd::{Crowd, MOST_NUMBERED};
 use super::crowding;
 use super::error::{Problem, Under, in_plain_words};
-use super::file::{self, DEFAULT_DURATION, DEFAULT_PROFILE, File, TimeStep};
+use super::file::{self, DEFAULT_DURATION, DEFAULT_PROFILE, File, IntegratorChoice, TimeStep};
 use super::need::Need;
 use super::plan::Surroundings;
 use super::profiles::{ProfileChoice, ProfileName};
@@ -19,9 +19,10 @@ use super::{
 use crate::analysis::stability;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::engine::geometry::Polygon;
+use crate::engine::journeys::Place;
 use crate::engine::period::Period;
 use crate::engine::profile::Override;
-use crate::engine::scene::{Push, Scene};
+use crate::engine::scene::{Integrator, Push, Scene};
 use crate::scenario::trajectories::Tracks;
 
 /// A document whose keys and values have been checked one by one.
@@ -90,6 +91,9 @@ impl Contents {
         scene.pushes = pushes(&keys.events)?;
         periodic::check(keys, &scene)?;
         scene.ways = ways::ways(keys, &scene)?;
+        if let IntegratorChoice::Auto(_) = keys.integrator {
+            scene.integrator = suited_integrator(&scene);
+        }
         if keys.time_step_secs == Some(TimeStep::Auto(file::Auto::Auto)) {
             scene.clock = automatic_clock(keys, &scene)?;
         }
@@ -159,7 +163,10 @@ fn empty_scene(keys: &File, solids: Vec<Polygon>) -> Scene {
         seed: keys.population_seed.unwrap_or(seed),
         behavior_seed: Some(keys.behavior_seed.unwrap_or(seed)),
         clock: clock(keys, first_step(keys)),
-        integrator: keys.integrator,
+        integrator: match keys.integrator {
+            IntegratorChoice::Given(integrator) => integrator,
+            IntegratorChoice::Auto(_) => Integrator::default(),
+        },
         wall_method: keys.wall_method,
         precision: keys.precision,
         neighbor_lists: keys.neighbor_lists,
@@ -183,6 +190,18 @@ fn clock(keys: &File, time_step: f64) -> Clock {
     Clock::new(time_step, keys.coarse_every.unwrap_or_else(nearest))
 }
 
+/// Velocity Verlet where agents stay: it is closer to the limit of fine steps in crowds that press or stand, but no
+/// better with avoidance, worse with walking laws, and lowers the flow through doors (docs/accuracy.md).
+fn suited_integrator(scene: &Scene) -> Integrator {
+    let needs = scene.needs();
+    let exits = scene.journeys.places.iter().any(Place::is_exit);
+    if needs.avoidance.is_some() || needs.walking || needs.removal || exits {
+        Integrator::SemiImplicit
+    } else {
+        Integrator::VelocityVerlet
+    }
+}
+
 /// The clock with the step that `auto` finds for `scene`, which is otherwise complete.
 fn automatic_clock(keys: &File, scene: &Scene) -> Result<Clock, Problem> {
     let step = stability::time_step(scene).ok_or_else(|| {
@@ -199,7 +218,10 @@ fn automatic_clock(keys: &File, scene: &Scene) -> Result<Clock, Problem> {
         );
         return Err(Problem::new("time_step_secs", reason));
     }
-    Ok(clock(keys, step))
+    Ok(match keys.coarse_every {
+        Some(frames) => Clock::new(step, frames),
+        None => Clock::up_to(step),
+    })
 }
 
 fn pushes(events: &[file::Event]) -> Result<Vec<Push>, Problem> {

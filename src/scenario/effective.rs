@@ -9,7 +9,8 @@ use crate::scenario::catalog::Parameters;
 
 impl Scenario {
     /// The [`document`](Scenario::document) with the defaults of the keys that it lacks, and the parameters of its
-    /// default profile. `time_step_secs` is the step in seconds, also where the document says `auto`.
+    /// default profile. `time_step_secs` is the step in seconds, and `integrator` its name, also where the document
+    /// says `auto`.
     pub fn settings(&self) -> Value {
         let given = self.document.as_object().cloned().unwrap_or_default();
         let mut all = filled(names::<File>(), given);
@@ -27,6 +28,7 @@ impl Scenario {
             "time_step_secs".to_owned(),
             json!(self.scene.clock.time_step()),
         );
+        all.insert("integrator".to_owned(), json!(self.scene.integrator));
         Value::Object(all)
     }
 }

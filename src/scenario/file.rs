@@ -4,7 +4,7 @@
 //! [`measurements`](super::measurements).
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::crowds::Crowd;
@@ -17,7 +17,7 @@ use super::periodic::Periodic;
 use super::places::{Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
 use super::preset::Preset;
 use super::profiles::ProfileChoice;
-use super::schema::word;
+use super::schema::{names, word};
 use super::shapes::{Corners, Label, Obstacle, Point, Ring};
 use super::ways::{PASSABLE, WayFinding};
 use crate::engine::boundary::WallMethod;
@@ -61,8 +61,9 @@ pub(super) struct File {
     /// `accurate` (close to the model's limit for small steps); see docs/accuracy.md.
     #[serde(rename = "preset")]
     pub _preset: Preset, // `preset::fill` has expanded it
-    /// Δt_fine, seconds: the length of a frame. `auto` is the largest step that is safely stable. Shorter steps are
-    /// more accurate and cost more. Beyond the stable step (0.028 s for the profiles without SPH) agents shake.
+    /// Δt_fine, seconds: the length of a frame. `auto` is the longest step that is safely stable and, unless
+    /// `coarse_every` is given, a whole fraction of 0.1 s. Shorter steps are more accurate and cost more. Beyond the
+    /// stable step (0.028 s for the profiles without SPH) agents shake.
     #[schemars(extend("default" = PAPER_TIME_STEP))]
     pub time_step_secs: Option<TimeStep>,
     /// The upper limit on the step that `auto` chooses, seconds. No effect on other steps.
@@ -75,9 +76,10 @@ pub(super) struct File {
     pub coarse_every: Option<u32>,
     /// The method of time integration. `semi-implicit` reproduces the paper's results; `velocity-verlet` is more
     /// accurate where agents press or stand, at the same cost; `midpoint` costs twice as much and gains nothing over
-    /// it; `forward-euler`, which the paper names, is off by 18 % in flow.
-    #[schemars(schema_with = "word::<Integrator>")]
-    pub integrator: Integrator,
+    /// it; `forward-euler`, which the paper names, is off by 18 % in flow. `auto` is `velocity-verlet` in scenes where
+    /// agents stay (none avoids others, has a walking law or leaves) and `semi-implicit` in all others.
+    #[schemars(schema_with = "integrators")]
+    pub integrator: IntegratorChoice,
     /// How walls enter SPH: `representative` (one point per wall, as in the paper), `exact` (integrals over what each
     /// wall hides) or `union` (the same, overlaps counted once). Exact walls raise the flow through a door by 6 %.
     #[schemars(schema_with = "word::<WallMethod>")]
@@ -169,11 +171,30 @@ pub(super) enum TimeStep {
     Auto(Auto),
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 #[schemars(inline)]
 pub(super) enum Auto {
     Auto,
+}
+
+/// The method of time integration.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub(super) enum IntegratorChoice {
+    Given(Integrator),
+    Auto(Auto),
+}
+
+impl Default for IntegratorChoice {
+    fn default() -> Self {
+        Self::Given(Integrator::default())
+    }
+}
+
+fn integrators(_: &mut SchemaGenerator) -> Schema {
+    let words = names::<Integrator>().iter().chain(names::<Auto>());
+    json_schema!({"type": "string", "enum": words.collect::<Vec<_>>()})
 }
 
 /// A single agent.

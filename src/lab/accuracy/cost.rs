@@ -9,7 +9,7 @@ use crate::lab::error::LabError;
 use crate::scenario::Setting;
 
 /// Simulated time of one measurement, seconds.
-const SECONDS: f64 = 0.96;
+const SECONDS: f64 = 1.2;
 
 /// Milliseconds per simulated second of a document under each of several settings; an error if a setting is invalid or a
 /// run fails.

@@ -15,9 +15,9 @@ use crate::lab::error::LabError;
 /// the forces.
 const SHIFT: f64 = 1e-8;
 /// Simulated time of both crowds, seconds.
-const DURATION: f64 = 1.92;
+const DURATION: f64 = 2.0;
 /// Start of the fit, seconds: before it, the shift still aligns with the fastest-growing direction.
-const FIT_FROM: f64 = 0.48;
+const FIT_FROM: f64 = 0.4;
 /// Number of shifts.
 const SHIFTS: u32 = 3;
 /// The fractional parts of its multiples fill [0, 1) evenly.

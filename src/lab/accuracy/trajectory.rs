@@ -18,7 +18,7 @@ use crate::lab::error::LabError;
 use crate::scenario::Setting;
 
 /// The sampled times, seconds: about 0.5, 1 and 2, moved to times that are frames of all time steps.
-pub const SAMPLES: [f64; 3] = [0.48, 0.96, 1.92];
+pub const SAMPLES: [f64; 3] = [0.4, 0.8, 2.0];
 /// The reference's time step is the paper's, divided by this; the second value is for quick plans.
 const FINENESS: [f64; 2] = [64.0, 16.0];
 
