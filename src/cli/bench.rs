@@ -18,6 +18,7 @@ Examples:
   sandbox bench stages --out bench --force
   sandbox bench threads --repeats 15 --json
   sandbox bench skips --quick
+  sandbox bench domains --largest 10000000
   sandbox bench compare --python jps/bin/python";
 
 #[derive(Args)]
@@ -45,7 +46,7 @@ pub struct BenchOptions {
     pub threads: Option<usize>,
     #[command(flatten)]
     pub print: PrintOptions,
-    /// scaling: size of the largest crowd
+    /// scaling, domains: size of the largest crowd
     #[arg(long, value_name = "AGENTS", default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(1_000..))]
     pub largest: u32,
     /// compare: a Python interpreter with JuPedSim installed

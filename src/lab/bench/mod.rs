@@ -1,4 +1,4 @@
-//! Benchmarks of the run time: five, each with a table, a JSON object and a picture.
+//! Benchmarks of the run time: six, each with a table, a JSON object and a picture.
 //!
 //! A benchmark repeats the same steps several times and reports the minimum, median and maximum time. Contenders take
 //! turns within each repeat, so that other load on the machine affects all of them alike; ratios are taken turn by
@@ -6,6 +6,7 @@
 
 mod compare;
 mod crowd;
+mod domains;
 mod hall;
 mod pictures;
 mod report;
@@ -35,7 +36,7 @@ pub struct Plan {
     pub repeats: usize,
     /// Small crowds and few steps: a check that everything works; the times are meaningless.
     pub quick: bool,
-    /// The largest crowd of `scaling`.
+    /// The largest crowd of `scaling` and `domains`.
     pub largest: u32,
     /// The Python interpreter in which `compare` looks for JuPedSim.
     pub python: PathBuf,
@@ -97,10 +98,11 @@ impl Benchmark {
 }
 
 /// All benchmarks.
-pub const BENCHMARKS: [Benchmark; 5] = [
+pub const BENCHMARKS: [Benchmark; 6] = [
     scaling::BENCHMARK,
     stages::BENCHMARK,
     threads::BENCHMARK,
     skips::BENCHMARK,
     compare::BENCHMARK,
+    domains::BENCHMARK,
 ];

@@ -1,0 +1,375 @@
+//! How crowds would divide among processes: the balance of the parts, the agents that parts read from each other, how
+//! long a cut holds, and a model of the time of a frame.
+//!
+//! Crowds, cuts, halos and the time on one thread are simulated and measured; the time on many processes is a model. No
+//! process sends anything.
+
+mod cut;
+mod drift;
+mod halo;
+mod network;
+mod picture;
+mod traffic;
+
+use serde::Serialize;
+use serde_json::json;
+
+use self::cut::{Cut, Way};
+use self::drift::{Drift, follow};
+use self::halo::Field;
+use self::network::{Load, Modeled, NETWORKS};
+use self::traffic::Traffic;
+use super::crowd::Crowd;
+use super::report::Findings;
+use super::stages::{Stretch, begin};
+use super::timing::{ms_per_frame, pool};
+use super::{Benchmark, Plan};
+use crate::analysis::statistics::Range;
+use crate::engine::math::Vector;
+use crate::engine::neighbors::SKIN;
+use crate::engine::simulation::Simulation;
+use crate::lab::error::LabError;
+use crate::output::table::Table;
+
+pub const BENCHMARK: Benchmark = Benchmark {
+    name: "domains",
+    about: "how crowds would divide among processes: balance, halos, drift, and a model of the time of a frame",
+    run,
+};
+
+/// Sizes of the dense block.
+const BLOCKS: [u32; 3] = [100_000, 1_000_000, 10_000_000];
+/// The size of the streams.
+const STREAMS: u32 = 100_000;
+/// Frames until a block or streams have settled, and the fewest for large blocks.
+const SETTLING: u64 = 100;
+const LEAST_SETTLING: u64 = 20;
+/// Agents × frames until a block has settled.
+const SETTLING_AGENT_FRAMES: u64 = 100_000_000;
+/// The shipped scenes that move.
+const SCENES: [Stretch; 2] = [("concert", 150.0, 10.0), ("plaza", 10.0, 10.0)];
+/// The numbers of parts, as long as a part has `FEWEST` agents on average.
+const PARTS: [usize; 5] = [4, 16, 64, 256, 1024];
+const FEWEST: usize = 100;
+/// How long a cut is held, seconds.
+const HELD: u64 = 10;
+/// Agents × frames per repeat of the time on one thread; the number of frames is clamped to `FRAMES`.
+const AGENT_FRAMES: u64 = 1_000_000;
+const FRAMES: [u64; 2] = [5, 100];
+
+/// A crowd to cut.
+enum Kind {
+    /// The dense block at rest.
+    Block(u32),
+    /// Two streams through each other.
+    Streams(u32),
+    /// A shipped scenario.
+    Scene(Stretch),
+}
+
+impl Kind {
+    fn all(plan: &Plan) -> Vec<Self> {
+        if plan.quick {
+            return vec![Self::Block(2_000), Self::Streams(1_000)];
+        }
+        let blocks = BLOCKS.into_iter().filter(|&agents| agents <= plan.largest);
+        let small = (plan.largest < BLOCKS[0]).then_some(plan.largest);
+        let blocks = small.into_iter().chain(blocks).map(Self::Block);
+        let scenes = SCENES.into_iter().map(Self::Scene);
+        blocks
+            .chain([Self::Streams(STREAMS)])
+            .chain(scenes)
+            .collect()
+    }
+
+    fn name(&self) -> String {
+        match self {
+            Self::Block(_) => "block".to_owned(),
+            Self::Streams(_) => "streams".to_owned(),
+            Self::Scene((name, ..)) => (*name).to_owned(),
+        }
+    }
+
+    fn moves(&self) -> bool {
+        !matches!(self, Self::Block(_))
+    }
+
+    /// The crowd before it is cut.
+    fn start(&self, plan: &Plan) -> Result<Simulation, LabError> {
+        match self {
+            &Self::Block(agents) => {
+                let frames = SETTLING_AGENT_FRAMES / u64::from(agents);
+                let frames = plan.choose(frames.clamp(LEAST_SETTLING, SETTLING), 5);
+                Crowd::concert(agents).settled(frames)
+            }
+            &Self::Streams(agents) => {
+                Crowd::streams(agents, "sph").settled(plan.choose(SETTLING, 5))
+            }
+            Self::Scene(stretch) => Ok(begin(stretch, plan, None)?.simulation),
+        }
+    }
+}
+
+/// The results for one crowd and cut.
+#[derive(Serialize)]
+struct Row {
+    crowd: String,
+    agents: usize,
+    /// Agents closer than this read each other, with the margin of the lists, meters.
+    reach: f64,
+    parts: usize,
+    cut: &'static str,
+    /// A frame of the whole crowd on one thread.
+    ms_per_frame: Range,
+    /// Agents of the largest part over the mean.
+    agents_ratio: f64,
+    /// Pairs of near agents of the part with the most over the mean.
+    pairs_ratio: f64,
+    /// Agents of other parts that a part reads.
+    halo_mean: f64,
+    halo_largest: u32,
+    /// Parts that a part reads from.
+    neighbors_mean: f64,
+    neighbors_most: u32,
+    /// Bytes per agent of a halo and frame.
+    bytes: Traffic,
+    /// Kilobytes into the part with the largest halo, in a coarse frame with new lists.
+    kilobytes_most: f64,
+    /// What becomes of the cut; none for crowds at rest.
+    drift: Option<Drift>,
+    model: Vec<Modeled>,
+}
+
+fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
+    let mut rows = Vec::new();
+    for kind in Kind::all(plan) {
+        rows.append(&mut measure(&kind, plan, say)?);
+    }
+    Ok(Findings {
+        table: table(&rows),
+        sheet: picture::sheet(&rows),
+        rows: json!(rows),
+        notes: notes(),
+    })
+}
+
+fn notes() -> Vec<String> {
+    let bytes = Traffic::of_columns(false);
+    let networks = NETWORKS.map(|network| {
+        format!(
+            "{} {:.1} µs and {} GB/s",
+            network.name,
+            1e6 * network.latency,
+            1e-9 * network.bandwidth
+        )
+    });
+    vec![
+        "Block: the crowd of `scaling`, at rest. Streams: 4 P/m², sph, half of the agents walk to the right and half to the \
+         left. Concert from 150 s and plaza from 10 s on, as shipped. Halo: agents of other parts in reach, plus the margin \
+         of the lists. The shares of the work are between those of the agents and those of the pairs."
+            .to_owned(),
+        format!(
+            "Cuts are held for the seconds in the head of the table; then the agents of the largest part over the mean. An \
+             agent of a halo takes {} bytes per frame, and {} in a frame with new lists; with RVO, {} in a coarse frame with \
+             new lists.",
+            bytes.usual(),
+            bytes.most(),
+            Traffic::of_columns(true).most()
+        ),
+        format!(
+            "The speed-ups are a model, not measured: the time on one thread × the largest share of the work, plus two \
+             exchanges and one global maximum. Assumed latency and bandwidth: {}.",
+            networks.join("; ")
+        ),
+    ]
+}
+
+/// The numbers of parts for a crowd.
+fn counts(agents: usize) -> impl Iterator<Item = usize> {
+    let large = move |&parts: &usize| parts == PARTS[0] || agents >= FEWEST * parts;
+    PARTS.into_iter().filter(large)
+}
+
+fn measure(kind: &Kind, plan: &Plan, say: &dyn Fn(&str)) -> Result<Vec<Row>, LabError> {
+    say(&format!("{}: simulates it", kind.name()));
+    let mut simulation = kind.start(plan)?;
+    let agents = simulation.frame().agents.len();
+    say(&format!("{}: {agents} agents on one thread", kind.name()));
+    let ms_per_frame = alone(&mut simulation, plan)?;
+    let crowd = Positions::of(&simulation);
+    let mut rows = Vec::new();
+    let mut cuts = Vec::new();
+    for parts in counts(crowd.positions.len()) {
+        say(&format!("{}: {parts} parts", kind.name()));
+        for way in Way::ALL {
+            let cut = way.cut(&crowd.positions, parts);
+            let row = crowd.row(&cut, parts);
+            rows.push(Row {
+                crowd: kind.name(),
+                cut: way.name(),
+                ms_per_frame,
+                ..row
+            });
+            cuts.push((cut, parts));
+        }
+    }
+    if kind.moves() {
+        let seconds = plan.choose(HELD, 1);
+        say(&format!("{}: holds the cuts for {seconds} s", kind.name()));
+        let drifts = follow(&mut simulation, &cuts, seconds)?;
+        for (row, drift) in rows.iter_mut().zip(drifts) {
+            row.drift = Some(drift);
+        }
+    }
+    for row in &mut rows {
+        row.model = row.modeled();
+    }
+    Ok(rows)
+}
+
+/// Milliseconds per frame on one thread.
+fn alone(simulation: &mut Simulation, plan: &Plan) -> Result<Range, LabError> {
+    let clock = *simulation.frame().clock;
+    let agents = simulation.frame().agents.len() as u32;
+    let frames = plan.frames(agents, AGENT_FRAMES, FRAMES);
+    // Whole coarse steps: RVO runs once in each.
+    let frames = frames.next_multiple_of(u64::from(clock.coarse_every()));
+    let times = pool(1)?.install(|| {
+        let times = (0..plan.repeats).map(|_| ms_per_frame(simulation, frames));
+        times.collect::<Result<Vec<f64>, _>>()
+    });
+    Ok(Range::of(&times?))
+}
+
+/// A crowd at one moment.
+struct Positions {
+    positions: Vec<Vector>,
+    field: Field,
+    reach: f64,
+    /// Agents in reach of each agent, without the margin.
+    pairs: Vec<u32>,
+    traffic: Traffic,
+}
+
+impl Positions {
+    fn of(simulation: &Simulation) -> Self {
+        let (scene, needs) = (simulation.scene(), simulation.needs());
+        let agents = simulation.frame().agents;
+        let ranges = scene.ranges(needs, agents);
+        let widest = agents.radius.iter().copied().fold(0.0, f64::max);
+        let acts = ranges.interaction(widest);
+        let acts = acts.max(ranges.wide.unwrap_or_default());
+        let field = Field::new(&agents.position, acts + SKIN);
+        Self {
+            pairs: field.neighbors(acts),
+            positions: agents.position.clone(),
+            field,
+            reach: acts + SKIN,
+            traffic: Traffic::of_columns(needs.rvo),
+        }
+    }
+
+    /// The results for one cut, without drift and model.
+    fn row(&self, cut: &Cut, parts: usize) -> Row {
+        let part_of = cut.parts(&self.positions);
+        let (mut agents, mut pairs) = (vec![0_u64; parts], vec![0_u64; parts]);
+        for (&part, &count) in part_of.iter().zip(&self.pairs) {
+            agents[part as usize] += 1;
+            pairs[part as usize] += u64::from(count);
+        }
+        let halos = self.field.halos(&part_of, parts);
+        let mean = |counts: &[u32]| {
+            let sum: u64 = counts.iter().map(|&count| u64::from(count)).sum();
+            sum as f64 / parts as f64
+        };
+        let largest = |counts: &[u32]| counts.iter().copied().max().unwrap_or_default();
+        let halo_largest = largest(&halos.agents);
+        Row {
+            crowd: String::new(),
+            agents: self.positions.len(),
+            reach: self.reach,
+            parts,
+            cut: "",
+            ms_per_frame: Range::of(&[]),
+            agents_ratio: ratio(&agents),
+            pairs_ratio: ratio(&pairs),
+            halo_mean: mean(&halos.agents),
+            halo_largest,
+            neighbors_mean: mean(&halos.neighbors),
+            neighbors_most: largest(&halos.neighbors),
+            bytes: self.traffic,
+            kilobytes_most: 1e-3 * f64::from(halo_largest) * self.traffic.most() as f64,
+            drift: None,
+            model: Vec::new(),
+        }
+    }
+}
+
+/// The largest of some counts over their mean.
+fn ratio(counts: &[u64]) -> f64 {
+    let sum = counts.iter().sum::<u64>().max(1);
+    let largest = counts.iter().copied().max().unwrap_or_default();
+    largest as f64 * counts.len() as f64 / sum as f64
+}
+
+impl Row {
+    /// The part with the most work reads the largest halo.
+    fn modeled(&self) -> Vec<Modeled> {
+        let load = Load {
+            parts: self.parts,
+            share: self.agents_ratio.max(self.pairs_ratio) / self.parts as f64,
+            halo: f64::from(self.halo_largest),
+            traffic: self.bytes,
+        };
+        let alone = self.ms_per_frame.median;
+        let modeled = NETWORKS.iter();
+        modeled.map(|network| network.model(alone, &load)).collect()
+    }
+}
+
+fn table(rows: &[Row]) -> Table {
+    let held = rows.iter().find_map(|row| row.drift);
+    let held = held.map_or(HELD, |drift| drift.seconds);
+    let mut table = Table::of(rows)
+        .column("crowd", |row| row.crowd.as_str())
+        .column("agents", |row| row.agents)
+        .column("parts", |row| row.parts)
+        .column("cut", |row| row.cut)
+        .fixed("agents max/mean", 2, |row| row.agents_ratio)
+        .fixed("pairs", 2, |row| row.pairs_ratio)
+        .fixed("after 1 s", 2, |row| row.drift.map(|d| d.after_a_second))
+        .fixed(&format!("{held} s"), 2, |row| {
+            row.drift.map(|d| d.at_the_end)
+        })
+        .fixed("change parts [%/s]", 1, |row| {
+            row.drift.map(|d| 100.0 * d.changes_per_second)
+        })
+        .fixed("halo mean", 0, |row| row.halo_mean)
+        .column("max", |row| f64::from(row.halo_largest))
+        .column("parts read max", |row| f64::from(row.neighbors_most))
+        .fixed("kB max", 1, |row| row.kilobytes_most)
+        .fixed("ms, one thread", 2, |row| row.ms_per_frame.median);
+    for (k, network) in NETWORKS.iter().enumerate() {
+        let name = format!("speed-up, {}", network.name);
+        table = table.fixed(&name, 1, |row| row.model.get(k).map(|m| m.speed_up));
+    }
+    table.table()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_of_equal_counts_have_ratio_one() {
+        assert_eq!(ratio(&[5, 5, 5]), 1.0);
+        assert_eq!(ratio(&[0, 0, 6]), 3.0);
+        assert_eq!(ratio(&[0, 0]), 0.0);
+    }
+
+    #[test]
+    fn parts_have_enough_agents() {
+        assert!(counts(10_000).eq([4, 16, 64]));
+        assert!(counts(1).eq([4]));
+    }
+}

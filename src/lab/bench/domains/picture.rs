@@ -1,0 +1,140 @@
+//! The picture of `domains`: balance and halos as found, speed-ups as modeled.
+
+use super::cut::Way;
+use super::network::NETWORKS;
+use super::{HELD, Row};
+use crate::analysis::statistics::Range;
+use crate::lab::bench::pictures::{around, color, curve};
+use crate::output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style};
+
+/// Four panels: balance, halos, and two modeled speed-ups.
+pub fn sheet(rows: &[Row]) -> Sheet {
+    let still = rows.iter().rfind(|row| row.drift.is_none());
+    let moving = rows.iter().rfind(|row| row.drift.is_some());
+    let of = |crowd: Option<&Row>| -> Vec<&Row> {
+        let same =
+            |row: &&Row| crowd.is_some_and(|c| (&c.crowd, c.agents) == (&row.crowd, row.agents));
+        rows.iter().filter(same).collect()
+    };
+    let (still, moving) = (of(still), of(moving));
+    Sheet {
+        title: "Crowds cut into parts, one per process".to_owned(),
+        columns: 2,
+        panel_size: [300.0, 210.0],
+        panels: vec![
+            balance(&moving),
+            halos(rows),
+            speed_up(&still),
+            speed_up(&moving),
+        ],
+        ..Sheet::default()
+    }
+}
+
+/// The name and size of the crowd of some rows.
+fn title(rows: &[&Row]) -> String {
+    let name = rows
+        .first()
+        .map(|row| format!("{}, {} agents", row.crowd, row.agents));
+    name.unwrap_or_default()
+}
+
+/// An axis over numbers of parts.
+fn parts_axis(rows: &[&Row]) -> Axis {
+    let mut axis = Axis::log(
+        "parts",
+        around(rows.iter().map(|row| row.parts as f64), 1.3),
+    );
+    let counts = rows
+        .chunk_by(|a, b| a.parts == b.parts)
+        .map(|chunk| chunk[0].parts);
+    axis.ticks = counts
+        .map(|parts| (parts as f64, parts.to_string()))
+        .collect();
+    axis
+}
+
+/// A line through single values.
+fn line(points: &[(f64, f64)], number: usize, label: &str) -> Vec<Mark> {
+    let points = points.iter().map(|&(x, y)| (x, Range::of(&[y])));
+    curve(&points.collect::<Vec<_>>(), color(number), label)
+}
+
+/// The largest part over the mean: at the cut, and later.
+fn balance(rows: &[&Row]) -> Panel {
+    let mut marks = Vec::new();
+    let mut most: f64 = 1.2;
+    for (k, way) in Way::ALL.into_iter().enumerate() {
+        let own = rows.iter().filter(|row| row.cut == way.name());
+        let cut: Vec<_> = own
+            .clone()
+            .map(|row| (row.parts as f64, row.agents_ratio))
+            .collect();
+        let later = own.filter_map(|row| Some([row.parts as f64, row.drift?.at_the_end]));
+        let later: Vec<_> = later.collect();
+        let all = cut.iter().map(|point| point.1);
+        most = all
+            .chain(later.iter().map(|point| point[1]))
+            .fold(most, f64::max);
+        marks.extend(line(&cut, k, way.name()));
+        marks.push(Mark::Line(later, Style::broken(color(k), 1.2, "")));
+    }
+    let held = rows
+        .iter()
+        .find_map(|row| row.drift)
+        .map_or(HELD, |drift| drift.seconds);
+    let later = format!("{held} s later");
+    marks.push(Mark::Line(Vec::new(), Style::broken(GRAY, 1.2, &later)));
+    let y = Axis::log("agents, largest part over mean", [0.9, 1.2 * most]);
+    let mut panel = Panel::new(&title(rows), parts_axis(rows), y, marks);
+    panel.legend = Some(Corner::UpperLeft);
+    panel
+}
+
+/// Halos of bisections, relative to the own agents.
+fn halos(rows: &[Row]) -> Panel {
+    let bisections = rows.iter().filter(|row| row.cut == Way::Bisection.name());
+    let bisections: Vec<&Row> = bisections.collect();
+    let own = |row: &Row| row.agents as f64 / row.parts as f64;
+    let relative = |row: &Row| row.halo_mean / own(row);
+    let mut marks = Vec::new();
+    let crowds = bisections.chunk_by(|a, b| (&a.crowd, a.agents) == (&b.crowd, b.agents));
+    for (k, crowd) in crowds.enumerate() {
+        let points = crowd.iter().map(|row| (own(row), relative(row)));
+        let label = format!("{}, {:.2} m", title(crowd), crowd[0].reach);
+        marks.extend(line(&points.collect::<Vec<_>>(), k, &label));
+    }
+    let sizes = around(bisections.iter().map(|row| own(row)), 1.3);
+    let shares = around(bisections.iter().map(|row| relative(row)), 1.5);
+    // Room for the legend.
+    let shares = [shares[0] / 10.0, shares[1]];
+    let x = Axis::log("agents per part", sizes);
+    let y = Axis::log("agents of the halo per own agent", shares);
+    let mut panel = Panel::new("Halos of bisections, with their reach", x, y, marks);
+    panel.legend = Some(Corner::LowerLeft);
+    panel
+}
+
+/// Speed-ups of bisections by the model.
+fn speed_up(rows: &[&Row]) -> Panel {
+    let bisections = rows.iter().filter(|row| row.cut == Way::Bisection.name());
+    let bisections: Vec<&Row> = bisections.copied().collect();
+    let ends = around(bisections.iter().map(|row| row.parts as f64), 1.3);
+    let ideal = ends.map(|parts| [parts, parts]).to_vec();
+    let mut marks = vec![Mark::Line(ideal, Style::broken(GRAY, 0.8, "ideal"))];
+    for (k, network) in NETWORKS.iter().enumerate() {
+        let points = bisections
+            .iter()
+            .map(|row| (row.parts as f64, row.model[k].speed_up));
+        marks.extend(line(&points.collect::<Vec<_>>(), k, network.name));
+    }
+    let all = bisections
+        .iter()
+        .flat_map(|row| &row.model)
+        .map(|model| model.speed_up);
+    let y = around(all.chain(ends), 1.3);
+    let y = Axis::log("times as fast as one thread (model)", y);
+    let mut panel = Panel::new(&title(rows), parts_axis(rows), y, marks);
+    panel.legend = Some(Corner::UpperLeft);
+    panel
+}
