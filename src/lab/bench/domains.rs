@@ -22,12 +22,12 @@ use self::traffic::Traffic;
 use super::crowd::Crowd;
 use super::report::Findings;
 use super::stages::{Stretch, begin};
-use super::timing::{ms_per_frame, pool};
+use super::timing::{ms_of, ms_per_frame, pool};
 use super::{Benchmark, Plan};
 use crate::analysis::statistics::Range;
 use crate::engine::math::Vector;
 use crate::engine::neighbors::SKIN;
-use crate::engine::simulation::Simulation;
+use crate::engine::simulation::{Simulation, Stage};
 use crate::lab::error::LabError;
 use crate::output::table::Table;
 
@@ -125,6 +125,8 @@ struct Row {
     agents_ratio: f64,
     /// Pairs of near agents of the part with the most over the mean.
     pairs_ratio: f64,
+    /// The work of the part with the most over the mean, estimated from agents, pairs and RVO.
+    work_ratio: f64,
     /// Agents of other parts that a part reads.
     halo_mean: f64,
     halo_largest: u32,
@@ -166,7 +168,8 @@ fn notes() -> Vec<String> {
     vec![
         "Block: the crowd of `scaling`, at rest. Streams: 4 P/m², sph, half of the agents walk to the right and half to the \
          left. Concert from 150 s and plaza from 10 s on, as shipped. Halo: agents of other parts in reach, plus the margin \
-         of the lists. The shares of the work are between those of the agents and those of the pairs."
+         of the lists. Work: the measured time of RVO goes to the agents on which it acts, the rest to agents or pairs, \
+         whichever gives a part more."
             .to_owned(),
         format!(
             "Cuts are held for the seconds in the head of the table; then the agents of the largest part over the mean. An \
@@ -195,8 +198,8 @@ fn measure(kind: &Kind, plan: &Plan, say: &dyn Fn(&str)) -> Result<Vec<Row>, Lab
     let mut simulation = kind.start(plan)?;
     let agents = simulation.frame().agents.len();
     say(&format!("{}: {agents} agents on one thread", kind.name()));
-    let ms_per_frame = alone(&mut simulation, plan)?;
-    let crowd = Positions::of(&simulation);
+    let (ms_per_frame, rvo) = alone(&mut simulation, plan)?;
+    let crowd = Positions::of(&simulation, rvo);
     let mut rows = Vec::new();
     let mut cuts = Vec::new();
     for parts in counts(crowd.positions.len()) {
@@ -227,18 +230,21 @@ fn measure(kind: &Kind, plan: &Plan, say: &dyn Fn(&str)) -> Result<Vec<Row>, Lab
     Ok(rows)
 }
 
-/// Milliseconds per frame on one thread.
-fn alone(simulation: &mut Simulation, plan: &Plan) -> Result<Range, LabError> {
+/// Milliseconds per frame on one thread, and the share of RVO in them.
+fn alone(simulation: &mut Simulation, plan: &Plan) -> Result<(Range, f64), LabError> {
     let clock = *simulation.frame().clock;
     let agents = simulation.frame().agents.len() as u32;
     let frames = plan.frames(agents, AGENT_FRAMES, FRAMES);
     // Whole coarse steps: RVO runs once in each.
     let frames = frames.next_multiple_of(u64::from(clock.coarse_every()));
+    simulation.reset_stages();
     let times = pool(1)?.install(|| {
         let times = (0..plan.repeats).map(|_| ms_per_frame(simulation, frames));
         times.collect::<Result<Vec<f64>, _>>()
     });
-    Ok(Range::of(&times?))
+    let stages = simulation.stages();
+    let rvo = ms_of(stages, Stage::Rvo) / stages.total_ms_per_frame();
+    Ok((Range::of(&times?), rvo))
 }
 
 /// A crowd at one moment.
@@ -248,11 +254,15 @@ struct Positions {
     reach: f64,
     /// Agents in reach of each agent, without the margin.
     pairs: Vec<u32>,
+    /// Does RVO act on the agent? Empty without RVO.
+    avoids: Vec<bool>,
+    /// The share of RVO in the time of a frame.
+    rvo: f64,
     traffic: Traffic,
 }
 
 impl Positions {
-    fn of(simulation: &Simulation) -> Self {
+    fn of(simulation: &Simulation, rvo: f64) -> Self {
         let (scene, needs) = (simulation.scene(), simulation.needs());
         let agents = simulation.frame().agents;
         let ranges = scene.ranges(needs, agents);
@@ -262,6 +272,8 @@ impl Positions {
         let field = Field::new(&agents.position, acts + SKIN);
         Self {
             pairs: field.neighbors(acts),
+            avoids: agents.avoidance.iter().map(Option::is_some).collect(),
+            rvo,
             positions: agents.position.clone(),
             field,
             reach: acts + SKIN,
@@ -272,10 +284,13 @@ impl Positions {
     /// The results for one cut, without drift and model.
     fn row(&self, cut: &Cut, parts: usize) -> Row {
         let part_of = cut.parts(&self.positions);
-        let (mut agents, mut pairs) = (vec![0_u64; parts], vec![0_u64; parts]);
+        let [mut agents, mut pairs, mut avoiding] = [0; 3].map(|zero| vec![zero; parts]);
         for (&part, &count) in part_of.iter().zip(&self.pairs) {
             agents[part as usize] += 1;
             pairs[part as usize] += u64::from(count);
+        }
+        for (&part, &avoids) in part_of.iter().zip(&self.avoids) {
+            avoiding[part as usize] += u64::from(avoids);
         }
         let halos = self.field.halos(&part_of, parts);
         let mean = |counts: &[u32]| {
@@ -293,6 +308,7 @@ impl Positions {
             ms_per_frame: Range::of(&[]),
             agents_ratio: ratio(&agents),
             pairs_ratio: ratio(&pairs),
+            work_ratio: work([&agents, &pairs, &avoiding], self.rvo),
             halo_mean: mean(&halos.agents),
             halo_largest,
             neighbors_mean: mean(&halos.neighbors),
@@ -305,11 +321,27 @@ impl Positions {
     }
 }
 
+/// Some counts over their mean.
+fn relative(counts: &[u64]) -> impl Iterator<Item = f64> {
+    let sum = counts.iter().sum::<u64>().max(1) as f64;
+    let length = counts.len() as f64;
+    counts.iter().map(move |&count| count as f64 * length / sum)
+}
+
 /// The largest of some counts over their mean.
 fn ratio(counts: &[u64]) -> f64 {
-    let sum = counts.iter().sum::<u64>().max(1);
-    let largest = counts.iter().copied().max().unwrap_or_default();
-    largest as f64 * counts.len() as f64 / sum as f64
+    relative(counts).fold(0.0, f64::max)
+}
+
+/// The work of the part with the most over the mean. The time of RVO is divided by the agents on which it acts, the rest
+/// by agents or pairs, whichever gives the part more: a bound for every mix of the two.
+fn work([agents, pairs, avoiding]: [&[u64]; 3], rvo: f64) -> f64 {
+    let parts = relative(agents)
+        .zip(relative(pairs))
+        .zip(relative(avoiding));
+    let work =
+        parts.map(|((agents, pairs), avoiding)| (1.0 - rvo) * agents.max(pairs) + rvo * avoiding);
+    work.fold(0.0, f64::max)
 }
 
 impl Row {
@@ -317,7 +349,7 @@ impl Row {
     fn modeled(&self) -> Vec<Modeled> {
         let load = Load {
             parts: self.parts,
-            share: self.agents_ratio.max(self.pairs_ratio) / self.parts as f64,
+            share: self.work_ratio / self.parts as f64,
             halo: f64::from(self.halo_largest),
             traffic: self.bytes,
         };
@@ -337,6 +369,7 @@ fn table(rows: &[Row]) -> Table {
         .column("cut", |row| row.cut)
         .fixed("agents max/mean", 2, |row| row.agents_ratio)
         .fixed("pairs", 2, |row| row.pairs_ratio)
+        .fixed("work", 2, |row| row.work_ratio)
         .fixed("after 1 s", 2, |row| row.drift.map(|d| d.after_a_second))
         .fixed(&format!("{held} s"), 2, |row| {
             row.drift.map(|d| d.at_the_end)
@@ -365,6 +398,24 @@ mod tests {
         assert_eq!(ratio(&[5, 5, 5]), 1.0);
         assert_eq!(ratio(&[0, 0, 6]), 3.0);
         assert_eq!(ratio(&[0, 0]), 0.0);
+    }
+
+    #[test]
+    fn work_is_a_bound_for_every_mix_of_agents_and_pairs() {
+        let (agents, pairs): ([u64; 3], [u64; 3]) = ([4, 2, 6], [90, 20, 10]);
+        let bound = work([&agents, &pairs, &[0; 3]], 0.0);
+        for share in [0.0, 0.2, 0.5, 0.9, 1.0] {
+            let mixed = relative(&agents).zip(relative(&pairs));
+            let mixed = mixed.map(|(agents, pairs)| (1.0 - share) * agents + share * pairs);
+            assert!(mixed.fold(0.0, f64::max) <= bound);
+        }
+    }
+
+    #[test]
+    fn work_of_rvo_is_where_agents_avoid() {
+        let equal = [3; 4];
+        assert_eq!(work([&equal, &equal, &[0, 0, 7, 0]], 1.0), 4.0);
+        assert_eq!(work([&equal, &equal, &[0, 0, 7, 0]], 0.5), 2.5);
     }
 
     #[test]
