@@ -4,6 +4,7 @@
 //! Crowds, cuts, halos and the time on one thread are simulated and measured; the time on many processes is a model. No
 //! process sends anything.
 
+mod crowds;
 mod cut;
 mod drift;
 mod halo;
@@ -14,14 +15,13 @@ mod traffic;
 use serde::Serialize;
 use serde_json::json;
 
+use self::crowds::Kind;
 use self::cut::{Cut, Way};
 use self::drift::{Drift, follow};
 use self::halo::Field;
 use self::network::{Load, Modeled, NETWORKS};
 use self::traffic::Traffic;
-use super::crowd::Crowd;
 use super::report::Findings;
-use super::stages::{Stretch, begin};
 use super::timing::{ms_of, ms_per_frame, pool};
 use super::{Benchmark, Plan};
 use crate::analysis::statistics::Range;
@@ -37,17 +37,6 @@ pub const BENCHMARK: Benchmark = Benchmark {
     run,
 };
 
-/// Sizes of the dense block.
-const BLOCKS: [u32; 3] = [100_000, 1_000_000, 10_000_000];
-/// The size of the streams.
-const STREAMS: u32 = 100_000;
-/// Frames until a block or streams have settled, and the fewest for large blocks.
-const SETTLING: u64 = 100;
-const LEAST_SETTLING: u64 = 20;
-/// Agents × frames until a block has settled.
-const SETTLING_AGENT_FRAMES: u64 = 100_000_000;
-/// The shipped scenes that move.
-const SCENES: [Stretch; 2] = [("concert", 150.0, 10.0), ("plaza", 10.0, 10.0)];
 /// The numbers of parts, as long as a part has `FEWEST` agents on average.
 const PARTS: [usize; 5] = [4, 16, 64, 256, 1024];
 const FEWEST: usize = 100;
@@ -56,59 +45,6 @@ const HELD: u64 = 10;
 /// Agents × frames per repeat of the time on one thread; the number of frames is clamped to `FRAMES`.
 const AGENT_FRAMES: u64 = 1_000_000;
 const FRAMES: [u64; 2] = [5, 100];
-
-/// A crowd to cut.
-enum Kind {
-    /// The dense block at rest.
-    Block(u32),
-    /// Two streams through each other.
-    Streams(u32),
-    /// A shipped scenario.
-    Scene(Stretch),
-}
-
-impl Kind {
-    fn all(plan: &Plan) -> Vec<Self> {
-        if plan.quick {
-            return vec![Self::Block(2_000), Self::Streams(1_000)];
-        }
-        let blocks = BLOCKS.into_iter().filter(|&agents| agents <= plan.largest);
-        let small = (plan.largest < BLOCKS[0]).then_some(plan.largest);
-        let blocks = small.into_iter().chain(blocks).map(Self::Block);
-        let scenes = SCENES.into_iter().map(Self::Scene);
-        blocks
-            .chain([Self::Streams(STREAMS)])
-            .chain(scenes)
-            .collect()
-    }
-
-    fn name(&self) -> String {
-        match self {
-            Self::Block(_) => "block".to_owned(),
-            Self::Streams(_) => "streams".to_owned(),
-            Self::Scene((name, ..)) => (*name).to_owned(),
-        }
-    }
-
-    fn moves(&self) -> bool {
-        !matches!(self, Self::Block(_))
-    }
-
-    /// The crowd before it is cut.
-    fn start(&self, plan: &Plan) -> Result<Simulation, LabError> {
-        match self {
-            &Self::Block(agents) => {
-                let frames = SETTLING_AGENT_FRAMES / u64::from(agents);
-                let frames = plan.choose(frames.clamp(LEAST_SETTLING, SETTLING), 5);
-                Crowd::concert(agents).settled(frames)
-            }
-            &Self::Streams(agents) => {
-                Crowd::streams(agents, "sph").settled(plan.choose(SETTLING, 5))
-            }
-            Self::Scene(stretch) => Ok(begin(stretch, plan, None)?.simulation),
-        }
-    }
-}
 
 /// The results for one crowd and cut.
 #[derive(Serialize)]
@@ -200,12 +136,12 @@ fn measure(kind: &Kind, plan: &Plan, say: &dyn Fn(&str)) -> Result<Vec<Row>, Lab
     say(&format!("{}: {agents} agents on one thread", kind.name()));
     let (ms_per_frame, rvo) = alone(&mut simulation, plan)?;
     let crowd = Positions::of(&simulation, rvo);
-    let mut rows = Vec::new();
-    let mut cuts = Vec::new();
+    let weights = crowd.weights();
+    let (mut rows, mut cuts) = (Vec::new(), Vec::new());
     for parts in counts(crowd.positions.len()) {
         say(&format!("{}: {parts} parts", kind.name()));
         for way in Way::ALL {
-            let cut = way.cut(&crowd.positions, parts);
+            let cut = way.cut(&crowd.positions, &weights, parts);
             let row = crowd.row(&cut, parts);
             rows.push(Row {
                 crowd: kind.name(),
@@ -279,6 +215,22 @@ impl Positions {
             reach: acts + SKIN,
             traffic: Traffic::of_columns(needs.rvo),
         }
+    }
+
+    /// The work of each agent: the share of RVO is that of the agents on which it acts; half of the rest is equal, and half
+    /// is that of the pairs.
+    fn weights(&self) -> Vec<f64> {
+        let agents = self.positions.len() as f64;
+        let pairs: u64 = self.pairs.iter().map(|&count| u64::from(count)).sum();
+        let avoiding = self.avoids.iter().filter(|&&avoids| avoids).count();
+        let per_pair = agents / pairs.max(1) as f64;
+        let per_avoiding = agents / avoiding.max(1) as f64;
+        let weight = |(i, &count): (usize, &u32)| {
+            let usual = 0.5 + 0.5 * f64::from(count) * per_pair;
+            let avoids = self.avoids.get(i).is_some_and(|&avoids| avoids);
+            (1.0 - self.rvo) * usual + self.rvo * per_avoiding * f64::from(u8::from(avoids))
+        };
+        self.pairs.iter().enumerate().map(weight).collect()
     }
 
     /// The results for one cut, without drift and model.

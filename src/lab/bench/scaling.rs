@@ -20,7 +20,9 @@ pub const BENCHMARK: Benchmark = Benchmark {
     run,
 };
 
-const SIZES: [u32; 7] = [1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000];
+const SIZES: [u32; 9] = [
+    1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000, 3_000_000, 10_000_000,
+];
 /// The size that the others are compared with.
 const REFERENCE: u32 = 10_000;
 /// Frames until the crowd has settled: 2 s.

@@ -11,26 +11,36 @@ pub enum Way {
     Rectangles,
     /// Recursive coordinate bisection: halves of equal counts across the longer side, again and again.
     Bisection,
+    /// The same with halves of equal work.
+    Work,
     /// Equal counts along a Hilbert curve.
     Curve,
 }
 
 impl Way {
-    pub const ALL: [Self; 3] = [Self::Rectangles, Self::Bisection, Self::Curve];
+    pub const ALL: [Self; 4] = [Self::Rectangles, Self::Bisection, Self::Work, Self::Curve];
 
     pub fn name(self) -> &'static str {
         match self {
             Self::Rectangles => "rectangles",
             Self::Bisection => "bisection",
+            Self::Work => "bisection by work",
             Self::Curve => "Hilbert curve",
         }
     }
 
-    /// Cuts a crowd into `parts` parts.
-    pub fn cut(self, positions: &[Vector], parts: usize) -> Cut {
+    /// Cuts a crowd into `parts` parts; `work` has the work of each agent.
+    pub fn cut(self, positions: &[Vector], work: &[f64], parts: usize) -> Cut {
         match self {
             Self::Rectangles => Cut::Rectangles(Rectangles::over(positions, parts)),
-            Self::Bisection => Cut::Bisection(Bisection::of(positions, parts)),
+            Self::Bisection => {
+                let points = positions.iter().map(|&p| (p, 1.0));
+                Cut::Bisection(Bisection::of(points.collect(), parts))
+            }
+            Self::Work => {
+                let points = positions.iter().copied().zip(work.iter().copied());
+                Cut::Bisection(Bisection::of(points.collect(), parts))
+            }
             Self::Curve => Cut::Curve(Curve::through(positions, parts)),
         }
     }
@@ -121,27 +131,34 @@ struct Split {
 }
 
 impl Bisection {
-    /// If no two agents share a coordinate and `parts` is a power of two, the counts differ by at most 1.
-    fn of(positions: &[Vector], parts: usize) -> Self {
+    /// Halves of equal weight. If the weights are 1, no two agents share a coordinate and `parts` is a power of two, the
+    /// counts differ by at most 1.
+    fn of(mut points: Vec<(Vector, f64)>, parts: usize) -> Self {
         let mut cut = Self {
             splits: Vec::with_capacity(parts),
             root: Branch::Part(0),
         };
-        let mut points = positions.to_vec();
         cut.root = cut.bisect(&mut points, 0, parts);
         cut
     }
 
     /// Cuts some agents into the parts from `first` on.
-    fn bisect(&mut self, points: &mut [Vector], first: usize, parts: usize) -> Branch {
+    fn bisect(&mut self, points: &mut [(Vector, f64)], first: usize, parts: usize) -> Branch {
         let half = parts / 2;
-        let count = points.len() * half / parts.max(1);
-        let Some([low, high]) = bounds(points.iter().copied()).filter(|_| half > 0) else {
+        let box_of = bounds(points.iter().map(|point| point.0));
+        let Some([low, high]) = box_of.filter(|_| half > 0) else {
             return Branch::Part(first as u32);
         };
         let axis = (high - low).imax();
-        points.select_nth_unstable_by(count, |p, q| p[axis].total_cmp(&q[axis]));
-        let at = points[count][axis];
+        points.par_sort_unstable_by(|(p, _), (q, _)| p[axis].total_cmp(&q[axis]));
+        let wanted = total(points) * half as f64 / parts as f64;
+        let mut sum = 0.0;
+        let count = points.iter().take_while(|(_, weight)| {
+            sum += weight;
+            sum <= wanted
+        });
+        let count = count.count().min(points.len() - 1);
+        let at = points[count].0[axis];
         let (below, above) = points.split_at_mut(count);
         let below = self.bisect(below, first, half);
         let above = self.bisect(above, first + half, parts - half);
@@ -167,6 +184,10 @@ impl Bisection {
             }
         }
     }
+}
+
+fn total(points: &[(Vector, f64)]) -> f64 {
+    points.iter().map(|(_, weight)| weight).sum()
 }
 
 /// Bits per coordinate of the Hilbert curve: cells of 1/65,536 of the crowd's extent.
@@ -243,9 +264,13 @@ mod tests {
         (0..count).map(&mut place).collect()
     }
 
+    fn ones(positions: &[Vector]) -> Vec<f64> {
+        vec![1.0; positions.len()]
+    }
+
     fn counts(way: Way, positions: &[Vector], parts: usize) -> Vec<usize> {
         let mut counts = vec![0; parts];
-        for part in way.cut(positions, parts).parts(positions) {
+        for part in way.cut(positions, &ones(positions), parts).parts(positions) {
             counts[part as usize] += 1; // panics beyond the last part
         }
         counts
@@ -266,7 +291,7 @@ mod tests {
     fn points_outside_of_the_crowd_belong_to_a_part_too() {
         let crowd = crowd(500);
         for way in Way::ALL {
-            let cut = way.cut(&crowd, 16);
+            let cut = way.cut(&crowd, &ones(&crowd), 16);
             for p in [[-1e6, 3.0], [1e6, 1e6], [4.0, -1e9]] {
                 assert!(cut.part(Vector::new(p[0], p[1])) < 16);
             }
@@ -277,7 +302,7 @@ mod tests {
     fn bisection_and_curve_give_parts_of_equal_counts() {
         for count in [640, 1000, 1003] {
             let crowd = crowd(count);
-            for way in [Way::Bisection, Way::Curve] {
+            for way in [Way::Bisection, Way::Work, Way::Curve] {
                 for parts in [2, 4, 16, 64] {
                     let counts = counts(way, &crowd, parts);
                     let (least, most) = (counts.iter().min(), counts.iter().max());
@@ -289,9 +314,26 @@ mod tests {
     }
 
     #[test]
+    fn bisection_by_work_gives_each_part_its_share() {
+        let crowd = crowd(2000);
+        let weights: Vec<f64> = crowd.iter().map(|p| 1.0 + p.x.max(0.0)).collect();
+        let (all, largest) = (weights.iter().sum::<f64>(), 51.0);
+        for parts in [2, 4, 16, 64] {
+            let part_of = Way::Work.cut(&crowd, &weights, parts).parts(&crowd);
+            let mut work = vec![0.0; parts];
+            for (part, weight) in part_of.into_iter().zip(&weights) {
+                work[part as usize] += weight;
+            }
+            // Each halving is off by less than one agent, and later halvings halve the error.
+            let fair = all / parts as f64;
+            assert!(work.iter().all(|work| (work - fair).abs() < 2.0 * largest));
+        }
+    }
+
+    #[test]
     fn rectangles_of_a_square_are_squares() {
         let corners = [[0.0, 0.0], [8.0, 8.0]].map(|[x, y]| Vector::new(x, y));
-        let cut = Way::Rectangles.cut(&corners, 16);
+        let cut = Way::Rectangles.cut(&corners, &[], 16);
         let parts = (0..16).map(|k| [k % 4, k / 4].map(|i| 2.0 * f64::from(i) + 1.0));
         let parts = parts.map(|[x, y]| cut.part(Vector::new(x, y)));
         assert!(parts.eq(0..16));

@@ -101,7 +101,7 @@ mod tests {
             let mut simulation = crowd.settled(5).unwrap();
             let positions = simulation.frame().agents.position.clone();
             // Rectangles: their borders are not at agents.
-            let cuts = [(Way::Rectangles.cut(&positions, 4), 4)];
+            let cuts = [(Way::Rectangles.cut(&positions, &[], 4), 4)];
             follow(&mut simulation, &cuts, 2).unwrap()[0]
         };
         let resting = drift_of(Crowd {

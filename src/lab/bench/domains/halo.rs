@@ -116,7 +116,7 @@ mod tests {
         let field = Field::new(&crowd, REACH);
         for way in Way::ALL {
             for parts in [2, 4, 16, 64] {
-                let part_of = way.cut(&crowd, parts).parts(&crowd);
+                let part_of = way.cut(&crowd, &[1.0; 400], parts).parts(&crowd);
                 let mut expected = Halos {
                     agents: Vec::new(),
                     neighbors: Vec::new(),
@@ -144,7 +144,7 @@ mod tests {
     fn one_part_has_no_halo() {
         let crowd = crowd(200);
         for way in Way::ALL {
-            let part_of = way.cut(&crowd, 1).parts(&crowd);
+            let part_of = way.cut(&crowd, &[1.0; 200], 1).parts(&crowd);
             let halos = Field::new(&crowd, REACH).halos(&part_of, 1);
             assert_eq!((halos.agents, halos.neighbors), (vec![0], vec![0]));
         }

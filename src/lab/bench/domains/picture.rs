@@ -1,8 +1,10 @@
 //! The picture of `domains`: balance and halos as found, speed-ups as modeled.
 
+use indicatif::HumanCount;
+
+use super::Row;
 use super::cut::Way;
 use super::network::NETWORKS;
-use super::{HELD, Row};
 use crate::analysis::statistics::Range;
 use crate::lab::bench::pictures::{around, color, curve};
 use crate::output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style};
@@ -35,7 +37,7 @@ pub fn sheet(rows: &[Row]) -> Sheet {
 fn title(rows: &[&Row]) -> String {
     let name = rows
         .first()
-        .map(|row| format!("{}, {} agents", row.crowd, row.agents));
+        .map(|row| format!("{}, {} agents", row.crowd, HumanCount(row.agents as u64)));
     name.unwrap_or_default()
 }
 
@@ -60,40 +62,24 @@ fn line(points: &[(f64, f64)], number: usize, label: &str) -> Vec<Mark> {
     curve(&points.collect::<Vec<_>>(), color(number), label)
 }
 
-/// The largest part over the mean: at the cut, and later.
+/// The work of the largest part over the mean, by parts and cut.
 fn balance(rows: &[&Row]) -> Panel {
     let mut marks = Vec::new();
-    let mut most: f64 = 1.2;
     for (k, way) in Way::ALL.into_iter().enumerate() {
         let own = rows.iter().filter(|row| row.cut == way.name());
-        let cut: Vec<_> = own
-            .clone()
-            .map(|row| (row.parts as f64, row.agents_ratio))
-            .collect();
-        let later = own.filter_map(|row| Some([row.parts as f64, row.drift?.at_the_end]));
-        let later: Vec<_> = later.collect();
-        let all = cut.iter().map(|point| point.1);
-        most = all
-            .chain(later.iter().map(|point| point[1]))
-            .fold(most, f64::max);
-        marks.extend(line(&cut, k, way.name()));
-        marks.push(Mark::Line(later, Style::broken(color(k), 1.2, "")));
+        let points = own.map(|row| (row.parts as f64, row.work_ratio));
+        marks.extend(line(&points.collect::<Vec<_>>(), k, way.name()));
     }
-    let held = rows
-        .iter()
-        .find_map(|row| row.drift)
-        .map_or(HELD, |drift| drift.seconds);
-    let later = format!("{held} s later");
-    marks.push(Mark::Line(Vec::new(), Style::broken(GRAY, 1.2, &later)));
-    let y = Axis::log("agents, largest part over mean", [0.9, 1.2 * most]);
+    let most = rows.iter().map(|row| row.work_ratio).fold(1.0, f64::max);
+    let y = Axis::log("work, largest part over mean", [0.9, 2.0 * most]);
     let mut panel = Panel::new(&title(rows), parts_axis(rows), y, marks);
     panel.legend = Some(Corner::UpperLeft);
     panel
 }
 
-/// Halos of bisections, relative to the own agents.
+/// Halos of bisections by work, relative to the own agents.
 fn halos(rows: &[Row]) -> Panel {
-    let bisections = rows.iter().filter(|row| row.cut == Way::Bisection.name());
+    let bisections = rows.iter().filter(|row| row.cut == Way::Work.name());
     let bisections: Vec<&Row> = bisections.collect();
     let own = |row: &Row| row.agents as f64 / row.parts as f64;
     let relative = |row: &Row| row.halo_mean / own(row);
@@ -110,14 +96,14 @@ fn halos(rows: &[Row]) -> Panel {
     let shares = [shares[0] / 10.0, shares[1]];
     let x = Axis::log("agents per part", sizes);
     let y = Axis::log("agents of the halo per own agent", shares);
-    let mut panel = Panel::new("Halos of bisections, with their reach", x, y, marks);
+    let mut panel = Panel::new("Halos of bisections by work, with their reach", x, y, marks);
     panel.legend = Some(Corner::LowerLeft);
     panel
 }
 
-/// Speed-ups of bisections by the model.
+/// Speed-ups of bisections by work by the model.
 fn speed_up(rows: &[&Row]) -> Panel {
-    let bisections = rows.iter().filter(|row| row.cut == Way::Bisection.name());
+    let bisections = rows.iter().filter(|row| row.cut == Way::Work.name());
     let bisections: Vec<&Row> = bisections.copied().collect();
     let ends = around(bisections.iter().map(|row| row.parts as f64), 1.3);
     let ideal = ends.map(|parts| [parts, parts]).to_vec();
