@@ -93,26 +93,31 @@ pub fn follow(
 mod tests {
     use super::super::cut::Way;
     use super::*;
+    use crate::engine::math::Vector;
     use crate::lab::bench::Crowd;
 
-    #[test]
-    fn a_crowd_at_rest_stays_in_its_parts_and_streams_leave_theirs() {
-        let drift_of = |crowd: Crowd| {
-            let mut simulation = crowd.settled(5).unwrap();
-            let positions = simulation.frame().agents.position.clone();
-            // Rectangles: their borders are not at agents.
-            let cuts = [(Way::Rectangles.cut(&positions, &[], 4), 4)];
-            follow(&mut simulation, &cuts, 2).unwrap()[0]
-        };
-        let resting = drift_of(Crowd {
-            density: 1.0,
-            ..Crowd::concert(300)
-        });
-        let walking = drift_of(Crowd {
+    /// Two seconds of a crowd in four rectangles, at rest or on its way to the right.
+    fn drift(ahead: f64) -> Drift {
+        let crowd = Crowd {
             density: 1.0,
             ..Crowd::streams(300, "sph")
-        });
+        };
+        let mut scene = crowd.scene().unwrap();
+        for agent in &mut scene.agents {
+            agent.goal = agent.position + Vector::new(ahead, 0.0);
+        }
+        let positions: Vec<Vector> = scene.agents.iter().map(|agent| agent.position).collect();
+        let cuts = [(Way::Rectangles.cut(&positions, &[], 4), 4)];
+        let mut simulation = Simulation::new(scene).unwrap();
+        follow(&mut simulation, &cuts, 2).unwrap()[0]
+    }
+
+    #[test]
+    fn walking_agents_change_parts_and_agents_at_rest_hardly_do() {
+        let (resting, walking) = (drift(0.0), drift(100.0));
         assert!(resting.changes_per_second < 0.01, "{resting:?}");
+        // The crowd is 17 m wide and walks about a meter per second across the border in its middle.
         assert!(walking.changes_per_second > 0.02, "{walking:?}");
+        assert!(walking.at_the_end > walking.after_a_second, "{walking:?}");
     }
 }
