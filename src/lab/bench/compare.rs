@@ -1,197 +1,149 @@
-//! This engine compared with others, on the same crowd.
+//! This engine compared with others, on the same crowds.
 
-mod jupedsim;
+mod ours;
+mod picture;
+mod python;
+mod race;
 mod rustsim;
+mod setting;
 
-use serde::Serialize;
 use serde_json::json;
 
+use self::race::{PATIENCE, Racer, Row, TURN, race};
+use self::setting::Setting;
 use super::crowd::Crowd;
-use super::pictures::{around, color, dots, sheet};
 use super::report::Findings;
-use super::timing::{Contender, alternate, failed, going_on};
 use super::{Benchmark, Plan};
-use crate::analysis::statistics::Range;
-use crate::engine::pairs::Precision;
-use crate::engine::simulation::Simulation;
 use crate::lab::error::LabError;
 use crate::lab::machine::Machine;
-use crate::output::plot::{Axis, Sheet};
 use crate::output::table::Table;
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "compare",
-    about: "time per step of social forces beside rustsim-crowd and JuPedSim, on the same crowd",
+    about: "computing time per simulated second beside rustsim-crowd, JuPedSim and RVO2, on the same crowds",
     run,
 };
 
-/// The paper's radius of social forces, meters.
+/// The paper's radius of avoidance, meters.
 const WIDE: f64 = 5.0;
-/// Steps per turn; the same number of warm-up steps comes first.
-const STEPS: u64 = 10;
+/// Bodies do not overlap at the start, and agents that avoid each other still move, P/m².
+const DENSITY: f64 = 2.0;
+const SIZES: [u32; 5] = [100, 1_000, 10_000, 100_000, 1_000_000];
+/// The size of the main crowd, with which all settings are measured.
+const MAIN: u32 = 10_000;
+/// Repeats with the other crowds.
+const FEW: usize = 3;
 
-/// An engine with one setting.
-#[derive(Clone, Serialize)]
-struct Description {
-    engine: String,
-    model: &'static str,
-    /// Agents farther away have no effect, meters.
-    radius: f64,
-    precision: &'static str,
-    /// Δt, seconds.
-    time_step: f64,
-    threads: usize,
-}
-
-/// An engine that takes part.
-type Entry = (Description, Contender<'static>);
-
-/// The times of one engine.
-#[derive(Serialize)]
-struct Row {
-    #[serde(flatten)]
-    description: Description,
-    ms_per_step: Range,
-    /// Time relative to this engine with the same radius and number of threads.
-    ratio: Range,
+/// The crowd of all engines: half of the agents walk to the right and half to the left.
+fn crowd(agents: u32, profile: &'static str) -> Crowd {
+    Crowd {
+        density: DENSITY,
+        ..Crowd::streams(agents, profile)
+    }
 }
 
 fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
-    let agents = plan.choose(10_000, 400);
-    let crowd = Crowd::streams(agents, "sf").settled(0)?;
-    let threads = Machine::here().hardware_threads;
-    let mut notes = vec![differences(agents)];
-    let mut others = Vec::new();
-    for (engine, joined) in [
-        ("rustsim-crowd", rustsim::entries(&crowd, threads)),
-        ("JuPedSim", jupedsim::entries(&crowd, &plan.python)),
-    ] {
-        match joined {
-            Ok(mut entries) => others.append(&mut entries),
-            Err(missing) => notes.push(format!("{engine} is missing: {missing}")),
+    let sizes = plan.choose(&SIZES[..], &[100, 400]).iter().copied();
+    let sizes: Vec<u32> = sizes.filter(|&agents| agents <= plan.largest).collect();
+    let main = sizes.iter().copied().filter(|&agents| agents <= MAIN).max();
+    let mut notes = vec![conditions(), differences()];
+    let others = others(plan, &mut notes);
+    let ours = ours::settings(&others, Machine::here().hardware_threads)?;
+    let own = ours.len();
+    let mut racers: Vec<Racer> = ours.into_iter().chain(others).map(Racer::new).collect();
+    let mut rows = Vec::new();
+    for agents in sizes {
+        let is_main = Some(agents) == main;
+        let mut taking_part = Vec::new();
+        let mut own_here = 0;
+        for (k, racer) in racers.iter_mut().enumerate() {
+            if !is_main && !racer.setting.all_sizes {
+                continue;
+            }
+            match racer.too_slow(agents) {
+                Some(reason) => notes.push(reason),
+                None => {
+                    own_here += usize::from(k < own);
+                    taking_part.push(racer);
+                }
+            }
         }
+        say(&format!(
+            "{agents} agents, {} engines and settings",
+            taking_part.len()
+        ));
+        let repeats = if is_main {
+            plan.repeats
+        } else {
+            plan.repeats.min(FEW)
+        };
+        let crowd = crowd(agents, "sf").settled(0)?;
+        rows.append(&mut race(&mut taking_part, own_here, &crowd, repeats)?);
     }
-    let ours = ours(agents, &others, threads)?;
-    let rows = race(ours, others, plan, say)?;
+    rows.sort_by_key(|row| Some(row.agents) != main);
     Ok(Findings {
         table: table(&rows),
-        sheet: picture(&rows),
+        sheet: picture::picture(&rows),
         rows: json!(rows),
         notes,
     })
 }
 
-/// Lets all engines take turns. Each is compared with the entry of `ours` that has the same radius and number of
-/// threads.
-fn race(
-    ours: Vec<Entry>,
-    others: Vec<Entry>,
-    plan: &Plan,
-    say: &dyn Fn(&str),
-) -> Result<Vec<Row>, LabError> {
-    let own = ours.len();
-    let (descriptions, mut contenders): (Vec<Description>, Vec<_>) =
-        ours.into_iter().chain(others).unzip();
-    say(&format!("{} engines and settings", contenders.len()));
-    let steps = plan.choose(STEPS, 2);
-    alternate(&mut contenders, 1, steps)?; // warm-up: allocates memory
-    let times = alternate(&mut contenders, plan.repeats, steps)?;
-    let row = |(description, ms): (&Description, &Vec<f64>)| {
-        let alike = |ours: &Description| {
-            (ours.radius, ours.threads) == (description.radius, description.threads)
-        };
-        let base = descriptions[..own].iter().position(alike).unwrap_or(0);
-        Row {
-            description: description.clone(),
-            ms_per_step: Range::of(ms),
-            ratio: Range::of_ratios(ms, &times[base]),
+/// The settings of the other engines. Those that are missing get a note.
+fn others(plan: &Plan, notes: &mut Vec<String>) -> Vec<Setting> {
+    let mut found = vec![(
+        "rustsim-crowd",
+        rustsim::settings(Machine::here().hardware_threads),
+    )];
+    let packages = python::PACKAGES.iter();
+    found.extend(packages.map(|package| (package.engine, package.settings(&plan.python))));
+    let mut others = Vec::new();
+    for (engine, settings) in found {
+        match settings {
+            Ok(mut settings) => others.append(&mut settings),
+            Err(missing) => notes.push(format!("{engine} is missing: {missing}")),
         }
-    };
-    Ok(descriptions.iter().zip(&times).map(row).collect())
+    }
+    others
 }
 
-/// This engine with the paper's radius on one thread and on all, and with the settings of the others.
-fn ours(agents: u32, others: &[Entry], all: usize) -> Result<Vec<Entry>, LabError> {
-    let mut wanted = vec![(WIDE, 1), (WIDE, all)];
-    wanted.extend(
-        others
-            .iter()
-            .map(|(other, _)| (other.radius, other.threads)),
-    );
-    wanted.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    wanted.dedup();
-    let entry = |(radius, threads)| {
-        let mut crowd = Crowd::streams(agents, "sf");
-        crowd.parameters.avoidance_radius = Some(radius);
-        let simulation = Simulation::new(crowd.scene()?).map_err(failed)?;
-        let description = Description {
-            engine: "sandbox".to_owned(),
-            model: "social force, elliptical, anticipating, with contact",
-            radius,
-            precision: match simulation.scene().precision {
-                Precision::Double => "f64",
-                Precision::Mixed => "mixed",
-            },
-            time_step: simulation.frame().clock.time_step(),
-            threads,
-        };
-        Ok((description, going_on(simulation, threads)?))
-    };
-    wanted.into_iter().map(entry).collect()
-}
-
-fn differences(agents: u32) -> String {
+fn conditions() -> String {
     format!(
-        "The same {agents} agents with the same radii at the same positions at 4 P/m², half of them walking to the right \
-         and half to the left, no walls; {STEPS} steps come before the first that count. A step is one step of the engine, \
-         whose time steps differ. The models and the precision differ too (mixed: f64, with sums over near pairs in f32). \
-         Here (§5.3.1) a force depends on the relative velocity, acts in the field of view only, and agents that touch \
-         push; rustsim-crowd has Helbing's circular exponential force without contact; JuPedSim adds Helbing's body force \
-         and friction. The radius cuts each force off; rustsim-crowd's follows from the range B of its force (8 B + 1 m), \
-         so that 5 m means B = 0.5 m. JuPedSim's is fixed, and it runs on one thread. A ratio is to this engine with the \
-         same radius on as many threads, turn by turn."
+        "All engines get the same agents with the same radii at the same positions at {DENSITY} P/m², half of them \
+         walking to the right and half to the left, no walls. Each uses its own time step Δt, so the cost is computing time per \
+         simulated second: time per step / Δt. A turn is {TURN} s of simulated time, fewer steps where these take long. The \
+         engines take turns, after first steps that do not count. A ratio is the cost relative to this engine: the same family \
+         of models with the same radius on as many threads, turn by turn. The mean speed is the mean distance of the agents \
+         from their first positions over the simulated time: all engines really move them. Larger crowds are left out where a \
+         step or placing the agents would take more than {PATIENCE} s."
+    )
+}
+
+fn differences() -> String {
+    format!(
+        "The models differ. Social forces: here (§5.3.1) a force depends on the relative velocity, acts in the field of view \
+         only, and agents that touch push; rustsim-crowd has Helbing's circular exponential force without contact; JuPedSim \
+         adds body force and friction. rustsim-crowd's radius follows from the range B of its force (8 B + 1 m), so that {WIDE} \
+         m means B = 0.5 m. JuPedSim's radii are fixed. Velocity obstacles: here (§5.3.2) an agent chooses among 250 random \
+         velocities every 0.1 s; RVO2 solves a linear program in every step, with no limit on the neighbors within the radius, \
+         or with the 10 nearest as in its examples, a time horizon of 2 s, and the time step of its examples, \
+         0.25 s. Its preferred velocities are set once. JuPedSim's speed models have no counterpart here. JuPedSim and RVO2 run \
+         on one thread. Precision differs, too (mixed: f64, with sums over near pairs in f32)."
     )
 }
 
 fn table(rows: &[Row]) -> Table {
     Table::of(rows)
+        .column("agents", |row| row.agents)
         .column("engine", |row| row.description.engine.as_str())
         .column("model", |row| row.description.model)
         .column("precision", |row| row.description.precision)
         .fixed("radius [m]", 2, |row| row.description.radius)
-        .column("Δt [s]", |row| row.description.time_step)
         .column("threads", |row| row.description.threads)
-        .range("ms/step", 3, |row| row.ms_per_step)
+        .column("Δt [s]", |row| row.description.time_step)
+        .fixed("ms/step", 3, |row| row.ms_per_step.median)
+        .range("ms/simulated s", 2, |row| row.ms_per_simulated_second)
         .range("ratio", 2, |row| row.ratio)
+        .fixed("mean speed [m/s]", 2, |row| row.mean_speed)
         .table()
-}
-
-fn picture(rows: &[Row]) -> Sheet {
-    let name = |row: &Row| {
-        format!(
-            "{}, {} thread(s)",
-            row.description.engine, row.description.threads
-        )
-    };
-    let mut names: Vec<String> = Vec::new();
-    for name in rows.iter().map(name) {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
-    let marks = names.iter().enumerate().flat_map(|(k, engine)| {
-        let own = rows.iter().filter(|row| name(row) == *engine);
-        let points = own.map(|row| (row.description.radius, row.ms_per_step));
-        dots(&points.collect::<Vec<_>>(), color(k), engine)
-    });
-    let times = rows.iter().map(|row| row.ms_per_step);
-    let times = times.flat_map(|range| [range.minimum, range.maximum]);
-    let x = Axis::linear("radius [m]", [0.0, 6.0]);
-    let y = Axis::log("time per step [ms]", around(times, 1.3));
-    sheet(
-        "Social forces at 4 P/m², time per step",
-        x,
-        y,
-        marks.collect(),
-    )
 }
