@@ -7,6 +7,7 @@ mod accuracy_walls;
 mod backlogs;
 mod bad_days;
 mod bench;
+mod bench_compare;
 mod calibrate;
 mod checkpoint;
 mod checkpoint_robustness;

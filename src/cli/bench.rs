@@ -19,7 +19,7 @@ Examples:
   sandbox bench threads --repeats 15 --json
   sandbox bench skips --quick
   sandbox bench domains --largest 10000000
-  sandbox bench compare --python jps/bin/python";
+  sandbox bench compare --python peers/bin/python";
 
 #[derive(Args)]
 pub struct BenchOptions {
@@ -46,10 +46,10 @@ pub struct BenchOptions {
     pub threads: Option<usize>,
     #[command(flatten)]
     pub print: PrintOptions,
-    /// scaling, domains: size of the largest crowd
+    /// scaling, domains, compare: size of the largest crowd
     #[arg(long, value_name = "AGENTS", default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(1_000..))]
     pub largest: u32,
-    /// compare: a Python interpreter with JuPedSim installed
+    /// compare: a Python interpreter with JuPedSim and RVO2 (pip install jupedsim pyrvo)
     #[arg(long, value_name = "PATH", default_value = "python3")]
     pub python: PathBuf,
 }

@@ -36,9 +36,9 @@ pub struct Plan {
     pub repeats: usize,
     /// Small crowds and few steps: a check that everything works; the times are meaningless.
     pub quick: bool,
-    /// The largest crowd of `scaling` and `domains`.
+    /// The largest crowd of `scaling`, `domains` and `compare`.
     pub largest: u32,
-    /// The Python interpreter in which `compare` looks for JuPedSim.
+    /// The Python interpreter in which `compare` looks for other engines.
     pub python: PathBuf,
 }
 
