@@ -144,7 +144,8 @@ fn a_crowd_that_would_take_too_long_is_left_out_with_the_reason() {
         ..quick()
     };
     let report = measure("compare", &plan);
-    let reason = "RVO2 (pyrvo 9.9), ORCA, all neighbors: not 400 agents, as a step would take 12 s";
+    let reason =
+        "RVO2 (pyrvo 9.9), ORCA, all neighbors: no crowd of 400, as a step would take 12 s";
     assert!(report.text().contains(reason), "{}", report.text());
     for row in rows(&report) {
         let fake = row["engine"].as_str().unwrap().contains("9.9");

@@ -36,13 +36,13 @@ pub fn picture(rows: &[Row]) -> Sheet {
         )];
         marks.extend(curves(rows));
         let mut panel = Panel::new(title, x.clone(), y.clone(), marks);
-        panel.legend = Some(Corner::Beside);
+        panel.legend = Some(Corner::LowerRight);
         panel
     };
     Sheet {
         title: "Cost of crowds at 2 P/m², one thread".to_owned(),
         columns: 1,
-        panel_size: [420.0, 240.0],
+        panel_size: [460.0, 260.0],
         panels: vec![
             panel("Social forces", &social),
             panel("Velocity obstacles and speed models", &other),

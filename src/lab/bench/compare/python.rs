@@ -1,7 +1,7 @@
 //! Engines in Python packages, each in a process of its own that takes steps on request.
 
 use std::io::{BufRead, BufReader, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use serde_json::json;
@@ -167,7 +167,7 @@ impl Walking {
     fn begin(
         package: Package,
         model: Model,
-        python: &PathBuf,
+        python: &Path,
         crowd: &Simulation,
     ) -> Result<Self, LabError> {
         let engine = package.engine;
