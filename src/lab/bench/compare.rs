@@ -9,7 +9,7 @@ mod setting;
 
 use serde_json::json;
 
-use self::race::{LONG_TURN, PATIENCE, Racer, Row, TURN, race};
+use self::race::{PATIENCE, Racer, Row, TURN, race};
 use self::setting::Setting;
 use super::crowd::Crowd;
 use super::report::Findings;
@@ -72,10 +72,9 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
             "{agents} agents, {} engines and settings",
             taking_part.len()
         ));
-        let repeats = if agents > MAIN {
-            plan.repeats.min(FEW)
-        } else {
-            plan.repeats
+        let repeats = match agents > MAIN {
+            true => plan.repeats.min(FEW),
+            false => plan.repeats,
         };
         let crowd = crowd(agents, "sf").settled(0)?;
         rows.append(&mut race(&mut taking_part, own_here, &crowd, repeats)?);
@@ -111,7 +110,7 @@ fn conditions() -> String {
     format!(
         "All engines get the same agents with the same radii at the same positions at {DENSITY} P/m², half of them \
          walking to the right and half to the left, no walls. Each uses its own time step Δt, so the cost is computing time per \
-         simulated second: time per step / Δt. A turn is {TURN} s of simulated time, {LONG_TURN} s with less than {MAIN} agents, and fewer steps where these take long. The \
+         simulated second: time per step / Δt. A turn is {TURN} s of simulated time, fewer steps where these take long. The \
          engines take turns, after first steps that do not count. A ratio is the cost relative to this engine: the same family \
          of models with the same radius on as many threads, turn by turn. The mean speed is the mean distance of the agents \
          from their first positions over the simulated time: all engines really move them. Larger crowds are left out where a \

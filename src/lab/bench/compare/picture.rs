@@ -1,5 +1,6 @@
 //! The picture: cost over the number of agents.
 
+use super::DENSITY;
 use super::race::Row;
 use super::setting::Family;
 use crate::lab::bench::pictures::{around, color, curve};
@@ -40,7 +41,7 @@ pub fn picture(rows: &[Row]) -> Sheet {
         panel
     };
     Sheet {
-        title: "Cost of crowds at 2 P/m², one thread".to_owned(),
+        title: format!("Cost of crowds at {DENSITY} P/m², one thread"),
         columns: 1,
         panel_size: [460.0, 260.0],
         panels: vec![

@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::MAIN;
 use super::setting::{Description, Setting, Walk};
 use crate::analysis::statistics::Range;
 use crate::engine::simulation::Simulation;
@@ -13,8 +12,6 @@ use crate::lab::error::LabError;
 
 /// The simulated time of a turn, seconds: whole steps of every engine, and whole coarse frames of this one.
 pub const TURN: f64 = 0.5;
-/// The same of a turn of crowds smaller than `MAIN`, which take little time.
-pub const LONG_TURN: f64 = 4.0;
 /// Slow engines take fewer steps per turn, so that a turn takes about this time, seconds.
 const LONGEST: f64 = 1.0;
 /// A larger crowd is left out if a step or the start would take longer, seconds.
@@ -94,9 +91,7 @@ impl Runner {
         let start = begin.elapsed().as_secs_f64();
         let stride = setting.stride;
         let first = walk(stride)?;
-        let is_small = crowd.frame().agents.len() < MAIN as usize;
-        let simulated = if is_small { LONG_TURN } else { TURN };
-        let most = simulated / (stride as f64 * setting.description.time_step);
+        let most = TURN / (stride as f64 * setting.description.time_step);
         let strides = (LONGEST / first.seconds).min(most.round()).max(1.0);
         Ok(Self {
             walk,
