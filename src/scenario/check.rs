@@ -8,21 +8,19 @@ use serde_json::Value;
 use super::crowd::{Crowd, MOST_NUMBERED};
 use super::crowding;
 use super::error::{Problem, Under, in_plain_words};
-use super::file::{self, DEFAULT_DURATION, DEFAULT_PROFILE, File, IntegratorChoice, TimeStep};
+use super::file::{self, DEFAULT_DURATION, DEFAULT_PROFILE, File};
 use super::need::Need;
 use super::plan::Surroundings;
 use super::profiles::{ProfileChoice, ProfileName};
 use super::range::{self, region};
 use super::{
-    PlanFile, Scenario, from, journeys, measurements, periodic, plan, preset, profiles, view, ways,
+    PlanFile, Scenario, from, journeys, measurements, numerics, periodic, plan, preset, profiles,
+    view, ways,
 };
-use crate::analysis::stability;
-use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::engine::geometry::Polygon;
-use crate::engine::journeys::Place;
 use crate::engine::period::Period;
 use crate::engine::profile::Override;
-use crate::engine::scene::{Integrator, Push, Scene};
+use crate::engine::scene::{Push, Scene};
 use crate::scenario::trajectories::Tracks;
 
 /// A document whose keys and values have been checked one by one.
@@ -51,7 +49,7 @@ impl Contents {
             Problem::new(path, in_plain_words(&error.into_inner().to_string()))
         })?;
         plans.extend(from::fill(&mut document, &mut keys, folder)?);
-        let need = Need::of(&keys, &clock(&keys, first_step(&keys)), duration(&keys))?;
+        let need = Need::of(&keys, &numerics::first_clock(&keys), duration(&keys))?;
         Ok(Self {
             document,
             plans,
@@ -91,12 +89,8 @@ impl Contents {
         scene.pushes = pushes(&keys.events)?;
         periodic::check(keys, &scene)?;
         scene.ways = ways::ways(keys, &scene)?;
-        if let IntegratorChoice::Auto(_) = keys.integrator {
-            scene.integrator = suited_integrator(&scene);
-        }
-        if keys.time_step_secs == Some(TimeStep::Auto(file::Auto::Auto)) {
-            scene.clock = automatic_clock(keys, &scene)?;
-        }
+        scene.integrator = keys.integrator.for_scene(&scene);
+        scene.clock = numerics::clock_for(keys, &scene)?;
         let placed = scene.agents.len() as u64;
         let fewer = self.need.initial.saturating_sub(placed); // crowds with a density
         let entering = self.need.entering - fewer;
@@ -147,14 +141,6 @@ fn seed(keys: &File) -> u64 {
     keys.seed.unwrap_or(Scene::default().seed)
 }
 
-/// The time step; the paper's if it is missing or `auto`.
-fn first_step(keys: &File) -> f64 {
-    match keys.time_step_secs {
-        Some(TimeStep::Given(step)) => step,
-        Some(TimeStep::Auto(_)) | None => PAPER_TIME_STEP,
-    }
-}
-
 /// The scene without agents, sources and pushes.
 fn empty_scene(keys: &File, solids: Vec<Polygon>) -> Scene {
     let paper = Scene::default();
@@ -162,11 +148,7 @@ fn empty_scene(keys: &File, solids: Vec<Polygon>) -> Scene {
     Scene {
         seed: keys.population_seed.unwrap_or(seed),
         behavior_seed: Some(keys.behavior_seed.unwrap_or(seed)),
-        clock: clock(keys, first_step(keys)),
-        integrator: match keys.integrator {
-            IntegratorChoice::Given(integrator) => integrator,
-            IntegratorChoice::Auto(_) => Integrator::default(),
-        },
+        clock: numerics::first_clock(keys),
         wall_method: keys.wall_method,
         precision: keys.precision,
         neighbor_lists: keys.neighbor_lists,
@@ -183,45 +165,6 @@ fn max_speed_ratio(keys: &File, paper: &Scene) -> Option<f64> {
     let preferred = keys.preferred_speed.filter(|&speed| speed > 0.0);
     let ratio = paper.max_speed / preferred.unwrap_or(paper.preferred_speed);
     keys.max_speed.is_none().then_some(ratio)
-}
-
-fn clock(keys: &File, time_step: f64) -> Clock {
-    let nearest = || Clock::nearest_coarse_every(time_step);
-    Clock::new(time_step, keys.coarse_every.unwrap_or_else(nearest))
-}
-
-/// Velocity Verlet where agents stay: it is closer to the limit of fine steps in crowds that press or stand, but no
-/// better with avoidance, worse with walking laws, and lowers the flow through doors (docs/accuracy.md).
-fn suited_integrator(scene: &Scene) -> Integrator {
-    let needs = scene.needs();
-    let exits = scene.journeys.places.iter().any(Place::is_exit);
-    if needs.avoidance.is_some() || needs.walking || needs.removal || exits {
-        Integrator::SemiImplicit
-    } else {
-        Integrator::VelocityVerlet
-    }
-}
-
-/// The clock with the step that `auto` finds for `scene`, which is otherwise complete.
-fn automatic_clock(keys: &File, scene: &Scene) -> Result<Clock, Problem> {
-    let step = stability::time_step(scene).ok_or_else(|| {
-        let reason = "`auto` works only with the integrators `semi-implicit` and `velocity-verlet`; \
-                      give a number";
-        Problem::new("time_step_secs", reason)
-    })?;
-    let longest = keys.longest_step_secs.unwrap_or(PAPER_COARSE_STEP);
-    let step = step.min(longest);
-    if step < SHORTEST_TIME_STEP {
-        let reason = format!(
-            "`auto` finds no step: this crowd is so stiff that it needs {step:e} s, below the shortest step of \
-             {SHORTEST_TIME_STEP:e} s; lower gas_constant, viscosity or the stiffnesses, or raise the masses"
-        );
-        return Err(Problem::new("time_step_secs", reason));
-    }
-    Ok(match keys.coarse_every {
-        Some(frames) => Clock::new(step, frames),
-        None => Clock::up_to(step),
-    })
 }
 
 fn pushes(events: &[file::Event]) -> Result<Vec<Push>, Problem> {

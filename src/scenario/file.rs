@@ -4,7 +4,7 @@
 //! [`measurements`](super::measurements).
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::crowds::Crowd;
@@ -13,18 +13,19 @@ use super::entrances::Entrance;
 use super::from::FromData;
 use super::goals::Aim;
 use super::measurements::Measurement;
+use super::numerics::{IntegratorChoice, TimeStep};
 use super::periodic::Periodic;
 use super::places::{Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
 use super::preset::Preset;
 use super::profiles::ProfileChoice;
-use super::schema::{names, word};
+use super::schema::word;
 use super::shapes::{Corners, Label, Obstacle, Point, Ring};
 use super::ways::{PASSABLE, WayFinding};
 use crate::engine::boundary::WallMethod;
 use crate::engine::clock::{PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::engine::neighbors::ListPolicy;
 use crate::engine::pairs::Precision;
-use crate::engine::scene::{Integrator, Scene};
+use crate::engine::scene::Scene;
 use crate::scenario::catalog::{HIGHEST_DENSITY, Parameters, STRONGEST};
 
 /// Default duration, seconds.
@@ -78,7 +79,7 @@ pub(super) struct File {
     /// accurate where agents press or stand, at the same cost; `midpoint` costs twice as much and gains nothing over
     /// it; `forward-euler`, which the paper names, is off by 18 % in flow. `auto` is `velocity-verlet` in scenes where
     /// agents stay (none avoids others, has a walking law or leaves) and `semi-implicit` in all others.
-    #[schemars(schema_with = "integrators")]
+    #[schemars(schema_with = "word::<IntegratorChoice>")]
     pub integrator: IntegratorChoice,
     /// How walls enter SPH: `representative` (one point per wall, as in the paper), `exact` (integrals over what each
     /// wall hides) or `union` (the same, overlaps counted once). Exact walls raise the flow through a door by 6 %.
@@ -161,40 +162,6 @@ pub(super) struct File {
     pub labels: Vec<Label>,
     /// Ids of the agents whose forces a recording shows. Default: a dozen, spread over all agents.
     pub debug_agents: Option<Vec<u32>>,
-}
-
-/// Δt_fine.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "must be a number of seconds, or \"auto\"")]
-pub(super) enum TimeStep {
-    Given(#[schemars(range(min = SHORTEST_TIME_STEP, max = 1))] f64),
-    Auto(Auto),
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-#[schemars(inline)]
-pub(super) enum Auto {
-    Auto,
-}
-
-/// The method of time integration.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub(super) enum IntegratorChoice {
-    Given(Integrator),
-    Auto(Auto),
-}
-
-impl Default for IntegratorChoice {
-    fn default() -> Self {
-        Self::Given(Integrator::default())
-    }
-}
-
-fn integrators(_: &mut SchemaGenerator) -> Schema {
-    let words = names::<Integrator>().iter().chain(names::<Auto>());
-    json_schema!({"type": "string", "enum": words.collect::<Vec<_>>()})
 }
 
 /// A single agent.

@@ -40,6 +40,7 @@ mod from;
 mod goals;
 mod journeys;
 mod need;
+mod numerics;
 mod periodic;
 mod places;
 mod plan;

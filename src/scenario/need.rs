@@ -3,8 +3,9 @@
 use super::crowds::Crowd;
 use super::entrances::Entrance;
 use super::error::{Problem, ScenarioError};
-use super::file::{File, Grid, TimeStep};
+use super::file::{File, Grid};
 use super::from::FromData;
+use super::numerics::TimeStep;
 use super::plan;
 use super::wall_lists;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP};

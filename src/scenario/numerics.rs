@@ -1,0 +1,98 @@
+//! The step and the method of time integration: as the file gives them, or by rule where it says `auto`.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::error::Problem;
+use super::file::File;
+use crate::analysis::stability;
+use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
+use crate::engine::journeys::Place;
+use crate::engine::scene::{Integrator, Scene};
+
+/// Δt_fine.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "must be a number of seconds, or \"auto\"")]
+pub(super) enum TimeStep {
+    Given(#[schemars(range(min = SHORTEST_TIME_STEP, max = 1))] f64),
+    Auto(Auto),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+#[schemars(inline)]
+pub(super) enum Auto {
+    Auto,
+}
+
+/// The method of time integration, or `auto`.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum IntegratorChoice {
+    #[default]
+    SemiImplicit,
+    ForwardEuler,
+    VelocityVerlet,
+    Midpoint,
+    Auto,
+}
+
+impl IntegratorChoice {
+    /// The integrator for `scene`, which is otherwise complete.
+    pub(super) fn for_scene(self, scene: &Scene) -> Integrator {
+        match self {
+            Self::SemiImplicit => Integrator::SemiImplicit,
+            Self::ForwardEuler => Integrator::ForwardEuler,
+            Self::VelocityVerlet => Integrator::VelocityVerlet,
+            Self::Midpoint => Integrator::Midpoint,
+            Self::Auto => suited_integrator(scene),
+        }
+    }
+}
+
+/// Velocity Verlet where agents stay: it is closer to the limit of fine steps in crowds that press or stand, but no
+/// better with avoidance, worse with walking laws, and lowers the flow through doors (docs/accuracy.md).
+fn suited_integrator(scene: &Scene) -> Integrator {
+    let needs = scene.needs();
+    let exits = scene.journeys.places.iter().any(Place::is_exit);
+    if needs.avoidance.is_some() || needs.walking || needs.removal || exits {
+        Integrator::SemiImplicit
+    } else {
+        Integrator::VelocityVerlet
+    }
+}
+
+/// The clock of a file, with the paper's step if that is missing or `auto`.
+pub(super) fn first_clock(keys: &File) -> Clock {
+    let step = match keys.time_step_secs {
+        Some(TimeStep::Given(step)) => step,
+        Some(TimeStep::Auto(_)) | None => PAPER_TIME_STEP,
+    };
+    let nearest = || Clock::nearest_coarse_every(step);
+    Clock::new(step, keys.coarse_every.unwrap_or_else(nearest))
+}
+
+/// The clock of a file for `scene`, which is otherwise complete; an error if `auto` finds no step.
+pub(super) fn clock_for(keys: &File, scene: &Scene) -> Result<Clock, Problem> {
+    let Some(TimeStep::Auto(_)) = keys.time_step_secs else {
+        return Ok(first_clock(keys));
+    };
+    let step = stability::time_step(scene).ok_or_else(|| {
+        let reason = "`auto` works only with the integrators `semi-implicit` and `velocity-verlet`; \
+                      give a number";
+        Problem::new("time_step_secs", reason)
+    })?;
+    let longest = keys.longest_step_secs.unwrap_or(PAPER_COARSE_STEP);
+    let step = step.min(longest);
+    if step < SHORTEST_TIME_STEP {
+        let reason = format!(
+            "`auto` finds no step: this crowd is so stiff that it needs {step:e} s, below the shortest step of \
+             {SHORTEST_TIME_STEP:e} s; lower gas_constant, viscosity or the stiffnesses, or raise the masses"
+        );
+        return Err(Problem::new("time_step_secs", reason));
+    }
+    Ok(match keys.coarse_every {
+        Some(frames) => Clock::new(step, frames),
+        None => Clock::up_to(step),
+    })
+}
