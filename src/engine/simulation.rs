@@ -223,8 +223,10 @@ impl Simulation {
     /// # Errors
     /// As [`evaluate`](Self::evaluate) and [`integrate`](Self::integrate).
     pub fn step(&mut self) -> Result<(), Fault> {
-        self.evaluate()?;
-        self.integrate()
+        self.on_pool(|simulation| {
+            simulation.evaluate()?;
+            simulation.integrate()
+        })
     }
 
     /// Steps 1–4 of §4.1: computes the current frame and returns it, frozen and complete. Moves no agent. A frame
@@ -234,18 +236,23 @@ impl Simulation {
     /// An agent enters inside an obstacle, and no free point is near.
     pub fn evaluate(&mut self) -> Result<Frame<'_>, Fault> {
         if !self.derived.evaluated {
-            self.follow_schedule()?; // entries and pushes, coarse
-            self.follow_journeys(); // coarse
-            self.update_neighbors(); // 1
-            self.pack();
-            self.update_density_and_pressure(self.crowd.clock.time_step()); // 1B
-            self.update_preferred_velocity(); // 2
-            self.update_walking_laws(); // 3, coarse
-            self.update_rvo(); // 3, coarse
-            self.update_acceleration(); // 3, 3B, 4
-            self.derived.evaluated = true;
+            self.on_pool(Self::compute)?;
         }
         Ok(self.frame())
+    }
+
+    fn compute(&mut self) -> Result<(), Fault> {
+        self.follow_schedule()?; // entries and pushes, coarse
+        self.follow_journeys(); // coarse
+        self.update_neighbors(); // 1
+        self.pack();
+        self.update_density_and_pressure(self.crowd.clock.time_step()); // 1B
+        self.update_preferred_velocity(); // 2
+        self.update_walking_laws(); // 3, coarse
+        self.update_rvo(); // 3, coarse
+        self.update_acceleration(); // 3, 3B, 4
+        self.derived.evaluated = true;
+        Ok(())
     }
 
     fn density_is_due(&self) -> bool {

@@ -19,6 +19,16 @@ use crate::engine::pairs::{Level, dispatch, each};
 use crate::engine::profile::{Blend, Override};
 
 impl Simulation {
+    /// Runs `work` on a thread of the thread pool, unless the crowd is too small for a second thread. From any other
+    /// thread, every parallel loop would wait until the pool has woken up.
+    pub(super) fn on_pool<T: Send>(&mut self, work: impl FnOnce(&mut Self) -> T + Send) -> T {
+        let alone = self.crowd.agents.len() <= BLOCK * self.fixed.task();
+        if alone || rayon::current_thread_index().is_some() {
+            return work(self);
+        }
+        rayon::scope(|_| work(self))
+    }
+
     /// Step 1.
     pub(super) fn update_neighbors(&mut self) {
         let stale = match self.fixed.scene.neighbor_lists {
@@ -214,11 +224,6 @@ impl Simulation {
     /// Steps 3, 3B and 4.
     pub(super) fn update_acceleration(&mut self) {
         let (fixed, agents, derived) = (&self.fixed, &self.crowd.agents, &mut self.derived);
-        let task = if fixed.needs.avoidance.is_some() {
-            1 // searching the avoidance radius is enough work for a task
-        } else {
-            TASK
-        };
         let acceleration = &mut self.buffers.acceleration;
         derived.fields.acceleration.clear(); // stale values must not be read
         derived.finite = self.stages.time(Stage::Acceleration, || {
@@ -227,7 +232,7 @@ impl Simulation {
             let frame = derived.frame(fixed, &self.crowd);
             acceleration
                 .par_chunks_mut(BLOCK)
-                .with_min_len(task)
+                .with_min_len(fixed.task())
                 .enumerate()
                 .map(|(b, acceleration)| {
                     fixed.accelerate(&frame, b, acceleration);
@@ -240,6 +245,14 @@ impl Simulation {
 }
 
 impl Fixed {
+    /// The fewest blocks per parallel task when forces are summed.
+    fn task(&self) -> usize {
+        match self.needs.avoidance {
+            Some(_) => 1, // searching the avoidance radius is enough work for a task
+            None => TASK,
+        }
+    }
+
     /// How agent `i` wants to walk by RVO.
     fn wish(&self, frame: &Frame, i: usize) -> Wish {
         let free = frame.fields.preferred_velocity[i];

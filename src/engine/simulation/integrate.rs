@@ -15,6 +15,10 @@ impl Simulation {
     /// A position, velocity, density or acceleration is not finite; the fault tells which, of which agent and in
     /// which frame. No agent has moved then.
     pub fn integrate(&mut self) -> Result<(), Fault> {
+        self.on_pool(Self::advance)
+    }
+
+    fn advance(&mut self) -> Result<(), Fault> {
         self.evaluate()?;
         self.check()?;
         let dt = self.crowd.clock.time_step();

@@ -1,6 +1,7 @@
 //! The time of a frame by stage, the tasks of Fig. 11: for each shipped scenario and for dense crowds.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::time::Instant;
 
 use serde::Serialize;
@@ -18,7 +19,7 @@ use crate::lab::error::LabError;
 use crate::output::plot::{Axis, BLACK, Mark, Sheet};
 use crate::output::table::Table;
 use crate::scenario::measurements::{Measurement, Metrics};
-use crate::scenario::{Scenario, Setting};
+use crate::scenario::{Scenario, Setting, built_in, floor_plan};
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "stages",
@@ -66,8 +67,7 @@ pub fn begin(stretch: &Stretch, plan: &Plan, profile: Option<&str>) -> Result<St
     let setting = profile.map(|profile| format!("profile={profile}").parse::<Setting>());
     let setting = setting.transpose();
     let setting = setting.map_err(|error| LabError::Data(error.to_string()))?;
-    let scenario = Scenario::shipped(name, setting.as_slice());
-    let scenario = scenario.map_err(|error| LabError::of(name, error))?;
+    let scenario = scenario(name, setting)?;
     let mut simulation = Simulation::new(scenario.scene).map_err(failed)?;
     let (from, lasting) = plan.choose((from, lasting), (0.1, 0.2));
     let clock = *simulation.frame().clock;
@@ -79,6 +79,20 @@ pub fn begin(stretch: &Stretch, plan: &Plan, profile: Option<&str>) -> Result<St
         measurements: scenario.measurements,
         frames: clock.frame_at(lasting),
     })
+}
+
+/// A scenario of the folder `scenarios/`, with the floor plan of the same name if there is one, and a setting.
+fn scenario(name: &str, setting: Option<Setting>) -> Result<Scenario, LabError> {
+    let [file, plan] = ["json", "geojson"].map(|format| format!("{name}.{format}"));
+    let text = built_in(Path::new(&file));
+    let text = text.ok_or_else(|| LabError::Data(format!("{file} is not built in")))?;
+    let mut settings = Vec::from_iter(setting);
+    if let Some(text) = built_in(Path::new(&plan)) {
+        let floor = floor_plan::parse(text);
+        let floor = floor.map_err(|error| LabError::Data(format!("{plan}: {error}")))?;
+        settings.extend(Setting::floor_plan(&floor, &plan));
+    }
+    Scenario::parse(text, &file, &settings).map_err(|error| LabError::of(name, error))
 }
 
 /// The results for one crowd.
@@ -169,14 +183,17 @@ fn measure(started: Started, plan: &Plan) -> Result<Row, LabError> {
 fn replay(started: &Started) -> Result<(StageTimes, f64), LabError> {
     let mut simulation = warmed(&started.simulation)?;
     let mut metrics = Metrics::new(&started.measurements, &mut simulation);
-    let mut seconds = 0.0;
-    for _ in 0..started.frames {
-        simulation.evaluate().map_err(failed)?;
-        let start = Instant::now();
-        metrics.observe(&simulation);
-        seconds += start.elapsed().as_secs_f64();
-        simulation.integrate().map_err(failed)?;
-    }
+    let seconds = rayon::scope(|_| {
+        let mut seconds = 0.0;
+        for _ in 0..started.frames {
+            simulation.evaluate().map_err(failed)?;
+            let start = Instant::now();
+            metrics.observe(&simulation);
+            seconds += start.elapsed().as_secs_f64();
+            simulation.integrate().map_err(failed)?;
+        }
+        Ok::<_, LabError>(seconds)
+    })?;
     let measuring = 1e3 * seconds / started.frames as f64;
     Ok((simulation.stages().clone(), measuring))
 }

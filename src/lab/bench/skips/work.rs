@@ -19,7 +19,7 @@ use crate::lab::error::LabError;
 use crate::scenario::measurements::{Integrity, Measure, Watched};
 
 /// Does the work for an evaluated frame, and returns the seconds that it took.
-pub type Work = Box<dyn FnMut(&Simulation) -> f64>;
+pub type Work = Box<dyn FnMut(&Simulation) -> f64 + Send>;
 
 /// A crowd that moves on, optionally with a skip undone.
 pub struct Course {
@@ -48,15 +48,17 @@ impl Course {
 
     /// Simulates `frames` frames.
     pub fn advance(&mut self, frames: u64) -> Result<(), LabError> {
-        for _ in 0..frames {
-            self.simulation.evaluate().map_err(failed)?;
-            if let Some(Undone::Work(work, _)) = &mut self.undone {
-                self.seconds += work(&self.simulation);
-            }
-            self.simulation.integrate().map_err(failed)?;
-        }
         self.frames += frames;
-        Ok(())
+        rayon::scope(|_| {
+            for _ in 0..frames {
+                self.simulation.evaluate().map_err(failed)?;
+                if let Some(Undone::Work(work, _)) = &mut self.undone {
+                    self.seconds += work(&self.simulation);
+                }
+                self.simulation.integrate().map_err(failed)?;
+            }
+            Ok(())
+        })
     }
 
     /// The time of the simulation itself.
