@@ -79,8 +79,23 @@ pub fn bounds(points: impl IntoIterator<Item = Vector>) -> Option<[Vector; 2]> {
     corners.reduce(|[low, high], [p, _]| [low.inf(&p), high.sup(&p)])
 }
 
-/// Sums that the checks below compute side by side.
+/// Sums and maxima that the functions below compute side by side: none waits for another.
 const SUMS: usize = 8;
+
+/// The greatest of some numbers, at least 0. NaNs are ignored.
+#[inline(always)]
+pub fn greatest<T>(items: &[T], number: impl Fn(&T) -> f64) -> f64 {
+    let greater = |a: f64, b: f64| if b > a { b } else { a };
+    let (whole, rest) = items.as_chunks::<SUMS>();
+    let mut most = [0.0; SUMS];
+    for some in whole {
+        for (most, item) in most.iter_mut().zip(some) {
+            *most = greater(*most, number(item));
+        }
+    }
+    let last = rest.iter().map(number).fold(0.0, greater);
+    most.into_iter().fold(last, greater)
+}
 
 /// Are both coordinates finite?
 pub fn is_finite(v: Vector) -> bool {

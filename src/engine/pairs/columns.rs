@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::real::{LANES, Real};
+use super::{Level, dispatch};
 use crate::engine::agents::Agents;
 use crate::engine::math::{Vector, direction};
 use crate::engine::neighbors::{BLOCK, TASK};
@@ -129,12 +130,12 @@ impl<R: Real> Bodies<R> {
         );
         blocks.into_par_iter().with_min_len(TASK).for_each(
             |(x, y, velocity_x, velocity_y, positions, velocities)| {
-                for (k, (r, v)) in positions.iter().zip(velocities).enumerate() {
-                    x[k] = R::coordinate(r.x, per_meter);
-                    y[k] = R::coordinate(r.y, per_meter);
-                    velocity_x[k] = R::of(v.x);
-                    velocity_y[k] = R::of(v.y);
-                }
+                dispatch!(Level::new(), _simd => {
+                    R::coordinates(positions, per_meter, [x, y]);
+                    for ((x, y), v) in velocity_x.iter_mut().zip(velocity_y).zip(velocities) {
+                        (*x, *y) = (R::of(v.x), R::of(v.y));
+                    }
+                });
             },
         );
     }

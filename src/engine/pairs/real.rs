@@ -4,6 +4,8 @@ use std::fmt::Debug;
 
 use fearless_simd::{Simd, f32x8, f64x8, i32x8, prelude::*};
 
+use crate::engine::math::{Vector, greatest};
+
 /// The number of agents whose sums are computed together: one cluster, on every processor.
 pub const LANES: usize = crate::engine::neighbors::CLUSTER;
 
@@ -28,6 +30,15 @@ pub trait Real: SimdFloatElement + Into<f64> + Copy + Default + Send + Sync + 's
 
     /// `meters` in coordinate units, `per_meter` of which make a meter.
     fn coordinate(meters: f64, per_meter: f64) -> Self::Coordinate;
+
+    /// The [`coordinate`](Self::coordinate)s of some points along x and along y.
+    #[inline(always)]
+    fn coordinates(points: &[Vector], per_meter: f64, [x, y]: [&mut [Self::Coordinate]; 2]) {
+        for ((x, y), point) in x.iter_mut().zip(y).zip(points) {
+            *x = Self::coordinate(point.x, per_meter);
+            *y = Self::coordinate(point.y, per_meter);
+        }
+    }
 
     /// Loads the first [`LANES`] coordinates of `places`.
     fn places<S: Simd>(simd: S, places: &[Self::Coordinate]) -> Self::Places<S>;
@@ -99,6 +110,24 @@ impl Real for f32 {
 
     fn coordinate(meters: f64, per_meter: f64) -> i32 {
         (meters * per_meter) as i64 as i32
+    }
+
+    /// Near the origin, adding 1.5 · 2⁵² moves the whole part to the low bits: vectors have no conversion of doubles to
+    /// 64-bit integers.
+    #[inline(always)]
+    fn coordinates(points: &[Vector], per_meter: f64, [x, y]: [&mut [i32]; 2]) {
+        const SHIFT: f64 = 1.5 * (1_u64 << 52) as f64;
+        const NEAR: f64 = (1_u64 << 51) as f64;
+        let whole = |meters: f64| ((meters * per_meter).trunc() + SHIFT).to_bits() as i32;
+        let farthest = greatest(points, |p| p.x.abs().max(p.y.abs()));
+        let is_near = farthest * per_meter < NEAR;
+        let coordinate = |meters| match is_near {
+            true => whole(meters),
+            false => Self::coordinate(meters, per_meter),
+        };
+        for ((x, y), point) in x.iter_mut().zip(y).zip(points) {
+            (*x, *y) = (coordinate(point.x), coordinate(point.y));
+        }
     }
 
     #[inline(always)]

@@ -4,8 +4,9 @@ use rayon::prelude::*;
 
 use super::{Arrival, Crowd, Fault, Simulation, Stage};
 use crate::engine::geometry::Walls;
-use crate::engine::math::{Vector, clamp_length, is_finite};
+use crate::engine::math::{Vector, clamp_length, greatest, is_finite};
 use crate::engine::neighbors::{BLOCK, TASK};
+use crate::engine::pairs::{Level, dispatch};
 use crate::engine::scene::{Integrator, Scene};
 
 impl Simulation {
@@ -142,25 +143,17 @@ impl Simulation {
                 let from = b * BLOCK;
                 let walled = neighbors.agents_near_walls(from..from + positions.len());
                 let mut walled = walled.peekable();
+                let states = (&mut *positions, &mut *velocities);
+                let motion = |k: usize, v: Vector, a: Vector| motion_of(from + k, v, a);
                 let mut motions = [Motion::default(); BLOCK];
-                let motions = &mut motions[..positions.len()];
-                let states = velocities.iter().zip(accelerations).enumerate();
-                for (motion, (k, (&v, &a))) in motions.iter_mut().zip(states) {
-                    *motion = motion_of(from + k, v, a);
-                }
+                let motions = &mut motions[..accelerations.len()];
                 let mut moves = Moves::default();
-                let is_free = max_speeds.is_empty() && walled.peek().is_none();
-                if is_free
-                    && motions
-                        .iter()
-                        .all(|motion| motion.is_within(scene.max_speed))
-                {
-                    let states = positions.iter_mut().zip(velocities);
-                    for ((position, velocity), motion) in states.zip(motions) {
-                        *velocity = motion.velocity;
-                        *position += motion.way * dt;
-                    }
-                } else {
+                let may_be_free = max_speeds.is_empty() && walled.peek().is_none();
+                let is_free = dispatch!(Level::new(), _simd => {
+                    find_motions(motion, states.1, accelerations, motions);
+                    may_be_free && move_freely(scene.max_speed, dt, motions, states)
+                });
+                if !is_free {
                     let states = positions.iter_mut().zip(velocities).enumerate();
                     for ((k, (position, velocity)), motion) in states.zip(motions) {
                         let near = walled.next_if(|&(i, _)| i == from + k);
@@ -174,9 +167,7 @@ impl Simulation {
                         moves.make(&limits, dt, *motion, position, velocity);
                     }
                 }
-                let ways = positions.iter().zip(sorted_at);
-                let ways = ways.map(|(position, start)| (position - start).norm_squared());
-                moves.farthest = ways.fold(0.0, |most, way| if way > most { way } else { most });
+                moves.farthest = dispatch!(Level::new(), _simd => farthest(positions, sorted_at));
                 moves
             });
             moved.reduce(Moves::default, Moves::and)
@@ -260,6 +251,51 @@ impl Motion {
         let is_within = |v: Vector| v.norm_squared() <= limit * limit;
         is_within(self.way) & is_within(self.velocity)
     }
+}
+
+#[inline(always)]
+fn find_motions(
+    motion_of: impl Fn(usize, Vector, Vector) -> Motion,
+    velocities: &[Vector],
+    accelerations: &[Vector],
+    motions: &mut [Motion],
+) {
+    let states = velocities.iter().zip(accelerations).enumerate();
+    for (motion, (k, (&v, &a))) in motions.iter_mut().zip(states) {
+        *motion = motion_of(k, v, a);
+    }
+}
+
+/// Moves agents by `dt` seconds if none is faster than `limit`, m/s; otherwise returns `false` and moves none.
+#[inline(always)]
+fn move_freely(
+    limit: f64,
+    dt: f64,
+    motions: &[Motion],
+    (positions, velocities): (&mut [Vector], &mut [Vector]),
+) -> bool {
+    // Counting needs no branch.
+    let too_fast = motions.iter().map(|motion| !motion.is_within(limit));
+    if too_fast.map(u64::from).sum::<u64>() > 0 {
+        return false;
+    }
+    let states = positions.iter_mut().zip(velocities);
+    for ((position, velocity), motion) in states.zip(motions) {
+        *velocity = motion.velocity;
+        *position += motion.way * dt;
+    }
+    true
+}
+
+/// The largest squared distance between two positions of an agent of a block, m².
+#[inline(always)]
+fn farthest(positions: &[Vector], before: &[Vector]) -> f64 {
+    let mut ways = [0.0; BLOCK];
+    let pairs = positions.iter().zip(before);
+    for (way, (position, start)) in ways.iter_mut().zip(pairs) {
+        *way = (position - start).norm_squared();
+    }
+    greatest(&ways, |&way| way)
 }
 
 /// What limits a move.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::engine::frame::Frame;
-use crate::engine::math::Vector;
+use crate::engine::math::{Vector, greatest};
 
 /// A moving disc, relative to agent i.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,24 +49,6 @@ impl<'a> Around<'a> {
     pub fn new(frame: &'a Frame<'a>, i: usize, radius: f64) -> Self {
         Self { frame, i, radius }
     }
-}
-
-/// Independent maxima in a pass over agents, for vectors.
-const SIDE_BY_SIDE: usize = 8;
-
-/// The greatest of some numbers, at least 0. The numbers are no NaNs.
-#[inline(always)]
-fn greatest<T>(items: &[T], number: impl Fn(&T) -> f64) -> f64 {
-    let greater = |a: f64, b: f64| if b > a { b } else { a };
-    let (whole, rest) = items.as_chunks::<SIDE_BY_SIDE>();
-    let mut most = [0.0; SIDE_BY_SIDE];
-    for some in whole {
-        for (most, item) in most.iter_mut().zip(some) {
-            *most = greater(*most, number(item));
-        }
-    }
-    let last = rest.iter().map(number).fold(0.0, greater);
-    most.into_iter().fold(last, greater)
 }
 
 impl Surroundings for Around<'_> {
