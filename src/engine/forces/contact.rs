@@ -82,6 +82,9 @@ pub fn from_walls(frame: &Frame, i: usize, walls: &[u32], contact: &Contact) -> 
     let mut force = Vector::zeros();
     for &k in walls {
         let wall = frame.walls.wall(k);
+        if wall.is_beyond(r_i, radius) {
+            continue;
+        }
         let away = r_i - wall.nearest_point(r_i).point;
         let distance = away.norm();
         if distance < radius {

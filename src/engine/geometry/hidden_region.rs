@@ -29,6 +29,8 @@ pub struct HiddenRegion {
     pub to: f64,
     /// Support radius h of the kernel, meters.
     pub support_radius: f64,
+    /// See [`angles`](Self::angles): an arctangent costs as much as all the rest.
+    angles: [f64; 2],
 }
 
 impl HiddenRegion {
@@ -45,6 +47,9 @@ impl HiddenRegion {
         let half_chord = (support_radius * support_radius - distance * distance).sqrt();
         let from = (wall.end - r_i).dot(&along).max(-half_chord);
         let to = (wall.start - r_i).dot(&along).min(half_chord);
+        if from >= to {
+            return None;
+        }
         let region = Self {
             towards,
             along,
@@ -52,13 +57,14 @@ impl HiddenRegion {
             from,
             to,
             support_radius,
+            angles: [from, to].map(|s| s.atan2(distance)),
         };
-        (from < to && region.angle() > 0.0).then_some(region)
+        (region.angle() > 0.0).then_some(region)
     }
 
     /// The angles [t1, t2] of the stretch, counterclockwise from `towards`, radians.
     pub fn angles(&self) -> [f64; 2] {
-        [self.from, self.to].map(|s| s.atan2(self.distance))
+        self.angles
     }
 
     /// r_k* − r_i, meters. Not computed as the difference of two points: when the agent stands on the wall,
@@ -82,6 +88,7 @@ impl HiddenRegion {
         if t2 < own_t2 - ANGLE_ROUNDING {
             part.to = (self.distance * t2.tan()).min(self.to);
         }
+        part.angles = [part.from, part.to].map(|s| s.atan2(self.distance));
         part
     }
 

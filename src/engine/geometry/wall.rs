@@ -10,6 +10,9 @@ use crate::engine::math::{Vector, perpendicular};
 /// 10⁶ m, so that no agent slips between two walls at their corner.
 const END_ROUNDING: f64 = 1e-9;
 
+/// More than the rounding of the distance from a line, meters, for coordinates up to 10⁶ m.
+const LINE_ROUNDING: f64 = 1e-6;
+
 /// A directed edge with the obstacle on its left and the free side on its right.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wall {
@@ -79,6 +82,12 @@ impl Wall {
     /// Whether `p` is on the free side or on the wall's line.
     pub fn faces(&self, p: Vector) -> bool {
         self.signed_distance(p) >= 0.0
+    }
+
+    /// Whether the line of this wall is certainly more than `radius` meters from `p`: most walls of a list are, and this
+    /// is much cheaper than the nearest point.
+    pub fn is_beyond(&self, p: Vector, radius: f64) -> bool {
+        self.signed_distance(p).abs() > radius + LINE_ROUNDING
     }
 
     /// The point of this wall nearest to `p`.

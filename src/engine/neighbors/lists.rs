@@ -58,11 +58,20 @@ impl Lists {
     /// The non-empty lists of `agents`, all of one block, each after its agent.
     pub fn listed(&self, agents: Range<usize>) -> impl Iterator<Item = (usize, &[u32])> {
         let block = self.blocks.get(agents.start / BLOCK);
-        let any = block.is_some_and(|block| !block.indices.is_empty());
-        let agents = if any { agents } else { 0..0 };
-        agents
-            .map(|i| (i, self.of(i)))
-            .filter(|(_, list)| !list.is_empty())
+        let first = agents.start % BLOCK;
+        let (before, ends, indices) = match block {
+            Some(block) if !block.indices.is_empty() => {
+                let (before, ends) = block.ends.split_at(first);
+                (before, ends, &block.indices[..])
+            }
+            _ => (&[][..], &[][..], &[][..]),
+        };
+        let mut start = before.last().map_or(0, |&end| end as usize);
+        agents.zip(ends).filter_map(move |(i, &end)| {
+            let end = end as usize;
+            let list = &indices[std::mem::replace(&mut start, end)..end];
+            (!list.is_empty()).then_some((i, list))
+        })
     }
 
     /// The list of agent `i`; empty after [`clear`](Self::clear).

@@ -258,8 +258,9 @@ fn list_walls(
                 return;
             }
             found.extend(candidates.iter().filter(|&&k| {
-                let nearest = walls.wall(k).nearest_point(p).point;
-                (nearest - p).norm_squared() < radius * radius
+                let wall = walls.wall(k);
+                !wall.is_beyond(p, radius)
+                    && (wall.nearest_point(p).point - p).norm_squared() < radius * radius
             }));
         },
     );
