@@ -1,6 +1,7 @@
 //! Rings, polygons with holes, walls, and the queries on them.
 
 use crate::common::{rectangle, room, vector};
+use proptest::prelude::*;
 use sandbox::engine::geometry::{Area, Polygon, PolygonError, Ring, Wall, WallPart, Walls};
 use sandbox::engine::math::{Vector, perpendicular};
 
@@ -305,5 +306,24 @@ fn the_way_out_into_a_corner_keeps_clear_of_both_walls() {
             let gap = wall.signed_distance(free);
             assert!(gap > 0.9e-6, "turn {k}: {gap} m in front of a wall");
         }
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_wall_beyond_a_radius_has_no_point_within_it(
+        corner in -1e6..1e6_f64,
+        ends in prop::array::uniform4(-9.0..9.0_f64),
+        p in prop::array::uniform2(-9.0..9.0_f64),
+        radius in 0.0..9.0_f64,
+    ) {
+        let at = |x: f64, y: f64| vector(corner + x, corner - y);
+        prop_assume!(at(ends[0], ends[1]) != at(ends[2], ends[3]));
+        let wall = Wall::new(at(ends[0], ends[1]), at(ends[2], ends[3]), 0, 0);
+        let p = at(p[0], p[1]);
+        let distance = (wall.nearest_point(p).point - p).norm();
+        prop_assert!(!wall.is_beyond(p, radius) || distance > radius);
+        // The line is never farther than the wall.
+        prop_assert!(!wall.is_beyond(p, distance));
     }
 }

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::kernel;
 use sandbox::engine::math::{Vector, direction};
-use sandbox::engine::pairs::Precision;
+use sandbox::engine::pairs::{Precision, Real};
 use sandbox::engine::scene::Scene;
 use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::catalog::Parameters;
@@ -100,6 +100,27 @@ proptest! {
     ) {
         let error = largest_error(&crowd(vector(x, y), stretch, 1));
         prop_assert!(error < BOUND, "{error:e} at ({x}, {y})");
+    }
+}
+
+proptest! {
+    #[test]
+    fn coordinates_of_many_points_are_those_of_each(
+        points in prop::collection::vec(prop::array::uniform2(-1.0..1.0_f64), 1..40),
+        exponent in -3.0..12.0_f64,
+        extent in 1.0..100.0_f64,
+    ) {
+        // Beyond some 10⁶ m, coordinates leave the range of the fast conversion.
+        let points: Vec<_> = points.iter().map(|&[x, y]| vector(x, y) * exponent.exp2().powi(3)).collect();
+        let per_meter = f64::from(1_u32 << 31) / extent;
+        let (mut x, mut y) = (vec![0; points.len()], vec![0; points.len()]);
+        f32::coordinates(&points, per_meter, [&mut x, &mut y]);
+        let each = |number: fn(&Vector) -> f64| {
+            let numbers = points.iter().map(number);
+            numbers.map(|meters| f32::coordinate(meters, per_meter)).collect::<Vec<i32>>()
+        };
+        prop_assert_eq!(x, each(|p| p.x));
+        prop_assert_eq!(y, each(|p| p.y));
     }
 }
 

@@ -1,7 +1,7 @@
 //! The step and the method of time integration: as the file gives them, or by rule where it says `auto`.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::error::Problem;
 use super::file::File;
@@ -26,7 +26,7 @@ pub(super) enum Auto {
 }
 
 /// The method of time integration, or `auto`.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum IntegratorChoice {
     #[default]
