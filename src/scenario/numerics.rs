@@ -8,6 +8,7 @@ use super::file::File;
 use crate::analysis::stability;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::engine::journeys::Place;
+use crate::engine::profile::{Blend, BlendStep, Navigation};
 use crate::engine::scene::{Integrator, Scene};
 
 /// Δt_fine.
@@ -53,13 +54,35 @@ impl IntegratorChoice {
 /// Velocity Verlet where agents stay: it is closer to the limit of fine steps in crowds that press or stand, but no
 /// better with avoidance, worse with walking laws, and lowers the flow through doors (docs/accuracy.md).
 fn suited_integrator(scene: &Scene) -> Integrator {
+    if agents_stay(scene) {
+        Integrator::VelocityVerlet
+    } else {
+        Integrator::SemiImplicit
+    }
+}
+
+/// Whether no agent avoids others, has a walking law or leaves.
+fn agents_stay(scene: &Scene) -> bool {
     let needs = scene.needs();
     let exits = scene.journeys.places.iter().any(Place::is_exit);
-    if needs.avoidance.is_some() || needs.walking || needs.removal || exits {
-        Integrator::SemiImplicit
-    } else {
-        Integrator::VelocityVerlet
+    !(needs.avoidance.is_some() || needs.walking || needs.removal || exits)
+}
+
+/// The longest step, seconds, at which the evacuations of Table 1 differ from those at the paper's step by no more than
+/// two standard deviations of their seeds (docs/accuracy.md). Where agents avoid each other in a jam, the jam depends on
+/// the step. Where agents stay, the limit is the accuracy of waves.
+fn longest_faithful_step(scene: &Scene) -> f64 {
+    if agents_stay(scene) {
+        return 0.05;
     }
+    let avoids = |step: &BlendStep| !matches!(step.profile.navigation, Navigation::Goal(_));
+    let of_blend = |blend: &Blend| match blend.steps() {
+        [.., densest] if avoids(densest) => PAPER_TIME_STEP,
+        [loosest, ..] if avoids(loosest) => 0.05,
+        _ => 0.025,
+    };
+    let steps = scene.groups.iter().map(|group| of_blend(&group.blend));
+    steps.fold(0.05, f64::min)
 }
 
 /// The clock of a file, with the paper's step if that is missing or `auto`.
@@ -82,7 +105,11 @@ pub(super) fn clock_for(keys: &File, scene: &Scene) -> Result<Clock, Problem> {
                       give a number";
         Problem::new("time_step_secs", reason)
     })?;
-    let longest = keys.longest_step_secs.unwrap_or(PAPER_COARSE_STEP);
+    let longest = match keys.longest_step_secs {
+        Some(TimeStep::Given(longest)) => longest,
+        Some(TimeStep::Auto(_)) => longest_faithful_step(scene),
+        None => PAPER_COARSE_STEP,
+    };
     let step = step.min(longest);
     if step < SHORTEST_TIME_STEP {
         let reason = format!(
