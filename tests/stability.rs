@@ -180,6 +180,28 @@ fn the_automatic_integrator_depends_on_what_agents_do() {
 }
 
 #[test]
+fn fast_steps_depend_on_who_avoids_and_who_leaves() {
+    let step = |profile: &str, more: &str| {
+        let text = format!(
+            r#"{{"preset": "fast", "profile": "{profile}", "goal": [9, 0], "parameters": {{"gas_constant": 20}},
+                "grids": [{{"min": [0, 0], "max": [2, 2], "columns": 2, "rows": 2{more}}}]}}"#
+        );
+        Scenario::parse(&text, "f.json", &[])
+            .unwrap()
+            .scene
+            .clock
+            .time_step()
+    };
+    assert_eq!(step("sph", ""), 0.05);
+    let leaves = r#", "remove_within": 1"#;
+    assert_eq!(step("sph", leaves), 0.025);
+    assert_eq!(step("walk+sph", leaves), 0.025);
+    assert_eq!(step("sf->sph", leaves), 0.05);
+    assert_eq!(step("sf+sph", leaves), 0.02);
+    assert_eq!(step("rvo+sph", ""), 0.02);
+}
+
+#[test]
 fn a_time_step_that_is_too_long_gives_a_warning() {
     let stderr = |step: &str, settings: &[&str]| {
         let mut arguments = vec!["evacuation", "--until", "1", "--time-step", step];
