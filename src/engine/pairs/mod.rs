@@ -15,8 +15,10 @@ mod vectors;
 
 pub use columns::{Bodies, Columns, Reach};
 pub use fearless_simd::{Level, Simd, dispatch, f32x8, prelude};
-pub use real::{LANES, Lanes, Real};
-pub use sums::{PairSum, add_pairs, add_quotients, lanes_from, load, splat, spread, store};
+pub use real::{LANES, Lanes, Mask, Real};
+pub use sums::{
+    PairSum, add_pairs, add_quotients, lanes_from, load, seen_from, splat, spread, store,
+};
 pub use vectors::Vectors;
 
 use crate::engine::agents::Agents;

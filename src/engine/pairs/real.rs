@@ -12,6 +12,9 @@ pub const LANES: usize = crate::engine::neighbors::CLUSTER;
 /// [`LANES`] numbers of type `R`.
 pub type Lanes<R, S> = <R as Real>::Lanes<S>;
 
+/// The result of a comparison of [`Lanes`].
+pub type Mask<R, S> = <Lanes<R, S> as SimdBase<S>>::Mask;
+
 /// A number type for sums over pairs, with its representation of coordinates.
 pub trait Real: SimdFloatElement + Into<f64> + Copy + Default + Send + Sync + 'static {
     /// A coordinate; only differences between near coordinates are meaningful.
@@ -51,9 +54,28 @@ pub trait Real: SimdFloatElement + Into<f64> + Copy + Default + Send + Sync + 's
         times: i32,
     ) -> Self::Places<S>;
 
+    /// `place` in all lanes.
+    fn place<S: Simd>(simd: S, place: Self::Coordinate) -> Self::Places<S>;
+
+    /// Writes the `kept` coordinates of `places`, side by side, then zeros.
+    fn store_kept<S: Simd>(
+        places: Self::Places<S>,
+        kept: Mask<Self, S>,
+        out: &mut [Self::Coordinate],
+    );
+
     /// Each coordinate of `from` minus `to`.
-    fn differences<S: Simd>(simd: S, from: Self::Places<S>, to: Self::Coordinate)
-    -> Self::Lanes<S>;
+    #[inline(always)]
+    fn differences<S: Simd>(
+        simd: S,
+        from: Self::Places<S>,
+        to: Self::Coordinate,
+    ) -> Self::Lanes<S> {
+        Self::between(from, Self::place(simd, to))
+    }
+
+    /// Each coordinate of `from` minus that of `to`.
+    fn between<S: Simd>(from: Self::Places<S>, to: Self::Places<S>) -> Self::Lanes<S>;
 
     /// 2ˣ for x ≤ 0; results below 2⁻¹²⁶ may be clamped to it.
     fn exp2<S: Simd>(simd: S, x: Self::Lanes<S>) -> Self::Lanes<S>;
@@ -85,8 +107,18 @@ impl Real for f64 {
     }
 
     #[inline(always)]
-    fn differences<S: Simd>(simd: S, from: f64x8<S>, to: f64) -> f64x8<S> {
-        from - f64x8::splat(simd, to)
+    fn place<S: Simd>(simd: S, place: f64) -> f64x8<S> {
+        f64x8::splat(simd, place)
+    }
+
+    #[inline(always)]
+    fn store_kept<S: Simd>(places: f64x8<S>, kept: Mask<f64, S>, out: &mut [f64]) {
+        places.compress(kept).store_slice(out);
+    }
+
+    #[inline(always)]
+    fn between<S: Simd>(from: f64x8<S>, to: f64x8<S>) -> f64x8<S> {
+        from - to
     }
 
     #[inline(always)]
@@ -141,11 +173,24 @@ impl Real for f32 {
     }
 
     #[inline(always)]
-    fn differences<S: Simd>(simd: S, from: i32x8<S>, to: i32) -> f32x8<S> {
-        (from - i32x8::splat(simd, to)).to_float()
+    fn place<S: Simd>(simd: S, place: i32) -> i32x8<S> {
+        i32x8::splat(simd, place)
+    }
+
+    #[inline(always)]
+    fn store_kept<S: Simd>(places: i32x8<S>, kept: Mask<f32, S>, out: &mut [i32]) {
+        places.compress(kept).store_slice(out);
+    }
+
+    #[inline(always)]
+    fn between<S: Simd>(from: i32x8<S>, to: i32x8<S>) -> f32x8<S> {
+        (from - to).to_float()
     }
 
     /// Computes 2ⁿ 2ʳ with |r| ≤ 1/2, where 2ʳ = e^(r ln 2) is a Taylor series.
+    ///
+    /// Adding [`ROUNDING`] rounds x to n, which the sum has in its lowest bits; shifted, n is added to the exponent of
+    /// 2ʳ. No exponent is below the least: n = −126 is the rounded x only for r ≥ 0, for which 2ʳ ≥ 1.
     #[inline(always)]
     fn exp2<S: Simd>(simd: S, x: f32x8<S>) -> f32x8<S> {
         let mut c = [f32x8::splat(simd, 0.0); SERIES.len()];
@@ -153,15 +198,20 @@ impl Real for f32 {
             *lanes = f32x8::splat(simd, coefficient);
         }
         let x = x.max(f32x8::splat(simd, -126.0));
-        let n = x.round_ties_even();
-        let r = x - n;
+        let rounding = f32x8::splat(simd, ROUNDING);
+        let rounded = x + rounding;
+        let r = x - (rounded - rounding);
         let r2 = r * r;
         let low = c[3].mul_add(r, c[2]).mul_add(r2, c[1].mul_add(r, c[0]));
         let high = c[6].mul_add(r2, c[5].mul_add(r, c[4]));
-        let exponent = (n.to_int::<i32x8<S>>() + 127) << 23;
-        high.mul_add(r2 * r2, low) * exponent.bitcast::<f32x8<S>>()
+        let power = high.mul_add(r2 * r2, low);
+        let exponent = rounded.bitcast::<i32x8<S>>() << 23;
+        (power.bitcast::<i32x8<S>>() + exponent).bitcast()
     }
 }
+
+/// 1.5 · 2²³: numbers near it are integers.
+const ROUNDING: f32 = 12_582_912.0;
 
 /// (ln 2)ᵏ/k!; the next term of 2ʳ is below 1.2 · 10⁻⁷.
 #[expect(clippy::excessive_precision, reason = "rounded by the compiler")]

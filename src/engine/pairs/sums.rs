@@ -33,13 +33,7 @@ pub fn add_pairs<R: Real, S: Simd>(
     let x_i = R::places(simd, &bodies.x[start..]);
     let y_i = R::places(simd, &bodies.y[start..]);
     for run in runs {
-        let (x_i, y_i) = match run.laps {
-            0 => (x_i, y_i),
-            laps => (
-                R::moved(simd, x_i, bodies.period[0], laps),
-                R::moved(simd, y_i, bodies.period[1], laps),
-            ),
-        };
+        let [x_i, y_i] = seen_from(simd, bodies, [x_i, y_i], run.laps);
         let run = run.indices();
         let (x, y) = (&bodies.x[run.clone()], &bodies.y[run.clone()]);
         let count = run.len();
@@ -50,6 +44,23 @@ pub fn add_pairs<R: Real, S: Simd>(
             sum.add(simd, [dx, dy], others, j);
         }
     }
+}
+
+/// The coordinates from which agents at `places` see the agents of a run, across the ends of the period.
+#[inline(always)]
+pub fn seen_from<R: Real, S: Simd>(
+    simd: S,
+    bodies: &Bodies<R>,
+    places: [R::Places<S>; 2],
+    laps: i32,
+) -> [R::Places<S>; 2] {
+    if laps == 0 {
+        return places;
+    }
+    [
+        R::moved(simd, places[0], bodies.period[0], laps),
+        R::moved(simd, places[1], bodies.period[1], laps),
+    ]
 }
 
 /// `value` in all lanes, rounded.
