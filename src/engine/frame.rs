@@ -1,12 +1,10 @@
 //! The frozen frame: read by every force, written by none.
 
-use std::ops::Range;
-
 use crate::engine::agents::Agents;
 use crate::engine::clock::Clock;
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
-use crate::engine::neighbors::{CLUSTER, Neighbors, Run};
+use crate::engine::neighbors::Neighbors;
 use crate::engine::pairs::Packed;
 
 /// Quantities derived from the state, one array each, with the step that writes it in parentheses.
@@ -26,9 +24,6 @@ pub struct Fields {
     pub wall_gradient: Vec<Vector>,
     /// v_i^pref, m/s (2).
     pub preferred_velocity: Vec<Vector>,
-    /// Component-wise minimum and maximum of the velocities of each [`CLUSTER`] consecutive agents, m/s (3). Empty if
-    /// no social force has a tolerance.
-    pub velocity_ranges: Vec<[Vector; 2]>,
     /// a_i, m/s² (3, 3B, 4).
     pub acceleration: Vec<Vector>,
 }
@@ -49,12 +44,6 @@ impl Fields {
         self.pressure.resize(count, 0.0);
         self.wall_gradient.resize(count, Vector::zeros());
     }
-}
-
-/// The component-wise union of velocity ranges; zero if there are none.
-pub fn velocity_range(of: impl Iterator<Item = [Vector; 2]>) -> [Vector; 2] {
-    of.reduce(|[low, high], [lower, higher]| [low.inf(&lower), high.sup(&higher)])
-        .unwrap_or([Vector::zeros(); 2])
 }
 
 /// One frame, frozen between [`evaluate`](crate::engine::simulation::Simulation::evaluate) and
@@ -86,19 +75,5 @@ impl Frame<'_> {
         candidates
             .map(move |(j, laps)| (j, self.neighbors.seen_from(position[i], laps) - position[j]))
             .filter(move |(_, r_ij)| r_ij.norm_squared() < radius * radius)
-    }
-
-    /// Upper bound on the relative speed between any of `agents` and any of `others`, m/s. Requires
-    /// [`velocity_ranges`](Fields::velocity_ranges).
-    pub(crate) fn relative_speed(&self, agents: Range<usize>, others: &[Run]) -> f64 {
-        let velocities = &self.agents.velocity[agents];
-        let [low, high] = velocity_range(velocities.iter().map(|&v| [v, v]));
-        let ranges = others.iter().flat_map(|run| {
-            let others = run.indices();
-            let cells = others.start / CLUSTER..others.end.div_ceil(CLUSTER);
-            &self.fields.velocity_ranges[cells]
-        });
-        let [lowest, highest] = velocity_range(ranges.copied());
-        (high - lowest).sup(&(highest - low)).norm()
     }
 }

@@ -10,11 +10,10 @@ use crate::engine::density;
 use crate::engine::forces::goal;
 use crate::engine::forces::near::{self, PairCoefficients};
 use crate::engine::forces::rvo::{Scratch, Wish};
-use crate::engine::forces::social::SocialForce;
 use crate::engine::forces::walking;
-use crate::engine::frame::{Frame, velocity_range};
+use crate::engine::frame::Frame;
 use crate::engine::math::{Vector, are_finite, clamp_length, direction, numbers_are_finite};
-use crate::engine::neighbors::{BLOCK, CLUSTER, ListPolicy, TASK};
+use crate::engine::neighbors::{BLOCK, ListPolicy, TASK};
 use crate::engine::pairs::{Level, dispatch, each};
 use crate::engine::profile::{Blend, Override};
 
@@ -227,7 +226,6 @@ impl Simulation {
         let acceleration = &mut self.buffers.acceleration;
         derived.fields.acceleration.clear(); // stale values must not be read
         derived.finite = self.stages.time(Stage::Acceleration, || {
-            fixed.update_velocity_ranges(agents, &mut derived.fields.velocity_ranges);
             acceleration.resize(agents.len(), Vector::zeros());
             let frame = derived.frame(fixed, &self.crowd);
             acceleration
@@ -263,17 +261,6 @@ impl Fixed {
                 false => free,
             },
             max_speed: self.scene.max_speed(frame.agents, i),
-        }
-    }
-
-    /// Updates the velocity ranges; leaves them empty if no social force has a tolerance.
-    fn update_velocity_ranges(&self, agents: &Agents, ranges: &mut Vec<[Vector; 2]>) {
-        ranges.clear();
-        let tolerant = |social: &SocialForce| social.avoidance_tolerance > 0.0;
-        if self.social_forces.iter().any(tolerant) {
-            let some = agents.velocity.par_chunks(CLUSTER);
-            let some = some.with_min_len(TASK * BLOCK);
-            ranges.par_extend(some.map(|v| velocity_range(v.iter().map(|&v| [v, v]))));
         }
     }
 
