@@ -60,6 +60,7 @@ mod schedule;
 mod simulation;
 mod skips;
 mod social;
+mod social_tolerance;
 mod sound;
 mod statistics;
 mod steering;

@@ -1,0 +1,96 @@
+//! Which pairs social forces with a tolerance leave out.
+
+use crate::common;
+use crate::common::social::{force, weight};
+use crate::common::{blend_with, scene, vector, walker};
+use rand::Rng;
+use sandbox::engine::agents::NewAgent;
+use sandbox::engine::forces::social::SocialForce;
+use sandbox::engine::math::Vector;
+use sandbox::engine::pairs::Precision;
+use sandbox::engine::random::{Purpose, stream};
+use sandbox::scenario::catalog::Parameters;
+
+const TOLERANCE: f64 = 1e-3;
+
+fn random(seed: u64) -> impl FnMut() -> f64 {
+    let mut rng = stream(seed, Purpose::Placement, 0, 0);
+    move || rng.random_range(-1.0..1.0)
+}
+
+/// The acceleration of each agent by social forces with the tolerance, as computed by the engine.
+fn accelerations(agents: &[NewAgent], precision: Precision) -> Vec<Vector> {
+    let parameters = Parameters {
+        avoidance_tolerance: Some(TOLERANCE),
+        ..Parameters::default()
+    };
+    let mut scene = scene(vec![], blend_with("sf", &parameters));
+    scene.precision = precision;
+    scene.agents = agents.to_vec();
+    let simulation = common::evaluated(scene);
+    let ids = 0..agents.len() as u32;
+    let breakdowns = ids.map(|id| common::breakdown(&simulation, id));
+    let terms = breakdowns.map(|breakdown| breakdown.profiles[0].accelerations);
+    terms.map(|terms| terms.social_agents.unwrap()).collect()
+}
+
+#[test]
+fn pairs_that_are_left_out_have_forces_below_the_tolerance() {
+    let social = SocialForce::default();
+    for (precision, error) in [(Precision::Double, 1e-9), (Precision::Mixed, 1e-3)] {
+        let (mut left_out, mut small) = (0, 0);
+        let mut next = random(8);
+        for k in 0..3000 {
+            // Every third pair is fast, so that |r_ij + T v_ij| is much longer than |r_ij|.
+            let speed = if k % 3 == 0 { 8.0 } else { 1.5 };
+            let r = vector(next(), next()) * 4.0;
+            let [v_i, v_j] = [(); 2].map(|()| vector(next(), next()) * speed);
+            let goal = vector(9.0, 0.0);
+            let agents = [walker(r, v_i, goal), walker(vector(0.0, 0.0), v_j, goal)];
+            let found = accelerations(&agents, precision)[0];
+            let exact = force(&social, r, v_i - v_j);
+            if r.norm() > social.avoidance_radius {
+                assert_eq!(found, Vector::zeros());
+                continue;
+            }
+            small += u32::from(exact.norm() < 0.1 * TOLERANCE);
+            if found == Vector::zeros() {
+                left_out += 1;
+                assert!(exact.norm() <= TOLERANCE, "{precision:?} {r} {v_i} {v_j}");
+            } else {
+                let difference = (found - exact * weight(v_i, r)).norm();
+                assert!(difference <= error * (1.0 + exact.norm()), "{difference:e}");
+            }
+        }
+        assert!(left_out > 1000 && f64::from(left_out) > 0.8 * f64::from(small));
+    }
+}
+
+#[test]
+fn which_pairs_are_left_out_depends_on_no_other_agents() {
+    let mut next = random(9);
+    let crowd: Vec<NewAgent> = (0..200)
+        .map(|_| {
+            let place = vector(next(), next()) * 5.0;
+            walker(place, vector(next(), next()) * 1.5, vector(9.0, 0.0))
+        })
+        .collect();
+    for precision in [Precision::Double, Precision::Mixed] {
+        let together = accelerations(&crowd, precision);
+        for i in (0..crowd.len()).step_by(40) {
+            let others = (0..crowd.len()).filter(|&j| j != i);
+            let pairs = others.map(|j| [crowd[i], crowd[j]]);
+            let alone: Vec<Vector> = pairs
+                .map(|pair| accelerations(&pair, precision)[0])
+                .collect();
+            let sum: Vector = alone.iter().sum();
+            let size: f64 = alone.iter().map(|pair| pair.norm()).sum();
+            let rounding = match precision {
+                Precision::Double => 1e-12,
+                Precision::Mixed => 1e-5,
+            };
+            let difference = (together[i] - sum).norm();
+            assert!(difference <= rounding * size, "{difference:e} of {size:e}");
+        }
+    }
+}
