@@ -167,6 +167,11 @@ impl Blend {
     /// The profiles with a weight above zero at a density in P/m² (§4.4).
     #[inline]
     pub fn weights(&self, density: f64) -> impl Iterator<Item = (&Profile, f64)> {
+        self.weights_of(self.mix(density))
+    }
+
+    #[inline]
+    fn mix(&self, density: f64) -> Mix {
         let last = self.steps.len() - 1;
         let above = |step: &BlendStep| density <= step.at_density;
         let high = self.steps.iter().position(above).unwrap_or(last);
@@ -178,10 +183,15 @@ impl Blend {
         } else {
             1.0
         };
-        let lower = (kappa < 1.0).then(|| (&self.steps[low].profile, 1.0 - kappa));
-        lower
-            .into_iter()
-            .chain([(&self.steps[high].profile, kappa)])
+        Mix { high, kappa }
+    }
+
+    #[inline]
+    fn weights_of(&self, Mix { high, kappa }: Mix) -> impl Iterator<Item = (&Profile, f64)> {
+        let low = &self.steps[high.saturating_sub(1)];
+        let lower = (kappa < 1.0).then_some((&low.profile, 1.0 - kappa));
+        let higher = (&self.steps[high].profile, kappa);
+        lower.into_iter().chain([higher])
     }
 
     /// Does RVO act on agent `i` of a frozen frame?
@@ -251,12 +261,30 @@ impl Blend {
             take(&step.profile, agents, 1.0);
             return;
         }
-        for i in agents {
-            for (profile, weight) in self.acting(frame, i) {
-                take(profile, i..i + 1, weight);
+        let density = &frame.fields.density;
+        let mut start = agents.start;
+        while start < agents.end {
+            let mix = self.mix(density[start]);
+            let mut end = start + 1;
+            // Neighbors in memory on which the same profile acts alone, together.
+            while end < agents.end && mix.kappa == 1.0 && self.mix(density[end]) == mix {
+                end += 1;
             }
+            for (profile, weight) in self.weights_of(mix) {
+                take(profile, start..end, weight);
+            }
+            start = end;
         }
     }
+}
+
+/// How profiles are mixed at a density.
+#[derive(Clone, Copy, PartialEq)]
+struct Mix {
+    /// The index of the last profile that acts. The one before it has the rest of the weight.
+    high: usize,
+    /// The weight of the last profile.
+    kappa: f64,
 }
 
 fn rvo_of(profile: &Profile) -> Option<Rvo> {
