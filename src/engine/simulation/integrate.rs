@@ -210,18 +210,26 @@ impl Crowd {
         let agents = &mut self.agents;
         let group = |i: usize| &scene.groups[usize::from(agents.group[i])];
         let has_arrived = |i: usize| {
-            let distance = (agents.goal[i] - agents.position[i]).norm();
+            let squared = (agents.goal[i] - agents.position[i]).norm_squared();
+            // Most agents are far from their goal: no root for them.
             let radius = group(i).removal_radius;
-            radius.is_some_and(|radius| distance <= radius)
+            radius.is_some_and(|radius| {
+                squared <= radius * radius * (1.0 + ROUNDING) && squared.sqrt() <= radius
+            })
         };
         let all = (0..agents.len()).into_par_iter();
-        // Most frames have no arrival: return before anything is allocated.
-        if !all.with_min_len(TASK * BLOCK).any(has_arrived) {
+        let arrived = all.with_min_len(TASK * BLOCK);
+        let arrived: Vec<usize> = arrived.filter(|&i| has_arrived(i)).collect();
+        if arrived.is_empty() {
             return;
         }
-        let (arrived, staying): (Vec<u32>, Vec<u32>) =
-            (0..agents.len() as u32).partition(|&i| has_arrived(i as usize));
-        let arrivals = arrived.into_iter().map(|i| i as usize).map(|i| Arrival {
+        let mut staying: Vec<u32> = Vec::with_capacity(agents.len());
+        let starts = std::iter::once(0).chain(arrived.iter().map(|i| i + 1));
+        let ends = arrived.iter().copied().chain([agents.len()]);
+        for (start, end) in starts.zip(ends) {
+            staying.extend(start as u32..end as u32);
+        }
+        let arrivals = arrived.into_iter().map(|i| Arrival {
             id: agents.id[i],
             time: self.clock.time(),
             position: agents.position[i],
@@ -235,6 +243,9 @@ impl Crowd {
         self.changed = true;
     }
 }
+
+/// A generous bound on relative rounding errors of squared distances.
+const ROUNDING: f64 = 1e-12;
 
 /// The motion of an agent. Both velocities are clamped to s_max.
 #[derive(Clone, Copy, Default)]
