@@ -20,6 +20,14 @@ const FEWEST_CELLS: usize = 1024;
 /// Height of a row over the width of its cells: with narrow cells, runs end near the circle they must cover.
 const NARROWNESS: f64 = 8.0;
 
+/// The lower left and the upper right corner of the rectangle around all agents.
+fn extent(positions: &[Vector]) -> [Vector; 2] {
+    let some = positions.par_chunks(SOME);
+    let corners = some.filter_map(|some| bounds(some.iter().copied()));
+    let all = corners.reduce_with(|[low, high], [a, b]| [low.inf(&a), high.sup(&b)]);
+    all.unwrap_or_default()
+}
+
 /// A position in a grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
@@ -72,7 +80,7 @@ impl Grid {
         period: Option<Period>,
     ) -> Vec<u32> {
         self.period = period;
-        let [low, high] = bounds(positions.iter().copied()).unwrap_or_default();
+        let [low, high] = extent(positions);
         self.size_cells(high - low, positions.len(), height);
         self.origin = low - Vector::new(0.0, self.height);
 

@@ -17,6 +17,8 @@ pub use run::Run;
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use crate::engine::agents::Agents;
 use crate::engine::geometry::Walls;
 use crate::engine::math::{Vector, bounds};
@@ -268,6 +270,8 @@ fn list_walls(
 
 /// The range of SPH and contact forces between agents, plus twice the margin, meters.
 fn near_radius(agents: &Agents, ranges: &Ranges) -> f64 {
-    let widest = agents.radius.iter().copied().fold(0.0, f64::max);
+    let radii = agents.radius.par_chunks(TASK * BLOCK);
+    let widest = radii.map(|some| some.iter().copied().fold(0.0, f64::max));
+    let widest = widest.reduce(|| 0.0, f64::max);
     ranges.support.max(2.0 * widest) + 2.0 * ranges.margin
 }

@@ -69,7 +69,7 @@ impl<R: Real> Columns<R> {
         agents: &Agents,
         unit: f64,
         period: Option<&Period>,
-        reach: impl Fn(usize) -> Reach,
+        reach: impl Fn(usize) -> Reach + Sync,
     ) {
         self.bodies.take(agents, unit, period, reach);
         reset(&mut self.volume, agents);
@@ -85,7 +85,7 @@ impl<R: Real> Bodies<R> {
         agents: &Agents,
         unit: f64,
         period: Option<&Period>,
-        reach: impl Fn(usize) -> Reach,
+        reach: impl Fn(usize) -> Reach + Sync,
     ) {
         self.unit = unit;
         let way: [f64; 2] = period.map_or([0.0; 2], |period| period.way(1).into());
@@ -97,12 +97,22 @@ impl<R: Real> Bodies<R> {
         reset(&mut self.mass, agents);
         reset(&mut self.contact_radius, agents);
         reset(&mut self.per_support, agents);
-        for i in 0..agents.len() {
-            self.mass[i] = R::of(agents.mass[i]);
-            let reach = reach(i);
-            self.contact_radius[i] = R::of(agents.radius[i] * reach.contact_scale);
-            self.per_support[i] = R::of(1.0 / reach.support_radius);
-        }
+        let blocks = (
+            self.mass.par_chunks_mut(BLOCK),
+            self.contact_radius.par_chunks_mut(BLOCK),
+            self.per_support.par_chunks_mut(BLOCK),
+            agents.mass.par_chunks(BLOCK),
+            agents.radius.par_chunks(BLOCK),
+        );
+        let blocks = blocks.into_par_iter().with_min_len(TASK).enumerate();
+        blocks.for_each(|(b, (mass, contact_radius, per_support, masses, radii))| {
+            for (k, (&m, &radius)) in masses.iter().zip(radii).enumerate() {
+                let reach = reach(b * BLOCK + k);
+                mass[k] = R::of(m);
+                contact_radius[k] = R::of(radius * reach.contact_scale);
+                per_support[k] = R::of(1.0 / reach.support_radius);
+            }
+        });
     }
 
     /// Packs the directions of preferred velocities, one per agent.

@@ -91,7 +91,7 @@ impl Packed {
         agents: &Agents,
         extent: f64,
         period: Option<&Period>,
-        reach: impl Fn(usize) -> Reach,
+        reach: impl Fn(usize) -> Reach + Sync,
     ) {
         match self {
             Self::Double(columns) => columns.take_bodies(agents, 1.0, period, reach),
