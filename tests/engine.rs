@@ -51,6 +51,7 @@ mod reference_states;
 mod runs;
 mod rvo;
 mod rvo_contact;
+mod rvo_crowds;
 mod scenario_errors;
 mod scenario_robustness;
 mod scenario_schema;

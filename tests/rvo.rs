@@ -12,17 +12,20 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::forces::rvo::{
-    Candidate, Limits, MovingDisc, Rvo, Scratch, Search, Situation, Surroundings, Wish,
+    Candidate, Candidates, Discs, Eight, Limits, MovingDisc, Rvo, Scratch, Search, Situation,
+    Surroundings, Wish,
 };
 use sandbox::engine::geometry::{Polygon, Walls};
 use sandbox::engine::math::Vector;
+use sandbox::engine::pairs::prelude::*;
+use sandbox::engine::pairs::{Simd, f64x8};
 use sandbox::engine::simulation::Simulation;
 
 /// A situation with discs at known places.
 #[derive(Debug, Clone)]
-struct Case {
-    situation: Situation,
-    discs: Vec<MovingDisc>,
+pub struct Case {
+    pub situation: Situation,
+    pub discs: Vec<MovingDisc>,
 }
 
 impl Surroundings for Case {
@@ -35,14 +38,28 @@ impl Surroundings for Case {
         }
     }
 
-    fn read(&self, squared: Range<f64>, discs: &mut Vec<MovingDisc>) {
-        let is_wanted = |disc: &&MovingDisc| squared.contains(&disc.offset.norm_squared());
-        discs.extend(self.discs.iter().filter(is_wanted));
+    fn read<S: Simd>(&self, simd: S, squared: Range<f64>, discs: &mut Discs) {
+        let all = |value: f64| f64x8::splat(simd, value);
+        for (number, disc) in (0..).zip(&self.discs) {
+            let distance = disc.offset.norm_squared();
+            if squared.contains(&distance) {
+                let eight = Eight {
+                    offset: [all(disc.offset.x), all(disc.offset.y)],
+                    velocity: [all(disc.velocity.x), all(disc.velocity.y)],
+                    gap: all(distance - disc.reach * disc.reach),
+                };
+                discs.add(simd, &eight, 1, number);
+            }
+        }
+    }
+
+    fn disc(&self, number: u32) -> MovingDisc {
+        self.discs[number as usize]
     }
 }
 
 /// Evaluates Eq. 20 for every candidate; returns the first one with the lowest cost.
-fn exhaustive(case: &Case, candidates: &[Candidate], collision_weight: f64) -> Vector {
+pub fn exhaustive(case: &Case, candidates: &[Candidate], collision_weight: f64) -> Vector {
     let situation = &case.situation;
     let mut costs = Vec::new();
     for candidate in candidates {
@@ -129,8 +146,9 @@ fn the_choice_is_that_of_an_exhaustive_search() {
     for round in 0..100_000 {
         let case = random_case(&mut rng);
         let candidates = candidates(&mut rng, 120);
+        let drawn = Candidates::from_iter(candidates.iter().copied());
         let weight = [1.0, 0.2, 5.0][round % 3];
-        let found = search.best(&case.situation, &case, &candidates, weight);
+        let found = search.best(&case.situation, &case, &drawn, weight);
         assert_eq!(found, exhaustive(&case, &candidates, weight), "{case:?}");
     }
 }
@@ -144,7 +162,8 @@ fn candidates(rng: &mut ChaCha8Rng, count: usize) -> Vec<Candidate> {
 }
 
 fn best(case: &Case, candidates: &[Candidate]) -> Vector {
-    Search::default().best(&case.situation, case, candidates, 1.0)
+    let candidates = candidates.iter().copied().collect();
+    Search::default().best(&case.situation, case, &candidates, 1.0)
 }
 
 fn open_field() -> Case {

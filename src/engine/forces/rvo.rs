@@ -1,11 +1,13 @@
 //! Reciprocal velocity obstacles (§5.3.2, Eqs. 20 and 21).
 
 mod candidates;
+mod discs;
 mod rings;
 mod search;
 mod surroundings;
 
-pub use candidates::Candidate;
+pub use candidates::{Candidate, Candidates};
+pub use discs::{Discs, Eight};
 pub use search::Search;
 pub use surroundings::{Limits, MovingDisc, Surroundings};
 
@@ -137,6 +139,15 @@ impl Situation {
         }
         edge.min(ends[0]).min(ends[1])
     }
+}
+
+/// The greatest integer below a number from 0 to 255, or the next smaller one if the number is an integer. Without
+/// branches, so that loops over this function use vectors.
+#[inline(always)]
+fn floor(number: f64) -> u8 {
+    // Added to a small number, this leaves the nearest integer in the lowest bits.
+    const TO_BITS: f64 = 1.5 * (1_u64 << 52) as f64;
+    (number - 0.5 + TO_BITS).to_bits() as u8
 }
 
 /// The time in seconds until a point moving at `velocity` (m/s) first comes within `reach` of the point at

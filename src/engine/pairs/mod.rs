@@ -14,10 +14,13 @@ mod sums;
 mod vectors;
 
 pub use columns::{Bodies, Columns, Reach};
-pub use fearless_simd::{Level, Simd, dispatch, f32x8, prelude};
+pub use fearless_simd::{
+    Level, Simd, dispatch, f32x8, f64x8, mask32x8, mask64x8, prelude, u8x64, u32x8,
+};
 pub use real::{LANES, Lanes, Mask, Real};
 pub use sums::{
-    PairSum, add_pairs, add_quotients, lanes_from, load, seen_from, splat, spread, store,
+    PairSum, add_pairs, add_quotients, coordinates, lanes_from, load, seen_from, splat, spread,
+    store,
 };
 pub use vectors::Vectors;
 

@@ -4,10 +4,11 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Level, Simd, dispatch, prelude::*};
+use fearless_simd::{Level, Simd, dispatch, f64x2, f64x8, prelude::*};
 
 use super::columns::Bodies;
 use super::real::{LANES, Lanes, Real};
+use crate::engine::math::Vector;
 use crate::engine::neighbors::Run;
 
 /// A sum over agents j, for [`LANES`] agents i.
@@ -113,4 +114,23 @@ fn quotients(numerator: f64, denominators: &[f64], sums: &mut [f64]) {
     for (sum, denominator) in sums.iter_mut().zip(denominators) {
         *sum += numerator / denominator;
     }
+}
+
+/// The coordinates of the first [`LANES`] of `vectors`, along x and along y.
+#[inline(always)]
+pub fn coordinates<S: Simd>(simd: S, vectors: &[Vector]) -> [f64x8<S>; 2] {
+    let vectors = &vectors[..LANES];
+    let (low, high) = (four(simd, &vectors[..4]), four(simd, &vectors[4..]));
+    let (x, y) = low.deinterleave(high);
+    [x, y]
+}
+
+/// The coordinates of four vectors, one after the other.
+#[inline(always)]
+fn four<S: Simd>(simd: S, vectors: &[Vector]) -> f64x8<S> {
+    let [a, b, c, d] = [0, 1, 2, 3].map(
+        #[inline(always)]
+        |k: usize| f64x2::from_slice(simd, vectors[k].as_slice()),
+    );
+    a.combine(b).combine(c.combine(d))
 }

@@ -1,7 +1,7 @@
 //! Branch and bound for the cheapest candidate; gives the same result as an exhaustive search.
 
-use super::candidates::{Allowed, Candidate, Sorted};
-use super::rings::Rings;
+use super::candidates::{Candidates, Sorted};
+use super::rings::{Appear, Rings};
 use super::surroundings::Surroundings;
 use super::{Situation, time_to_contact};
 use crate::engine::math::Vector;
@@ -16,8 +16,8 @@ const ROUNDING: f64 = 1e-9;
 pub struct Search {
     candidates: Sorted,
     rings: Rings,
-    /// Indices of discs.
-    perhaps: Vec<u32>,
+    /// The numbers of the candidates of a bucket.
+    numbers: Vec<u32>,
 }
 
 /// The cheapest candidate so far.
@@ -39,7 +39,7 @@ impl Search {
         &mut self,
         situation: &Situation,
         surroundings: &impl Surroundings,
-        candidates: &[Candidate],
+        candidates: &Candidates,
         collision_weight: f64,
     ) -> Vector {
         dispatch!(Level::new(), simd => {
@@ -52,13 +52,13 @@ impl Search {
         &mut self,
         simd: S,
         (situation, surroundings): (&Situation, &impl Surroundings),
-        candidates: &[Candidate],
+        candidates: &Candidates,
         collision_weight: f64,
     ) -> Vector {
         let Self {
             candidates: sorted,
+            numbers,
             rings,
-            perhaps,
         } = self;
         sorted.take(situation, candidates);
         rings.begin(surroundings.limits());
@@ -67,14 +67,15 @@ impl Search {
             number: u32::MAX,
             cost: f64::INFINITY,
         };
-        for (least, bucket) in sorted.iter() {
+        for (bucket, least) in Sorted::buckets() {
             if least * (1.0 - ROUNDING) - ROUNDING > best.cost {
                 break;
             }
-            for candidate in bucket {
-                let Allowed {
-                    number, deviation, ..
-                } = *candidate;
+            numbers.clear();
+            sorted.find(simd, bucket, numbers);
+            for &number in numbers.iter() {
+                let candidate = sorted.allowed(number);
+                let deviation = candidate.deviation;
                 if deviation > best.cost {
                     continue;
                 }
@@ -83,7 +84,8 @@ impl Search {
                 // After rounding, a cost this close to the best may be equal to it.
                 let left = best.cost - deviation + f64::EPSILON * best.cost;
                 let latest = collision_weight / left * (1.0 - ROUNDING);
-                if rings.certainly_met(simd, surroundings, velocity, latest) {
+                let way = rings.way(simd, velocity, Appear::Later);
+                if rings.certainly_met(simd, surroundings, &way, latest) {
                     continue;
                 }
                 let cost = |time: f64| deviation + collision_weight / time;
@@ -94,7 +96,7 @@ impl Search {
                     velocity,
                     too_early: |time: f64| cost(time) > bound,
                 };
-                let Some(time) = search.first(simd, rings, perhaps) else {
+                let Some(time) = search.first(simd, rings) else {
                     continue;
                 };
                 if cost(time) < best.cost || number < best.number {
@@ -123,33 +125,23 @@ impl<D: Surroundings, E: Fn(f64) -> bool> Contact<'_, D, E> {
     /// The time of the earliest contact, seconds; infinite if there is none. Returns `None` as soon as a contact is
     /// found that is too early.
     #[inline(always)]
-    fn first<S: Simd>(&self, simd: S, rings: &mut Rings, perhaps: &mut Vec<u32>) -> Option<f64> {
+    fn first<S: Simd>(&self, simd: S, rings: &mut Rings) -> Option<f64> {
         let walls = self.situation.walls.iter();
         let walls = walls.map(|wall| self.situation.time_to_wall(wall, self.velocity));
         let mut first = walls.fold(f64::INFINITY, f64::min);
         if (self.too_early)(first) {
             return None;
         }
+        let way = rings.way(simd, self.velocity, Appear::Earlier);
         let mut ring = 0;
-        while rings.may_meet(ring, self.velocity, first) {
-            rings.perhaps_met(
-                simd,
-                ring,
-                (self.velocity, first),
-                self.surroundings,
-                perhaps,
-            );
-            for &k in perhaps.iter() {
-                let disc = rings.disc(k);
+        while rings.reaches(ring, &way, first) {
+            let meet = |number: u32, first: f64| {
+                let disc = self.surroundings.disc(number);
                 let velocity = self.velocity - disc.velocity;
-                let time = time_to_contact(disc.offset, velocity, disc.reach);
-                if time < first {
-                    first = time;
-                    if (self.too_early)(first) {
-                        return None;
-                    }
-                }
-            }
+                let first = first.min(time_to_contact(disc.offset, velocity, disc.reach));
+                (!(self.too_early)(first)).then_some(first)
+            };
+            first = rings.each_perhaps_met(simd, (ring, self.surroundings), &way, first, meet)?;
             ring += 1;
         }
         Some(first)

@@ -2,8 +2,12 @@
 
 use std::ops::Range;
 
+use super::discs::{Discs, Eight};
+use crate::engine::agents::Agents;
 use crate::engine::frame::Frame;
 use crate::engine::math::{Vector, greatest};
+use crate::engine::pairs::prelude::*;
+use crate::engine::pairs::{LANES, Simd, coordinates, f64x8};
 
 /// A moving disc, relative to agent i.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,8 +36,11 @@ pub trait Surroundings {
     /// Bounds for all discs.
     fn limits(&self) -> Limits;
 
-    /// Appends the discs whose centers are at a distance in `squared`, m².
-    fn read(&self, squared: Range<f64>, discs: &mut Vec<MovingDisc>);
+    /// Adds the discs whose centers are at a distance in `squared`, m².
+    fn read<S: Simd>(&self, simd: S, squared: Range<f64>, discs: &mut Discs);
+
+    /// The disc of a number.
+    fn disc(&self, number: u32) -> MovingDisc;
 }
 
 /// The agents around agent i of a frozen frame that are not in contact with it.
@@ -58,11 +65,13 @@ impl Surroundings for Around<'_> {
             agents, neighbors, ..
         } = self.frame;
         let (mut squared, mut widest) = (0.0_f64, 0.0_f64);
-        for run in neighbors.around(agents.position[self.i], self.radius) {
-            let fastest = greatest(&agents.velocity[run.indices()], |v| v.norm_squared());
-            squared = squared.max(fastest);
-            widest = widest.max(greatest(&agents.radius[run.indices()], |&radius| radius));
-        }
+        neighbors
+            .around(agents.position[self.i], self.radius)
+            .for_each(|run| {
+                let fastest = greatest(&agents.velocity[run.indices()], |v| v.norm_squared());
+                squared = squared.max(fastest);
+                widest = widest.max(greatest(&agents.radius[run.indices()], |&radius| radius));
+            });
         Limits {
             longest_reach: agents.radius[self.i] + widest,
             highest_speed: squared.sqrt(),
@@ -70,31 +79,111 @@ impl Surroundings for Around<'_> {
         }
     }
 
-    fn read(&self, wanted: Range<f64>, discs: &mut Vec<MovingDisc>) {
+    #[inline(always)]
+    fn read<S: Simd>(&self, simd: S, wanted: Range<f64>, discs: &mut Discs) {
         let Frame {
             agents, neighbors, ..
         } = self.frame;
+        let farthest = wanted.end.min(self.radius * self.radius);
+        let (nearest, end) = (
+            f64x8::splat(simd, wanted.start),
+            f64x8::splat(simd, farthest),
+        );
+        let radius = f64x8::splat(simd, agents.radius[self.i]);
+        let few = Few::of(agents);
+        let (positions, velocities, radii) = match &few {
+            Some(few) => (&few.position[..], &few.velocity[..], &few.radius[..]),
+            None => (
+                &agents.position[..],
+                &agents.velocity[..],
+                &agents.radius[..],
+            ),
+        };
         let position = agents.position[self.i];
-        let radius = self.radius * self.radius;
-        let farthest = wanted.end.min(radius);
-        for run in neighbors.around(position, farthest.sqrt()) {
+        discs.around(neighbors, position, farthest.sqrt());
+        // Closures do not inherit `#[target_feature]`: these loops are closure-free.
+        while let Some(run) = discs.next_run() {
             let place = neighbors.seen_from(position, run.laps);
-            for j in run.indices() {
-                let offset = agents.position[j] - place;
-                let squared = offset.norm_squared();
-                if !(wanted.start <= squared && squared < farthest) {
-                    continue;
-                }
-                let reach = agents.radius[self.i] + agents.radius[j];
+            let (x, y) = (f64x8::splat(simd, place.x), f64x8::splat(simd, place.y));
+            let run = run.indices();
+            let mut start = run.start;
+            while start < run.end {
+                // The last agents are read with some before them.
+                let first = start.min(positions.len() - LANES);
+                let own = lanes(start - first..run.end - first);
+                let some = first..first + LANES;
+                let [their_x, their_y] = coordinates(simd, &positions[some.clone()]);
+                let offset = [their_x - x, their_y - y];
+                let squared = offset[0] * offset[0] + offset[1] * offset[1];
+                let reach = radius + f64x8::from_slice(simd, &radii[some.clone()]);
+                let contact = reach * reach;
                 // Ignores agents in contact, and with them agent i itself.
-                if squared > reach * reach {
-                    discs.push(MovingDisc {
+                let is_wanted =
+                    squared.simd_ge(nearest) & squared.simd_lt(end) & squared.simd_gt(contact);
+                let is_wanted = is_wanted.to_bitmask() & own;
+                if is_wanted != 0 {
+                    let eight = Eight {
                         offset,
-                        velocity: agents.velocity[j],
-                        reach,
-                    });
+                        velocity: coordinates(simd, &velocities[some]),
+                        gap: squared - contact,
+                    };
+                    discs.add(simd, &eight, is_wanted, first as u32);
                 }
+                start += LANES;
             }
         }
     }
+
+    #[inline]
+    fn disc(&self, number: u32) -> MovingDisc {
+        let Frame {
+            agents, neighbors, ..
+        } = self.frame;
+        let (i, j) = (self.i, number as usize);
+        let offset = |laps: i32| agents.position[j] - neighbors.seen_from(agents.position[i], laps);
+        let mut nearest = offset(0);
+        if neighbors.period().is_some() {
+            for offset in [-1, 1].map(offset) {
+                if offset.norm_squared() < nearest.norm_squared() {
+                    nearest = offset;
+                }
+            }
+        }
+        MovingDisc {
+            offset: nearest,
+            velocity: agents.velocity[j],
+            reach: agents.radius[i] + agents.radius[j],
+        }
+    }
+}
+
+/// The bits of these lanes.
+#[inline(always)]
+fn lanes(some: Range<usize>) -> u64 {
+    let up_to = |end: usize| (1_u64 << end.min(LANES)) - 1;
+    up_to(some.end) & !up_to(some.start)
+}
+
+/// A crowd that is too small for a vector, padded.
+struct Few {
+    position: [Vector; LANES],
+    velocity: [Vector; LANES],
+    radius: [f64; LANES],
+}
+
+impl Few {
+    #[inline(always)]
+    fn of(agents: &Agents) -> Option<Self> {
+        (agents.len() < LANES).then(|| Self {
+            position: padded(&agents.position),
+            velocity: padded(&agents.velocity),
+            radius: padded(&agents.radius),
+        })
+    }
+}
+
+fn padded<T: Copy + Default>(values: &[T]) -> [T; LANES] {
+    let mut padded = [T::default(); LANES];
+    padded[..values.len()].copy_from_slice(values);
+    padded
 }
