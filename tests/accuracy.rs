@@ -69,12 +69,12 @@ fn every_curve_has_the_default_but_those_of_other_integrators() {
                 ..
             } = &curve[0];
             let defaults = curve.iter().filter(|trial| trial.is_default).count();
-            assert_eq!(
-                defaults,
-                usize::from(knob != "integrator"),
-                "{} {label}",
-                scene.name
-            );
+            let expected = match knob.as_str() {
+                "integrator" => 0..=0,
+                "preset" => 1..=2, // `fast` is the default where agents avoid each other in dense crowds
+                _ => 1..=1,
+            };
+            assert!(expected.contains(&defaults), "{} {label}", scene.name);
             let has_best = !["time-step", "integrator", "preset"].contains(&knob.as_str());
             assert_eq!(best.is_some(), has_best, "{knob}");
         }
@@ -137,8 +137,8 @@ fn errors_are_symmetric_and_decrease_with_the_time_step() {
 
 #[test]
 fn a_time_step_that_misses_a_sample_time_is_refused() {
-    let refused = Motion::of(&small("sph"), &["time_step_secs=0.025".parse().unwrap()]);
-    assert!(refused.unwrap_err().to_string().contains("0.025"));
+    let refused = Motion::of(&small("sph"), &["time_step_secs=0.03".parse().unwrap()]);
+    assert!(refused.unwrap_err().to_string().contains("0.03"));
 }
 
 #[test]

@@ -68,8 +68,8 @@ pub(super) struct File {
     #[schemars(extend("default" = PAPER_TIME_STEP))]
     pub time_step_secs: Option<TimeStep>,
     /// The upper limit on the step that `auto` chooses, seconds. No effect on other steps. `auto` is the longest step
-    /// at which Table 1 stays within the noise of its seeds: 0.05 s where agents stay or avoid each other only in sparse
-    /// crowds, 0.025 s where they leave, 0.02 s where they also avoid each other in dense crowds.
+    /// at which Table 1 stays within the noise of its seeds: 0.025 s, or 0.02 s where agents avoid each other in dense
+    /// crowds. Where agents stay it is 0.05 s.
     #[schemars(extend("default" = PAPER_COARSE_STEP))]
     pub longest_step_secs: Option<TimeStep>,
     /// Δt_coarse, frames: how often RVO chooses velocities, sources let agents enter and events begin. It is part of

@@ -8,7 +8,7 @@ use super::file::File;
 use crate::analysis::stability;
 use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::engine::journeys::Place;
-use crate::engine::profile::{Blend, BlendStep, Navigation};
+use crate::engine::profile::{BlendStep, Navigation};
 use crate::engine::scene::{Integrator, Scene};
 
 /// Δt_fine.
@@ -76,13 +76,11 @@ fn longest_faithful_step(scene: &Scene) -> f64 {
         return 0.05;
     }
     let avoids = |step: &BlendStep| !matches!(step.profile.navigation, Navigation::Goal(_));
-    let of_blend = |blend: &Blend| match blend.steps() {
-        [.., densest] if avoids(densest) => PAPER_TIME_STEP,
-        [loosest, ..] if avoids(loosest) => 0.05,
-        _ => 0.025,
-    };
-    let steps = scene.groups.iter().map(|group| of_blend(&group.blend));
-    steps.fold(0.05, f64::min)
+    let mut densest = (scene.groups.iter()).filter_map(|group| group.blend.steps().last());
+    match densest.any(avoids) {
+        true => PAPER_TIME_STEP,
+        false => 0.025,
+    }
 }
 
 /// The clock of a file, with the paper's step if that is missing or `auto`.

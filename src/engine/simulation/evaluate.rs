@@ -206,6 +206,7 @@ impl Simulation {
         chosen.resize(agents.len(), None);
         self.stages.time(Stage::Rvo, || {
             let slots = chosen.par_iter_mut().zip(&agents.avoidance).enumerate();
+            let slots = slots.with_max_len(BLOCK); // choices differ in cost
             slots.for_each_init(Scratch::default, |scratch, (i, (chosen, &held))| {
                 let blend = fixed.blend(agents, i);
                 let rvo = blend.rvo().filter(|_| blend.rvo_acts(&frame, i));
@@ -231,6 +232,7 @@ impl Simulation {
             acceleration
                 .par_chunks_mut(BLOCK)
                 .with_min_len(fixed.task())
+                .with_max_len(2 * fixed.task())
                 .enumerate()
                 .map(|(b, acceleration)| {
                     fixed.accelerate(&frame, b, acceleration);

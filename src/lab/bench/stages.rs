@@ -36,20 +36,20 @@ pub type Stretch = (&'static str, f64, f64);
 const BUSIEST: [Stretch; 6] = [
     ("evacuation", 10.0, 10.0),
     ("crossing", 40.0, 10.0),
-    ("platforms", 60.0, 10.0),
     ("concert", 150.0, 10.0),
+    ("platforms", 60.0, 10.0),
     ("festival", 60.0, 2.0),
     ("plaza", 10.0, 0.5),
 ];
-/// The number of small scenes among them, which come first.
-const SMALL: usize = 3;
+/// The number of those in quick plans, which come first.
+const QUICK: usize = 4;
 
 /// The walking laws of the hall.
 const LAWS: [&str; 4] = ["none", "headway", "density-ahead", "drag"];
 
-/// The stretches of a plan: all, or those of the small scenes if the plan is quick.
+/// The stretches of a plan: all, or the first if the plan is quick.
 pub fn busiest(plan: &Plan) -> &'static [Stretch] {
-    plan.choose(&BUSIEST, &BUSIEST[..SMALL])
+    plan.choose(&BUSIEST, &BUSIEST[..QUICK])
 }
 
 /// A crowd at the start of the timed frames.
