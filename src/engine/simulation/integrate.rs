@@ -61,13 +61,20 @@ impl Simulation {
         let agents = &mut self.crowd.agents;
         let count = agents.len();
         agents.acceleration_before.resize(count, None); // for agents that entered since
-        let before = &mut agents.acceleration_before;
-        let states = agents.velocity.iter_mut().zip(before);
-        for ((v, before), &a) in states.zip(&self.derived.fields.acceleration) {
-            if let Some(before) = before.replace(a) {
-                *v += (a - before) * (0.5 * dt);
+        let blocks = (
+            agents.velocity.par_chunks_mut(BLOCK),
+            agents.acceleration_before.par_chunks_mut(BLOCK),
+            self.derived.fields.acceleration.par_chunks(BLOCK),
+        );
+        let blocks = blocks.into_par_iter().with_min_len(TASK);
+        blocks.for_each(|(velocities, before, accelerations)| {
+            let states = velocities.iter_mut().zip(before).zip(accelerations);
+            for ((v, before), &a) in states {
+                if let Some(before) = before.replace(a) {
+                    *v += (a - before) * (0.5 * dt);
+                }
             }
-        }
+        });
         self.move_all(|_, v, a| Motion {
             way: v + a * (0.5 * dt),
             velocity: v + a * dt,
