@@ -189,7 +189,7 @@ impl Real for f32 {
 
     /// Computes 2ⁿ 2ʳ with |r| ≤ 1/2, where 2ʳ = e^(r ln 2) is a Taylor series.
     ///
-    /// Adding [`ROUNDING`] rounds x to n, which the sum has in its lowest bits; shifted, n is added to the exponent of
+    /// Adding `ROUNDING` rounds x to n, which the sum has in its lowest bits; shifted, n is added to the exponent of
     /// 2ʳ. No exponent is below the least: n = −126 is the rounded x only for r ≥ 0, for which 2ʳ ≥ 1.
     #[inline(always)]
     fn exp2<S: Simd>(simd: S, x: f32x8<S>) -> f32x8<S> {
