@@ -21,7 +21,8 @@ impl Simulation {
     /// Runs `work` on a thread of the thread pool, unless the crowd is too small for a second thread. From any other
     /// thread, every parallel loop would wait until the pool has woken up.
     pub(super) fn on_pool<T: Send>(&mut self, work: impl FnOnce(&mut Self) -> T + Send) -> T {
-        let alone = self.crowd.agents.len() <= BLOCK * self.fixed.task();
+        // Loops are divided into tasks from two tasks on.
+        let alone = self.crowd.agents.len().div_ceil(BLOCK) < 2 * self.fixed.task();
         if alone || rayon::current_thread_index().is_some() {
             return work(self);
         }

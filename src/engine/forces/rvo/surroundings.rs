@@ -141,6 +141,7 @@ impl Surroundings for Around<'_> {
         } = self.frame;
         let (i, j) = (self.i, number as usize);
         let offset = |laps: i32| agents.position[j] - neighbors.seen_from(agents.position[i], laps);
+        // A period is at least twice as long as agents act on each other: only the nearest image can be in reach.
         let mut nearest = offset(0);
         if neighbors.period().is_some() {
             for offset in [-1, 1].map(offset) {
