@@ -3,7 +3,6 @@
 import json
 import subprocess
 import sys
-import threading
 
 import numpy
 import pandas
@@ -163,22 +162,6 @@ def test_validation_is_a_table():
     assert len(table) > 0
     with pytest.raises(sc.Error, match="no such case"):
         sc.validate("nowhere")
-
-
-def test_other_threads_run_meanwhile():
-    seen = []
-    done = threading.Event()
-
-    def watch():
-        while not done.wait(0.01):
-            seen.append(1)
-
-    thread = threading.Thread(target=watch)
-    thread.start()
-    sc.run("evacuation", until=10, progress=False)
-    done.set()
-    thread.join()
-    assert len(seen) > 3
 
 
 def test_the_program_starts_without_pandas():

@@ -4,6 +4,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import threading
 import time
 
 import numpy
@@ -123,6 +124,31 @@ def test_forces_sum_up_to_the_acceleration(corridor):
         share["weight"] * numpy.sum(list(share["accelerations"].values()), axis=0) for share in found["profiles"]
     )
     numpy.testing.assert_allclose(total, found["acceleration"], atol=1e-3)
+
+
+def test_other_threads_run_during_a_step():
+    simulation = sc.Simulation("evacuation")
+    begun, ran = threading.Event(), threading.Event()
+
+    def other():
+        begun.wait()
+        ran.set()
+
+    thread = threading.Thread(target=other)
+    thread.start()
+    interval = sys.getswitchinterval()
+    # From here on, the other thread runs only where this one gives up Python's lock by itself.
+    sys.setswitchinterval(1000)
+    try:
+        begun.set()
+        for _ in range(1000):
+            simulation.step(100)
+            if ran.is_set():
+                break
+        assert ran.is_set()
+    finally:
+        sys.setswitchinterval(interval)
+        thread.join()
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
