@@ -18,13 +18,21 @@ fn random(seed: u64) -> impl FnMut() -> f64 {
     move || rng.random_range(-1.0..1.0)
 }
 
-/// The acceleration of each agent by social forces with the tolerance, as computed by the engine.
-fn accelerations(agents: &[NewAgent], precision: Precision) -> Vec<Vector> {
-    let parameters = Parameters {
+/// Social forces with the tolerance.
+fn tolerant() -> Parameters {
+    Parameters {
         avoidance_tolerance: Some(TOLERANCE),
         ..Parameters::default()
-    };
-    let mut scene = scene(vec![], blend_with("sf", &parameters));
+    }
+}
+
+/// The acceleration of each agent by social forces with these parameters, as computed by the engine.
+fn accelerations(
+    agents: &[NewAgent],
+    parameters: &Parameters,
+    precision: Precision,
+) -> Vec<Vector> {
+    let mut scene = scene(vec![], blend_with("sf", parameters));
     scene.precision = precision;
     scene.agents = agents.to_vec();
     let simulation = common::evaluated(scene);
@@ -47,7 +55,7 @@ fn pairs_that_are_left_out_have_forces_below_the_tolerance() {
             let [v_i, v_j] = [(); 2].map(|()| vector(next(), next()) * speed);
             let goal = vector(9.0, 0.0);
             let agents = [walker(r, v_i, goal), walker(vector(0.0, 0.0), v_j, goal)];
-            let found = accelerations(&agents, precision)[0];
+            let found = accelerations(&agents, &tolerant(), precision)[0];
             let exact = force(&social, r, v_i - v_j);
             if r.norm() > social.avoidance_radius {
                 assert_eq!(found, Vector::zeros());
@@ -66,6 +74,44 @@ fn pairs_that_are_left_out_have_forces_below_the_tolerance() {
     }
 }
 
+/// Agents that look one minute ahead: squares of |r_ij + T v_ij| are beyond single precision.
+#[test]
+fn far_anticipation_leaves_out_no_pair_above_the_tolerance() {
+    for avoidance_radius in [5.0, 50.0] {
+        let parameters = Parameters {
+            anticipation_time: Some(60.0),
+            avoidance_radius: Some(avoidance_radius),
+            ..tolerant()
+        };
+        let social = SocialForce {
+            anticipation_time: 60.0,
+            avoidance_radius,
+            ..SocialForce::default()
+        };
+        let mut next = random(10);
+        let mut strong = 0;
+        for _ in 0..2000 {
+            let r = vector(next(), next()) * (0.7 * avoidance_radius);
+            // Toward each other, nearly: such pairs act over the longest distances.
+            let turn = vector(-r.y, r.x) * (0.1 * next());
+            let v = -(r + turn).normalize() * (1.5 + next());
+            let goal = vector(9.0, 0.0);
+            let agents = [
+                walker(r, v * 0.5, goal),
+                walker(vector(0.0, 0.0), -v * 0.5, goal),
+            ];
+            let exact = force(&social, r, v).norm();
+            let found = accelerations(&agents, &parameters, Precision::Mixed)[0];
+            strong += u32::from(exact > TOLERANCE);
+            assert!(
+                found != Vector::zeros() || exact <= TOLERANCE,
+                "{r} {v} {exact}"
+            );
+        }
+        assert!(strong > 1000, "{strong}");
+    }
+}
+
 #[test]
 fn which_pairs_are_left_out_depends_on_no_other_agents() {
     let mut next = random(9);
@@ -76,12 +122,12 @@ fn which_pairs_are_left_out_depends_on_no_other_agents() {
         })
         .collect();
     for precision in [Precision::Double, Precision::Mixed] {
-        let together = accelerations(&crowd, precision);
+        let together = accelerations(&crowd, &tolerant(), precision);
         for i in (0..crowd.len()).step_by(40) {
             let others = (0..crowd.len()).filter(|&j| j != i);
             let pairs = others.map(|j| [crowd[i], crowd[j]]);
             let alone: Vec<Vector> = pairs
-                .map(|pair| accelerations(&pair, precision)[0])
+                .map(|pair| accelerations(&pair, &tolerant(), precision)[0])
                 .collect();
             let sum: Vector = alone.iter().sum();
             let size: f64 = alone.iter().map(|pair| pair.norm()).sum();

@@ -180,10 +180,11 @@ fn the_automatic_integrator_depends_on_what_agents_do() {
 }
 
 #[test]
-fn fast_steps_depend_on_who_avoids_and_who_leaves() {
+fn fast_steps_depend_on_avoidance_and_exits() {
     let step = |profile: &str, more: &str| {
         let text = format!(
-            r#"{{"preset": "fast", "profile": "{profile}", "goal": [9, 0], "parameters": {{"gas_constant": 20}},
+            r#"{{"preset": "fast", "profile": "{profile}", "goal": [9, 0],
+                "parameters": {{"gas_constant": 20, "agent_stiffness": 50, "wall_stiffness": 50}},
                 "grids": [{{"min": [0, 0], "max": [2, 2], "columns": 2, "rows": 2{more}}}]}}"#
         );
         Scenario::parse(&text, "f.json", &[])
@@ -196,7 +197,7 @@ fn fast_steps_depend_on_who_avoids_and_who_leaves() {
     let leaves = r#", "remove_within": 1"#;
     assert_eq!(step("sph", leaves), 0.025);
     assert_eq!(step("walk+sph", leaves), 0.025);
-    assert!(step("sf->sph", leaves) <= 0.025);
+    assert_eq!(step("sf->sph", leaves), 0.025);
     assert_eq!(step("sf+sph", leaves), 0.02);
     assert_eq!(step("rvo+sph", ""), 0.02);
 }

@@ -243,11 +243,10 @@ fn an_aborted_run_leaves_whole_frames() {
     drop(files);
     let lines = fs::read_to_string(&paths[0]).unwrap().lines().count();
     assert_eq!(lines, 2 + 4 * 36);
-    assert_eq!(
-        one_count(&paths[1], "SELECT count(*) FROM trajectory_data"),
-        2 * 36
-    );
-    assert_eq!(one_count(&paths[1], "SELECT count(*) FROM frame_data"), 2);
+    let frames = one_count(&paths[1], "SELECT count(*) FROM frame_data");
+    assert!((2..=4).contains(&frames), "{frames}");
+    let rows = one_count(&paths[1], "SELECT count(*) FROM trajectory_data");
+    assert_eq!(rows, frames * 36);
 }
 
 /// The rings of a polygon in well-known text: the outline, then the holes.

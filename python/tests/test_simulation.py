@@ -176,14 +176,20 @@ def test_ctrl_c_interrupts_and_the_simulation_goes_on():
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
-def test_ctrl_c_ends_the_program_with_130():
+def test_ctrl_c_ends_the_program_with_130(tmp_path):
+    # A run of days; it handles signals before it writes.
+    long = '{"duration_secs": 1e6, "agents": [{"position": [0, 0], "goal": [9, 0]}]}'
+    (tmp_path / "long.json").write_text(long)
+    written = tmp_path / "long.csv"
+    arguments = ["run", tmp_path / "long.json", "--trajectory", written, "--json"]
     process = subprocess.Popen(
-        [sys.executable, "-m", "sandbox_crowds", "concert", "--until", "600", "--json"],
+        [sys.executable, "-m", "sandbox_crowds", *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
     )
-    time.sleep(2)
+    while process.poll() is None and not (written.exists() and written.stat().st_size > 0):
+        time.sleep(0.01)
     process.send_signal(signal.SIGINT)
     said, messages = process.communicate(timeout=60)
     assert process.returncode == 130

@@ -347,7 +347,7 @@ fn set_last(values: &mut Vec<f64>, count: usize, value: f64, usual: f64) {
 /// Least number of values per parallel task.
 const SOME: usize = 4096;
 /// Least number of agents that look for their ways per parallel task.
-const FEW: usize = 512;
+const FEW: usize = 1024;
 
 fn arrange<T: Copy + Send + Sync>(values: &mut Vec<T>, order: &[u32]) {
     let arranged = order.par_iter().with_min_len(SOME);

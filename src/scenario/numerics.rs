@@ -11,7 +11,7 @@ use crate::engine::journeys::Place;
 use crate::engine::profile::{BlendStep, Navigation};
 use crate::engine::scene::{Integrator, Scene};
 
-/// Δt_fine.
+/// A time step in seconds, or `auto`.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "must be a number of seconds, or \"auto\"")]
 pub(super) enum TimeStep {

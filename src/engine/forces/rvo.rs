@@ -141,8 +141,8 @@ impl Situation {
     }
 }
 
-/// The greatest integer below a number from 0 to 255, or the next smaller one if the number is an integer. Without
-/// branches, so that loops over this function use vectors.
+/// The integer part of a number from 0 to 255; of an odd integer, the integer below it. Branchless, so that loops over
+/// this function use vectors.
 #[inline(always)]
 fn floor(number: f64) -> u8 {
     // Added to a small number, this leaves the nearest integer in the lowest bits.

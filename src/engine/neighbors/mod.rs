@@ -270,7 +270,7 @@ fn list_walls(
 
 /// The range of SPH and contact forces between agents, plus twice the margin, meters.
 fn near_radius(agents: &Agents, ranges: &Ranges) -> f64 {
-    let radii = agents.radius.par_chunks(TASK * BLOCK);
+    let radii = agents.radius.par_chunks(BLOCK).with_min_len(TASK);
     let widest = radii.map(|some| some.iter().copied().fold(0.0, f64::max));
     let widest = widest.reduce(|| 0.0, f64::max);
     ranges.support.max(2.0 * widest) + 2.0 * ranges.margin

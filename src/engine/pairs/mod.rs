@@ -3,10 +3,11 @@
 //!
 //! A dense scene spends nearly all of its time here. Agents that are close together (see
 //! [`Clusters`](crate::engine::neighbors::Clusters)) share their neighbors, so the sums of eight agents are computed
-//! together, from data packed in [`Columns`]. Each summand is defined with its equation, as a [`PairSum`] in
-//! [`density`](crate::engine::density) (Eq. 9), [`near`](crate::engine::forces::near) (Eqs. 7, 11 and 22) and
-//! [`social`](crate::engine::forces::social) (Eq. 18). Each agent is included in its own sums: it adds to its own
-//! density, but exerts no force on itself.
+//! together, from data packed in [`Columns`]. Each summand over listed neighbors is a [`PairSum`], defined with its
+//! equation in [`density`](crate::engine::density) (Eq. 9), [`near`](crate::engine::forces::near) (Eqs. 7, 11 and 22),
+//! [`virial`](crate::engine::forces::virial) and [`walking`](crate::engine::forces::walking);
+//! [`social`](crate::engine::forces::social) has a loop of its own (Eq. 18). Each agent is included in its own sums: it
+//! adds to its own density, but exerts no force on itself.
 
 mod columns;
 mod real;
@@ -19,8 +20,8 @@ pub use fearless_simd::{
 };
 pub use real::{LANES, Lanes, Mask, Real};
 pub use sums::{
-    PairSum, add_pairs, add_quotients, coordinates, lanes_from, load, seen_from, splat, spread,
-    store,
+    PairSum, add_pairs, add_quotients, coordinates, first_lanes, lanes_from, load, seen_from,
+    splat, spread, store,
 };
 pub use vectors::Vectors;
 

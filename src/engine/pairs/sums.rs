@@ -70,6 +70,12 @@ pub fn splat<R: Real, S: Simd>(simd: S, value: f64) -> Lanes<R, S> {
     spread(simd, R::of(value))
 }
 
+/// The bitmask of the first `count` lanes.
+#[inline(always)]
+pub fn first_lanes(count: usize) -> u64 {
+    (1 << count.min(LANES)) - 1
+}
+
 /// `number` in all lanes.
 #[inline(always)]
 pub fn spread<R: Real, S: Simd>(simd: S, number: R) -> Lanes<R, S> {

@@ -21,7 +21,7 @@ impl Simulation {
     /// Runs `work` on a thread of the thread pool, unless the crowd is too small for a second thread. From any other
     /// thread, every parallel loop would wait until the pool has woken up.
     pub(super) fn on_pool<T: Send>(&mut self, work: impl FnOnce(&mut Self) -> T + Send) -> T {
-        // Loops are divided into tasks from two tasks on.
+        // Loops are divided into tasks from two tasks on; choices of velocity, which take long, from two agents on.
         let alone = self.crowd.agents.len().div_ceil(BLOCK) < 2 * self.fixed.task();
         if alone || rayon::current_thread_index().is_some() {
             return work(self);
@@ -207,7 +207,12 @@ impl Simulation {
         chosen.resize(agents.len(), None);
         self.stages.time(Stage::Rvo, || {
             let slots = chosen.par_iter_mut().zip(&agents.avoidance).enumerate();
-            let slots = slots.with_max_len(BLOCK); // choices differ in cost
+            let fewest = if frame.clock.is_coarse() {
+                1
+            } else {
+                TASK * BLOCK
+            };
+            let slots = slots.with_min_len(fewest).with_max_len(BLOCK); // choices differ in cost
             slots.for_each_init(Scratch::default, |scratch, (i, (chosen, &held))| {
                 let blend = fixed.blend(agents, i);
                 let rvo = blend.rvo().filter(|_| blend.rvo_acts(&frame, i));

@@ -67,13 +67,15 @@ impl Simulation {
             self.derived.fields.acceleration.par_chunks(BLOCK),
         );
         let blocks = blocks.into_par_iter().with_min_len(TASK);
-        blocks.for_each(|(velocities, before, accelerations)| {
-            let states = velocities.iter_mut().zip(before).zip(accelerations);
-            for ((v, before), &a) in states {
-                if let Some(before) = before.replace(a) {
-                    *v += (a - before) * (0.5 * dt);
+        self.stages.time(Stage::Integration, || {
+            blocks.for_each(|(velocities, before, accelerations)| {
+                let states = velocities.iter_mut().zip(before).zip(accelerations);
+                for ((v, before), &a) in states {
+                    if let Some(before) = before.replace(a) {
+                        *v += (a - before) * (0.5 * dt);
+                    }
                 }
-            }
+            });
         });
         self.move_all(|_, v, a| Motion {
             way: v + a * (0.5 * dt),

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::scenes::simulation;
+use super::scenes::{run_until, simulation};
 use crate::analysis::statistics::Range;
 use crate::lab::bench::{Contender, alternate, ms_per_frame, pool};
 use crate::lab::error::LabError;
@@ -11,17 +11,19 @@ use crate::scenario::Setting;
 /// Simulated time of one measurement, seconds.
 const SECONDS: f64 = 1.2;
 
-/// Milliseconds per simulated second of a document under each of several settings; an error if a setting is invalid or a
-/// run fails.
+/// Milliseconds per simulated second of a document under each of several settings, from `from_secs` on; an error if a
+/// setting is invalid or a run fails.
 pub fn measure<'a>(
     document: &Value,
+    from_secs: f64,
     settings: impl Iterator<Item = &'a [Setting]>,
     repeats: usize,
 ) -> Result<Vec<Range>, LabError> {
     let pool = pool(1)?;
     let mut contenders: Vec<Contender> = Vec::new();
     for settings in settings {
-        let start = simulation(document, settings)?;
+        let mut start = simulation(document, settings)?;
+        run_until(&mut start, from_secs)?;
         let pool = &pool;
         // Every turn repeats the same frames from the same start.
         contenders.push(Box::new(move |turns| {

@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::cost;
 use super::found::{Found, Judged, Point};
 use super::report::Report;
-use super::scenes::{Kind, Scene, continued, names, run_until, simulation};
+use super::scenes::{Kind, Scene, names};
 use super::trajectory::Trajectories;
 use super::trials::{Trial, few, reference, settings, trials};
 use super::{statistics, walls};
@@ -37,7 +37,7 @@ pub struct Plan {
 
 /// How often each cost is measured.
 const TURNS: usize = 5;
-/// Costs of scenes that are judged by statistics are measured in a dense crowd: at this time, seconds.
+/// When the crowds of scenes that are judged by statistics are dense, seconds: their costs are measured from then on.
 const DENSE_AT: f64 = 15.0;
 /// The number of seeds of a quick plan.
 const FEW_SEEDS: u64 = 2;
@@ -153,7 +153,11 @@ impl Task {
         let (count, name) = (settings.len(), self.scene.name);
         listener.notes(&format!("{name}: measuring the cost of {count} settings"));
         let turns = if self.quick { 1 } else { TURNS };
-        let costs = cost::measure(&self.busy()?, settings.values().copied(), turns)?;
+        let from = match self.scene.kind {
+            Kind::Motion => 0.0,
+            Kind::Statistics => DENSE_AT,
+        };
+        let costs = cost::measure(&self.document, from, settings.values().copied(), turns)?;
         let costs: BTreeMap<&usize, Range> = settings.keys().zip(costs).collect();
         let points = trials.zip(judged.errors).map(|(trial, errors)| Point {
             trial: trial.clone(),
@@ -166,16 +170,6 @@ impl Task {
             points: points.collect(),
             notes: judged.notes,
         })
-    }
-
-    /// The document whose cost is measured. Unless a scene is judged by motion, its crowd is first made dense.
-    fn busy(&self) -> Result<Value, LabError> {
-        if self.scene.kind == Kind::Motion {
-            return Ok(self.document.clone());
-        }
-        let mut crowd = simulation(&self.document, &[])?;
-        run_until(&mut crowd, DENSE_AT)?;
-        Ok(continued(&self.document, &crowd, |_, _, _| ()))
     }
 
     /// Compares the runs of all entries with those of the reference.

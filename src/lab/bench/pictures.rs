@@ -17,9 +17,13 @@ pub fn sheet(title: &str, x: Axis, y: Axis, marks: Vec<Mark>) -> Sheet {
     }
 }
 
-/// The color of line `k`; colors repeat after seven.
+/// The color of line or bar `k`: after seven colors the same follow lighter. Colors repeat after fourteen.
 pub fn color(k: usize) -> Rgb {
-    LINES[k % LINES.len()]
+    let color = LINES[k % LINES.len()];
+    match k / LINES.len() % 2 {
+        0 => color,
+        _ => color.map(|part| part.midpoint(u8::MAX)),
+    }
 }
 
 /// A dot at every median, and a vertical line from the minimum to the maximum.

@@ -258,7 +258,6 @@ fn table(rows: &[Row]) -> Table {
 
 /// A group of bars for each scene: frame time without each skip over frame time with it.
 fn picture(rows: &[Row]) -> Sheet {
-    let color = |k: usize| if k < 7 { color(k) } else { BLACK };
     let scenes: Vec<&[Row]> = rows.chunks(SKIPS.len()).collect();
     let width = 0.9 / SKIPS.len() as f64;
     let ratio = |row: &Row| row.ratio.map(|ratio| ratio.median);

@@ -14,6 +14,7 @@ use super::report::Findings;
 use super::timing::{failed, ms_of, ms_per_frame, warmed};
 use super::{Benchmark, Plan};
 use crate::analysis::statistics::Range;
+use crate::engine::clock::PAPER_TIME_STEP;
 use crate::engine::simulation::{Simulation, Stage, StageTimes};
 use crate::lab::error::LabError;
 use crate::output::plot::{Axis, BLACK, Mark, Sheet};
@@ -41,8 +42,10 @@ const BUSIEST: [Stretch; 6] = [
     ("festival", 60.0, 2.0),
     ("plaza", 10.0, 0.5),
 ];
-/// The number of those in quick plans, which come first.
+/// Quick plans measure the first `QUICK` stretches.
 const QUICK: usize = 4;
+/// The stretch of all scenarios in quick plans: start and length, seconds.
+const QUICK_STRETCH: (f64, f64) = (0.1, 0.2);
 
 /// The walking laws of the hall.
 const LAWS: [&str; 4] = ["none", "headway", "density-ahead", "drag"];
@@ -69,7 +72,7 @@ pub fn begin(stretch: &Stretch, plan: &Plan, profile: Option<&str>) -> Result<St
     let setting = setting.map_err(|error| LabError::Data(error.to_string()))?;
     let scenario = scenario(name, setting)?;
     let mut simulation = Simulation::new(scenario.scene).map_err(failed)?;
-    let (from, lasting) = plan.choose((from, lasting), (0.1, 0.2));
+    let (from, lasting) = plan.choose((from, lasting), QUICK_STRETCH);
     let clock = *simulation.frame().clock;
     ms_per_frame(&mut simulation, clock.frame_at(from))?;
     Ok(Started {
@@ -116,17 +119,21 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
         rows.push(measure(begin(stretch, plan, None)?, plan)?);
     }
     let agents = plan.choose(10_000, 400);
+    let before = plan.choose(50, 5);
+    let streaming = plan.choose(25, 5);
     for profile in ["sf", "rvo"] {
         say(&format!("{agents} agents at 4 P/m², {profile}"));
         let started = Started {
             name: "streams, 4 P/m²",
             profile: profile.to_owned(),
-            simulation: Crowd::streams(agents, profile).settled(plan.choose(50, 5))?,
+            simulation: Crowd::streams(agents, profile).settled(before)?,
             measurements: Vec::new(),
-            frames: plan.choose(25, 5),
+            frames: streaming,
         };
         rows.push(measure(started, plan)?);
     }
+    let bays = plan.choose([13, 5], [2, 1]);
+    let walking = plan.choose(100, 5);
     for law in LAWS {
         say(&format!("hall with pillars, walking law {law}"));
         let started = Started {
@@ -135,25 +142,32 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
                 "none" => "sph".to_owned(),
                 law => format!("sph, {law}"),
             },
-            simulation: hall::settled(plan.choose([13, 5], [2, 1]), plan.choose(50, 5), law)?,
+            simulation: hall::settled(bays, before, law)?,
             measurements: Vec::new(),
-            frames: plan.choose(100, 5),
+            frames: walking,
         };
         rows.push(measure(started, plan)?);
     }
-    let stretches =
-        BUSIEST.map(|(name, from, lasting)| format!("{name} {from}–{} s", from + lasting));
-    let stretches = stretches.join(", ");
+    let stretches = busiest(plan).iter().map(|&(name, from, lasting)| {
+        let (from, lasting) = plan.choose((from, lasting), QUICK_STRETCH);
+        format!("{name} {from}–{} s", from + lasting)
+    });
+    let stretches = stretches.collect::<Vec<_>>().join(", ");
+    let until = |frames: u64| PAPER_TIME_STEP * (before + frames) as f64;
+    let from = until(0);
     Ok(Findings {
         table: table(&rows),
         sheet: picture(&rows),
         rows: json!(rows),
         notes: vec![format!(
             "Stages are medians, in ms per frame; every repeat takes the same frames. Scenarios as shipped: {stretches}. \
-             Streams: {agents} agents after their first second, half of them walking to the right and half to the left. \
-             Hall: 65 pillars stand between the agents, at 4.7 P/m², and their goal; from 1 to 3 s, without and with a \
-             walking law. Measuring: the scenario's measurements and the search for agents that stand, as in every run; \
-             it is not part of the frame. – : a stage that never runs."
+             Streams: {agents} agents from {from:.1} to {:.1} s, half of them walking to the right and half to the left. \
+             Hall: {} pillars stand between the agents, at 4.7 P/m², and their goal; from {from:.1} to {:.1} s, without \
+             and with a walking law. Measuring: the scenario's measurements and the search for agents that stand, as in every run; \
+             it is not part of the frame. – : a stage that never runs.",
+            until(streaming),
+            bays[0] * bays[1],
+            until(walking)
         )],
     })
 }

@@ -5,7 +5,9 @@ use rand::RngCore;
 use super::{Situation, floor};
 use crate::engine::math::{Vector, unit_vector};
 use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{LANES, Level, Simd, dispatch, f64x8, mask32x8, mask64x8, u8x64, u32x8};
+use crate::engine::pairs::{
+    LANES, Level, Simd, dispatch, f64x8, first_lanes, mask32x8, mask64x8, u8x64, u32x8,
+};
 
 /// A candidate velocity, relative to the current one.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -102,7 +104,7 @@ impl Draws {
                 steps[k] = f64::from((bits >> 32) as u32);
             }
             let lengths = f64x8::from_slice(simd, &steps) * per_step;
-            let is_drawn = (1 << left.min(LANES)) - 1;
+            let is_drawn = first_lanes(left);
             let is_kept = lengths.simd_le(farthest).to_bitmask() & is_drawn;
             let turns = u32x8::from_slice(simd, &turns);
             let turns = turns.compress(mask32x8::from_bitmask(simd, is_kept));
@@ -130,8 +132,8 @@ pub struct Allowed {
 const WIDTH: f64 = 0.1;
 const BUCKETS: u8 = 64;
 
-/// The bucket of candidates that are too fast.
-const TOO_FAST: u8 = u8::MAX;
+/// The bucket of candidates that are too fast; an even number, which [`floor`] keeps.
+const TOO_FAST: u8 = 254;
 
 /// Candidates sorted by their deviation, one array per quantity.
 #[derive(Debug, Default)]

@@ -4,7 +4,7 @@ use super::discs::{Discs, Packed};
 use super::surroundings::{Limits, Surroundings};
 use crate::engine::math::Vector;
 use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{LANES, Simd, f32x8};
+use crate::engine::pairs::{LANES, Simd, f32x8, first_lanes};
 
 /// The number of rings, and the squared distances at which they begin, m²; the last ring is unbounded.
 const RINGS: usize = 4;
@@ -129,7 +129,7 @@ impl Rings {
             // Not `simd_lt`: a NaN counts as possibly met.
             let apart = way.lowest(simd, eight, way.latest(simd, before));
             let apart = apart.simd_gt(splat(simd, 0.0));
-            let mut met = !apart.to_bitmask() & ((1 << LANES) - 1);
+            let mut met = !apart.to_bitmask() & first_lanes(LANES);
             while met != 0 {
                 before = meet(eight.number[met.trailing_zeros() as usize], before)?;
                 met &= met - 1;

@@ -27,6 +27,16 @@ struct Best {
     cost: f64,
 }
 
+impl Best {
+    fn none() -> Self {
+        Self {
+            velocity: Vector::zeros(),
+            number: u32::MAX,
+            cost: f64::INFINITY,
+        }
+    }
+}
+
 impl Search {
     /// The cheapest of `candidates` (Eq. 20), or the first of several with equal costs. Zero if all are too fast.
     ///
@@ -62,11 +72,7 @@ impl Search {
         } = self;
         sorted.take(situation, candidates);
         rings.begin(surroundings.limits());
-        let mut best = Best {
-            velocity: Vector::zeros(),
-            number: u32::MAX,
-            cost: f64::INFINITY,
-        };
+        let mut best = Best::none();
         for (bucket, least) in Sorted::buckets() {
             if least * (1.0 - ROUNDING) - ROUNDING > best.cost {
                 break;

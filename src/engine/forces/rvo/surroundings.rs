@@ -7,7 +7,7 @@ use crate::engine::agents::Agents;
 use crate::engine::frame::Frame;
 use crate::engine::math::{Vector, greatest};
 use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{LANES, Simd, coordinates, f64x8};
+use crate::engine::pairs::{LANES, Simd, coordinates, f64x8, first_lanes};
 
 /// A moving disc, relative to agent i.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,7 +110,7 @@ impl Surroundings for Around<'_> {
             while start < run.end {
                 // The last agents are read with some before them.
                 let first = start.min(positions.len() - LANES);
-                let own = lanes(start - first..run.end - first);
+                let own = first_lanes(run.end - first) & !first_lanes(start - first);
                 let some = first..first + LANES;
                 let [their_x, their_y] = coordinates(simd, &positions[some.clone()]);
                 let offset = [their_x - x, their_y - y];
@@ -141,7 +141,7 @@ impl Surroundings for Around<'_> {
         } = self.frame;
         let (i, j) = (self.i, number as usize);
         let offset = |laps: i32| agents.position[j] - neighbors.seen_from(agents.position[i], laps);
-        // A period is at least twice as long as agents act on each other: only the nearest image can be in reach.
+        // The period is at least twice the avoidance radius, so only the nearest image can be in reach.
         let mut nearest = offset(0);
         if neighbors.period().is_some() {
             for offset in [-1, 1].map(offset) {
@@ -156,13 +156,6 @@ impl Surroundings for Around<'_> {
             reach: agents.radius[i] + agents.radius[j],
         }
     }
-}
-
-/// The bits of these lanes.
-#[inline(always)]
-fn lanes(some: Range<usize>) -> u64 {
-    let up_to = |end: usize| (1_u64 << end.min(LANES)) - 1;
-    up_to(some.end) & !up_to(some.start)
 }
 
 /// A crowd that is too small for a vector, padded.

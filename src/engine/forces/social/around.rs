@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::cutoff::Cutoff;
 use crate::engine::pairs::prelude::*;
-use crate::engine::pairs::{Bodies, LANES, Lanes, Mask, Real, Simd, load, splat, spread};
+use crate::engine::pairs::{Bodies, Lanes, Mask, Real, Simd, first_lanes, load, splat, spread};
 
 /// More than the rounding errors of lengths, relative to the largest length, and of velocities.
 const ROUNDING: f64 = 2e-6;
@@ -37,7 +37,7 @@ impl<'a, R: Real, S: Simd> Around<'a, R, S> {
             R::place(simd, bodies.x[start]),
             R::place(simd, bodies.y[start]),
         ];
-        let own = Mask::<R, S>::from_bitmask(simd, first(agents.len()));
+        let own = Mask::<R, S>::from_bitmask(simd, first_lanes(agents.len()));
         let x = R::between(R::places(simd, &bodies.x[start..]), origin[0]);
         let y = R::between(R::places(simd, &bodies.y[start..]), origin[1]);
         let zero = splat::<R, S>(simd, 0.0);
@@ -84,12 +84,6 @@ impl<'a, R: Real, S: Simd> Around<'a, R, S> {
         }
         counts
     }
-}
-
-/// The bits of the first `count` lanes.
-#[inline(always)]
-pub fn first(count: usize) -> u64 {
-    (1 << count.min(LANES)) - 1
 }
 
 /// The least and the greatest number of eight, and some more on either side.

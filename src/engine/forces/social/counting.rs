@@ -3,14 +3,13 @@
 use std::ops::Range;
 
 use super::SocialForce;
-use super::around::first;
 use super::cutoff::Cutoff;
 use super::near::{Near, grow};
 use super::sum::{Feeling, Pairs};
 use crate::engine::math::Vector;
 use crate::engine::pairs::prelude::*;
 use crate::engine::pairs::{
-    Bodies, LANES, Lanes, Real, Simd, load, seen_from, splat, spread, store,
+    Bodies, LANES, Lanes, Real, Simd, first_lanes, load, seen_from, splat, spread, store,
 };
 
 /// The pairs of one agent i whose force may exceed the tolerance, in their order, side by side. Few of the pairs of a
@@ -98,7 +97,7 @@ impl<R: Real> Counting<R> {
             vx.compress(counts)
                 .store_slice(&mut velocity_x_out[here.clone()]);
             vy.compress(counts).store_slice(&mut velocity_y_out[here]);
-            count += (counts.to_bitmask() & first(len - j)).count_ones() as usize;
+            count += (counts.to_bitmask() & first_lanes(len - j)).count_ones() as usize;
         }
         count
     }

@@ -69,7 +69,8 @@ impl<R: Real, S: Simd> Cutoff<R, S> {
     ) -> Mask<R, S> {
         let t = self.twice_b_squared - dot;
         let mean = (d_squared + a_squared) * self.per_ratio;
-        (d_squared * a_squared).simd_lt((t * t.abs()).max(mean * mean))
+        // Not `simd_lt`: a pair counts if both sides overflow. The right side overflows only if the left one does.
+        (d_squared * a_squared).simd_le((t * t.abs()).max(mean * mean))
     }
 
     /// Whether any pairs of groups of agents may count, given r² and the square of a bound on the relative speed.

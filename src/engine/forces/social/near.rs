@@ -3,17 +3,17 @@
 use std::ops::Range;
 
 use super::SocialForce;
-use super::around::{Around, first};
+use super::around::Around;
 use super::cutoff::Cutoff;
 use super::sum::{Feeling, Pairs};
 use crate::engine::neighbors::Run;
 use crate::engine::pairs::prelude::*;
 use crate::engine::pairs::{
-    Bodies, LANES, Lanes, Real, Simd, load, seen_from, splat, spread, store,
+    Bodies, LANES, Lanes, Real, Simd, first_lanes, load, seen_from, splat, spread, store,
 };
 
-/// The agents j that may act on agents of one cluster, in their order, padded by [`LANES`] entries. A pair takes many
-/// times as long as this copy of its agent j.
+/// The agents j that may act on agents of one cluster, in their order, padded by [`LANES`] entries. Copying an agent
+/// takes far less time than one pair.
 #[derive(Default)]
 pub struct Near<R: Real> {
     pub(super) x: Vec<R::Coordinate>,
@@ -84,7 +84,7 @@ impl<R: Real> Near<R> {
             let (vx, vy) = (load(simd, velocity_x, j), load(simd, velocity_y, j));
             let from = [R::between(x, origin[0]), R::between(y, origin[1])];
             let counts = around.counts(simd, from, [vx, vy]);
-            let bits = counts.to_bitmask() & first(len - j);
+            let bits = counts.to_bitmask() & first_lanes(len - j);
             if bits == 0 {
                 continue;
             }
