@@ -112,6 +112,14 @@ fn differences_name_settings_and_measurements_with_their_change() {
     assert!(of_reports(&a, &json!({"study": "x"})).is_err());
 }
 
+#[test]
+fn entries_of_lists_come_after_single_values() {
+    let run = |value: f64| result(&json!({"data": [{"x": value}], "flow": value}), &json!({}));
+    let found = of_reports(&run(1.0), &run(2.0)).unwrap();
+    let names: Vec<&str> = found.results.iter().map(|one| one.name.as_str()).collect();
+    assert_eq!(names, ["flow", "data[0].x"]);
+}
+
 fn tracks(text: &str) -> sandbox::scenario::trajectories::Tracks {
     read_text(
         Path::new("t.csv"),

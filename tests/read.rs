@@ -177,6 +177,11 @@ fn mistakes_are_reported_with_the_line_and_the_fix() {
             "a.txt:2: the unit \"mm\" is not known; m and cm are, or give --unit",
         ),
         (
+            "a.rrd",
+            "RRF2 and more than sixteen bytes".to_owned(),
+            "a.rrd: a recording has no trajectories to read; run its scenario again with --trajectory FILE",
+        ),
+        (
             "a.csv",
             "a,b\n1,2\n".to_owned(),
             "a.csv:1: the first line must name the columns id, frame, x and y",

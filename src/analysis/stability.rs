@@ -229,7 +229,7 @@ pub fn time_step(scene: &Scene) -> Option<f64> {
 }
 
 /// `value`, rounded down to three significant digits.
-fn three_digits(value: f64) -> f64 {
+pub fn three_digits(value: f64) -> f64 {
     let digit = 10_f64.powf(value.log10().floor() - 2.0);
     // Formatting to three digits and parsing removes the rounding error of the division.
     let rounded = (value / digit + 1e-9).floor() * digit;

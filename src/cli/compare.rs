@@ -33,6 +33,10 @@ pub fn run(options: &CompareOptions) -> Result<(), Failure> {
     let (a, b) = (open(&options.a)?, open(&options.b)?);
     let differences: Differences = match (&a, &b) {
         (Input::Report(a), Input::Report(b)) => {
+            let differences = of_reports(a, b).map_err(|error| {
+                let [a, b] = [&options.a, &options.b].map(|path| path.display());
+                Failure::Input(format!("{a} or {b}: {error}"))
+            })?;
             for (path, report) in [(&options.a, a), (&options.b, b)] {
                 if report.get("settings").is_none() {
                     let file = path.display();
@@ -41,10 +45,7 @@ pub fn run(options: &CompareOptions) -> Result<(), Failure> {
                     ));
                 }
             }
-            of_reports(a, b).map_err(|error| {
-                let [a, b] = [&options.a, &options.b].map(|path| path.display());
-                Failure::Input(format!("{a} or {b}: {error}"))
-            })?
+            differences
         }
         (Input::Tracks(a), Input::Tracks(b)) => of_tracks(a, b),
         _ => {

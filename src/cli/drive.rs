@@ -13,7 +13,7 @@ use super::watch::bar;
 use super::{
     Failure, memory, notes, report, scenario, setting, talk, tell, trajectory, use_threads,
 };
-use crate::analysis::stability::{FITTED, Mode, Scheme};
+use crate::analysis::stability::{FITTED, Mode, Scheme, three_digits};
 use crate::engine::clock::{Clock, SHORTEST_TIME_STEP};
 use crate::engine::scene::Scene;
 use crate::engine::simulation::Simulation;
@@ -22,7 +22,7 @@ use crate::runs::case::Source;
 use crate::runs::checkpoint::Checkpoint;
 use crate::runs::drive::{End, Observer, Run};
 use crate::runs::outputs::Outputs;
-use crate::scenario::{Scenario, Setting, in_units};
+use crate::scenario::{Scenario, Setting, automatic_step, in_units};
 
 /// `sandbox evacuation|crossing|concert|plaza|run`.
 pub fn run(source: &Source, options: &RunOptions) -> Result<(), Failure> {
@@ -147,19 +147,19 @@ fn warn_of_the_step(scene: &Scene) {
     let Some(scheme) = Scheme::of(scene.integrator) else {
         return;
     };
-    let mode = Mode::of(scene);
-    let (step, largest) = (scene.clock.time_step(), mode.largest_step(scheme, &FITTED));
+    let step = scene.clock.time_step();
+    let largest = Mode::of(scene).largest_step(scheme, &FITTED);
     if step > largest {
-        let automatic = mode.time_step(scheme);
-        let advice = if automatic >= SHORTEST_TIME_STEP {
-            format!("--time-step auto uses {automatic}")
-        } else {
-            "no allowed step is short enough: lower the stiffness or raise the masses".to_owned()
+        let automatic = automatic_step(scene).filter(|&step| step >= SHORTEST_TIME_STEP);
+        let advice = match automatic {
+            Some(automatic) => format!("--time-step auto uses {}", three_digits(automatic)),
+            None => "no allowed step is short enough: lower the stiffness or raise the masses"
+                .to_owned(),
         };
         talk(&format!(
-            "warning: time_step_secs {step} is {:.1} times {largest:.4}, the largest step at which a crowd comes to \
-             rest; {advice}",
+            "warning: time_step_secs {step} is {:.1} times {}, the largest step at which a crowd comes to rest; {advice}",
             step / largest,
+            three_digits(largest),
         ));
     }
 }

@@ -22,7 +22,7 @@ use super::schema::word;
 use super::shapes::{Corners, Label, Obstacle, Point, Ring};
 use super::ways::{PASSABLE, WayFinding};
 use crate::engine::boundary::WallMethod;
-use crate::engine::clock::{PAPER_COARSE_STEP, PAPER_TIME_STEP};
+use crate::engine::clock::PAPER_TIME_STEP;
 use crate::engine::neighbors::ListPolicy;
 use crate::engine::pairs::Precision;
 use crate::engine::scene::Scene;
@@ -62,15 +62,16 @@ pub(super) struct File {
     /// `accurate` (close to the model's limit for small steps); see docs/accuracy.md.
     #[serde(rename = "preset")]
     pub _preset: Preset, // `preset::fill` has expanded it
-    /// Δt_fine, seconds: the length of a frame. `auto` is the longest step that is safely stable and, unless
-    /// `coarse_every` is given, a whole fraction of 0.1 s. Shorter steps are more accurate and cost more. Beyond the
-    /// stable step (0.028 s for the profiles without SPH) agents shake.
+    /// Δt_fine, seconds: the length of a frame. `auto` is the longest step that is safely stable, at most
+    /// `longest_step_secs` and, unless `coarse_every` is given, a whole fraction of 0.1 s. Shorter steps are more
+    /// accurate and cost more. Beyond the stable step (0.028 s for the profiles without SPH) agents shake.
     #[schemars(extend("default" = PAPER_TIME_STEP))]
     pub time_step_secs: Option<TimeStep>,
-    /// The upper limit on the step that `auto` chooses, seconds. No effect on other steps. `auto` is the longest step
-    /// at which Table 1 stays within the noise of its seeds: 0.025 s, or 0.02 s where agents avoid each other in dense
-    /// crowds. Where agents stay it is 0.05 s.
-    #[schemars(extend("default" = PAPER_COARSE_STEP))]
+    /// The upper limit on the step that `time_step_secs=auto` chooses, seconds. No effect on other steps. `auto` is the
+    /// longest step at which Table 1 stays within the noise of its seeds: 0.025 s, or 0.02 s where agents avoid each
+    /// other in dense crowds. Where agents stay it is 0.05 s. With 0.1 the step is the longest stable one, and flows may
+    /// be off by half.
+    #[schemars(extend("default" = "auto"))]
     pub longest_step_secs: Option<TimeStep>,
     /// Δt_coarse, frames: how often RVO chooses velocities, sources let agents enter and events begin. It is part of
     /// RVO's model: if agents choose in every frame, they stand 6 % less densely. Default: the number nearest to

@@ -65,6 +65,7 @@ pub use error::{Problem, ScenarioError};
 pub(crate) use error::{in_plain_words, suggestion};
 pub use file::Stop;
 pub use need::{Need, in_units};
+pub use numerics::automatic_step;
 pub use preset::Preset;
 pub use schema::schema;
 pub use setting::{Setting, SettingError};
@@ -211,7 +212,9 @@ fn unreadable_because(error: &std::io::Error) -> String {
             format!("{said}; `sandbox list` shows the built-in scenarios")
         }
         ErrorKind::IsADirectory => format!("{said}; a scenario is a file"),
-        ErrorKind::InvalidData => format!("{said}; save it as UTF-8"),
+        ErrorKind::InvalidData => {
+            format!("{said}; save it as UTF-8, or continue a checkpoint with `sandbox resume`")
+        }
         ErrorKind::FileTooLarge => format!("{said}; a scenario must be shorter"),
         _ => said.to_owned(),
     }

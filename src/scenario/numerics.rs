@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::error::Problem;
 use super::file::File;
 use crate::analysis::stability;
-use crate::engine::clock::{Clock, PAPER_COARSE_STEP, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
+use crate::engine::clock::{Clock, PAPER_TIME_STEP, SHORTEST_TIME_STEP};
 use crate::engine::journeys::Place;
 use crate::engine::profile::{BlendStep, Navigation};
 use crate::engine::scene::{Integrator, Scene};
@@ -83,6 +83,13 @@ fn longest_faithful_step(scene: &Scene) -> f64 {
     }
 }
 
+/// The step, seconds, that `"time_step_secs": "auto"` takes in `scene` by default; `None` if there is no formula for its
+/// integrator.
+pub fn automatic_step(scene: &Scene) -> Option<f64> {
+    let step = stability::time_step(scene)?.min(longest_faithful_step(scene));
+    Some(Clock::up_to(step).time_step())
+}
+
 /// The clock of a file, with the paper's step if that is missing or `auto`.
 pub(super) fn first_clock(keys: &File) -> Clock {
     let step = match keys.time_step_secs {
@@ -103,12 +110,10 @@ pub(super) fn clock_for(keys: &File, scene: &Scene) -> Result<Clock, Problem> {
                       give a number";
         Problem::new("time_step_secs", reason)
     })?;
-    let longest = match keys.longest_step_secs {
+    let step = step.min(match keys.longest_step_secs {
         Some(TimeStep::Given(longest)) => longest,
-        Some(TimeStep::Auto(_)) => longest_faithful_step(scene),
-        None => PAPER_COARSE_STEP,
-    };
-    let step = step.min(longest);
+        Some(TimeStep::Auto(_)) | None => longest_faithful_step(scene),
+    });
     if step < SHORTEST_TIME_STEP {
         let reason = format!(
             "`auto` finds no step: this crowd is so stiff that it needs {step:e} s, below the shortest step of \

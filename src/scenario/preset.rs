@@ -32,7 +32,6 @@ impl Preset {
             Self::Paper => json!({}),
             Self::Fast => json!({
                 "time_step_secs": "auto",
-                "longest_step_secs": "auto",
                 "integrator": "auto",
                 "parameters": { "avoidance_tolerance": 1e-3 }
             }),

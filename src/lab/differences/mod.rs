@@ -99,7 +99,7 @@ impl Differences {
 }
 
 /// The values that differ between two objects, and the number of values that are equal. Objects and lists inside are
-/// compared value by value.
+/// compared value by value; entries of lists, which may be many, come last.
 fn different(a: &Map<String, Value>, b: &Map<String, Value>) -> (Vec<Difference>, usize) {
     let [a, b] = [a, b].map(|values| {
         let mut all = Map::new();
@@ -116,7 +116,8 @@ fn different(a: &Map<String, Value>, b: &Map<String, Value>) -> (Vec<Difference>
         a: value(&a, name),
         b: value(&b, name),
     });
-    let (equal, differ): (Vec<_>, Vec<_>) = all.partition(|one| one.a == one.b);
+    let (equal, mut differ): (Vec<_>, Vec<_>) = all.partition(|one| one.a == one.b);
+    differ.sort_by_key(|one| one.name.contains('['));
     (differ, equal.len())
 }
 

@@ -13,7 +13,8 @@ use crate::output::table::Table;
 pub fn text(measured: &Measured) -> String {
     let (safety, departures) = (&measured.safety, &measured.departures);
     let mut text = format!(
-        "exposure and alarms, a sample every {:.2} s; thresholds from the literature, not safety limits\n{}",
+        "exposure and alarms, a sample every {:.2} s; thresholds from the literature, not safety limits\n\
+         densities are means over √5 m, not the SPH density over 1 m\n{}",
         safety.secs,
         exposure(safety).text()
     );

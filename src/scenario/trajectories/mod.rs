@@ -37,6 +37,8 @@ use crate::scenario::quote::shown;
 
 /// The first bytes of an HDF5 file.
 const HDF5_MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
+/// The first bytes of a Rerun recording.
+const RECORDING_MAGIC: &[u8] = b"RRF";
 
 /// Valid frame rates, frames per second.
 pub const FRAME_RATES: RangeInclusive<f64> = 1e-6..=1e6;
@@ -125,6 +127,12 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Tracks, ReadError> {
         return Err(ReadError::file(
             path,
             "an HDF5 file, which is read with the feature `program` only; convert it to CSV",
+        ));
+    }
+    if start.starts_with(RECORDING_MAGIC) {
+        return Err(ReadError::file(
+            path,
+            "a recording has no trajectories to read; run its scenario again with --trajectory FILE",
         ));
     }
     read_text(path, Read::chain(start.as_slice(), file), options)
