@@ -249,7 +249,7 @@ fn picture(rows: &[Row]) -> Sheet {
         // About three digits.
         let ms = row.ms_per_frame.median;
         let digits = (2.0 - ms.log10().floor()).clamp(0.0, 3.0) as usize;
-        let text = format!("{ms:.digits$} ms");
+        let text = format!("{ms:.digits$}");
         marks.push(Mark::Text([middle, 105.0], text, BLACK));
     }
     let stages = Stage::ALL.iter().enumerate().rev();
@@ -259,5 +259,10 @@ fn picture(rows: &[Row]) -> Sheet {
     let mut share = Axis::linear("share of the frame [%]", [0.0, 110.0]);
     let ticks = [0, 20, 40, 60, 80, 100].map(|k| (f64::from(k), k.to_string()));
     share.ticks = ticks.into();
-    sheet("Where the time of a frame goes", names, share, marks)
+    sheet(
+        "Where the time of a frame goes; above, its length [ms]",
+        names,
+        share,
+        marks,
+    )
 }
