@@ -74,6 +74,11 @@ fn published_values_belong_to_the_settings_of_the_table_only() {
     // Table 1 of the paper.
     assert_eq!([five, eight], [5.09, 7.23]);
     assert!(density(&["profile=sf", "agent_stiffness=50"]).is_some());
+    // The defaults are settings of a row, too, by whatever kind of number.
+    for defaults in [&[][..], &["rest_density_max=5.0"], &["seed=3"]] {
+        assert_eq!(density(defaults), Some(five), "{defaults:?}");
+    }
+    assert_eq!(density(&["profile=sf"]), Some(4.21));
     for settings in [
         &["gas_constant=300"][..],
         &["rest_density_max=5.5"],
@@ -107,6 +112,12 @@ fn differences_name_settings_and_measurements_with_their_change() {
         (Some(1.0), Some(25.0))
     );
     assert_eq!(found.equal, 2); // count, state
+    let floats = result(
+        &json!({"flow": 4, "count": 3.0}),
+        &json!({"parameters": {"k": 200.0}, "grids": [{"rows": 2}]}),
+    );
+    assert!(of_reports(&a, &floats).unwrap().settings.is_empty());
+    assert!(of_reports(&a, &floats).unwrap().results.is_empty());
     let none = of_reports(&a, &a).unwrap();
     assert_eq!((none.settings.len(), none.results.len()), (0, 0));
     assert!(of_reports(&a, &json!({"study": "x"})).is_err());

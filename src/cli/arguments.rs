@@ -26,7 +26,8 @@ pub struct SceneOptions {
     /// Numerical settings: the paper's, cheaper ones, or more accurate ones (see docs/accuracy.md)
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Preset::names()))]
     pub preset: Option<String>,
-    /// Time step Δt_fine in seconds, or `auto`: the largest step that is safely stable
+    /// Time step Δt_fine in seconds, or `auto`: the largest step that is safely stable and keeps results (see
+    /// longest_step_secs)
     #[arg(long, value_name = "SECS|auto")]
     pub time_step: Option<String>,
     /// A floor plan that replaces the scenario's walkable area and obstacles: WKT, GeoJSON or JuPedSim XML

@@ -68,7 +68,7 @@ pub enum Command {
     /// Print every force on single agents at one moment
     #[command(after_help = "Example: sandbox inspect evacuation --agent 17 --at 15 --json")]
     Inspect(InspectOptions),
-    /// Draw a scene, or the ways to a place, without a recording
+    /// Draw a scenario, trajectories or a recording, as a picture or an animation
     #[command(after_help = "Example: sandbox draw scenarios/station.json --out station.png")]
     Draw(DrawOptions),
     /// Regenerate the paper's tables and figures (§6) and compare them with the published ones

@@ -38,7 +38,8 @@ pub struct ValidateOptions {
 
 #[derive(Args)]
 pub struct SuiteOptions {
-    /// This profile in place of sph, sf->sph and rvo->sph; give it several times for several profiles
+    /// This profile in place of the default ones (verify: sph, sf->sph, rvo->sph; validate: also walk+sph); give it
+    /// several times for several profiles
     #[arg(long, value_name = "PROFILE", value_parser = PossibleValuesParser::new(catalog::names()))]
     pub profile: Vec<String>,
     /// Number of seeds per run: 1, 2, …; verify: a case passes if it does with all of them; validate: means over seeds

@@ -116,9 +116,20 @@ fn different(a: &Map<String, Value>, b: &Map<String, Value>) -> (Vec<Difference>
         a: value(&a, name),
         b: value(&b, name),
     });
-    let (equal, mut differ): (Vec<_>, Vec<_>) = all.partition(|one| one.a == one.b);
+    let (equal, mut differ): (Vec<_>, Vec<_>) = all.partition(|one| are_equal(&one.a, &one.b));
     differ.sort_by_key(|one| one.name.contains('['));
     (differ, equal.len())
+}
+
+/// Whether two values are equal; 5 and 5.0 are.
+fn are_equal(a: &Value, b: &Value) -> bool {
+    match (a, b) {
+        (Value::Array(a), Value::Array(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| are_equal(a, b))
+        }
+        (Value::Number(one), Value::Number(other)) => a == b || one.as_f64() == other.as_f64(),
+        _ => a == b,
+    }
 }
 
 /// Adds the values in `value` by their paths, as in `sources[0].rows`.

@@ -63,11 +63,13 @@ pub fn published_for(scenario: &Scenario) -> Vec<(&'static str, f64)> {
 
 /// Does a scenario have the settings of a row, whatever its seeds and its view?
 fn has_settings_of(scenario: &Scenario, row: &PublishedRow) -> bool {
-    /// Keys that do not tell runs of a row apart.
-    const FREE: [&str; 5] = [
+    /// Keys that do not tell runs of a row apart. The parameters are compared as they act: some defaults depend on the
+    /// profile.
+    const FREE: [&str; 6] = [
         "seed",
         "population_seed",
         "behavior_seed",
+        "parameters",
         "view",
         "debug_agents",
     ];
@@ -90,7 +92,9 @@ fn has_settings_of(scenario: &Scenario, row: &PublishedRow) -> bool {
         }
         settings
     };
-    ours.is_some_and(|ours| fixed(&ours) == fixed(scenario))
+    ours.is_some_and(|ours| {
+        ours.scene.groups == scenario.scene.groups && fixed(&ours) == fixed(scenario)
+    })
 }
 
 /// "kept", or the quantities outside of their bands.

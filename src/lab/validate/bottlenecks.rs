@@ -98,7 +98,7 @@ pub const CASES: [Case; 7] = [
         judge: |runs| MEASURED[4].checks(runs),
         misses: &[(
             "walk+sph",
-            "a slow person holds up all behind it: no force leads people round each other",
+            "a slow person holds up all behind it: no force leads people around each other",
         )],
         picture: (MEASURED[4].run, 30.0),
     },

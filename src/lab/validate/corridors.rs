@@ -47,7 +47,7 @@ pub const CASES: [Case; 2] = [
     },
     Case {
         id: "single-file",
-        about: "single file round an oval of 26.8 m: mean speeds within the 10 to 90 % band of measured ones (RiMEA 16)",
+        about: "single file around an oval of 26.8 m: mean speeds within the 10 to 90 % band of measured ones (RiMEA 16)",
         runs: &[BANDS[0].0, BANDS[1].0, BANDS[2].0, BANDS[3].0],
         judge: single_file,
         misses: &[

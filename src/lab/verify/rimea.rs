@@ -98,7 +98,7 @@ pub const CASES: [Case; 17] = [
     },
     Case {
         id: "6",
-        about: "20 people walk round a corner of a corridor 2 m wide",
+        about: "20 people walk around a corner of a corridor 2 m wide",
         runs: &["corner"],
         judge: |runs| {
             Ok(vec![Check::exactly(
@@ -301,7 +301,7 @@ pub const CASES: [Case; 17] = [
     },
     Case {
         id: "16",
-        about: "single file round an oval of 26.8 m (straights of 4 m, radius 3 m): speed within the 10 to 90 % band",
+        about: "single file around an oval of 26.8 m (straights of 4 m, radius 3 m): speed within the 10 to 90 % band",
         runs: &[
             "single file 13",
             "single file 24",
