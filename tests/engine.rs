@@ -23,6 +23,7 @@ mod errands;
 mod exposure;
 mod floor_plan;
 mod floor_plan_areas;
+mod floor_plan_kinds;
 mod floor_plan_pieces;
 mod floor_plan_robustness;
 mod floor_plan_unions;

@@ -30,12 +30,14 @@ impl Given {
             Some(text) => (text, self.name),
             None => Source::named(&self.name).text().map_err(error)?,
         };
-        let mut settings = Vec::new();
+        let (mut settings, mut notes) = (Vec::new(), Vec::new());
         if let Some(path) = &self.geometry {
             let plan = floor_plan::read(path);
             let plan = plan.map_err(|reason| error(format!("geometry {reason}")))?;
             let name = format!("geometry={}", path.display());
             settings.extend(Setting::floor_plan(&plan, &name));
+            let read = plan.notes.iter();
+            notes.extend(read.map(|note| format!("{name}: {note}")));
         }
         for (key, value, name) in self.settings {
             let value = serde_json::from_str(&value).map_err(error)?;
@@ -49,7 +51,8 @@ impl Given {
             settings.push(new);
         }
         let draft = Draft::read(&text, &file, &settings).map_err(error)?;
-        let (scenario, _) = draft.within(main_memory(), 0).map_err(error)?;
+        let (mut scenario, _) = draft.within(main_memory(), 0).map_err(error)?;
+        scenario.notes.extend(notes);
         Ok(scenario)
     }
 }

@@ -32,6 +32,7 @@ pub use report::json as json_report;
 
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -46,7 +47,7 @@ use crate::lab::sweep::StudyError;
 use crate::runs::case::Source;
 use crate::runs::error::StoreError;
 use crate::runs::outputs::{Outputs, OutputsError};
-use crate::scenario::floor_plan;
+use crate::scenario::floor_plan::{self, FloorPlan};
 use crate::scenario::quote::{printable, shown};
 use crate::scenario::trajectories::ReadError;
 use crate::scenario::{Draft, Scenario, ScenarioError, Setting};
@@ -231,6 +232,7 @@ fn scenario(
         outputs.reads("--geometry", path);
         let plan = floor_plan::read(path);
         let plan = plan.map_err(|error| Failure::Input(format!("--geometry {error}")))?;
+        note_plan(path, &plan);
         settings.extend(Setting::floor_plan(&plan, &text));
     }
     settings.extend(typed.into_iter().chain(last));
@@ -246,6 +248,13 @@ fn scenario(
         talk(&format!("note: {note}"));
     }
     Ok(scenario)
+}
+
+/// Prints the notes on the plan of `--geometry`.
+fn note_plan(path: &Path, plan: &FloorPlan) {
+    for note in &plan.notes {
+        talk(&format!("note: --geometry {}: {note}", path.display()));
+    }
 }
 
 fn setting(text: &str) -> Result<Setting, Failure> {

@@ -31,6 +31,8 @@ pub(super) struct Contents {
     /// The files that it names.
     plans: Vec<PlanFile>,
     keys: File,
+    /// Notes on these files, for readers of the results.
+    notes: Vec<String>,
     /// The size of its run.
     pub need: Need,
 }
@@ -41,7 +43,8 @@ impl Contents {
         let mut document = preset::fill(document);
         without_schema(&mut document)?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        let mut plans = plan::fill(&mut document, folder)?;
+        let mut notes = Vec::new();
+        let mut plans = plan::fill(&mut document, folder, &mut notes)?;
         range::check(&document)?;
         let mut keys: File = serde_path_to_error::deserialize(&document).map_err(|error| {
             let path = error.path().to_string();
@@ -54,6 +57,7 @@ impl Contents {
             document,
             plans,
             keys,
+            notes,
             need,
         })
     }
@@ -82,7 +86,8 @@ impl Contents {
         let choice = keys.profile.as_ref().unwrap_or(&default);
         let blend = profiles::blend(choice, &keys.parameters).under("profile")?;
         scene.journeys = journeys::journeys(keys, &scene.walls)?;
-        let notes = Crowd::new(keys, &blend, &behind, &mut scene).enter()?;
+        let mut notes = self.notes;
+        notes.extend(Crowd::new(keys, &blend, &behind, &mut scene).enter()?);
         let duration_secs = duration(keys);
         crowding::check(keys, &scene, duration_secs)?;
         measurements::check(&keys.measurements)?;

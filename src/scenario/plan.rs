@@ -27,9 +27,13 @@ const MOST_CORNERS: usize = 20_000;
 /// Most walls of a scenario.
 const MOST_WALLS: u64 = 1_000_000;
 
-/// Replaces the names of floor plan files, relative to `folder`, with their contents. Returns the files, each with
-/// its key.
-pub(super) fn fill(document: &mut Value, folder: &Path) -> Result<Vec<PlanFile>, Problem> {
+/// Replaces the names of floor plan files, relative to `folder`, with their contents, and adds notes on them. Returns
+/// the files, each with its key.
+pub(super) fn fill(
+    document: &mut Value,
+    folder: &Path,
+    notes: &mut Vec<String>,
+) -> Result<Vec<PlanFile>, Problem> {
     let mut files = Vec::new();
     let Value::Object(document) = document else {
         return Ok(files);
@@ -49,6 +53,8 @@ pub(super) fn fill(document: &mut Value, folder: &Path) -> Result<Vec<PlanFile>,
         let path = folder.join(name);
         let plan: FloorPlan = read(&path).map_err(|error| problem(error).under(key))?;
         files.push((key, path));
+        let read = plan.notes.iter();
+        notes.extend(read.map(|note| format!("{key}: {}: {note}", shown(name))));
         let value = match key {
             OBSTACLES => obstacles_value(&plan),
             _ if plan.walkable.is_empty() => {

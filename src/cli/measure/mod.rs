@@ -7,7 +7,7 @@ pub use arguments::{CutOff, MeasureOptions};
 use std::path::{Path, PathBuf};
 
 use super::watch::bar;
-use super::{Failure, talk, tell, use_threads};
+use super::{Failure, note_plan, talk, tell, use_threads};
 use crate::engine::boundary::WallMethod;
 use crate::lab::error::LabError;
 use crate::lab::measure::{
@@ -136,7 +136,9 @@ pub fn site(path: &Path, geometry: Option<&Path>, tracks: &Tracks) -> Result<Sit
         (Some(path), _) if path.as_os_str() == NO_WALLS => None,
         (Some(path), _) => {
             let plan = floor_plan::read(path);
-            Some(plan.map_err(|error| Failure::Input(format!("--geometry {error}")))?)
+            let plan = plan.map_err(|error| Failure::Input(format!("--geometry {error}")))?;
+            note_plan(path, &plan);
+            Some(plan)
         }
         (None, []) => None,
         (None, [text]) => Some(floor_plan::parse_wkt(text).map_err(|error| own(path, &error))?),

@@ -6,18 +6,32 @@ use serde_json::Value;
 use super::error::FloorPlanError;
 use super::shape::{Geometry as Parts, Shape, part};
 use super::wkt::IN_DEGREES;
+use crate::scenario::error::suggestion;
+use crate::scenario::quote::shown;
 
-/// The polygons of `text`.
-pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
+/// The property that says what a feature is. Without it, a feature is floor.
+const KIND: &str = "kind";
+/// Its values, in any case.
+const FLOOR: &str = "floor";
+const OBSTACLE: &str = "obstacle";
+/// The property with the name of a feature.
+const NAME: &str = "name";
+
+/// The polygons of `text`. If `all_obstacles`, every polygon is an obstacle, of any kind.
+pub fn shapes(text: &str, all_obstacles: bool) -> Result<Vec<Shape>, FloorPlanError> {
     let document: Value = serde_json::from_str(text).map_err(|error| syntax(&error))?;
     refuse_degrees(&document)?;
     let mut shapes = Vec::new();
+    let mut add = |one: &Feature, place: &str| {
+        let is_obstacle = all_obstacles || is_obstacle(one, place)?;
+        feature(one, place, is_obstacle, &mut shapes)
+    };
     match serde_json::from_value(document).map_err(|error| syntax(&error))? {
-        GeoJson::Geometry(geometry) => collect(&geometry, "", false, &mut shapes)?,
-        GeoJson::Feature(one) => feature(&one, "", &mut shapes)?,
+        GeoJson::Geometry(geometry) => collect(&geometry, "", all_obstacles, &mut shapes)?,
+        GeoJson::Feature(one) => add(&one, "")?,
         GeoJson::FeatureCollection(collection) => {
             for (k, one) in collection.features.iter().enumerate() {
-                feature(one, &named(one, k), &mut shapes)?;
+                add(one, &named(one, k))?;
             }
         }
     }
@@ -45,7 +59,7 @@ fn refuse_degrees(document: &Value) -> Result<(), FloorPlanError> {
 }
 
 fn name(feature: &Feature) -> Option<&str> {
-    let name = feature.properties.as_ref()?.get("name")?.as_str()?.trim();
+    let name = feature.properties.as_ref()?.get(NAME)?.as_str()?.trim();
     (!name.is_empty()).then_some(name)
 }
 
@@ -57,10 +71,53 @@ fn named(feature: &Feature, k: usize) -> String {
     }
 }
 
-fn feature(feature: &Feature, place: &str, shapes: &mut Vec<Shape>) -> Result<(), FloorPlanError> {
-    let properties = feature.properties.as_ref();
-    let kind = properties.and_then(|properties| properties.get("kind")?.as_str());
-    let is_obstacle = kind.is_some_and(|kind| kind.eq_ignore_ascii_case("obstacle"));
+/// Is this feature an obstacle? An unknown kind is an error, so that no misspelled obstacle becomes floor.
+fn is_obstacle(feature: &Feature, place: &str) -> Result<bool, FloorPlanError> {
+    let Some(properties) = &feature.properties else {
+        return Ok(false);
+    };
+    let wrong = |reason: String| FloorPlanError::Geometry {
+        place: place.to_owned(),
+        reason,
+    };
+    let says = |value: &Value, kind: &str| {
+        let text = value.as_str().map(str::trim);
+        text.is_some_and(|text| text.eq_ignore_ascii_case(kind))
+    };
+    match properties.get(KIND).filter(|kind| !kind.is_null()) {
+        None => {
+            let mut others = properties.iter().filter(|(key, _)| *key != NAME);
+            match others.find(|(_, value)| says(value, OBSTACLE)) {
+                None => Ok(false),
+                Some((key, _)) => Err(wrong(format!(
+                    "the property `{}` is `{OBSTACLE}`, but only `{KIND}` says what a feature is; rename it",
+                    shown(key)
+                ))),
+            }
+        }
+        Some(kind) if says(kind, OBSTACLE) => Ok(true),
+        Some(kind) if says(kind, FLOOR) || says(kind, "") => Ok(false),
+        Some(kind) => {
+            let given = kind.as_str().map_or(kind.to_string(), str::to_owned);
+            let near = suggestion(&given.to_lowercase(), [FLOOR, OBSTACLE]);
+            let near = match near.as_str() {
+                "" => format!("; write `{OBSTACLE}` or `{FLOOR}`"),
+                near => near.to_owned(),
+            };
+            Err(wrong(format!(
+                "{KIND} `{}` is unknown{near}",
+                shown(&given)
+            )))
+        }
+    }
+}
+
+fn feature(
+    feature: &Feature,
+    place: &str,
+    is_obstacle: bool,
+    shapes: &mut Vec<Shape>,
+) -> Result<(), FloorPlanError> {
     match &feature.geometry {
         Some(geometry) => {
             let first = shapes.len();

@@ -5,7 +5,7 @@
 //! | geometries | one or more of `POLYGON`, `MULTIPOLYGON`, `GEOMETRYCOLLECTION` of these | `Polygon`, `MultiPolygon`, `GeometryCollection`; `Feature`, `FeatureCollection` |
 //! | obstacles | none | features with `"properties": {"kind": "obstacle"}` |
 //!
-//! All other polygons are walkable area. The property `name` of a feature is its name in pictures. Coordinates are in
+//! All other polygons are walkable area: features of the kind `floor`, or without a kind. The property `name` of a feature is its name in pictures. Coordinates are in
 //! meters; degrees are rejected. Areas that touch or overlap are united, and obstacles are subtracted, so the result
 //! does not depend on how a plan is cut into pieces.
 //! Orientation, third coordinates, a closing point and repeated points do not matter.
@@ -13,6 +13,7 @@
 mod boundary;
 mod error;
 mod geojson;
+mod idle;
 mod shape;
 mod unite;
 mod wkt;
@@ -47,6 +48,8 @@ pub struct FloorPlan {
     pub obstacles: Vec<Area>,
     /// The names of rooms and obstacles.
     pub names: Vec<Label>,
+    /// What readers of the results should know: polygons without effect.
+    pub notes: Vec<String>,
 }
 
 /// Reads a file: GeoJSON if it begins with `{`, JuPedSim's XML if it begins with `<`, else WKT.
@@ -63,11 +66,11 @@ pub fn read(path: &Path) -> Result<FloorPlan, FloorPlanError> {
 /// Those of [`read`].
 pub fn read_obstacles(path: &Path) -> Result<FloorPlan, FloorPlanError> {
     in_file(path, |text| {
-        let mut shapes = shapes(text)?;
+        let mut shapes = shapes(text, true)?;
         for shape in &mut shapes {
             shape.is_obstacle = true;
         }
-        FloorPlan::of(shapes)
+        FloorPlan::of(&shapes)
     })
 }
 
@@ -76,7 +79,7 @@ pub fn read_obstacles(path: &Path) -> Result<FloorPlan, FloorPlanError> {
 /// # Errors
 /// Those of [`read`].
 pub fn parse(text: &str) -> Result<FloorPlan, FloorPlanError> {
-    FloorPlan::of(shapes(text)?)
+    FloorPlan::noted(&shapes(text, false)?)
 }
 
 /// Reads well-known text, such as that in the `geometry` table of a trajectory file. All of it is walkable area.
@@ -84,7 +87,7 @@ pub fn parse(text: &str) -> Result<FloorPlan, FloorPlanError> {
 /// # Errors
 /// Those of [`read`].
 pub fn parse_wkt(text: &str) -> Result<FloorPlan, FloorPlanError> {
-    FloorPlan::of(wkt::shapes(text)?)
+    FloorPlan::noted(&wkt::shapes(text)?)
 }
 
 /// Applies `parse` to a file's text; errors name the file.
@@ -101,10 +104,10 @@ fn in_file(
     parse(text.trim_start_matches('\u{feff}')).map_err(within)
 }
 
-/// The polygons of GeoJSON, XML or WKT.
-fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
+/// The polygons of GeoJSON, XML or WKT. If `all_obstacles`, the kinds of features do not matter.
+fn shapes(text: &str, all_obstacles: bool) -> Result<Vec<Shape>, FloorPlanError> {
     match text.trim_start().bytes().next() {
-        Some(b'{') => geojson::shapes(text),
+        Some(b'{') => geojson::shapes(text, all_obstacles),
         Some(b'<') => xml::shapes(text.trim_start()),
         _ => wkt::shapes(text),
     }
@@ -124,7 +127,7 @@ impl FloorPlan {
             rings: rings.clone(),
             is_obstacle: false,
         });
-        Self::of(shapes.collect())
+        Self::of(&shapes.collect::<Vec<_>>())
     }
 
     /// An obstacle from a list of rings (the outline, then the holes) of points in meters.
@@ -156,7 +159,15 @@ impl FloorPlan {
         Ok(solids)
     }
 
-    fn of(shapes: Vec<Shape>) -> Result<Self, FloorPlanError> {
+    /// The plan of these polygons, with notes on those without effect.
+    fn noted(shapes: &[Shape]) -> Result<Self, FloorPlanError> {
+        Ok(Self {
+            notes: idle::notes(shapes)?,
+            ..Self::of(shapes)?
+        })
+    }
+
+    fn of(shapes: &[Shape]) -> Result<Self, FloorPlanError> {
         if shapes.is_empty() {
             return Err(FloorPlanError::Empty);
         }
@@ -177,9 +188,9 @@ impl FloorPlan {
                 return Err(FloorPlanError::TooSmall { width, height });
             }
             return Ok(Self {
-                walkable,
                 obstacles,
                 names,
+                ..Self::default()
             });
         }
         let largest = |areas: &[Area]| areas.iter().map(Area::area).fold(0.0, f64::max);
@@ -206,8 +217,8 @@ impl FloorPlan {
         }
         Ok(Self {
             walkable,
-            obstacles: Vec::new(),
             names,
+            ..Self::default()
         })
     }
 }

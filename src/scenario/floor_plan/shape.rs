@@ -108,7 +108,7 @@ impl Shape {
     }
 
     /// The middle of the widest part halfway up, and its width, meters.
-    fn middle(area: &Area) -> (Vector, f64) {
+    pub fn middle(area: &Area) -> (Vector, f64) {
         let [low, high] = bounds(area.exterior.points().iter().copied()).unwrap_or_default();
         let y = 0.5 * (low.y + high.y);
         let edges = area.rings().flat_map(|ring| {
