@@ -43,6 +43,7 @@ mod measurements;
 mod needs;
 mod neighbor_lists;
 mod neighbors;
+mod off_floor;
 mod oscillation;
 mod periodic;
 mod periodic_scenarios;

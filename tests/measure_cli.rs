@@ -236,3 +236,35 @@ fn invalid_arguments_are_refused_with_the_fix() {
         "nothing is begun"
     );
 }
+
+#[test]
+fn lines_off_the_floor_are_refused_unless_someone_crosses_them() {
+    let (_folder, [trajectory, plan, out]) = walkers();
+    let with = |line| {
+        [
+            &trajectory,
+            "--geometry",
+            &plan,
+            "--out",
+            &out,
+            "--line",
+            "0,0,0,2",
+            "--line",
+            line,
+        ]
+    };
+    let off = "line 2 is in an obstacle or outside of the walkable area, and no one crosses it";
+    refused(&with("100,100,105,105"), off);
+    refused(&with("0,-1,9,-1"), off);
+    let shorter = plan.replace("corridor", "shorter");
+    fs::write(&shorter, "POLYGON ((-9 0, 0.5 0, 0.5 2, -9 2, -9 0))").unwrap();
+    let mut beyond = with("1,0,1,2");
+    beyond[2] = &shorter;
+    let output = measure(&beyond);
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        program::stderr(&output)
+    );
+}

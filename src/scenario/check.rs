@@ -14,8 +14,8 @@ use super::plan::Surroundings;
 use super::profiles::{ProfileChoice, ProfileName};
 use super::range::{self, region};
 use super::{
-    PlanFile, Scenario, from, journeys, measurements, numerics, periodic, plan, preset, profiles,
-    view, ways,
+    PlanFile, Scenario, from, journeys, measurements, numerics, off_floor, periodic, plan, preset,
+    profiles, view, ways,
 };
 use crate::engine::geometry::Polygon;
 use crate::engine::period::Period;
@@ -91,6 +91,7 @@ impl Contents {
         let duration_secs = duration(keys);
         crowding::check(keys, &scene, duration_secs)?;
         measurements::check(&keys.measurements)?;
+        off_floor::check(keys, &scene)?;
         scene.pushes = pushes(&keys.events)?;
         periodic::check(keys, &scene)?;
         scene.ways = ways::ways(keys, &scene)?;

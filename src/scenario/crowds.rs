@@ -9,6 +9,7 @@ use super::distribution::{self, Draw, traits};
 use super::error::{Problem, Under};
 use super::floor_plan::{free, outlines};
 use super::goals::Aim;
+use super::off_floor::OFF;
 use super::plan;
 use super::profiles::ProfileChoice;
 use super::schema::word;
@@ -202,11 +203,7 @@ impl Building<'_> {
         let areas = free(&floors, &bodies).map_err(|error| Problem::new("", error.to_string()))?;
         match areas.is_empty() {
             false => Ok(areas),
-            true => {
-                let reason =
-                    "lies in obstacles or outside of the walkable area; move it onto the floor";
-                Err(Problem::new("", reason))
-            }
+            true => Err(Problem::new("", OFF)),
         }
     }
 

@@ -41,6 +41,7 @@ mod goals;
 mod journeys;
 mod need;
 mod numerics;
+mod off_floor;
 mod periodic;
 mod places;
 mod plan;

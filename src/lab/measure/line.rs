@@ -2,7 +2,10 @@
 
 use serde::Serialize;
 
+use super::{MeasureError, Options};
 use crate::analysis::crossing::{Balance, FlowBetween, Line, Passages};
+use crate::analysis::site::Site;
+use crate::scenario::floor_plan::is_line_on_floor;
 use crate::scenario::trajectories::Tracks;
 
 /// A person crosses a line.
@@ -42,6 +45,24 @@ pub struct Crossings {
     pub list: Vec<Crossing>,
     /// Number of crossings during gaps in a person's data. They do not count, because the path is unknown.
     pub across_gaps: u64,
+}
+
+/// Refuses lines off the floor, unless someone crosses them: real people may walk a little beyond the plan.
+///
+/// # Errors
+/// The number of the first such line.
+pub fn check(tracks: &Tracks, site: &Site, options: &Options) -> Result<(), MeasureError> {
+    for (k, &line) in options.lines.iter().enumerate() {
+        let is_on = is_line_on_floor([line.start, line.end], &site.walls);
+        if is_on.map_err(|error| MeasureError::Floor(error.to_string()))? {
+            continue;
+        }
+        let crossed = Crossings::of(tracks, k + 1, line, options.times);
+        if crossed.list.is_empty() && crossed.across_gaps == 0 {
+            return Err(MeasureError::LineOffFloor(k + 1));
+        }
+    }
+    Ok(())
 }
 
 impl Crossings {

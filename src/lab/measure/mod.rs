@@ -170,6 +170,11 @@ pub enum MeasureError {
     /// The number of a region, from 1, that is outside of the walkable area.
     #[error("region {0} is outside of the walkable area; give another --region")]
     Unwalkable(usize),
+    /// The number of a line, from 1, that is outside of the walkable area, and that no one crosses.
+    #[error(
+        "line {0} is in an obstacle or outside of the walkable area, and no one crosses it; give another --line"
+    )]
+    LineOffFloor(usize),
     /// The walkable area cannot be cut, with the reason.
     #[error("the walkable area: {0}")]
     Floor(String),
@@ -270,10 +275,12 @@ fn batches(tracks: &Tracks, chosen: Range<usize>) -> impl Iterator<Item = Range<
 /// Checks that there is something to measure.
 ///
 /// # Errors
-/// There are no people in the requested time, there are too many cells, or those of [`Regions::new`].
+/// There are no people in the requested time, there are too many cells, a line is off the floor, or those of
+/// [`Regions::new`].
 pub fn check(tracks: &Tracks, site: &Site, options: &Options) -> Result<(), MeasureError> {
     let chosen = chosen(tracks, options)?;
     Regions::new(site, options)?;
+    line::check(tracks, site, options)?;
     grid(tracks, options, chosen).map(|_| ())
 }
 

@@ -14,12 +14,14 @@ mod boundary;
 mod error;
 mod geojson;
 mod idle;
+mod on_floor;
 mod shape;
 mod unite;
 mod wkt;
 mod xml;
 
 pub use error::FloorPlanError;
+pub use on_floor::{is_line_on_floor, is_on_floor};
 pub use shape::Label;
 pub use unite::{Rings, free, outlines, rings};
 pub use wkt::to_wkt;

@@ -30,18 +30,23 @@ impl Measurement {
     /// The line and the regions that it observes, each with the words that the names of its values begin with.
     pub fn observed(&self) -> Vec<(String, Observed)> {
         let common = common_words(&self.names());
-        let place = |(key, region): (&'static str, Region)| {
+        let place = |(key, place): (&'static str, Observed)| {
             let kind = key.split('.').next().unwrap_or(key).replace('_', " ");
             let name = if common.is_empty() {
                 kind
             } else {
                 common.clone()
             };
-            let place = match self {
-                Self::LineFlow(keys) if key.ends_with(".line") => Observed::Line(keys.ends()),
-                _ => Observed::Region(region),
-            };
             (name, place)
+        };
+        self.observed_places().into_iter().map(place).collect()
+    }
+
+    /// The line and the regions that it observes, by their keys.
+    pub(in crate::scenario) fn observed_places(&self) -> Vec<(&'static str, Observed)> {
+        let place = |(key, region): (&'static str, Region)| match self {
+            Self::LineFlow(keys) if key.ends_with(".line") => (key, Observed::Line(keys.ends())),
+            _ => (key, Observed::Region(region)),
         };
         self.places().into_iter().map(place).collect()
     }
