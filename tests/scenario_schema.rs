@@ -213,6 +213,7 @@ const RELATIONS: &[&str] = &[
     "lower left corner comes first",
     "too many",
     "is already measured",
+    "there is no journey named",
     "would stand at one point",
     "encloses no area",
     "must be less than the second",

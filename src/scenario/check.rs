@@ -90,7 +90,7 @@ impl Contents {
         notes.extend(Crowd::new(keys, &blend, &behind, &mut scene).enter()?);
         let duration_secs = duration(keys);
         crowding::check(keys, &scene, duration_secs)?;
-        measurements::check(&keys.measurements)?;
+        measurements::check(&keys.measurements, &scene.journeys.journeys)?;
         off_floor::check(keys, &scene)?;
         scene.pushes = pushes(&keys.events)?;
         periodic::check(keys, &scene)?;

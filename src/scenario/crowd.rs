@@ -12,6 +12,7 @@ use super::quote::shown;
 use super::range::region;
 use super::shapes::Corners;
 use crate::engine::agents::NewAgent;
+use crate::engine::journeys::Journey;
 use crate::engine::math::Vector;
 use crate::engine::packing::Body;
 use crate::engine::placement::Grid;
@@ -209,26 +210,14 @@ impl<'a> Crowd<'a> {
         has_goal: bool,
     ) -> Result<Option<u16>, Problem> {
         let journeys = &self.scene.journeys.journeys;
-        let number = |name: &str| {
-            let found = journeys.iter().position(|journey| journey.name == name);
-            found.map(|k| k as u16)
-        };
         match given {
             Some(_) if has_goal => {
                 let reason = "either a goal or a `journey`, not both";
                 Err(Problem::new("journey", reason))
             }
-            Some(name) => match number(name) {
-                Some(journey) => Ok(Some(journey)),
-                None => {
-                    let known = journeys.iter().map(|journey| journey.name.as_str());
-                    let near = suggestion(name, known);
-                    let reason = format!("there is no journey named `{}`{near}", shown(name));
-                    Err(Problem::new("journey", reason))
-                }
-            },
+            Some(name) => journey_named(journeys, name).under("journey").map(Some),
             None if has_goal || self.file.goal.is_some() => Ok(None),
-            None => Ok(number(TO_NEAREST_EXIT)),
+            None => Ok(journey_named(journeys, TO_NEAREST_EXIT).ok()),
         }
     }
 
@@ -305,6 +294,17 @@ impl<'a> Crowd<'a> {
             traits,
         }))
     }
+}
+
+/// The number of a journey.
+pub(super) fn journey_named(journeys: &[Journey], name: &str) -> Result<u16, Problem> {
+    let found = journeys.iter().position(|journey| journey.name == name);
+    found.map(|k| k as u16).ok_or_else(|| {
+        let known = journeys.iter().map(|journey| journey.name.as_str());
+        let near = suggestion(name, known);
+        let reason = format!("there is no journey named `{}`{near}", shown(name));
+        Problem::new("", reason)
+    })
 }
 
 /// The keys that decide on an agent's group.

@@ -15,7 +15,7 @@ use crate::engine::ways::Destination;
 #[serde(deny_unknown_fields, default)]
 pub struct Egress {
     /// The name of the journey. Default: all journeys.
-    journey: Option<String>,
+    pub(super) journey: Option<String>,
 }
 
 /// How people on a journey have left.

@@ -61,8 +61,10 @@ pub use walks::{Walk, Walks};
 pub use wall_forces::WallForces;
 pub use wave::{Wave, WaveData};
 
+use super::crowd::journey_named;
 use super::error::{Problem, Under};
 use super::range::region;
+use crate::engine::journeys::Journey;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use mean::Mean;
@@ -331,16 +333,22 @@ fn is_due(simulation: &Simulation, times_secs: [f64; 2], every_secs: f64) -> boo
     (first..=last).contains(&now) && (now - first).is_multiple_of(every)
 }
 
-/// Checks the keys of all measurements, and that no two have the same names.
+/// Checks the keys of all measurements, that their journeys are among `journeys`, and that no two have the same names.
 ///
 /// # Errors
 /// The first problem, with its place.
-pub(super) fn check(given: &[Measurement]) -> Result<(), Problem> {
+pub(super) fn check(given: &[Measurement], journeys: &[Journey]) -> Result<(), Problem> {
     let mut names = std::collections::BTreeSet::new();
     for (k, measurement) in given.iter().enumerate() {
         let place = format!("measurements[{k}]");
         let running = measurement.started();
         running.check().under(&place)?;
+        if let Measurement::Egress(keys) = measurement
+            && let Some(name) = &keys.journey
+        {
+            let named = journey_named(journeys, name).under("egress.journey");
+            named.under(&place)?;
+        }
         let data = running.data().map(|(name, _)| name);
         for name in measurement.names().into_iter().chain(data) {
             if let Some(name) = names.replace(name) {
