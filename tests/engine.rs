@@ -36,6 +36,7 @@ mod geometry_robustness;
 mod identifiability;
 mod journeys;
 mod kernel;
+mod late;
 mod loads;
 mod lone_agents;
 mod math;

@@ -14,8 +14,8 @@ use super::plan::Surroundings;
 use super::profiles::{ProfileChoice, ProfileName};
 use super::range::{self, region};
 use super::{
-    PlanFile, Scenario, from, journeys, measurements, numerics, off_floor, periodic, plan, preset,
-    profiles, view, ways,
+    PlanFile, Scenario, from, journeys, late, measurements, numerics, off_floor, periodic, plan,
+    preset, profiles, view, ways,
 };
 use crate::engine::geometry::Polygon;
 use crate::engine::period::Period;
@@ -72,6 +72,14 @@ impl Contents {
         let file = given.trajectory.as_ref().map(|name| folder.join(name));
         let tracks = file.map(|file| from::tracks(&file, given)).transpose();
         tracks.under("from")
+    }
+
+    /// A note on what begins after the end of the run. If settings make the run shorter than the file without them,
+    /// `own`, what begins within that longer time is left out.
+    pub(super) fn late(&self, own: Option<&Value>) -> Option<String> {
+        let end = duration(&self.keys);
+        let own = own.map(|own| own["duration_secs"].as_f64().unwrap_or(DEFAULT_DURATION));
+        late::note(&self.document, end, own.map_or(end, |own| own.max(end)))
     }
 
     /// Checks relations between values and places the agents. The name of the file `path` is the default name of the

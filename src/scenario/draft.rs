@@ -77,8 +77,10 @@ impl Draft {
     /// The first problem, with its place.
     pub fn scenario(self) -> Result<Scenario, ScenarioError> {
         let Self { contents, origin } = self;
+        let late = contents.late(origin.without.as_ref());
         let scenario = contents.scenario(Path::new(&origin.file));
         let mut scenario = scenario.map_err(|problem| origin.blame(problem))?;
+        scenario.notes.extend(late);
         scenario.changes = origin.changes();
         Ok(scenario)
     }

@@ -39,6 +39,7 @@ mod file;
 mod from;
 mod goals;
 mod journeys;
+mod late;
 mod need;
 mod numerics;
 mod off_floor;
