@@ -46,6 +46,7 @@ mod neighbor_lists;
 mod neighbors;
 mod off_floor;
 mod oscillation;
+mod overlaps;
 mod periodic;
 mod periodic_scenarios;
 mod precision;

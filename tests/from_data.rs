@@ -355,3 +355,18 @@ fn settings_can_choose_file_and_time() {
         "{said}"
     );
 }
+
+#[test]
+fn a_unit_or_frame_rate_that_is_not_the_files_own_is_noted() {
+    let text = "# framerate: 16\n# id frame x/m y/m\n".to_owned() + &lines(&WALKERS, 16.0, 1.0);
+    let notes = |from: Value| {
+        let (_folder, path) = folder(&text, from, json!({}));
+        loaded(&path).notes
+    };
+    let from = |unit: &str, fps: f64| json!({"trajectory": "people.txt", "at_secs": 5, "unit": unit, "fps": fps});
+    assert_eq!(notes(from("m", 16.0)), Vec::<String>::new());
+    let found = notes(from("cm", 16.0));
+    assert_eq!(found[0], "from: `unit` cm is taken, not the file's own m");
+    let found = notes(from("m", 8.0));
+    assert_eq!(found, ["from: `fps` 8 is taken, not the file's own 16"]);
+}

@@ -51,7 +51,7 @@ impl Contents {
             let path = if path == "." { String::new() } else { path };
             Problem::new(path, in_plain_words(&error.into_inner().to_string()))
         })?;
-        plans.extend(from::fill(&mut document, &mut keys, folder)?);
+        plans.extend(from::fill(&mut document, &mut keys, folder, &mut notes)?);
         let need = Need::of(&keys, &numerics::first_clock(&keys), duration(&keys))?;
         Ok(Self {
             document,

@@ -7,6 +7,7 @@ use super::error::{Problem, Under, suggestion};
 use super::file::{self, File};
 use super::goals::Target;
 use super::journeys::TO_NEAREST_EXIT;
+use super::overlaps;
 use super::profiles::{self, ProfileChoice};
 use super::quote::shown;
 use super::range::region;
@@ -91,6 +92,8 @@ impl<'a> Crowd<'a> {
             let name = format!("entrances[{k}]");
             self.entrance(entrance, &name).under(&name)?;
         }
+        self.note_bodies();
+        self.notes.extend(overlaps::note(&self.bodies));
         Ok(self.notes)
     }
 

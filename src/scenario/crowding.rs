@@ -64,13 +64,19 @@ fn too_close(count: usize, p: Vector) -> String {
     )
 }
 
-fn near(p: Vector) -> String {
-    let (x, y) = (p.x.floor(), p.y.floor());
+/// The square meter around a point, for messages.
+pub(super) fn near(p: Vector) -> String {
+    let [x, y] = cell(&p).map(f64::from);
     format!(
         "in the square meter from ({x}, {y}) to ({}, {})",
         x + 1.0,
         y + 1.0
     )
+}
+
+/// The lower left corner of the square meter around a point.
+pub(super) fn cell(p: &Vector) -> [i32; 2] {
+    [p.x.floor() as i32, p.y.floor() as i32]
 }
 
 /// The list element that places agent `id` at the start.
@@ -96,7 +102,6 @@ fn crowded(points: &[Vector]) -> Option<(usize, usize)> {
     if points.len() <= MOST_PER_CELL {
         return None;
     }
-    let cell = |p: &Vector| [p.x.floor() as i32, p.y.floor() as i32];
     let mut cells: Vec<[i32; 2]> = points.iter().map(cell).collect();
     cells.sort_unstable();
     let full: Vec<&[[i32; 2]]> = cells

@@ -208,7 +208,7 @@ impl Building<'_> {
     }
 
     /// Notes the bodies of the agents that have been added since.
-    fn note_bodies(&mut self) {
+    pub(super) fn note_bodies(&mut self) {
         let scene = &self.scene;
         let new = scene.agents.iter().enumerate().skip(self.bodies.len());
         self.bodies.extend(new.map(|(id, agent)| {

@@ -138,12 +138,13 @@ impl FromData {
     }
 }
 
-/// Replaces the name of the trajectory file, relative to `folder`, and the keys about it with the people. Returns the
-/// file.
+/// Replaces the name of the trajectory file, relative to `folder`, and the keys about it with the people, and adds notes
+/// on keys that overrule the file. Returns the file.
 pub(super) fn fill(
     document: &mut Value,
     keys: &mut File,
     folder: &Path,
+    notes: &mut Vec<String>,
 ) -> Result<Option<PlanFile>, Problem> {
     let Some(given) = &mut keys.from else {
         return Ok(None);
@@ -170,7 +171,7 @@ pub(super) fn fill(
         return Err(Problem::new(format!("{FROM}.people"), reason));
     }
     let path = folder.join(name);
-    let people = people(&path, given).under(FROM)?;
+    let people = people(&path, given, notes).under(FROM)?;
     if let Some(Value::Object(object)) = document.get_mut(FROM) {
         for key in ["trajectory", "at_secs", "until_secs", "unit", "fps"] {
             object.remove(key);
@@ -189,11 +190,8 @@ pub(super) fn tracks(path: &Path, given: &FromData) -> Result<(Tracks, f64), Pro
         unit: given.unit,
         fps: given.fps,
     };
-    let tracks = read(path, &options).map_err(|error| {
-        let said = error.to_string(); // for the command line
-        let said = said.replace("--fps", "`fps`").replace("--unit", "`unit`");
-        Problem::new("trajectory", shown_message(&said))
-    })?;
+    let tracks = read(path, &options)
+        .map_err(|error| Problem::new("trajectory", shown_message(&in_keys(&error.to_string()))))?;
     let file = shown(&path.display().to_string());
     if tracks.unit.is_none() {
         let reason =
@@ -217,9 +215,17 @@ pub(super) fn tracks(path: &Path, given: &FromData) -> Result<(Tracks, f64), Pro
     Ok((tracks, at))
 }
 
-/// The people in a file: those at the time, by id, then those who appear later, by time.
-fn people(path: &Path, given: &FromData) -> Result<Vec<Person>, Problem> {
+/// A message for the command line, with keys instead of options.
+fn in_keys(said: &str) -> String {
+    said.replace("--fps", "`fps`").replace("--unit", "`unit`")
+}
+
+/// The people in a file: those at the time, by id, then those who appear later, by time. Adds notes on keys that overrule
+/// the file.
+fn people(path: &Path, given: &FromData, notes: &mut Vec<String>) -> Result<Vec<Person>, Problem> {
     let (tracks, at) = tracks(path, given)?;
+    let overruled = tracks.notes.iter().filter(|note| note.starts_with("--"));
+    notes.extend(overruled.map(|note| format!("{FROM}: {}", in_keys(note))));
     let near = tracks.rounding();
     let until = given.until_secs.unwrap_or(f64::INFINITY);
     if until < at {

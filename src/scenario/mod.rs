@@ -43,6 +43,7 @@ mod late;
 mod need;
 mod numerics;
 mod off_floor;
+mod overlaps;
 mod periodic;
 mod places;
 mod plan;
