@@ -8,6 +8,7 @@ mod backlogs;
 mod bad_days;
 mod bench;
 mod bench_compare;
+mod byte_order_marks;
 mod calibrate;
 mod checkpoint;
 mod checkpoint_robustness;

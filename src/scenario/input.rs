@@ -17,13 +17,23 @@ pub fn bytes(path: &Path, most: u64) -> Result<Vec<u8>> {
     rest(File::open(path)?, most)
 }
 
-/// Reads a whole text file.
+/// The byte-order mark with which some editors begin a text.
+const MARK: char = '\u{feff}';
+
+/// A text without a byte-order mark at its beginning.
+pub fn without_mark(text: &str) -> &str {
+    text.strip_prefix(MARK).unwrap_or(text)
+}
+
+/// Reads a whole text file, without a byte-order mark.
 ///
 /// # Errors
 /// The file cannot be read, has more than [`LONGEST_TEXT`] bytes, or is not UTF-8.
 pub fn text(path: &Path) -> Result<String> {
     let text = String::from_utf8(bytes(path, LONGEST_TEXT)?);
-    text.map_err(|_| Error::new(ErrorKind::InvalidData, "not UTF-8 text"))
+    let mut text = text.map_err(|_| Error::new(ErrorKind::InvalidData, "not UTF-8 text"))?;
+    text.drain(..text.len() - without_mark(&text).len());
+    Ok(text)
 }
 
 /// Reads the rest of a file.

@@ -103,7 +103,7 @@ fn in_file(
     };
     let text =
         input::text(path).map_err(|error| within(FloorPlanError::Unreadable(error.to_string())))?;
-    parse(text.trim_start_matches('\u{feff}')).map_err(within)
+    parse(&text).map_err(within)
 }
 
 /// The polygons of GeoJSON, XML or WKT. If `all_obstacles`, the kinds of features do not matter.

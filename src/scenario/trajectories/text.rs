@@ -7,7 +7,7 @@ use super::error::ReadError;
 use super::line::{self, Columns, words};
 use super::tracks::{Contents, Tracks};
 use super::{FRAME_RATES, ReadOptions, Unit, frame_rate};
-use crate::scenario::input::Lines;
+use crate::scenario::input::{self, Lines};
 
 /// Reads the text format of PeTrack and the Pedestrian Dynamics Data Archive.
 pub fn read_text(path: &Path, file: impl Read, options: &ReadOptions) -> Result<Tracks, ReadError> {
@@ -29,7 +29,7 @@ pub fn read_text(path: &Path, file: impl Read, options: &ReadOptions) -> Result<
         number += 1;
         // Comments may be in another encoding; the numbers are still valid.
         let text = String::from_utf8_lossy(&bytes);
-        let line = text.trim_start_matches('\u{feff}').trim();
+        let line = input::without_mark(&text).trim();
         if let Some(comment) = line.strip_prefix(['#', '%']) {
             heed(comment, &mut columns, &mut contents, options)
                 .map_err(|problem| failed(number, problem))?;
