@@ -295,7 +295,12 @@ fn invalid_floor_plans_are_refused_with_the_place_and_the_fix() {
         ),
         (
             &crs("urn:ogc:def:crs:OGC:1.3:CRS84"),
-            vec!["degrees", "CRS84", "UTM"],
+            vec![
+                "degrees",
+                "CRS84",
+                "UTM",
+                "subtract an origin near the site",
+            ],
         ),
         (&crs("EPSG:4326"), vec!["degrees", "EPSG:4326"]),
         (
@@ -304,7 +309,7 @@ fn invalid_floor_plans_are_refused_with_the_place_and_the_fix() {
         ),
         (
             "POLYGON ((8.41 49.01, 8.42 49.01, 8.42 49.02, 8.41 49.02))",
-            vec!["too small for a person", "degrees"],
+            vec!["too small for a person", "degrees", "subtract an origin"],
         ),
         (
             "POLYGON ((0 0, 4 4, 4 0, 0 4))",
@@ -320,7 +325,7 @@ fn invalid_floor_plans_are_refused_with_the_place_and_the_fix() {
         ("POLYGON ((0 0, 1 1, 0 0))", vec!["2 different point(s)"]),
         (
             "POLYGON ((0 0, 9 0, 9 9))\nPOLYGON ((2000000 0, 2000009 0, 2000009 9))",
-            vec!["line 2", "(2000000, 0)", "origin"],
+            vec!["line 2", "(2000000, 0)", "subtract a point near the site"],
         ),
         (
             "POLYGON ((0 0, 9 0, 9 9), (1 1, 2 1, 1e7 2))",

@@ -34,14 +34,15 @@ pub enum FloorPlanError {
     Empty,
     /// The file declares a coordinate system in degrees.
     #[error(
-        "the coordinates are degrees ({}); a floor plan must be in meters: project it, for example to UTM",
+        "the coordinates are degrees ({}); a floor plan must be in meters: project it, for example to UTM, and \
+         subtract an origin near the site",
         shown(.0)
     )]
     Degrees(String),
     /// The plan is so small that it must be a mistake.
     #[error(
         "too small for a person: everything lies within {width} by {height} m. Coordinates are in meters; if these \
-         are degrees, project them, for example to UTM"
+         are degrees, project them, for example to UTM, and subtract an origin near the site"
     )]
     TooSmall {
         /// Extent along x, meters.

@@ -80,7 +80,7 @@ impl Shape {
         if let Some(&[x, y]) = self.rings.iter().flatten().find(is_far) {
             return Err(self.wrong(&format!(
                 "({x}, {y}) is out of range: x and y must be at least -1e6 and at most 1e6 m; move the plan \
-                 closer to the origin"
+                 closer to the origin: subtract a point near the site from all coordinates"
             )));
         }
         let mut rings = Vec::with_capacity(self.rings.len());
