@@ -78,4 +78,5 @@ mod way_extremes;
 mod way_field;
 mod way_finding;
 mod way_oracles;
+mod way_reach;
 mod ways;

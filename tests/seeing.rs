@@ -248,7 +248,10 @@ fn an_inspection_shows_the_way_and_why_an_agent_takes_it() {
         (&visit["place"], &visit["status"]),
         (&"east".into(), &"walking".into())
     );
-    assert_eq!(visit["why"]["reason"], "no other place is open");
+    assert_eq!(
+        visit["why"]["reason"],
+        "no other place is open and can be reached"
+    );
     let alternatives = visit["why"]["alternatives"].as_array().unwrap();
     let names = alternatives
         .iter()

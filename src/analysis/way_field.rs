@@ -53,7 +53,8 @@ impl Grid {
 pub struct WayField {
     /// The cells.
     pub grid: Grid,
-    /// The length of the way from each cell, meters; `None` outside of the floor and where no way leads.
+    /// The length of the way from each cell, meters; `None` outside of the floor, and where no way leads or every way is
+    /// somewhere narrower than the floor's least width.
     pub lengths: Vec<Option<f64>>,
     /// What comes first on the way from each cell: equal numbers for the same corner.
     next: Vec<u32>,
@@ -81,7 +82,6 @@ const MOST_BANDS: f64 = 14.0;
 /// The numbers of what comes first, if it is no corner.
 const NOTHING: u32 = u32::MAX;
 const GOAL: u32 = u32::MAX - 1;
-const OUT: u32 = u32::MAX - 2;
 
 impl WayField {
     /// The ways to a destination that has a path map.
@@ -89,7 +89,7 @@ impl WayField {
         let from = |k: usize| {
             let p = grid.center(k);
             let on_floor = ways.floor.locate(p).is_some();
-            let way = on_floor.then(|| ways.way(p, to)).flatten();
+            let way = on_floor.then(|| ways.open_way(p, to)).flatten();
             (way.map(|way| way.length), way.map_or(NOTHING, number))
         };
         let cells = (0..grid.len()).into_par_iter().with_min_len(1024);
@@ -133,7 +133,7 @@ impl WayField {
 
     /// The numbers of the corners that come first somewhere.
     pub fn corners(&self) -> Vec<u32> {
-        let corners = self.next.iter().copied().filter(|&next| next < OUT);
+        let corners = self.next.iter().copied().filter(|&next| next < GOAL);
         let mut corners: Vec<u32> = corners.map(|bend| bend / 2).collect();
         corners.sort_unstable();
         corners.dedup();
@@ -143,8 +143,7 @@ impl WayField {
 
 fn number(way: Way) -> u32 {
     match way.next {
-        Next::Goal(_) => GOAL,
-        Next::Out(_) => OUT,
+        Next::Goal(_) | Next::Out(_) => GOAL,
         Next::Corner { bend, .. } => bend.index() as u32,
     }
 }

@@ -1,5 +1,6 @@
 //! The loop (§4.1).
 
+mod bound;
 mod choice;
 mod digest;
 mod entrances;

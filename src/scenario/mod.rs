@@ -50,6 +50,7 @@ mod plan;
 mod preset;
 mod profiles;
 mod range;
+mod reach;
 mod schema;
 mod setting;
 mod settings;

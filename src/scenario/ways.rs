@@ -1,4 +1,4 @@
-//! Ways around walls: the floor of a scene, the path maps to its goals, and the check that agents can reach them.
+//! Ways around walls: the floor of a scene, and the path maps to its goals.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -12,10 +12,10 @@ use super::quote::shown;
 use crate::engine::agents::RADIUS_RANGE;
 use crate::engine::entrance::Latecomer;
 use crate::engine::geometry::Area;
-use crate::engine::journeys::{Choice, JourneyStage, Place};
+use crate::engine::journeys::Place;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Goal, Scene};
-use crate::engine::ways::{Destination, Floor, Goal as WayGoal, WayError, Ways};
+use crate::engine::ways::{Floor, Goal as WayGoal, WayError, Ways};
 
 /// How agents find their ways.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -36,15 +36,15 @@ const MARGIN: f64 = 5.0;
 const MOST_GOALS: usize = 1000;
 
 /// Where an agent starts, where it wants to go first, and what it is called in messages.
-struct Start {
-    place: Vector,
-    name: String,
-    to: To,
+pub(super) struct Start {
+    pub place: Vector,
+    pub name: String,
+    pub to: To,
 }
 
 /// Where an agent wants to go first.
 #[derive(Clone, Copy, PartialEq)]
-enum To {
+pub(super) enum To {
     /// A goal. `shared`: several agents have it.
     Goal { goal: Vector, shared: bool },
     /// The first stage of a journey.
@@ -53,8 +53,13 @@ enum To {
     Away,
 }
 
-/// The path maps of a scene that is otherwise complete; `None` if agents walk straight.
-pub(super) fn ways(keys: &File, scene: &Scene) -> Result<Option<Arc<Ways>>, Problem> {
+/// The path maps of a scene that is otherwise complete; `None` if agents walk straight. Adds notes about places that
+/// no agent can choose.
+pub(super) fn ways(
+    keys: &File,
+    scene: &Scene,
+    notes: &mut Vec<String>,
+) -> Result<Option<Arc<Ways>>, Problem> {
     let has_journeys = scene.groups.iter().any(|group| group.journey.is_some());
     if !keys.exits.is_empty() && !scene.groups.is_empty() && !has_journeys {
         let reason =
@@ -90,7 +95,7 @@ pub(super) fn ways(keys: &File, scene: &Scene) -> Result<Option<Arc<Ways>>, Prob
     };
     let ways = prepared.ways(prepared.width)?;
     prepared.check_goals(&ways)?;
-    prepared.check_journeys(&ways)?;
+    notes.extend(prepared.check_journeys(&ways)?);
     // Where all goals are in sight, agents walk straight.
     Ok((has_journeys || ways.bend()).then(|| Arc::new(ways)))
 }
@@ -143,18 +148,18 @@ fn goals(scene: &Scene, starts: &[Start]) -> Result<Vec<Vector>, Problem> {
 }
 
 /// What ways are computed from.
-struct Prepared<'a> {
-    scene: &'a Scene,
-    starts: &'a [Start],
-    places: &'a [Place],
-    goals: &'a [Vector],
+pub(super) struct Prepared<'a> {
+    pub scene: &'a Scene,
+    pub starts: &'a [Start],
+    pub places: &'a [Place],
+    pub goals: &'a [Vector],
     /// Narrower passages are closed, meters.
-    width: f64,
+    pub width: f64,
 }
 
 impl Prepared<'_> {
     /// The ways through passages of at least `width` meters.
-    fn ways(&self, width: f64) -> Result<Ways, Problem> {
+    pub(super) fn ways(&self, width: f64) -> Result<Ways, Problem> {
         let floor = Floor::new(&areas(self.scene, self.starts)?, width).map_err(unusable)?;
         let places: Vec<_> = self.places.iter().map(Place::goals).collect();
         Ways::new(floor, &places, self.goals.to_vec()).map_err(|error| match error {
@@ -182,97 +187,6 @@ impl Prepared<'_> {
             point.x, point.y
         );
         Problem::new("goal", reason)
-    }
-
-    /// Checks that all agents can reach their goals.
-    fn check_goals(&self, ways: &Ways) -> Result<(), Problem> {
-        for start in self.starts {
-            let To::Goal { goal, .. } = start.to else {
-                continue;
-            };
-            let to = Destination::Goal(goal);
-            if self.goals.contains(&goal) && !ways.is_open(start.place, to) {
-                let reason = format!(
-                    "no way leads from ({}, {}), where agents of {} start, to their goal ({}, {}): {}; or set \
-                     `navigation` to `straight`",
-                    start.place.x,
-                    start.place.y,
-                    start.name,
-                    goal.x,
-                    goal.y,
-                    self.why_closed(start.place, to)?,
-                );
-                return Err(Problem::new("goal", reason));
-            }
-        }
-        Ok(())
-    }
-
-    /// Checks that all agents can reach the places of the first stage of their journey, and from there those of the
-    /// next stages.
-    fn check_journeys(&self, ways: &Ways) -> Result<(), Problem> {
-        let journeys = &self.scene.journeys;
-        let mut used = BTreeSet::new();
-        for start in self.starts {
-            if let To::Journey(journey) = start.to {
-                used.insert(journey);
-                let stage = &journeys.journeys[usize::from(journey)].stages[0];
-                let from = format!(
-                    "({}, {}), where agents of {} start",
-                    start.place.x, start.place.y, start.name
-                );
-                self.check_stage(ways, (start.place, &from), stage, journey)?;
-            }
-        }
-        for journey in used {
-            for pair in journeys.journeys[usize::from(journey)].stages.windows(2) {
-                for &place in &pair[0].places {
-                    let place = &self.places[usize::from(place)];
-                    let point = place.nearest_point(Vector::zeros());
-                    let from = format!("`{}`", shown(&place.name));
-                    self.check_stage(ways, (point, &from), &pair[1], journey)?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Checks that from a point, which messages call `from`, agents reach a place of `stage`; all of its places if they
-    /// choose without looking at the way.
-    fn check_stage(
-        &self,
-        ways: &Ways,
-        (point, from): (Vector, &str),
-        stage: &JourneyStage,
-        journey: u16,
-    ) -> Result<(), Problem> {
-        let is_open = |place: &&u16| ways.is_open(point, Destination::Place(**place));
-        let looks = matches!(stage.choice, Choice::Nearest | Choice::Quickest);
-        if looks && stage.places.iter().any(|place| is_open(&place)) {
-            return Ok(());
-        }
-        let Some(&closed) = stage.places.iter().find(|place| !is_open(place)) else {
-            return Ok(());
-        };
-        let reason = format!(
-            "of `{}`: no way leads from {from}, to `{}`: {}",
-            shown(&self.scene.journeys.journeys[usize::from(journey)].name),
-            shown(&self.places[usize::from(closed)].name),
-            self.why_closed(point, Destination::Place(closed))?,
-        );
-        Err(Problem::new("journeys", reason))
-    }
-
-    /// Why no way leads to a destination, and what to do.
-    fn why_closed(&self, from: Vector, to: Destination) -> Result<String, Problem> {
-        let is_open = self.ways(0.0)?.is_open(from, to);
-        Ok(match is_open {
-            true => format!(
-                "every way there has a passage narrower than `min_passage_width`, {} m; widen it, or lower that",
-                self.width
-            ),
-            false => "walls close it off; open them, or move one of the two".to_owned(),
-        })
     }
 }
 

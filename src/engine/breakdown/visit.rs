@@ -181,7 +181,7 @@ impl Why {
 
 fn in_words(reason: Reason) -> &'static str {
     match reason {
-        Reason::Only => "no other place is open",
+        Reason::Only => "no other place is open and can be reached",
         Reason::Nearest => "the shortest way",
         Reason::Quickest => "the least expected time",
         Reason::NotClearlyNearer => "kept: no way is shorter by 0.5 m",

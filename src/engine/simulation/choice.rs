@@ -3,7 +3,8 @@
 use rand::Rng;
 
 use super::{Crowd, PlaceState};
-use crate::engine::journeys::{Choice, Journey, JourneyStage, Kind, Place, Status, Trip};
+use crate::engine::journeys::{Choice, Journey, JourneyStage, Kind, Place, Trip};
+use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
 use crate::engine::scene::Scene;
 use crate::engine::ways::{Destination, SLACK};
@@ -14,8 +15,6 @@ const NEAREST_EVERY: f64 = 1.0;
 const QUICKEST_EVERY: [f64; 2] = [2.0, 5.0];
 /// An agent changes to a place that it expects to pass in less than this part of the time.
 const CLEARLY_QUICKER: f64 = 0.8;
-/// The flow through a place is observed over this time, seconds.
-const OBSERVED: f64 = 10.0;
 /// The least flow that agents expect through an exit, P/(m s): about what Weidmann (1993) gives.
 const FLOW_PER_METER: f64 = 1.3;
 /// Where agents stand more densely than this within [`BEFORE`] meters of a line, P/m², there is a crowd before it: then
@@ -27,10 +26,6 @@ const BEFORE: f64 = 2.0;
 const FEWEST_OBSERVED: usize = 5;
 /// The least flow that agents expect from observation, P/s.
 const LEAST_FLOW: f64 = 0.1;
-/// The width of the classes of distances in which agents are counted, meters.
-const BIN: f64 = 0.5;
-/// Farther agents are counted as this far, meters.
-const FARTHEST_BIN: f64 = 500.0;
 
 /// An agent that chooses.
 pub(super) struct Chooser<'a> {
@@ -47,13 +42,13 @@ pub struct Prospect {
     pub place: u16,
     /// Is it anything but a closed exit?
     pub open: bool,
-    /// The length of the way there, meters; infinite if there is none.
+    /// The length of the way there, meters; infinite if the agent cannot get there.
     pub length: f64,
     /// The number of agents that are bound for it.
     pub bound: u32,
     /// Of a stage with shares: its weight.
     pub weight: Option<f64>,
-    /// Of a stage of which agents choose the quickest place: what the agent expects.
+    /// Of a stage of which agents choose the quickest place: what the agent expects if it can get there.
     pub expected: Option<Expected>,
 }
 
@@ -93,7 +88,7 @@ pub struct Decision {
 /// Why an agent chooses a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reason {
-    /// The stage has no other place that is open.
+    /// The stage has no other place that is open and can be reached.
     Only,
     /// The shortest way.
     Nearest,
@@ -116,7 +111,8 @@ impl Chooser<'_> {
         let decision = self.decide(trip, before);
         let clock = &self.crowd.clock;
         let again = |secs: f64| clock.coarse_frame_at(clock.time() + secs);
-        let is_kept = before.is_some_and(|before| self.candidates(trip).contains(&before));
+        let is_kept =
+            before.is_some_and(|before| candidates(&decision.prospects).contains(&before));
         let chooses_at = match self.stage(trip).choice {
             Choice::Nearest if self.stage(trip).places.len() == 1 => u64::MAX,
             Choice::Nearest if is_kept => again(NEAREST_EVERY),
@@ -134,9 +130,9 @@ impl Chooser<'_> {
     /// Decides between the places of the current stage of `trip`. `before` is the place that the agent walks to.
     pub(super) fn decide(&self, trip: &Trip, before: Option<u16>) -> Decision {
         let stage = self.stage(trip);
-        let open = self.candidates(trip);
+        let prospects = self.prospects(trip);
+        let open = candidates(&prospects);
         let before = before.filter(|place| open.contains(place));
-        let prospects: Vec<Prospect> = stage.places.iter().map(|&p| self.see(trip, p)).collect();
         let of = |place: u16| prospects.iter().find(|prospect| prospect.place == place);
         let (place, reason) = match &stage.choice {
             Choice::Nearest => {
@@ -187,18 +183,6 @@ impl Chooser<'_> {
         self.journey(trip).stage(trip.stage)
     }
 
-    /// The places of the stage that are not closed; all of them if all are closed.
-    fn candidates(&self, trip: &Trip) -> Vec<u16> {
-        let places = &self.stage(trip).places;
-        let open = places.iter().copied().filter(|&place| self.is_open(place));
-        let open: Vec<u16> = open.collect();
-        if open.is_empty() {
-            places.clone()
-        } else {
-            open
-        }
-    }
-
     fn is_open(&self, place: u16) -> bool {
         let is_exit = self.scene.journeys.places[usize::from(place)].is_exit();
         !is_exit || self.crowd.progress.places[usize::from(place)].open
@@ -230,25 +214,40 @@ impl Chooser<'_> {
         chosen.unwrap_or(stage.places[0])
     }
 
-    /// A place of the current stage of `trip`, as the agent sees it.
-    fn see(&self, trip: &Trip, place: u16) -> Prospect {
+    /// The places of the current stage of `trip`, as the agent sees them.
+    fn prospects(&self, trip: &Trip) -> Vec<Prospect> {
+        let places = &self.stage(trip).places;
+        let lengths = self.lengths(self.crowd.agents.position[self.agent], places);
+        let seen = places.iter().zip(lengths).enumerate();
+        seen.map(|(k, (&place, length))| self.see(trip, k, (place, length)))
+            .collect()
+    }
+
+    /// Place k of the current stage of `trip`, to which the way has this length, meters.
+    fn see(&self, trip: &Trip, k: usize, (place, length): (u16, f64)) -> Prospect {
         let stage = self.stage(trip);
-        let length = self.length(place);
-        let k = stage.places.iter().position(|&other| other == place);
         let onward = self.journey(trip).stages.get(usize::from(trip.stage) + 1);
         Prospect {
             place,
             open: self.is_open(place),
             length,
             bound: self.crowd.progress.places[usize::from(place)].bound,
-            weight: match (&stage.choice, k) {
-                (Choice::Shares(weights), Some(k)) => weights.get(k).copied(),
+            weight: match &stage.choice {
+                Choice::Shares(weights) => weights.get(k).copied(),
                 _ => None,
             },
             expected: match stage.choice {
-                Choice::Quickest => Some(self.expect(place, length, onward)),
+                Choice::Quickest if length.is_finite() => Some(self.expect(place, length, onward)),
                 _ => None,
             },
+        }
+    }
+
+    /// The lengths of the ways from `p` to some places, meters; infinite where there is none.
+    fn lengths(&self, p: Vector, places: &[u16]) -> Vec<f64> {
+        match &self.scene.ways {
+            Some(ways) => ways.lengths(p, places),
+            None => vec![f64::INFINITY; places.len()],
         }
     }
 
@@ -271,10 +270,9 @@ impl Chooser<'_> {
         let flow = self.flow(definition, state);
         let onward = onward.map_or(0.0, |stage| {
             let from = definition.nearest_point(self.crowd.agents.position[self.agent]);
-            let ways = self.scene.ways.as_ref();
-            let way = |next: &u16| ways?.way(from, Destination::Place(*next));
-            let lengths = stage.places.iter().filter_map(way).map(|way| way.length);
-            lengths.reduce(f64::min).unwrap_or(0.0)
+            let lengths = self.lengths(from, &stage.places).into_iter();
+            let shortest = lengths.filter(|length| length.is_finite()).reduce(f64::min);
+            shortest.unwrap_or(0.0)
         });
         Expected {
             walking: length / speed,
@@ -322,6 +320,16 @@ impl Chooser<'_> {
     }
 }
 
+/// The places that the agent can get to and that are not closed; if all of these are closed, all that it can get to.
+fn candidates(prospects: &[Prospect]) -> Vec<u16> {
+    let can_reach_any = prospects.iter().any(|prospect| prospect.length.is_finite());
+    let reached = prospects.iter();
+    let reached = reached.filter(|prospect| !can_reach_any || prospect.length.is_finite());
+    let is_any_open = reached.clone().any(|prospect| prospect.open);
+    let chosen = reached.filter(|prospect| prospect.open || !is_any_open);
+    chosen.map(|prospect| prospect.place).collect()
+}
+
 /// The place with the least value; `before` unless another one is `better` than it. Also returns whether `before` is
 /// kept though another one has the least value.
 fn best(
@@ -336,65 +344,5 @@ fn best(
     match before {
         Some(before) if !better(least, value(before)) => (before, before != place),
         _ => (place, false),
-    }
-}
-
-impl PlaceState {
-    /// Counts an agent that has come to be bound for this place from `length` meters away, or no longer is.
-    pub(super) fn count(&mut self, length: f64, comes: bool) {
-        let bin = (length.min(FARTHEST_BIN) / BIN) as usize;
-        let last = self.nearer.last().copied().unwrap_or(0);
-        self.nearer.resize(self.nearer.len().max(bin + 2), last);
-        for count in &mut self.nearer[bin + 1..] {
-            *count = if comes {
-                *count + 1
-            } else {
-                count.saturating_sub(1)
-            };
-        }
-    }
-
-    /// The number of agents bound for this place that are nearer to it than `length` meters.
-    fn nearer_than(&self, length: f64) -> u32 {
-        let last = self.nearer.last().copied().unwrap_or(0);
-        let bin = (length.min(FARTHEST_BIN) / BIN) as usize;
-        self.nearer.get(bin).copied().unwrap_or(last)
-    }
-}
-
-/// Once per second: counts the agents bound for each place by distance, and forgets old passes.
-pub(super) fn count(crowd: &mut Crowd, scene: &Scene) {
-    let clock = &crowd.clock;
-    let before = clock
-        .frame()
-        .saturating_sub(u64::from(clock.coarse_every()));
-    let is_due = clock.frame() == 0 || clock.time().floor() > clock.time_at(before).floor();
-    if !is_due || !scene.journeys.has_quickest() {
-        return;
-    }
-    let oldest = clock.time() - OBSERVED;
-    for state in &mut crowd.progress.places {
-        state.recent.retain(|&frame| clock.time_at(frame) > oldest);
-        state.nearer.clear();
-    }
-    let agents = &crowd.agents;
-    for (trip, route) in agents.trip.iter().zip(&agents.route) {
-        let (Some(trip), Some(route)) = (trip, route) else {
-            continue;
-        };
-        if matches!(trip.status, Status::Waiting { .. } | Status::Finished) {
-            continue;
-        }
-        let bin = (route.length().min(FARTHEST_BIN) / BIN) as usize;
-        let nearer = &mut crowd.progress.places[usize::from(trip.place)].nearer;
-        nearer.resize(nearer.len().max(bin + 2), 0);
-        nearer[bin + 1] += 1;
-    }
-    for state in &mut crowd.progress.places {
-        let mut sum = 0;
-        for count in &mut state.nearer {
-            sum += *count;
-            *count = sum;
-        }
     }
 }

@@ -5,7 +5,8 @@ use rand::distr::Open01;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::choice::{self, Chooser};
+use super::bound;
+use super::choice::Chooser;
 use super::{Crowd, EventKind, Simulation, Stage};
 use crate::engine::clock::Clock;
 use crate::engine::journeys::{ChangeKind, Kind, Status, Trip, WaitingArea};
@@ -146,7 +147,7 @@ impl Crowd {
         let places = journeys.places.len();
         progress.places.resize_with(places, PlaceState::default);
         self.change_places(scene);
-        choice::count(self, scene);
+        bound::count(self, scene);
         self.agents.trip.resize(self.agents.len(), None);
         for i in self.where_due(|crowd, i| crowd.has_to_begin(scene, i)) {
             self.begin(scene, i);

@@ -67,7 +67,7 @@ pub struct Way {
 pub struct PathMap {
     targets: Targets,
     parts: Parts,
-    /// From triangles without entries, in order: the next triangle, and the length of the way out.
+    /// From triangles without entries, in order: the next triangle, and the length of the way from its middle, meters.
     out: Vec<(u32, u32, f64)>,
     /// The memory that building it took in addition, bytes.
     building: usize,
@@ -106,10 +106,12 @@ impl PathMap {
         let mut out: Vec<Option<(u32, f64)>> = vec![None; count as usize];
         let mut queue: VecDeque<u32> = (0..count).filter(|&t| !is_empty(t)).collect();
         while let Some(t) = queue.pop_front() {
-            let length = out[t as usize].map_or(0.0, |(_, length)| length);
+            let mut from_middle = None;
             for next in floor.mesh.triangle(t).across.into_iter().flatten() {
                 if out[next as usize].is_none() && is_empty(next) {
-                    out[next as usize] = Some((t, length + 1.0));
+                    let length = from_middle
+                        .get_or_insert_with(|| self.from_middle(floor, t, out[t as usize]));
+                    out[next as usize] = Some((t, *length));
                     queue.push_back(next);
                 }
             }
@@ -117,6 +119,22 @@ impl PathMap {
         let found = (0..).zip(out);
         let found = found.filter_map(|(t, out)| out.map(|(next, length)| (t, next, length)));
         self.out = found.collect();
+    }
+
+    /// The length of the way from the middle of triangle `t`, meters; `out` is the way out of it, if it needs one.
+    fn from_middle(&self, floor: &Floor, t: u32, out: Option<(u32, f64)>) -> f64 {
+        let middle = floor.mesh.middle(t);
+        match out {
+            Some((next, rest)) => {
+                let opening = floor.mesh.opening(t, next);
+                let beyond = floor.mesh.middle(next);
+                (opening - middle).norm() + (beyond - opening).norm() + rest
+            }
+            None => {
+                let way = self.way(floor, middle, t, None);
+                way.map_or(f64::INFINITY, |way| way.length)
+            }
+        }
     }
 
     /// The way from `p`, which lies in triangle `t`. `None` if the goal cannot be reached from there. An agent that
@@ -265,18 +283,9 @@ impl PathMap {
     /// The way from a triangle without entries: through the middle of an opening.
     fn way_out(&self, floor: &Floor, p: Vector, t: u32) -> Option<Way> {
         let place = self.out.binary_search_by_key(&t, |out| out.0).ok()?;
-        let (_, next, extra) = self.out[place];
-        let corners = floor.mesh.corners(t);
-        let side = floor.mesh.side_along(t, next);
-        let opening = (corners[side] + corners[(side + 1) % 3]) * 0.5;
-        let [a, b, c] = floor.mesh.corners(next);
-        let beyond = (a + b + c) / 3.0;
-        let rest = match self.parts.is_empty(next) {
-            true => extra,
-            false => self
-                .way(floor, beyond, next, None)
-                .map_or(extra, |way| way.length),
-        };
+        let (_, next, rest) = self.out[place];
+        let opening = floor.mesh.opening(t, next);
+        let beyond = floor.mesh.middle(next);
         let to_opening = (opening - p).norm();
         let length = to_opening + (beyond - opening).norm() + rest;
         // In the opening, go on to what lies behind it.

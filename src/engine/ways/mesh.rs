@@ -89,6 +89,19 @@ impl Mesh {
         self.triangle(t).corners.map(|k| self.point(k))
     }
 
+    /// The middle of triangle `t`, meters.
+    pub fn middle(&self, t: u32) -> Vector {
+        let [a, b, c] = self.corners(t);
+        (a + b + c) / 3.0
+    }
+
+    /// The middle of the side between the triangles `t` and `next`, meters.
+    pub fn opening(&self, t: u32, next: u32) -> Vector {
+        let corners = self.corners(t);
+        let side = self.side_along(t, next);
+        (corners[side] + corners[(side + 1) % 3]) * 0.5
+    }
+
     /// The memory that it takes, bytes.
     pub fn bytes(&self) -> usize {
         self.points.capacity() * size_of::<Vector>()

@@ -16,6 +16,7 @@ mod list;
 mod map;
 mod mesh;
 mod parts;
+mod reach;
 mod region;
 mod route;
 mod sight;

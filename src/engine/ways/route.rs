@@ -7,7 +7,6 @@ use super::corner::Bend;
 use super::floor::Floor;
 use super::goal::Goal;
 use super::map::{Next, PathMap, SLACK, Way};
-use super::mesh::side;
 use super::steer::{around, between_borders};
 use super::{MOST_GOALS, WayError};
 use crate::engine::math::Vector;
@@ -35,7 +34,7 @@ pub struct Ways {
     goals: Vec<Vector>,
     /// The number of goals from the beginning; the others were added.
     first_goals: usize,
-    maps: Vec<PathMap>,
+    pub(super) maps: Vec<PathMap>,
 }
 
 /// What an agent walks to.
@@ -148,26 +147,6 @@ impl Ways {
         self.from(map, p)
     }
 
-    /// Does a way lead from `p` to a destination that is nowhere narrower than the floor's least width?
-    pub fn is_open(&self, p: Vector, to: Destination) -> bool {
-        let floor = &self.floor;
-        let Some(way) = self.way(p, to) else {
-            return false;
-        };
-        let next = match way.next {
-            Next::Goal(point) => point,
-            Next::Corner { bend, .. } => floor.place(bend),
-            Next::Out(_) => return false,
-        };
-        let Some(here) = floor.locate(p).or_else(|| floor.nearest(p)) else {
-            return false;
-        };
-        let crosses = |[a, b]: [Vector; 2]| {
-            side(a, b, p) * side(a, b, next) < 0.0 && side(p, next, a) * side(p, next, b) < 0.0
-        };
-        !floor.mesh.gaps(here, floor.least_width).any(crosses)
-    }
-
     /// Can `route` come from here?
     pub fn knows(&self, route: &Route) -> bool {
         let corners = self.floor.corners.len();
@@ -185,7 +164,7 @@ impl Ways {
         self.maps.iter().any(PathMap::bends)
     }
 
-    fn map_to(&self, to: Destination) -> Option<u16> {
+    pub(super) fn map_to(&self, to: Destination) -> Option<u16> {
         let map = match to {
             Destination::Place(place) => {
                 return (usize::from(place) < self.places).then_some(place);

@@ -109,6 +109,7 @@ impl Paths {
             let lines = scene.entrances.iter().flat_map(|entrance| entrance.line);
             from.extend(entries.chain(lines));
         }
+        from.retain(|&p| self.ways.is_open(p, self.to));
         far_apart(&from)
     }
 
@@ -134,7 +135,8 @@ impl Paths {
         let on_floor = (0..grid.len()).map(|k| grid.center(k));
         let on_floor = on_floor.filter(|&p| self.ways.floor.locate(p).is_some());
         let arrow = |p: Vector| {
-            let next = *self.ways.course(p, self.to).first()?;
+            let way = self.ways.open_way(p, self.to)?;
+            let next = self.ways.place(way.next);
             let reach = frame.meters(11.0);
             let along = direction(next - p) * reach.min((next - p).norm());
             let ends = [p, p + along];

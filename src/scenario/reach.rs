@@ -1,0 +1,158 @@
+//! Checks that agents can reach their goals and the places of their journeys.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::error::Problem;
+use super::quote::shown;
+use super::ways::{Prepared, To};
+use crate::engine::journeys::{Choice, JourneyStage};
+use crate::engine::math::Vector;
+use crate::engine::ways::{Destination, Ways};
+
+/// A point from which agents choose between the places of a stage.
+struct Origin<'a> {
+    point: Vector,
+    /// What messages call it.
+    name: &'a str,
+    /// The number of the journey.
+    journey: u16,
+}
+
+/// The places that agents reach from one stage.
+#[derive(Default)]
+struct Reached {
+    places: BTreeSet<u16>,
+    /// The places that cannot be reached from some point, and the first of these points.
+    closed: BTreeMap<u16, Vector>,
+}
+
+impl Prepared<'_> {
+    /// Checks that all agents can reach their goals.
+    pub(super) fn check_goals(&self, ways: &Ways) -> Result<(), Problem> {
+        for start in self.starts {
+            let To::Goal { goal, .. } = start.to else {
+                continue;
+            };
+            let to = Destination::Goal(goal);
+            if self.goals.contains(&goal) && !ways.is_open(start.place, to) {
+                let reason = format!(
+                    "no way leads from ({}, {}), where agents of {} start, to their goal ({}, {}): {}; or set \
+                     `navigation` to `straight`",
+                    start.place.x,
+                    start.place.y,
+                    start.name,
+                    goal.x,
+                    goal.y,
+                    self.why_closed(start.place, to)?,
+                );
+                return Err(Problem::new("goal", reason));
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that all agents can reach the places of the first stage of their journey, and from there those of the
+    /// next stages. Returns notes about the places that no agent can choose.
+    pub(super) fn check_journeys(&self, ways: &Ways) -> Result<Vec<String>, Problem> {
+        let journeys = &self.scene.journeys.journeys;
+        let mut first: BTreeMap<u16, Reached> = BTreeMap::new();
+        for start in self.starts {
+            if let To::Journey(journey) = start.to {
+                let name = format!(
+                    "({}, {}), where agents of {} start",
+                    start.place.x, start.place.y, start.name
+                );
+                let from = Origin {
+                    point: start.place,
+                    name: &name,
+                    journey,
+                };
+                let stage = &journeys[usize::from(journey)].stages[0];
+                self.check_stage(ways, &from, stage, first.entry(journey).or_default())?;
+            }
+        }
+        let (mut chosen, mut closed) = (BTreeSet::new(), BTreeMap::new());
+        for (journey, mut before) in first {
+            for pair in journeys[usize::from(journey)].stages.windows(2) {
+                let mut next = Reached::default();
+                for place in pair[0]
+                    .places
+                    .iter()
+                    .filter(|place| before.places.contains(place))
+                {
+                    let place = &self.places[usize::from(*place)];
+                    let from = Origin {
+                        point: place.nearest_point(Vector::zeros()),
+                        name: &format!("`{}`", shown(&place.name)),
+                        journey,
+                    };
+                    self.check_stage(ways, &from, &pair[1], &mut next)?;
+                }
+                chosen.append(&mut before.places);
+                closed.append(&mut before.closed);
+                before = next;
+            }
+            chosen.append(&mut before.places);
+            closed.append(&mut before.closed);
+        }
+        let never = closed
+            .into_iter()
+            .filter(|(place, _)| !chosen.contains(place));
+        let note = |(place, from)| {
+            let why = self.why_closed(from, Destination::Place(place))?;
+            let name = shown(&self.places[usize::from(place)].name);
+            Ok(format!("no agent can choose `{name}`: {why}"))
+        };
+        never.map(note).collect()
+    }
+
+    /// Checks that agents reach a place of `stage` from a point; all of its places if they choose without looking at the
+    /// way. Adds these places to `reached`.
+    fn check_stage(
+        &self,
+        ways: &Ways,
+        from: &Origin,
+        stage: &JourneyStage,
+        reached: &mut Reached,
+    ) -> Result<(), Problem> {
+        let is_open = |place: u16| ways.is_open(from.point, Destination::Place(place));
+        let looks = matches!(stage.choice, Choice::Nearest | Choice::Quickest);
+        let places = || stage.places.iter().copied();
+        // Places that others reach are not looked up again.
+        let new = places().filter(|place| !reached.places.contains(place));
+        let (open, closed): (Vec<u16>, Vec<u16>) = new.partition(|&place| is_open(place));
+        let known = |place: &u16| reached.places.contains(place);
+        let is_any_open = !open.is_empty() || places().any(|place| known(&place) && is_open(place));
+        let missed = match looks {
+            true => places().next().filter(|_| !is_any_open),
+            false => places().find(|&place| !is_open(place)),
+        };
+        if let Some(missed) = missed {
+            let reason = format!(
+                "of `{}`: no way leads from {}, to `{}`: {}",
+                shown(&self.scene.journeys.journeys[usize::from(from.journey)].name),
+                from.name,
+                shown(&self.places[usize::from(missed)].name),
+                self.why_closed(from.point, Destination::Place(missed))?,
+            );
+            return Err(Problem::new("journeys", reason));
+        }
+        reached.places.extend(open);
+        for place in closed {
+            reached.closed.entry(place).or_insert(from.point);
+        }
+        Ok(())
+    }
+
+    /// Why no way leads to a destination, and what to do.
+    fn why_closed(&self, from: Vector, to: Destination) -> Result<String, Problem> {
+        let is_open = self.ways(0.0)?.is_open(from, to);
+        Ok(match is_open {
+            true => format!(
+                "every way there has a passage narrower than `min_passage_width`, {} m; widen it, or lower that",
+                self.width
+            ),
+            false => "walls close it off; open them, or move one of the two".to_owned(),
+        })
+    }
+}
