@@ -106,7 +106,7 @@ fn mistakes_in_a_plan_are_reported_with_the_scenario_the_key_and_the_file() {
         ),
         (
             json!({"walkable_area": [[]]}),
-            vec!["walkable_area[0]: has no rings"],
+            vec!["walkable_area[0]: must not be empty"],
         ),
         (
             json!({"walkable_area": [[[[0, 0], [0.1, 0], [0, 0.1]]]]}),

@@ -69,6 +69,54 @@ fn refused(schema: &Value, document: &Value) -> Option<String> {
 }
 
 #[test]
+fn program_and_schema_refuse_journeys_and_queues_without_stages_places_or_points() {
+    let stages = |stages: Value| json!([{"name": "j", "stages": stages}]);
+    let queue = |path: Value| json!([{"name": "q", "path": path, "service_secs": 1}]);
+    let cases = [
+        (
+            "journeys",
+            stages(json!([])),
+            "journeys[0].stages: must not be empty",
+        ),
+        (
+            "journeys",
+            stages(json!([{"nearest": []}])),
+            "journeys[0].stages[0].nearest: must not be empty",
+        ),
+        (
+            "journeys",
+            stages(json!([{"quickest": []}])),
+            "journeys[0].stages[0].quickest: must not be empty",
+        ),
+        (
+            "journeys",
+            stages(json!([{"fewest": []}])),
+            "journeys[0].stages[0].fewest: must not be empty",
+        ),
+        (
+            "queues",
+            queue(json!([])),
+            "queues[0].path: needs at least 2 points",
+        ),
+        (
+            "queues",
+            queue(json!([[1, 1]])),
+            "queues[0].path: needs at least 2 points",
+        ),
+    ];
+    let walkers = [json!({"goal": [9, 9]}), json!({"journey": "j"})];
+    for (key, list, message) in cases {
+        for mut walker in walkers.clone() {
+            walker["position"] = json!([2, 2]);
+            let document = json!({"agents": [walker], key: list});
+            let error = Scenario::parse(&document.to_string(), "f.json", &[]).unwrap_err();
+            assert!(error.to_string().contains(message), "{error}");
+            assert!(refused(&schema(), &document).is_some(), "{document}");
+        }
+    }
+}
+
+#[test]
 fn all_scenario_files_and_one_with_every_key_are_valid() {
     let schema = schema();
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");

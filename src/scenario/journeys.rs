@@ -336,6 +336,10 @@ fn waypoint(given: &places::Waypoint) -> Result<Kind, Problem> {
 
 fn queue(given: &places::Queue, walls: &Walls) -> Result<Kind, Problem> {
     let path: Vec<Vector> = given.path.iter().map(|&p| p.into()).collect();
+    if path.len() < 2 {
+        let reason = "needs at least 2 points: the front, and where the queue goes on";
+        return Err(Problem::new("path", reason));
+    }
     let mut length = 0.0;
     let mut tail = (path[0], Vector::zeros());
     for (k, pair) in path.windows(2).enumerate() {

@@ -115,14 +115,14 @@ pub(super) enum Stage {
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Choice {
     /// The place with the shortest way.
-    #[schemars(inner(length(min = 1)))]
+    #[schemars(length(min = 1), inner(length(min = 1)))]
     pub nearest: Option<Vec<String>>,
     /// The place that a person expects to pass first, from the way to it and the crowd before it. People look again
     /// every 2 to 5 s.
-    #[schemars(inner(length(min = 1)))]
+    #[schemars(length(min = 1), inner(length(min = 1)))]
     pub quickest: Option<Vec<String>>,
     /// The place that the fewest people have chosen.
-    #[schemars(inner(length(min = 1)))]
+    #[schemars(length(min = 1), inner(length(min = 1)))]
     pub fewest: Option<Vec<String>>,
     /// At random, with these weights.
     #[schemars(extend("additionalProperties" = {"type": "number", "minimum": 0, "maximum": 1e9}))]

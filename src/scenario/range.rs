@@ -11,7 +11,7 @@ use super::shapes::Corners;
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
 
-/// Rejects numbers out of range, empty names, missing keys, and values of the wrong type that serde would accept (a
+/// Rejects numbers out of range, empty names, lists that must not be empty, missing keys, and values of the wrong type that serde would accept (a
 /// list of values in place of an object) or would reject without naming their place.
 pub(super) fn check(document: &Value) -> Result<(), Problem> {
     check_value(root(), document)
@@ -28,6 +28,9 @@ fn check_value(schema: &'static Value, value: &Value) -> Result<(), Problem> {
     match value {
         Value::Number(number) => Range::of(schema).check(number.as_f64().unwrap_or(f64::NAN)),
         Value::String(text) if text.is_empty() && schema["minLength"] == 1 => {
+            Err(Problem::new("", "must not be empty"))
+        }
+        Value::Array(list) if list.is_empty() && schema["minItems"] == 1 => {
             Err(Problem::new("", "must not be empty"))
         }
         Value::Array(list) => {
