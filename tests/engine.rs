@@ -16,6 +16,7 @@ mod convergence;
 mod crowds;
 mod determinism;
 mod distributions;
+mod doors;
 mod enclosures;
 mod endings;
 mod entrances;

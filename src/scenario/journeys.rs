@@ -19,7 +19,7 @@ use crate::engine::math::{Vector, direction};
 /// The name of the journey of people without goal and journey in scenarios with exits.
 pub(super) const TO_NEAREST_EXIT: &str = "nearest exit";
 /// Shorter lines are an error, meters.
-const SHORTEST_LINE: f64 = 0.3;
+pub(super) const SHORTEST_LINE: f64 = 0.3;
 /// Default distance between people in a queue, meters.
 const SPACING: f64 = 0.5;
 /// A queue that goes on beyond its path ends this far before a wall, meters.

@@ -31,6 +31,7 @@ mod crowding;
 mod crowds;
 mod distribution;
 mod document;
+mod doors;
 mod draft;
 mod effective;
 mod entrances;

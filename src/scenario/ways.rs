@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::doors;
 use super::error::Problem;
 use super::file::File;
 use super::floor_plan::{Rings, free, outlines};
@@ -161,6 +162,7 @@ impl Prepared<'_> {
     /// The ways through passages of at least `width` meters.
     pub(super) fn ways(&self, width: f64) -> Result<Ways, Problem> {
         let floor = Floor::new(&areas(self.scene, self.starts)?, width).map_err(unusable)?;
+        doors::check(self.places, &floor)?;
         let places: Vec<_> = self.places.iter().map(Place::goals).collect();
         Ways::new(floor, &places, self.goals.to_vec()).map_err(|error| match error {
             WayError::NotOnFloor(point) => self.not_on_floor(point),
