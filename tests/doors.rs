@@ -77,3 +77,18 @@ fn an_exit_behind_an_obstacle_is_refused_unless_a_person_fits_beside_it() {
         }
     }
 }
+
+#[test]
+fn lines_of_the_least_length_are_long_enough_wherever_they_lie() {
+    for k in 0..1000 {
+        let y = f64::from(k) * 0.009;
+        let length =
+            |length: f64| scenario(&hall(0.0, [[3.0, y], [3.0, y + length]], &[]), &[]).map(drop);
+        assert_eq!(length(0.3), Ok(()), "{y}");
+        let error = length(0.29).unwrap_err();
+        assert!(
+            error.contains("exits[0].line: 0.29 m long; no person fits through"),
+            "{error}"
+        );
+    }
+}

@@ -168,3 +168,17 @@ fn files_above_the_size_limit_are_refused() {
         assert_harmless(&run_in(folder.path(), typed), 2, reason);
     }
 }
+
+#[test]
+fn an_agent_that_starts_outside_is_moved_with_a_note_that_says_from_where_and_how_far() {
+    let folder = tempfile::tempdir().unwrap();
+    let outside = json!({
+        "duration_secs": 0.1, "goal": [9, 5], "walkable_area": [[[[0, 0], [10, 0], [10, 10], [0, 10]]]],
+        "agents": [{"position": [2, 2]}, {"position": [20, 5]}]
+    });
+    fs::write(folder.path().join("f.json"), outside.to_string()).unwrap();
+    let output = run_in(folder.path(), &["run", "f.json"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    let note = "to the nearest free point (the first: agent 1, from (20, 5) by 10.00 m)";
+    assert!(said.contains(note), "{said}");
+}

@@ -3,6 +3,7 @@
 use sandbox::engine::math::Vector;
 use sandbox::engine::simulation::Simulation;
 use sandbox::engine::ways::{Destination, Route, SLACK, Walker};
+use sandbox::scenario::Scenario;
 use serde_json::{Value, json};
 
 use crate::common::simulated::{after, go_on, scenario};
@@ -196,6 +197,67 @@ fn goals_that_cannot_be_reached_are_refused_with_their_place() {
     document["obstacles"] = json!([[[8, -1], [8.5, -1], [8.5, 1.7], [8, 1.7]]]);
     assert!(scenario(&document, &["min_passage_width=0.2"]).is_ok());
     assert!(scenario(&document, &["navigation=straight"]).is_ok());
+}
+
+#[test]
+fn errors_about_goals_name_the_key_that_gives_the_goal_and_the_agents() {
+    let base = json!({
+        "walkable_area": [[[[0, 0], [10, 0], [10, 10], [0, 10]]]],
+        "agents": [{"position": [2, 5], "goal": [5, 5]}, {"position": [2, 6], "goal": [5, 5]}],
+        "grids": [{"min": [3, 1], "max": [4, 2], "columns": 2, "rows": 2, "goal": [5, 5]}],
+        "crowds": [{"name": "all", "area": [[6, 1], [9, 1], [9, 4]], "number": 2, "goal": [5, 5]}],
+        "sources": [{"min": [1, 8], "max": [2, 9], "columns": 2, "rows": 1, "every_secs": 1, "times": 1, "goal": [5, 5]}],
+        "entrances": [{"line": [[4, 8], [5, 8]], "at_secs": [1], "goal": [5, 5]}],
+    });
+    let error = |change: &dyn Fn(&mut Value)| {
+        let mut document = base.clone();
+        change(&mut document);
+        Scenario::parse(&document.to_string(), "f.json", &[])
+            .unwrap_err()
+            .to_string()
+    };
+    for (list, k, name) in [
+        ("agents", 1, "agents[1]"),
+        ("grids", 0, "grids[0]"),
+        ("crowds", 0, "all"),
+        ("sources", 0, "sources[0]"),
+        ("entrances", 0, "entrances[0]"),
+    ] {
+        // Two agents with one goal in a wall, or alone behind it.
+        let outside = error(&|document| document[list][k]["goal"] = json!([55, 5]));
+        let said =
+            format!("f.json: {list}[{k}].goal: (55, 5), the goal of {name}, lies in an obstacle");
+        assert!(outside.starts_with(&said), "{outside}");
+        let top = error(&|document| {
+            document[list][k]["goal"] = Value::Null;
+            document["goal"] = json!([55, 5]);
+        });
+        let said = format!("f.json: goal: (55, 5), the goal of {name}, lies in an obstacle");
+        assert!(top.starts_with(&said), "{top}");
+        let closed = error(&|document| {
+            let room = |x: i32| json!([[[x, 0], [x + 10, 0], [x + 10, 10], [x, 10]]]);
+            document["walkable_area"] = json!([room(0), room(20)]);
+            document[list][k]["goal"] = json!([25, 5]);
+        });
+        let who = if list == "agents" {
+            format!("{name} starts")
+        } else {
+            format!("agents of {name} start")
+        };
+        let said = format!("f.json: {list}[{k}].goal: no way leads from (");
+        assert!(
+            closed.starts_with(&said) && closed.contains(&who),
+            "{closed}"
+        );
+    }
+    let offset = error(&|document| {
+        document["grids"][0]["goal"] = Value::Null;
+        document["grids"][0]["goal_offset"] = json!([50, 0]);
+    });
+    assert!(
+        offset.starts_with("f.json: grids[0].goal_offset: ("),
+        "{offset}"
+    );
 }
 
 #[test]

@@ -12,10 +12,10 @@ pub fn print(simulation: &Simulation) {
     let outcome = simulation.outcome();
     if !outcome.displaced.is_empty() {
         let count = outcome.displaced.len();
-        let (agent, obstacle) = outcome.displaced[0];
+        let first = displaced(simulation, outcome.displaced[0].0);
         talk(&format!(
             "note: {count} agent(s) entered inside an obstacle or outside of the walkable area and were moved \
-             to the nearest free point (the first: agent {agent}, obstacle {obstacle})"
+             to the nearest free point (the first: {first})"
         ));
     }
     if outcome.contained.count > 0 {
@@ -72,6 +72,18 @@ pub fn print_absent(record: &RecordOptions, simulation: &Simulation) {
             absent.join(", ")
         ));
     }
+}
+
+/// An agent that was moved to a free point; from where and how far, if it stood there at the start.
+fn displaced(simulation: &Simulation, agent: u32) -> String {
+    let scene = simulation.scene();
+    let start = scene.agents.get(agent as usize).map(|new| new.position);
+    let free = start.and_then(|start| scene.walls.free_point_near(start));
+    let from = start.zip(free).map(|(start, free)| {
+        let distance = (free - start).norm();
+        format!(", from ({}, {}) by {distance:.2} m", start.x, start.y)
+    });
+    format!("agent {agent}{}", from.unwrap_or_default())
 }
 
 /// How many of all `moves` were limited, and where most of them began.

@@ -20,6 +20,8 @@ use crate::engine::math::{Vector, direction};
 pub(super) const TO_NEAREST_EXIT: &str = "nearest exit";
 /// Shorter lines are an error, meters.
 pub(super) const SHORTEST_LINE: f64 = 0.3;
+/// Lengths may be off by this from rounding, meters.
+const ROUNDING: f64 = 1e-6;
 /// Default distance between people in a queue, meters.
 const SPACING: f64 = 0.5;
 /// A queue that goes on beyond its path ends this far before a wall, meters.
@@ -380,7 +382,8 @@ fn first_wall(walls: &Walls, a: Vector, b: Vector) -> Option<f64> {
 fn line(given: &[Point; 2]) -> Result<[Vector; 2], Problem> {
     let [a, b] = given.map(Vector::from);
     let length = (b - a).norm();
-    if length < SHORTEST_LINE {
+    if length < SHORTEST_LINE - ROUNDING {
+        let length = (length * 1e3).round() / 1e3;
         let reason = format!("{length} m long; no person fits through less than {SHORTEST_LINE} m");
         return Err(Problem::new("", reason));
     }

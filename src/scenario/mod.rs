@@ -44,6 +44,7 @@ mod late;
 mod need;
 mod numerics;
 mod off_floor;
+mod origin;
 mod overlaps;
 mod periodic;
 mod places;

@@ -13,7 +13,7 @@ use crate::engine::ways::{Destination, Ways};
 struct Origin<'a> {
     point: Vector,
     /// What messages call it.
-    name: &'a str,
+    name: &'a dyn Fn() -> String,
     /// The number of the journey.
     journey: u16,
 }
@@ -36,16 +36,16 @@ impl Prepared<'_> {
             let to = Destination::Goal(goal);
             if self.goals.contains(&goal) && !ways.is_open(start.place, to) {
                 let reason = format!(
-                    "no way leads from ({}, {}), where agents of {} start, to their goal ({}, {}): {}; or set \
+                    "no way leads from ({}, {}), where {}, to the goal ({}, {}): {}; or set \
                      `navigation` to `straight`",
                     start.place.x,
                     start.place.y,
-                    start.name,
+                    self.origins.starting(start.member),
                     goal.x,
                     goal.y,
                     self.why_closed(start.place, to)?,
                 );
-                return Err(Problem::new("goal", reason));
+                return Err(Problem::new(self.origins.goal_key(start.member), reason));
             }
         }
         Ok(())
@@ -58,10 +58,10 @@ impl Prepared<'_> {
         let mut first: BTreeMap<u16, Reached> = BTreeMap::new();
         for start in self.starts {
             if let To::Journey(journey) = start.to {
-                let name = format!(
-                    "({}, {}), where agents of {} start",
-                    start.place.x, start.place.y, start.name
-                );
+                let name = || {
+                    let starting = self.origins.starting(start.member);
+                    format!("({}, {}), where {starting}", start.place.x, start.place.y)
+                };
                 let from = Origin {
                     point: start.place,
                     name: &name,
@@ -83,7 +83,7 @@ impl Prepared<'_> {
                     let place = &self.places[usize::from(*place)];
                     let from = Origin {
                         point: place.nearest_point(Vector::zeros()),
-                        name: &format!("`{}`", shown(&place.name)),
+                        name: &|| format!("`{}`", shown(&place.name)),
                         journey,
                     };
                     self.check_stage(ways, &from, &pair[1], &mut next)?;
@@ -131,7 +131,7 @@ impl Prepared<'_> {
             let reason = format!(
                 "of `{}`: no way leads from {}, to `{}`: {}",
                 shown(&self.scene.journeys.journeys[usize::from(from.journey)].name),
-                from.name,
+                (from.name)(),
                 shown(&self.places[usize::from(missed)].name),
                 self.why_closed(from.point, Destination::Place(missed))?,
             );

@@ -9,6 +9,7 @@ use super::doors;
 use super::error::Problem;
 use super::file::File;
 use super::floor_plan::{Rings, free, outlines};
+use super::origin::{Member, Origins};
 use super::quote::shown;
 use crate::engine::agents::RADIUS_RANGE;
 use crate::engine::entrance::Latecomer;
@@ -36,10 +37,10 @@ const MARGIN: f64 = 5.0;
 /// The most goals with a path map.
 const MOST_GOALS: usize = 1000;
 
-/// Where an agent starts, where it wants to go first, and what it is called in messages.
+/// Where an agent starts, and where it wants to go first.
 pub(super) struct Start {
     pub place: Vector,
-    pub name: String,
+    pub member: Member,
     pub to: To,
 }
 
@@ -89,6 +90,7 @@ pub(super) fn ways(
     }
     let prepared = Prepared {
         scene,
+        origins: Origins::new(keys, scene),
         starts: &starts,
         places,
         goals: &goals,
@@ -103,14 +105,12 @@ pub(super) fn ways(
 
 /// The floor of a scene that has no path maps, for goals that agents get later; `width`: the least of passages.
 pub(super) fn floor(scene: &Scene, width: f64) -> Result<Ways, Problem> {
-    let prepared = Prepared {
-        scene,
-        starts: &starts(scene),
-        places: &[],
-        goals: &[],
-        width,
-    };
-    prepared.ways(width)
+    let floor = floor_of(scene, &starts(scene), width)?;
+    Ways::new(floor, &[], Vec::new()).map_err(unusable)
+}
+
+fn floor_of(scene: &Scene, starts: &[Start], width: f64) -> Result<Floor, Problem> {
+    Floor::new(&areas(scene, starts)?, width).map_err(unusable)
 }
 
 /// The width below which agents take no passage, meters; `None`: they walk straight.
@@ -151,6 +151,7 @@ fn goals(scene: &Scene, starts: &[Start]) -> Result<Vec<Vector>, Problem> {
 /// What ways are computed from.
 pub(super) struct Prepared<'a> {
     pub scene: &'a Scene,
+    pub origins: Origins<'a>,
     pub starts: &'a [Start],
     pub places: &'a [Place],
     pub goals: &'a [Vector],
@@ -161,7 +162,7 @@ pub(super) struct Prepared<'a> {
 impl Prepared<'_> {
     /// The ways through passages of at least `width` meters.
     pub(super) fn ways(&self, width: f64) -> Result<Ways, Problem> {
-        let floor = Floor::new(&areas(self.scene, self.starts)?, width).map_err(unusable)?;
+        let floor = floor_of(self.scene, self.starts, width)?;
         doors::check(self.places, &floor)?;
         let places: Vec<_> = self.places.iter().map(Place::goals).collect();
         Ways::new(floor, &places, self.goals.to_vec()).map_err(|error| match error {
@@ -182,13 +183,14 @@ impl Prepared<'_> {
             return Problem::new("", format!("`{}` {lies}", shown(&place.name)));
         }
         let is_goal = |start: &&Start| matches!(start.to, To::Goal { goal, .. } if goal == point);
-        let of = self.starts.iter().find(is_goal);
-        let of = of.map_or("", |start| start.name.as_str());
+        let of = self.starts.iter().find(is_goal).map(|start| start.member);
+        let key = of.map_or("goal".to_owned(), |of| self.origins.goal_key(of));
+        let of = of.map_or(String::new(), |of| self.origins.name(of));
         let reason = format!(
             "({}, {}), the goal of {of}, {lies}, or set `navigation` to `straight`",
             point.x, point.y
         );
-        Problem::new("goal", reason)
+        Problem::new(key, reason)
     }
 }
 
@@ -206,11 +208,11 @@ fn starts(scene: &Scene) -> Vec<Start> {
         free.unwrap_or(p)
     };
     let mut starts: Vec<Start> = Vec::new();
-    let mut add = |place: Vector, group: u16, goal: Vector, shared: bool| {
-        let group = &scene.groups[usize::from(group)];
+    let mut add = |place: Vector, member: Member, goal: Vector, shared: bool| {
+        let group = &scene.groups[usize::from(member.group)];
         starts.push(Start {
             place: free(place),
-            name: group.name.clone(),
+            member,
             to: match (group.journey, group.direction) {
                 (Some(journey), _) => To::Journey(journey),
                 (None, Some(_)) => To::Away,
@@ -218,10 +220,15 @@ fn starts(scene: &Scene) -> Vec<Start> {
             },
         });
     };
+    let later = |group: u16| Member { agent: None, group };
     let mut last = None;
-    for agent in &scene.agents {
+    for (k, agent) in scene.agents.iter().enumerate() {
         let shared = last.replace(agent.goal) == Some(agent.goal);
-        add(agent.position, agent.group, agent.goal, shared);
+        let member = Member {
+            agent: Some(k),
+            group: agent.group,
+        };
+        add(agent.position, member, agent.goal, shared);
     }
     for source in &scene.sources {
         for start in source.grid.positions(scene.seed, 0) {
@@ -229,19 +236,19 @@ fn starts(scene: &Scene) -> Vec<Start> {
                 Goal::Point(goal) => (goal, true),
                 Goal::Offset(offset) => (start + offset, false),
             };
-            add(start, source.group, goal, shared);
+            add(start, later(source.group), goal, shared);
         }
     }
     for Latecomer { agent, .. } in &scene.latecomers {
         let shared = last.replace(agent.goal) == Some(agent.goal);
-        add(agent.position, agent.group, agent.goal, shared);
+        add(agent.position, later(agent.group), agent.goal, shared);
     }
     for entrance in &scene.entrances {
         let nobody = std::iter::empty();
         let parts = entrance.free(RADIUS_RANGE[0], &scene.walls, nobody);
         for [from, to] in parts {
             let middle = entrance.at(0.5 * (from + to));
-            add(middle, entrance.group, entrance.goal, true);
+            add(middle, later(entrance.group), entrance.goal, true);
         }
     }
     starts
