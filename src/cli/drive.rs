@@ -129,7 +129,7 @@ fn go_on(
     // Close all files first, so that they are kept even if the run failed.
     let finished: Vec<_> = observers.into_iter().map(Observer::finish).collect();
     let end = driven.map_err(|failure| failure.laid_open(&mut run.simulation))?;
-    notes::print(&run.simulation);
+    notes::print(&run);
     notes::print_absent(&options.record, &run.simulation);
     tell(program.json, || report::json(&run), || report::text(&run))?;
     finished.into_iter().collect::<Result<(), _>>()?;

@@ -3,16 +3,19 @@
 use super::arguments::RecordOptions;
 use super::output::ids;
 use super::talk;
+use crate::engine::scene::Scene;
 use crate::engine::simulation::{EventKind, Limited, SPOT_RADIUS, Simulation};
+use crate::runs::drive::Run;
 use crate::scenario::quote::shown;
 
 /// Prints notes on displaced agents, stopped moves, clamped speeds, agents that waited for room and pushes without
 /// agents.
-pub fn print(simulation: &Simulation) {
+pub fn print(run: &Run) {
+    let simulation = &run.simulation;
     let outcome = simulation.outcome();
     if !outcome.displaced.is_empty() {
         let count = outcome.displaced.len();
-        let first = displaced(simulation, outcome.displaced[0].0);
+        let first = displaced(&run.scenario.scene, outcome.displaced[0].0);
         talk(&format!(
             "note: {count} agent(s) entered inside an obstacle or outside of the walkable area and were moved \
              to the nearest free point (the first: {first})"
@@ -75,8 +78,7 @@ pub fn print_absent(record: &RecordOptions, simulation: &Simulation) {
 }
 
 /// An agent that was moved to a free point; from where and how far, if it stood there at the start.
-fn displaced(simulation: &Simulation, agent: u32) -> String {
-    let scene = simulation.scene();
+fn displaced(scene: &Scene, agent: u32) -> String {
     let start = scene.agents.get(agent as usize).map(|new| new.position);
     let free = start.and_then(|start| scene.walls.free_point_near(start));
     let from = start.zip(free).map(|(start, free)| {
