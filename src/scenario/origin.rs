@@ -61,10 +61,11 @@ impl<'a> Origins<'a> {
                 .and_then(|agent| agent.checked_sub(self.first_single));
             return single.map_or(Item::From, Item::Agent);
         };
-        let lists: [(usize, fn(usize) -> Item); 3] = [
-            (self.keys.grids.len(), Item::Grid),
-            (self.keys.crowds.len(), Item::Crowd),
-            (self.keys.sources.len(), Item::Source),
+        let keys = self.keys;
+        let lists = [
+            (keys.grids.len(), Item::Grid as fn(usize) -> Item),
+            (keys.crowds.len(), Item::Crowd),
+            (keys.sources.len(), Item::Source),
         ];
         for (length, item) in lists {
             match k.checked_sub(length) {

@@ -110,7 +110,7 @@ impl PathMap {
             for next in floor.mesh.triangle(t).across.into_iter().flatten() {
                 if out[next as usize].is_none() && is_empty(next) {
                     let length = from_middle
-                        .get_or_insert_with(|| self.from_middle(floor, t, out[t as usize]));
+                        .get_or_insert_with(|| self.length_from_middle(floor, t, out[t as usize]));
                     out[next as usize] = Some((t, *length));
                     queue.push_back(next);
                 }
@@ -122,7 +122,7 @@ impl PathMap {
     }
 
     /// The length of the way from the middle of triangle `t`, meters; `out` is the way out of it, if it needs one.
-    fn from_middle(&self, floor: &Floor, t: u32, out: Option<(u32, f64)>) -> f64 {
+    fn length_from_middle(&self, floor: &Floor, t: u32, out: Option<(u32, f64)>) -> f64 {
         let middle = floor.mesh.middle(t);
         match out {
             Some((next, rest)) => {
