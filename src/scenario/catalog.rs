@@ -109,7 +109,8 @@ pub struct Parameters {
     #[schemars(range(min = 0.01, max = FARTHEST), extend("default" = SocialForce::default().avoidance_radius))]
     pub avoidance_radius: Option<f64>,
     /// Leaves out social forces that are certainly smaller than this, for an agent of mass 1, m/s². Higher: cheaper
-    /// and less exact. 1e-3 moves agents by 0.1 mm in a second and saves up to a third of the time in crowds of 10,000.
+    /// and less exact. 1e-3 moves agents by up to 2 cm in a second and saves up to a third of the time in crowds of
+    /// 10,000.
     #[schemars(range(min = 0, max = STRONGEST), extend("default" = SocialForce::default().avoidance_tolerance))]
     pub avoidance_tolerance: Option<f64>,
     /// What slows agents in a crowd, beside the paper's forces: `headway`, a time gap to the nearest agent ahead;
