@@ -24,7 +24,7 @@ fn hall(angle: f64, exit: Line, obstacle: &[[f64; 2]]) -> Value {
     hall
 }
 
-/// The number of people who have left after 12 s, or the error.
+/// The number of agents that have left after 12 s, or the error.
 fn left(hall: &Value) -> Result<usize, String> {
     scenario(hall, &[])?;
     Ok(after(hall, &[], 12.0).outcome().arrivals.len())

@@ -98,7 +98,7 @@ fn place_of(file: &File, id: usize) -> String {
 }
 
 /// The first of `points` in an overcrowded square meter, and the number of points there.
-fn crowded(points: &[Vector]) -> Option<(usize, usize)> {
+pub(super) fn crowded(points: &[Vector]) -> Option<(usize, usize)> {
     if points.len() <= MOST_PER_CELL {
         return None;
     }

@@ -15,8 +15,7 @@ const MOST_STEPS: f64 = 1e4;
 const BESIDE: f64 = 0.1;
 /// A line is at a floor that begins nearer than this, meters.
 const NEAR: f64 = 0.02;
-
-/// Where the floor ends is searched for between two points by halving their distance this often.
+/// The number of bisections that find the end of the floor between two points.
 const HALVINGS: u32 = 20;
 
 /// Checks that each exit of `places`, which come first, has a part on the floor that is wide enough for a person.
@@ -102,7 +101,7 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// Where it first comes to the floor or leaves it, in centimeters' precision; `None` if it does not.
+    /// The point at which it first enters or leaves the floor, meters, rounded to centimeters; `None` if it does neither.
     fn end_of_floor(&self) -> Option<[f64; 2]> {
         let mut steps = 0..self.steps;
         let k = steps

@@ -6,7 +6,7 @@ use super::floor_plan::{FloorPlanError, is_line_on_floor, is_on_floor};
 use super::measurements::Observed;
 use crate::engine::scene::Scene;
 
-/// What is wrong with an area.
+/// The reason why an area or a line is refused.
 pub(super) const OFF: &str =
     "lies in obstacles or outside of the walkable area; move it onto the floor";
 

@@ -1,17 +1,21 @@
 //! A note on agents that overlap at the start.
 
-use super::crowding::{cell, near};
+use super::crowding::{cell, crowded, near};
 use crate::engine::math::Vector;
 use crate::engine::packing::Body;
 
 /// Bodies overlap much if they do by more than this part of the smaller radius.
 const MUCH: f64 = 0.5;
-/// Dense crowds at random places overlap here and there. There is a note if so many agents that overlap much are in one
-/// square meter: more than can stand there.
+/// The fewest agents that overlap much in one square meter for which there is a note: more than can stand there. In dense
+/// crowds at random places a few agents always overlap.
 const CRUSH: usize = 10;
 
 /// A note if many agents overlap much at the start, with the square meter that has the most of them.
 pub(super) fn note(bodies: &[Body]) -> Option<String> {
+    let all: Vec<Vector> = bodies.iter().map(|body| body.place).collect();
+    if crowded(&all).is_some() {
+        return None; // it is refused later, and the search would take long
+    }
     let mut places = overlapping(bodies);
     places.sort_by_key(cell);
     let cells = places.chunk_by(|a, b| cell(a) == cell(b));

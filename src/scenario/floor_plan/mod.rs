@@ -5,7 +5,8 @@
 //! | geometries | one or more of `POLYGON`, `MULTIPOLYGON`, `GEOMETRYCOLLECTION` of these | `Polygon`, `MultiPolygon`, `GeometryCollection`; `Feature`, `FeatureCollection` |
 //! | obstacles | none | features with `"properties": {"kind": "obstacle"}` |
 //!
-//! All other polygons are walkable area: features of the kind `floor`, or without a kind. The property `name` of a feature is its name in pictures. Coordinates are in
+//! All other polygons are walkable area: features of the kind `floor`, or without a kind. The property `name` of a
+//! feature is its name in pictures. Coordinates are in
 //! meters; degrees are rejected. Areas that touch or overlap are united, and obstacles are subtracted, so the result
 //! does not depend on how a plan is cut into pieces.
 //! Orientation, third coordinates, a closing point and repeated points do not matter.
