@@ -4,6 +4,7 @@
 //! Some 500 cuts; more with `BAD_INPUT_TIMES=20 cargo test --release --test engine -- resumed`.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -45,6 +46,12 @@ fn random(rng: &mut ChaCha8Rng) -> Scene {
     }
 }
 
+/// One, two and three threads.
+fn pools() -> Vec<ThreadPool> {
+    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    (1..=3).map(|threads| pool(threads).unwrap()).collect()
+}
+
 fn bytes(simulation: &Simulation) -> Vec<u8> {
     postcard::to_stdvec(&simulation.state()).unwrap()
 }
@@ -68,6 +75,19 @@ impl Whole {
             simulation.request_density_until(u64::MAX);
         }
         simulation
+    }
+
+    /// Runs to the end of some frames and keeps their states.
+    fn keep(&mut self, simulation: &mut Simulation, frames: Range<u64>) {
+        while simulation.frame().clock.frame() < frames.end {
+            simulation.evaluate().unwrap();
+            let frame = simulation.frame().clock.frame();
+            if frames.contains(&frame) {
+                let state = (bytes(simulation), simulation.digest());
+                self.frames.insert(frame, state);
+            }
+            simulation.integrate().unwrap();
+        }
     }
 
     fn resumed(&self, state: &[u8]) -> Simulation {
@@ -141,11 +161,7 @@ fn cut(seed: u64, pools: &[ThreadPool]) -> u64 {
         if is_cut {
             forks.push((simulation.clone(), "forked after the evaluation"));
         }
-        if frame >= begin {
-            let state = (bytes(&simulation), simulation.digest());
-            whole.frames.insert(frame, state);
-        }
-        simulation.integrate().unwrap();
+        whole.keep(&mut simulation, begin.max(frame)..frame + 1);
     }
     for (mut fork, how) in forks {
         whole.go_on(&mut fork, 7, &format!("seed {seed}: {how}"));
@@ -164,14 +180,32 @@ fn cut(seed: u64, pools: &[ThreadPool]) -> u64 {
 #[test]
 fn a_run_resumed_at_any_frame_has_the_states_of_an_uninterrupted_run() {
     let times: u64 = std::env::var("BAD_INPUT_TIMES").map_or(1, |times| times.parse().unwrap());
-    let pool = |threads| {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap()
-    };
-    let pools: Vec<ThreadPool> = (1..=3).map(pool).collect();
+    let pools = pools();
     let start = std::time::Instant::now();
     let cuts: u64 = (0..SCENES * times).map(|seed| cut(seed, &pools)).sum();
     println!("{cuts} cuts in {:.1} s", start.elapsed().as_secs_f64());
+}
+
+/// Scenes that resumed to another run in coarse frames: three people in a queue with corners, and 80 people on journeys
+/// whose goals change.
+const REPORTED: [&str; 2] = [
+    include_str!("data/resume_queue.json"),
+    include_str!("data/resume_journeys.json"),
+];
+
+#[test]
+fn scenes_with_queues_and_changing_goals_resume_in_every_coarse_frame() {
+    let pools = pools();
+    for text in REPORTED {
+        let mut whole = Whole {
+            scene: scene(&serde_json::from_str(text).unwrap()),
+            is_observed: false,
+            frames: BTreeMap::new(),
+        };
+        let mut simulation = whole.start();
+        whole.keep(&mut simulation, 400..760);
+        for frame in (400..=740).step_by(5) {
+            whole.check(&pools, frame, &mut ChaCha8Rng::seed_from_u64(frame));
+        }
+    }
 }

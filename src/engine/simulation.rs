@@ -364,23 +364,6 @@ impl Simulation {
         };
         (trip.status == Status::Walking).then(|| chooser.decide(trip, Some(trip.place)))
     }
-
-    /// Time spent per stage.
-    pub fn stages(&self) -> &StageTimes {
-        &self.stages
-    }
-
-    /// Resets the times per stage.
-    pub fn reset_stages(&mut self) {
-        self.stages = StageTimes::default();
-    }
-}
-
-impl Crowd {
-    /// Are the decisions of coarse frames due?
-    fn decides(&self) -> bool {
-        self.clock.is_coarse() && !self.decided
-    }
 }
 
 /// The fields of a frame that has not been evaluated.

@@ -60,9 +60,6 @@ pub enum CheckpointError {
         /// What is wrong with it.
         reason: String,
     },
-    /// The state does not match the scenario.
-    #[error(transparent)]
-    State(#[from] StateError),
 }
 
 impl Checkpoint {
@@ -102,7 +99,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// The state does not match the scenario.
-    pub fn resume(self, scenario: Scenario) -> Result<Run, CheckpointError> {
+    pub fn resume(self, scenario: Scenario) -> Result<Run, StateError> {
         let mut simulation = Simulation::resumed(scenario.scene.clone(), self.state)?;
         let mut metrics = Metrics::new(&scenario.measurements, &mut simulation);
         metrics.resume(&self.seen, simulation.frame().clock.frame());

@@ -19,6 +19,7 @@ use crate::scenario::quote::shown;
 /// The keys that may name a file.
 const WALKABLE_AREA: &str = "walkable_area";
 const OBSTACLES: &str = "obstacles";
+pub(super) const KEYS: [&str; 2] = [WALKABLE_AREA, OBSTACLES];
 /// The key that gets the names in these files.
 const LABELS: &str = "labels";
 

@@ -141,6 +141,11 @@ impl Simulation {
 }
 
 impl Crowd {
+    /// Are the decisions of a coarse frame due?
+    pub(super) fn decides(&self) -> bool {
+        self.clock.is_coarse() && !self.decided
+    }
+
     fn follow_source(&mut self, scene: &Scene, s: usize, source: &Source) -> Result<(), Fault> {
         let clock = self.clock;
         let is_due = |entry| {

@@ -37,7 +37,8 @@ pub struct StateError;
 
 impl Simulation {
     /// The state of the current frame. A run resumed from it evaluates the frame again if it was evaluated, and makes no
-    /// decision twice.
+    /// decision twice. Take it before [`set_goals`](Self::set_goals): the agents of a resumed run would walk to new goals
+    /// one frame earlier.
     pub fn state(&self) -> State {
         let crowd = &self.crowd;
         State {
@@ -119,7 +120,7 @@ impl State {
                 .trip
                 .iter()
                 .flatten()
-                .all(|trip| trips::fits(trip, scene));
+                .all(|trip| !self.progress.places.is_empty() && trips::fits(trip, scene));
         let listed = self.crowd_changed || self.sorted_at.len() == agents.len();
         (agents.is_whole() && known && listed)
             .then_some(())
