@@ -58,6 +58,7 @@ fn bytes(simulation: &Simulation) -> Vec<u8> {
 
 /// A run that is not interrupted.
 struct Whole {
+    name: String,
     scene: Scene,
     /// Are all densities requested, as recordings and trajectories do?
     is_observed: bool,
@@ -120,7 +121,7 @@ impl Whole {
     fn check(&self, pools: &[ThreadPool], frame: u64, rng: &mut ChaCha8Rng) {
         let [first, second] = [(); 2].map(|()| rng.random_range(1..=6));
         let [one, other] = [(); 2].map(|()| &pools[rng.random_range(0..pools.len())]);
-        let how = format!("cut at frame {frame}");
+        let how = format!("{}, cut at frame {frame}", self.name);
         let mut resumed = self.resumed(&self.frames[&frame].0);
         let state = one.install(|| {
             self.go_on(&mut resumed, first, &how);
@@ -136,6 +137,7 @@ impl Whole {
 fn cut(seed: u64, pools: &[ThreadPool]) -> u64 {
     let rng = &mut ChaCha8Rng::seed_from_u64(seed);
     let mut whole = Whole {
+        name: format!("seed {seed}"),
         scene: random(rng),
         is_observed: rng.random(),
         frames: BTreeMap::new(),
@@ -160,11 +162,16 @@ fn cut(seed: u64, pools: &[ThreadPool]) -> u64 {
         simulation.evaluate().unwrap();
         if is_cut {
             forks.push((simulation.clone(), "forked after the evaluation"));
+            if whole.is_observed {
+                let mut twice = simulation.clone();
+                twice.evaluate_with_density().unwrap();
+                forks.push((twice, "evaluated twice"));
+            }
         }
         whole.keep(&mut simulation, begin.max(frame)..frame + 1);
     }
     for (mut fork, how) in forks {
-        whole.go_on(&mut fork, 7, &format!("seed {seed}: {how}"));
+        whole.go_on(&mut fork, 7, &format!("{}, {how}", whole.name));
     }
     let window = begin..begin + WINDOW;
     let coarse = u64::from(whole.scene.clock.coarse_every());
@@ -198,6 +205,7 @@ fn scenes_with_queues_and_changing_goals_resume_in_every_coarse_frame() {
     let pools = pools();
     for text in REPORTED {
         let mut whole = Whole {
+            name: "reported".to_owned(),
             scene: scene(&serde_json::from_str(text).unwrap()),
             is_observed: false,
             frames: BTreeMap::new(),

@@ -104,7 +104,7 @@ fn a_checkpoint_whose_state_does_not_fit_is_refused_by_name() {
     let path = folder.path().join("other.ck");
     let [small, large] = [
         r#"{"agents": []}"#,
-        r#"{"agents": [{"position": [1, 1]}, {"position": [3, 1]}]}"#,
+        r#"{"goal": [9, 1], "agents": [{"position": [1, 1]}, {"position": [3, 1]}]}"#,
     ]
     .map(|text| Scenario::parse(text, "f.json", &[]).unwrap());
     let mut simulation = Simulation::new(large.scene.clone()).unwrap();
