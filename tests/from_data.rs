@@ -121,14 +121,7 @@ fn the_scene_begins_with_the_first_frame_and_ends_its_entries_at_the_given_time(
 
 #[test]
 fn a_time_before_the_data_is_that_of_their_first_frame_and_a_note_says_so() {
-    let late = WALKERS.map(|walker| {
-        (
-            walker.0,
-            [walker.1[0] + 50, walker.1[1] + 50],
-            walker.2,
-            walker.3,
-        )
-    });
+    let late = WALKERS.map(|(id, frames, at, v)| (id, frames.map(|frame| frame + 50), at, v));
     let load = |at: Value| {
         let from = json!({"trajectory": "people.txt", "unit": "m", "fps": 25, "at_secs": at});
         let (_folder, path) = folder(&lines(&late, 25.0, 1.0), from, json!({}));
