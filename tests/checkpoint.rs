@@ -170,7 +170,7 @@ fn damaged_and_foreign_checkpoints_are_refused_with_the_reason() {
     let mut newer = whole.clone();
     newer[19] = 99;
     assert!(
-        refused(&newer).ends_with("is a checkpoint of version 99; this program reads version 8")
+        refused(&newer).ends_with("is a checkpoint of version 99; this program reads version 9")
     );
     assert!(refused(b"{\"name\": \"x\"}").ends_with("is not a checkpoint"));
     let nowhere = Checkpoint::read(Path::new("/nowhere/c")).unwrap_err();

@@ -53,6 +53,7 @@ mod periodic_scenarios;
 mod precision;
 mod queues;
 mod reference_states;
+mod resumed;
 mod runs;
 mod rvo;
 mod rvo_contact;

@@ -169,13 +169,14 @@ fn exposure_adds_times_and_alarms_last_while_one_person_is_in_the_crowd() {
     seen.add([person(0, 3.9, Some(0.1)), person(7, 5.5, Some(0.3))].iter());
     seen.add([person(0, 1.0, Some(1.0))].iter());
     seen.add([person(0, 4.2, Some(0.1))].iter());
+    // Four samples are three intervals, and the first one stands for none.
     let exposed = seen.exposed(0.5);
     assert_eq!(exposed.map(|of| of.people), [2, 1, 1, 1]);
-    assert_eq!(exposed.map(|of| of.person_secs), [2.0, 1.0, 0.5, 1.5]);
-    assert_eq!(exposed.map(|of| of.longest_secs), [1.0, 1.0, 0.5, 1.5]);
+    assert_eq!(exposed.map(|of| of.person_secs), [1.0, 0.5, 0.0, 1.0]);
+    assert_eq!(exposed.map(|of| of.longest_secs), [0.5, 0.5, 0.0, 1.0]);
     assert_eq!(
         seen.alarms.map(|alarm| alarm.spell.longest()),
-        [2.0, 2.0, 1.0]
+        [1.0, 1.0, 0.0]
     );
     assert_eq!(seen.alarms.map(|alarm| alarm.people), [2, 1, 1]);
     let area = 1.0 / 4.5 + 1.0 / 6.5;
@@ -205,17 +206,17 @@ fn a_standing_crowd_is_exposed_all_the_time_wherever_it_is_dense() {
     assert!(above(4.0) > above(5.0) && above(5.0) > above(6.0) && above(6.0) > 10.0);
     let summary = measured(standing());
     let metric = |name: &str| summary.metric(name).unwrap();
-    // Samples at 0, 1, …, 10 s.
+    // Samples at 0, 1, …, 10 s are 10 s.
     for density in [4.0, 5.0, 6.0] {
         let of = |what: &str| metric(&format!("exposure_above_{density}_{what}"));
         assert_eq!(of("agents"), above(density));
-        assert_eq!(of("person_secs"), 11.0 * above(density));
-        assert_eq!([of("longest_secs"), of("alarm_secs")], [11.0; 2]);
+        assert_eq!(of("person_secs"), 10.0 * above(density));
+        assert_eq!([of("longest_secs"), of("alarm_secs")], [10.0; 2]);
         assert_eq!(of("most_agents"), above(density));
     }
-    assert_eq!(metric("exposure_slow_person_secs"), 11.0 * 144.0);
+    assert_eq!(metric("exposure_slow_person_secs"), 10.0 * 144.0);
     assert_eq!(metric("late_slow_agents"), 1.0);
-    assert!((metric("late_slow_person_secs") - 2.5).abs() < 1e-12);
+    assert!((metric("late_slow_person_secs") - 2.0).abs() < 1e-12);
     let shares = |kind: &str| {
         "abcdef"
             .chars()
@@ -227,6 +228,43 @@ fn a_standing_crowd_is_exposed_all_the_time_wherever_it_is_dense() {
     assert_eq!(metric("crowd_pressure_max_per_s2"), 0.0);
     assert_eq!(metric("crowd_pressure_above_0.02_agents"), 0.0);
     assert_eq!(summary.data["exposure"].as_array().unwrap().len(), 144);
+}
+
+#[test]
+fn durations_end_with_the_run_or_the_window_however_they_are_sampled() {
+    // One person above 4 P/m² in the middle of others, who all stand.
+    for (until, every, from, to) in [
+        (4.0, 0.5, 0.0, 4.0),
+        (4.0, 1.0, 0.0, 4.0),
+        (4.0, 0.02, 0.0, 4.0),
+        (4.0, 0.5, 1.0, 3.0),
+        (4.0, 0.5, 2.0, 9.0),
+        (3.0, 0.4, 0.0, 9.0),
+        (0.2, 1.0, 0.0, 9.0),
+    ] {
+        let mut document = standing();
+        document["duration_secs"] = json!(until);
+        document["measurements"] =
+            json!([{"exposure": {"from_secs": from, "until_secs": to, "every_secs": every}}]);
+        let summary = measured(document);
+        let metric = |name: &str| summary.metric(&format!("exposure_{name}")).unwrap();
+        let secs = f64::min(until, to) - from;
+        let least = secs - every + 1e-9; // a part of an interval is not seen
+        for name in [
+            "above_4_alarm_secs",
+            "above_4_longest_secs",
+            "slow_longest_secs",
+        ] {
+            let is_right = (least..=secs + 1e-9).contains(&metric(name));
+            assert!(
+                is_right,
+                "{name}: {} s of {secs} s, every {every} s",
+                metric(name)
+            );
+        }
+        assert!((metric("slow_person_secs") - 144.0 * metric("slow_longest_secs")).abs() < 1e-6);
+        assert_eq!(metric("slow_agents"), 144.0);
+    }
 }
 
 /// Pushing people before a wall and a journey, with every measurement that has a state.

@@ -120,6 +120,28 @@ fn the_scene_begins_with_the_first_frame_and_ends_its_entries_at_the_given_time(
 }
 
 #[test]
+fn a_time_before_the_data_is_that_of_their_first_frame_and_a_note_says_so() {
+    let late = WALKERS.map(|(id, frames, at, v)| (id, frames.map(|frame| frame + 50), at, v));
+    let load = |at: Value| {
+        let from = json!({"trajectory": "people.txt", "unit": "m", "fps": 25, "at_secs": at});
+        let (_folder, path) = folder(&lines(&late, 25.0, 1.0), from, json!({}));
+        loaded(&path)
+    };
+    let first = load(Value::Null);
+    assert!(first.notes.is_empty());
+    for (at, is_noted) in [(-7.0, true), (0.0, true), (1.9, true), (2.0, false)] {
+        let scenario = load(json!(at));
+        assert_eq!(scenario.scene.agents, first.scene.agents, "{at}");
+        assert_eq!(scenario.scene.latecomers, first.scene.latecomers, "{at}");
+        let note = format!(
+            "from.at_secs: {at} s is before the data: the scenario begins with their first frame, at 2 s"
+        );
+        assert_eq!(scenario.notes, if is_noted { vec![note] } else { vec![] });
+    }
+    assert_ne!(load(json!(2.1)).scene.agents, first.scene.agents);
+}
+
+#[test]
 fn latecomers_enter_in_the_next_coarse_frame_at_their_place_with_their_velocity() {
     let from = json!({"trajectory": "people.txt", "at_secs": 5.03, "unit": "m", "fps": 25, "name": "data"});
     let (_folder, path) = folder(&lines(&WALKERS, 25.0, 1.0), from, json!({}));

@@ -29,15 +29,15 @@ fn block(last: impl Fn(i64) -> i64) -> Tracks {
 }
 
 #[test]
-fn samples_count_for_their_interval_whatever_it_is() {
+fn samples_count_for_the_interval_before_them_whatever_it_is() {
     let tracks = block(|_| 40);
     for (every, samples) in [(0.1, 41.0), (0.5, 9.0), (1.0, 5.0)] {
         let safety = measured(&tracks, every).safety;
         let [four, .., slow] = safety.exposure.exposed(safety.secs);
-        assert!((slow.person_secs - 144.0 * samples * every).abs() < 1e-9);
+        assert!((slow.person_secs - 144.0 * (samples - 1.0) * every).abs() < 1e-9);
         let above = f64::from(safety.exposure.alarms[0].people);
         assert!(above > 50.0);
-        assert!((four.person_secs - above * samples * every).abs() < 1e-9);
+        assert!((four.person_secs - above * (samples - 1.0) * every).abs() < 1e-9);
         assert_eq!(safety.samples.len() as f64, samples);
         assert_eq!(safety.pressures.peak.unwrap().0.pressure, Some(0.0));
         let shares = safety.levels.shares().unwrap();
@@ -72,7 +72,7 @@ fn the_report_names_the_thresholds_as_what_they_are() {
     let text = report.text();
     assert!(text.matches("not safety limits").count() >= 2, "{text}");
     let json = report.json();
-    assert_eq!(json["safety"]["dense"][0]["exposed"]["longest_secs"], 3.0);
+    assert_eq!(json["safety"]["dense"][0]["exposed"]["longest_secs"], 2.0);
     assert_eq!(json["safety"]["dense"].as_array().unwrap().len(), 3);
     assert_eq!(json["safety"]["departures"]["left"], 0);
 }
@@ -86,5 +86,5 @@ fn an_alarm_ends_when_nobody_is_there() {
     let safety = measured(&tracks, 1.0).safety;
     // Samples at 0 s and 1 s, then at 4 s.
     assert_eq!(safety.samples.len(), 3);
-    assert_eq!(safety.exposure.alarms[0].spell.longest(), 2.0);
+    assert_eq!(safety.exposure.alarms[0].spell.longest(), 1.0);
 }

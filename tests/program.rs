@@ -36,6 +36,7 @@ mod read_hdf5;
 mod recording;
 mod recording_views;
 mod reproduction;
+mod resumed_program;
 mod scenario_geometry;
 mod seeing;
 mod stability;

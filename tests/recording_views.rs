@@ -1,5 +1,8 @@
 //! What a recording shows: followed agents, the first moment, colors, events, measurements, single moments.
 
+use std::collections::BTreeSet;
+use std::fs;
+
 use sandbox::engine::breakdown::Breakdown;
 use sandbox::engine::math::Vector;
 use sandbox::engine::scene::Region;
@@ -7,6 +10,7 @@ use sandbox::engine::simulation::Simulation;
 use sandbox::output::colors::ColorMap;
 use sandbox::output::recording::{DebugAgents, RecordingOptions, record_moment};
 
+use crate::common::program::{run_json, text};
 use crate::common::recorded::{acceleration, options, record, recorded, scene};
 use crate::common::recording::Recording;
 
@@ -245,4 +249,29 @@ fn the_recording_of_a_moment_has_a_table_for_each_agent() {
         assert!(layout.contains(name), "{name}: {layout:?}");
     }
     assert!(!layout.contains("Mean speed"));
+}
+
+#[test]
+fn recordings_of_a_run_and_of_its_moments_are_not_merged_by_a_viewer() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = folder.path().join("two.json");
+    let document = r#"{"goal": [9, 1], "duration_secs": 1, "agents": [{"position": [1, 1]}, {"position": [3, 1]}]}"#;
+    fs::write(&scenario, document).unwrap();
+    let id = |arguments: &[&str]| {
+        let path = folder.path().join("a.rrd");
+        let save = ["--save", text(&path), "--force", "--json"];
+        run_json(&[&arguments[..1], &[text(&scenario)], &arguments[1..], &save].concat());
+        Recording::read(&path).id()
+    };
+    let inspect = |agent: &str, at: &str| id(&["inspect", "--agent", agent, "--at", at]);
+    let of_run = id(&["run"]);
+    let all = [
+        of_run.clone(),
+        inspect("0", "0.5"),
+        inspect("1", "0.5"),
+        inspect("0", "0.6"),
+    ];
+    assert_eq!(all.iter().collect::<BTreeSet<_>>().len(), 4, "{all:?}");
+    assert_eq!(id(&["run"]), of_run);
+    assert_eq!(inspect("0", "0.5"), all[1]);
 }

@@ -253,3 +253,68 @@ fn text_is_repeated_as_it_is_unless_it_is_long_or_a_terminal_obeys_it() {
 fn lines_of_a_printable_text_stay_lines() {
     assert_eq!(printable("a\n\u{7}b\r\n"), "a\n\\u{7}b\\r\n");
 }
+
+#[test]
+fn a_value_of_the_file_that_a_setting_replaces_must_be_valid_too() {
+    for (pointer, value, setting, place) in [
+        (
+            "/duration_secs",
+            json!("%s"),
+            "duration_secs=9",
+            "duration_secs",
+        ),
+        (
+            "/duration_secs",
+            json!(-1),
+            "duration_secs=9",
+            "duration_secs",
+        ),
+        ("/seed", json!([1]), "seed=2", "seed"),
+        ("/profile", json!(5), "profile=sf", "profile"),
+        (
+            "/integrator",
+            json!("nothing"),
+            "integrator=midpoint",
+            "integrator",
+        ),
+        (
+            "/grids/0/rows",
+            json!("many"),
+            "grids.0.rows=2",
+            "grids[0].rows",
+        ),
+        (
+            "/parameters",
+            json!({"viscosity": "thick"}),
+            "viscosity=2",
+            "parameters.viscosity",
+        ),
+    ] {
+        let text = with(pointer, value);
+        let alone = message(&text, &[]);
+        assert!(alone.starts_with(&format!("f.json: {place}: ")), "{alone}");
+        assert_eq!(message(&text, &[setting]), alone, "{setting}");
+        assert_eq!(message(&text, &["seed=7", setting]), alone, "{setting}");
+    }
+    // What a setting adds, and what no setting replaces.
+    for (pointer, value, setting) in [
+        ("/duration_secs", Value::Null, "duration_secs=9"),
+        (
+            "/walkable_area",
+            json!("no such file"),
+            "walkable_area=[[[[0,0],[20,0],[20,20],[0,20]]]]",
+        ),
+        ("/sources/0/times", json!(2), "sources.0.times=3"),
+    ] {
+        assert_eq!(
+            message(&with(pointer, value), &[setting]),
+            "no error",
+            "{setting}"
+        );
+    }
+    let text = with(
+        "/sources",
+        json!([{"min": [0, 5], "max": [0, 9], "columns": 1, "rows": 4}]),
+    );
+    assert!(message(&text, &[]).contains("missing key `every_secs`"));
+}

@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::exposure::Spell;
+use super::exposure::{Spell, Weight};
 use super::local::local;
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
@@ -71,7 +71,7 @@ fn principal_pressure([xx, xy, yy]: [f64; 3]) -> f64 {
 struct Person {
     /// The largest force, newtons.
     most: f64,
-    /// The samples above each of [`THRESHOLDS`].
+    /// The intervals above each of [`THRESHOLDS`].
     spells: [Spell; 3],
     /// The number of the last sample with this person, from 1.
     last: u32,
@@ -86,6 +86,7 @@ pub struct BodyForces {
     people: Vec<Person>,
     /// The number of samples.
     samples: u32,
+    weight: Weight,
 }
 
 /// One person's largest force.
@@ -101,6 +102,7 @@ impl BodyForces {
     /// Adds the people at a time in seconds.
     pub fn add(&mut self, time: f64, people: &[Pressed]) {
         self.samples += 1;
+        let weight = self.weight.of_next();
         for person in people {
             let id = person.agent as usize;
             if self.people.len() <= id {
@@ -110,9 +112,9 @@ impl BodyForces {
             own.most = own.most.max(person.force);
             for (spell, threshold) in own.spells.iter_mut().zip(THRESHOLDS) {
                 if own.last + 1 < self.samples {
-                    spell.add(false); // the person was not there in between
+                    spell.add(false, weight); // the person was not there in between
                 }
-                spell.add(person.force > threshold);
+                spell.add(person.force > threshold, weight);
             }
             own.last = self.samples;
             if self.peak.is_none_or(|(peak, _)| person.force > peak.force) {
@@ -121,12 +123,13 @@ impl BodyForces {
         }
     }
 
-    /// For each of [`THRESHOLDS`]: the number of people above it at any time, and the longest number of samples of one person
-    /// above it without a break.
+    /// For each of [`THRESHOLDS`]: the number of people above it in any sample, and the largest number of intervals of one
+    /// person above it without a break.
     pub fn above(&self) -> [(u32, f64); 3] {
         std::array::from_fn(|k| {
             let longest = self.people.iter().map(|own| own.spells[k].longest());
-            let people = longest.clone().filter(|&samples| samples > 0.0).count();
+            let above = |own: &&Person| own.most > THRESHOLDS[k];
+            let people = self.people.iter().filter(above).count();
             (people as u32, longest.fold(0.0, f64::max))
         })
     }

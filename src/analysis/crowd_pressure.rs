@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::exposure::Spell;
+use super::exposure::{Spell, Weight};
 use super::local::Local;
 
 /// The pressure at which crowd turbulence began at Mina in 2006, about ten minutes before the accident, 1/s². An
@@ -15,12 +15,13 @@ pub const BEFORE_ACCIDENT: f64 = 0.02;
 pub struct Pressures {
     /// The person with the highest pressure so far, and when, seconds.
     pub peak: Option<(Local, f64)>,
-    /// The samples with at least one person above [`BEFORE_ACCIDENT`].
+    /// The intervals with at least one person above [`BEFORE_ACCIDENT`].
     pub spell: Spell,
     /// The most people above it at one time.
     pub people: u32,
     /// The sum of all pressures, 1/s², and their number.
     sum: (f64, u64),
+    weight: Weight,
 }
 
 impl Pressures {
@@ -42,7 +43,7 @@ impl Pressures {
             }
         }
         self.people = self.people.max(above);
-        self.spell.add(above > 0);
+        self.spell.add(above > 0, self.weight.of_next());
         highest
     }
 

@@ -11,7 +11,21 @@ pub const DENSITIES: [f64; 3] = [4.0, 5.0, 6.0];
 /// Below this speed people count as standing, m/s.
 pub const SLOW: f64 = 0.2;
 
-/// How long one condition has lasted, and in how many samples of time it held: the current and the longest run.
+/// For how many intervals between samples of time a sample stands: the one before it, and none at the beginning, so that
+/// `n` samples stand for `n - 1` intervals.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Weight {
+    has_begun: bool,
+}
+
+impl Weight {
+    /// The weight of the next sample.
+    pub fn of_next(&mut self) -> u32 {
+        u32::from(std::mem::replace(&mut self.has_begun, true))
+    }
+}
+
+/// In how many intervals in a row a condition held: now, and at most.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spell {
     now: u32,
@@ -19,13 +33,13 @@ pub struct Spell {
 }
 
 impl Spell {
-    /// Adds a sample.
-    pub fn add(&mut self, holds: bool) {
-        self.now = if holds { self.now + 1 } else { 0 };
+    /// Adds a sample of this [`Weight`].
+    pub fn add(&mut self, holds: bool, weight: u32) {
+        self.now = if holds { self.now + weight } else { 0 };
         self.longest = self.longest.max(self.now);
     }
 
-    /// The largest number of samples in a row.
+    /// The largest number of intervals in a row.
     pub fn longest(&self) -> f64 {
         f64::from(self.longest)
     }
@@ -38,7 +52,7 @@ pub struct Alarm {
     pub area: f64,
     /// The most people at one time.
     pub people: u32,
-    /// The samples with at least one person above the density.
+    /// The intervals with at least one person above the density.
     pub spell: Spell,
 }
 
@@ -54,10 +68,12 @@ pub struct Dense {
 /// What was seen of people at several times.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Exposure {
-    /// By number of the person: in how many samples it was above each of [`DENSITIES`], and slower than [`SLOW`].
-    samples: Vec<[u32; 4]>,
+    /// By number of the person: in how many intervals it was above each of [`DENSITIES`], and slower than [`SLOW`];
+    /// `None` if in no sample.
+    intervals: Vec<[Option<u32>; 4]>,
     /// One per density.
     pub alarms: [Alarm; 3],
+    weight: Weight,
 }
 
 /// The exposure of all people to one condition.
@@ -90,49 +106,53 @@ impl Exposure {
     /// Adds the people at one time; returns how much of them is above each density.
     pub fn add<'a>(&mut self, people: impl Iterator<Item = &'a Local>) -> [Dense; 3] {
         let mut dense = [Dense::default(); 3];
+        let weight = self.weight.of_next();
+        let count = |intervals: &mut Option<u32>| *intervals.get_or_insert(0) += weight;
         for person in people {
             let number = person.number as usize;
-            if self.samples.len() <= number {
-                self.samples.resize(number + 1, [0; 4]);
+            if self.intervals.len() <= number {
+                self.intervals.resize(number + 1, [None; 4]);
             }
-            let own = &mut self.samples[number];
+            let own = &mut self.intervals[number];
             for (k, &density) in DENSITIES.iter().enumerate() {
                 if person.density > density {
-                    own[k] += 1;
+                    count(&mut own[k]);
                     dense[k].area += 1.0 / person.density;
                     dense[k].people += 1;
                 }
             }
-            own[3] += u32::from(person.speed.is_some_and(|speed| speed < SLOW));
+            if person.speed.is_some_and(|speed| speed < SLOW) {
+                count(&mut own[3]);
+            }
         }
         for (alarm, now) in self.alarms.iter_mut().zip(dense) {
             alarm.area = alarm.area.max(now.area);
             alarm.people = alarm.people.max(now.people);
-            alarm.spell.add(now.people > 0);
+            alarm.spell.add(now.people > 0, weight);
         }
         dense
     }
 
-    /// The exposure to each of [`DENSITIES`] and to standing; a sample stands for `secs` seconds.
+    /// The exposure to each of [`DENSITIES`] and to standing; samples are `secs` seconds apart.
     pub fn exposed(&self, secs: f64) -> [Exposed; 4] {
         std::array::from_fn(|k| {
-            let counts = self.samples.iter().map(|own| own[k]);
+            let counts = self.intervals.iter().filter_map(|own| own[k]);
             let sum: u64 = counts.clone().map(u64::from).sum();
             Exposed {
-                people: counts.clone().filter(|&count| count > 0).count() as u32,
+                people: counts.clone().count() as u32,
                 person_secs: sum as f64 * secs,
                 longest_secs: f64::from(counts.max().unwrap_or(0)) * secs,
             }
         })
     }
 
-    /// The exposure of each person who was exposed to anything; a sample stands for `secs` seconds.
+    /// The exposure of each person who was exposed to anything; samples are `secs` seconds apart.
     pub fn of_people(&self, secs: f64) -> impl Iterator<Item = PersonExposure> + '_ {
-        let people = self.samples.iter().zip(0..);
-        let exposed = people.filter(|(own, _)| own.iter().any(|&count| count > 0));
+        let people = self.intervals.iter().zip(0..);
+        let exposed = people.filter(|(own, _)| own.iter().any(Option::is_some));
         exposed.map(move |(own, agent)| {
             let [above_4_secs, above_5_secs, above_6_secs, slow_secs] =
-                own.map(|count| f64::from(count) * secs);
+                own.map(|count| f64::from(count.unwrap_or(0)) * secs);
             PersonExposure {
                 agent,
                 above_4_secs,

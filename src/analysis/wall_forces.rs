@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::exposure::Spell;
+use super::exposure::{Spell, Weight};
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
@@ -212,8 +212,9 @@ pub struct WallForces {
     pub peak: Option<Peak>,
     /// By number: the largest force on each cell with a force above 0.
     most: BTreeMap<usize, CellForce>,
-    /// The samples with a force above [`DESIGN_LOAD`] somewhere.
+    /// The intervals with a force above [`DESIGN_LOAD`] somewhere.
     pub spell: Spell,
+    weight: Weight,
     /// The most meters of wall above it at one time.
     pub meters: f64,
 }
@@ -246,7 +247,7 @@ impl WallForces {
                 0.0
             };
         }
-        self.spell.add(above > 0.0);
+        self.spell.add(above > 0.0, self.weight.of_next());
         self.meters = self.meters.max(above);
     }
 

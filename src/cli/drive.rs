@@ -68,7 +68,10 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
     let draft = checkpoint.draft(until.as_slice())?;
     let (scenario, _) = draft.within(main_memory(), memory::of_writing(&options.output))?;
     let resumable = until.is_some().then(|| checkpoint.scenario(&[]).ok());
-    let run = checkpoint.resume(scenario)?;
+    let run = checkpoint.resume(scenario).map_err(|error| {
+        let file = options.file.display();
+        Failure::Input(format!("{file}: {error}; run the scenario again"))
+    })?;
     refuse_the_past(options, run.simulation.frame().clock)?;
     let mut outputs = Outputs::new(options.program.force);
     outputs.goes_on_with("the checkpoint", &options.file, "--checkpoint");

@@ -162,7 +162,10 @@ pub fn save_moment(
     ids: Vec<u32>,
 ) -> Result<(), Failure> {
     let now = simulation.frame().clock.time();
+    let run = Identity::of_run(scenario);
+    let id = Identity::of("inspect", format_args!("{run} {now} {ids:?}"));
     let mut options = recording_options(scenario, DebugAgents::Ids(ids), now);
+    options.id = id.to_string(); // a viewer would merge it with a recording of the run
     options.opens_at = Some(now);
     options.ends_at = now;
     Ok(record_moment(path, simulation, &options)?)

@@ -79,6 +79,9 @@ struct Crowd {
     outcome: Outcome,
     /// Have agents entered or left since they were last sorted?
     changed: bool,
+    /// Have entries, choices and all else that changes the state in a coarse frame been made in this frame? They are
+    /// made once, however often the frame is evaluated.
+    decided: bool,
 }
 
 /// Fields: computed from parameters and state in every frame.
@@ -199,6 +202,7 @@ impl Simulation {
             progress: Progress::default(),
             outcome: Outcome::default(),
             changed: true,
+            decided: false,
         };
         for agent in scene.agents {
             crowd.enter(&fixed.scene, agent)?;
@@ -248,10 +252,12 @@ impl Simulation {
         self.update_neighbors(); // 1
         self.pack();
         self.update_density_and_pressure(self.crowd.clock.time_step()); // 1B
+        self.follow_ways(self.crowd.decides()); // coarse
         self.update_preferred_velocity(); // 2
         self.update_walking_laws(); // 3, coarse
         self.update_rvo(); // 3, coarse
         self.update_acceleration(); // 3, 3B, 4
+        self.crowd.decided = true;
         self.derived.evaluated = true;
         Ok(())
     }
@@ -267,7 +273,7 @@ impl Simulation {
         self.density_until = self.density_until.max(frame);
     }
 
-    /// Evaluates the current frame again, with the density, for a breakdown of a faulty frame.
+    /// Evaluates the current frame again, with the density, for a breakdown of a faulty frame. The state stays the same.
     ///
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
@@ -357,16 +363,6 @@ impl Simulation {
             agent: i,
         };
         (trip.status == Status::Walking).then(|| chooser.decide(trip, Some(trip.place)))
-    }
-
-    /// Time spent per stage.
-    pub fn stages(&self) -> &StageTimes {
-        &self.stages
-    }
-
-    /// Resets the times per stage.
-    pub fn reset_stages(&mut self) {
-        self.stages = StageTimes::default();
     }
 }
 

@@ -22,7 +22,7 @@ use crate::scenario::{Draft, Scenario, ScenarioError, Setting};
 /// The first bytes of every file.
 const MAGIC: &[u8] = b"sandbox checkpoint\n";
 /// Format version: increase it with every change to the contents of a file.
-const VERSION: u32 = 8;
+const VERSION: u32 = 9;
 /// Longest file that is read, bytes. Ten million agents, the most allowed, take 1 GB (99 bytes each, in the plaza),
 /// and the text of their scenario takes at most 256 MiB.
 const LONGEST: u64 = 1 << 32;
@@ -60,9 +60,6 @@ pub enum CheckpointError {
         /// What is wrong with it.
         reason: String,
     },
-    /// The state does not match the scenario.
-    #[error(transparent)]
-    State(#[from] StateError),
 }
 
 impl Checkpoint {
@@ -102,7 +99,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// The state does not match the scenario.
-    pub fn resume(self, scenario: Scenario) -> Result<Run, CheckpointError> {
+    pub fn resume(self, scenario: Scenario) -> Result<Run, StateError> {
         let mut simulation = Simulation::resumed(scenario.scene.clone(), self.state)?;
         let mut metrics = Metrics::new(&scenario.measurements, &mut simulation);
         metrics.resume(&self.seen, simulation.frame().clock.frame());

@@ -45,12 +45,7 @@ impl Contents {
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut notes = Vec::new();
         let mut plans = plan::fill(&mut document, folder, &mut notes)?;
-        range::check(&document)?;
-        let mut keys: File = serde_path_to_error::deserialize(&document).map_err(|error| {
-            let path = error.path().to_string();
-            let path = if path == "." { String::new() } else { path };
-            Problem::new(path, in_plain_words(&error.into_inner().to_string()))
-        })?;
+        let mut keys = Self::check_keys(&document)?;
         plans.extend(from::fill(&mut document, &mut keys, folder, &mut notes)?);
         let need = Need::of(&keys, &numerics::first_clock(&keys), duration(&keys))?;
         Ok(Self {
@@ -59,6 +54,16 @@ impl Contents {
             keys,
             notes,
             need,
+        })
+    }
+
+    /// Checks names, types and ranges.
+    pub(super) fn check_keys(document: &Value) -> Result<File, Problem> {
+        range::check(document)?;
+        serde_path_to_error::deserialize(document).map_err(|error| {
+            let path = error.path().to_string();
+            let path = if path == "." { String::new() } else { path };
+            Problem::new(path, in_plain_words(&error.into_inner().to_string()))
         })
     }
 

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::Scenario;
 use super::check::Contents;
 use super::document;
 use super::error::{Problem, ScenarioError};
 use super::need::Need;
+use super::plan;
 use super::setting::Setting;
 use super::trajectories::Tracks;
 
@@ -53,6 +54,7 @@ impl Draft {
         }
         let contents = Contents::of(document, Path::new(file));
         let mut contents = contents.map_err(|problem| origin.blame(problem))?;
+        origin.check_replaced()?;
         contents.need.text = text.len() as u64;
         Ok(Self { contents, origin })
     }
@@ -106,6 +108,30 @@ impl Draft {
 }
 
 impl Origin {
+    /// Checks the values in the file that settings replace.
+    fn check_replaced(&self) -> Result<(), ScenarioError> {
+        let Some(document) = &self.without else {
+            return Ok(());
+        };
+        for (path, setting) in &self.settings {
+            let key = &setting.path()[0];
+            let is_there = setting.value_in(document).is_some_and(|v| !v.is_null());
+            let Some(value) = document.get(key).filter(|_| is_there) else {
+                continue;
+            };
+            if value.is_string() && plan::KEYS.contains(&key.as_str()) {
+                continue; // the name of a file
+            }
+            let problem = Contents::check_keys(&json!({ key: value })).err();
+            // Other settings may mend what lies elsewhere.
+            if let Some(problem) = problem.filter(|problem| problem.seen_from(path).is_some()) {
+                let file = self.file.clone();
+                return Err(ScenarioError::Invalid { file, problem });
+            }
+        }
+        Ok(())
+    }
+
     /// The settings whose values differ from those in the file, as typed.
     fn changes(&self) -> Vec<String> {
         let differs = |(path, setting): &&(String, Setting)| {

@@ -36,8 +36,8 @@ pub(super) struct FromData {
     /// The trajectory file, relative to this file's folder: SQLite (JuPedSim), CSV or text.
     #[schemars(length(min = 1))]
     pub trajectory: Option<String>,
-    /// With `trajectory`: the time in the file at which the scenario begins, seconds; frame f is at f / `fps`. Default:
-    /// the first frame.
+    /// With `trajectory`: the time in the file at which the scenario begins, seconds; frame f is at f / `fps`. Before the
+    /// first frame it is that of this frame. Default: the first frame.
     #[schemars(range(min = -LONGEST_TIME, max = LONGEST_TIME))]
     pub at_secs: Option<f64>,
     /// With `trajectory`: people who appear in the file after this time in it are left out, seconds. Default: all enter.
@@ -184,7 +184,8 @@ pub(super) fn fill(
     Ok(Some((FILE, path)))
 }
 
-/// The trajectories of a file, and the time in it at which the scenario begins, seconds.
+/// The trajectories of a file, and the time in it at which the scenario begins, seconds: before the first frame of the
+/// file, that of this frame.
 pub(super) fn tracks(path: &Path, given: &FromData) -> Result<(Tracks, f64), Problem> {
     let options = ReadOptions {
         unit: given.unit,
@@ -208,7 +209,10 @@ pub(super) fn tracks(path: &Path, given: &FromData) -> Result<(Tracks, f64), Pro
     let [first, last] = [0, tracks.frames.len() - 1].map(|k| tracks.time(tracks.frames[k]));
     let near = tracks.rounding();
     let at = given.at_secs.unwrap_or(first);
-    if at < first - near || at > last + near {
+    if at < first - near {
+        return Ok((tracks, first));
+    }
+    if at > last + near {
         let reason = format!("{at} s is outside of the data: {file} has {first} to {last} s");
         return Err(Problem::new("at_secs", reason));
     }
@@ -227,6 +231,11 @@ fn people(path: &Path, given: &FromData, notes: &mut Vec<String>) -> Result<Vec<
     let overruled = tracks.notes.iter().filter(|note| note.starts_with("--"));
     notes.extend(overruled.map(|note| format!("{FROM}: {}", in_keys(note))));
     let near = tracks.rounding();
+    if let Some(early) = given.at_secs.filter(|early| *early < at - near) {
+        notes.push(format!(
+            "{FROM}.at_secs: {early} s is before the data: the scenario begins with their first frame, at {at} s"
+        ));
+    }
     let until = given.until_secs.unwrap_or(f64::INFINITY);
     if until < at {
         let reason = format!("{until} is before the start at {at} s; raise it");

@@ -16,9 +16,10 @@ use crate::engine::period::Period;
 use crate::scenario::floor_plan::{self, FloorPlan, FloorPlanError, Label};
 use crate::scenario::quote::shown;
 
-/// The keys that may name a file.
 const WALKABLE_AREA: &str = "walkable_area";
 const OBSTACLES: &str = "obstacles";
+/// The keys that may name a file.
+pub(super) const KEYS: [&str; 2] = [WALKABLE_AREA, OBSTACLES];
 /// The key that gets the names in these files.
 const LABELS: &str = "labels";
 

@@ -2,6 +2,7 @@
 #![allow(dead_code)]
 
 pub mod bounded;
+pub mod busy;
 pub mod documents;
 pub mod errands;
 pub mod floors;

@@ -27,6 +27,11 @@ impl Recording {
         Self { store }
     }
 
+    /// Its id: a viewer merges recordings with the same one.
+    pub fn id(&self) -> String {
+        self.store.id().recording_id().to_string()
+    }
+
     /// The first value of a static component.
     pub fn of_static<C: Component>(&self, entity: &str, component: &str) -> C {
         let component = ComponentIdentifier::try_new(component).unwrap();

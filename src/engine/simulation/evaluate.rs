@@ -33,7 +33,7 @@ impl Simulation {
     pub(super) fn update_neighbors(&mut self) {
         let stale = match self.fixed.scene.neighbor_lists {
             ListPolicy::Complete => self.derived.neighbors.are_stale(),
-            ListPolicy::Coarse => self.crowd.clock.is_coarse(),
+            ListPolicy::Coarse => self.crowd.decides(),
         };
         if self.crowd.changed || stale || self.has_left_period() {
             self.sort_agents();
@@ -117,17 +117,20 @@ impl Simulation {
         });
     }
 
+    /// Finds the next points on the ways around walls: of all agents if it is time, else of those without one.
+    pub(super) fn follow_ways(&mut self, is_time: bool) {
+        let (scene, agents) = (&self.fixed.scene, &mut self.crowd.agents);
+        if let Some(ways) = &scene.ways {
+            self.stages
+                .time(Stage::Ways, || agents.follow(ways, is_time, scene.seed));
+        }
+    }
+
     /// Step 2.
     pub(super) fn update_preferred_velocity(&mut self) {
-        let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
+        let (scene, crowd) = (&self.fixed.scene, &self.crowd);
         let preferred = &mut self.derived.fields.preferred_velocity;
         preferred.resize(crowd.agents.len(), Vector::zeros());
-        if let Some(ways) = &scene.ways {
-            let coarse = crowd.clock.is_coarse();
-            self.stages.time(Stage::Ways, || {
-                crowd.agents.follow(ways, coarse, scene.seed);
-            });
-        }
         self.stages.time(Stage::PreferredVelocity, || {
             let agents = &crowd.agents;
             // Agents walk to the next point of their way; without ways, straight to their goal.
@@ -165,7 +168,7 @@ impl Simulation {
         }
         let (fixed, crowd) = (&self.fixed, &mut self.crowd);
         crowd.agents.make_room_for_laws();
-        if crowd.clock.is_coarse() {
+        if crowd.decides() {
             crowd.agents.allowed_speed.fill(None);
         }
         if !crowd.agents.allowed_speed.contains(&None) {
@@ -201,22 +204,18 @@ impl Simulation {
             return;
         }
         self.crowd.agents.make_room_for_avoidance();
-        let fixed = &self.fixed;
+        let (fixed, is_time) = (&self.fixed, self.crowd.decides());
         let frame = self.derived.frame(fixed, &self.crowd);
         let (agents, chosen) = (frame.agents, &mut self.buffers.avoidance);
         chosen.resize(agents.len(), None);
         self.stages.time(Stage::Rvo, || {
             let slots = chosen.par_iter_mut().zip(&agents.avoidance).enumerate();
-            let fewest = if frame.clock.is_coarse() {
-                1
-            } else {
-                TASK * BLOCK
-            };
+            let fewest = if is_time { 1 } else { TASK * BLOCK };
             let slots = slots.with_min_len(fewest).with_max_len(BLOCK); // choices differ in cost
             slots.for_each_init(Scratch::default, |scratch, (i, (chosen, &held))| {
                 let blend = fixed.blend(agents, i);
                 let rvo = blend.rvo().filter(|_| blend.rvo_acts(&frame, i));
-                let held = held.filter(|_| !frame.clock.is_coarse());
+                let held = held.filter(|_| !is_time);
                 *chosen = rvo.map(|rvo| {
                     held.unwrap_or_else(|| {
                         rvo.acceleration(&frame, i, fixed.wish(&frame, i), scratch)

@@ -43,6 +43,7 @@ impl Simulation {
             Integrator::Midpoint => self.move_by_midpoint(dt)?,
         }
         self.crowd.clock.advance();
+        self.crowd.decided = false;
         self.derived.evaluated = false;
         self.pass_lines();
         if self.fixed.needs.removal {
@@ -92,6 +93,7 @@ impl Simulation {
         });
         self.pack();
         self.update_density_and_pressure(0.5 * dt);
+        self.follow_ways(self.crowd.clock.is_coarse());
         self.update_preferred_velocity();
         self.update_acceleration();
         if let Err(fault) = self.check() {

@@ -116,7 +116,7 @@ impl Simulation {
         let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
         let nothing = scene.sources.is_empty() && scene.pushes.is_empty();
         let nothing = nothing && scene.entrances.is_empty() && scene.latecomers.is_empty();
-        if nothing || !crowd.clock.is_coarse() {
+        if nothing || !crowd.decides() {
             return Ok(());
         }
         self.stages.time(Stage::Schedule, || {
@@ -141,6 +141,11 @@ impl Simulation {
 }
 
 impl Crowd {
+    /// Are the decisions of a coarse frame due?
+    pub(super) fn decides(&self) -> bool {
+        self.clock.is_coarse() && !self.decided
+    }
+
     fn follow_source(&mut self, scene: &Scene, s: usize, source: &Source) -> Result<(), Fault> {
         let clock = self.clock;
         let is_due = |entry| {

@@ -2,6 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use super::Simulation;
+
 /// A stage of the loop. A stage that a scene does not need never runs and has no entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
@@ -102,5 +104,17 @@ impl StageTimes {
     /// Mean milliseconds per frame over all stages.
     pub fn total_ms_per_frame(&self) -> f64 {
         self.ms_per_frame().map(|(_, ms)| ms).sum()
+    }
+}
+
+impl Simulation {
+    /// Time spent per stage.
+    pub fn stages(&self) -> &StageTimes {
+        &self.stages
+    }
+
+    /// Resets the times per stage.
+    pub fn reset_stages(&mut self) {
+        self.stages = StageTimes::default();
     }
 }

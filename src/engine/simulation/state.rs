@@ -21,6 +21,8 @@ pub struct State {
     sorted_at: Vec<Vector>,
     /// Have agents entered or left since?
     crowd_changed: bool,
+    /// Are the decisions of this frame, if it is a coarse one, among the state?
+    decided: bool,
     schedule: Schedule,
     progress: Progress,
     outcome: Outcome,
@@ -34,7 +36,9 @@ pub struct State {
 pub struct StateError;
 
 impl Simulation {
-    /// The state of an evaluated frame.
+    /// The state of the current frame. A run resumed from it evaluates the frame again if it was evaluated, and makes no
+    /// decision twice. Take it before [`set_goals`](Self::set_goals): the agents of a resumed run would walk to new goals
+    /// one frame earlier.
     pub fn state(&self) -> State {
         let crowd = &self.crowd;
         State {
@@ -42,6 +46,7 @@ impl Simulation {
             agents: crowd.agents.clone(),
             sorted_at: self.derived.neighbors.sorted_at().to_vec(),
             crowd_changed: crowd.changed,
+            decided: crowd.decided,
             schedule: crowd.schedule.clone(),
             progress: crowd.progress.clone(),
             outcome: crowd.outcome.clone(),
@@ -67,6 +72,7 @@ impl Simulation {
         crowd.progress = state.progress;
         crowd.outcome = state.outcome;
         crowd.changed = state.crowd_changed;
+        crowd.decided = state.decided;
         if !state.crowd_changed {
             simulation.list_again(state.sorted_at)?;
         }
@@ -114,7 +120,7 @@ impl State {
                 .trip
                 .iter()
                 .flatten()
-                .all(|trip| trips::fits(trip, scene));
+                .all(|trip| !self.progress.places.is_empty() && trips::fits(trip, scene));
         let listed = self.crowd_changed || self.sorted_at.len() == agents.len();
         (agents.is_whole() && known && listed)
             .then_some(())

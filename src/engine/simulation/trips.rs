@@ -123,7 +123,7 @@ impl Simulation {
     /// In coarse frames: agents begin journeys, choose places, reach them, wait, queue and go on.
     pub(super) fn follow_journeys(&mut self) {
         let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
-        if !crowd.clock.is_coarse() {
+        if !crowd.decides() {
             return;
         }
         if !scene.journeys.zones.is_empty() {

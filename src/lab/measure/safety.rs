@@ -15,7 +15,7 @@ use crate::scenario::trajectories::Tracks;
 /// What was seen of people in samples of time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Safety {
-    /// The time for which a sample stands, seconds: whole frames.
+    /// The time between two samples, seconds: whole frames.
     pub secs: f64,
     /// Frame numbers between two samples.
     every: i64,

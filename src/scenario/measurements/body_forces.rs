@@ -59,7 +59,7 @@ impl BodyForces {
 }
 
 impl Measure for BodyForces {
-    /// With the time for which a sample stands, seconds.
+    /// With the time between two samples, seconds.
     type Seen = (Seen, f64);
 
     fn check(&self) -> Result<(), Problem> {

@@ -50,7 +50,7 @@ impl CrowdPressure {
 }
 
 impl Measure for CrowdPressure {
-    /// With the time for which a sample stands, seconds.
+    /// With the time between two samples, seconds.
     type Seen = (Pressures, f64);
 
     fn check(&self) -> Result<(), Problem> {

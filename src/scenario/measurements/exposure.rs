@@ -55,7 +55,7 @@ impl Exposure {
 }
 
 impl Measure for Exposure {
-    /// With the time for which a sample stands, seconds.
+    /// With the time between two samples, seconds.
     type Seen = (Seen, f64);
 
     fn check(&self) -> Result<(), Problem> {

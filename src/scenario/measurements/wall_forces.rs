@@ -57,7 +57,7 @@ impl WallForces {
 }
 
 impl Measure for WallForces {
-    /// With the time for which a sample stands, seconds.
+    /// With the time between two samples, seconds.
     type Seen = (Seen, f64);
 
     fn check(&self) -> Result<(), Problem> {

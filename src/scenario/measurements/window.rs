@@ -58,7 +58,7 @@ impl Window {
         is_due(simulation, [self.from_secs, until], self.every_secs)
     }
 
-    /// The time for which a sample stands, seconds: whole frames.
+    /// The time between two samples, seconds: whole frames.
     pub fn secs(&self, simulation: &Simulation) -> f64 {
         let clock = simulation.frame().clock;
         clock.time_at(clock.frame_at(self.every_secs).max(1))
