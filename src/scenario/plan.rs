@@ -203,7 +203,7 @@ fn walls_round(
 const ROOM_BEHIND: f64 = 0.5;
 /// The floor behind the line of an exit on the edge of the walkable area is this long, meters: people who come to the
 /// line do not avoid the wall at its end.
-const BEHIND: f64 = 3.0;
+const BEHIND: f64 = 4.0;
 /// That floor begins this far before the line, meters, so that rounding leaves no gap between.
 const OVERLAP: f64 = 0.01;
 
