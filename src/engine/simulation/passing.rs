@@ -1,7 +1,7 @@
 //! Lines that agents cross: waypoints, and exits, where they leave.
 //!
 //! Who has crossed the line of an exit has left: it counts as arrived, and is not present any more. Its body walks on for
-//! [`BEHIND`] meters, felt by all forces. Otherwise people before the line would walk into the room that a vanished body
+//! [`WALKS_ON`] meters, felt by all forces. Otherwise people before the line would walk into the room that a vanished body
 //! leaves, and a door would let out more people the nearer the line is to it.
 
 use rayon::prelude::*;
@@ -16,11 +16,11 @@ use crate::engine::ways::{nearest_on, side};
 
 /// Agents that may not pass an exit stop this far before its line, meters.
 const STOP_BEFORE: f64 = 1e-3;
-/// The body of an agent that has left by an exit walks on this far behind the line, meters. With less, the flow through
-/// a door depends on where the line lies.
-pub const BEHIND: f64 = 3.0;
+/// The body of an agent that has left by an exit walks on this far behind the line, meters: with less, the flow through a
+/// door depends on where the line lies, because people walk slower behind a crowd than behind nobody.
+pub const WALKS_ON: f64 = 6.0;
 /// It ends this far before a wall, meters, so that no body is held up there.
-const BEFORE_WALLS: f64 = 1.0;
+pub const BEFORE_WALLS: f64 = 1.0;
 /// Its goal is this far behind the end of its way, meters.
 const GOAL_BEHIND: f64 = 5.0;
 /// A body that has not come to the end of its way is removed after this time, seconds.
@@ -343,11 +343,11 @@ fn across([a, b]: [Vector; 2], way: Vector) -> Vector {
 
 /// How far a body can walk on from `p` in the direction `way`, meters.
 fn room_ahead(scene: &Scene, p: Vector, way: Vector) -> f64 {
-    let length = BEHIND + BEFORE_WALLS;
+    let length = WALKS_ON + BEFORE_WALLS;
     let end = p + way * length;
     let near = scene.walls.near_any(&[p, end], 0.0);
     let part = scene.walls.first_crossing(p, end, &near);
-    part.map_or(BEHIND, |(part, _)| part * length - BEFORE_WALLS)
+    part.map_or(WALKS_ON, |(part, _)| part * length - BEFORE_WALLS)
 }
 
 /// The part of a move after which it crosses a line; `None` if it does not.
