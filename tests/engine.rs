@@ -21,6 +21,7 @@ mod enclosures;
 mod endings;
 mod entrances;
 mod errands;
+mod exits;
 mod exposure;
 mod floor_plan;
 mod floor_plan_areas;

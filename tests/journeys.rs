@@ -180,7 +180,8 @@ fn the_quickest_exit_relieves_the_nearest_one() {
     let (nearest, quickest) = (out("nearest"), out("quickest"));
     assert_eq!(nearest.0.iter().sum::<u32>(), 208);
     assert_eq!(quickest.0.iter().sum::<u32>(), 208);
-    assert!(nearest.0[1] < 20, "{nearest:?}");
+    // A crowd before the near exit pushes some people so far aside that the other one is nearer.
+    assert!(2 * nearest.0[1] < quickest.0[1], "{nearest:?}");
     assert!(
         quickest.0[1] > 50 && quickest.0[0] > quickest.0[1],
         "{quickest:?}"

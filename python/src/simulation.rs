@@ -281,8 +281,8 @@ impl Native {
             let agents = self.run.simulation.frame().agents;
             // Ids are small numbers: no need to compare them.
             let mut places = vec![u32::MAX; agents.entered() as usize];
-            for (i, &id) in (0..).zip(&agents.id) {
-                places[id as usize] = i;
+            for i in agents.present() {
+                places[agents.id[i] as usize] = i as u32;
             }
             places.retain(|&place| place != u32::MAX);
             places

@@ -45,7 +45,7 @@ pub fn pressed(simulation: &Simulation, body_mass: f64) -> Vec<Pressed> {
         let own = [arm.x * push.x, xy, arm.y * push.y];
         (0..3).for_each(|k| virials[i][k] += own[k]);
     });
-    let mut order: Vec<usize> = (0..agents.len()).collect();
+    let mut order: Vec<usize> = agents.present().collect();
     order.sort_unstable_by_key(|&i| agents.id[i]);
     let people = order.into_iter().zip(local(simulation, false));
     let pressed = people.map(|(i, person)| {

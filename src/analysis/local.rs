@@ -59,9 +59,9 @@ impl People {
         all
     }
 
-    /// The agents of a run, by id: the order of sums does not depend on that of the agents in memory.
+    /// The agents of a run that are present, by id: the order of sums does not depend on that of the agents in memory.
     pub fn of(agents: &Agents, period: Option<&Period>) -> Self {
-        let mut order: Vec<usize> = (0..agents.len()).collect();
+        let mut order: Vec<usize> = agents.present().collect();
         order.sort_unstable_by_key(|&i| agents.id[i]);
         let state = |i: usize| (agents.id[i], agents.position[i], Some(agents.velocity[i]));
         let mut all = Self::new(order.into_iter().map(state));

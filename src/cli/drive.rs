@@ -179,7 +179,7 @@ impl Progress {
     pub fn show(&self, simulation: &Simulation) {
         let frame = simulation.frame();
         if frame.clock.is_coarse() && !self.0.is_hidden() {
-            let (time, agents) = (frame.clock.time(), frame.agents.len());
+            let (time, agents) = (frame.clock.time(), frame.agents.count_present());
             self.0.set_position((time * 10.0) as u64);
             self.0
                 .set_message(format!("t = {time:.1} s, {agents} agents"));

@@ -76,7 +76,7 @@ fn inspected(
 ) -> Result<Vec<(u32, usize)>, Failure> {
     let agents = simulation.frame().agents;
     if options.all {
-        let mut all: Vec<_> = agents.id.iter().copied().zip(0..).collect();
+        let mut all: Vec<_> = agents.present().map(|i| (agents.id[i], i)).collect();
         all.sort_unstable();
         return Ok(all);
     }

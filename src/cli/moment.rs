@@ -39,7 +39,7 @@ pub fn go_to(at: f64, simulation: &mut Simulation) -> Result<(), Failure> {
     while simulation.frame().clock.frame() < last {
         progress.show(simulation);
         simulation.step()?;
-        if simulation.frame().agents.is_empty() && !simulation.expects_agents() {
+        if simulation.frame().agents.count_present() == 0 && !simulation.expects_agents() {
             let time = simulation.frame().clock.time();
             return Err(Failure::Input(format!(
                 "--at {at}: no agents are left at that time: the last one leaves at {time:.2} s"

@@ -87,7 +87,7 @@ fn ending(run: &Run) -> String {
     const MOST: usize = 3;
     let (frame, outcome) = (run.simulation.frame(), run.simulation.outcome());
     let (entered, arrived) = (frame.agents.entered(), outcome.arrivals.len());
-    let (remain, time) = (frame.agents.len(), frame.clock.time());
+    let (remain, time) = (frame.agents.count_present(), frame.clock.time());
     let mut text = format!(
         "{entered} agents entered, {arrived} arrived, {remain} remain; the run ended at {time:.2} s: {}.\n",
         run.reason(),

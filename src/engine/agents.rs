@@ -165,7 +165,26 @@ impl Agents {
 
     /// The current index of agent `id`; `None` if it has left.
     pub fn index_of(&self, id: u32) -> Option<usize> {
-        self.id.iter().position(|&other| other == id)
+        let index = self.id.iter().position(|&other| other == id);
+        index.filter(|&i| self.is_present(i))
+    }
+
+    /// Whether agent `i` is present: it has not left by an exit, behind which only its body walks on. Forces act between
+    /// all bodies; measurements, trajectories and pictures show the agents that are present.
+    #[inline]
+    pub fn is_present(&self, i: usize) -> bool {
+        let trip = self.trip.get(i).and_then(Option::as_ref);
+        trip.is_none_or(|trip| !trip.is_outside())
+    }
+
+    /// The indices of the agents that are present.
+    pub fn present(&self) -> impl Iterator<Item = usize> + Clone + '_ {
+        (0..self.len()).filter(|&i| self.is_present(i))
+    }
+
+    /// The number of agents that are present.
+    pub fn count_present(&self) -> usize {
+        self.present().count()
     }
 
     /// ρ̂_i of the previous frame, P/m²; `None` for a newcomer.

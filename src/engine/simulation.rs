@@ -20,6 +20,7 @@ pub use choice::{Decision, Expected, Prospect, Reason};
 pub use entrances::Backlog;
 pub use goals::{Absent, GoalError};
 pub use limited::{Limited, SPOT_RADIUS};
+pub use passing::{BEFORE_WALLS, WALKS_ON};
 pub use schedule::{Event, EventKind};
 pub use stages::{Stage, StageTimes};
 pub use state::{State, StateError};

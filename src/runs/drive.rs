@@ -132,7 +132,8 @@ impl Run {
         let mut arrivals = self.simulation.outcome().arrivals.iter().rev();
         let last = arrivals.find(|arrival| arrival.counted);
         let idle = frame.clock.time() - last.map_or(0.0, |arrival| arrival.time);
-        if stop.when_empty && frame.agents.is_empty() && !self.simulation.expects_agents() {
+        if stop.when_empty && frame.agents.count_present() == 0 && !self.simulation.expects_agents()
+        {
             return Some(End::Empty);
         }
         let is_idle = stop.idle_secs.is_some_and(|most| idle > most);

@@ -107,7 +107,7 @@ impl Summary {
             time_secs: frame.clock.time(),
             agents: frame.agents.entered(),
             arrived: outcome.arrivals.len(),
-            remaining: frame.agents.len(),
+            remaining: frame.agents.count_present(),
             end: run.end,
             stuck: stuck_because.iter().map(|group| group.agents).sum(),
             stuck_because,

@@ -13,6 +13,7 @@ use super::shapes::{Obstacle, Point, Ring as GivenRing};
 use crate::engine::geometry::{Area, Polygon, Ring};
 use crate::engine::math::{Vector, direction, perpendicular};
 use crate::engine::period::Period;
+use crate::engine::simulation::{BEFORE_WALLS, WALKS_ON};
 use crate::scenario::floor_plan::{self, FloorPlan, FloorPlanError, Label};
 use crate::scenario::quote::shown;
 
@@ -202,15 +203,17 @@ fn walls_round(
 
 /// People need this much room behind the line of an exit to cross it, meters.
 const ROOM_BEHIND: f64 = 0.5;
-/// The floor behind the line of an exit on the edge of the walkable area is this long, meters: people who come to the
-/// line do not avoid the wall at its end.
-const BEHIND: f64 = 3.0;
+/// The floor behind the line of an exit on the edge of the walkable area is this long, meters: the bodies of those who
+/// have left walk on there.
+const BEHIND: f64 = WALKS_ON + BEFORE_WALLS;
 /// That floor begins this far before the line, meters, so that rounding leaves no gap between.
 const OVERLAP: f64 = 0.01;
 
-/// That floor widens by this on both sides toward its end, meters, or less where something else is near: RVO stops in
-/// front of a dead end as wide as a door.
+/// That floor widens by this on both sides, meters, or less where something else is near: RVO stops in front of a dead
+/// end as wide as a door.
 const WIDENS: [f64; 4] = [3.0, 2.0, 1.0, 0.0];
+/// It has widened this far behind the line, meters.
+const WIDE_AT: f64 = 3.0;
 
 /// The floor behind the line of an exit or entrance on the edge of the walkable area.
 struct Opening {
@@ -220,7 +223,7 @@ struct Opening {
     directions: [Vector; 2],
     /// Meters.
     depth: f64,
-    /// It is wider by this on both sides at [`BEHIND`], meters.
+    /// It is wider by this on both sides from [`WIDE_AT`] on, meters.
     widens: f64,
 }
 
@@ -282,10 +285,15 @@ impl Opening {
         self.ends == [a, b] || self.ends == [b, a]
     }
 
+    /// How much wider it is on each side `step` meters behind the line, meters.
+    fn aside(&self, step: f64) -> f64 {
+        self.widens * (step / WIDE_AT).clamp(0.0, 1.0)
+    }
+
     /// The place `step` meters behind the line; `across` is 0 on one side and 1 on the other.
     fn place(&self, step: f64, across: f64) -> Vector {
         let ([a, b], [along, out]) = (self.ends, self.directions);
-        let aside = along * (self.widens * step.max(0.0) / BEHIND);
+        let aside = along * self.aside(step);
         let (a, b) = (a - aside, b + aside);
         a + (b - a) * across + out * step
     }
@@ -304,7 +312,7 @@ impl Opening {
     fn contains(&self, p: Vector) -> bool {
         let (way, [along, out]) = (p - self.ends[0], self.directions);
         let (step, across) = (way.dot(&out), way.dot(&along));
-        let aside = self.widens * step / BEHIND;
+        let aside = self.aside(step);
         let width = (self.ends[1] - self.ends[0]).norm();
         (0.0..=self.depth).contains(&step) && (-aside..=width + aside).contains(&across)
     }
@@ -321,14 +329,12 @@ impl Opening {
 
     /// The corners, from `first` meters behind the line.
     fn ring(&self, first: f64) -> Vec<[f64; 2]> {
-        let corners = [
-            (first, 0.0),
-            (first, 1.0),
-            (self.depth, 1.0),
-            (self.depth, 0.0),
-        ];
-        let corners = corners.map(|(step, across)| self.place(step, across).into());
-        corners.to_vec()
+        let is_long = self.depth > WIDE_AT;
+        let steps = [Some(first), is_long.then_some(WIDE_AT), Some(self.depth)];
+        let steps = steps.into_iter().flatten();
+        let there = steps.clone().map(|step| self.place(step, 1.0));
+        let back = steps.rev().map(|step| self.place(step, 0.0));
+        there.chain(back).map(Into::into).collect()
     }
 }
 

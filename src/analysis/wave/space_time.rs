@@ -55,7 +55,8 @@ impl SpaceTime {
     pub fn observe(&mut self, frame: &Frame) {
         let bins = self.strip.bins();
         let mut sums = vec![(0u32, 0.0, 0.0); bins];
-        for (r, v) in frame.agents.position.iter().zip(&frame.agents.velocity) {
+        for i in frame.agents.present() {
+            let (r, v) = (frame.agents.position[i], frame.agents.velocity[i]);
             let along = (r.x - self.strip.x[0]) / self.strip.bin;
             if r.y.abs() <= self.strip.half_width && along >= 0.0 && along < bins as f64 {
                 let (count, speed, velocity) = &mut sums[along as usize];

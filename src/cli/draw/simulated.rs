@@ -92,7 +92,7 @@ impl Frames for Simulated {
         while simulation.frame().clock.frame() < last {
             self.progress.show(simulation);
             simulation.step()?;
-            if simulation.frame().agents.is_empty() && !simulation.expects_agents() {
+            if simulation.frame().agents.count_present() == 0 && !simulation.expects_agents() {
                 let (option, time) = (&self.option, simulation.frame().clock.time());
                 return Err(Failure::Input(format!(
                     "{option}: no agents are left at that time: the last one leaves at {time:.2} s"
@@ -118,7 +118,7 @@ impl Frames for Simulated {
             return Ok(Some(speeds(&self.crowd)));
         }
         let of = COLUMNS.iter().find(|(own, _)| *own == name);
-        let count = self.crowd.len();
-        Ok(of.map(|(_, value)| (0..count).map(|i| value(&self.simulation, i)).collect()))
+        let present = self.simulation.frame().agents.present();
+        Ok(of.map(|(_, value)| present.map(|i| value(&self.simulation, i)).collect()))
     }
 }

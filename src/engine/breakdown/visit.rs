@@ -159,7 +159,7 @@ fn doing(simulation: &Simulation, trip: &Trip) -> Doing {
                 ahead: others.filter(is_ahead).count(),
             }
         }
-        Status::Finished => Doing::Finished,
+        Status::Finished | Status::Outside { .. } => Doing::Finished,
     }
 }
 

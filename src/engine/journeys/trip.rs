@@ -28,10 +28,16 @@ pub struct Trip {
 }
 
 impl Trip {
-    /// The place that the agent walks to or is at; `None` once it has left the journey for a goal of its own.
+    /// Whether the agent has left by an exit, and only its body walks on.
+    pub fn is_outside(&self) -> bool {
+        matches!(self.status, Status::Outside { .. })
+    }
+
+    /// The place that the agent walks to or is at; `None` once it has left the journey for a goal of its own, or has left
+    /// by an exit.
     pub fn place_ahead(&self) -> Option<u16> {
         let has_left = self.status == Status::Finished && self.hold.is_none();
-        (!has_left).then_some(self.place)
+        (!has_left && !self.is_outside()).then_some(self.place)
     }
 }
 
@@ -60,4 +66,10 @@ pub enum Status {
     },
     /// It has ended its journey and stays; or it has left it, `hold` is `None`, and it walks to its goal.
     Finished,
+    /// It has left by an exit. Its body walks on behind the line, so that people before the line do not walk into a gap
+    /// that no door has.
+    Outside {
+        /// The frame in which the body is removed at the latest.
+        until: u64,
+    },
 }

@@ -54,7 +54,8 @@ pub(super) fn count(crowd: &mut Crowd, scene: &Scene) {
         let (Some(trip), Some(route)) = (trip, route) else {
             continue;
         };
-        if matches!(trip.status, Status::Waiting { .. } | Status::Finished) {
+        let is_bound = matches!(trip.status, Status::Walking | Status::Queued { .. });
+        if !is_bound {
             continue;
         }
         let bin = (route.length().min(FARTHEST_BIN) / BIN) as usize;

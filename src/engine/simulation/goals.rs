@@ -199,7 +199,7 @@ impl Crowd {
                 self.count_wait(i, since);
                 self.close_ranks(trip.place, ticket);
             }
-            Status::Finished => {}
+            Status::Finished | Status::Outside { .. } => {}
         }
         if trip.status != Status::Finished {
             let bound = &mut self.progress.places[usize::from(trip.place)].bound;

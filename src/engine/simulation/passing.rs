@@ -1,4 +1,8 @@
 //! Lines that agents cross: waypoints, and exits, where they leave.
+//!
+//! Who has crossed the line of an exit has left: it counts as arrived, and is not present any more. Its body walks on for
+//! [`WALKS_ON`] meters, felt by all forces. Otherwise people before the line would walk into the room that a vanished body
+//! leaves, and a door would let out more people the nearer the line is to it.
 
 use rayon::prelude::*;
 
@@ -12,6 +16,15 @@ use crate::engine::ways::{nearest_on, side};
 
 /// Agents that may not pass an exit stop this far before its line, meters.
 const STOP_BEFORE: f64 = 1e-3;
+/// The body of an agent that has left by an exit walks on this far behind the line, meters: with less, the flow through a
+/// door depends on where the line lies, because people walk slower behind a crowd than behind nobody.
+pub const WALKS_ON: f64 = 6.0;
+/// It ends this far before a wall, meters, so that no body is held up there.
+pub const BEFORE_WALLS: f64 = 1.0;
+/// Its goal is this far behind the end of its way, meters.
+const GOAL_BEHIND: f64 = 5.0;
+/// A body that has not come to the end of its way is removed after this time, seconds.
+const OUTSIDE_SECS: f64 = 30.0;
 
 /// A move across the line of a place.
 #[derive(Clone, Copy)]
@@ -21,6 +34,8 @@ struct Crossing {
     line: [Vector; 2],
     /// The part of the move before the line.
     part: f64,
+    /// Whether the agent has met another one on the line, and has not crossed it.
+    met: bool,
 }
 
 /// The surroundings of a line: after a move across the line, an agent is here.
@@ -72,6 +87,9 @@ impl Simulation {
             if !crossings.is_empty() {
                 crowd.pass(scene, before, &crossings);
             }
+            if crowd.progress.outside > 0 {
+                crowd.remove_bodies(scene);
+            }
         });
     }
 }
@@ -104,6 +122,7 @@ impl Crowd {
                     place,
                     line,
                     part,
+                    met: false,
                 })
             });
             crossings.min_by(|a, b| a.part.total_cmp(&b.part))
@@ -119,7 +138,8 @@ impl Crowd {
     }
 
     /// Agents that meet another one on the line of their exit, which comes from the other side: neither could cross it.
-    /// Both bodies touch the line, and each other. Agents of `passing` cross a line already.
+    /// Both bodies touch the line, and each other. The agents of `passing` cross a line in this frame: they stand behind
+    /// it already, and those that follow them have not met anyone.
     fn meetings(&self, scene: &Scene, passing: &[Crossing]) -> Vec<Crossing> {
         let agents = &self.agents;
         let touching = |agent: usize| {
@@ -133,8 +153,10 @@ impl Crowd {
             (touches && trip.status == Status::Walking).then(|| (place, side(a, b, p) > 0.0, agent))
         };
         let all = (0..agents.len()).into_par_iter();
+        let is_new = |&agent: &usize| passing.iter().all(|crossing| crossing.agent != agent);
         let all: Vec<(usize, bool, usize)> = all
             .with_min_len(TASK * BLOCK)
+            .filter(is_new)
             .filter_map(touching)
             .collect();
         let meets = |&(place, is_left, agent): &(usize, bool, usize)| {
@@ -144,13 +166,13 @@ impl Crowd {
                 other_place == place && is_other_left != is_left && gap < 0.0
             })
         };
-        let is_new = |agent: usize| passing.iter().all(|crossing| crossing.agent != agent);
-        let found = all.iter().filter(|one| meets(one) && is_new(one.2));
+        let found = all.iter().filter(|one| meets(one));
         let crossing = |&(place, _, agent): &(usize, bool, usize)| Crossing {
             agent,
             place,
             line: scene.journeys.places[place].line().unwrap_or_default(),
             part: 1.0,
+            met: true,
         };
         let mut found: Vec<Crossing> = found.map(crossing).collect();
         found.sort_by_key(|crossing| agents.id[crossing.agent]);
@@ -183,7 +205,8 @@ impl Crowd {
                 state.ready = state.ready.max(now - self.clock.time_step()) + 1.0 / rate;
             }
             self.take_place(i, crossing.place);
-            leaving.push(i);
+            let way = (!crossing.met).then(|| self.agents.position[i] - before[i]);
+            leaving.push((i, way.map(|way| across(crossing.line, way))));
         }
         self.leave(scene, leaving);
     }
@@ -206,25 +229,16 @@ impl Crowd {
         );
         let way = *position - from;
         let length = way.norm();
-        let [a, b] = crossing.line;
-        let across = perpendicular(direction(b - a));
-        let across = if across.dot(&way) > 0.0 {
-            across
-        } else {
-            -across
-        };
+        let across = across(crossing.line, way);
         let kept = (crossing.part * length - STOP_BEFORE).max(0.0);
         *position = from + direction(way) * kept;
         *velocity -= across * velocity.dot(&across).max(0.0);
     }
 
-    fn leave(&mut self, scene: &Scene, leaving: Vec<usize>) {
-        if leaving.is_empty() {
-            return;
-        }
-        let mut stays = vec![true; self.agents.len()];
-        for i in leaving {
-            stays[i] = false;
+    /// Agents leave; the bodies of those with a direction in which they crossed the line walk on.
+    fn leave(&mut self, scene: &Scene, leaving: Vec<(usize, Option<Vector>)>) {
+        let mut gone = Vec::new();
+        for (i, way) in leaving {
             let Some(trip) = self.agents.trip[i] else {
                 continue;
             };
@@ -243,11 +257,97 @@ impl Crowd {
                     waited: trip.waited,
                 }),
             });
+            let room = way.map_or(0.0, |way| room_ahead(scene, self.agents.position[i], way));
+            match way.filter(|_| room > 0.0) {
+                Some(way) => self.walk_on(i, way * (room + GOAL_BEHIND)),
+                None => gone.push(i),
+            }
+        }
+        self.remove(&gone);
+    }
+
+    /// The body of agent `i`, which has left, walks on.
+    fn walk_on(&mut self, i: usize, way: Vector) {
+        let until = self.clock.coarse_frame_at(self.clock.time() + OUTSIDE_SECS);
+        if let Some(trip) = &mut self.agents.trip[i] {
+            trip.status = Status::Outside { until };
+            trip.hold = None;
+            trip.chooses_at = u64::MAX;
+            self.progress.outside += 1;
+        }
+        self.agents.goal[i] = self.agents.position[i] + way;
+        if let Some(route) = self.agents.route.get_mut(i) {
+            *route = None;
+            self.agents.lacks_routes = true;
+        }
+    }
+
+    /// Removes the bodies of agents that have left: at the ends of their ways, after [`OUTSIDE_SECS`], and, in coarse
+    /// frames, where they meet an agent that is present and ahead of them.
+    fn remove_bodies(&mut self, scene: &Scene) {
+        let outside = (0..self.agents.len()).filter(|&i| !self.agents.is_present(i));
+        let outside: Vec<usize> = outside.collect();
+        let is_gone = |&i: &usize| {
+            let Some(trip) = &self.agents.trip[i] else {
+                return true;
+            };
+            let Some(line) = scene.journeys.places[usize::from(trip.place)].line() else {
+                return true;
+            };
+            let ahead = self.agents.goal[i] - self.agents.position[i];
+            let way = across(line, ahead);
+            let is_late =
+                matches!(trip.status, Status::Outside { until } if until <= self.clock.frame());
+            is_late || ahead.dot(&way) <= GOAL_BEHIND || self.meets_anyone(i, way)
+        };
+        let gone: Vec<usize> = outside.into_iter().filter(is_gone).collect();
+        self.progress.outside -= gone.len() as u32;
+        self.remove(&gone);
+    }
+
+    /// Whether the body of agent `i` touches an agent that is present and ahead of it.
+    fn meets_anyone(&self, i: usize, way: Vector) -> bool {
+        let agents = &self.agents;
+        let (p, radius) = (agents.position[i], agents.radius[i]);
+        let meets = |j: usize| {
+            let to = agents.position[j] - p;
+            let reach = radius + agents.radius[j];
+            to.norm_squared() < reach * reach && to.dot(&way) > 0.0 && agents.is_present(j)
+        };
+        self.clock.is_coarse() && (0..agents.len()).any(meets)
+    }
+
+    fn remove(&mut self, gone: &[usize]) {
+        if gone.is_empty() {
+            return;
+        }
+        let mut stays = vec![true; self.agents.len()];
+        for &i in gone {
+            stays[i] = false;
         }
         let staying = (0..stays.len() as u32).filter(|&i| stays[i as usize]);
         self.agents.arrange(&staying.collect::<Vec<_>>());
         self.changed = true;
     }
+}
+
+/// The direction across a line on the side to which `way` leads, of length 1.
+fn across([a, b]: [Vector; 2], way: Vector) -> Vector {
+    let across = perpendicular(direction(b - a));
+    if across.dot(&way) > 0.0 {
+        across
+    } else {
+        -across
+    }
+}
+
+/// How far a body can walk on from `p` in the direction `way`, meters.
+fn room_ahead(scene: &Scene, p: Vector, way: Vector) -> f64 {
+    let length = WALKS_ON + BEFORE_WALLS;
+    let end = p + way * length;
+    let near = scene.walls.near_any(&[p, end], 0.0);
+    let part = scene.walls.first_crossing(p, end, &near);
+    part.map_or(WALKS_ON, |(part, _)| part * length - BEFORE_WALLS)
 }
 
 /// The part of a move after which it crosses a line; `None` if it does not.

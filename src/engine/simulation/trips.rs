@@ -22,6 +22,8 @@ pub struct Progress {
     pub begun: Vec<u32>,
     /// The state of each place.
     pub places: Vec<PlaceState>,
+    /// The number of agents that have left by an exit, and whose bodies still walk on.
+    pub outside: u32,
     /// The number of changes of places so far.
     changes: usize,
 }
@@ -298,7 +300,7 @@ impl Crowd {
                     }
             }
             Status::Waiting { until, .. } => until <= frame || !is_open,
-            Status::Queued { .. } | Status::Finished => false,
+            Status::Queued { .. } | Status::Finished | Status::Outside { .. } => false,
         }
     }
 

@@ -21,11 +21,19 @@ const SMALL: f64 = 0.4;
 /// Colors of more than this lightness, from 0 to 255, have black dots on them.
 const LIGHT: f64 = 120.0;
 
-/// What agent `i` does, as far as pictures show it.
-fn doing(simulation: Option<&Simulation>, i: usize) -> (&'static str, Rgb) {
-    let Some(simulation) = simulation else {
-        return ("walking", WALKING);
-    };
+/// What the people of a picture do, as far as pictures show it, in their order.
+fn doings(picture: &Picture) -> Vec<(&'static str, Rgb)> {
+    match picture.simulation {
+        Some(simulation) => {
+            let present = simulation.frame().agents.present();
+            present.map(|i| doing(simulation, i)).collect()
+        }
+        None => vec![("walking", WALKING); picture.crowd.len()],
+    }
+}
+
+/// What agent `i` does.
+fn doing(simulation: &Simulation, i: usize) -> (&'static str, Rgb) {
     let (agents, clock) = (simulation.frame().agents, simulation.frame().clock);
     if agents
         .walks_from
@@ -38,7 +46,7 @@ fn doing(simulation: Option<&Simulation>, i: usize) -> (&'static str, Rgb) {
     match trip.map(|trip| trip.status) {
         Some(Status::Waiting { .. }) => ("waiting", [200, 130, 0]),
         Some(Status::Queued { .. }) => ("in a queue", [170, 80, 140]),
-        Some(Status::Finished) => ("has ended its journey", FAINT),
+        Some(Status::Finished | Status::Outside { .. }) => ("has ended its journey", FAINT),
         Some(Status::Walking) | None => ("walking", WALKING),
     }
 }
@@ -76,14 +84,14 @@ impl Field {
 
 /// The agents of a picture; `faint`: in a picture of ways.
 pub fn agents(picture: &Picture, faint: bool) -> Option<Mark> {
-    let crowd = picture.crowd;
+    let (crowd, doings) = (picture.crowd, doings(picture));
     let disc = |i: usize| {
         let (center, radius) = (xy(crowd.position[i]), crowd.radius[i]);
         let (radius, color) = match (&picture.field, &picture.coloring) {
             _ if faint => (radius, FAINT),
             (Some(field), _) => (SMALL * radius, field.contrast(center)),
             (None, Some(coloring)) => (radius, coloring.color(i)),
-            (None, None) => (radius, doing(picture.simulation, i).1),
+            (None, None) => (radius, doings[i].1),
         };
         Disc {
             center,
@@ -169,8 +177,7 @@ pub fn legend(picture: &Picture, has_paths: bool) -> Vec<Entry> {
         return path.into_iter().collect();
     }
     let mut shown = Vec::new();
-    for i in 0..picture.crowd.len() {
-        let seen = doing(picture.simulation, i);
+    for seen in doings(picture) {
         if !shown.contains(&seen) {
             shown.push(seen);
         }

@@ -28,17 +28,18 @@ pub struct Crowd {
 }
 
 impl Crowd {
-    /// The agents in the current frame of a simulation, in its order.
+    /// The agents that are present in the current frame of a simulation, in its order.
     pub fn of(simulation: &Simulation) -> Self {
         let frame = simulation.frame();
         let agents = frame.agents;
+        let numbers = |values: &[f64]| agents.present().map(|i| values[i]).collect();
         Self {
             time: frame.clock.time(),
-            id: agents.id.iter().map(|&id| i64::from(id)).collect(),
-            position: agents.position.clone(),
-            radius: agents.radius.clone(),
-            mass: agents.mass.clone(),
-            velocity: agents.velocity.iter().copied().map(Some).collect(),
+            id: agents.present().map(|i| i64::from(agents.id[i])).collect(),
+            position: agents.present().map(|i| agents.position[i]).collect(),
+            radius: numbers(&agents.radius),
+            mass: numbers(&agents.mass),
+            velocity: agents.present().map(|i| Some(agents.velocity[i])).collect(),
         }
     }
 

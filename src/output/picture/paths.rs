@@ -96,7 +96,7 @@ impl Paths {
             (None, Destination::Goal(goal)) => agents.goal[*i] == goal,
             (None, Destination::Place(_)) => false,
         };
-        let mut order: Vec<usize> = (0..agents.len()).collect();
+        let mut order: Vec<usize> = agents.present().collect();
         order.sort_unstable_by_key(|&i| agents.id[i]);
         let bound: Vec<usize> = order.iter().copied().filter(wants).collect();
         let chosen = if bound.is_empty() { order } else { bound };

@@ -28,6 +28,9 @@ impl DebugAgents {
     /// Is agent `i` of the current frame a debug agent?
     pub(super) fn includes(&self, simulation: &Simulation, i: usize) -> bool {
         let agents = simulation.frame().agents;
+        if !agents.is_present(i) {
+            return false;
+        }
         match self {
             Self::Ids(ids) => ids.contains(&agents.id[i]),
             Self::Region(region) => region.contains(agents.position[i]),

@@ -66,7 +66,8 @@ impl Densest {
     fn update(&mut self, simulation: &Simulation, debug: &DebugAgents, opens_here: bool) {
         let frame = simulation.frame();
         let (agents, density) = (frame.agents, &frame.fields.density);
-        let most = density.iter().copied().fold(0.0, f64::max);
+        let present = agents.present().take(density.len());
+        let most = present.map(|i| density[i]).fold(0.0, f64::max);
         let is_gone = self.id.is_none_or(|id| agents.index_of(id).is_none());
         let is_denser = !self.settled && most > DENSER * self.density;
         if !(is_gone || is_denser || opens_here) {

@@ -54,10 +54,13 @@ impl Snapshot {
     pub fn of(simulation: &Simulation, debug: &DebugAgents, followed: &[Option<u32>]) -> Self {
         let frame = simulation.frame();
         let (agents, fields) = (frame.agents, frame.fields);
-        let vectors = |values: &[Vector]| values.iter().map(|&v| xy(v)).collect();
-        let numbers = |values: &[f64]| values.iter().map(|&x| x as f32).collect();
+        let present: Vec<usize> = agents.present().collect();
+        let vectors = |values: &[Vector]| present.iter().map(|&i| xy(values[i])).collect();
+        // Fields without values are empty.
+        let number = |values: &[f64], i: usize| values.get(i).map(|&x| x as f32);
+        let numbers = |values: &[f64]| present.iter().filter_map(|&i| number(values, i)).collect();
         let trips = &agents.trip;
-        let stages = (0..agents.len()).filter(|_| !trips.is_empty());
+        let stages = present.iter().copied().filter(|_| !trips.is_empty());
         let stages = stages.map(|i| stage_color(trips.get(i).and_then(Option::as_ref)));
         let open = debug.open(simulation, followed);
         let place = |id: u32| {
@@ -68,7 +71,7 @@ impl Snapshot {
             followed: followed.iter().map(|id| id.and_then(place)).collect(),
             frame: frame.clock.frame().cast_signed(),
             time: frame.clock.time(),
-            ids: agents.id.clone(),
+            ids: present.iter().map(|&i| agents.id[i]).collect(),
             positions: vectors(&agents.position),
             velocities: vectors(&agents.velocity),
             radii: numbers(&agents.radius),

@@ -36,8 +36,8 @@ impl WalkableArea {
     pub fn new(simulation: &Simulation, view: Region) -> Self {
         let scene = simulation.scene();
         let agents = simulation.frame().agents;
-        let mut entries = agents.position.clone();
-        let mut goals = agents.goal.clone();
+        let mut entries: Vec<Vector> = agents.present().map(|i| agents.position[i]).collect();
+        let mut goals: Vec<Vector> = agents.present().map(|i| agents.goal[i]).collect();
         for source in &scene.sources {
             let entry = |p| entrance(simulation, p);
             let positions: Vec<Vector> = source.grid.positions(scene.seed, 0).collect();

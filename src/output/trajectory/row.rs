@@ -186,7 +186,7 @@ impl Serialize for Row<'_> {
 /// All agents in an evaluated frame with the number `number`, by id.
 pub fn rows(simulation: &Simulation, number: u64) -> Vec<Row<'_>> {
     let agents = simulation.frame().agents;
-    let mut order: Vec<usize> = (0..agents.len()).collect();
+    let mut order: Vec<usize> = agents.present().collect();
     order.sort_unstable_by_key(|&i| id_of(agents, i));
     let row = |i| row(simulation, number, i);
     order.into_par_iter().with_min_len(1024).map(row).collect()

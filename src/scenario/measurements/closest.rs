@@ -50,8 +50,9 @@ pub fn closest(simulation: &Simulation) -> f64 {
     if frame.neighbors.near().is_empty() {
         return least;
     }
-    for i in 0..agents.len() {
-        for (j, r_ij) in frame.near(i, agents.radius[i] + widest) {
+    for i in agents.present() {
+        let near = frame.near(i, agents.radius[i] + widest);
+        for (j, r_ij) in near.filter(|&(j, _)| agents.is_present(j)) {
             least = least.min(r_ij.norm() / (agents.radius[i] + agents.radius[j]));
         }
     }

@@ -47,10 +47,10 @@ impl Measure for Density {
             return;
         }
         let region = self.region.and_then(|corners| region("", corners).ok());
-        let positions = densities.iter().zip(&frame.agents.position);
-        let inside =
-            positions.filter(|(_, position)| region.is_none_or(|r| r.contains(**position)));
-        let densities: Vec<f64> = inside.map(|(density, _)| *density).collect();
+        let positions = &frame.agents.position;
+        let inside = frame.agents.present();
+        let inside = inside.filter(|&i| region.is_none_or(|r| r.contains(positions[i])));
+        let densities: Vec<f64> = inside.map(|i| densities[i]).collect();
         let found = MeanStd::of(&densities);
         *seen = [found.map(|of| of.mean), found.map(|of| of.population_std())];
     }

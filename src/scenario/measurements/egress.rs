@@ -162,8 +162,8 @@ impl Measure for Egress {
         }
         seen.walkers.resize(agents.entered() as usize, None);
         for (i, trip) in agents.trip.iter().enumerate() {
-            let Some(trip) = trip.filter(|trip| number.is_none_or(|own| own == trip.journey))
-            else {
+            let trip = trip.filter(|trip| number.is_none_or(|own| own == trip.journey));
+            let Some(trip) = trip.filter(|trip| !trip.is_outside()) else {
                 continue;
             };
             let position = agents.position[i];

@@ -72,7 +72,7 @@ impl Measure for FrameTime {
             frame: now,
             stages: spent.collect(),
         });
-        *agents = frame.agents.len();
+        *agents = frame.agents.count_present();
         *(if first.is_none() { first } else { last }) = spent;
     }
 

@@ -136,14 +136,14 @@ impl Measure for Front {
         let way = self.way();
         let people = seen.get_or_insert_with(|| {
             let region = self.region.and_then(|corners| region("", corners).ok());
-            let all = agents.id.iter().zip(&agents.position).enumerate();
-            let there = all.filter(|(_, (_, p))| region.is_none_or(|region| region.contains(**p)));
+            let is_there = |p: Vector| region.is_none_or(|region| region.contains(p));
+            let there = agents.present().filter(|&i| is_there(agents.position[i]));
             let mut people: Vec<Reached> = there
-                .map(|(i, (&agent, position))| {
+                .map(|i| {
                     let own = agents.preferred_speed.get(i).copied();
                     Reached {
-                        agent,
-                        place: position.dot(&way),
+                        agent: agents.id[i],
+                        place: agents.position[i].dot(&way),
                         secs: None,
                         moved_at: None,
                         threshold: self.part * own.unwrap_or(scene.preferred_speed),
@@ -153,8 +153,8 @@ impl Measure for Front {
             people.sort_unstable_by_key(|of| of.agent);
             people
         });
-        for (i, id) in agents.id.iter().enumerate() {
-            let Ok(k) = people.binary_search_by_key(id, |of| of.agent) else {
+        for i in agents.present() {
+            let Ok(k) = people.binary_search_by_key(&agents.id[i], |of| of.agent) else {
                 continue;
             };
             let of = &mut people[k];

@@ -50,14 +50,16 @@ impl Measure for Integrity {
     }
 
     fn values(&self, seen: &Watched, simulation: &Simulation) -> Vec<Option<f64>> {
-        let velocities = &simulation.frame().agents.velocity;
-        let squares: f64 = velocities.iter().map(Vector::norm_squared).sum();
-        let mean = squares / velocities.len() as f64;
+        let agents = simulation.frame().agents;
+        let present = agents.present();
+        let squares: f64 = present.map(|i| agents.velocity[i].norm_squared()).sum();
+        let count = agents.count_present();
+        let mean = squares / count as f64;
         vec![
             Some(seen.agents_through_walls(simulation) as f64),
             Some(seen.non_finite_frames as f64),
             Some(seen.highest_speed),
-            (!velocities.is_empty()).then(|| mean.sqrt()),
+            (count > 0).then(|| mean.sqrt()),
         ]
     }
 }

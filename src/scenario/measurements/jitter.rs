@@ -48,8 +48,8 @@ impl Measure for Jitter {
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
         let frame = simulation.frame();
-        let density = &frame.fields.density;
-        let mut sorted = density.clone();
+        let (agents, density) = (frame.agents, &frame.fields.density);
+        let mut sorted: Vec<f64> = agents.present().map(|i| density[i]).collect();
         if !is_due(simulation, [self.from_secs, self.to_secs], 0.0) {
             return;
         }
@@ -57,11 +57,10 @@ impl Measure for Jitter {
         let Some(&dense) = sorted.get((RIM * sorted.len() as f64) as usize) else {
             return;
         };
-        let bodies = frame.agents.mass.iter().zip(&frame.agents.velocity);
-        for ((mass, velocity), &density) in bodies.zip(density) {
-            let part = if density >= dense { 1 } else { 2 };
+        for i in agents.present() {
+            let part = if density[i] >= dense { 1 } else { 2 };
             for k in [0, part] {
-                seen[k].add(0.5 * mass * velocity.norm_squared());
+                seen[k].add(0.5 * agents.mass[i] * agents.velocity[i].norm_squared());
             }
         }
     }

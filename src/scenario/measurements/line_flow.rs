@@ -147,11 +147,8 @@ impl Measure for LineFlow {
             entered: agents.entered() as usize,
         };
         let gone = gone.iter().map(|arrival| (arrival.id, arrival.position));
-        let there = agents
-            .id
-            .iter()
-            .copied()
-            .zip(agents.position.iter().copied());
+        let there = agents.present();
+        let there = there.map(|i| (agents.id[i], agents.position[i]));
         self.see(seen, &moment, gone, there);
     }
 

@@ -153,8 +153,9 @@ impl Measure for Oscillation {
         let size = region.max - region.min;
         let mut sums = vec![(0_u32, [0.0; 2]); columns * rows];
         let agents = simulation.frame().agents;
-        for (r, v) in agents.position.iter().zip(&agents.velocity) {
-            if !region.contains(*r) {
+        for i in agents.present() {
+            let (r, v) = (agents.position[i], agents.velocity[i]);
+            if !region.contains(r) {
                 continue;
             }
             let part = (r - region.min).component_div(&size);

@@ -46,14 +46,15 @@ impl Snapshot {
         let agents = frame.agents;
         // More digits would only make the files larger.
         let rounded = |value: f64| (1e3 * value).round() / 1e3;
-        let all = |values: &[f64]| values.iter().map(|&v| rounded(v)).collect();
+        let all =
+            |value: &dyn Fn(usize) -> f64| agents.present().map(|i| rounded(value(i))).collect();
         Self {
             time_secs: frame.clock.time(),
-            x: agents.position.iter().map(|r| rounded(r.x)).collect(),
-            y: agents.position.iter().map(|r| rounded(r.y)).collect(),
-            radius: all(&agents.radius),
-            speed: agents.velocity.iter().map(|v| rounded(v.norm())).collect(),
-            density: all(&frame.fields.density),
+            x: all(&|i| agents.position[i].x),
+            y: all(&|i| agents.position[i].y),
+            radius: all(&|i| agents.radius[i]),
+            speed: all(&|i| agents.velocity[i].norm()),
+            density: all(&|i| frame.fields.density[i]),
         }
     }
 }

@@ -54,10 +54,13 @@ impl Measure for SpeedByDensity {
             return;
         }
         seen.resize(self.bins.len(), Mean::default());
-        for (density, v) in frame.fields.density.iter().zip(&frame.agents.velocity) {
-            let bin = self.bins.iter().rposition(|low| density >= low);
+        // In frames without densities there is nothing to add.
+        let present = frame.agents.present().take(frame.fields.density.len());
+        for i in present {
+            let density = frame.fields.density[i];
+            let bin = self.bins.iter().rposition(|&low| density >= low);
             if let Some(bin) = bin.filter(|&bin| density - self.bins[bin] < 1.0) {
-                seen[bin].add(v.norm());
+                seen[bin].add(frame.agents.velocity[i].norm());
             }
         }
     }

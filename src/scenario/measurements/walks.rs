@@ -111,7 +111,8 @@ impl Measure for Walks {
         seen.secs += if is_due { step } else { 0.0 };
         let region = self.region.and_then(|corners| region("", corners).ok());
         seen.walks.resize(agents.entered() as usize, None);
-        for (i, (&id, &position)) in agents.id.iter().zip(&agents.position).enumerate() {
+        for i in agents.present() {
+            let (id, position) = (agents.id[i], agents.position[i]);
             let (walk, before) = seen.walks[id as usize].get_or_insert_with(|| {
                 let own = agents.preferred_speed.get(i).copied();
                 let walk = Walk {
