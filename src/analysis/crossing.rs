@@ -44,7 +44,7 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// Counts a crossing. Is it a passage?
+    /// Counts a crossing; returns whether it is a passage.
     pub fn passes(&mut self, is_forward: bool) -> bool {
         self.now += if is_forward { 1 } else { -1 };
         let is_new = self.now < self.lowest || self.now > self.highest;

@@ -42,7 +42,7 @@ impl Grid {
         self.columns * self.rows
     }
 
-    /// Are there no cells?
+    /// Whether there are no cells.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -121,7 +121,7 @@ impl WayField {
         }
     }
 
-    /// Does another corner come first in the cell on the right of cell `k` or above it?
+    /// Whether another corner comes first in the cell on the right of cell `k` or above it.
     pub fn is_border(&self, k: usize) -> bool {
         let differs = |other: usize| {
             let next = self.next.get(other).copied().unwrap_or(NOTHING);

@@ -85,7 +85,7 @@ impl Clock {
         f64::from(self.coarse_every) * self.time_step
     }
 
-    /// Is the current frame a coarse one?
+    /// Whether the current frame is a coarse one.
     pub fn is_coarse(&self) -> bool {
         self.frame.is_multiple_of(u64::from(self.coarse_every))
     }

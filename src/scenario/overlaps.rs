@@ -57,7 +57,7 @@ fn overlapping(bodies: &[Body]) -> Vec<Vector> {
     found.map(|((_, body), _)| body.place).collect()
 }
 
-/// Do two bodies overlap much?
+/// Whether two bodies overlap by more than half a radius.
 fn overlap(one: &Body, other: &Body) -> bool {
     let allowed = MUCH * one.radius.min(other.radius);
     (one.place - other.place).norm() < one.radius + other.radius - allowed

@@ -109,7 +109,7 @@ impl Errors {
         }
     }
 
-    /// Is the value within the tolerance with all seeds?
+    /// Whether the value is within the tolerance with all seeds.
     pub(super) fn is_within(&self, tolerance: f64) -> bool {
         let error = self.error.is_some_and(|error| error.abs() <= tolerance);
         error && self.failures.is_empty()

@@ -41,7 +41,7 @@ pub struct Suite {
     pub data: &'static [DataFile],
     /// The profiles of the study, whose misses are known.
     pub profiles: &'static [&'static str],
-    /// Are means over all seeds judged, or each seed?
+    /// Whether means over all seeds are judged, or each seed.
     pub judges_means: bool,
     /// Pictures of all results, by the names of their files, from the runs of each profile and seed.
     pub sheets: fn(&[Runs]) -> Vec<(&'static str, Sheet)>,

@@ -127,7 +127,7 @@ pub enum Measurement {
     Uncounted(Uncounted),
     /// Long gaps between arrivals, and the flow without them.
     Pauses(Pauses),
-    /// Did the flow come to an end before enough agents arrived?
+    /// Whether the flow ended before enough agents arrived.
     Locked(Locked),
     /// All agents at one time.
     Snapshot(SnapshotAt),
