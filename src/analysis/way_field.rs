@@ -53,8 +53,8 @@ impl Grid {
 pub struct WayField {
     /// The cells.
     pub grid: Grid,
-    /// The length of the way from each cell, meters; `None` outside of the floor, and where no way leads or every way is
-    /// somewhere narrower than the floor's least width.
+    /// The length of the way from each cell, meters; `None` outside of the floor, and where no way leads or every way
+    /// is somewhere narrower than the floor's least width.
     pub lengths: Vec<Option<f64>>,
     /// What comes first on the way from each cell: equal numbers for the same corner.
     next: Vec<u32>,

@@ -31,9 +31,9 @@ impl Clock {
         (PAPER_COARSE_STEP / time_step).round().max(1.0) as u32
     }
 
-    /// A clock at frame 0 with the paper's Δt_coarse and the longest Δt_fine up to `longest` seconds that divides it into
-    /// equal frames: pushes and entries then happen at the times of the paper's clock. Steps longer than the paper's
-    /// Δt_coarse are coarse frames themselves.
+    /// A clock at frame 0 with the paper's Δt_coarse and the longest Δt_fine up to `longest` seconds that divides it
+    /// into equal frames: pushes and entries then happen at the times of the paper's clock. Steps longer than the
+    /// paper's Δt_coarse are coarse frames themselves.
     pub fn up_to(longest: f64) -> Self {
         if longest >= PAPER_COARSE_STEP {
             return Self::new(longest, 1);

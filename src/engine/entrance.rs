@@ -1,5 +1,5 @@
-//! Entrances: lines through which agents come in, at random or regular times and where there is room. Latecomers: agents
-//! that each have a time and a place of their own.
+//! Entrances: lines through which agents come in, at random or regular times and where there is room. Latecomers:
+//! agents that each have a time and a place of their own.
 
 use rand::Rng;
 use rand::distr::Open01;

@@ -104,7 +104,8 @@ pub fn is_finite(v: Vector) -> bool {
 
 /// Whether all coordinates are finite.
 pub fn are_finite(vectors: &[Vector]) -> bool {
-    // Zero times an infinity or a NaN is NaN, and NaN propagates through a sum. Several sums do not wait for each other.
+    // Zero times an infinity or a NaN is NaN, and NaN propagates through a sum. Several sums do not wait for each
+    // other.
     let (whole, rest) = vectors.as_chunks::<SUMS>();
     let mut zeros = [Vector::zeros(); SUMS];
     for some in whole {

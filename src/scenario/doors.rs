@@ -101,7 +101,8 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// The point at which it first enters or leaves the floor, meters, rounded to centimeters; `None` if it does neither.
+    /// The point at which it first enters or leaves the floor, meters, rounded to centimeters; `None` if it does
+    /// neither.
     fn end_of_floor(&self) -> Option<[f64; 2]> {
         let mut steps = 0..self.steps;
         let k = steps

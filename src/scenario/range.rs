@@ -11,8 +11,8 @@ use super::shapes::Corners;
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
 
-/// Rejects numbers out of range, empty names, lists that must not be empty, missing keys, and values of the wrong type that serde would accept (a
-/// list of values in place of an object) or would reject without naming their place.
+/// Rejects numbers out of range, empty names, lists that must not be empty, missing keys, and values of the wrong type
+/// that serde would accept (a list of values in place of an object) or would reject without naming their place.
 pub(super) fn check(document: &Value) -> Result<(), Problem> {
     check_value(root(), document)
 }

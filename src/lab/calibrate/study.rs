@@ -74,8 +74,8 @@ impl Calibration {
         Self::parse_within(&text, Root { path, built_in }, memory)
     }
 
-    /// Reads a calibration from JSON. `path` is its name in messages; files that it refers to are relative to the folder
-    /// of `path`.
+    /// Reads a calibration from JSON. `path` is its name in messages; files that it refers to are relative to the
+    /// folder of `path`.
     ///
     /// # Errors
     /// As [`open`](Self::open).

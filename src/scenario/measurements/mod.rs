@@ -284,7 +284,8 @@ impl Metrics {
         self.stuck.observe(simulation);
     }
 
-    /// The agents that have made no way for [`STUCK_AFTER`] seconds, grouped by the likely cause, the largest group first.
+    /// The agents that have made no way for [`STUCK_AFTER`] seconds, grouped by the likely cause, the largest group
+    /// first.
     pub fn stuck(&self, simulation: &Simulation) -> Vec<StuckGroup> {
         stuck::groups(&self.stuck.1, simulation)
     }
