@@ -24,7 +24,8 @@ use rand_chacha::ChaCha8Rng;
 /// The fewest points of a generation: two are its parents.
 pub const LEAST_POPULATION: usize = 4;
 
-/// The state of a search. [`ask`](Self::ask) and [`tell`](Self::tell) alternate. Equal seeds and values give equal points.
+/// The state of a search. [`ask`](Self::ask) and [`tell`](Self::tell) alternate. Equal seeds and values give equal
+/// points.
 #[derive(Debug, Clone)]
 pub struct CmaEs {
     constants: Constants,
@@ -211,8 +212,8 @@ impl CmaEs {
     }
 }
 
-/// A coordinate reflected at 0 and 1 until it lies between them. It comes no farther from any place between them, so the
-/// reflected points of a distribution whose center is inside are a narrower distribution.
+/// A coordinate reflected at 0 and 1 until it lies between them. It comes no farther from any place between them, so
+/// the reflected points of a distribution whose center is inside are a narrower distribution.
 pub fn reflected(coordinate: f64) -> f64 {
     let turned = coordinate.rem_euclid(2.0);
     if turned > 1.0 { 2.0 - turned } else { turned }

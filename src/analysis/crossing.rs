@@ -34,8 +34,9 @@ impl Line {
     }
 }
 
-/// How often a person has crossed a line forward, minus how often backward, and the extremes of that so far. A person who
-/// sways back and forth across the line passes it once: a crossing is a passage if the balance reaches a new extreme.
+/// How often a person has crossed a line forward, minus how often backward, and the extremes of that so far. A person
+/// who sways back and forth across the line passes it once: a crossing is a passage if the balance reaches a new
+/// extreme.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Balance {
     now: i64,
@@ -44,7 +45,7 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// Counts a crossing. Is it a passage?
+    /// Counts a crossing; returns whether it is a passage.
     pub fn passes(&mut self, is_forward: bool) -> bool {
         self.now += if is_forward { 1 } else { -1 };
         let is_new = self.now < self.lowest || self.now > self.highest;

@@ -1,8 +1,8 @@
 //! The density around each person and the variance of the velocities there, of people in runs and in trajectories.
 //!
-//! Both are means with the kernel of Eq. 13 at h = √5 m. Its second moment is that of the Gaussian
-//! exp(−r²/R²)/(π R²) with R = 1 m of Helbing, Johansson and Al-Abideen (2007), and unlike that one it ends: walls hide a
-//! part of it that is known exactly. Every person counts as one, whatever its mass.
+//! Both are means with the kernel of Eq. 13 at h = √5 m. Its second moment is that of the Gaussian exp(−r²/R²)/(π R²)
+//! with R = 1 m of Helbing, Johansson and Al-Abideen (2007), and unlike that one it ends: walls hide a part of it that
+//! is known exactly. Every person counts as one, whatever its mass.
 
 use serde::{Deserialize, Serialize};
 

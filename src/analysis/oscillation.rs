@@ -2,8 +2,8 @@
 //!
 //! A velocity (u, v) is the complex number u + i v. The Fourier transform of its values over time has counterclockwise
 //! circular motion at positive frequencies and clockwise motion at negative ones; motion to and fro along a line has
-//! equal parts of both (J. Gonella, A rotary-component method for analysing meteorological and oceanographic vector time
-//! series, Deep-Sea Research 19, 1972).
+//! equal parts of both (J. Gonella, A rotary-component method for analysing meteorological and oceanographic vector
+//! time series, Deep-Sea Research 19, 1972).
 
 use std::f64::consts::TAU;
 

@@ -35,8 +35,9 @@ pub struct Surroundings<'a> {
 }
 
 impl<'a> Surroundings<'a> {
-    /// The people around each of `positions`, as far as h. Without `masses`, all masses are 1. `hide` returns what walls
-    /// hide from a person at a position, given the walls within h, which it may replace by those within h of the eye.
+    /// The people around each of `positions`, as far as h. Without `masses`, all masses are 1. `hide` returns what
+    /// walls hide from a person at a position, given the walls within h, which it may replace by those within h of the
+    /// eye.
     pub fn new(
         walls: &'a Walls,
         positions: &[Vector],

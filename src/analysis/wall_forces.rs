@@ -1,7 +1,7 @@
 //! How hard people press on walls: the reactions to the pressure (Eq. 12) and contact (Eq. 23) of walls.
 //!
-//! Each force acts at the point of the wall that is nearest to the agent. Its component normal to the wall is added to a
-//! cell of at most 0.2 m of the wall; the force per meter is the mean over 1 m of the outline of the obstacle, around
+//! Each force acts at the point of the wall that is nearest to the agent. Its component normal to the wall is added to
+//! a cell of at most 0.2 m of the wall; the force per meter is the mean over 1 m of the outline of the obstacle, around
 //! corners, too.
 
 use std::collections::BTreeMap;
@@ -18,8 +18,8 @@ use crate::engine::simulation::Simulation;
 const CELL: f64 = 0.2;
 /// The length of outline over which forces are averaged, meters.
 pub const WINDOW: f64 = 1.0;
-/// The least design load of railings where crowds gather, N/m (EN 1991-1-1, Table 6.12, category C5: 3 to 5 kN/m). A value
-/// from a code, not a safety limit.
+/// The least design load of railings where crowds gather, N/m (EN 1991-1-1, Table 6.12, category C5: 3 to 5 kN/m). A
+/// value from a code, not a safety limit.
 pub const DESIGN_LOAD: f64 = 3000.0;
 
 /// A part of a wall.

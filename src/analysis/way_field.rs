@@ -42,7 +42,7 @@ impl Grid {
         self.columns * self.rows
     }
 
-    /// Are there no cells?
+    /// Whether there are no cells.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -53,8 +53,8 @@ impl Grid {
 pub struct WayField {
     /// The cells.
     pub grid: Grid,
-    /// The length of the way from each cell, meters; `None` outside of the floor, and where no way leads or every way is
-    /// somewhere narrower than the floor's least width.
+    /// The length of the way from each cell, meters; `None` outside of the floor, and where no way leads or every way
+    /// is somewhere narrower than the floor's least width.
     pub lengths: Vec<Option<f64>>,
     /// What comes first on the way from each cell: equal numbers for the same corner.
     next: Vec<u32>,
@@ -121,7 +121,7 @@ impl WayField {
         }
     }
 
-    /// Does another corner come first in the cell on the right of cell `k` or above it?
+    /// Whether another corner comes first in the cell on the right of cell `k` or above it.
     pub fn is_border(&self, k: usize) -> bool {
         let differs = |other: usize| {
             let next = self.next.get(other).copied().unwrap_or(NOTHING);

@@ -121,7 +121,7 @@ fn ending(run: &Run) -> String {
     text
 }
 
-/// Does it compare with thresholds of the literature?
+/// Whether it compares with thresholds of the literature.
 fn has_thresholds(measurement: &Measurement) -> bool {
     matches!(
         measurement,

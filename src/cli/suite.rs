@@ -29,7 +29,8 @@ pub struct ValidateOptions {
     /// Only these scenes, such as gap-2.4 or door [default: all]
     #[arg(value_name = "SCENE")]
     pub scene: Vec<String>,
-    /// Folder with files of trajectories: scenes that begin from such a file are skipped without it (docs/validation.md)
+    /// Folder with files of trajectories: scenes that begin from such a file are skipped without it
+    /// (docs/validation.md)
     #[arg(long, value_name = "DIR")]
     pub data: Option<PathBuf>,
     #[command(flatten)]

@@ -91,7 +91,7 @@ pub struct Agents {
     /// The way that the agent follows, held until the next coarse frame; `None` for agents that entered since. Empty
     /// in scenes without path maps.
     pub route: Vec<Option<Route>>,
-    /// Do some agents have no route yet?
+    /// Whether some agents have no route yet.
     pub lacks_routes: bool,
     /// The point that the agent walks to on its route, meters. As long as `route`.
     pub aim: Vec<Vector>,
@@ -119,7 +119,7 @@ impl Agents {
         self.id.len()
     }
 
-    /// Are there no agents?
+    /// Whether there are no agents.
     pub fn is_empty(&self) -> bool {
         self.id.is_empty()
     }
@@ -129,7 +129,7 @@ impl Agents {
         self.next_id
     }
 
-    /// Do the lengths of all arrays agree with the number of agents?
+    /// Whether all arrays have one entry per agent.
     pub fn is_whole(&self) -> bool {
         let count = self.len();
         let sometimes = [
@@ -243,7 +243,7 @@ impl Agents {
         }
     }
 
-    /// Do all agents walk at the scene's preferred speed, all the time?
+    /// Whether all agents always walk at the scene's preferred speed.
     pub fn walk_alike(&self) -> bool {
         self.preferred_speed.is_empty() && self.walks_from.is_empty()
     }

@@ -31,9 +31,9 @@ impl Clock {
         (PAPER_COARSE_STEP / time_step).round().max(1.0) as u32
     }
 
-    /// A clock at frame 0 with the paper's Δt_coarse and the longest Δt_fine up to `longest` seconds that divides it into
-    /// equal frames: pushes and entries then happen at the times of the paper's clock. Steps longer than the paper's
-    /// Δt_coarse are coarse frames themselves.
+    /// A clock at frame 0 with the paper's Δt_coarse and the longest Δt_fine up to `longest` seconds that divides it
+    /// into equal frames: pushes and entries then happen at the times of the paper's clock. Steps longer than the
+    /// paper's Δt_coarse are coarse frames themselves.
     pub fn up_to(longest: f64) -> Self {
         if longest >= PAPER_COARSE_STEP {
             return Self::new(longest, 1);
@@ -85,7 +85,7 @@ impl Clock {
         f64::from(self.coarse_every) * self.time_step
     }
 
-    /// Is the current frame a coarse one?
+    /// Whether the current frame is a coarse one.
     pub fn is_coarse(&self) -> bool {
         self.frame.is_multiple_of(u64::from(self.coarse_every))
     }

@@ -145,7 +145,7 @@ fn sums<R: Real, S: Simd>(simd: S, bodies: &Bodies<R>, block: &ClusterBlock, out
 struct Given<'a> {
     /// Seconds since the moving average was last stored.
     time_step: f64,
-    /// Is the moving average still unset?
+    /// Whether the moving average is still unset.
     newcomer: &'a [bool],
     /// The moving average, P/m².
     before: &'a [f64],

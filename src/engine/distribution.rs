@@ -12,11 +12,12 @@ use crate::engine::random::{self, Purpose};
 /// The least share of a distribution that its bounds may keep: below this, a draw would be rounding error.
 pub const LEAST_SHARE: f64 = 1e-6;
 
-/// The largest shape of a gamma distribution: its values differ by 1 % there, and the time of a draw grows with its root.
+/// The largest shape of a gamma distribution: its values differ by 1 % there, and the time of a draw grows with its
+/// root.
 pub const LARGEST_SHAPE: f64 = 1e4;
 
-/// Weidmann (1993), Transporttechnik der Fussgänger: walking speed by age, in years and m/s. The values are not from the
-/// original but a digitization of its curve as the RiMEA guideline prints it.
+/// Weidmann (1993), Transporttechnik der Fussgänger: walking speed by age, in years and m/s. The values are not from
+/// the original but a digitization of its curve as the RiMEA guideline prints it.
 const WEIDMANN: [[f64; 2]; 10] = [
     [3.0, 0.56],
     [10.0, 1.17],
@@ -155,7 +156,8 @@ impl Family {
                 if positive("shape", shape)? > LARGEST_SHAPE {
                     return Err(DistributionError::Shape(shape));
                 }
-                // Of scale 1: the distribution function knows no product of bound and rate that rounds to 0 or infinity.
+                // Of scale 1: the distribution function knows no product of bound and rate that rounds to 0 or
+                // infinity.
                 let gamma = Gamma::new(shape, 1.0);
                 Shape::Gamma(
                     gamma.map_err(|_| DistributionError::NotPositive("shape", shape))?,

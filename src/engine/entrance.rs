@@ -1,5 +1,5 @@
-//! Entrances: lines through which agents come in, at random or regular times and where there is room. Latecomers: agents
-//! that each have a time and a place of their own.
+//! Entrances: lines through which agents come in, at random or regular times and where there is room. Latecomers:
+//! agents that each have a time and a place of their own.
 
 use rand::Rng;
 use rand::distr::Open01;
@@ -37,7 +37,7 @@ pub struct Latecomer {
 }
 
 impl Latecomer {
-    /// Does a body of `radius` meters at its place overlap none of the discs `others` (center and radius)?
+    /// Whether a body of `radius` meters at its place overlaps none of the discs `others` (center and radius).
     pub fn has_room(&self, radius: f64, mut others: impl Iterator<Item = (Vector, f64)>) -> bool {
         let place = self.agent.position;
         others.all(|(center, other)| (center - place).norm() >= radius + other + ROUNDING)

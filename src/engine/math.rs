@@ -97,14 +97,15 @@ pub fn greatest<T>(items: &[T], number: impl Fn(&T) -> f64) -> f64 {
     most.into_iter().fold(last, greater)
 }
 
-/// Are both coordinates finite?
+/// Whether both coordinates are finite.
 pub fn is_finite(v: Vector) -> bool {
     v.x.is_finite() && v.y.is_finite()
 }
 
-/// Are all coordinates finite?
+/// Whether all coordinates are finite.
 pub fn are_finite(vectors: &[Vector]) -> bool {
-    // Zero times an infinity or a NaN is NaN, and NaN propagates through a sum. Several sums do not wait for each other.
+    // Zero times an infinity or a NaN is NaN, and NaN propagates through a sum. Several sums do not wait for each
+    // other.
     let (whole, rest) = vectors.as_chunks::<SUMS>();
     let mut zeros = [Vector::zeros(); SUMS];
     for some in whole {
@@ -116,7 +117,7 @@ pub fn are_finite(vectors: &[Vector]) -> bool {
     zeros == [Vector::zeros(); SUMS] && last == Vector::zeros()
 }
 
-/// Are all numbers finite?
+/// Whether all numbers are finite.
 pub fn numbers_are_finite(numbers: &[f64]) -> bool {
     let (whole, rest) = numbers.as_chunks::<SUMS>();
     let mut zeros = [0.0; SUMS];

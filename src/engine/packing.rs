@@ -67,8 +67,8 @@ impl<'a> Space<'a> {
         }
     }
 
-    /// An upper bound on the bodies of this radius that fit: discs cover at most 0.907 of an area, and reach out of this
-    /// space by their radius.
+    /// An upper bound on the bodies of this radius that fit: discs cover at most 0.907 of an area, and reach out of
+    /// this space by their radius.
     pub fn capacity(&self, radius: f64) -> usize {
         let outlines = self.borders.iter().map(Wall::length).sum::<f64>();
         let disc = std::f64::consts::PI * radius * radius;

@@ -49,7 +49,7 @@ impl Period {
         }
     }
 
-    /// Does `p` lie in the period?
+    /// Whether `p` lies in the period.
     pub fn contains(&self, p: Vector) -> bool {
         let [from, to] = self.ends();
         (from..to).contains(&self.along(p))

@@ -28,7 +28,7 @@ impl Grid {
         u64::from(self.columns) * u64::from(self.rows)
     }
 
-    /// Does the grid have no cells?
+    /// Whether the grid has no cells.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

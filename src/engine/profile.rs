@@ -157,7 +157,7 @@ impl Term {
         }
     }
 
-    /// Does the term come from walls?
+    /// Whether the term comes from walls.
     pub fn is_of_walls(self) -> bool {
         matches!(
             self,
@@ -223,7 +223,7 @@ impl Profile {
         }
     }
 
-    /// Does this profile have `term`, given agents and walls?
+    /// Whether this profile has `term`, given agents and walls.
     pub fn has(&self, term: Term) -> bool {
         let social = matches!(self.navigation, Navigation::Social(..));
         let rvo = matches!(self.navigation, Navigation::Rvo(_));

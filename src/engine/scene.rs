@@ -61,7 +61,7 @@ pub struct Group {
     pub blend: Blend,
     /// Agents leave within this distance of their goal, meters; `None`: they never leave.
     pub removal_radius: Option<f64>,
-    /// Do arrivals count as evacuated?
+    /// Whether arrivals count as evacuated.
     pub counted: bool,
     /// The number of the journey of its agents; `None`: each walks to its own goal.
     pub journey: Option<u16>,

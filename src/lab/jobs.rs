@@ -24,7 +24,7 @@ pub fn results(
     jobs.iter().map(result).collect()
 }
 
-/// Did all jobs finish?
+/// Whether all jobs finished.
 ///
 /// # Errors
 /// Some failed.

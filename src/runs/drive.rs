@@ -126,7 +126,7 @@ impl Run {
         }
     }
 
-    /// Which of the scenario's [`stop`](crate::scenario::Scenario::stop) conditions holds?
+    /// Which of the scenario's [`stop`](crate::scenario::Scenario::stop) conditions holds, if any.
     fn stops(&self) -> Option<End> {
         let (frame, stop) = (self.simulation.frame(), &self.scenario.stop);
         let mut arrivals = self.simulation.outcome().arrivals.iter().rev();

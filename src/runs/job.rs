@@ -45,7 +45,7 @@ pub struct Job<'a> {
     pub expected_secs: f64,
     /// Estimated memory, bytes.
     pub bytes: u64,
-    /// Does it run on all threads while no other job runs, because its time is measured?
+    /// Whether it runs on all threads while no other job runs, because its time is measured.
     pub alone: bool,
     work: Box<Work<'a>>,
 }

@@ -100,7 +100,7 @@ impl Store {
         self.folder.join(file)
     }
 
-    /// Have results been stored here before?
+    /// Whether results have been stored here before.
     pub fn is_begun(&self) -> bool {
         self.cases().is_dir()
     }

@@ -67,8 +67,8 @@ impl<'a> Crowd<'a> {
         }
     }
 
-    /// Adds the people of `from`, single agents, grids, crowds, sources, then entrances. Their number has been checked. Returns
-    /// notes for readers of the results.
+    /// Adds the people of `from`, single agents, grids, crowds, sources, then entrances. Their number has been checked.
+    /// Returns notes for readers of the results.
     pub(super) fn enter(mut self) -> Result<Vec<String>, Problem> {
         if let Some(from) = &self.file.from {
             self.add_data(from).under("from")?;

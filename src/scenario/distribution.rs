@@ -222,7 +222,7 @@ impl<'de> Visitor<'de> for DrawVisitor {
 }
 
 impl Draw {
-    /// Does it give walking speeds, whatever they are for?
+    /// Whether it gives walking speeds.
     fn is_of_speeds(&self) -> bool {
         match self {
             Self::Number(_) => false,

@@ -73,7 +73,7 @@ impl<'a> Line<'a> {
         self.start + self.step * step
     }
 
-    /// Does the floor reach `distance` meters to the left and to the right of a point?
+    /// Whether the floor reaches `distance` meters to the left and to the right of a point.
     fn sides(&self, step: f64, distance: f64) -> [bool; 2] {
         [1.0, -1.0].map(|sign| {
             let beside = self.at(step) + self.normal * (sign * distance);
@@ -85,7 +85,7 @@ impl<'a> Line<'a> {
         self.sides(step, NEAR) != [false; 2]
     }
 
-    /// Is a part of it that people can pass as long as the shortest line?
+    /// Whether a part of it that people can pass is as long as the shortest line.
     fn is_passable(&self) -> bool {
         // At both ends, rounding may decide.
         let least = SHORTEST_LINE - 3.0 * self.step.norm();
@@ -101,7 +101,8 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// The point at which it first enters or leaves the floor, meters, rounded to centimeters; `None` if it does neither.
+    /// The point at which it first enters or leaves the floor, meters, rounded to centimeters; `None` if it does
+    /// neither.
     fn end_of_floor(&self) -> Option<[f64; 2]> {
         let mut steps = 0..self.steps;
         let k = steps

@@ -64,7 +64,8 @@ impl Draft {
         &self.contents.need
     }
 
-    /// The trajectories from which it begins, and the time in them at which it does, seconds; `None` if it names no file.
+    /// The trajectories from which it begins, and the time in them at which it does, seconds; `None` if it names no
+    /// file.
     ///
     /// # Errors
     /// The file has changed since [`read`](Self::read), and is invalid now.

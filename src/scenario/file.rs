@@ -69,8 +69,8 @@ pub(super) struct File {
     pub time_step_secs: Option<TimeStep>,
     /// The upper limit on the step that `time_step_secs=auto` chooses, seconds. No effect on other steps. `auto` is the
     /// longest step at which Table 1 stays within the noise of its seeds: 0.025 s, or 0.02 s where agents avoid each
-    /// other in dense crowds. Where agents stay it is 0.05 s. With 0.1 the step is the longest stable one, and flows may
-    /// be off by half.
+    /// other in dense crowds. Where agents stay it is 0.05 s. With 0.1 the step is the longest stable one, and flows
+    /// may be off by half.
     #[schemars(extend("default" = "auto"))]
     pub longest_step_secs: Option<TimeStep>,
     /// Δt_coarse, frames: how often RVO chooses velocities, sources let agents enter and events begin. It is part of

@@ -17,8 +17,8 @@ const FLOW_UNTIL: [&str; 2] = ["flow_until", "until_secs"];
 /// Most places in the note.
 const MOST_NAMED: usize = 4;
 
-/// A note on what begins after `last`, in a run that ends at `end`, seconds. Both are the same unless the run is shorter
-/// than its scenario.
+/// A note on what begins after `last`, in a run that ends at `end`, seconds. Both are the same unless the run is
+/// shorter than its scenario.
 pub(super) fn note(document: &Value, end: f64, last: f64) -> Option<String> {
     let late = times(document).into_iter().filter(|(_, at)| *at > last);
     let late: Vec<(String, f64)> = late.collect();

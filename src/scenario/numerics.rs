@@ -69,8 +69,8 @@ fn agents_stay(scene: &Scene) -> bool {
 }
 
 /// The longest step, seconds, at which the evacuations of Table 1 differ from those at the paper's step by no more than
-/// two standard deviations of their seeds (docs/accuracy.md). Where agents avoid each other in a jam, the jam depends on
-/// the step. Where agents stay, the limit is the accuracy of waves.
+/// two standard deviations of their seeds (docs/accuracy.md). Where agents avoid each other in a jam, the jam depends
+/// on the step. Where agents stay, the limit is the accuracy of waves.
 fn longest_faithful_step(scene: &Scene) -> f64 {
     if agents_stay(scene) {
         return 0.05;
@@ -83,8 +83,8 @@ fn longest_faithful_step(scene: &Scene) -> f64 {
     }
 }
 
-/// The step, seconds, that `"time_step_secs": "auto"` takes in `scene` by default; `None` if there is no formula for its
-/// integrator.
+/// The step, seconds, that `"time_step_secs": "auto"` takes in `scene` by default; `None` if there is no formula for
+/// its integrator.
 pub fn automatic_step(scene: &Scene) -> Option<f64> {
     let step = stability::time_step(scene)?.min(longest_faithful_step(scene));
     Some(Clock::up_to(step).time_step())

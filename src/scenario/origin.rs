@@ -27,7 +27,8 @@ enum Item {
 pub(super) struct Origins<'a> {
     keys: &'a File,
     scene: &'a Scene,
-    /// The first group of a grid. From there on, each grid, crowd, source and entrance has its own group, in this order.
+    /// The first group of a grid. From there on, each grid, crowd, source and entrance has its own group, in this
+    /// order.
     first_grid: usize,
     /// The number of the first one of `agents`, which come after the people of `from`.
     first_single: usize,

@@ -6,8 +6,8 @@ use crate::engine::packing::Body;
 
 /// Bodies overlap much if they do by more than this part of the smaller radius.
 const MUCH: f64 = 0.5;
-/// The fewest agents that overlap much in one square meter for which there is a note: more than can stand there. In dense
-/// crowds at random places a few agents always overlap.
+/// The fewest agents that overlap much in one square meter for which there is a note: more than can stand there. In
+/// dense crowds at random places a few agents always overlap.
 const CRUSH: usize = 10;
 
 /// A note if many agents overlap much at the start, with the square meter that has the most of them.
@@ -57,7 +57,7 @@ fn overlapping(bodies: &[Body]) -> Vec<Vector> {
     found.map(|((_, body), _)| body.place).collect()
 }
 
-/// Do two bodies overlap much?
+/// Whether two bodies overlap by more than half a radius.
 fn overlap(one: &Body, other: &Body) -> bool {
     let allowed = MUCH * one.radius.min(other.radius);
     (one.place - other.place).norm() < one.radius + other.radius - allowed

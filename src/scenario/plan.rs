@@ -280,7 +280,7 @@ impl Opening {
         Self { widens, ..*self }
     }
 
-    /// Is it behind this line?
+    /// Whether it is behind this line.
     fn is_at(&self, [a, b]: [Vector; 2]) -> bool {
         self.ends == [a, b] || self.ends == [b, a]
     }

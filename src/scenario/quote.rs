@@ -43,7 +43,7 @@ fn escaped(characters: impl Iterator<Item = char>) -> String {
     text
 }
 
-/// Is this a control character, or one that reorders or hides text (Unicode Technical Report 36)?
+/// Whether this is a control character, or one that reorders or hides text (Unicode Technical Report 36).
 fn is_obeyed(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')

@@ -11,8 +11,8 @@ use super::shapes::Corners;
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
 
-/// Rejects numbers out of range, empty names, lists that must not be empty, missing keys, and values of the wrong type that serde would accept (a
-/// list of values in place of an object) or would reject without naming their place.
+/// Rejects numbers out of range, empty names, lists that must not be empty, missing keys, and values of the wrong type
+/// that serde would accept (a list of values in place of an object) or would reject without naming their place.
 pub(super) fn check(document: &Value) -> Result<(), Problem> {
     check_value(root(), document)
 }
@@ -99,7 +99,7 @@ fn chosen(schema: &'static Value, value: &Value) -> Option<&'static Value> {
     chosen(way?, value)
 }
 
-/// Does the value have the type of the schema, its required keys, and a first item that fits?
+/// Whether the value has the type of the schema, its required keys, and a first item that fits.
 fn fits(schema: &'static Value, value: &Value) -> bool {
     let Some(schema) = chosen(schema, value) else {
         return false;
@@ -129,7 +129,7 @@ pub(super) fn required(schema: &Value) -> impl Iterator<Item = &str> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Range {
     lowest: Option<f64>,
-    /// Is `lowest` itself excluded?
+    /// Whether `lowest` itself is excluded.
     open: bool,
     highest: Option<f64>,
 }

@@ -89,7 +89,7 @@ pub(super) fn ways(schema: &'static Value) -> Option<impl Iterator<Item = &'stat
     only_ways.then(|| ways.iter().filter(|way| way["type"] != "null"))
 }
 
-/// Does the schema allow this JSON type?
+/// Whether the schema allows this JSON type.
 pub(super) fn allows(schema: &Value, name: &str) -> bool {
     match &schema["type"] {
         Value::Array(names) => names.iter().any(|one| one == name),

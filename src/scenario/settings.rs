@@ -37,23 +37,23 @@ pub fn settings() -> Vec<SettingDoc> {
     keys.map(line).collect()
 }
 
-/// Is `key` one of [`settings`]?
+/// Whether `key` is one of [`settings`].
 pub(super) fn is_setting(key: &str) -> bool {
     names::<File>().contains(&key) || is_parameter(key)
 }
 
-/// Is `key` a parameter of profiles?
+/// Whether `key` is a parameter of profiles.
 pub(super) fn is_parameter(key: &str) -> bool {
     names::<Parameters>().contains(&key)
 }
 
-/// Is the value of `key` any text, never parsed as JSON?
+/// Whether the value of `key` is any text, never parsed as JSON.
 pub(super) fn is_text(key: &str) -> bool {
     let schema = property(key);
     allows(schema, "string") && schema.get("enum").is_none()
 }
 
-/// Is the value of `key` an object that may be empty?
+/// Whether the value of `key` is an object that may be empty.
 pub(super) fn may_be_empty(key: &str) -> bool {
     let schema = resolved(property(key));
     let mut others = ways(schema).into_iter().flatten();

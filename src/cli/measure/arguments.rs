@@ -62,7 +62,8 @@ pub struct MeasureOptions {
     /// Cell size of the mean fields, meters
     #[arg(long, value_name = "METERS", default_value_t = 0.25, value_parser = length)]
     pub cell: f64,
-    /// Rectangle in which densities, speed and flow are measured; may be repeated [default: a fundamental diagram everywhere]
+    /// Rectangle in which densities, speed and flow are measured; may be repeated [default: a fundamental diagram
+    /// everywhere]
     #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true, value_parser = region)]
     pub region: Vec<Region>,
     /// Measure the flow across this line; forward is from its left to its right; may be repeated

@@ -75,7 +75,7 @@ pub struct Why {
 pub struct Alternative {
     /// The name of the place.
     pub place: String,
-    /// Is it anything but a closed exit?
+    /// Whether it is open: only exits can be closed.
     pub open: bool,
     /// The length of the way there, meters; `None` if there is none.
     pub length: Option<f64>,

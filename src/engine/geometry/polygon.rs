@@ -8,9 +8,9 @@ use super::ring_index::{AreaIndex, RingIndex};
 use super::to_parry;
 use crate::engine::math::Vector;
 
-/// Edges of different rings may cross by this many meters, or by this fraction of the whole extent, whichever is larger.
-/// In floor plans, corners are computed on a grid and moved by up to a micrometer to a given corner, across the edges
-/// that they touch.
+/// Edges of different rings may cross by this many meters, or by this fraction of the whole extent, whichever is
+/// larger. In floor plans, corners are computed on a grid and moved by up to a micrometer to a given corner, across the
+/// edges that they touch.
 const TOUCHING: f64 = 1.5e-6;
 const TOUCHING_PART: f64 = 1e-8;
 

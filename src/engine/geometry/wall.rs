@@ -84,8 +84,8 @@ impl Wall {
         self.signed_distance(p) >= 0.0
     }
 
-    /// Whether the line of this wall is certainly more than `radius` meters from `p`: most walls of a list are, and this
-    /// is much cheaper than the nearest point.
+    /// Whether the line of this wall is certainly more than `radius` meters from `p`: most walls of a list are, and
+    /// this is much cheaper than the nearest point.
     pub fn is_beyond(&self, p: Vector, radius: f64) -> bool {
         self.signed_distance(p).abs() > radius + LINE_ROUNDING
     }

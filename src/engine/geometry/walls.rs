@@ -128,8 +128,8 @@ impl Walls {
     /// The point nearest to `p`, just in front of a wall, that lies in no obstacle. Candidates are the walls' points
     /// nearest to `p` and the points where two walls meet: corners of rooms and of overlapping obstacles.
     ///
-    /// Beside a corner, the point in front of one wall can be on the line of the other, where rounding could let an agent
-    /// through. Such points are taken only where there are no others, as in very narrow gaps.
+    /// Beside a corner, the point in front of one wall can be on the line of the other, where rounding could let an
+    /// agent through. Such points are taken only where there are no others, as in very narrow gaps.
     pub fn free_point_near(&self, p: Vector) -> Option<Vector> {
         let clear = self.free_point(p, 0.5 * CLEARANCE);
         clear.or_else(|| self.free_point(p, 0.0))
@@ -188,7 +188,8 @@ impl Walls {
         corners
     }
 
-    /// The nearest to `p` of the `exits` outside all obstacles and `gap` meters from all walls, with its distance, meters.
+    /// The nearest to `p` of the `exits` outside all obstacles and `gap` meters from all walls, with its distance,
+    /// meters.
     fn nearest_free(&self, p: Vector, gap: f64, exits: Vec<Vector>) -> Option<(f64, Vector)> {
         let distance = |exit: Vector| ((exit - p).norm(), exit);
         let mut exits: Vec<(f64, Vector)> = exits.into_iter().map(distance).collect();

@@ -95,7 +95,7 @@ impl Journeys {
         factors.reduce(f64::min).unwrap_or(1.0)
     }
 
-    /// Does some agent choose the quickest place?
+    /// Whether some agents choose the quickest place.
     pub fn has_quickest(&self) -> bool {
         let mut stages = self.journeys.iter().flat_map(|journey| &journey.stages);
         stages.any(|stage| stage.choice == Choice::Quickest)

@@ -126,7 +126,7 @@ impl Place {
         }
     }
 
-    /// Does an agent that has come here leave?
+    /// Whether an agent that has come here leaves.
     pub fn is_exit(&self) -> bool {
         matches!(self.kind, Kind::Exit(_))
     }

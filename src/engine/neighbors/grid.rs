@@ -229,7 +229,7 @@ impl Grid {
         }
     }
 
-    /// Is a box within `radius` meters of the cells?
+    /// Whether a box is within `radius` meters of the cells.
     fn is_near(&self, [low, high]: [Vector; 2], radius: f64) -> bool {
         let extent = Vector::new(
             self.columns as f64 * self.width,

@@ -46,7 +46,8 @@ pub struct Ranges {
     pub support: f64,
     /// Radius of the avoidance methods, meters.
     pub avoidance: Option<f64>,
-    /// Radius of the sums over agents that do not read the lists of near agents, meters: social forces and walking laws.
+    /// Radius of the sums over agents that do not read the lists of near agents, meters: social forces and walking
+    /// laws.
     pub wide: Option<f64>,
     /// The longest step of any agent in a frame, s_max Δt, meters.
     pub longest_step: f64,

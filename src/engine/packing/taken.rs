@@ -136,7 +136,7 @@ impl Taken {
         }
     }
 
-    /// Is there room for a body of this radius?
+    /// Whether there is room for a body of this radius.
     pub fn has_room(&self, p: Vector, radius: f64) -> bool {
         let reach = self.spacing.max(radius + self.widest + ROUNDING);
         let mut around = self.around(p, reach);
@@ -146,7 +146,7 @@ impl Taken {
         })
     }
 
-    /// Does one body leave no room for a body of this radius within `half` meters of `p`?
+    /// Whether a single body leaves no room for a body of this radius within `half` meters of `p`.
     pub fn covers(&self, p: Vector, half: f64, radius: f64) -> bool {
         let reach = self.spacing.max(radius + self.widest + ROUNDING);
         let mut around = self.around(p, reach);

@@ -123,7 +123,7 @@ impl Blend {
         &self.steps
     }
 
-    /// Does the behavior depend on the density?
+    /// Whether the behavior depends on the density.
     pub fn depends_on_density(&self) -> bool {
         self.steps.len() > 1
     }
@@ -147,7 +147,7 @@ impl Blend {
         laws.find(WalkingLaw::looks_ahead)
     }
 
-    /// Does a walking law lower the preferred speed of RVO?
+    /// Whether a walking law lowers the preferred speed of RVO.
     pub fn rvo_has_law(&self) -> bool {
         let mut with_rvo = (self.steps.iter()).filter(|step| rvo_of(&step.profile).is_some());
         with_rvo.any(|step| step.profile.walking.is_some_and(|law| law.looks_ahead()))
@@ -194,7 +194,7 @@ impl Blend {
         lower.into_iter().chain([higher])
     }
 
-    /// Does RVO act on agent `i` of a frozen frame?
+    /// Whether RVO acts on agent `i` of a frozen frame.
     pub fn rvo_acts(&self, frame: &Frame, i: usize) -> bool {
         self.acting(frame, i)
             .any(|(profile, _)| rvo_of(profile).is_some())

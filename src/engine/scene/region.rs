@@ -12,7 +12,7 @@ pub struct Region {
 }
 
 impl Region {
-    /// Does `p` lie in the rectangle?
+    /// Whether `p` lies in the rectangle.
     pub fn contains(&self, p: Vector) -> bool {
         (self.min.x..=self.max.x).contains(&p.x) && (self.min.y..=self.max.y).contains(&p.y)
     }

@@ -29,7 +29,7 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// Do the seeds distinguish the quantity from the reference?
+    /// Whether the seeds distinguish the quantity from the reference.
     pub fn is_significant(&self) -> bool {
         self.error > self.interval
     }

@@ -19,7 +19,7 @@ pub struct Report {
     pub scenes: Vec<Found>,
     /// The accuracy of the integrals over walls, if it was measured.
     pub walls: Option<WallReport>,
-    /// Was the plan quick, with few values, seeds and turns?
+    /// Whether the plan was quick, with few values, seeds and turns.
     pub quick: bool,
 }
 

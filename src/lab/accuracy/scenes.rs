@@ -34,7 +34,7 @@ pub struct Scene {
     pub name: &'static str,
     /// How its errors are measured.
     pub kind: Kind,
-    /// Do quick plans skip it unless it is named?
+    /// Whether quick plans skip it unless it is named.
     pub is_long: bool,
     /// The push with which the scene begins, at the end of its scenario; `None` if it begins with the scenario itself.
     push: Option<Push>,

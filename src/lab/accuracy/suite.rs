@@ -27,7 +27,7 @@ use crate::scenario::Setting;
 pub struct Plan {
     /// The scenes.
     pub scenes: Vec<Scene>,
-    /// Are the integrals over walls measured, too?
+    /// Whether the integrals over walls are measured, too.
     pub walls: bool,
     /// The knobs whose values are tried; empty for all.
     pub knobs: Vec<String>,

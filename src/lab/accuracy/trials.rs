@@ -29,7 +29,7 @@ pub struct Trial {
     /// The settings.
     #[serde(serialize_with = "texts")]
     pub settings: Vec<Setting>,
-    /// Are these the defaults?
+    /// Whether these are the defaults.
     #[serde(rename = "default")]
     pub is_default: bool,
     /// The knob's best settings, with all others at their defaults; `None` for a knob without a best value.
@@ -41,7 +41,7 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Are both on one curve?
+    /// Whether both are on one curve.
     pub fn shares_curve(&self, other: &Self) -> bool {
         (&self.knob, &self.curve) == (&other.knob, &other.curve)
     }

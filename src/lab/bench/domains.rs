@@ -217,8 +217,8 @@ impl Positions {
         }
     }
 
-    /// The work of each agent: the share of RVO is that of the agents on which it acts; half of the rest is equal, and half
-    /// is that of the pairs.
+    /// The work of each agent: the share of RVO is that of the agents on which it acts; half of the rest is equal, and
+    /// half is that of the pairs.
     fn weights(&self) -> Vec<f64> {
         let agents = self.positions.len() as f64;
         let pairs: u64 = self.pairs.iter().map(|&count| u64::from(count)).sum();
@@ -285,8 +285,8 @@ fn ratio(counts: &[u64]) -> f64 {
     relative(counts).fold(0.0, f64::max)
 }
 
-/// The work of the part with the most over the mean. The time of RVO is divided by the agents on which it acts, the rest
-/// by agents or pairs, whichever gives the part more: a bound for every mix of the two.
+/// The work of the part with the most over the mean. The time of RVO is divided by the agents on which it acts, the
+/// rest by agents or pairs, whichever gives the part more: a bound for every mix of the two.
 fn work([agents, pairs, avoiding]: [&[u64]; 3], rvo: f64) -> f64 {
     let parts = relative(agents)
         .zip(relative(pairs))

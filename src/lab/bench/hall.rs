@@ -19,8 +19,8 @@ const START: [f64; 2] = [5.4, 6.2];
 const DOOR: f64 = 6.0;
 const LOBBY: f64 = 24.0;
 
-/// A hall of `columns` × `rows` bays of 156 agents, with a pillar on the left of each, after `frames` frames. All agents
-/// walk to one goal, in a lobby behind a door, under a walking law.
+/// A hall of `columns` × `rows` bays of 156 agents, with a pillar on the left of each, after `frames` frames. All
+/// agents walk to one goal, in a lobby behind a door, under a walking law.
 ///
 /// # Errors
 /// The simulation fails.

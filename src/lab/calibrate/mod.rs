@@ -5,8 +5,8 @@
 //! ([`cma_es`](crate::analysis::cma_es)), slopes around the best point
 //! ([`identifiability`](crate::analysis::identifiability)), and the errors of the fitted values and of those that the
 //! search has not seen. The points of each stage are the cells of a sweep; finished cells are kept in the store, and
-//! everything else follows from them. So a calibration that is interrupted goes on where it was, any number of processes
-//! can share one folder, and the results have the same bytes however often it was interrupted.
+//! everything else follows from them. So a calibration that is interrupted goes on where it was, any number of
+//! processes can share one folder, and the results have the same bytes however often it was interrupted.
 
 mod evaluate;
 mod file;

@@ -109,7 +109,7 @@ impl Errors {
         }
     }
 
-    /// Is the value within the tolerance with all seeds?
+    /// Whether the value is within the tolerance with all seeds.
     pub(super) fn is_within(&self, tolerance: f64) -> bool {
         let error = self.error.is_some_and(|error| error.abs() <= tolerance);
         error && self.failures.is_empty()
@@ -164,8 +164,8 @@ impl Report<'_> {
         of.targets.iter().enumerate().map(result).collect()
     }
 
-    /// The root mean square of a set's residuals with the starting and with the best point, tolerances; `None` for a set
-    /// without values.
+    /// The root mean square of a set's residuals with the starting and with the best point, tolerances; `None` for a
+    /// set without values.
     pub fn misfits(&self, set: Set) -> Option<[f64; 2]> {
         let of = self.calibration;
         let [start, best] = self.found.compared.each_ref().map(|at| {

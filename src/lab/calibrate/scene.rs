@@ -47,7 +47,7 @@ pub struct Scene {
     pub(super) case: Case,
     /// Its document without the parameters.
     pub(super) document: serde_json::Value,
-    /// Does it stop when it is empty?
+    /// Whether it stops when it is empty.
     pub(super) ends_empty: bool,
 }
 

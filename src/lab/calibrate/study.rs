@@ -74,8 +74,8 @@ impl Calibration {
         Self::parse_within(&text, Root { path, built_in }, memory)
     }
 
-    /// Reads a calibration from JSON. `path` is its name in messages; files that it refers to are relative to the folder
-    /// of `path`.
+    /// Reads a calibration from JSON. `path` is its name in messages; files that it refers to are relative to the
+    /// folder of `path`.
     ///
     /// # Errors
     /// As [`open`](Self::open).
@@ -152,7 +152,7 @@ impl Calibration {
         Ok(calibration)
     }
 
-    /// Is every parameter a key of a scene of the fit, and valid at its start and at both bounds?
+    /// Checks that every parameter is a key of a scene of the fit, and valid at its start and at both bounds.
     fn check_parameters(&self, memory: &Memory) -> Result<(), Problem> {
         let starts: Vec<f64> = self.parameters.iter().map(|of| of.start).collect();
         let refused = |k: usize, scene: &Scene, error: String| {
@@ -263,7 +263,7 @@ fn parameters(all: Vec<super::file::ParameterKeys>) -> Result<Vec<Parameter>, Pr
     Ok(parameters)
 }
 
-/// Are the numbers of the residual, the screening and the search within their ranges?
+/// Checks that the numbers of the residual, the screening and the search are within their ranges.
 fn check_numbers(keys: &File) -> Result<(), Problem> {
     let within =
         |place: &str, value: f64, [least, most]: [f64; 2]| match (least..=most).contains(&value) {
@@ -314,7 +314,7 @@ fn check_numbers(keys: &File) -> Result<(), Problem> {
     within("search.spread", spread, [1e-3, 1.0])
 }
 
-/// Is the name short and printable?
+/// Whether the name is short and printable.
 pub(super) fn check_text(name: &str, place: &str) -> Result<(), Problem> {
     match !name.is_empty() && shown(name) == name {
         true => Ok(()),

@@ -3,8 +3,8 @@
 //!
 //! A person's SPH density is Eq. 9, with and without the person's own mass. Where walls hide part of the kernel, the
 //! crowd behind them is assumed to be as dense as at the person's position, or as in the engine ([`Behind`]); fields
-//! always use the former. For Voronoi cells see [`Tessellation`], for densities of regions [`RegionState`]. For velocities see [`speed::velocities`], for crossings [`Crossings`]. Time is frame number divided by
-//! frame rate.
+//! always use the former. For Voronoi cells see [`Tessellation`], for densities of regions [`RegionState`]. For
+//! velocities see [`speed::velocities`], for crossings [`Crossings`]. Time is frame number divided by frame rate.
 
 mod density;
 mod diagram;

@@ -1,5 +1,5 @@
-//! What safety engineers read, in trajectories: exposure, alarms, level of service, crowd pressure, and when people have
-//! left. Forces need a model and are measured in runs only.
+//! What safety engineers read, in trajectories: exposure, alarms, level of service, crowd pressure, and when people
+//! have left. Forces need a model and are measured in runs only.
 
 use rayon::prelude::*;
 use serde::Serialize;

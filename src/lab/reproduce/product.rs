@@ -10,7 +10,7 @@ pub struct Product {
     pub name: &'static str,
     /// A description, in one line.
     pub about: &'static str,
-    /// Is it part of `all`?
+    /// Whether it is part of `all`.
     pub in_all: bool,
     /// Its studies: files under `scenarios/studies/`, without their extension.
     pub studies: &'static [&'static str],

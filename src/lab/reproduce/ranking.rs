@@ -36,7 +36,7 @@ pub struct Ranked {
 }
 
 impl Ranking {
-    /// Do our means have the paper's order?
+    /// Whether our means have the paper's order.
     pub fn is_kept(&self) -> bool {
         self.ours.is_some_and(|[higher, lower]| higher > lower)
     }

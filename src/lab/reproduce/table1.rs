@@ -61,7 +61,7 @@ pub fn published_for(scenario: &Scenario) -> Vec<(&'static str, f64)> {
     METRICS.into_iter().zip(values).collect()
 }
 
-/// Does a scenario have the settings of a row, whatever its seeds and its view?
+/// Whether a scenario has the settings of a row; seeds and view may differ.
 fn has_settings_of(scenario: &Scenario, row: &PublishedRow) -> bool {
     /// Keys that do not tell runs of a row apart. The parameters are compared as they act: some defaults depend on the
     /// profile.

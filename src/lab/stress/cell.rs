@@ -26,7 +26,7 @@ pub struct Limit {
     pub largest: f64,
     /// The step that `auto` chooses, seconds.
     pub auto: f64,
-    /// Is `auto` stable?
+    /// Whether `auto` is stable.
     pub auto_is_stable: bool,
     /// The speed that remains at fine steps, in the room with the higher speed, m/s.
     pub fine_speed: f64,
@@ -128,7 +128,7 @@ impl Cell {
         Job::new(name.clone(), Identity::of(&name, ""), expected, work)
     }
 
-    /// Is `auto` stable under every condition?
+    /// Whether `auto` is stable under every condition.
     pub fn auto_is_stable(&self) -> bool {
         self.limits.iter().all(|limit| limit.auto_is_stable)
     }

@@ -141,7 +141,7 @@ impl Remains {
 /// Observations of some crowds: sums over agents and frames of the last seconds, and all failures.
 #[derive(Debug, Clone, Copy, Default)]
 struct Seen {
-    /// Do the crowds walk?
+    /// Whether the crowds walk.
     walk: bool,
     agents: f64,
     /// Sum of |v|², m²/s².
@@ -302,7 +302,7 @@ impl Rest {
         Ok([full?, loose?])
     }
 
-    /// Is a time step in seconds stable in both rooms?
+    /// Whether a time step, in seconds, is stable in both rooms.
     ///
     /// # Errors
     /// As [`run`](Self::run).

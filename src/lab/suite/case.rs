@@ -22,7 +22,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// Is it meant by `name`: its id, or its number without the letter?
+    /// Whether `name` means it: its id, or its number without the letter.
     pub fn is_named(&self, name: &str) -> bool {
         let letter = |rest: &str| rest.len() == 1 && rest.chars().all(|c| c.is_ascii_lowercase());
         let rest = self.id.strip_prefix(name);

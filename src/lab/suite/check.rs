@@ -116,7 +116,7 @@ impl Check {
         self.expected == Expected::Any || self.value.is_some_and(|value| range.contains(&value))
     }
 
-    /// Is the value compared with a measured one?
+    /// Whether the value is compared with a measured one.
     pub fn is_compared(&self) -> bool {
         matches!(self.expected, Expected::Near { .. })
     }

@@ -78,8 +78,8 @@ impl Suite {
     }
 }
 
-/// What the lines of a scenario give for the people of the data from which it begins, in the time from its beginning. They are
-/// measured as in a run, with their places at its frames.
+/// What the lines of a scenario give for the people of the data from which it begins, in the time from its beginning.
+/// They are measured as in a run, with their places at its frames.
 pub(super) fn measured(label: &str, case: &case::Case) -> Result<Summary, LabError> {
     let failed = |error| LabError::of(label, error);
     let draft = case.draft().map_err(failed)?;

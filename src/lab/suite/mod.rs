@@ -1,7 +1,7 @@
 //! Suites: cases with expected results, judged from runs of a study.
 //!
-//! A [`Case`] names runs of its suite's study and turns their results into [`Check`]s. A [`Report`] has the checks of all
-//! cases, profiles and seeds.
+//! A [`Case`] names runs of its suite's study and turns their results into [`Check`]s. A [`Report`] has the checks of
+//! all cases, profiles and seeds.
 
 mod case;
 mod check;
@@ -41,7 +41,7 @@ pub struct Suite {
     pub data: &'static [DataFile],
     /// The profiles of the study, whose misses are known.
     pub profiles: &'static [&'static str],
-    /// Are means over all seeds judged, or each seed?
+    /// Whether means over all seeds are judged, or each seed.
     pub judges_means: bool,
     /// Pictures of all results, by the names of their files, from the runs of each profile and seed.
     pub sheets: fn(&[Runs]) -> Vec<(&'static str, Sheet)>,
@@ -84,8 +84,8 @@ impl Suite {
         Ok(self.all().filter(is_chosen).collect())
     }
 
-    /// Computes the chosen runs that are not in `store`, judges them, and writes tables and pictures. Cases whose data are
-    /// missing are skipped.
+    /// Computes the chosen runs that are not in `store`, judges them, and writes tables and pictures. Cases whose data
+    /// are missing are skipped.
     ///
     /// # Errors
     /// A profile is unknown, a run fails, or a file cannot be written.

@@ -22,7 +22,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// Are all values as expected?
+    /// Whether all values are as expected.
     pub fn is_passed(&self) -> bool {
         self.checks.iter().all(Check::is_passed)
     }

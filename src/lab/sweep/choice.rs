@@ -20,7 +20,7 @@ pub(super) const SCENARIO: &str = "scenario";
 pub(in crate::lab) struct Root<'a> {
     /// The study's file, relative to `scenarios/` if it is built in.
     pub(in crate::lab) path: &'a Path,
-    /// Is it built into the program, or on disk?
+    /// Whether it is built into the program or on disk.
     pub(in crate::lab) built_in: bool,
 }
 

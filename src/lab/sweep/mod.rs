@@ -2,8 +2,8 @@
 //!
 //! A [`Study`] is a list of [`Cell`]s, numbered from 1. Each cell is one run: a scenario with its settings and seed.
 //! [`run`] computes the cells of a [`Shard`] that are not in the store yet, in parallel, each on a single thread.
-//! [`Gathered`] is the state of all cells, as tables and pictures. A failed cell is recorded, and the others continue; the next call
-//! tries it again. Any number of processes may work on the same folder at the same time.
+//! [`Gathered`] is the state of all cells, as tables and pictures. A failed cell is recorded, and the others continue;
+//! the next call tries it again. Any number of processes may work on the same folder at the same time.
 //!
 //! The file is a JSON object; an unknown key is an error:
 //!

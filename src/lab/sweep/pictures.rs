@@ -179,8 +179,8 @@ fn lines(
     panels
 }
 
-/// A confidence band with its borders, if the axis has numbers and some mean has an interval; and a line with points, or
-/// points with error bars.
+/// A confidence band with its borders, if the axis has numbers and some mean has an interval; and a line with points,
+/// or points with error bars.
 fn line_marks(
     places: &[Place],
     color: Rgb,

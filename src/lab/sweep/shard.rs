@@ -19,7 +19,7 @@ impl Shard {
         (1..=of).contains(&number).then_some(Self { number, of })
     }
 
-    /// Does it contain the cell with this number?
+    /// Whether it contains the cell with this number.
     pub fn has(&self, cell: usize) -> bool {
         cell % self.of == self.number % self.of
     }

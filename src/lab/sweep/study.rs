@@ -52,7 +52,7 @@ impl Study {
         }
     }
 
-    /// Is the seed among the varied settings?
+    /// Whether the seed is among the varied settings.
     pub(super) fn varies_seed(&self) -> bool {
         self.axes.iter().any(|axis| axis == "seed")
     }
@@ -225,7 +225,7 @@ fn built_in_path(name: &str) -> PathBuf {
     Path::new("studies").join(format!("{name}.json"))
 }
 
-/// Is the name suitable for result files on every system?
+/// Whether the name is suitable for result files on every system.
 pub(in crate::lab) fn check_name(name: &str) -> Result<(), Problem> {
     let reason = if name.is_empty() {
         "it is empty"

@@ -1,5 +1,5 @@
-//! Scenes that begin with the people of an experiment, where and when they were in its trajectories. The files are not part of
-//! the program: `docs/validation.md` says how they are had.
+//! Scenes that begin with the people of an experiment, where and when they were in its trajectories. The files are not
+//! part of the program: `docs/validation.md` says how they are had.
 
 use super::bottlenecks::Measured;
 use crate::lab::error::LabError;

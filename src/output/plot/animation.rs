@@ -257,8 +257,8 @@ fn changed(image: &RgbImage, before: Option<&RgbImage>, delay: u16) -> gif::Fram
     frame
 }
 
-/// The most frequent colors, as many as a palette has, and grays for the edges of letters. Agents and marks keep their own colors: only the many colors of
-/// smooth edges are changed.
+/// The most frequent colors, as many as a palette has, and grays for the edges of letters. Agents and marks keep their
+/// own colors: only the many colors of smooth edges are changed.
 fn most_frequent(colors: impl Iterator<Item = Rgb>) -> Vec<Rgb> {
     let mut counts: HashMap<Rgb, u32> = HashMap::new();
     for color in colors {

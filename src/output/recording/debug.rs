@@ -25,7 +25,7 @@ pub enum DebugAgents {
 }
 
 impl DebugAgents {
-    /// Is agent `i` of the current frame a debug agent?
+    /// Whether agent `i` of the current frame is a debug agent.
     pub(super) fn includes(&self, simulation: &Simulation, i: usize) -> bool {
         let agents = simulation.frame().agents;
         if !agents.is_present(i) {

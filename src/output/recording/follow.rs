@@ -90,7 +90,7 @@ impl Densest {
 pub struct Moment {
     /// The time that was asked for, seconds.
     asked: Option<f64>,
-    /// Was it reached?
+    /// Whether it was reached.
     is_settled: bool,
     /// The frame and its time. Until the time that was asked for: the moment of the highest density so far, in case the
     /// run ends before.
@@ -109,7 +109,7 @@ impl Moment {
         }
     }
 
-    /// Is this the first frame at or after the time that was asked for?
+    /// Whether this is the first frame at or after the requested time.
     pub fn is_asked(&self, time: f64) -> bool {
         !self.is_settled && self.asked.is_some_and(|asked| time >= asked)
     }

@@ -57,7 +57,7 @@ pub fn log_still(stream: &RecordingStream, obstacles: &[Polygon]) -> Result<(), 
     Ok(())
 }
 
-/// Does the walkable area have an outside?
+/// Whether the walkable area has an outside.
 pub fn has_outside(obstacles: &[Polygon]) -> bool {
     obstacles.iter().any(Polygon::is_unbounded)
 }

@@ -46,15 +46,15 @@ pub enum Kind {
 pub struct Content {
     /// What it is of.
     pub kind: Kind,
-    /// Do agents visit places?
+    /// Whether agents visit places.
     pub has_journeys: bool,
-    /// Are there queues or waiting areas?
+    /// Whether there are queues or waiting areas.
     pub has_waiting: bool,
     /// The entities with the lengths of ways, which are hidden at first.
     pub fields: Vec<EntityPath>,
-    /// Are walls colored by the force on them?
+    /// Whether walls are colored by the force on them.
     pub has_wall_forces: bool,
-    /// Is there an outside of the walkable area?
+    /// Whether the walkable area has an outside.
     pub has_outside: bool,
     /// The names of the followed agents.
     pub followed: Vec<String>,

@@ -272,7 +272,7 @@ fn log_field(stream: &RecordingStream, entity: EntityPath, field: &WayField) -> 
     Ok(stream.log_static(entity, &parts)?)
 }
 
-/// Are there places with time series of the agents that are present?
+/// Whether there are places with time series of the agents that are present.
 pub fn has_waiting(scene: &Scene) -> bool {
     let mut places = scene.journeys.places.iter();
     places.any(|place| series_of(&place.kind) == Some(PRESENT))

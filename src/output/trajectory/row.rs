@@ -233,8 +233,8 @@ fn row(simulation: &Simulation, number: u64, i: usize) -> Row<'_> {
     }
 }
 
-/// The id of an agent, or of its current lap. Programs that read trajectories compute speeds from positions: with one id
-/// for all laps, an agent would seem to run back at the end of each.
+/// The id of an agent, or of its current lap. Programs that read trajectories compute speeds from positions: with one
+/// id for all laps, an agent would seem to run back at the end of each.
 fn id_of(agents: &Agents, i: usize) -> u32 {
     let laps = agents.laps.get(i).copied().unwrap_or(0);
     let back = u32::from(laps < 0);

@@ -34,7 +34,7 @@ impl<'a> Boxed<'a> {
         low.min() >= -SAME && high.min() >= -SAME
     }
 
-    /// Does it lie wholly inside another polygon?
+    /// Whether it lies wholly inside another polygon.
     fn is_inside(&self, other: &Self) -> Result<bool, FloorPlanError> {
         if !self.fits_into(other) {
             return Ok(false);
@@ -44,7 +44,7 @@ impl<'a> Boxed<'a> {
         Ok(may_be && free(&[rings(&[own])], &rings(&[around]))?.is_empty())
     }
 
-    /// Does it lie wholly off these floors?
+    /// Whether it lies wholly off these floors.
     fn is_off(&self, floors: &[Self]) -> Result<bool, FloorPlanError> {
         let near = floors.iter().filter(|floor| floor.overlaps(self));
         let near = near.map(|floor| floor.shape.area());

@@ -1,4 +1,4 @@
-//! Does a part of an area or a line lie on the floor?
+//! Whether a part of an area or a line lies on the floor.
 
 use super::error::FloorPlanError;
 use super::shape::Shape;
@@ -30,7 +30,7 @@ pub fn is_on_floor(outline: &[Vector], walls: &Walls) -> Result<bool, FloorPlanE
     Ok(!free(&floors, &bodies)?.is_empty())
 }
 
-/// Is a part of a line between two points on the floor, or next to it?
+/// Whether a part of a line between two points is on the floor, or next to it.
 ///
 /// # Errors
 /// Those of [`free`].

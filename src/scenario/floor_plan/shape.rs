@@ -29,7 +29,7 @@ pub struct Shape {
     pub name: Option<String>,
     /// The outline, then the holes, meters.
     pub rings: Vec<Vec<[f64; 2]>>,
-    /// Is it an obstacle, not walkable area?
+    /// Whether it is an obstacle, not walkable area.
     pub is_obstacle: bool,
 }
 

@@ -15,9 +15,9 @@ use crate::scenario::shapes::Corners;
 /// The name of the values if none is given.
 const NAME: &str = "body_force";
 
-/// The largest force by pressure and contact on any person, N, from the virial stress, with time and place; the number of
-/// people above 623, 1112 and 6227 N and the longest time of one of them. These thresholds are from the literature (Lee and
-/// Hughes 2006), not safety limits. Per agent, in the data: its largest force.
+/// The largest force by pressure and contact on any person, N, from the virial stress, with time and place; the number
+/// of people above 623, 1112 and 6227 N and the longest time of one of them. These thresholds are from the literature
+/// (Lee and Hughes 2006), not safety limits. Per agent, in the data: its largest force.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodyForces {

@@ -15,8 +15,8 @@ use crate::scenario::shapes::Corners;
 /// The name of the values if none is given.
 const NAME: &str = "exposure";
 
-/// How long people are above 4, 5 and 6 P/m² and below 0.2 m/s, and the alarms: the largest area, the most people and the
-/// longest time above each density. Per agent, in the data: its seconds. Values from the literature, not limits of
+/// How long people are above 4, 5 and 6 P/m² and below 0.2 m/s, and the alarms: the largest area, the most people and
+/// the longest time above each density. Per agent, in the data: its seconds. Values from the literature, not limits of
 /// safety.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

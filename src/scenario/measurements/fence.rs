@@ -86,7 +86,7 @@ impl Fence {
         rows.flat_map(move |row| columns.clone().map(move |column| cell(row, column)))
     }
 
-    /// Does the straight path from `a` to `b` lead into an obstacle?
+    /// Whether the straight path from `a` to `b` leads into an obstacle.
     pub(super) fn is_crossed(&self, a: Vector, b: Vector) -> bool {
         self.touched(a, b)
             .flat_map(|cell| &self.cells[cell])
@@ -112,7 +112,7 @@ impl Fence {
 }
 
 impl Edge {
-    /// Does the path from `a` to `b` start on the free side and cross this edge?
+    /// Whether the path from `a` to `b` starts on the free side and crosses this edge.
     fn is_crossed(&self, a: Vector, b: Vector) -> bool {
         let inward = perpendicular(self.along);
         let depth = |p: Vector| (p - self.start).dot(&inward) - TOLERANCE;

@@ -1,4 +1,4 @@
-//! Integrity: do walls hold, are all numbers finite, and how fast do agents move?
+//! Integrity: agents that pass walls, numbers that are not finite, and the highest speed.
 
 use std::collections::BTreeSet;
 

@@ -170,8 +170,8 @@ struct Moment<'a> {
 }
 
 impl LineFlow {
-    /// The values, by their names, and the data for people in `tracks` from the time `at` in it, seconds, on. They are measured
-    /// as in a run whose frames are those of `clock` and begin at `at`.
+    /// The values, by their names, and the data for people in `tracks` from the time `at` in it, seconds, on. They are
+    /// measured as in a run whose frames are those of `clock` and begin at `at`.
     pub fn of_tracks(&self, tracks: &Tracks, at: f64, clock: Clock) -> Measured {
         let times: Vec<[f64; 2]> = (0..tracks.ids.len()).map(|p| tracks.times_of(p)).collect();
         let last = times.iter().map(|[_, last]| *last).fold(at, f64::max);

@@ -127,7 +127,7 @@ pub enum Measurement {
     Uncounted(Uncounted),
     /// Long gaps between arrivals, and the flow without them.
     Pauses(Pauses),
-    /// Did the flow come to an end before enough agents arrived?
+    /// Whether the flow ended before enough agents arrived.
     Locked(Locked),
     /// All agents at one time.
     Snapshot(SnapshotAt),
@@ -284,7 +284,8 @@ impl Metrics {
         self.stuck.observe(simulation);
     }
 
-    /// The agents that have made no way for [`STUCK_AFTER`] seconds, grouped by the likely cause, the largest group first.
+    /// The agents that have made no way for [`STUCK_AFTER`] seconds, grouped by the likely cause, the largest group
+    /// first.
     pub fn stuck(&self, simulation: &Simulation) -> Vec<StuckGroup> {
         stuck::groups(&self.stuck.1, simulation)
     }

@@ -52,7 +52,7 @@ impl Window {
             .map_or(Ok(()), |corners| wide_region(&key, corners).map(|_| ()))
     }
 
-    /// Is the current frame due?
+    /// Whether the current frame is due.
     pub fn is_due(&self, simulation: &Simulation) -> bool {
         let until = self.until_secs.unwrap_or(f64::MAX);
         is_due(simulation, [self.from_secs, until], self.every_secs)

@@ -16,8 +16,8 @@ impl Tracks {
         ends.map(|row| row.map_or(f64::NAN, |&row| self.time(self.frame_of(row as usize))))
     }
 
-    /// The place of person `p` at a time, meters: linear between its frames, also across gaps. Before its first frame it
-    /// is the first place, after its last frame the last one.
+    /// The place of person `p` at a time, meters: linear between its frames, also across gaps. Before its first frame
+    /// it is the first place, after its last frame the last one.
     pub fn place_at(&self, p: usize, time: f64) -> Vector {
         let rows = self.rows_of(p);
         let frame = time * self.fps;

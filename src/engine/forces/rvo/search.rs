@@ -123,7 +123,7 @@ struct Contact<'a, D, E> {
     situation: &'a Situation,
     surroundings: &'a D,
     velocity: Vector,
-    /// Is a contact at this time, in seconds, too early to look further?
+    /// Whether a contact at this time, in seconds, is so early that the search can stop.
     too_early: E,
 }
 

@@ -20,8 +20,8 @@ const ROUNDING: f64 = 1e-5;
 /// (|d|² + |a|²)² ≤ (4¼)² |d|²|a|².
 ///
 /// For agents j at least r away from all of some agents i, and |s| ≤ S, b² ≥ r (r − S): a and d differ by s. They are
-/// left out if r (r − S) ≥ B², that is, (r² − B²) |r² − B²| ≥ r² S², and S ≤ ¾ r. Then each of their pairs would be left
-/// out by itself: which pairs are left out does not depend on clusters.
+/// left out if r (r − S) ≥ B², that is, (r² − B²) |r² − B²| ≥ r² S², and S ≤ ¾ r. Then each of their pairs would be
+/// left out by itself: which pairs are left out does not depend on clusters.
 pub struct Cutoff<R: Real, S: Simd> {
     twice_b_squared: Lanes<R, S>,
     /// 1/(4 + ¼)

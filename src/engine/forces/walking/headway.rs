@@ -5,8 +5,8 @@
 //! lane has sharp edges, and the speed jumps when an agent crosses one. Here the edges fade.
 //!
 //! Q. Xu, M. Chraibi, A. Seyfried, Anticipation in a velocity-based model for pedestrian dynamics, Transportation
-//! Research C 133 (2021): people look at the distance that they expect after some time, d + t (v_j − v_i)·ê_i. Here they
-//! do so behind those who walk away from them, and keep less distance than in a crowd that moves as one.
+//! Research C 133 (2021): people look at the distance that they expect after some time, d + t (v_j − v_i)·ê_i. Here
+//! they do so behind those who walk away from them, and keep less distance than in a crowd that moves as one.
 //!
 //! Agents that want to walk against agent i do not count: two agents that wait for each other would stand for ever,
 //! where people step aside.
@@ -67,8 +67,8 @@ impl Headway {
     ///
     /// d*² = (a + t max(0, u))² + c² + R² (max(0, (|c| − w)/f) + max(0, 1 − a/f) + 4 max(0, −ê_i·ê_j)), with the
     /// distances a `along` and c `across` the line ahead, the relative velocity u = (v_j − v_i)·ê_i, m/s, at which it
-    /// moves `away`, the cosine ê_i·ê_j of both `headings`, and f = w/2. Agents behind, those farther than w + f from the
-    /// line, and those that want to walk the other way have d* ≥ R.
+    /// moves `away`, the cosine ê_i·ê_j of both `headings`, and f = w/2. Agents behind, those farther than w + f from
+    /// the line, and those that want to walk the other way have d* ≥ R.
     pub fn distance_in_lane(
         &self,
         range: f64,

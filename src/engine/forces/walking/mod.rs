@@ -59,7 +59,7 @@ struct Walkers<R: Real, S: Simd> {
 }
 
 impl WalkingLaw {
-    /// Does the law lower preferred speeds by the agents ahead?
+    /// Whether the law lowers preferred speeds by the agents ahead.
     pub fn looks_ahead(&self) -> bool {
         !matches!(self, Self::Drag(_))
     }

@@ -44,7 +44,7 @@ pub struct Description {
 }
 
 impl Description {
-    /// Are the two comparable: models of one family with the same radius on as many threads?
+    /// Whether the two are comparable: models of one family with the same radius and number of threads.
     pub fn is_like(&self, other: &Self) -> bool {
         let like = |of: &Self| (of.family, of.radius, of.threads);
         like(self) == like(other)

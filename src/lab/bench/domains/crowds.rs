@@ -50,7 +50,7 @@ impl Kind {
         }
     }
 
-    /// Does it drift away from a cut?
+    /// Whether it drifts away from a cut.
     pub fn moves(&self) -> bool {
         !matches!(self, Self::Block(_))
     }

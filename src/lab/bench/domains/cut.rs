@@ -131,8 +131,8 @@ struct Split {
 }
 
 impl Bisection {
-    /// Halves of equal weight. If the weights are 1, no two agents share a coordinate and `parts` is a power of two, the
-    /// counts differ by at most 1.
+    /// Halves of equal weight. If the weights are 1, no two agents share a coordinate and `parts` is a power of two,
+    /// the counts differ by at most 1.
     fn of(mut points: Vec<(Vector, f64)>, parts: usize) -> Self {
         let mut cut = Self {
             splits: Vec::with_capacity(parts),

@@ -18,8 +18,8 @@ pub struct Network {
 
 /// Orders of magnitude of three kinds of connections. InfiniBand: the nominal rate of 100 Gbit/s, and twice the 1.06 µs
 /// that the vendor's user guide shows for an MPI ping-pong. Ethernet: the nominal rate of 10 Gbit/s; applications
-/// measured 20 µs on TCP without a switch (Hurwitz and Feng 2003, Initial end-to-end performance evaluation of 10-gigabit
-/// Ethernet). Shared memory: a few cache lines from another socket, at the memory bandwidth of one core.
+/// measured 20 µs on TCP without a switch (Hurwitz and Feng 2003, Initial end-to-end performance evaluation of
+/// 10-gigabit Ethernet). Shared memory: a few cache lines from another socket, at the memory bandwidth of one core.
 pub const NETWORKS: [Network; 3] = [
     Network {
         name: "shared memory",

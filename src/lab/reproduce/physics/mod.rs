@@ -1,5 +1,5 @@
-//! Open questions of crowd physics: what crowds of the model do where experiments are known. Each is a study, a table and
-//! a picture; docs/questions.md says what is known and what follows.
+//! Open questions of crowd physics: what crowds of the model do where experiments are known. Each is a study, a table
+//! and a picture; docs/questions.md says what is known and what follows.
 
 mod oscillations;
 mod queue_pushes;

@@ -1,4 +1,4 @@
-//! How fast and how far does a push run through a row of standing people?
+//! The speed and the reach of a push through a row of standing people.
 
 use super::super::product::{Needs, Product};
 use super::{front_speed, grouped, label, mean, profile, write};

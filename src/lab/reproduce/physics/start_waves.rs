@@ -1,4 +1,4 @@
-//! How fast does a start run back through a waiting crowd?
+//! The speed at which a start runs back through a waiting crowd.
 
 use serde_json::Value;
 
