@@ -70,6 +70,7 @@ mod social_tolerance;
 mod sound;
 mod statistics;
 mod steering;
+mod stuck;
 mod voronoi;
 mod walking;
 mod walking_profiles;
