@@ -48,6 +48,7 @@ mod neighbors;
 mod off_floor;
 mod oscillation;
 mod overlaps;
+mod passages;
 mod periodic;
 mod periodic_scenarios;
 mod precision;
