@@ -178,7 +178,7 @@ impl Prepared<'_> {
                 To::Journey(journey) => {
                     journeys.insert(number, journey);
                     let stages = &self.scene.journeys.journeys[usize::from(journey)].stages;
-                    maps.to_stage(start.place, &stages[0])
+                    maps.leg_to_stage(start.place, &stages[0])
                 }
                 To::Goal { .. } | To::Away => None,
             };
@@ -189,7 +189,7 @@ impl Prepared<'_> {
             for pair in stages.windows(2) {
                 for &place in &pair[0].places {
                     let from = self.places[usize::from(place)].nearest_point(Vector::zeros());
-                    narrower(&mut narrowest[number], maps.to_stage(from, &pair[1]));
+                    narrower(&mut narrowest[number], maps.leg_to_stage(from, &pair[1]));
                 }
             }
         }
@@ -225,7 +225,7 @@ impl<'a> Maps<'a> {
     }
 
     /// The place of a stage with the widest way, or the one with the narrowest if agents do not look at the way.
-    fn to_stage(&mut self, from: Vector, stage: &JourneyStage) -> Option<Leg> {
+    fn leg_to_stage(&mut self, from: Vector, stage: &JourneyStage) -> Option<Leg> {
         let looks = matches!(stage.choice, Choice::Nearest | Choice::Quickest);
         let sign = if looks { -1.0 } else { 1.0 };
         let places = stage.places.iter();
