@@ -332,7 +332,7 @@ fn places_and_journeys_that_cannot_work_are_refused_with_place_and_fix() {
     assert!(closed.contains("journeys: of `out`: no way leads from (6.5, 2.6), where agents of grids[0] start, to `east`: walls close it off"), "{closed}");
     let narrow = with_wall(0.3).unwrap_err();
     assert!(
-        narrow.contains("narrower than `min_passage_width`, 0.4 m"),
+        narrow.contains("narrower than 0.53 m, too narrow for"),
         "{narrow}"
     );
     let straight = scenario(&base(), &["navigation=straight"]).unwrap_err();

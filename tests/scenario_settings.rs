@@ -123,7 +123,7 @@ fn every_documented_key_is_accepted() {
         "periodic" => "{\"axis\": \"x\", \"length\": 20}",
         "walkable_area" => "[[[[0, 0], [9, 0], [9, 9]]]]",
         "view" => "{\"region\": [[0, 0], [1, 1]]}",
-        "agent_stiffness" | "wall_stiffness" => "10",
+        "agent_stiffness" | "wall_stiffness" | "min_passage_width" => "10",
         _ => "[]",
     };
     for doc in settings() {

@@ -110,6 +110,7 @@ fn agents_with_any_clearance_pass_a_door_of_half_a_meter() {
             "walkable_area": [[block([0.0, 10.0], [0.0, 6.0]), block([5.0, 5.2], [0.01, 2.0]),
                                block([5.0, 5.2], [2.5, 5.99])]],
             "population_seed": seed,
+            "min_passage_width": 0.4,
             "agents": [{"position": [1, 4], "goal": [9, 5], "remove_within": 0.3}],
         });
         let arrivals = after(&document, &["profile=sph"], 15.0)

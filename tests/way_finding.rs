@@ -187,14 +187,14 @@ fn goals_that_cannot_be_reached_are_refused_with_their_place() {
     assert!(closed.contains("agents of crowd start"), "{closed}");
     assert!(closed.contains("walls close it off"), "{closed}");
     let narrow = refused(&|document| {
-        document["obstacles"] = json!([[[8, -1], [8.5, -1], [8.5, 1.7], [8, 1.7]]]);
+        document["obstacles"] = json!([[[8, -1], [8.5, -1], [8.5, 1.64], [8, 1.64]]]);
     });
     assert!(
-        narrow.contains("narrower than `min_passage_width`, 0.4 m"),
+        narrow.contains("narrower than 0.53 m, too narrow for"),
         "{narrow}"
     );
     let mut document = around_the_corner(4);
-    document["obstacles"] = json!([[[8, -1], [8.5, -1], [8.5, 1.7], [8, 1.7]]]);
+    document["obstacles"] = json!([[[8, -1], [8.5, -1], [8.5, 1.64], [8, 1.64]]]);
     assert!(scenario(&document, &["min_passage_width=0.2"]).is_ok());
     assert!(scenario(&document, &["navigation=straight"]).is_ok());
 }

@@ -160,7 +160,7 @@ fn agents_choose_no_exit_behind_a_passage_that_is_too_narrow() {
             assert!(note.starts_with(&said), "{note}");
         }
         assert_eq!(notes.len(), 2);
-        let open = hall(0.5, stage);
+        let open = hall(0.55, stage);
         assert!(scenario(&open, &[]).unwrap().notes.is_empty());
     }
 }

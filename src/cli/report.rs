@@ -9,7 +9,7 @@ use crate::output::table::Table;
 use crate::runs::drive::{End, Run};
 use crate::runs::identity::Identity;
 use crate::runs::summary::{JourneyResult, PlaceResult, Summary, value};
-use crate::scenario::measurements::{Measurement, STUCK_AFTER, StuckGroup};
+use crate::scenario::measurements::{HEADWAY, Measurement, STUCK_AFTER, StuckGroup};
 use crate::scenario::quote::shown;
 
 /// The summary, with version, identity, all settings, threads and run times.
@@ -98,7 +98,7 @@ fn ending(run: &Run) -> String {
         return text;
     }
     text += &format!(
-        "{stuck} of {remain} agents are stuck: they made no way towards their goals in the last {STUCK_AFTER} s.\n"
+        "{stuck} of {remain} agents are stuck: they made less than {HEADWAY} m of headway in {STUCK_AFTER} s of walking.\n"
     );
     for StuckGroup {
         cause,

@@ -42,7 +42,7 @@ pub struct Summary {
     pub remaining: usize,
     /// Why the run ended; `None` if it has not.
     pub end: Option<End>,
-    /// Number of agents at the end that had made no way towards their goal for 20 s.
+    /// Number of agents at the end that had made less than 1 m of headway in 20 s of walking.
     #[serde(default)]
     pub stuck: usize,
     /// These agents by the likely cause.

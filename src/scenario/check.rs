@@ -132,7 +132,7 @@ impl Contents {
             document: self.document,
             files: self.plans,
             notes,
-            passage_width: ways::passable(keys),
+            passage_width: ways::passable(keys, &scene),
             scene,
         })
     }

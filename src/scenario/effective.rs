@@ -28,6 +28,9 @@ impl Scenario {
             "time_step_secs".to_owned(),
             json!(self.scene.clock.time_step()),
         );
+        if let Some(width) = self.passage_width {
+            all.insert("min_passage_width".to_owned(), json!(width));
+        }
         all.insert("integrator".to_owned(), json!(self.scene.integrator));
         Value::Object(all)
     }

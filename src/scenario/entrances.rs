@@ -16,7 +16,7 @@ use crate::engine::entrance::{Arrivals, Entrance as Line, Flow};
 use crate::engine::math::Vector;
 
 /// The part of all agents for which an entrance must be wide enough.
-const NEARLY_ALL: f64 = 0.9999;
+pub(super) const NEARLY_ALL: f64 = 0.9999;
 
 /// How agents arrive at an entrance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

@@ -20,7 +20,7 @@ use super::preset::Preset;
 use super::profiles::ProfileChoice;
 use super::schema::word;
 use super::shapes::{Corners, Label, Obstacle, Point, Ring};
-use super::ways::{PASSABLE, WayFinding};
+use super::ways::WayFinding;
 use crate::engine::boundary::WallMethod;
 use crate::engine::clock::PAPER_TIME_STEP;
 use crate::engine::neighbors::ListPolicy;
@@ -106,8 +106,9 @@ pub(super) struct File {
     /// stop at walls. Without walls between, both are the same to the last bit.
     #[schemars(schema_with = "word::<WayFinding>")]
     pub navigation: WayFinding,
-    /// Narrower passages are closed for `paths`, meters. Lower: agents also take gaps in which they get stuck.
-    #[schemars(range(min = 0, max = 100), extend("default" = PASSABLE))]
+    /// Narrower passages are closed for `paths`, meters. Lower: agents also take gaps in which they get stuck. Default:
+    /// the width of the widest body; 10 % more with RVO, 20 % less with `walk+sph`, which turns shoulders.
+    #[schemars(range(min = 0, max = 100))]
     pub min_passage_width: Option<f64>,
     /// The behavior of agents that name no profile of their own.
     #[schemars(extend("default" = DEFAULT_PROFILE))]

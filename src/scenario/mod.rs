@@ -25,6 +25,7 @@ pub mod catalog;
 
 pub mod measurements;
 
+mod bodies;
 mod check;
 mod crowd;
 mod crowding;

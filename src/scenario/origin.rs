@@ -77,6 +77,12 @@ impl<'a> Origins<'a> {
         Item::Entrance(k)
     }
 
+    /// The number of an agent whose body is given alone, as one of `agents`.
+    pub(super) fn single(&self, member: Member) -> Option<usize> {
+        let is_single = matches!(self.item(member), Item::Agent(_));
+        member.agent.filter(|_| is_single)
+    }
+
     /// What messages call an agent: `agents[1]`, or the name of its group.
     pub(super) fn name(&self, member: Member) -> String {
         match self.item(member) {

@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::bodies::{Maps, described, rounded};
 use super::error::Problem;
 use super::quote::shown;
 use super::ways::{Prepared, To};
 use crate::engine::journeys::{Choice, JourneyStage};
 use crate::engine::math::Vector;
-use crate::engine::ways::{Destination, Ways};
+use crate::engine::ways::{Destination, Floor, Ways};
 
 /// A point from which agents choose between the places of a stage.
 struct Origin<'a> {
@@ -144,14 +145,36 @@ impl Prepared<'_> {
         Ok(())
     }
 
-    /// Why no way leads to a destination, and what to do.
-    fn why_closed(&self, from: Vector, to: Destination) -> Result<String, Problem> {
-        let is_open = self.ways(0.0)?.is_open(from, to);
-        Ok(match is_open {
-            true => format!(
-                "every way there has a passage narrower than `min_passage_width`, {} m; widen it, or lower that",
+    /// What says that all ways are too narrow, and what to do.
+    fn why_narrow(&self, floor: &Floor, from: Vector, to: Destination) -> String {
+        let passage = Maps::new(floor, self.places).passage(from, to);
+        let widest = passage.map_or(String::new(), |passage| {
+            format!("; the widest way has one of {}", described(&passage))
+        });
+        let setter = self
+            .widest
+            .iter()
+            .min_by(|a, b| b.alone.total_cmp(&a.alone)); // the first of the widest
+        match setter.filter(|_| !self.is_given) {
+            Some(setter) => format!(
+                "every way there has a passage narrower than {} m, too narrow for {}, up to {} m wide{widest}: widen it, \
+                 give a smaller `radius`, or set `min_passage_width`",
+                rounded(self.width),
+                self.origins.name(setter.member),
+                rounded(setter.width),
+            ),
+            None => format!(
+                "every way there has a passage narrower than `min_passage_width`, {} m{widest}: widen it, or lower that",
                 self.width
             ),
+        }
+    }
+
+    /// Why no way leads to a destination, and what to do.
+    fn why_closed(&self, from: Vector, to: Destination) -> Result<String, Problem> {
+        let open = self.ways(0.0)?;
+        Ok(match open.is_open(from, to) {
+            true => self.why_narrow(&open.floor, from, to),
             false => "walls close it off; open them, or move one of the two".to_owned(),
         })
     }

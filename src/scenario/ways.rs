@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::bodies::Widest;
 use super::doors;
 use super::error::Problem;
 use super::file::File;
@@ -30,8 +31,6 @@ pub enum WayFinding {
     Straight,
 }
 
-/// Default width below which passages are closed, meters.
-pub(super) const PASSABLE: f64 = 0.4;
 /// The floor of a scene without walkable area reaches this far beyond everything in it, meters.
 const MARGIN: f64 = 5.0;
 /// The most goals with a path map.
@@ -94,11 +93,14 @@ pub(super) fn ways(
         starts: &starts,
         places,
         goals: &goals,
-        width: keys.min_passage_width.unwrap_or(PASSABLE),
+        width: passable(keys, scene).unwrap_or_default(),
+        is_given: keys.min_passage_width.is_some(),
+        widest: Widest::all(scene, &Origins::new(keys, scene)),
     };
     let ways = prepared.ways(prepared.width)?;
     prepared.check_goals(&ways)?;
     notes.extend(prepared.check_journeys(&ways)?);
+    prepared.check_bodies(&ways.floor, notes)?;
     // Where all goals are in sight, agents walk straight.
     Ok((has_journeys || ways.bend()).then(|| Arc::new(ways)))
 }
@@ -114,9 +116,13 @@ fn floor_of(scene: &Scene, starts: &[Start], width: f64) -> Result<Floor, Proble
 }
 
 /// The width below which agents take no passage, meters; `None`: they walk straight.
-pub(super) fn passable(keys: &File) -> Option<f64> {
+pub(super) fn passable(keys: &File, scene: &Scene) -> Option<f64> {
+    let least = || {
+        let widest = Widest::all(scene, &Origins::new(keys, scene)).into_iter();
+        widest.map(|widest| widest.alone).fold(0.0, f64::max)
+    };
     let finds = keys.navigation == WayFinding::Paths;
-    finds.then(|| keys.min_passage_width.unwrap_or(PASSABLE))
+    finds.then(|| keys.min_passage_width.unwrap_or_else(least))
 }
 
 /// The goals that need path maps: those of several agents, and those behind walls.
@@ -157,6 +163,10 @@ pub(super) struct Prepared<'a> {
     pub goals: &'a [Vector],
     /// Narrower passages are closed, meters.
     pub width: f64,
+    /// Does the file give this width?
+    pub is_given: bool,
+    /// The widest bodies.
+    pub widest: Vec<Widest>,
 }
 
 impl Prepared<'_> {

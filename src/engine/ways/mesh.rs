@@ -181,7 +181,7 @@ impl Mesh {
     }
 
     /// The distance of [`room`](Self::room) and the nearest point of the wall; `None` if no wall is nearer than `most`.
-    fn nearest_wall(&self, t: u32, k: usize, most: f64) -> Option<(f64, Vector)> {
+    pub(super) fn nearest_wall(&self, t: u32, k: usize, most: f64) -> Option<(f64, Vector)> {
         let c = self.corners(t)[k];
         let mut found: Option<(f64, Vector)> = None;
         let mut beyond = vec![(t, (k + 1) % 3)];

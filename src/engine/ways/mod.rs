@@ -16,6 +16,7 @@ mod list;
 mod map;
 mod mesh;
 mod parts;
+mod passage;
 mod reach;
 mod region;
 mod route;
@@ -28,6 +29,7 @@ pub use floor::Floor;
 pub use goal::Goal;
 pub use map::{Next, PathMap, SLACK, Way};
 pub use mesh::{Mesh, Triangle, nearest_on, side};
+pub use passage::{Passage, Passages};
 pub use route::{Destination, Route, Walker, Ways};
 pub use steer::around;
 

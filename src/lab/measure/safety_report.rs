@@ -26,18 +26,26 @@ pub fn text(measured: &Measured) -> String {
         let place = person.position;
         text += &format!(
             "\ncrowd pressure  at most {:.4} 1/s² at ({:.2}, {:.2}) m, {time:.2} s, {:.2} P/m²; mean {:.4} 1/s²\n\
-             \u{20}               above {BEFORE_ACCIDENT} 1/s² (measured before the accident at Mina in 2006, not a \
-             safety limit): {} people at once, {:.2} s at a stretch\n",
+             \u{20}               above {BEFORE_ACCIDENT} 1/s²{}: {} people at once, {:.2} s at a stretch\n",
             person.pressure.unwrap_or_default(),
             place.x,
             place.y,
             person.density,
             safety.pressures.mean().unwrap_or_default(),
+            meaning(safety),
             safety.pressures.people,
             safety.pressures.spell.longest() * safety.secs,
         );
     }
     text + &left(departures)
+}
+
+/// What is known of the pressure above which people are counted: only about packed crowds.
+fn meaning(safety: &Safety) -> String {
+    match safety.exposure.exposed(safety.secs)[0].people > 0 {
+        true => " (measured before the accident at Mina in 2006, not a safety limit)".to_owned(),
+        false => format!(" (no alarm: no one was above {} P/m²)", DENSITIES[0]),
+    }
 }
 
 /// When people had left, in one line.

@@ -56,7 +56,7 @@ pub use oscillation::Oscillation;
 pub use service_levels::ServiceLevels;
 pub use snapshot::{Snapshot, SnapshotAt};
 pub use speed_by_density::SpeedByDensity;
-pub use stuck::{STUCK_AFTER, StuckGroup};
+pub use stuck::{HEADWAY, STUCK_AFTER, StuckGroup};
 pub use walks::{Walk, Walks};
 pub use wall_forces::WallForces;
 pub use wave::{Wave, WaveData};
@@ -284,10 +284,17 @@ impl Metrics {
         self.stuck.observe(simulation);
     }
 
-    /// The agents that have made no way for [`STUCK_AFTER`] seconds, grouped by the likely cause, the largest group
-    /// first.
+    /// The agents that made less than [`HEADWAY`] in [`STUCK_AFTER`] seconds of walking, grouped by the likely cause, the
+    /// largest group first.
     pub fn stuck(&self, simulation: &Simulation) -> Vec<StuckGroup> {
         stuck::groups(&self.stuck.1, simulation)
+    }
+
+    /// The ids of these agents, in order.
+    pub fn stuck_ids(&self, simulation: &Simulation) -> Vec<u32> {
+        let ids = &simulation.frame().agents.id;
+        let agents = stuck::agents(&self.stuck.1, simulation);
+        agents.into_iter().map(|(i, ..)| ids[i]).collect()
     }
 
     /// The values measured so far.

@@ -1,6 +1,6 @@
-//! Why an agent makes no way: a likely cause, from what lies between it and its goal.
+//! Why an agent makes no headway: a likely cause, from what lies between it and its goal.
 
-use super::{Aim, Mark, STUCK_AFTER};
+use super::{Aim, STUCK_AFTER, left};
 use crate::engine::agents::RADIUS_RANGE;
 use crate::engine::geometry::Walls;
 use crate::engine::journeys::Kind;
@@ -8,48 +8,62 @@ use crate::engine::math::{Vector, direction};
 use crate::engine::simulation::Simulation;
 use crate::scenario::quote::shown;
 
-/// Agents whose centers are this far ahead block the way, as a multiple of the sum of the radii.
-const AHEAD: f64 = 1.25;
-/// An agent is ahead if its direction is within this cosine of the direction of walking: 60°.
+/// Agents whose centers are this far ahead touch, or almost, as a multiple of the sum of the radii.
+const TOUCHING: f64 = 1.25;
+/// Agents this far ahead slow those who follow, as a multiple of the sum of the radii.
+const FOLLOWED: f64 = 3.0;
+/// An agent is ahead if its direction is within this cosine of the direction of walking: 60°. It walks the other way if
+/// the same is true of it.
 const CONE: f64 = 0.5;
 /// Bodies that overlap a wall by less than this only touch it, meters.
 const TOUCH: f64 = 0.01;
 
 /// The likely cause, in words.
-pub fn of(simulation: &Simulation, i: usize, mark: &Mark) -> String {
+pub fn of(simulation: &Simulation, i: usize, aim: Aim) -> String {
     let (scene, frame) = (simulation.scene(), simulation.frame());
     let (agents, walls) = (frame.agents, frame.walls);
     let p = agents.position[i];
     if scene.pace(agents, i, frame.clock.time()) == 0.0 {
         return "its preferred speed is 0".to_owned();
     }
-    if let Some(reason) = unreachable(simulation, p, mark) {
+    if let Some(reason) = unreachable(simulation, p, aim) {
         return reason;
     }
-    let ahead = heading(simulation, i, mark.aim);
+    let ahead = heading(simulation, i, aim);
     if ahead == Vector::zeros() {
         return "it stands where it wants to be, and does not leave there".to_owned();
     }
-    let blockers = blockers(simulation, i, ahead);
+    let touching = blockers(simulation, i, TOUCHING, (aim, ahead));
+    let leaving = leaving(simulation, aim);
     // Before a door, where agents still leave, others are the cause, not the wall beside the door.
-    if let Aim::Goal(goal) = mark.aim
+    if let Aim::Goal(goal) = aim
         && scene.ways.is_none()
         && is_between(walls, p, goal)
-        && (blockers.is_none() || !agents_leave(simulation))
+        && (touching.is_none() || leaving == 0)
     {
-        return "a wall lies between it and its goal, and `navigation` is `straight`".to_owned();
+        return "a wall lies between it and its goal, and it walks straight".to_owned();
     }
     let pressing = walls_ahead(simulation, i, ahead);
-    let is_wedged = |a: &Vector| pressing.iter().any(|b| ahead.perp(a) * ahead.perp(b) < 0.0);
+    let width = 2.0 * agents.radius[i];
+    let is_wedged = |a: &Vector| {
+        let wedges = |b: &Vector| ahead.perp(a) * ahead.perp(b) < 0.0 && (a - b).norm() < width;
+        pressing.iter().any(wedges)
+    };
     if pressing.iter().any(is_wedged) {
         return "the passage ahead is narrower than its body".to_owned();
     }
-    if let Some(reason) = blockers {
-        return reason;
-    }
-    match pressing.is_empty() {
-        true => "the forces on it cancel out".to_owned(),
-        false => "it walks against a wall".to_owned(),
+    let followed = || blockers(simulation, i, FOLLOWED, (aim, ahead));
+    match touching.or_else(|| followed().filter(|_| pressing.is_empty())) {
+        Some(Blockers::Others) if leaving > 0 => {
+            let to = named(simulation, aim).map_or(String::new(), |name| format!(" by {name}"));
+            format!(
+                "others block its way, in a crowd that moves: {leaving} left{to} in the last {STUCK_AFTER} s"
+            )
+        }
+        Some(Blockers::Others) => "others block its way".to_owned(),
+        Some(Blockers::Against) => "agents that walk the other way block it".to_owned(),
+        None if pressing.is_empty() => "the forces on it cancel out".to_owned(),
+        None => "it walks against a wall".to_owned(),
     }
 }
 
@@ -66,22 +80,23 @@ fn walls_ahead(simulation: &Simulation, i: usize, ahead: Vector) -> Vec<Vector> 
 }
 
 /// Why the goal cannot be reached from `p` at all.
-fn unreachable(simulation: &Simulation, p: Vector, mark: &Mark) -> Option<String> {
+fn unreachable(simulation: &Simulation, p: Vector, aim: Aim) -> Option<String> {
     let (scene, walls) = (simulation.scene(), simulation.frame().walls);
-    match mark.aim {
-        Aim::Place(_, number) => {
+    let has_way = left(simulation, p, aim).is_some();
+    match aim {
+        Aim::Place(number) => {
             let place = &scene.journeys.places[usize::from(number)];
             let (kind, name) = (place.kind.name(), shown(&place.name));
             let state = simulation.progress().places.get(usize::from(number));
             if matches!(place.kind, Kind::Exit(_)) && state.is_some_and(|state| !state.open) {
                 return Some(format!("the exit `{name}` is closed"));
             }
-            (!mark.length.is_finite()).then(|| format!("no way leads to the {kind} `{name}`"))
+            (!has_way).then(|| format!("no way leads to the {kind} `{name}`"))
         }
         Aim::Goal(goal) if walls.obstacle_at(goal).is_some() && is_between(walls, p, goal) => Some(
             format!("its goal ({}, {}) lies inside an obstacle", goal.x, goal.y),
         ),
-        Aim::Goal(goal) if !mark.length.is_finite() => {
+        Aim::Goal(goal) if !has_way => {
             Some(format!("no way leads to its goal ({}, {})", goal.x, goal.y))
         }
         Aim::Goal(_) | Aim::Direction(_) => None,
@@ -95,44 +110,83 @@ fn heading(simulation: &Simulation, i: usize, aim: Aim) -> Vector {
     direction(preferred.unwrap_or_else(|| match aim {
         Aim::Goal(goal) => goal - frame.agents.position[i],
         Aim::Direction(along) => along,
-        Aim::Place(..) => Vector::zeros(),
+        Aim::Place(_) => Vector::zeros(),
     }))
 }
 
-/// Which agents stand before agent `i` in the direction `ahead`, if any do.
-fn blockers(simulation: &Simulation, i: usize, ahead: Vector) -> Option<String> {
+/// What blocks an agent.
+enum Blockers {
+    /// Other agents.
+    Others,
+    /// Some of them walk the other way.
+    Against,
+}
+
+/// Do agents within `far` times the sum of the radii stand before agent `i`, which walks to `aim`, first in the direction
+/// `ahead`?
+fn blockers(
+    simulation: &Simulation,
+    i: usize,
+    far: f64,
+    (aim, ahead): (Aim, Vector),
+) -> Option<Blockers> {
     let frame = simulation.frame();
     let agents = frame.agents;
     let (p, radius) = (agents.position[i], agents.radius[i]);
     let blocks = |&(j, from): &(usize, Vector)| {
         let way = agents.position[j] - from;
-        let near = AHEAD * (radius + agents.radius[j]);
+        let near = far * (radius + agents.radius[j]);
         j != i && way.norm() < near && way.dot(&ahead) > CONE * way.norm()
     };
-    let reach = 2.0 * AHEAD * radius.max(RADIUS_RANGE[1]);
+    let reach = 2.0 * far * radius.max(RADIUS_RANGE[1]);
     let around = frame.neighbors.around(p, reach).flat_map(|run| {
         let from = frame.neighbors.seen_from(p, run.laps);
         run.agents.map(move |j| (j as usize, from))
     });
-    let found: Vec<usize> = around.filter(blocks).map(|(j, _)| j).collect();
-    let against = |&&j: &&usize| {
-        let theirs = frame.fields.preferred_velocity.get(j);
-        theirs.is_some_and(|theirs| theirs.dot(&ahead) < 0.0)
+    let found: Vec<(usize, Vector)> = around.filter(blocks).collect();
+    // Each wants to be where the other one is.
+    let is_nearer = |aim: Aim, from: Vector, to: Vector| {
+        let lengths = left(simulation, from, aim).zip(left(simulation, to, aim));
+        lengths.is_some_and(|(before, after)| before - after > CONE * (to - from).norm())
+    };
+    let against = |&(j, from): &(usize, Vector)| {
+        let there = agents.position[j];
+        let theirs = super::aim(simulation, j);
+        theirs.is_some_and(|theirs| is_nearer(theirs, there, from)) && is_nearer(aim, from, there)
     };
     if found.is_empty() {
         return None;
     }
-    Some(match found.iter().filter(against).count() {
-        0 => "other agents block its way".to_owned(),
-        _ => "agents that walk the other way block it".to_owned(),
+    Some(match found.iter().any(against) {
+        true => Blockers::Against,
+        false => Blockers::Others,
     })
 }
 
-/// Have agents left during the time after which agents are stuck?
-fn agents_leave(simulation: &Simulation) -> bool {
+/// How many agents have left at an aim during the time after which agents are stuck.
+fn leaving(simulation: &Simulation, aim: Aim) -> usize {
     let now = simulation.frame().clock.time();
-    let last = simulation.outcome().arrivals.last();
-    last.is_some_and(|last| now - last.time < STUCK_AFTER)
+    let arrivals = simulation.outcome().arrivals.iter().rev();
+    let recent = arrivals.take_while(|arrival| now - arrival.time < STUCK_AFTER);
+    let left_there = recent.filter(|arrival| match aim {
+        Aim::Place(place) => arrival.trip.is_some_and(|trip| trip.exit == place),
+        Aim::Goal(_) => arrival.trip.is_none(),
+        Aim::Direction(_) => false,
+    });
+    left_there.count()
+}
+
+/// What messages call an exit.
+fn named(simulation: &Simulation, aim: Aim) -> Option<String> {
+    let Aim::Place(number) = aim else {
+        return None;
+    };
+    let place = &simulation.scene().journeys.places[usize::from(number)];
+    Some(format!(
+        "the {} `{}`",
+        place.kind.name(),
+        shown(&place.name)
+    ))
 }
 
 /// Does a wall cross the straight line from `p` to `q`?

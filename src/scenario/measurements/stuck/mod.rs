@@ -1,4 +1,4 @@
-//! Stuck agents: those that make no way towards their goals.
+//! Stuck agents: those that want to walk and make hardly any headway along their way.
 
 mod cause;
 
@@ -10,18 +10,23 @@ use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
 use crate::engine::ways::Destination;
 
-/// An agent is stuck if it has made no way for this long, seconds.
+/// An agent is stuck if it has made no headway in this time of walking, seconds.
 pub const STUCK_AFTER: f64 = 20.0;
-/// It makes way if it comes this much nearer to its goal, meters: 2.5 mm/s.
-const NEARER: f64 = 0.05;
-/// An agent that is pushed back this far moves, so its time starts again, meters.
-const PUSHED_BACK: f64 = 1.0;
+/// It makes headway if its way gets shorter by this in that time, meters.
+pub const HEADWAY: f64 = 1.0;
+/// Slow agents make headway with this part of what they would walk at their preferred speed in that time.
+const PART: f64 = 0.5;
 /// Time between two observations, seconds.
 const EVERY: f64 = 1.0;
+/// The number of observations in [`STUCK_AFTER`] seconds.
+const KEPT: usize = 20;
+/// Headways are kept as whole parts of the headway that is needed: this many. Results do not depend on rounding.
+const PARTS: f64 = 1e6;
 
 /// Observes in every run which agents are stuck: those that walk to a goal at which they would leave, to the place of a
-/// journey or in a direction, and have come less than 5 cm nearer to it in [`STUCK_AFTER`] seconds. Agents that wait,
-/// queue or stay at their goal are not stuck. The distance is the length of the agent's way, if agents find ways.
+/// journey or in a direction, and whose way has become shorter by less than [`HEADWAY`] in the last [`STUCK_AFTER`]
+/// seconds in which they walked. Agents whose preferred speed is below 0.1 m/s need only half of what they would walk. An
+/// agent that waits, queues or stays at its goal is not stuck, and its time starts again when it walks on.
 #[derive(Debug, Clone)]
 pub struct Stuck;
 
@@ -30,22 +35,27 @@ pub struct Stuck;
 pub(super) enum Aim {
     /// Its goal, meters.
     Goal(Vector),
-    /// The place of a stage of its journey: numbers of the stage and the place.
-    Place(u16, u16),
+    /// The place with this number.
+    Place(u16),
     /// A direction.
     Direction(Vector),
 }
 
-/// The last time at which an agent made way.
+/// The headway of an agent in the last seconds.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub struct Mark {
+pub struct Headway {
     aim: Aim,
-    /// Seconds.
-    time: f64,
-    /// Its position then, in a periodic scene counted over all periods, meters.
+    /// Its position at the last observation, meters.
     position: Vector,
-    /// How far it had to go, meters; infinite without a way.
-    length: f64,
+    /// How far it had to go then, meters; `None` without a way.
+    left: Option<f64>,
+    /// The number of observations since it walks.
+    count: u32,
+    /// Its headway before each of the last ones, number k at k modulo their number, in parts of the headway that is
+    /// needed.
+    made: [i32; KEPT],
+    /// Since when it has made too little, seconds; `None` if it makes headway.
+    since: Option<f64>,
 }
 
 /// Agents that are stuck for the same reason.
@@ -59,13 +69,13 @@ pub struct StuckGroup {
     pub agent: u32,
     /// Its position, meters.
     pub at: [f64; 2],
-    /// How long it has made no way, seconds.
+    /// For how long it has made less headway than needed, seconds.
     pub for_secs: f64,
 }
 
 impl Measure for Stuck {
-    /// By id; `None` for agents that are absent or do not walk to a goal.
-    type Seen = Vec<Option<Mark>>;
+    /// By id; `None` for agents that are absent or do not walk.
+    type Seen = Vec<Option<Headway>>;
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
         if is_due(simulation, [0.0, f64::INFINITY], EVERY) {
@@ -74,30 +84,33 @@ impl Measure for Stuck {
     }
 }
 
+/// The indices of the agents that are stuck in the current frame, by id, each with the time since when, seconds, and what
+/// it walks to.
+pub(super) fn agents(seen: &[Option<Headway>], simulation: &Simulation) -> Vec<(usize, f64, Aim)> {
+    let ids = &simulation.frame().agents.id;
+    let mut order: Vec<usize> = (0..ids.len()).collect();
+    order.sort_unstable_by_key(|&i| ids[i]);
+    let stuck = order.into_iter().filter_map(|i| {
+        let headway = seen.get(ids[i] as usize)?.as_ref()?;
+        Some((i, headway.since?, aim(simulation, i)?))
+    });
+    stuck.collect()
+}
+
 /// The agents that are stuck in the current frame, grouped by the likely cause, the largest group first.
-pub(super) fn groups(seen: &[Option<Mark>], simulation: &Simulation) -> Vec<StuckGroup> {
+pub(super) fn groups(seen: &[Option<Headway>], simulation: &Simulation) -> Vec<StuckGroup> {
     let frame = simulation.frame();
-    let (now, agents) = (frame.clock.time(), frame.agents);
     let mut groups: Vec<StuckGroup> = Vec::new();
-    let mut order: Vec<usize> = (0..agents.len()).collect();
-    order.sort_unstable_by_key(|&i| agents.id[i]);
-    for i in order {
-        let Some(Some(mark)) = seen.get(agents.id[i] as usize) else {
-            continue;
-        };
-        let for_secs = now - mark.time;
-        if for_secs < STUCK_AFTER || aim(simulation, i) != Some(mark.aim) {
-            continue;
-        }
-        let cause = cause::of(simulation, i, mark);
+    for (i, since, aim) in agents(seen, simulation) {
+        let cause = cause::of(simulation, i, aim);
         match groups.iter_mut().find(|group| group.cause == cause) {
             Some(group) => group.agents += 1,
             None => groups.push(StuckGroup {
                 cause,
                 agents: 1,
-                agent: agents.id[i],
-                at: agents.position[i].into(),
-                for_secs,
+                agent: frame.agents.id[i],
+                at: frame.agents.position[i].into(),
+                for_secs: frame.clock.time() - since,
             }),
         }
     }
@@ -105,9 +118,8 @@ pub(super) fn groups(seen: &[Option<Mark>], simulation: &Simulation) -> Vec<Stuc
     groups
 }
 
-fn watch(seen: &mut Vec<Option<Mark>>, simulation: &Simulation) {
-    let frame = simulation.frame();
-    let (now, agents) = (frame.clock.time(), frame.agents);
+fn watch(seen: &mut Vec<Option<Headway>>, simulation: &Simulation) {
+    let agents = simulation.frame().agents;
     let groups = &simulation.scene().groups;
     let can_be_stuck = |group: &crate::engine::scene::Group| {
         group.removal_radius.is_some() || group.journey.is_some() || group.direction.is_some()
@@ -119,26 +131,53 @@ fn watch(seen: &mut Vec<Option<Mark>>, simulation: &Simulation) {
     seen.resize(agents.entered() as usize, None);
     for i in 0..agents.len() {
         let id = agents.id[i] as usize;
-        let Some(aim) = aim(simulation, i) else {
-            continue;
-        };
-        let position = position(simulation, i);
-        let mark = before.get(id).copied().flatten();
-        let mark = mark.filter(|mark| mark.aim == aim);
-        // No way is longer or shorter by more than the agent has moved.
-        if let Some(kept) = mark.filter(|mark| (position - mark.position).norm() < NEARER) {
-            seen[id] = Some(kept);
-            continue;
-        }
-        let length = length(simulation, i, aim);
-        let made =
-            |mark: &Mark| length < mark.length - NEARER || length > mark.length + PUSHED_BACK;
-        seen[id] = mark.filter(|mark| !made(mark)).or(Some(Mark {
+        let before = before.get(id).copied().flatten();
+        seen[id] = aim(simulation, i).map(|aim| match before {
+            Some(before) => before.next(simulation, i, aim),
+            None => Headway::begin(simulation, position(simulation, i), aim),
+        });
+    }
+}
+
+impl Headway {
+    /// That of an agent at `p` that begins to walk to `aim`.
+    fn begin(simulation: &Simulation, p: Vector, aim: Aim) -> Self {
+        Self {
             aim,
-            time: now,
-            position,
-            length,
-        }));
+            position: p,
+            left: left(simulation, p, aim),
+            count: 0,
+            made: [0; KEPT],
+            since: None,
+        }
+    }
+
+    /// The headway of agent `i`, which now walks to `aim`, one observation later.
+    fn next(mut self, simulation: &Simulation, i: usize, aim: Aim) -> Self {
+        let frame = simulation.frame();
+        let (here, now) = (position(simulation, i), frame.clock.time());
+        // The headway on the way that it walks now, also if it has chosen that just now.
+        let before = match self.aim == aim {
+            true => self.left,
+            false => left(simulation, self.position, aim),
+        };
+        self.left = match self.position == here {
+            true => before,
+            false => left(simulation, here, aim),
+        };
+        let made = before.zip(self.left).map_or(0.0, |(a, b)| a - b);
+        let pace = simulation.scene().pace(frame.agents, i, now);
+        let needed = match pace > 0.0 {
+            true => HEADWAY.min(PART * STUCK_AFTER * pace),
+            false => HEADWAY,
+        };
+        (self.aim, self.position) = (aim, here);
+        self.made[self.count as usize % KEPT] = (PARTS * made / needed).round() as i32; // saturates
+        self.count = self.count.saturating_add(1);
+        let all: i64 = self.made.iter().map(|&made| i64::from(made)).sum();
+        let is_short = self.count as usize >= KEPT && all < PARTS as i64;
+        self.since = is_short.then(|| self.since.unwrap_or(now - STUCK_AFTER));
+        self
     }
 }
 
@@ -157,7 +196,7 @@ fn aim(simulation: &Simulation, i: usize) -> Option<Aim> {
     if group.journey.is_some() {
         let trip = agents.trip.get(i)?.as_ref()?;
         let walks = trip.status == Status::Walking && trip.hold.is_none();
-        return walks.then_some(Aim::Place(trip.stage, trip.place));
+        return walks.then_some(Aim::Place(trip.place));
     }
     let leaves = group.removal_radius.is_some();
     leaves.then_some(Aim::Goal(agents.goal[i]))
@@ -171,17 +210,17 @@ fn position(simulation: &Simulation, i: usize) -> Vector {
     agents.position[i] + way.unwrap_or_default()
 }
 
-/// How far agent `i` has to go, meters; infinite without a way.
-fn length(simulation: &Simulation, i: usize, aim: Aim) -> f64 {
-    let p = simulation.frame().agents.position[i];
+/// How far it is from `p` to `aim`, meters; `None` without a way.
+fn left(simulation: &Simulation, p: Vector, aim: Aim) -> Option<f64> {
     let ways = simulation.scene().ways.as_ref();
     let by_way = |to: Destination| {
         let ways = ways.filter(|ways| ways.leads_to(to))?;
-        Some(ways.way(p, to).map_or(f64::INFINITY, |way| way.length))
+        Some(ways.way(p, to).map(|way| way.length))
     };
-    match aim {
-        Aim::Goal(goal) => by_way(Destination::Goal(goal)).unwrap_or((goal - p).norm()),
-        Aim::Place(_, place) => by_way(Destination::Place(place)).unwrap_or(f64::INFINITY),
-        Aim::Direction(direction) => -direction.dot(&position(simulation, i)),
-    }
+    let length = match aim {
+        Aim::Goal(goal) => by_way(Destination::Goal(goal)).unwrap_or(Some((goal - p).norm())),
+        Aim::Place(place) => by_way(Destination::Place(place)).flatten(),
+        Aim::Direction(direction) => Some(-direction.dot(&p)),
+    };
+    length.filter(|length| length.is_finite())
 }
