@@ -17,6 +17,7 @@ mod crowds;
 mod determinism;
 mod distributions;
 mod doors;
+mod doubts;
 mod enclosures;
 mod endings;
 mod entrances;

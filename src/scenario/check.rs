@@ -14,8 +14,8 @@ use super::plan::Surroundings;
 use super::profiles::{ProfileChoice, ProfileName};
 use super::range::{self, region};
 use super::{
-    PlanFile, Scenario, from, journeys, late, measurements, numerics, off_floor, periodic, plan,
-    preset, profiles, view, ways,
+    PlanFile, Scenario, doubts, from, journeys, late, measurements, numerics, off_floor, periodic,
+    plan, preset, profiles, view, ways,
 };
 use crate::engine::geometry::Polygon;
 use crate::engine::period::Period;
@@ -79,12 +79,17 @@ impl Contents {
         tracks.under("from")
     }
 
-    /// A note on what begins after the end of the run. If settings make the run shorter than the file without them,
-    /// `own`, what begins within that longer time is left out.
-    pub(super) fn late(&self, own: Option<&Value>) -> Option<String> {
+    /// The end of the run, and the time up to which what begins is not late, seconds: the later end of the file without
+    /// settings, `own`, if they make the run shorter.
+    pub(super) fn ends(&self, own: Option<&Value>) -> [f64; 2] {
         let end = duration(&self.keys);
         let own = own.map(|own| own["duration_secs"].as_f64().unwrap_or(DEFAULT_DURATION));
-        late::note(&self.document, end, own.map_or(end, |own| own.max(end)))
+        [end, own.map_or(end, |own| own.max(end))]
+    }
+
+    /// A note on what begins after the end of the run.
+    pub(super) fn late(&self, [end, last]: [f64; 2]) -> Option<String> {
+        late::note(&self.document, end, last)
     }
 
     /// Checks relations between values and places the agents. The name of the file `path` is the default name of the
@@ -113,6 +118,7 @@ impl Contents {
         let placed = scene.agents.len() as u64;
         let fewer = self.need.initial.saturating_sub(placed); // crowds with a density
         let entering = self.need.entering - fewer;
+        notes.extend(doubts::notes(keys, &scene, entering));
         Ok(Scenario {
             name: keys.name.clone().unwrap_or_else(|| stem.into_owned()),
             description: keys.description.clone().unwrap_or_default(),

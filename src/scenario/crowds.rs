@@ -21,6 +21,8 @@ use crate::engine::packing::{self, Body, Space};
 use crate::engine::random::{self, Purpose};
 use crate::engine::scene::Region;
 
+/// The most parts of an area whose agents a note counts.
+const MOST_COUNTS: usize = 4;
 /// The share of radii that may be smaller than assumed.
 const RARE: f64 = 1e-6;
 
@@ -113,6 +115,27 @@ impl Crowd {
     }
 }
 
+/// A note if walls divide the free area of the crowd `name`, whose agents stand at `places`.
+fn divided(areas: &[Area], places: &[Vector], name: &str) -> Option<String> {
+    if areas.len() < 2 {
+        return None;
+    }
+    let there = |area: &Area| places.iter().filter(|&&p| area.contains(p)).count();
+    let mut counts: Vec<usize> = areas.iter().map(there).filter(|&one| one > 0).collect();
+    counts.sort_unstable_by(|a, b| b.cmp(a));
+    (counts.len() > 1).then(|| {
+        let parts = counts.len();
+        let counts = counts.iter().take(MOST_COUNTS).map(usize::to_string);
+        let mut counts: Vec<String> = counts.collect();
+        counts.extend((parts > MOST_COUNTS).then(|| "…".to_owned()));
+        let counts = counts.join(", ");
+        format!(
+            "{name}.area: walls divide it into {parts} parts, with {counts} agents; draw it within one room if they \
+             should stand in one"
+        )
+    })
+}
+
 impl Building<'_> {
     /// Adds the agents of crowd `index`.
     pub(super) fn crowd(&mut self, given: &Crowd, index: u32, place: &str) -> Result<(), Problem> {
@@ -163,6 +186,7 @@ impl Building<'_> {
             );
             Problem::new("", reason)
         })?;
+        self.notes.extend(divided(&areas, &places, place));
         let behavior = Behavior {
             journey,
             direction: target.direction,

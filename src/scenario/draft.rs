@@ -8,6 +8,7 @@ use super::Scenario;
 use super::check::Contents;
 use super::document;
 use super::error::{Problem, ScenarioError};
+use super::late;
 use super::need::Need;
 use super::plan;
 use super::setting::Setting;
@@ -80,10 +81,12 @@ impl Draft {
     /// The first problem, with its place.
     pub fn scenario(self) -> Result<Scenario, ScenarioError> {
         let Self { contents, origin } = self;
-        let late = contents.late(origin.without.as_ref());
+        let ends = contents.ends(origin.without.as_ref());
+        let late = contents.late(ends);
         let scenario = contents.scenario(Path::new(&origin.file));
         let mut scenario = scenario.map_err(|problem| origin.blame(problem))?;
         scenario.notes.extend(late);
+        scenario.notes.extend(late::idle(&scenario.scene, ends));
         scenario.changes = origin.changes();
         Ok(scenario)
     }

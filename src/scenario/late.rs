@@ -1,8 +1,13 @@
-//! A note on events, closures and measurements that begin after the end of a run.
+//! Notes on events, closures and measurements that begin after the end of a run, and on agents that never start walking
+//! in it.
 
 use serde_json::Value;
 
+use super::quote::shown;
 use super::range::brief;
+use crate::engine::agents::NewAgent;
+use crate::engine::random::Purpose;
+use crate::engine::scene::Scene;
 
 /// Lists, and the keys of their elements that say when something begins.
 const BEGIN: [(&str, &str); 3] = [
@@ -35,6 +40,35 @@ pub(super) fn note(document: &Value, end: f64, last: f64) -> Option<String> {
         note += &named.join(", ");
     }
     Some(note)
+}
+
+/// A note on the agents that enter, but have not started walking by `last`, in a run that ends at `end`, seconds.
+pub(super) fn idle(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
+    let wait = |agent: &NewAgent, id: u32| {
+        let traits = &scene.groups[usize::from(agent.group)].traits;
+        let drawn = || {
+            let premovement = traits.premovement.as_ref()?;
+            Some(premovement.draw(scene.seed, Purpose::Premovement, id))
+        };
+        agent.premovement.or_else(drawn).unwrap_or(0.0)
+    };
+    let initial = scene.agents.iter().zip(0..);
+    let idle = initial.filter(|&(agent, id)| wait(agent, id) >= last && end > 0.0);
+    let count = idle.count();
+    let later = scene.sources.iter().map(|one| (&one.name, one.group));
+    let later = later.chain(scene.entrances.iter().map(|one| (&one.name, one.group)));
+    let all_wait = later.filter(|&(_, group)| {
+        let premovement = &scene.groups[usize::from(group)].traits.premovement;
+        let waits = premovement.as_ref().map(|time| time.share_up_to(last));
+        waits.is_some_and(|walking| walking <= 0.0)
+    });
+    let named = all_wait.map(|(name, _)| format!("all of {}", shown(name)));
+    let some = (count > 0).then(|| format!("{count} of the {} at the start", scene.agents.len()));
+    let who: Vec<String> = some.into_iter().chain(named).collect();
+    (!who.is_empty()).then(|| {
+        let (who, end) = (who.join(", "), brief(end));
+        format!("premovement_secs: agents that never start walking before the end of the run, {end} s: {who}")
+    })
 }
 
 /// The times at which something begins, seconds, with their places.

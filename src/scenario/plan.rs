@@ -7,13 +7,13 @@ use serde_json::{Value, json};
 use super::PlanFile;
 use super::error::{Problem, Under};
 use super::file::File;
+use super::openings::{BEHIND, Door, OVERLAP, Opening, WIDE_AT, openings};
 use super::periodic;
 use super::setting::Setting;
 use super::shapes::{Obstacle, Point, Ring as GivenRing};
 use crate::engine::geometry::{Area, Polygon, Ring};
-use crate::engine::math::{Vector, direction, perpendicular};
+use crate::engine::math::Vector;
 use crate::engine::period::Period;
-use crate::engine::simulation::{BEFORE_WALLS, WALKS_ON};
 use crate::scenario::floor_plan::{self, FloorPlan, FloorPlanError, Label};
 use crate::scenario::quote::shown;
 
@@ -162,10 +162,13 @@ pub(super) fn surroundings(file: &File) -> Result<Surroundings, Problem> {
     }
     solids.extend(copies);
     if let Some(polygons) = &file.walkable_area {
-        let exits = file.exits.iter().map(|exit| exit.line);
-        let entrances = file.entrances.iter().map(|entrance| entrance.line.0);
-        let doors = exits.chain(entrances).map(|line| line.map(Vector::from));
-        let doors: Vec<[Vector; 2]> = doors.collect();
+        let exits = file.exits.iter().map(|exit| (exit.line, BEHIND));
+        let entrances = file.entrances.iter();
+        let entrances = entrances.map(|entrance| (entrance.line.0, WIDE_AT));
+        let doors = exits.chain(entrances);
+        let doors: Vec<Door> = doors
+            .map(|(line, reach)| (line.map(Vector::from), reach))
+            .collect();
         let around = walls_round(polygons, &doors, period.as_ref()).under(WALKABLE_AREA)?;
         if let Some(period) = &period {
             periodic::check_ends(&around.solids, period).under(WALKABLE_AREA)?;
@@ -179,7 +182,7 @@ pub(super) fn surroundings(file: &File) -> Result<Surroundings, Problem> {
 /// The solid around `polygons` and their copies, open behind the lines of exits and entrances.
 fn walls_round(
     polygons: &[Vec<GivenRing>],
-    doors: &[[Vector; 2]],
+    doors: &[Door],
     period: Option<&Period>,
 ) -> Result<Surroundings, Problem> {
     let mut given = Vec::with_capacity(polygons.len());
@@ -199,143 +202,6 @@ fn walls_round(
             .map_err(|error| Problem::new("", error.to_string()))?,
         behind: openings.iter().map(Opening::outline).collect(),
     })
-}
-
-/// People need this much room behind the line of an exit to cross it, meters.
-const ROOM_BEHIND: f64 = 0.5;
-/// The floor behind the line of an exit on the edge of the walkable area is this long, meters: the bodies of those who
-/// have left walk on there.
-const BEHIND: f64 = WALKS_ON + BEFORE_WALLS;
-/// That floor begins this far before the line, meters, so that rounding leaves no gap between.
-const OVERLAP: f64 = 0.01;
-
-/// That floor widens by this on both sides, meters, or less where something else is near: RVO stops in front of a dead
-/// end as wide as a door.
-const WIDENS: [f64; 4] = [3.0, 2.0, 1.0, 0.0];
-/// It has widened this far behind the line, meters.
-const WIDE_AT: f64 = 3.0;
-
-/// The floor behind the line of an exit or entrance on the edge of the walkable area.
-struct Opening {
-    /// The ends of the line, meters.
-    ends: [Vector; 2],
-    /// The direction from the first end to the second, and out of the area.
-    directions: [Vector; 2],
-    /// Meters.
-    depth: f64,
-    /// It is wider by this on both sides from [`WIDE_AT`] on, meters.
-    widens: f64,
-}
-
-/// The floors behind the lines of exits and entrances that lie on the edge of the walkable area. Where another room lies
-/// behind, the floor ends there; the floors of two lines do not touch unless their lines are that near.
-fn openings(walkable: &[Area], doors: &[[Vector; 2]]) -> Vec<Opening> {
-    let is_floor = |p: Vector| walkable.iter().any(|area| area.contains(p));
-    let openings = doors
-        .iter()
-        .filter_map(|&door| Opening::of(&is_floor, door));
-    let openings: Vec<Opening> = openings.collect();
-    let widest = |opening: &Opening| {
-        let is_taken = |p: Vector, widens: f64| {
-            let mut others = openings.iter().filter(|other| !other.is_at(opening.ends));
-            is_floor(p) || others.any(|other| other.widened(widens).contains(p))
-        };
-        let wide = WIDENS.into_iter().map(|widens| opening.widened(widens));
-        let mut free = wide.filter(|wide| !wide.places().any(|p| is_taken(p, wide.widens)));
-        free.next().unwrap_or_else(|| opening.widened(0.0))
-    };
-    openings.iter().map(widest).collect()
-}
-
-impl Opening {
-    /// `None` if there is room to cross the line, or none on both sides.
-    fn of(is_floor: &impl Fn(Vector) -> bool, [a, b]: [Vector; 2]) -> Option<Self> {
-        const STEPS: u32 = 300;
-        let middle = (a + b) * 0.5;
-        let room = |way: Vector, length: f64| {
-            let steps = (1..=STEPS).map(|k| length * f64::from(k) / f64::from(STEPS));
-            let mut places = steps.map(|step| (step, is_floor(middle + way * step)));
-            places.find(|(_, is_floor)| !is_floor).map(|(step, _)| step)
-        };
-        let along = direction(b - a);
-        let normal = perpendicular(along);
-        let out = [normal, -normal]
-            .into_iter()
-            .find(|way| room(*way, ROOM_BEHIND).is_some())?;
-        if room(-out, ROOM_BEHIND).is_some() {
-            return None; // walls on both sides: the line is not at a floor, which is refused later
-        }
-        let wall = room(out, ROOM_BEHIND)?;
-        let steps = (1..=STEPS).map(|k| wall + (BEHIND - wall) * f64::from(k) / f64::from(STEPS));
-        let mut behind = steps.filter(|step| is_floor(middle + out * *step));
-        Some(Self {
-            ends: [a, b],
-            directions: [along, out],
-            depth: behind.next().unwrap_or(BEHIND),
-            widens: 0.0,
-        })
-    }
-
-    fn widened(&self, widens: f64) -> Self {
-        Self { widens, ..*self }
-    }
-
-    /// Whether it is behind this line.
-    fn is_at(&self, [a, b]: [Vector; 2]) -> bool {
-        self.ends == [a, b] || self.ends == [b, a]
-    }
-
-    /// How much wider it is on each side `step` meters behind the line, meters.
-    fn aside(&self, step: f64) -> f64 {
-        self.widens * (step / WIDE_AT).clamp(0.0, 1.0)
-    }
-
-    /// The place `step` meters behind the line; `across` is 0 on one side and 1 on the other.
-    fn place(&self, step: f64, across: f64) -> Vector {
-        let ([a, b], [along, out]) = (self.ends, self.directions);
-        let aside = along * self.aside(step);
-        let (a, b) = (a - aside, b + aside);
-        a + (b - a) * across + out * step
-    }
-
-    /// Places all over the widened part, some decimeters apart.
-    fn places(&self) -> impl Iterator<Item = Vector> {
-        const STEPS: u32 = 24;
-        let part = |k: u32| f64::from(k) / f64::from(STEPS);
-        let steps = if self.widens > 0.0 { 1..STEPS } else { 0..0 };
-        steps.flat_map(move |k| {
-            let step = self.depth * part(k);
-            (0..=STEPS).map(move |l| self.place(step, part(l)))
-        })
-    }
-
-    fn contains(&self, p: Vector) -> bool {
-        let (way, [along, out]) = (p - self.ends[0], self.directions);
-        let (step, across) = (way.dot(&out), way.dot(&along));
-        let aside = self.aside(step);
-        let width = (self.ends[1] - self.ends[0]).norm();
-        (0.0..=self.depth).contains(&step) && (-aside..=width + aside).contains(&across)
-    }
-
-    /// The floor behind the line, counterclockwise.
-    fn outline(&self) -> Vec<Vector> {
-        let mut outline: Vec<Vector> = self.ring(0.0).into_iter().map(Vector::from).collect();
-        let [along, out] = self.directions;
-        if along.perp(&out) < 0.0 {
-            outline.reverse();
-        }
-        outline
-    }
-
-    /// The corners, from `first` meters behind the line.
-    fn ring(&self, first: f64) -> Vec<[f64; 2]> {
-        let is_long = self.depth > WIDE_AT;
-        let steps = [Some(first), is_long.then_some(WIDE_AT), Some(self.depth)];
-        let steps = steps.into_iter().flatten();
-        let there = steps.clone().map(|step| self.place(step, 1.0));
-        let back = steps.rev().map(|step| self.place(step, 0.0));
-        there.chain(back).map(Into::into).collect()
-    }
 }
 
 /// An area from its outline and holes.

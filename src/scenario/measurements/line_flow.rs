@@ -132,7 +132,9 @@ impl Measure for LineFlow {
             ("density_per_m2", "P/m²"),
             ("speed_m_per_s", "m/s"),
         ];
-        values.into_iter().map(name).collect()
+        // Density and speed are those in the region.
+        let count = if self.region.is_some() { 4 } else { 2 };
+        values.into_iter().take(count).map(name).collect()
     }
 
     fn observe(&self, seen: &mut Seen, simulation: &Simulation) {

@@ -1,0 +1,156 @@
+//! Floors behind the lines of exits and entrances on the edge of the walkable area.
+
+use crate::engine::geometry::Area;
+use crate::engine::math::{Vector, direction, perpendicular};
+use crate::engine::simulation::{BEFORE_WALLS, WALKS_ON};
+
+/// People need this much room behind the line of an exit to cross it, meters.
+const ROOM_BEHIND: f64 = 0.5;
+/// The line of an exit or entrance, and the length of the floor behind it, meters.
+pub(super) type Door = ([Vector; 2], f64);
+
+/// The floor behind the line of an exit on the edge of the walkable area is this long, meters: the bodies of those who
+/// have left walk on there. The floor behind an entrance ends at [`WIDE_AT`].
+pub(super) const BEHIND: f64 = WALKS_ON + BEFORE_WALLS;
+/// Where another room lies behind an exit, but not near, the floor ends this far before it, meters.
+const BEFORE_ROOMS: f64 = 0.5;
+/// That floor begins this far before the line, meters, so that rounding leaves no gap between.
+pub(super) const OVERLAP: f64 = 0.01;
+
+/// That floor widens by this on both sides, meters, or less where something else is near: RVO stops in front of a dead
+/// end as wide as a door.
+const WIDENS: [f64; 4] = [3.0, 2.0, 1.0, 0.0];
+/// It has widened this far behind the line, meters.
+pub(super) const WIDE_AT: f64 = 3.0;
+
+/// The floor behind the line of an exit or entrance on the edge of the walkable area.
+pub(super) struct Opening {
+    /// The ends of the line, meters.
+    ends: [Vector; 2],
+    /// The direction from the first end to the second, and out of the area.
+    directions: [Vector; 2],
+    /// Meters.
+    depth: f64,
+    /// It is wider by this on both sides from [`WIDE_AT`] on, meters.
+    widens: f64,
+}
+
+/// The floors behind the lines of exits and entrances that lie on the edge of the walkable area. Where another room lies
+/// behind, the floor ends there; the floors of two lines do not touch unless their lines are that near.
+pub(super) fn openings(walkable: &[Area], doors: &[Door]) -> Vec<Opening> {
+    let is_floor = |p: Vector| walkable.iter().any(|area| area.contains(p));
+    let openings = doors
+        .iter()
+        .filter_map(|&door| Opening::of(&is_floor, door));
+    let openings: Vec<Opening> = openings.collect();
+    let widest = |opening: &Opening| {
+        let is_taken = |p: Vector, widens: f64| {
+            let mut others = openings.iter().filter(|other| !other.is_at(opening.ends));
+            is_floor(p) || others.any(|other| other.widened(widens).contains(p))
+        };
+        let wide = WIDENS.into_iter().map(|widens| opening.widened(widens));
+        let mut free = wide.filter(|wide| !wide.places().any(|p| is_taken(p, wide.widens)));
+        free.next().unwrap_or_else(|| opening.widened(0.0))
+    };
+    openings.iter().map(widest).collect()
+}
+
+impl Opening {
+    /// `None` if there is room to cross the line, or none on both sides.
+    fn of(is_floor: &impl Fn(Vector) -> bool, ([a, b], reach): Door) -> Option<Self> {
+        const STEPS: u32 = 300;
+        let middle = (a + b) * 0.5;
+        let room = |way: Vector, length: f64| {
+            let steps = (1..=STEPS).map(|k| length * f64::from(k) / f64::from(STEPS));
+            let mut places = steps.map(|step| (step, is_floor(middle + way * step)));
+            places.find(|(_, is_floor)| !is_floor).map(|(step, _)| step)
+        };
+        let along = direction(b - a);
+        let normal = perpendicular(along);
+        let out = [normal, -normal]
+            .into_iter()
+            .find(|way| room(*way, ROOM_BEHIND).is_some())?;
+        if room(-out, ROOM_BEHIND).is_some() {
+            return None; // walls on both sides: the line is not at a floor, which is refused later
+        }
+        let wall = room(out, ROOM_BEHIND)?;
+        let steps = (1..=STEPS).map(|k| wall + (reach - wall) * f64::from(k) / f64::from(STEPS));
+        let is_room = |step: &f64| {
+            let far = [a, b].into_iter().filter(|_| *step > WIDE_AT);
+            let mut places = far.chain([middle]).map(|place| place + out * *step);
+            places.any(is_floor)
+        };
+        let room = steps.into_iter().find(is_room);
+        let depth = room.map_or(reach, |step| match step > WIDE_AT {
+            true => step - BEFORE_ROOMS,
+            false => step,
+        });
+        Some(Self {
+            ends: [a, b],
+            directions: [along, out],
+            depth,
+            widens: 0.0,
+        })
+    }
+
+    fn widened(&self, widens: f64) -> Self {
+        Self { widens, ..*self }
+    }
+
+    /// Whether it is behind this line.
+    fn is_at(&self, [a, b]: [Vector; 2]) -> bool {
+        self.ends == [a, b] || self.ends == [b, a]
+    }
+
+    /// How much wider it is on each side `step` meters behind the line, meters.
+    fn aside(&self, step: f64) -> f64 {
+        self.widens * (step / WIDE_AT).clamp(0.0, 1.0)
+    }
+
+    /// The place `step` meters behind the line; `across` is 0 on one side and 1 on the other.
+    fn place(&self, step: f64, across: f64) -> Vector {
+        let ([a, b], [along, out]) = (self.ends, self.directions);
+        let aside = along * self.aside(step);
+        let (a, b) = (a - aside, b + aside);
+        a + (b - a) * across + out * step
+    }
+
+    /// Places all over the widened part, some decimeters apart.
+    fn places(&self) -> impl Iterator<Item = Vector> {
+        const STEPS: u32 = 24;
+        let part = |k: u32| f64::from(k) / f64::from(STEPS);
+        let steps = if self.widens > 0.0 { 1..STEPS } else { 0..0 };
+        steps.flat_map(move |k| {
+            let step = self.depth * part(k);
+            (0..=STEPS).map(move |l| self.place(step, part(l)))
+        })
+    }
+
+    fn contains(&self, p: Vector) -> bool {
+        let (way, [along, out]) = (p - self.ends[0], self.directions);
+        let (step, across) = (way.dot(&out), way.dot(&along));
+        let aside = self.aside(step);
+        let width = (self.ends[1] - self.ends[0]).norm();
+        (0.0..=self.depth).contains(&step) && (-aside..=width + aside).contains(&across)
+    }
+
+    /// The floor behind the line, counterclockwise.
+    pub(super) fn outline(&self) -> Vec<Vector> {
+        let mut outline: Vec<Vector> = self.ring(0.0).into_iter().map(Vector::from).collect();
+        let [along, out] = self.directions;
+        if along.perp(&out) < 0.0 {
+            outline.reverse();
+        }
+        outline
+    }
+
+    /// The corners, from `first` meters behind the line.
+    pub(super) fn ring(&self, first: f64) -> Vec<[f64; 2]> {
+        let is_long = self.depth > WIDE_AT;
+        let steps = [Some(first), is_long.then_some(WIDE_AT), Some(self.depth)];
+        let steps = steps.into_iter().flatten();
+        let there = steps.clone().map(|step| self.place(step, 1.0));
+        let back = steps.rev().map(|step| self.place(step, 0.0));
+        there.chain(back).map(Into::into).collect()
+    }
+}
