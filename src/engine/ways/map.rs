@@ -107,7 +107,8 @@ impl PathMap {
         let mut queue: VecDeque<u32> = (0..count).filter(|&t| !is_empty(t)).collect();
         while let Some(t) = queue.pop_front() {
             let mut from_middle = None;
-            for next in floor.mesh.triangle(t).across.into_iter().flatten() {
+            let triangle = floor.mesh.triangle(t);
+            for next in (0..3).filter_map(|side| triangle.beyond(side)) {
                 if out[next as usize].is_none() && is_empty(next) {
                     let length = from_middle
                         .get_or_insert_with(|| self.length_from_middle(floor, t, out[t as usize]));
