@@ -316,10 +316,10 @@ impl PathMap {
         Some(self.targets.nearest(floor, next, floor.place(bend)))
     }
 
-    /// Does a way bend around a corner from anywhere?
+    /// Does a wall or a closed passage stand between the goal and some place of the floor from which a way leads there?
     pub fn bends(&self) -> bool {
         let mut entries = self.parts.all();
-        entries.any(|entry| self.targets.bend(entry.target).is_some())
+        !self.out.is_empty() || entries.any(|entry| self.targets.bend(entry.target).is_some())
     }
 
     /// The memory that building it took in addition, bytes.
