@@ -1,10 +1,20 @@
 //! Ways beside passages that are too narrow: closed passages close nothing else, and ways lead around them.
 
-use sandbox::engine::math::Vector;
-use sandbox::engine::ways::Destination;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use sandbox::engine::math::{Vector, direction, perpendicular};
+use sandbox::engine::ways::{Destination, Floor, Goal, Ways};
 use serde_json::{Value, json};
 
+use crate::common::floors::Plan;
 use crate::common::simulated::{after, scenario};
+use crate::common::visibility::Sights;
+
+/// Narrower passages are closed, meters.
+const WIDTH: f64 = 0.4;
+/// Half of the thickness of bodies that close passages, meters.
+const THIN: f64 = 5e-5;
 
 fn read(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
@@ -65,4 +75,54 @@ fn an_agent_has_ways_whatever_others_see() {
         .unwrap()
         .push(json!({"position": [3, 3], "goal": [7, 5]}));
     assert_eq!(lengths(&slit)[0], alone);
+}
+
+/// What is seen on the floor of a plan on which thin bodies stand in all passages that are too narrow.
+fn closed(plan: &Plan) -> Sights {
+    let mut plan = plan.clone();
+    let passages = Sights::new(&plan.areas()).passages(WIDTH - 1e-6);
+    for [a, b] in passages {
+        let along = direction(b - a) * THIN;
+        let aside = perpendicular(along);
+        let (a, b) = (a - along, b + along);
+        let ring = [a - aside, b - aside, b + aside, a + aside];
+        plan.rings.push(ring.map(Into::into).to_vec());
+    }
+    Sights::new(&plan.areas())
+}
+
+#[test]
+fn ways_beside_closed_passages_agree_with_brute_force() {
+    let plans = std::env::var("WAY_PLANS").map_or(150, |cases| cases.parse().unwrap());
+    let counts = (0..plans).into_par_iter().map(|seed: u64| {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let plan = match rng.random_range(0..4) {
+            0 => Plan::random(&mut rng),
+            _ => Plan::drawn(&mut rng),
+        };
+        let areas = plan.areas();
+        let sights = closed(&plan);
+        let floor = Floor::new(&areas, WIDTH).unwrap();
+        let Some(goal) = plan.free(&mut rng, 0.02) else {
+            return [0; 2];
+        };
+        let ways = Ways::new(floor, &[vec![Goal::Point(goal)]], Vec::new()).unwrap();
+        let starts: Vec<Vector> = (0..8).filter_map(|_| plan.free(&mut rng, 1e-3)).collect();
+        let mut counts = [0; 2];
+        for (&p, expected) in starts.iter().zip(sights.lengths([goal; 2], &starts)) {
+            let way = ways.open_way(p, Destination::Place(0));
+            let found = way.map_or(f64::INFINITY, |way| way.length);
+            let agrees = found == expected || (found - expected).abs() < 1e-3;
+            assert!(
+                agrees,
+                "seed {seed}: {found} instead of {expected} m from {p} to {goal} in {plan:?}"
+            );
+            counts[usize::from(found.is_finite())] += 1;
+        }
+        counts
+    });
+    let add = |a: [usize; 2], b: [usize; 2]| [a[0] + b[0], a[1] + b[1]];
+    let [closed, open] = counts.reduce(|| [0; 2], add);
+    println!("{closed} without way, {open} with");
+    assert!(closed > 50 && open > 300, "{closed}, {open}");
 }
