@@ -80,6 +80,7 @@ mod walking;
 mod walking_profiles;
 mod walls;
 mod wave;
+mod way_closed;
 mod way_extremes;
 mod way_field;
 mod way_finding;

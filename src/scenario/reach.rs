@@ -31,7 +31,7 @@ impl Prepared<'_> {
     /// Checks that all agents can reach their goals.
     pub(super) fn check_goals(&self, ways: &Ways) -> Result<(), Problem> {
         for start in self.starts {
-            let To::Goal { goal, .. } = start.to else {
+            let To::Goal { goal } = start.to else {
                 continue;
             };
             let to = Destination::Goal(goal);

@@ -46,8 +46,8 @@ pub(super) struct Start {
 /// Where an agent wants to go first.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum To {
-    /// A goal. `shared`: several agents have it.
-    Goal { goal: Vector, shared: bool },
+    /// A goal.
+    Goal { goal: Vector },
     /// The first stage of a journey.
     Journey(u16),
     /// In a direction, without end.
@@ -78,7 +78,17 @@ pub(super) fn ways(
         return Ok(None);
     }
     let starts = starts(scene);
-    let goals = goals(scene, &starts)?;
+    let goals = goals(&starts);
+    if goals.len() > MOST_GOALS {
+        if floor_of(scene, &starts, 0.0)?.corners.is_empty() {
+            return Ok(None);
+        }
+        let reason = format!(
+            "agents walk to more than {MOST_GOALS} different goals, and walls can stand between; give agents a common \
+             goal, or set `navigation` to `straight`"
+        );
+        return Err(Problem::new("goal", reason));
+    }
     let places = if has_journeys {
         &scene.journeys.places[..]
     } else {
@@ -101,7 +111,7 @@ pub(super) fn ways(
     prepared.check_goals(&ways)?;
     notes.extend(prepared.check_journeys(&ways)?);
     prepared.check_bodies(&ways.floor, notes)?;
-    // Where all goals are in sight, agents walk straight.
+    // Where nothing can stand between a place of the floor and a goal, agents walk straight.
     Ok((has_journeys || ways.bend()).then(|| Arc::new(ways)))
 }
 
@@ -125,33 +135,15 @@ pub(super) fn passable(keys: &File, scene: &Scene) -> Option<f64> {
     finds.then(|| keys.min_passage_width.unwrap_or_else(least))
 }
 
-/// The goals that need path maps: those of several agents, and those behind walls.
-fn goals(scene: &Scene, starts: &[Start]) -> Result<Vec<Vector>, Problem> {
+/// The goals that may need path maps: all of them.
+fn goals(starts: &[Start]) -> Vec<Vector> {
     let mut seen = BTreeSet::new();
-    let mut goals = Vec::new();
-    for start in starts {
-        let To::Goal { goal, shared } = start.to else {
-            continue;
-        };
-        let is_blocked = || {
-            let near = scene.walls.near_any(&[start.place, goal], 0.0);
-            scene
-                .walls
-                .first_crossing(start.place, goal, &near)
-                .is_some()
-        };
-        if (shared || is_blocked()) && seen.insert([goal.x, goal.y].map(f64::to_bits)) {
-            goals.push(goal);
-        }
-    }
-    if goals.len() > MOST_GOALS {
-        let reason = format!(
-            "walls stand between agents and more than {MOST_GOALS} different goals; give agents a common goal, or set \
-             `navigation` to `straight`"
-        );
-        return Err(Problem::new("goal", reason));
-    }
-    Ok(goals)
+    let goals = starts.iter().filter_map(|start| match start.to {
+        To::Goal { goal } => Some(goal),
+        To::Journey(_) | To::Away => None,
+    });
+    let is_new = |goal: &Vector| seen.insert([goal.x, goal.y].map(f64::to_bits));
+    goals.filter(is_new).collect()
 }
 
 /// What ways are computed from.
@@ -192,7 +184,7 @@ impl Prepared<'_> {
         if let Some(place) = self.places.iter().find(has_point) {
             return Problem::new("", format!("`{}` {lies}", shown(&place.name)));
         }
-        let is_goal = |start: &&Start| matches!(start.to, To::Goal { goal, .. } if goal == point);
+        let is_goal = |start: &&Start| matches!(start.to, To::Goal { goal } if goal == point);
         let of = self.starts.iter().find(is_goal).map(|start| start.member);
         let key = of.map_or("goal".to_owned(), |of| self.origins.goal_key(of));
         let of = of.map_or(String::new(), |of| self.origins.name(of));
@@ -218,7 +210,7 @@ fn starts(scene: &Scene) -> Vec<Start> {
         free.unwrap_or(p)
     };
     let mut starts: Vec<Start> = Vec::new();
-    let mut add = |place: Vector, member: Member, goal: Vector, shared: bool| {
+    let mut add = |place: Vector, member: Member, goal: Vector| {
         let group = &scene.groups[usize::from(member.group)];
         starts.push(Start {
             place: free(place),
@@ -226,39 +218,36 @@ fn starts(scene: &Scene) -> Vec<Start> {
             to: match (group.journey, group.direction) {
                 (Some(journey), _) => To::Journey(journey),
                 (None, Some(_)) => To::Away,
-                (None, None) => To::Goal { goal, shared },
+                (None, None) => To::Goal { goal },
             },
         });
     };
     let later = |group: u16| Member { agent: None, group };
-    let mut last = None;
     for (k, agent) in scene.agents.iter().enumerate() {
-        let shared = last.replace(agent.goal) == Some(agent.goal);
         let member = Member {
             agent: Some(k),
             group: agent.group,
         };
-        add(agent.position, member, agent.goal, shared);
+        add(agent.position, member, agent.goal);
     }
     for source in &scene.sources {
         for start in source.grid.positions(scene.seed, 0) {
-            let (goal, shared) = match source.goal {
-                Goal::Point(goal) => (goal, true),
-                Goal::Offset(offset) => (start + offset, false),
+            let goal = match source.goal {
+                Goal::Point(goal) => goal,
+                Goal::Offset(offset) => start + offset,
             };
-            add(start, later(source.group), goal, shared);
+            add(start, later(source.group), goal);
         }
     }
     for Latecomer { agent, .. } in &scene.latecomers {
-        let shared = last.replace(agent.goal) == Some(agent.goal);
-        add(agent.position, later(agent.group), agent.goal, shared);
+        add(agent.position, later(agent.group), agent.goal);
     }
     for entrance in &scene.entrances {
         let nobody = std::iter::empty();
         let parts = entrance.free(RADIUS_RANGE[0], &scene.walls, nobody);
         for [from, to] in parts {
             let middle = entrance.at(0.5 * (from + to));
-            add(middle, later(entrance.group), entrance.goal, true);
+            add(middle, later(entrance.group), entrance.goal);
         }
     }
     starts
@@ -269,7 +258,7 @@ fn areas(scene: &Scene, starts: &[Start]) -> Result<Vec<Area>, Problem> {
     let (floors, bodies) = outlines(scene.walls.obstacles());
     let corners = scene.walls.iter().map(|wall| wall.start);
     let ends = starts.iter().flat_map(|start| match start.to {
-        To::Goal { goal, .. } => [start.place, goal],
+        To::Goal { goal } => [start.place, goal],
         To::Journey(_) | To::Away => [start.place; 2],
     });
     let places = scene.journeys.places.iter().flat_map(Place::goals);

@@ -33,6 +33,13 @@ impl Plan {
         plan
     }
 
+    /// A plan as it is drawn for buildings: walls with doors, steps, rebates, notches, slits, niches and pillars.
+    pub fn drawn(rng: &mut ChaCha8Rng) -> Self {
+        let mut plan = drawn(rng);
+        plan.turn(rng);
+        plan
+    }
+
     /// A plan of a room with up to `most` convex bodies, in which every gap is wider than `gap` meters.
     pub fn with_gaps(rng: &mut ChaCha8Rng, most: usize, gap: f64) -> Self {
         let mut plan = scattered(rng, most, gap, convex_body);
@@ -136,6 +143,65 @@ fn slits(rng: &mut ChaCha8Rng) -> Plan {
             let end = (y + rng.random_range(0.3..3.0)).min(h - 0.2);
             rings.push(rectangle([x, y], [x + thick, end]));
             y = end + [0.01, 0.1, 0.39, 1.0][rng.random_range(0..4)];
+        }
+    }
+    Plan { rings }
+}
+
+/// The width of a small part of a building, meters: of slits, steps and walls.
+fn small(rng: &mut ChaCha8Rng) -> f64 {
+    match rng.random_range(0..3) {
+        0 => rng.random_range(0.01..0.1),
+        1 => rng.random_range(0.1..0.39),
+        _ => [0.01, 0.05, 0.1, 0.2, 0.3][rng.random_range(0..5)],
+    }
+}
+
+/// Rooms side by side. Each wall between them has parts of several thicknesses with doors and slits between; other walls
+/// meet them in Ts, some with a notch. Pillars stand anywhere, also at and in walls.
+fn drawn(rng: &mut ChaCha8Rng) -> Plan {
+    let [w, h] = [rng.random_range(8.0..14.0), rng.random_range(5.0..9.0)];
+    let mut rings = vec![rectangle([0.0, 0.0], [w, h])];
+    for x in [0.35 * w, 0.7 * w] {
+        let mut y = 0.0;
+        while y < h {
+            let end = y + rng.random_range(0.3..3.0);
+            let end = if end > h - 0.6 { h } else { end };
+            let [back, front] = [small(rng), small(rng)];
+            rings.push(rectangle([x - back, y], [x + front, end]));
+            if rng.random_bool(0.5) {
+                // A wall that ends at this one, or just before it.
+                let foot = if rng.random_bool(0.5) {
+                    0.0
+                } else {
+                    small(rng)
+                };
+                let thick = small(rng);
+                let low = (end - rng.random_range(-0.3..0.6)).clamp(0.0, h - thick);
+                let long = rng.random_range(0.3..2.5);
+                rings.push(rectangle(
+                    [x - back - foot - long, low],
+                    [x - back - foot, low + thick],
+                ));
+            }
+            y = end
+                + if rng.random_bool(0.4) {
+                    small(rng)
+                } else {
+                    rng.random_range(0.5..1.2)
+                };
+        }
+    }
+    for _ in 0..rng.random_range(0..5) {
+        let [x, y] = [
+            rng.random_range(0.3..w - 0.3),
+            rng.random_range(0.3..h - 0.3),
+        ];
+        let ring = convex_body(rng).into_iter();
+        let scale = rng.random_range(0.1..0.5);
+        let ring: Ring = ring.map(|[a, b]| [x + scale * a, y + scale * b]).collect();
+        if ring.iter().all(|&p| contains(&rings[0], p.into())) {
+            rings.push(ring);
         }
     }
     Plan { rings }

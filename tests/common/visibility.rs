@@ -81,6 +81,27 @@ impl Sights {
         sights
     }
 
+    /// The passages narrower than `least` meters: straight lines between two points of walls that are the diameter of a
+    /// circle into which no wall reaches. Tries all corners with all points of walls nearest to them.
+    pub fn passages(&self, least: f64) -> Vec<[Vector; 2]> {
+        let corners = || self.walls.iter().map(|wall| wall[0]);
+        let ends = |p: Vector| {
+            let feet = self.walls.iter().map(move |&[a, b]| nearest_on(p, a, b));
+            feet.chain(corners()).map(move |end| [p, end])
+        };
+        let is_passage = |&[a, b]: &[Vector; 2]| {
+            let (middle, radius) = (0.5 * (a + b), 0.5 * (b - a).norm());
+            let is_out = |wall: &[Vector; 2]| {
+                (nearest_on(middle, wall[0], wall[1]) - middle).norm() >= radius - TINY
+            };
+            2.0 * radius > TINY
+                && 2.0 * radius < least
+                && self.walls.iter().all(is_out)
+                && self.is_floor(middle)
+        };
+        corners().flat_map(ends).filter(is_passage).collect()
+    }
+
     /// Is `p` floor, by the parity of the number of walls above it?
     fn is_floor(&self, p: Vector) -> bool {
         self.rings.iter().filter(|ring| contains(ring, p)).count() % 2 == 1

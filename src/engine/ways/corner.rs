@@ -74,7 +74,7 @@ impl Bend {
 }
 
 /// A corner with more than 180° of floor around it. The triangles around it are its fan, counterclockwise from one
-/// wall to the other.
+/// wall to the other. Here, closed passages are walls.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Corner {
     /// Its place, meters.
@@ -87,13 +87,6 @@ pub struct Corner {
     pub rays: [Vector; 2],
     /// Half of the width of the narrowest way around it, meters.
     pub room: f64,
-    /// The triangle of the fan in the middle between the walls.
-    middle: usize,
-    /// Is the fan wide enough from side k up to the middle?
-    clear: Vec<bool>,
-    /// For each turn: is triangle k of the fan wide enough between the side opposite to this corner and the side of the
-    /// fan that ways with this turn cross?
-    open: Vec<[bool; 2]>,
 }
 
 impl Corner {
@@ -125,8 +118,6 @@ impl Corner {
         if total <= PI - MARGIN {
             return None;
         }
-        let half = angles.partition_point(|&angle| angle <= 0.5 * total);
-        let middle = half.saturating_sub(1).min(fan.len() - 1);
         let rooms = fan.iter().map(|&(t, k)| {
             let (triangle, corners) = (mesh.triangle(t), mesh.corners(t));
             let sides = [(k, k + 1), (k + 2, k + 2)].map(|(side, end)| {
@@ -136,22 +127,8 @@ impl Corner {
             });
             mesh.room(t, k, sides[0].min(sides[1]))
         });
-        let rooms: Vec<f64> = rooms.collect();
-        let mut clear = vec![true; fan.len() + 1];
-        for k in (0..=middle).rev() {
-            clear[k] = clear[k + 1] && rooms[k] >= least_width;
-        }
-        for k in middle + 1..fan.len() {
-            clear[k + 1] = clear[k] && rooms[k] >= least_width;
-        }
-        let open = fan.iter().map(|&(t, k)| {
-            let width = mesh.triangle(t).width;
-            // The way goes on through the next side of the fan, or comes from there.
-            [2, 1].map(|n| width[(k + n) % 3] >= least_width)
-        });
-        let open = open.collect();
-        // No way leads through what is too narrow.
-        let passable = rooms.into_iter().filter(|&room| room >= least_width);
+        // Narrower places are dents in the walls.
+        let passable = rooms.filter(|&room| room >= least_width);
         let room = 0.5 * passable.fold(f64::INFINITY, f64::min);
         let place = mesh.corners(start.0)[start.1];
         let mut corner = Self {
@@ -160,9 +137,6 @@ impl Corner {
             angles,
             rays: [place; 2],
             room,
-            middle,
-            clear,
-            open,
         };
         let ends = [corner.fan.len(), 0].map(|i| corner.end(mesh, i).at);
         let ray = |k: usize| Turn::BOTH[k].beyond(place, direction(place - ends[k]) * FAR);
@@ -175,8 +149,6 @@ impl Corner {
         size_of::<Self>()
             + self.fan.capacity() * size_of::<(u32, usize)>()
             + self.angles.capacity() * size_of::<f64>()
-            + self.clear.capacity()
-            + 2 * self.open.capacity()
     }
 
     /// The end of side `i` of the fan.
@@ -206,7 +178,7 @@ impl Corner {
         let turn = bend.turn;
         let [low, high] = self.sector(turn);
         let (from, to) = (self.angles[i], self.angles[i + 1]);
-        if from.max(low) >= to.min(high) || !self.is_clear(i, turn) {
+        if from.max(low) >= to.min(high) {
             return None;
         }
         let ray = || Border {
@@ -224,24 +196,6 @@ impl Corner {
         Some([right, left])
     }
 
-    /// Can a way along side `k` of the fan cross it and bend around this corner?
-    pub fn is_clear_from_side(&self, k: usize) -> bool {
-        self.clear[k]
-    }
-
-    /// Can a way from inside triangle `i` of the fan bend around this corner with `turn`?
-    pub fn is_clear(&self, i: usize, turn: Turn) -> bool {
-        match turn {
-            Turn::First => i > self.middle || self.clear[i + 1],
-            Turn::Last => i < self.middle || self.clear[i.max(self.middle + 1)],
-        }
-    }
-
-    /// Can it also come through the side opposite to this corner?
-    pub fn is_open(&self, i: usize, turn: Turn) -> bool {
-        self.open[i][usize::from(turn == Turn::Last)]
-    }
-
     /// The turn of a way that ends in the direction of `p`, which lies in triangle `i` of the fan or beyond its
     /// opposite side. `None` if the shortest way does not bend here.
     pub fn turn(&self, mesh: &Mesh, i: usize, p: Vector) -> Option<Turn> {
@@ -251,12 +205,5 @@ impl Corner {
             let [low, high] = self.sector(turn);
             (low - MARGIN..=high + MARGIN).contains(&angle)
         })
-    }
-
-    /// The turn of a way that ends in the direction of `p`, seen in triangle `i`, if there is room for it. `through`:
-    /// it comes through the opposite side of this triangle.
-    pub fn admits(&self, mesh: &Mesh, i: usize, p: Vector, through: bool) -> Option<Turn> {
-        let turn = self.turn(mesh, i, p)?;
-        (self.is_clear(i, turn) && (!through || self.is_open(i, turn))).then_some(turn)
     }
 }

@@ -63,7 +63,7 @@ impl<'a> Entries<'a> {
     }
 
     /// Adds a target to triangle `t`. False if it cannot be the best anywhere in it, and so not behind it either: the
-    /// better way goes on as well, unless the triangle is too narrow for that.
+    /// better way goes on as well.
     fn add(&mut self, t: u32, target: u32, view: &View) -> bool {
         let corners = self.floor.mesh.corners(t);
         let (nearest, farthest) = match self.targets.source(target) {
@@ -80,7 +80,7 @@ impl<'a> Entries<'a> {
         let most = &mut self.most[t as usize];
         let least = rest + nearest;
         if least > *most + TIE {
-            return !self.floor.is_wide(t);
+            return false;
         }
         let entry = Entry {
             target,

@@ -86,12 +86,10 @@ pub struct Sight {
     pub view: View,
 }
 
-/// Follows `sights` to everything behind them, but through no way narrower than `least_width` meters. Calls
-/// `enter` for every triangle that is seen, and goes on behind it if that returns true; and calls `see` for every point
-/// opposite to the side through which its triangle is seen.
+/// Follows `sights` to everything behind them. Calls `enter` for every triangle that is seen, and goes on behind it if
+/// that returns true; and calls `see` for every point opposite to the side through which its triangle is seen.
 pub fn expand(
     mesh: &Mesh,
-    least_width: f64,
     mut sights: Vec<Sight>,
     mut enter: impl FnMut(&Sight) -> bool,
     mut see: impl FnMut(u32, usize, Vector),
@@ -118,10 +116,8 @@ pub fn expand(
         if a >= 0.0 && b <= 0.0 {
             see(t, top, apex.at);
         }
-        let mut go_on = |exit: usize, pivot: usize, view: View| {
-            if let Some(next) = triangle.across[exit]
-                && triangle.width[pivot] >= least_width
-            {
+        let mut go_on = |exit: usize, view: View| {
+            if let Some(next) = triangle.across[exit] {
                 let side = mesh.side_along(next, t);
                 sights.push(Sight {
                     triangle: next,
@@ -132,11 +128,11 @@ pub fn expand(
         };
         if a > 0.0 {
             let left = if b <= 0.0 { apex } else { view.left };
-            go_on(right_end, right_end, View { left, ..view });
+            go_on(right_end, View { left, ..view });
         }
         if b < 0.0 {
             let right = if a >= 0.0 { apex } else { view.right };
-            go_on(top, side, View { right, ..view });
+            go_on(top, View { right, ..view });
         }
     }
 }

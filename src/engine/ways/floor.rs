@@ -21,8 +21,6 @@ pub struct Floor {
     pub corners: Vec<Corner>,
     /// Their places again, side by side, meters.
     places: Vec<Vector>,
-    /// Ways narrower than this are closed, meters.
-    pub least_width: f64,
     /// The corner at each corner of each triangle, with the triangle's place in the corner's fan.
     pub at: Vec<[Option<(u32, u32)>; 3]>,
     /// The straight ways to bend b come from the bends with the numbers `ways[starts[b]..starts[b + 1]]`.
@@ -37,12 +35,13 @@ const STEPS: usize = 3;
 type StraightWay = [Bend; 2];
 
 impl Floor {
-    /// Prepares areas that touch at points at most; ways narrower than `least_width` meters are closed.
+    /// Prepares areas that touch at points at most; passages narrower than `least_width` meters are
+    /// closed.
     ///
     /// # Errors
     /// As [`Mesh::new`].
     pub fn new(areas: &[Area], least_width: f64) -> Result<Self, WayError> {
-        let mesh = Mesh::new(areas)?;
+        let mesh = Mesh::new(areas, least_width)?;
         let corners = Corner::all(&mesh, least_width);
         let mut at = vec![[None; 3]; mesh.triangles().len()];
         for (c, corner) in corners.iter().enumerate() {
@@ -57,7 +56,6 @@ impl Floor {
             mesh,
             places: corners.iter().map(|corner| corner.place).collect(),
             corners,
-            least_width,
             at,
         };
         floor.find_ways();
@@ -154,15 +152,6 @@ impl Floor {
         self.grid.nearest(&self.mesh, p)
     }
 
-    /// Is triangle `t` wide enough around each of its corners between two openings?
-    pub fn is_wide(&self, t: u32) -> bool {
-        let triangle = self.mesh.triangle(t);
-        (0..3).all(|k| {
-            let is_closed = |side: usize| triangle.across[side % 3].is_none();
-            is_closed(k) || is_closed(k + 2) || triangle.width[k] >= self.least_width
-        })
-    }
-
     /// The straight ways from corner `c` to corners with higher numbers.
     fn look_around(&self, c: u32) -> Vec<StraightWay> {
         let (mesh, corner) = (&self.mesh, &self.corners[c as usize]);
@@ -176,7 +165,7 @@ impl Floor {
                 if let Some((other, i)) = self.at[t as usize][k]
                     && other > c
                     && let away = &self.corners[other as usize]
-                    && let Some(turn) = away.admits(mesh, i as usize, corner.place, true)
+                    && let Some(turn) = away.turn(mesh, i as usize, corner.place)
                 {
                     let ends = [
                         bend,
@@ -215,7 +204,6 @@ impl Floor {
             };
             let side = (k + 1) % 3;
             if enter(t, &view)
-                && corner.is_open(i, bend.turn)
                 && let Some(next) = mesh.triangle(t).across[side]
             {
                 let side = mesh.side_along(next, t);
@@ -227,15 +215,15 @@ impl Floor {
             }
         }
         let enter = |sight: &Sight| enter(sight.triangle, &sight.view);
-        expand(mesh, self.least_width, sights, enter, see);
+        expand(mesh, sights, enter, see);
     }
 
     /// Adds the ways along the sides of triangle `i` in the fan of corner `c`.
     fn see_neighbor(&self, c: u32, i: usize, found: &mut Vec<StraightWay>) {
         let corner = &self.corners[c as usize];
         let (t, k) = corner.fan[i];
-        for (end, third, turn) in [(1, 2, Turn::First), (2, 1, Turn::Last)] {
-            let (end, third) = ((k + end) % 3, (k + third) % 3);
+        for (end, turn) in [(1, Turn::First), (2, Turn::Last)] {
+            let end = (k + end) % 3;
             let Some((other, j)) = self.at[t as usize][end].filter(|(other, _)| *other > c) else {
                 continue;
             };
@@ -247,22 +235,9 @@ impl Floor {
             let (Some(here), Some(there)) = (here, there) else {
                 continue;
             };
-            let is_passable = if here == there {
-                // The way crosses this side: it comes around one corner and leaves around the other.
-                let [own, others] = if turn == Turn::First {
-                    [i, j + 1]
-                } else {
-                    [i + 1, j]
-                };
-                corner.is_clear_from_side(own) && away.is_clear_from_side(others)
-            } else {
-                // The walls of both corners lie on the side of the way where this triangle is not.
-                here == turn
-                    && self.mesh.triangle(t).width[third] >= self.least_width
-                    && corner.is_clear(i, here)
-                    && away.is_clear(j, there)
-            };
-            if is_passable {
+            // The way crosses this side, or the walls of both corners lie on the side of the way where this triangle is
+            // not.
+            if here == there || here == turn {
                 found.push([(c, here), (other, there)].map(|(corner, turn)| Bend { corner, turn }));
             }
         }

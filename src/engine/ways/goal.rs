@@ -77,8 +77,8 @@ impl Seen {
             views.push((sight.triangle, target, sight.view));
             true
         };
-        let see = |t: u32, k: usize, _: Vector| meet(floor, (t, k), target, true, targets);
-        expand(&floor.mesh, floor.least_width, sights, enter, see);
+        let see = |t: u32, k: usize, _: Vector| meet(floor, (t, k), target, targets);
+        expand(&floor.mesh, sights, enter, see);
     }
 
     /// Adds everything that sees a point of the goal; `None` if it is not on the floor.
@@ -106,7 +106,7 @@ impl Seen {
                     view,
                 });
             }
-            meet(floor, (t, side), target, false, &mut self.targets);
+            meet(floor, (t, side), target, &mut self.targets);
         }
         self.follow(floor, target, sights);
         Some(())
@@ -126,7 +126,7 @@ impl Seen {
                 let view = self.looking(floor, away, piece);
                 self.views.push((t, target, view));
                 for k in (0..3).filter(|&k| view.holds(corners[k])) {
-                    meet(floor, (t, k), target, false, &mut self.targets);
+                    meet(floor, (t, k), target, &mut self.targets);
                 }
                 let sights = (0..3).filter_map(|side| {
                     let next = mesh.triangle(t).across[side]?;
@@ -165,13 +165,12 @@ impl Seen {
 /// How far the eye of a point moves to the inside of its triangle, as a part of the distance to its middle.
 const INSIDE: f64 = 1e-7;
 
-/// Notes that the corner of the floor at corner k of triangle `t` sees part `target` of the goal, `through` the opposite
-/// side of the triangle or not.
-fn meet(floor: &Floor, (t, k): (u32, usize), target: u32, through: bool, targets: &mut Targets) {
+/// Notes that the corner of the floor at corner k of triangle `t` sees part `target` of the goal.
+fn meet(floor: &Floor, (t, k): (u32, usize), target: u32, targets: &mut Targets) {
     if let Some((c, i)) = floor.at[t as usize][k] {
         let corner = &floor.corners[c as usize];
         let point = targets.nearest(floor, target, corner.place);
-        if let Some(turn) = corner.admits(&floor.mesh, i as usize, point, through) {
+        if let Some(turn) = corner.turn(&floor.mesh, i as usize, point) {
             let bend = Bend {
                 corner: c,
                 turn: turn.other(),

@@ -107,7 +107,8 @@ impl PathMap {
         let mut queue: VecDeque<u32> = (0..count).filter(|&t| !is_empty(t)).collect();
         while let Some(t) = queue.pop_front() {
             let mut from_middle = None;
-            for next in floor.mesh.triangle(t).across.into_iter().flatten() {
+            let triangle = floor.mesh.triangle(t);
+            for next in (0..3).filter_map(|side| triangle.beyond(side)) {
                 if out[next as usize].is_none() && is_empty(next) {
                     let length = from_middle
                         .get_or_insert_with(|| self.length_from_middle(floor, t, out[t as usize]));
@@ -315,10 +316,10 @@ impl PathMap {
         Some(self.targets.nearest(floor, next, floor.place(bend)))
     }
 
-    /// Does a way bend around a corner from anywhere?
+    /// Does a wall or a closed passage stand between the goal and some place of the floor from which a way leads there?
     pub fn bends(&self) -> bool {
         let mut entries = self.parts.all();
-        entries.any(|entry| self.targets.bend(entry.target).is_some())
+        !self.out.is_empty() || entries.any(|entry| self.targets.bend(entry.target).is_some())
     }
 
     /// The memory that building it took in addition, bytes.

@@ -1,24 +1,33 @@
 //! The floor as triangles. The only file that names spade.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
 use spade::handles::FixedFaceHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::WayError;
+use super::edges::Edges;
 use super::expansion::Border;
+use super::narrow::narrow;
 use crate::engine::geometry::Area;
-use crate::engine::math::{Vector, bounds};
+use crate::engine::math::Vector;
 
 /// A triangle of the floor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Triangle {
     /// Its corners as numbers of points, counterclockwise.
     pub corners: [u32; 3],
-    /// What lies beyond the side from corner k to corner k + 1: a triangle, or a wall.
+    /// The triangle beyond the side from corner k to corner k + 1; `None` if the side is a wall or a closed passage.
     pub across: [Option<u32>; 3],
-    /// The width of the way around corner k, from one of its sides to the other, meters (Demyen and Buro 2006).
-    pub width: [f64; 3],
+    /// The triangle beyond the same side if the side is a closed passage.
+    pub closed: [Option<u32>; 3],
+}
+
+impl Triangle {
+    /// The triangle beyond side k, which may be a closed passage; `None` beyond a wall.
+    pub fn beyond(&self, k: usize) -> Option<u32> {
+        self.across[k].or(self.closed[k])
+    }
 }
 
 /// A constrained Delaunay triangulation of the areas that people walk in.
@@ -29,30 +38,42 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Triangulates areas that touch at points at most.
+    /// Triangulates areas that touch at points at most. Passages narrower than `least_width` meters are closed: each
+    /// is a side of triangles that ways do not cross.
     ///
     /// # Errors
     /// Edges that still cross where they were split, or coordinates that the triangulation cannot represent.
-    pub fn new(areas: &[Area]) -> Result<Self, WayError> {
-        let (mut points, mut walls) = edges_of(areas);
+    pub fn new(areas: &[Area], least_width: f64) -> Result<Self, WayError> {
+        let mut edges = Edges::of(areas);
+        let open = Self::of(&mut edges)?;
+        let closed = narrow(&open, least_width);
+        if closed.is_empty() {
+            return Ok(open);
+        }
+        edges.close(&closed);
+        Self::of(&mut edges)
+    }
+
+    /// Triangulates the floor between `edges`, and splits edges that cross.
+    fn of(edges: &mut Edges) -> Result<Self, WayError> {
         for _ in 0..MOST_SPLITS {
             let mut crossing = Vec::new();
-            let vertices = points.iter().map(|p| Point2::new(p.x, p.y)).collect();
+            let vertices = edges.points.iter().map(|p| Point2::new(p.x, p.y)).collect();
             let triangulation = ConstrainedDelaunayTriangulation::<Point2<f64>>::try_bulk_load_cdt(
                 vertices,
-                walls.clone(),
-                |wall| crossing.push(wall),
+                edges.all(),
+                |edge| crossing.push(edge),
             )
             .map_err(|error| WayError::Coordinates(error.to_string()))?;
             if crossing.is_empty() {
-                let triangles = floor(&triangulation);
-                let mut mesh = Self { points, triangles };
-                mesh.measure();
-                return Ok(mesh);
+                return Ok(Self {
+                    points: edges.points.clone(),
+                    triangles: floor(&triangulation, &edges.closed),
+                });
             }
-            split(&mut points, &mut walls, &crossing);
+            edges.split(&crossing);
         }
-        Err(WayError::Crossing(points[points.len() - 1]))
+        Err(WayError::Crossing(edges.points[edges.points.len() - 1]))
     }
 
     /// Point `k`, meters.
@@ -110,8 +131,9 @@ impl Mesh {
 
     /// The side of triangle `other` that lies along triangle `t`.
     pub fn side_along(&self, other: u32, t: u32) -> usize {
-        let across = &self.triangle(other).across;
-        across.iter().position(|&side| side == Some(t)).unwrap_or(0)
+        let other = self.triangle(other);
+        let is_along = |&side: &usize| other.beyond(side) == Some(t);
+        (0..3).find(is_along).unwrap_or(0)
     }
 
     /// Does triangle `t` contain `p`, borders included?
@@ -155,21 +177,6 @@ impl Mesh {
         let corners = self.corners(t);
         let sides = (0..3).map(|k| to_segment(p, corners[k], corners[(k + 1) % 3]));
         sides.fold(f64::INFINITY, f64::min)
-    }
-
-    /// Computes the widths of all triangles.
-    fn measure(&mut self) {
-        for t in 0..self.triangles.len() as u32 {
-            let widths = [0, 1, 2].map(|k| {
-                let (c, ends) = (
-                    self.corners(t)[k],
-                    [1, 2].map(|n| self.corners(t)[(k + n) % 3]),
-                );
-                let sides = ends.map(|end| (end - c).norm());
-                self.room(t, k, sides[0].min(sides[1]))
-            });
-            self.triangles[t as usize].width = widths;
-        }
     }
 
     /// The distance from corner k of triangle `t` to the nearest wall on the other side of the opposite side, at most
@@ -242,89 +249,16 @@ pub fn nearest_on(p: Vector, a: Vector, b: Vector) -> Vector {
     a + along * ((p - a).dot(&along) / squared).clamp(0.0, 1.0)
 }
 
-/// The distinct corners of the areas, and their edges.
-fn edges_of(areas: &[Area]) -> (Vec<Vector>, Vec<[usize; 2]>) {
-    let (mut points, mut edges) = (Vec::new(), Vec::new());
-    let mut numbers = HashMap::new();
-    for ring in areas.iter().flat_map(Area::rings) {
-        let mut number = |p: &Vector| {
-            // + 0.0 turns −0 into 0.
-            let key = [p.x, p.y].map(|x| (x + 0.0).to_bits());
-            *numbers.entry(key).or_insert_with(|| {
-                points.push(*p);
-                points.len() - 1
-            })
-        };
-        let around: Vec<usize> = ring.points().iter().map(&mut number).collect();
-        let ends = around.iter().cycle().skip(1);
-        edges.extend(around.iter().zip(ends).map(|(&a, &b)| [a, b]));
-    }
-    (points, edges)
-}
-
-/// Walls are split where they cross at most this often: rounding can make the parts cross again.
+/// Edges are split where they cross at most this often: rounding can make the parts cross again.
 const MOST_SPLITS: usize = 4;
 
-/// An end of a wall this near to another wall is on it, meters, or as a part of the extent: corners of floor plans are
-/// moved by up to a micrometer to given corners.
-const TOUCHING: f64 = 4e-6;
-const TOUCHING_PART: f64 = 4e-8;
-
-/// Splits walls where those in `crossing` cross others: at an end that lies on the other wall, else where they cross.
-fn split(points: &mut Vec<Vector>, walls: &mut Vec<[usize; 2]>, crossing: &[[usize; 2]]) {
-    let [low, high] = bounds(points.iter().copied()).unwrap_or_default();
-    let touching = TOUCHING.max((high - low).max() * TOUCHING_PART);
-    let mut cuts: Vec<Vec<usize>> = vec![Vec::new(); walls.len()];
-    for (k, one) in walls
-        .iter()
-        .enumerate()
-        .filter(|(_, wall)| crossing.contains(wall))
-    {
-        let [a, b] = one.map(|end| points[end]);
-        for (other, ends) in walls.iter().enumerate() {
-            let [c, d] = ends.map(|end| points[end]);
-            let (from, to) = (side(a, b, c), side(a, b, d));
-            let crosses = from * to < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
-            if !crosses {
-                continue;
-            }
-            let on = |ends: &[usize; 2], [a, b]: [Vector; 2]| {
-                let near = |end: &&usize| to_segment(points[**end], a, b) <= touching;
-                ends.iter().filter(near).copied().collect::<Vec<usize>>()
-            };
-            let (on_one, on_other) = (on(ends, [a, b]), on(one, [c, d]));
-            if on_one.is_empty() && on_other.is_empty() {
-                points.push(c + (d - c) * (from / (from - to)));
-                cuts[k].push(points.len() - 1);
-                cuts[other].push(points.len() - 1);
-            }
-            cuts[k].extend(on_one);
-            cuts[other].extend(on_other);
-        }
-    }
-    let parts = walls.iter().zip(cuts).flat_map(|(&[from, to], mut cuts)| {
-        let distance = |&point: &usize| (points[point] - points[from]).norm_squared();
-        cuts.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        cuts.insert(0, from);
-        cuts.push(to);
-        let parts = cuts
-            .windows(2)
-            .map(|pair| [pair[0].min(pair[1]), pair[0].max(pair[1])]);
-        parts.collect::<Vec<[usize; 2]>>()
-    });
-    // Two walls at the same place enclose nothing.
-    let mut odd = BTreeSet::new();
-    for part in parts.filter(|[from, to]| from != to) {
-        if !odd.remove(&part) {
-            odd.insert(part);
-        }
-    }
-    *walls = odd.into_iter().collect();
-}
-
-/// The triangles inside: those behind an odd number of walls from outside.
-fn floor(triangulation: &ConstrainedDelaunayTriangulation<Point2<f64>>) -> Vec<Triangle> {
+/// The triangles inside: those behind an odd number of walls from outside. `closed`: the edges that are no walls.
+fn floor(
+    triangulation: &ConstrainedDelaunayTriangulation<Point2<f64>>,
+    closed: &BTreeSet<[usize; 2]>,
+) -> Vec<Triangle> {
     const OUTSIDE: u32 = u32::MAX;
+    let is_closed = |ends: [usize; 2]| closed.contains(&Edges::sorted(ends));
     let mut inside: Vec<Option<bool>> = vec![None; triangulation.num_all_faces()];
     let outer = triangulation.outer_face().fix();
     inside[outer.index()] = Some(false);
@@ -345,7 +279,9 @@ fn floor(triangulation: &ConstrainedDelaunayTriangulation<Point2<f64>>) -> Vec<T
         for edge in face.adjacent_edges() {
             let next = edge.rev().face().fix();
             if inside[next.index()].is_none() {
-                stack.push((next, is_inside != edge.is_constraint_edge()));
+                let ends = [edge.from(), edge.to()].map(|end| end.fix().index());
+                let is_wall = edge.is_constraint_edge() && !is_closed(ends);
+                stack.push((next, is_inside != is_wall));
             }
         }
     }
@@ -359,13 +295,17 @@ fn floor(triangulation: &ConstrainedDelaunayTriangulation<Point2<f64>>) -> Vec<T
     }
     let triangle = |face: spade::handles::FaceHandle<'_, _, _, _, _, _>| {
         let edges = face.adjacent_edges();
+        let beyond = |is_beyond: &dyn Fn([usize; 2], bool) -> bool| {
+            edges.map(|edge| {
+                let ends = [edge.from(), edge.to()].map(|end| end.fix().index());
+                let next = number[edge.rev().face().fix().index()];
+                (next != OUTSIDE && is_beyond(ends, edge.is_constraint_edge())).then_some(next)
+            })
+        };
         Triangle {
             corners: edges.map(|edge| edge.from().fix().index() as u32),
-            across: edges.map(|edge| {
-                let next = number[edge.rev().face().fix().index()];
-                (next != OUTSIDE && !edge.is_constraint_edge()).then_some(next)
-            }),
-            width: [0.0; 3],
+            across: beyond(&|_, is_edge| !is_edge),
+            closed: beyond(&|ends, is_edge| is_edge && is_closed(ends)),
         }
     };
     faces().map(triangle).collect()

@@ -7,6 +7,7 @@
 //! the corners on the way.
 
 mod corner;
+mod edges;
 mod entries;
 mod expansion;
 mod floor;
@@ -15,6 +16,7 @@ mod grid;
 mod list;
 mod map;
 mod mesh;
+mod narrow;
 mod parts;
 mod passage;
 mod reach;

@@ -159,7 +159,7 @@ impl Ways {
         is_known && route.map.is_none_or(|map| usize::from(map) < maps)
     }
 
-    /// Does a way bend around a corner from anywhere?
+    /// Does a wall or a closed passage stand between a goal and some place of the floor from which a way leads there?
     pub fn bend(&self) -> bool {
         self.maps.iter().any(PathMap::bends)
     }

@@ -19,9 +19,6 @@ impl Floor {
             let at = |spot: &Option<(u32, u32)>| spot.filter(|&(c, _)| c == bend.corner);
             if let Some((_, i)) = corners.iter().find_map(at) {
                 let i = i as usize;
-                if entrance.is_some() && !corner.is_open(i, bend.turn) {
-                    return None;
-                }
                 let [right, left] = corner.view(mesh, i, bend)?;
                 let eye = Eye::Near(corner.place);
                 let mut whole = Some(View { eye, right, left });
@@ -36,15 +33,7 @@ impl Floor {
                 None => (0..3).find(|&k| !is_left(k) && is_left((k + 1) % 3))?,
                 Some(side) => {
                     let (right, top) = ((side + 1) % 3, (side + 2) % 3);
-                    let (exit, pivot) = if is_left(top) {
-                        (right, right)
-                    } else {
-                        (top, side)
-                    };
-                    if mesh.triangle(here).width[pivot] < self.least_width {
-                        return None;
-                    }
-                    exit
+                    if is_left(top) { right } else { top }
                 }
             };
             // The corner looks the other way.

@@ -1,0 +1,161 @@
+//! The edges of the floor: its walls, and the passages that are closed.
+
+use std::collections::{BTreeSet, HashMap};
+
+use super::mesh::{side, to_segment};
+use super::narrow::{End, Narrow};
+use crate::engine::geometry::Area;
+use crate::engine::math::{Vector, bounds};
+
+/// Two points by their numbers.
+pub type Edge = [usize; 2];
+
+/// Walls and closed passages between points.
+#[derive(Debug, Clone)]
+pub struct Edges {
+    /// The points, meters, each once.
+    pub points: Vec<Vector>,
+    walls: Vec<Edge>,
+    /// The closed passages, each with the smaller number first.
+    pub closed: BTreeSet<Edge>,
+}
+
+/// An end of an edge this near to another edge is on it, meters, or as a part of the extent: corners of floor plans are
+/// moved by up to a micrometer to given corners.
+const TOUCHING: f64 = 4e-6;
+const TOUCHING_PART: f64 = 4e-8;
+
+impl Edges {
+    /// The distinct corners of the areas, and the walls between them.
+    pub fn of(areas: &[Area]) -> Self {
+        let (mut points, mut walls) = (Vec::new(), Vec::new());
+        let mut numbers = HashMap::new();
+        for ring in areas.iter().flat_map(Area::rings) {
+            let mut number = |p: &Vector| {
+                // + 0.0 turns −0 into 0.
+                let key = [p.x, p.y].map(|x| (x + 0.0).to_bits());
+                *numbers.entry(key).or_insert_with(|| {
+                    points.push(*p);
+                    points.len() - 1
+                })
+            };
+            let around: Vec<usize> = ring.points().iter().map(&mut number).collect();
+            let ends = around.iter().cycle().skip(1);
+            walls.extend(around.iter().zip(ends).map(|(&a, &b)| [a, b]));
+        }
+        Self {
+            points,
+            walls,
+            closed: BTreeSet::new(),
+        }
+    }
+
+    /// The ends of an edge, the smaller number first.
+    pub fn sorted([a, b]: Edge) -> Edge {
+        [a.min(b), a.max(b)]
+    }
+
+    /// All edges: the walls, then the closed passages.
+    pub fn all(&self) -> Vec<Edge> {
+        let closed = self.closed.iter().copied();
+        self.walls.iter().copied().chain(closed).collect()
+    }
+
+    /// Closes passages. Where one ends inside of a wall, the wall gets a point.
+    pub fn close(&mut self, passages: &[Narrow]) {
+        let mut cuts: HashMap<Edge, Vec<usize>> = HashMap::new();
+        for &Narrow { from, to } in passages {
+            let from = from as usize;
+            let to = match to {
+                End::Corner(corner) => corner as usize,
+                End::Wall { ends, at } => {
+                    let cuts = cuts.entry(Self::sorted(ends.map(|end| end as usize)));
+                    let cuts = cuts.or_default();
+                    let here = cuts.iter().find(|&&cut| self.points[cut] == at);
+                    let point = here
+                        .copied()
+                        .unwrap_or_else(|| match at == self.points[from] {
+                            true => from,
+                            false => {
+                                self.points.push(at);
+                                self.points.len() - 1
+                            }
+                        });
+                    cuts.push(point);
+                    point
+                }
+            };
+            if from != to {
+                self.closed.insert(Self::sorted([from, to]));
+            }
+        }
+        let cuts_of = |wall: &Edge| cuts.get(&Self::sorted(*wall)).cloned().unwrap_or_default();
+        let cuts = self.walls.iter().map(cuts_of).collect();
+        self.cut(cuts, vec![Vec::new(); self.closed.len()]);
+    }
+
+    /// Splits edges where those in `crossing` cross others: at an end that lies on the other edge, else where they
+    /// cross.
+    pub fn split(&mut self, crossing: &[Edge]) {
+        let [low, high] = bounds(self.points.iter().copied()).unwrap_or_default();
+        let touching = TOUCHING.max((high - low).max() * TOUCHING_PART);
+        let all = self.all();
+        let mut cuts: Vec<Vec<usize>> = vec![Vec::new(); all.len()];
+        let points = &mut self.points;
+        for (k, one) in all
+            .iter()
+            .enumerate()
+            .filter(|(_, edge)| crossing.contains(edge))
+        {
+            let [a, b] = one.map(|end| points[end]);
+            for (other, ends) in all.iter().enumerate() {
+                let [c, d] = ends.map(|end| points[end]);
+                let (from, to) = (side(a, b, c), side(a, b, d));
+                let crosses = from * to < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
+                if !crosses {
+                    continue;
+                }
+                let on = |ends: &Edge, [a, b]: [Vector; 2]| {
+                    let near = |end: &&usize| to_segment(points[**end], a, b) <= touching;
+                    ends.iter().filter(near).copied().collect::<Vec<usize>>()
+                };
+                let (on_one, on_other) = (on(ends, [a, b]), on(one, [c, d]));
+                if on_one.is_empty() && on_other.is_empty() {
+                    points.push(c + (d - c) * (from / (from - to)));
+                    cuts[k].push(points.len() - 1);
+                    cuts[other].push(points.len() - 1);
+                }
+                cuts[k].extend(on_one);
+                cuts[other].extend(on_other);
+            }
+        }
+        let of_closed = cuts.split_off(self.walls.len());
+        self.cut(cuts, of_closed);
+    }
+
+    /// Cuts each wall and each closed passage at these points.
+    fn cut(&mut self, of_walls: Vec<Vec<usize>>, of_closed: Vec<Vec<usize>>) {
+        let points = &self.points;
+        let parts = |[from, to]: Edge, mut cuts: Vec<usize>| {
+            let distance = |&point: &usize| (points[point] - points[from]).norm_squared();
+            cuts.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+            cuts.insert(0, from);
+            cuts.push(to);
+            let parts = cuts.windows(2).map(|pair| Self::sorted([pair[0], pair[1]]));
+            let parts = parts.filter(|[from, to]| from != to);
+            parts.collect::<Vec<Edge>>()
+        };
+        let walls = self.walls.iter().zip(of_walls);
+        // Two walls at the same place enclose nothing.
+        let mut odd = BTreeSet::new();
+        for part in walls.flat_map(|(&wall, cuts)| parts(wall, cuts)) {
+            if !odd.remove(&part) {
+                odd.insert(part);
+            }
+        }
+        let closed = self.closed.iter().zip(of_closed);
+        let closed = closed.flat_map(|(&passage, cuts)| parts(passage, cuts));
+        self.closed = closed.filter(|part| !odd.contains(part)).collect();
+        self.walls = odd.into_iter().collect();
+    }
+}
