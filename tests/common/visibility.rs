@@ -11,6 +11,9 @@ use super::plans::{Ring, contains, edges};
 
 /// Points this near to each other are the same, meters.
 const TINY: f64 = 1e-9;
+/// Walls that end this near to a straight line cut it, too, as a part of their length: the ends of walls that were
+/// computed as crossings are rounded.
+const NEARLY: f64 = 1e-3;
 /// The distance from a corner of a point that shows whether there is floor, meters.
 const BESIDE: f64 = 1e-5;
 
@@ -159,7 +162,7 @@ impl Sights {
             let turn = along.perp(&wall);
             if turn.abs() > 1e-12 {
                 let there = (c - a).perp(&along) / turn;
-                if (-TINY..=1.0 + TINY).contains(&there) {
+                if (-NEARLY..=1.0 + NEARLY).contains(&there) {
                     cuts.push((c - a).perp(&wall) / turn);
                 }
             } else {
