@@ -145,7 +145,7 @@ fn the_narrowest_passage_of_the_widest_way_is_where_ways_close() {
             continue;
         };
         let areas = plan.areas();
-        let floor = Floor::new(&areas, 0.0).unwrap();
+        let floor = Floor::new(&areas, 1.0).unwrap();
         if floor.locate(from) == floor.locate(to) {
             continue;
         }

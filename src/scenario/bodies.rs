@@ -116,9 +116,12 @@ impl Prepared<'_> {
     ) -> Result<(), Problem> {
         let most = self.widest.iter().map(|widest| widest.width);
         let most = most.fold(0.0, f64::max);
-        let triangles = 0..floor.mesh.triangles().len() as u32;
-        let mut gaps = triangles.flat_map(|t| floor.mesh.gaps(t, most));
-        if gaps.next().is_none() {
+        let wider = match self.width < most {
+            true => Some(self.floor(most)?),
+            false => None,
+        };
+        let floor = wider.as_ref().unwrap_or(floor);
+        if !floor.has_closed() {
             return Ok(());
         }
         for (widest, leg) in self.widest.iter().zip(self.narrowest_legs(floor)) {

@@ -174,7 +174,7 @@ impl Prepared<'_> {
     fn why_closed(&self, from: Vector, to: Destination) -> Result<String, Problem> {
         let open = self.ways(0.0)?;
         Ok(match open.is_open(from, to) {
-            true => self.why_narrow(&open.floor, from, to),
+            true => self.why_narrow(&self.floor(self.width)?, from, to),
             false => "walls close it off; open them, or move one of the two".to_owned(),
         })
     }

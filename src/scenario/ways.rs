@@ -162,9 +162,14 @@ pub(super) struct Prepared<'a> {
 }
 
 impl Prepared<'_> {
+    /// The floor on which passages narrower than `width` meters are closed.
+    pub(super) fn floor(&self, width: f64) -> Result<Floor, Problem> {
+        floor_of(self.scene, self.starts, width)
+    }
+
     /// The ways through passages of at least `width` meters.
     pub(super) fn ways(&self, width: f64) -> Result<Ways, Problem> {
-        let floor = floor_of(self.scene, self.starts, width)?;
+        let floor = self.floor(width)?;
         doors::check(self.places, &floor)?;
         let places: Vec<_> = self.places.iter().map(Place::goals).collect();
         Ways::new(floor, &places, self.goals.to_vec()).map_err(|error| match error {

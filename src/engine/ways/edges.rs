@@ -100,27 +100,30 @@ impl Edges {
         let [low, high] = bounds(self.points.iter().copied()).unwrap_or_default();
         let touching = TOUCHING.max((high - low).max() * TOUCHING_PART);
         let all = self.all();
+        // The triangulation may turn edges around.
+        let crossing: BTreeSet<Edge> = crossing.iter().copied().map(Self::sorted).collect();
         let mut cuts: Vec<Vec<usize>> = vec![Vec::new(); all.len()];
         let points = &mut self.points;
         for (k, one) in all
             .iter()
             .enumerate()
-            .filter(|(_, edge)| crossing.contains(edge))
+            .filter(|(_, edge)| crossing.contains(&Self::sorted(**edge)))
         {
             let [a, b] = one.map(|end| points[end]);
             for (other, ends) in all.iter().enumerate() {
                 let [c, d] = ends.map(|end| points[end]);
                 let (from, to) = (side(a, b, c), side(a, b, d));
                 let crosses = from * to < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
-                if !crosses {
-                    continue;
-                }
-                let on = |ends: &Edge, [a, b]: [Vector; 2]| {
-                    let near = |end: &&usize| to_segment(points[**end], a, b) <= touching;
+                // Rounding hides crossings at ends, which the triangulation sees.
+                let on = |ends: &Edge, edge: &Edge| {
+                    let [a, b] = edge.map(|end| points[end]);
+                    let near = |end: &&usize| {
+                        !edge.contains(end) && to_segment(points[**end], a, b) <= touching
+                    };
                     ends.iter().filter(near).copied().collect::<Vec<usize>>()
                 };
-                let (on_one, on_other) = (on(ends, [a, b]), on(one, [c, d]));
-                if on_one.is_empty() && on_other.is_empty() {
+                let (on_one, on_other) = (on(ends, one), on(one, ends));
+                if crosses && on_one.is_empty() && on_other.is_empty() {
                     points.push(c + (d - c) * (from / (from - to)));
                     cuts[k].push(points.len() - 1);
                     cuts[other].push(points.len() - 1);

@@ -183,45 +183,26 @@ impl Mesh {
     /// `most`, which is at most the distance to the ends of that side. A wall counts if its nearest point is not an
     /// end: in a Delaunay triangulation no end is nearer than those of the triangle's sides (Demyen and Buro 2006).
     pub fn room(&self, t: u32, k: usize, most: f64) -> f64 {
-        self.nearest_wall(t, k, most)
-            .map_or(most, |(distance, _)| distance)
-    }
-
-    /// The distance of [`room`](Self::room) and the nearest point of the wall; `None` if no wall is nearer than `most`.
-    pub(super) fn nearest_wall(&self, t: u32, k: usize, most: f64) -> Option<(f64, Vector)> {
         let c = self.corners(t)[k];
-        let mut found: Option<(f64, Vector)> = None;
+        let mut least = most;
         let mut beyond = vec![(t, (k + 1) % 3)];
         while let Some((t, side)) = beyond.pop() {
             let corners = self.corners(t);
             let (a, b) = (corners[side], corners[(side + 1) % 3]);
             let is_between = (c - a).dot(&(b - a)) > 0.0 && (c - b).dot(&(a - b)) > 0.0;
-            let nearest = nearest_on(c, a, b);
-            let distance = (nearest - c).norm();
-            if !is_between || distance >= found.map_or(most, |(least, _)| least) {
+            let distance = to_segment(c, a, b);
+            if !is_between || distance >= least {
                 continue;
             }
             match self.triangle(t).across[side] {
-                None => found = Some((distance, nearest)),
+                None => least = distance,
                 Some(next) => {
                     let back = self.side_along(next, t);
                     beyond.extend([1, 2].map(|n| (next, (back + n) % 3)));
                 }
             }
         }
-        found
-    }
-
-    /// The narrowest places in triangle `t` that are narrower than `least` meters: their ends on both walls.
-    pub fn gaps(&self, t: u32, least: f64) -> impl Iterator<Item = [Vector; 2]> {
-        let (corners, across) = (self.corners(t), self.triangle(t).across);
-        let beyond = (0..3).filter_map(move |k| {
-            let (distance, wall) = self.nearest_wall(t, k, least)?;
-            (distance < least).then_some([corners[k], wall])
-        });
-        let ends = move |side: usize| [corners[side], corners[(side + 1) % 3]];
-        let portals = (0..3).filter(move |&side| across[side].is_some()).map(ends);
-        beyond.chain(portals.filter(move |[a, b]| (b - a).norm() < least))
+        least
     }
 }
 

@@ -4,13 +4,12 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::floor::Floor;
-use super::mesh::Mesh;
 use crate::engine::math::Vector;
 
 /// A passage between two walls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Passage {
-    /// Its width, meters; infinite where no walls are on both sides.
+    /// Its width, meters; infinite for ways that cross no closed passage.
     pub width: f64,
     /// Its ends, meters.
     pub ends: [Vector; 2],
@@ -43,40 +42,62 @@ impl Passage {
 pub struct Passages(Vec<Option<Passage>>);
 
 impl Floor {
-    /// The passages on the widest ways to the nearest of `points`; points off the floor are left out. By Dijkstra's
-    /// algorithm over the sides of triangles, with the widths of Demyen and Buro (2006).
+    /// Whether the floor has closed passages.
+    pub fn has_closed(&self) -> bool {
+        let triangles = self.mesh.triangles().iter();
+        triangles
+            .flat_map(|of| of.closed)
+            .any(|side| side.is_some())
+    }
+
+    /// The passages on the widest ways to the nearest of `points`, among those that are closed; points off the floor are
+    /// left out. By Dijkstra's algorithm over the triangles: only closed passages limit how wide a way is.
     pub fn passages(&self, points: impl Iterator<Item = Vector>) -> Passages {
         let mesh = &self.mesh;
-        let mut best = vec![None; mesh.triangles().len()];
-        let mut queue = Queue {
-            mesh,
-            through: vec![None; 3 * mesh.triangles().len()],
-            heap: BinaryHeap::new(),
+        let mut search = Search {
+            widest: vec![None; mesh.triangles().len()],
+            queue: BinaryHeap::new(),
         };
         for t in points.filter_map(|p| self.locate(p)) {
-            if best[t as usize].replace(Passage::OPEN).is_none() {
-                (0..3).for_each(|side| queue.leave(t, side, mesh.portal(t, side)));
-            }
+            search.reach(t, Passage::OPEN);
         }
-        while let Some((bits, Reverse(entered))) = queue.heap.pop() {
-            let Some(so_far) = queue.through[entered] else {
-                continue;
-            };
+        while let Some((bits, Reverse(t))) = search.queue.pop() {
+            let so_far = search.widest[t as usize].unwrap_or(Passage::OPEN);
             if so_far.width.to_bits() != bits {
-                continue;
+                continue; // a wider way has come here since
             }
-            let (t, side) = ((entered / 3) as u32, entered % 3);
-            best[t as usize].get_or_insert(so_far); // the widest comes first
-            // The way leaves through another side, around the corner between both.
-            let (next, last) = ((side + 1) % 3, (side + 2) % 3);
-            for (exit, corner) in [(next, next), (last, side)] {
-                if mesh.triangle(t).across[exit].is_some() {
-                    let around = mesh.around(t, corner);
-                    queue.leave(t, exit, so_far.or_narrower(around));
+            let (triangle, corners) = (mesh.triangle(t), mesh.corners(t));
+            for side in 0..3 {
+                let ends = [corners[side], corners[(side + 1) % 3]];
+                let width = (ends[1] - ends[0]).norm();
+                let closed = triangle.closed[side];
+                let closed = closed.map(|next| (next, so_far.or_narrower(Passage { width, ends })));
+                let open = triangle.across[side].map(|next| (next, so_far));
+                for (next, passage) in open.into_iter().chain(closed) {
+                    search.reach(next, passage);
                 }
             }
         }
-        Passages(best)
+        Passages(search.widest)
+    }
+}
+
+/// What is known so far.
+struct Search {
+    /// For each triangle, the narrowest passage of the widest way.
+    widest: Vec<Option<Passage>>,
+    /// The bits of widths, which are ordered as the widths are, and the triangles from which the search goes on.
+    queue: BinaryHeap<(u64, Reverse<u32>)>,
+}
+
+impl Search {
+    /// A way with this narrowest passage leads to triangle `t`.
+    fn reach(&mut self, t: u32, passage: Passage) {
+        let before = &mut self.widest[t as usize];
+        if before.is_none_or(|before| before.width < passage.width) {
+            *before = Some(passage);
+            self.queue.push((passage.width.to_bits(), Reverse(t)));
+        }
     }
 }
 
@@ -84,53 +105,5 @@ impl Passages {
     /// The narrowest passage of the widest way from triangle `t`; `None` without a way.
     pub fn from(&self, t: u32) -> Option<Passage> {
         self.0[t as usize]
-    }
-}
-
-/// What the search goes on from.
-struct Queue<'a> {
-    mesh: &'a Mesh,
-    /// For each side of each triangle, the narrowest passage of the widest way that enters there.
-    through: Vec<Option<Passage>>,
-    /// The bits of widths, which are ordered as the widths are, and the numbers of the sides.
-    heap: BinaryHeap<(u64, Reverse<usize>)>,
-}
-
-impl Queue<'_> {
-    /// A way with this narrowest passage leaves triangle `t` through one of its sides.
-    fn leave(&mut self, t: u32, side: usize, passage: Passage) {
-        let Some(next) = self.mesh.triangle(t).across[side] else {
-            return;
-        };
-        let entered = 3 * next as usize + self.mesh.side_along(next, t);
-        let before = &mut self.through[entered];
-        if before.is_none_or(|before| before.width < passage.width) {
-            *before = Some(passage);
-            self.heap.push((passage.width.to_bits(), Reverse(entered)));
-        }
-    }
-}
-
-impl Mesh {
-    /// Side `side` of triangle `t` as a passage.
-    fn portal(&self, t: u32, side: usize) -> Passage {
-        let corners = self.corners(t);
-        let ends = [corners[side], corners[(side + 1) % 3]];
-        Passage {
-            width: (ends[1] - ends[0]).norm(),
-            ends,
-        }
-    }
-
-    /// The passage around corner k of triangle `t`, from one of the sides there to the other.
-    fn around(&self, t: u32, k: usize) -> Passage {
-        let portals = self.portal(t, k).or_narrower(self.portal(t, (k + 2) % 3));
-        match self.nearest_wall(t, k, portals.width) {
-            Some((width, wall)) => Passage {
-                width,
-                ends: [self.corners(t)[k], wall],
-            },
-            None => portals,
-        }
     }
 }
