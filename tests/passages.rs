@@ -162,8 +162,9 @@ fn the_narrowest_passage_of_the_widest_way_is_where_ways_close() {
         assert!(is_open(width - 1e-6), "case {case}: {passage:?}");
         if passage.width < 1.0 {
             closed += 1;
+            // Passages of the least width to within a micrometer are open.
             assert!(
-                !is_open(width + 1e-6),
+                !is_open(width + 3e-6),
                 "case {case}: {passage:?}, {from:?}, {to:?}"
             );
         }
