@@ -64,7 +64,7 @@ fn a_run_restarts_from_its_trajectories_where_everyone_was() {
         go_to(&mut simulation, 200);
         let entered = simulation.frame().agents.entered() as usize;
         let waiting = simulation.backlogs().next().unwrap().waiting as usize;
-        assert_eq!(entered + waiting, agents.len() + 7);
+        assert_eq!(entered + waiting, order.len() + 7);
         assert!(waiting < 4, "{waiting}");
     }
 }
