@@ -2,10 +2,11 @@
 //!
 //! No test here checks how long something takes.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::common;
 use crate::common::program;
+use crate::common::reports::{assert_is_complete, quick, rows};
 use crate::common::{blend, block, room, scene, vector};
 use sandbox::engine::simulation::{Simulation, Stage};
 use sandbox::lab::bench::{BENCHMARKS, Crowd, Plan, Report, SKIPS, everything};
@@ -13,28 +14,9 @@ use sandbox::lab::machine::{Machine, Resident, main_memory};
 use sandbox::scenario::catalog::NAMES;
 use serde_json::Value;
 
-pub fn quick() -> Plan {
-    Plan {
-        repeats: 3,
-        quick: true,
-        python: PathBuf::from("no/such/python"),
-        ..Plan::default()
-    }
-}
-
-pub fn measure(name: &str, plan: &Plan) -> Report {
+fn measure(name: &str, plan: &Plan) -> Report {
     let benchmark = BENCHMARKS.iter().find(|benchmark| benchmark.name == name);
     benchmark.unwrap().measure(plan, &|_| ()).unwrap()
-}
-
-pub fn rows(report: &Report) -> Vec<Value> {
-    report.json()["rows"].as_array().unwrap().clone()
-}
-
-fn assert_is_spread(value: &Value) {
-    let [low, middle, high] =
-        ["minimum", "median", "maximum"].map(|key| value[key].as_f64().unwrap());
-    assert!(0.0 < low && low <= middle && middle <= high, "{value}");
 }
 
 #[test]
@@ -65,58 +47,8 @@ fn every_report_has_the_machine_and_the_spread_of_every_time() {
             &["scenario", "profile", "skip", "nothing_to_skip"],
             &["with_skip_ms"],
         ),
-        (
-            "compare",
-            &[
-                "agents",
-                "engine",
-                "family",
-                "model",
-                "radius",
-                "precision",
-                "time_step",
-                "threads",
-                "steps",
-                "mean_speed",
-            ],
-            &["ms_per_step", "ms_per_simulated_second", "ratio"],
-        ),
-        (
-            "domains",
-            &["crowd", "parts", "cut", "halo_mean", "drift", "model"],
-            &["ms_per_frame"],
-        ),
     ] {
-        let report = measure(name, &quick());
-        let json = report.json();
-        assert_eq!(json["benchmark"], name);
-        assert_eq!(
-            (&json["repeats"], &json["quick"]),
-            (&3.into(), &true.into())
-        );
-        for key in [
-            "cpu",
-            "cores",
-            "hardware_threads",
-            "memory_bytes",
-            "load",
-            "system",
-        ] {
-            assert!(!json["machine"][key].is_null(), "{name}: {key}");
-        }
-        assert!(json["vectors"]["lanes"].as_u64().unwrap() >= 1);
-        let text = report.text();
-        assert!(text.contains(json["machine"]["cpu"].as_str().unwrap()));
-        assert!(text.contains(json["vectors"]["level"].as_str().unwrap()));
-        let rows = rows(&report);
-        let table = text.split("\n\n").nth(1).unwrap();
-        assert!(!rows.is_empty() && table.lines().count() == 1 + rows.len());
-        for row in rows {
-            for key in keys {
-                assert!(row.get(key).is_some(), "{name}: no {key} in {row}");
-            }
-            times.iter().for_each(|key| assert_is_spread(&row[key]));
-        }
+        assert_is_complete(&measure(name, &quick()), name, keys, times);
     }
 }
 
@@ -243,35 +175,6 @@ fn computing_everything_does_not_change_the_motion() {
 fn motion(simulation: &Simulation) -> Vec<(u32, [u64; 4])> {
     let numbers = |(id, bits): (u32, [u64; 5])| (id, [bits[0], bits[1], bits[2], bits[3]]);
     common::bits(simulation).into_iter().map(numbers).collect()
-}
-
-#[test]
-fn divided_crowds_are_not_modeled_faster_than_their_parts_allow() {
-    let rows = rows(&measure("domains", &quick()));
-    for row in &rows {
-        let number = |key: &str| row[key].as_f64().unwrap();
-        let parts = number("parts");
-        assert!(number("agents_ratio") >= 1.0 && number("work_ratio") >= 1.0);
-        assert!(number("work_ratio") >= number("agents_ratio"), "no RVO");
-        assert!(number("halo_mean") <= number("halo_largest"));
-        assert!(0.0 < number("halo_mean") && number("halo_largest") < number("agents"));
-        assert!(number("neighbors_mean") <= number("neighbors_most"));
-        assert!(number("neighbors_most") < parts);
-        if row["cut"] == "bisection" {
-            // One agent more than the mean.
-            let fair = 1.0 + parts / number("agents");
-            assert!(number("agents_ratio") <= fair, "{row}");
-        }
-        let model = row["model"].as_array().unwrap();
-        let speed_up = |model: &Value| model["speed_up"].as_f64().unwrap();
-        assert!(model.windows(2).all(|m| speed_up(&m[0]) > speed_up(&m[1])));
-        assert!(speed_up(&model[0]) < parts / number("work_ratio"));
-        let drifts = row["crowd"] != "block";
-        assert_eq!(drifts, !row["drift"].is_null(), "{row}");
-    }
-    for crowd in ["block", "streams"] {
-        assert!(rows.iter().any(|row| row["crowd"] == crowd));
-    }
 }
 
 #[test]

@@ -3,11 +3,9 @@
 mod common;
 
 mod accuracy;
-mod accuracy_walls;
 mod backlogs;
 mod bad_days;
 mod bench;
-mod bench_compare;
 mod byte_order_marks;
 mod calibrate;
 mod checkpoint;

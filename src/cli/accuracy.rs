@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use super::update::CaseOptions;
 use super::watch::Watch;
 use super::{Failure, tell};
-use crate::lab::accuracy::{CHOICES, Plan, SCENES, Scene, WALLS, accuracy, knobs};
+use crate::lab::accuracy::{CHOICES, Plan, SCENES, Scene, accuracy, knobs};
 
 #[derive(Args)]
 pub struct AccuracyOptions {
@@ -28,18 +28,15 @@ pub struct AccuracyOptions {
 
 /// All scenes, each with a line about it.
 pub fn about() -> String {
-    let walls = "density and force of five ways to treat walls, compared with the exact integrals";
-    let lines = SCENES.iter().map(|scene| (scene.name, scene.about()));
+    let lines = SCENES.iter();
     lines
-        .chain([(WALLS, walls)])
-        .map(|(name, about)| format!("  {name:<18} {about}\n"))
+        .map(|scene| format!("  {:<18} {}\n", scene.name, scene.about()))
         .collect()
 }
 
 /// The names of all scenes.
 pub fn scenes() -> Vec<&'static str> {
-    let names = SCENES.iter().map(|scene| scene.name);
-    names.chain([WALLS]).collect()
+    SCENES.iter().map(|scene| scene.name).collect()
 }
 
 pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
@@ -50,20 +47,20 @@ pub fn run(options: &AccuracyOptions) -> Result<(), Failure> {
         .filter(|scene| wanted(scene.name) && in_time(scene));
     let plan = Plan {
         scenes: scenes.copied().collect(),
-        walls: wanted(WALLS),
         knobs: options.knob.clone(),
         quick: options.quick,
     };
     // The table of choices is of all scenes.
     let updated = |name: &str| name != CHOICES || options.scene.is_empty();
     let scenes = plan.scenes.iter().map(|scene| scene.name);
-    let tables = scenes.chain([CHOICES, WALLS]).filter(|name| updated(name));
+    let tables = scenes.chain([CHOICES]).filter(|name| updated(name));
     let store = options.cases.store(&tables.collect::<Vec<_>>())?;
     let report = accuracy(&plan, &store, &Watch::new())?;
     let said = tell(options.json, || report.json(), || report.text());
     let parts = report.parts().into_iter();
     options
         .cases
-        .update(parts.filter(|(name, _)| updated(name)))?;
+        .document
+        .put(parts.filter(|(name, _)| updated(name)))?;
     said
 }

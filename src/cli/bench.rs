@@ -1,14 +1,16 @@
 //! `sandbox bench`: performance on this machine.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
+use serde_json::Value;
 
 use super::arguments::PrintOptions;
 use super::values::{repeats, threads};
 use super::{Failure, talk, tell, use_threads};
-use crate::lab::bench::{BENCHMARKS, Plan, files};
+use crate::lab::bench::{BENCHMARKS, Plan, Report, files};
+use crate::lab::error::LabError;
 use crate::runs::outputs::{Manner, Outputs};
 
 /// Examples of commands.
@@ -17,15 +19,20 @@ Examples:
   sandbox bench scaling --largest 100000
   sandbox bench stages --out bench --force
   sandbox bench threads --repeats 15 --json
-  sandbox bench skips --quick
-  sandbox bench domains --largest 10000000
-  sandbox bench compare --python peers/bin/python";
+  sandbox bench skips --quick";
 
 #[derive(Args)]
 pub struct BenchOptions {
     /// The benchmark to run
     #[arg(value_parser = PossibleValuesParser::new(names()))]
     pub what: String,
+    #[command(flatten)]
+    pub timing: TimingOptions,
+}
+
+/// Where the results of a measurement go.
+#[derive(Args)]
+pub struct ResultOptions {
     /// Write the results to this folder as JSON, SVG and PNG
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -35,23 +42,89 @@ pub struct BenchOptions {
     /// Print one JSON object instead of text
     #[arg(long)]
     pub json: bool,
+}
+
+impl ResultOptions {
+    /// Checks that the files of the results can be written. `files` are their paths in the folder.
+    ///
+    /// # Errors
+    /// A file cannot be written, or exists already and may not be replaced.
+    pub fn check(&self, files: impl FnOnce(&Path) -> Vec<PathBuf>) -> Result<(), Failure> {
+        let Some(folder) = &self.out else {
+            return Ok(());
+        };
+        let mut outputs = Outputs::new(self.force);
+        outputs.writes("--out", folder, Manner::Folder);
+        for file in files(folder) {
+            outputs.writes("--out", &file, Manner::Beside);
+        }
+        Ok(outputs.check()?)
+    }
+
+    /// Prints the results, as JSON or as text, and saves them to the folder; `save` returns the paths.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn give(
+        &self,
+        json: impl FnOnce() -> Value,
+        text: impl FnOnce() -> String,
+        save: impl FnOnce(&Path) -> Result<Vec<PathBuf>, LabError>,
+    ) -> Result<(), Failure> {
+        let said = tell(self.json, json, text);
+        let Some(folder) = &self.out else {
+            return said;
+        };
+        for path in save(folder)? {
+            talk(&format!("note: {} written", path.display()));
+        }
+        said
+    }
+}
+
+/// Options of a benchmark.
+#[derive(Args)]
+pub struct TimingOptions {
+    #[command(flatten)]
+    results: ResultOptions,
     /// Number of repeats of each measurement [default: 7, or 2 with --quick]
     #[arg(long, value_name = "N", value_parser = repeats)]
-    pub repeats: Option<usize>,
+    repeats: Option<usize>,
     /// Small crowds and few steps; takes seconds and checks that the benchmark works, not the speed
     #[arg(long)]
-    pub quick: bool,
+    quick: bool,
     /// Number of threads, unless the benchmark varies it [default: all cores]
     #[arg(long, value_parser = threads)]
-    pub threads: Option<usize>,
+    threads: Option<usize>,
     #[command(flatten)]
-    pub print: PrintOptions,
-    /// scaling, domains, compare: size of the largest crowd
+    print: PrintOptions,
+    /// Size of the largest crowd, if the benchmark measures several sizes
     #[arg(long, value_name = "AGENTS", default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(1_000..))]
-    pub largest: u32,
-    /// compare: a Python interpreter with JuPedSim and RVO2 (pip install jupedsim pyrvo)
-    #[arg(long, value_name = "PATH", default_value = "python3")]
-    pub python: PathBuf,
+    largest: u32,
+}
+
+impl TimingOptions {
+    /// Runs the benchmark `name` and gives its results. `measure` gets the plan, and a function that prints progress.
+    ///
+    /// # Errors
+    /// A file cannot be written, or the benchmark fails.
+    pub fn run(
+        &self,
+        name: &str,
+        measure: impl FnOnce(&Plan, &dyn Fn(&str)) -> Result<Report, LabError>,
+    ) -> Result<(), Failure> {
+        self.results.check(|folder| files(name, folder))?;
+        use_threads(self.threads)?;
+        self.print.apply();
+        let plan = Plan {
+            repeats: self.repeats.unwrap_or(if self.quick { 2 } else { 7 }),
+            quick: self.quick,
+            largest: self.largest,
+        };
+        let report = measure(&plan, &|text| talk(&format!("{name}: {text}")))?;
+        let (json, text) = (|| report.json(), || report.text());
+        self.results.give(json, text, |folder| report.save(folder))
+    }
 }
 
 /// The names of all benchmarks.
@@ -73,29 +146,6 @@ pub fn run(options: &BenchOptions) -> Result<(), Failure> {
         .find(|benchmark| benchmark.name == options.what);
     let benchmark =
         found.ok_or_else(|| Failure::Input(format!("{}: no benchmark", options.what)))?;
-    if let Some(folder) = &options.out {
-        let mut outputs = Outputs::new(options.force);
-        outputs.writes("--out", folder, Manner::Folder);
-        for file in files(benchmark.name, folder) {
-            outputs.writes("--out", &file, Manner::Beside);
-        }
-        outputs.check()?;
-    }
-    use_threads(options.threads)?;
-    options.print.apply();
-    let plan = Plan {
-        repeats: options.repeats.unwrap_or(if options.quick { 2 } else { 7 }),
-        quick: options.quick,
-        largest: options.largest,
-        python: options.python.clone(),
-    };
-    let report = benchmark.measure(&plan, &|text| talk(&format!("{}: {text}", benchmark.name)))?;
-    let said = tell(options.json, || report.json(), || report.text());
-    let Some(folder) = &options.out else {
-        return said;
-    };
-    for path in report.save(folder)? {
-        talk(&format!("note: {} written", path.display()));
-    }
-    said
+    let measure = |plan: &Plan, say: &dyn Fn(&str)| benchmark.measure(plan, say);
+    options.timing.run(benchmark.name, measure)
 }

@@ -1,4 +1,7 @@
 //! The command line: arguments, commands, messages and exit codes. The only module that names clap.
+//!
+//! Programs beside this one take from here their exit codes ([`main_of`]) and the options of benchmarks
+//! ([`TimingOptions`]) and of documents with tables ([`UpdateOptions`]).
 
 mod accuracy;
 mod arguments;
@@ -28,7 +31,10 @@ mod update;
 mod values;
 mod watch;
 
+pub use arguments::PrintOptions;
+pub use bench::{ResultOptions, TimingOptions};
 pub use report::json as json_report;
+pub use update::UpdateOptions;
 
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
@@ -55,7 +61,7 @@ use commands::{Arguments, Command};
 
 /// Why a command failed.
 #[derive(Debug, thiserror::Error)]
-enum Failure {
+pub enum Failure {
     /// A scenario or a setting is invalid: exit code 2.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
@@ -143,8 +149,16 @@ pub fn main() -> ExitCode {
 /// Runs the program with these arguments, the first of which is its name, and returns the exit code: 0 success, 1 the
 /// command failed, 2 invalid input, 130 and 143 interrupted. Results go to stdout, messages to stderr.
 pub fn main_with(arguments: impl IntoIterator<Item = OsString>) -> u8 {
-    let failure = match Arguments::try_parse_from(arguments) {
-        Ok(arguments) => run(arguments.command).err(),
+    main_of(arguments, |arguments: Arguments| run(arguments.command))
+}
+
+/// Runs another program with these arguments as [`main_with`] runs this one: with the same messages and exit codes.
+pub fn main_of<A: Parser>(
+    arguments: impl IntoIterator<Item = OsString>,
+    run: impl FnOnce(A) -> Result<(), Failure>,
+) -> u8 {
+    let failure = match A::try_parse_from(arguments) {
+        Ok(arguments) => run(arguments).err(),
         Err(error) => {
             error.print().ok();
             return u8::try_from(error.exit_code()).unwrap_or(2);

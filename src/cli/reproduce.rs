@@ -57,6 +57,6 @@ pub fn run(options: &ReproduceOptions) -> Result<(), Failure> {
     let store = options.cases.store(&names)?;
     let texts = reproduce(&products, options.seeds, &store, &Watch::new())?;
     let said = texts.iter().try_for_each(say);
-    options.cases.update(names.into_iter().zip(&texts))?;
+    options.cases.document.put(names.into_iter().zip(&texts))?;
     said
 }

@@ -22,7 +22,7 @@ pub fn run(options: &StressOptions) -> Result<(), Failure> {
     let report = stress(&detail, &store, &Watch::new())?;
     let parts = report.parts();
     let said = parts.iter().try_for_each(|text| say(format!("{text}\n")));
-    options.cases.update(PARTS.into_iter().zip(parts))?;
+    options.cases.document.put(PARTS.into_iter().zip(parts))?;
     said?;
     match report.failures() {
         none if none.is_empty() => Ok(()),

@@ -82,7 +82,8 @@ fn judge(
         let (name, ids) = (shown(&name), ids.join(", "));
         Failure::Input(format!("{option}{name}: no such case; there are {ids}"))
     })?;
-    if options.cases.update.is_some() && !(names.is_empty() && options.profile.is_empty()) {
+    if options.cases.document.update.is_some() && !(names.is_empty() && options.profile.is_empty())
+    {
         let reason = "--update needs all cases and profiles; name none";
         return Err(Failure::Input(reason.to_owned()));
     }
@@ -108,7 +109,7 @@ fn judge(
     let report = suite.run(&chosen, &store, &Watch::new())?;
     let text = report.markdown();
     let said = say(format!("{text}\n"));
-    options.cases.update([(suite.name, &text)])?;
+    options.cases.document.put([(suite.name, &text)])?;
     for line in report.no_longer_missed() {
         talk(&format!("note: {line}"));
     }

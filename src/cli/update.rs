@@ -14,14 +14,21 @@ use crate::runs::outputs::{Manner, Outputs, write_whole};
 use crate::runs::store::Store;
 use crate::scenario::input;
 
+/// The document with the tables.
+#[derive(Args)]
+pub struct UpdateOptions {
+    /// Also insert the tables into this file, between the lines <!-- NAME --> and <!-- /NAME -->
+    #[arg(long, value_name = "FILE.md")]
+    pub update: Option<PathBuf>,
+}
+
 #[derive(Args)]
 pub struct CaseOptions {
     /// Folder for the results; cases finished there are not run again
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Also insert the tables into this file, between the lines <!-- NAME --> and <!-- /NAME -->
-    #[arg(long, value_name = "FILE.md")]
-    pub update: Option<PathBuf>,
+    #[command(flatten)]
+    pub document: UpdateOptions,
     /// Number of cases to compute at once, each on one thread [default: all cores]
     #[arg(long, value_parser = threads)]
     pub threads: Option<usize>,
@@ -35,26 +42,44 @@ impl CaseOptions {
     pub fn store(&self, tables: &[&str]) -> Result<Store, Failure> {
         use_threads(self.threads)?;
         self.print.apply();
-        if let Some(file) = &self.update {
-            let place = fs::canonicalize(file).map_err(|error| failed(file, &error))?;
-            let mut outputs = Outputs::new(true);
-            outputs.writes("--update", file, Manner::Whole);
-            outputs.check()?;
-            let results = fs::canonicalize(&self.out).ok();
-            if results.is_some() && place.parent() == results.as_deref() {
-                return Err(Failure::Input(format!(
-                    "--update {}: lies in the folder of --out {}, whose files are replaced; give another folder",
-                    file.display(),
-                    self.out.display()
-                )));
-            }
-            check_places(file, tables)?;
-        }
+        self.document.check(Some(&self.out), tables)?;
         Ok(Store::open(&self.out)?)
+    }
+}
+
+impl UpdateOptions {
+    /// Checks that the document can be updated, has a place for one of the `tables` at least, and that no result in the
+    /// folder `out` replaces it.
+    ///
+    /// # Errors
+    /// The document cannot be updated.
+    pub fn check(&self, out: Option<&Path>, tables: &[&str]) -> Result<(), Failure> {
+        let Some(file) = &self.update else {
+            return Ok(());
+        };
+        let place = fs::canonicalize(file).map_err(|error| failed(file, &error))?;
+        let mut outputs = Outputs::new(true);
+        outputs.writes("--update", file, Manner::Whole);
+        outputs.check()?;
+        let results = out.and_then(|out| fs::canonicalize(out).ok());
+        if let Some(out) = out
+            && results.is_some()
+            && place.parent() == results.as_deref()
+        {
+            return Err(Failure::Input(format!(
+                "--update {}: lies in the folder of --out {}, whose files are replaced; give another folder",
+                file.display(),
+                out.display()
+            )));
+        }
+        check_places(file, tables)
     }
 
     /// Inserts texts at the places of the document that are marked with their names.
-    pub fn update(
+    ///
+    /// # Errors
+    /// The document cannot be read or written.
+    pub fn put(
         &self,
         texts: impl IntoIterator<Item = (impl AsRef<str>, impl AsRef<str>)>,
     ) -> Result<(), Failure> {

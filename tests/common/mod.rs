@@ -24,6 +24,8 @@ pub mod reading_trajectories;
 pub mod recorded;
 #[cfg(feature = "program")]
 pub mod recording;
+#[cfg(feature = "program")]
+pub mod reports;
 pub mod ring;
 pub mod simulated;
 pub mod social;

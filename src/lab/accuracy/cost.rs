@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::scenes::{run_until, simulation};
 use crate::analysis::statistics::Range;
-use crate::lab::bench::{Contender, alternate, ms_per_frame, pool};
+use crate::lab::bench::timing::{Contender, alternate, ms_per_frame, pool};
 use crate::lab::error::LabError;
 use crate::scenario::Setting;
 

@@ -3,8 +3,7 @@
 //! Every point is a scenario under some settings, as `--set` takes them; the studies `accuracy_*.json` list them
 //! ([`Trial`]). Its cost is milliseconds per simulated second on one thread. Its error is one of two: how far agents
 //! are from their positions in a run at Δt/64 ([`Motion`]), before chaos takes over ([`Lyapunov`]); or how far the
-//! means of measurements over seeds are from those of a run with a fine step. The accuracy of the integrals over walls
-//! is measured separately, in [`walls`].
+//! means of measurements over seeds are from those of a run with a fine step.
 
 mod cost;
 mod found;
@@ -17,12 +16,11 @@ mod statistics;
 mod suite;
 mod trajectory;
 mod trials;
-pub mod walls;
 
 pub use found::{Found, Measured, Point, Quantity};
 pub use front::{better, cheapest};
 pub use lyapunov::Lyapunov;
-pub use report::{CHOICES, Report, WALLS};
+pub use report::{CHOICES, Report};
 pub use scenes::{Kind, SCENES, Scene};
 pub use suite::{Plan, accuracy};
 pub use trajectory::{Errors, Motion, SAMPLES, Trajectories, limit};

@@ -1,7 +1,7 @@
 //! Work-precision diagrams: error against cost, one curve per knob.
 
 use super::found::{Found, Point as Setting};
-use super::report::{Report, WALLS};
+use super::report::Report;
 use super::scenes::Kind;
 use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
@@ -17,10 +17,6 @@ pub fn save(report: &Report, store: &Store) -> Result<(), LabError> {
     for found in &report.scenes {
         let stem = format!("accuracy-{}", found.scene.name);
         sheet(found).save(&store.path(&stem))?;
-    }
-    if let Some(walls) = &report.walls {
-        let stem = format!("accuracy-{WALLS}");
-        walls.sheet().save(&store.path(&stem))?;
     }
     Ok(())
 }

@@ -2,23 +2,18 @@
 
 use super::found::{self, Found};
 use super::scenes::names;
-use super::walls::WallReport;
 use crate::lab::error::LabError;
 use crate::output::table::Table;
 use crate::runs::store::Store;
 
 /// The name of the table of the best choices of all scenes.
 pub const CHOICES: &str = "choices";
-/// The name of the wall measurements in lists of scenes.
-pub const WALLS: &str = "wall-integrals";
 
 /// All results.
 #[derive(Clone)]
 pub struct Report {
     /// The results, scene by scene.
     pub scenes: Vec<Found>,
-    /// The accuracy of the integrals over walls, if it was measured.
-    pub walls: Option<WallReport>,
     /// Whether the plan was quick, with few values, seeds and turns.
     pub quick: bool,
 }
@@ -37,9 +32,7 @@ impl Report {
             let text = format!("{}\n\n{}", found.notes, found.table().markdown());
             (found.scene.name.to_owned(), text)
         });
-        let walls = self.walls.iter();
-        let walls = walls.map(|walls| (WALLS.to_owned(), walls.markdown()));
-        choices.chain(scenes).chain(walls).collect()
+        choices.chain(scenes).collect()
     }
 
     /// The text for a terminal.
@@ -48,9 +41,7 @@ impl Report {
             let (name, about, table) = (found.scene.name, found.scene.about(), found.table());
             format!("{name}: {about}\n{}\n\n{}\n", found.notes, table.text())
         });
-        let choices = (!self.scenes.is_empty()).then(|| self.choices().text());
-        let walls = self.walls.as_ref().map(WallReport::markdown);
-        scenes.chain(choices).chain(walls).collect()
+        scenes.chain([self.choices().text()]).collect()
     }
 
     /// Writes tables, CSV and JSON into the store's folder.
@@ -64,9 +55,6 @@ impl Report {
             .collect();
         store.write("accuracy.md", text.as_bytes())?;
         store.write("accuracy.csv", &self.csv()?)?;
-        if let Some(walls) = &self.walls {
-            store.write("accuracy-walls.csv", &walls.csv()?)?;
-        }
         let json = format!("{}\n", self.json());
         store.write("accuracy.json", json.as_bytes())?;
         Ok(())
@@ -114,6 +102,6 @@ impl Report {
                 "points": found.points,
             })
         });
-        serde_json::json!({ "quick": self.quick, "scenes": scenes.collect::<Vec<_>>(), "walls": self.walls })
+        serde_json::json!({ "quick": self.quick, "scenes": scenes.collect::<Vec<_>>() })
     }
 }

@@ -4,13 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
-use super::cost;
 use super::found::{Found, Judged, Point};
 use super::report::Report;
 use super::scenes::{Kind, Scene, names};
 use super::trajectory::Trajectories;
 use super::trials::{Trial, few, reference, settings, trials};
-use super::{statistics, walls};
+use super::{cost, statistics};
 use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
 use crate::lab::jobs::{read, results};
@@ -27,8 +26,6 @@ use crate::scenario::Setting;
 pub struct Plan {
     /// The scenes.
     pub scenes: Vec<Scene>,
-    /// Whether the integrals over walls are measured, too.
-    pub walls: bool,
     /// The knobs whose values are tried; empty for all.
     pub knobs: Vec<String>,
     /// A check that everything works: few values, two seeds, and costs from a single turn.
@@ -69,12 +66,8 @@ pub fn accuracy(plan: &Plan, store: &Store, listener: &dyn Listener) -> Result<R
         task.finish(&own, listener)
     });
     let found = found.collect::<Result<Vec<Found>, _>>()?;
-    if plan.walls {
-        listener.notes("wall-integrals: measuring errors and costs");
-    }
     let report = Report {
         scenes: found,
-        walls: plan.walls.then(|| walls::measure(plan.quick)),
         quick: plan.quick,
     };
     report.write(store)?;

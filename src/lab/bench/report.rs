@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use super::Plan;
 use crate::engine::pairs::Vectors;
 use crate::lab::error::LabError;
 use crate::lab::machine::Machine;
@@ -15,7 +16,7 @@ use crate::runs::store::Store;
 
 /// The results of a benchmark.
 #[derive(Debug, Clone, Serialize)]
-pub(super) struct Findings {
+pub struct Findings {
     /// The table for readers.
     #[serde(skip)]
     pub table: Table,
@@ -31,20 +32,39 @@ pub(super) struct Findings {
 /// The results of a benchmark, with the machine and the plan.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
-    pub(super) benchmark: &'static str,
-    pub(super) about: &'static str,
-    pub(super) machine: Machine,
+    benchmark: &'static str,
+    about: &'static str,
+    machine: Machine,
     /// The vector instructions for sums over pairs.
-    pub(super) vectors: Vectors,
+    vectors: Vectors,
     /// Threads, unless a row says otherwise.
-    pub(super) threads: usize,
-    pub(super) repeats: usize,
-    pub(super) quick: bool,
+    threads: usize,
+    repeats: usize,
+    quick: bool,
     #[serde(flatten)]
-    pub(super) findings: Findings,
+    findings: Findings,
 }
 
 impl Report {
+    /// The findings of a benchmark, with this machine and the plan.
+    pub fn of(
+        benchmark: &'static str,
+        about: &'static str,
+        plan: &Plan,
+        findings: Findings,
+    ) -> Self {
+        Self {
+            benchmark,
+            about,
+            machine: Machine::here(),
+            vectors: Vectors::here(),
+            threads: rayon::current_num_threads(),
+            repeats: plan.repeats,
+            quick: plan.quick,
+            findings,
+        }
+    }
+
     /// The text for a terminal.
     pub fn text(&self) -> String {
         let quick = ["", "; quick: these times are meaningless"][usize::from(self.quick)];

@@ -57,10 +57,15 @@ pub fn busiest(plan: &Plan) -> &'static [Stretch] {
 
 /// A crowd at the start of the timed frames.
 pub struct Started {
+    /// The name of the crowd.
     pub name: &'static str,
+    /// The name of its profile.
     pub profile: String,
+    /// The crowd.
     pub simulation: Simulation,
+    /// The measurements that it asks for.
     pub measurements: Vec<Measurement>,
+    /// The number of timed frames.
     pub frames: u64,
 }
 

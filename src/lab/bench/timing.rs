@@ -34,7 +34,7 @@ pub fn alternate(
 }
 
 /// The error of a timed simulation.
-pub(super) fn failed(fault: Fault) -> LabError {
+pub fn failed(fault: Fault) -> LabError {
     LabError::of("timed run", fault)
 }
 

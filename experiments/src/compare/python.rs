@@ -4,13 +4,13 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
+use sandbox::engine::simulation::Simulation;
+use sandbox::lab::error::LabError;
 use serde_json::json;
 use tempfile::NamedTempFile;
 
 use super::WIDE;
 use super::setting::{Description, Family, Setting, Turn};
-use crate::engine::simulation::Simulation;
-use crate::lab::error::LabError;
 
 /// The end of every script: it reads the agents and answers requests.
 const SERVE: &str = include_str!("python/serve.py");

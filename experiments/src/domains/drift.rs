@@ -1,13 +1,13 @@
 //! What becomes of a cut that is held while the crowd moves.
 
+use sandbox::engine::agents::Agents;
+use sandbox::engine::simulation::Simulation;
+use sandbox::lab::bench::timing::ms_per_frame;
+use sandbox::lab::error::LabError;
 use serde::Serialize;
 
 use super::cut::Cut;
 use super::ratio;
-use crate::engine::agents::Agents;
-use crate::engine::simulation::Simulation;
-use crate::lab::bench::timing::ms_per_frame;
-use crate::lab::error::LabError;
 
 /// The drift of one cut.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -93,8 +93,8 @@ pub fn follow(
 mod tests {
     use super::super::cut::Way;
     use super::*;
-    use crate::engine::math::Vector;
-    use crate::lab::bench::Crowd;
+    use sandbox::engine::math::Vector;
+    use sandbox::lab::bench::Crowd;
 
     /// Two seconds of a crowd in four rectangles, at rest or on its way to the right.
     fn drift(ahead: f64) -> Drift {

@@ -7,22 +7,21 @@ mod race;
 mod rustsim;
 mod setting;
 
+use std::path::Path;
+
+use sandbox::lab::bench::{Crowd, Findings, Plan, Report};
+use sandbox::lab::error::LabError;
+use sandbox::lab::machine::Machine;
+use sandbox::output::table::Table;
 use serde_json::json;
 
 use self::race::{PATIENCE, Racer, Row, TURN, race};
 use self::setting::Setting;
-use super::crowd::Crowd;
-use super::report::Findings;
-use super::{Benchmark, Plan};
-use crate::lab::error::LabError;
-use crate::lab::machine::Machine;
-use crate::output::table::Table;
 
-pub const BENCHMARK: Benchmark = Benchmark {
-    name: "compare",
-    about: "computing time per simulated second beside rustsim-crowd, JuPedSim and RVO2, on the same crowds",
-    run,
-};
+/// Its name on the command line.
+pub const NAME: &str = "compare";
+/// A description, in one line.
+pub const ABOUT: &str = "computing time per simulated second beside rustsim-crowd, JuPedSim and RVO2, on the same crowds";
 
 /// The paper's radius of avoidance, meters.
 const WIDE: f64 = 5.0;
@@ -42,12 +41,21 @@ fn crowd(agents: u32, profile: &'static str) -> Crowd {
     }
 }
 
-fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
+/// Runs the comparison with the engines that the Python interpreter `python` has, and reports its progress with `say`.
+///
+/// # Errors
+/// A simulation fails, or another program stops.
+pub fn measure(plan: &Plan, python: &Path, say: &dyn Fn(&str)) -> Result<Report, LabError> {
+    let findings = run(plan, python, say)?;
+    Ok(Report::of(NAME, ABOUT, plan, findings))
+}
+
+fn run(plan: &Plan, python: &Path, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     let sizes = plan.choose(&SIZES[..], &[100, 400]).iter().copied();
     let sizes: Vec<u32> = sizes.filter(|&agents| agents <= plan.largest).collect();
     let main = sizes.iter().copied().filter(|&agents| agents <= MAIN).max();
     let mut notes = vec![conditions(), differences()];
-    let others = others(plan, &mut notes);
+    let others = others(python, &mut notes);
     let ours = ours::settings(&others, Machine::here().hardware_threads)?;
     let own = ours.len();
     let mut racers: Vec<Racer> = ours.into_iter().chain(others).map(Racer::new).collect();
@@ -89,13 +97,13 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
 }
 
 /// The settings of the other engines. Those that are missing get a note.
-fn others(plan: &Plan, notes: &mut Vec<String>) -> Vec<Setting> {
+fn others(python: &Path, notes: &mut Vec<String>) -> Vec<Setting> {
     let mut found = vec![(
         "rustsim-crowd",
         rustsim::settings(Machine::here().hardware_threads),
     )];
     let packages = python::PACKAGES.iter();
-    found.extend(packages.map(|package| (package.engine, package.settings(&plan.python))));
+    found.extend(packages.map(|package| (package.engine, package.settings(python))));
     let mut others = Vec::new();
     for (engine, settings) in found {
         match settings {

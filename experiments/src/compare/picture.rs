@@ -1,10 +1,11 @@
 //! The picture: cost over the number of agents.
 
+use sandbox::lab::bench::pictures::{around, color, curve};
+use sandbox::output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style};
+
 use super::DENSITY;
 use super::race::Row;
 use super::setting::Family;
-use crate::lab::bench::pictures::{around, color, curve};
-use crate::output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style};
 
 /// One panel for social forces and one for the other models, with one curve per engine and setting: those on one
 /// thread that are measured at several sizes.

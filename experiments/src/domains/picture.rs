@@ -1,13 +1,13 @@
 //! The picture of `domains`: balance and halos as found, speed-ups as modeled.
 
 use indicatif::HumanCount;
+use sandbox::analysis::statistics::Range;
+use sandbox::lab::bench::pictures::{around, color, curve};
+use sandbox::output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style};
 
 use super::Row;
 use super::cut::Way;
 use super::network::NETWORKS;
-use crate::analysis::statistics::Range;
-use crate::lab::bench::pictures::{around, color, curve};
-use crate::output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style};
 
 /// Four panels: balance, halos, and two modeled speed-ups.
 pub fn sheet(rows: &[Row]) -> Sheet {

@@ -1,10 +1,9 @@
 //! An engine with one setting, which can begin with crowds of any size.
 
+use sandbox::engine::math::Vector;
+use sandbox::engine::simulation::Simulation;
+use sandbox::lab::error::LabError;
 use serde::Serialize;
-
-use crate::engine::math::Vector;
-use crate::engine::simulation::Simulation;
-use crate::lab::error::LabError;
 
 /// Models that can be compared with each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]

@@ -1,8 +1,8 @@
 //! Places near walls, and the paths through them.
 
-use crate::engine::agents::REFERENCE_RADIUS;
-use crate::engine::geometry::{Polygon, Walls};
-use crate::engine::math::{Vector, perpendicular};
+use sandbox::engine::agents::REFERENCE_RADIUS;
+use sandbox::engine::geometry::{Polygon, Walls};
+use sandbox::engine::math::{Vector, perpendicular};
 
 /// The radius of an average body: no agent stands closer to a wall.
 const BODY: f64 = REFERENCE_RADIUS;

@@ -1,9 +1,10 @@
 //! Density and force along each path, and error against time.
 
+use sandbox::engine::boundary::WallMethod;
+use sandbox::output::colors::Rgb;
+use sandbox::output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Sheet, Style};
+
 use super::{CaseReport, Error, METHODS, Method, MethodReport, Stored, Volumes, WallReport};
-use crate::engine::boundary::WallMethod;
-use crate::output::colors::Rgb;
-use crate::output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Sheet, Style};
 
 /// The color of the exact values, drawn below everything else.
 const PALE: Rgb = [200, 200, 200];

@@ -2,13 +2,13 @@
 
 use std::time::Instant;
 
+use sandbox::analysis::statistics::Range;
+use sandbox::engine::simulation::Simulation;
+use sandbox::lab::bench::timing::{Contender, alternate};
+use sandbox::lab::error::LabError;
 use serde::Serialize;
 
 use super::setting::{Description, Setting, Walk};
-use crate::analysis::statistics::Range;
-use crate::engine::simulation::Simulation;
-use crate::lab::bench::timing::{Contender, alternate};
-use crate::lab::error::LabError;
 
 /// The simulated time of a turn, seconds: whole steps of every engine, and whole coarse frames of this one.
 pub const TURN: f64 = 0.5;

@@ -9,15 +9,13 @@ mod present {
 
     use rustsim_crowd::social_force::{self, Params};
     use rustsim_crowd::{Pedestrian, Scratch, WallSegment, recommended_cell_size};
+    use sandbox::engine::math::Vector;
+    use sandbox::engine::simulation::Simulation;
+    use sandbox::lab::bench::timing::pool;
+    use sandbox::lab::error::LabError;
 
-    use crate::engine::math::Vector;
-    use crate::engine::simulation::Simulation;
-    use crate::lab::bench::compare::WIDE;
-    use crate::lab::bench::compare::setting::{
-        Description, Family, Setting, Turn, Walk, mean_distance,
-    };
-    use crate::lab::bench::timing::pool;
-    use crate::lab::error::LabError;
+    use crate::compare::WIDE;
+    use crate::compare::setting::{Description, Family, Setting, Turn, Walk, mean_distance};
 
     /// The time step that its own tests use, seconds.
     const TIME_STEP: f64 = 0.05;
@@ -122,6 +120,6 @@ mod present {
 /// Says how to include rustsim-crowd.
 #[cfg(not(feature = "compare"))]
 pub fn settings(_: usize) -> Result<Vec<super::setting::Setting>, String> {
-    let how = "`cargo build --release --features compare` brings it in";
+    let how = "`cargo build --release -p experiments --features compare` brings it in";
     Err(format!("this program was built without it; {how}"))
 }

@@ -1,9 +1,9 @@
 //! Walls made of boundary particles, as in fluids: fixed particles that fill the obstacles.
 
-use crate::analysis::wall_integrals::Integrals;
-use crate::engine::geometry::{Polygon, Walls};
-use crate::engine::kernel;
-use crate::engine::math::{Vector, bounds};
+use sandbox::analysis::wall_integrals::Integrals;
+use sandbox::engine::geometry::{Polygon, Walls};
+use sandbox::engine::kernel;
+use sandbox::engine::math::{Vector, bounds};
 
 /// Cells with a smaller fraction of their area inside an obstacle stay empty.
 const LEAST_PART: f64 = 1e-9;

@@ -1,10 +1,44 @@
 //! The results as tables for readers and as rows for programs.
 
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use sandbox::analysis::wall_integrals::Region;
+use sandbox::lab::error::LabError;
+use sandbox::output::table::{Cell, Table};
+use sandbox::runs::store::Store;
+use serde_json::{Value, json};
+
 use super::{CaseReport, Error, METHODS, MethodReport, WallReport};
-use crate::analysis::wall_integrals::Region;
-use crate::output::table::{Cell, Table};
+
+/// The files that the results are saved to in a folder.
+pub fn files(folder: &Path) -> Vec<PathBuf> {
+    let file = |extension: &str| folder.join(format!("walls.{extension}"));
+    ["md", "csv", "json", "svg", "png"].map(file).into()
+}
 
 impl WallReport {
+    /// All results as one object.
+    pub fn json(&self) -> Value {
+        json!(self)
+    }
+
+    /// Writes tables, CSV, JSON and the picture into a folder, and returns the paths.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn save(&self, folder: &Path) -> Result<Vec<PathBuf>, LabError> {
+        let shown = folder.display();
+        let unwritable = |error| LabError::Data(format!("cannot write {shown}: {error}"));
+        fs::create_dir_all(folder).map_err(unwritable)?;
+        let store = Store::at(folder);
+        store.write("walls.md", self.markdown().as_bytes())?;
+        store.write("walls.csv", &self.csv()?)?;
+        store.write("walls.json", format!("{:#}\n", self.json()).as_bytes())?;
+        self.sheet().save(&folder.join("walls"))?;
+        Ok(files(folder))
+    }
+
     /// Tables with one row per method and one column per case.
     pub fn markdown(&self) -> String {
         let parts = [
@@ -44,13 +78,13 @@ impl WallReport {
     }
 
     /// One row for each case and method; errors are relative to the largest exact value.
-    pub fn csv(&self) -> Result<Vec<u8>, csv::Error> {
+    pub fn csv(&self) -> Result<Vec<u8>, LabError> {
         let cases = self.cases.iter();
         let rows = cases.flat_map(|case| case.methods.iter().map(move |method| (case, method)));
         let rows: Vec<(&CaseReport, &MethodReport)> = rows.collect();
         let parts = ["_rms", "_max"];
         let error = |error: Error| Cell::Spread(error.rms, Some(error.max));
-        Table::of(&rows)
+        let table = Table::of(&rows)
             .column("case", |row| row.0.name)
             .column("method", |row| row.1.name.as_str())
             .column("against", |row| match row.1.region {
@@ -65,8 +99,8 @@ impl WallReport {
             .column("ns_maximum", |row| row.1.ns.maximum)
             .column("preparation_ms", |row| row.1.preparation_ms)
             .column("bytes", |row| row.1.bytes)
-            .table()
-            .csv()
+            .table();
+        Ok(table.csv()?)
     }
 
     /// A table with a column for each case that has a value.

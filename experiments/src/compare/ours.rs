@@ -2,14 +2,15 @@
 
 use std::time::Instant;
 
+use sandbox::engine::math::Vector;
+use sandbox::engine::pairs::Precision;
+use sandbox::engine::simulation::Simulation;
+use sandbox::lab::bench::Crowd;
+use sandbox::lab::bench::timing::{failed, ms_per_frame, pool};
+use sandbox::lab::error::LabError;
+
 use super::setting::{Description, Family, Setting, Turn, Walk, mean_distance};
 use super::{WIDE, crowd};
-use crate::engine::math::Vector;
-use crate::engine::pairs::Precision;
-use crate::engine::simulation::Simulation;
-use crate::lab::bench::crowd::Crowd;
-use crate::lab::bench::timing::{failed, ms_per_frame, pool};
-use crate::lab::error::LabError;
 
 /// Social forces and velocity obstacles within the paper's radius on one thread and on all, and with the radii and
 /// threads of the others. Those that another setting is compared with at all sizes are measured at all sizes.

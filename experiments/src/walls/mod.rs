@@ -1,7 +1,7 @@
 //! Walls in SPH: the density and force of each method of including them, compared with the exact integrals.
 //!
 //! For an agent at r_i the walls' density is ρ_i⁰ ∫ W and their force −p_i ∫ ∇W (Eqs. 10 and 12), over one of two
-//! [`Region`](crate::analysis::wall_integrals::Region)s: the region that the walls *hide* (the union of the paper's
+//! [`Region`](sandbox::analysis::wall_integrals::Region)s: the region that the walls *hide* (the union of the paper's
 //! P_k, counted once), or the *solid* itself. The engine's methods integrate over the hidden region. Boundary particles
 //! and volume maps, which the paper argues against (§3.4) and which exist only here, integrate over the solid. Akinci's
 //! particles are an exception: their volumes make a solid body of every wall, so they count as a method for the hidden
@@ -20,6 +20,13 @@ pub use map::{Map, Stored};
 pub use measure::{CaseReport, Error, MethodReport, WallReport, measure};
 pub use method::{METHODS, Method, Prepared};
 pub use particles::{Particles, Volumes};
+pub use report::files;
+
+/// A description, in one line.
+pub const ABOUT: &str =
+    "density and force of five ways to treat walls, compared with the exact integrals";
+/// The name of the tables in a document.
+pub const TABLES: &str = "wall-integrals";
 
 /// h of the paper's experiments (§5.2), meters.
 pub const SUPPORT_RADIUS: f64 = 1.0;

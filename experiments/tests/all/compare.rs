@@ -1,20 +1,47 @@
-//! `bench compare`: what the engines get, and what they are compared with.
+//! The comparison of engines: what the engines get, and what they are compared with.
 //!
 //! No test here checks how long something takes.
 
 use std::path::{Path, PathBuf};
 
-use crate::bench::{measure, quick, rows};
-use sandbox::lab::bench::Plan;
+use crate::reports::{assert_is_complete, quick, rows};
+use experiments::compare;
+use sandbox::lab::bench::{Plan, Report};
 use serde_json::Value;
+
+/// No Python interpreter.
+const MISSING: &str = "no/such/python";
+
+fn measure(plan: &Plan, python: &Path) -> Report {
+    compare::measure(plan, python, &|_| ()).unwrap()
+}
 
 fn number(row: &Value, key: &str, which: &str) -> f64 {
     row[key][which].as_f64().unwrap()
 }
 
 #[test]
+fn the_report_has_the_machine_and_the_spread_of_every_time() {
+    let report = measure(&quick(), Path::new(MISSING));
+    let keys = [
+        "agents",
+        "engine",
+        "family",
+        "model",
+        "radius",
+        "precision",
+        "time_step",
+        "threads",
+        "steps",
+        "mean_speed",
+    ];
+    let times = ["ms_per_step", "ms_per_simulated_second", "ratio"];
+    assert_is_complete(&report, compare::NAME, &keys, &times);
+}
+
+#[test]
 fn the_cost_is_that_of_a_simulated_second_and_our_ratio_to_ourselves_is_1() {
-    let rows = rows(&measure("compare", &quick()));
+    let rows = rows(&measure(&quick(), Path::new(MISSING)));
     let ours = |row: &&Value| row["engine"] == "sandbox";
     let families: Vec<&Value> = rows.iter().filter(ours).map(|row| &row["family"]).collect();
     for family in ["social-force", "velocity-obstacles"] {
@@ -40,7 +67,7 @@ fn the_cost_is_that_of_a_simulated_second_and_our_ratio_to_ourselves_is_1() {
 fn the_main_crowd_comes_first_and_no_crowd_is_larger_than_asked_for() {
     let agents = |largest: u32| -> Vec<u64> {
         let plan = Plan { largest, ..quick() };
-        let rows = rows(&measure("compare", &plan));
+        let rows = rows(&measure(&plan, Path::new(MISSING)));
         rows.iter()
             .map(|row| row["agents"].as_u64().unwrap())
             .collect()
@@ -54,7 +81,7 @@ fn the_main_crowd_comes_first_and_no_crowd_is_larger_than_asked_for() {
 
 #[test]
 fn a_missing_engine_is_named_with_how_to_install_it() {
-    let report = measure("compare", &quick());
+    let report = measure(&quick(), Path::new(MISSING));
     let text = report.text();
     for words in [
         "JuPedSim is missing",
@@ -96,11 +123,8 @@ fn fake_python(folder: &Path, answer: &str) -> PathBuf {
 #[test]
 fn python_engines_get_all_agents_and_are_compared_with_the_same_family_and_radius_on_one_thread() {
     let folder = tempfile::tempdir().unwrap();
-    let plan = Plan {
-        python: fake_python(folder.path(), "0.5 0.7"),
-        ..quick()
-    };
-    let rows = rows(&measure("compare", &plan));
+    let python = fake_python(folder.path(), "0.5 0.7");
+    let rows = rows(&measure(&quick(), &python));
     let people = std::fs::read_to_string(folder.path().join("people")).unwrap();
     let people: Vec<&str> = people.lines().map(str::trim).collect();
     assert_eq!(people, [["100"; 4].as_slice(), &["400"; 5]].concat());
@@ -139,11 +163,8 @@ fn python_engines_get_all_agents_and_are_compared_with_the_same_family_and_radiu
 #[test]
 fn a_crowd_that_would_take_too_long_is_left_out_with_the_reason() {
     let folder = tempfile::tempdir().unwrap();
-    let plan = Plan {
-        python: fake_python(folder.path(), "3 0.7"),
-        ..quick()
-    };
-    let report = measure("compare", &plan);
+    let python = fake_python(folder.path(), "3 0.7");
+    let report = measure(&quick(), &python);
     let reason =
         "RVO2 (pyrvo 9.9), ORCA, all neighbors: no crowd of 400, as a step would take 12 s";
     assert!(report.text().contains(reason), "{}", report.text());
@@ -160,16 +181,9 @@ fn a_crowd_that_would_take_too_long_is_left_out_with_the_reason() {
 fn a_python_engine_that_answers_nonsense_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let python = fake_python(folder.path(), "Warning");
-    let arguments = [
-        "bench",
-        "compare",
-        "--quick",
-        "--python",
-        python.to_str().unwrap(),
-    ];
-    let output = crate::common::program::run(&arguments);
+    let output = crate::run(&["compare", "--quick", "--python", python.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(1));
-    let said = crate::common::program::stderr(&output);
+    let said = String::from_utf8(output.stderr).unwrap();
     assert!(
         said.contains("JuPedSim stopped") && said.contains("Warning"),
         "{said}"

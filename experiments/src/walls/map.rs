@@ -1,8 +1,8 @@
 //! Walls as a map: the effect of the solid on an agent, precomputed at the nodes of a grid.
 
-use crate::analysis::wall_integrals::{Integrals, Region};
-use crate::engine::geometry::Walls;
-use crate::engine::math::{Vector, bounds};
+use sandbox::analysis::wall_integrals::{Integrals, Region};
+use sandbox::engine::geometry::Walls;
+use sandbox::engine::math::{Vector, bounds};
 
 /// Tolerance of the integrals at the nodes; the error of the interpolation is orders of magnitude larger.
 const TOLERANCE: f64 = 1e-6;

@@ -3,12 +3,12 @@
 use std::hint::black_box;
 use std::time::Instant;
 
+use sandbox::analysis::statistics::Range;
+use sandbox::analysis::wall_integrals::{Integrals, Region};
+use sandbox::engine::math::Vector;
 use serde::Serialize;
 
 use super::{Case, METHODS, Method, Prepared, SUPPORT_RADIUS, cases};
-use crate::analysis::statistics::Range;
-use crate::analysis::wall_integrals::{Integrals, Region};
-use crate::engine::math::Vector;
 
 /// Tolerances of the exact integrals, and of those that they are checked against.
 const TOLERANCE: f64 = 1e-13;

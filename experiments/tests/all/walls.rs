@@ -1,15 +1,25 @@
-//! The wall benchmark: its exact integrals, and the documented properties of each method.
+//! The walls: their exact integrals, and the documented properties of each method.
 
-use crate::common::{rectangle, vector};
+use experiments::walls::{
+    Case, METHODS, Method, Particles, Place, SUPPORT_RADIUS, Stored, TABLES, Volumes, cases,
+    measure,
+};
 use sandbox::analysis::wall_integrals::{Integrals, Region};
 use sandbox::engine::boundary::WallMethod;
-use sandbox::engine::geometry::Walls;
+use sandbox::engine::geometry::{Polygon, Walls};
 use sandbox::engine::kernel;
-use sandbox::lab::accuracy::walls::{
-    Case, METHODS, Method, Place, SUPPORT_RADIUS, Stored, Volumes, cases, measure,
-};
+use sandbox::engine::math::Vector;
 
 const PLACES: usize = 40;
+
+fn vector(x: f64, y: f64) -> Vector {
+    Vector::new(x, y)
+}
+
+fn rectangle(x: [f64; 2], y: [f64; 2]) -> Polygon {
+    let corners = [(0, 0), (1, 0), (1, 1), (0, 1)];
+    Polygon::new(corners.map(|(i, j)| vector(x[i], y[j])).into()).unwrap()
+}
 
 fn exact(region: Region, case: &Case) -> Vec<Integrals> {
     let places = case.places.iter().map(|place| place.position);
@@ -228,7 +238,7 @@ fn a_volume_map_puts_the_whole_solid_at_the_nearest_point() {
 fn particles_with_akinci_volumes_are_right_inside_a_solid_and_too_dense_at_its_surface() {
     let solid = Walls::new(vec![rectangle([-2.5, 2.5], [-4.0, 0.0])]);
     let density = |volumes, y: f64| {
-        let particles = sandbox::lab::accuracy::walls::Particles::fill(&solid, 0.1, volumes, 1.0);
+        let particles = Particles::fill(&solid, 0.1, volumes, 1.0);
         particles.integrals(vector(0.017, y)).kernel
     };
     for volumes in [Volumes::Whole, Volumes::Cut, Volumes::Akinci] {
@@ -263,4 +273,52 @@ fn the_report_has_every_method_on_every_path() {
     }
     let json = serde_json::to_value(&report).unwrap();
     assert_eq!(json["cases"][0]["methods"][0]["region"], "hidden");
+}
+
+#[test]
+fn results_are_replaced_only_with_force_and_the_tables_go_into_a_document() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let (out, document) = (path("results"), path("document.md"));
+    std::fs::write(
+        &document,
+        format!("<!-- {TABLES} -->\n<!-- /{TABLES} -->\n"),
+    )
+    .unwrap();
+    let [out_text, document_text] = [&out, &document].map(|path| path.to_str().unwrap());
+    let arguments = [
+        "walls",
+        "--quick",
+        "--out",
+        out_text,
+        "--update",
+        document_text,
+    ];
+    let run = |more: &[&str]| crate::run(&[&arguments[..], more].concat());
+    assert_eq!(run(&[]).status.code(), Some(0));
+    for extension in ["md", "csv", "json", "svg", "png"] {
+        let file = out.join(format!("walls.{extension}"));
+        assert!(file.metadata().unwrap().len() > 0, "{extension}");
+    }
+    let text = std::fs::read_to_string(&document).unwrap();
+    assert!(text.contains("volume map"), "{text}");
+    let again = run(&[]);
+    assert_eq!(again.status.code(), Some(2));
+    let said = String::from_utf8(again.stderr).unwrap();
+    assert!(
+        said.contains("walls.md") && said.contains("--force"),
+        "{said}"
+    );
+    assert_eq!(run(&["--force"]).status.code(), Some(0));
+}
+
+#[test]
+fn a_document_without_a_place_for_the_tables_is_refused_before_anything_is_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let document = folder.path().join("document.md");
+    std::fs::write(&document, "no place\n").unwrap();
+    let output = crate::run(&["walls", "--update", document.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("<!-- wall-integrals -->"), "{said}");
 }

@@ -1,9 +1,8 @@
 //! The crowds that are cut.
 
-use crate::engine::simulation::Simulation;
-use crate::lab::bench::stages::{Stretch, begin};
-use crate::lab::bench::{Crowd, Plan};
-use crate::lab::error::LabError;
+use sandbox::engine::simulation::Simulation;
+use sandbox::lab::bench::{Crowd, Plan, Stretch, begin};
+use sandbox::lab::error::LabError;
 
 /// Sizes of the dense block.
 const BLOCKS: [u32; 3] = [100_000, 1_000_000, 10_000_000];

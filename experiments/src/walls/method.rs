@@ -1,9 +1,10 @@
 //! The compared methods of including walls.
 
+use sandbox::analysis::wall_integrals::{Integrals, Region};
+use sandbox::engine::boundary::WallMethod;
+use sandbox::engine::math::Vector;
+
 use super::{Case, Map, Particles, SUPPORT_RADIUS, Stored, Volumes};
-use crate::analysis::wall_integrals::{Integrals, Region};
-use crate::engine::boundary::WallMethod;
-use crate::engine::math::Vector;
 
 /// A method of including walls.
 #[derive(Debug, Clone, Copy, PartialEq)]

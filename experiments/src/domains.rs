@@ -12,6 +12,14 @@ mod network;
 mod picture;
 mod traffic;
 
+use sandbox::analysis::statistics::Range;
+use sandbox::engine::math::Vector;
+use sandbox::engine::neighbors::SKIN;
+use sandbox::engine::simulation::{Simulation, Stage};
+use sandbox::lab::bench::timing::{ms_of, ms_per_frame, pool};
+use sandbox::lab::bench::{Benchmark, Findings, Plan};
+use sandbox::lab::error::LabError;
+use sandbox::output::table::Table;
 use serde::Serialize;
 use serde_json::json;
 
@@ -21,16 +29,8 @@ use self::drift::{Drift, follow};
 use self::halo::Field;
 use self::network::{Load, Modeled, NETWORKS};
 use self::traffic::Traffic;
-use super::report::Findings;
-use super::timing::{ms_of, ms_per_frame, pool};
-use super::{Benchmark, Plan};
-use crate::analysis::statistics::Range;
-use crate::engine::math::Vector;
-use crate::engine::neighbors::SKIN;
-use crate::engine::simulation::{Simulation, Stage};
-use crate::lab::error::LabError;
-use crate::output::table::Table;
 
+/// The experiment.
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "domains",
     about: "how crowds would divide among processes: balance, halos, drift, and a model of the time of a frame",

@@ -1,9 +1,8 @@
 //! The agents of other parts that a part reads.
 
 use rayon::prelude::*;
-
-use crate::engine::math::Vector;
-use crate::engine::neighbors::Grid;
+use sandbox::engine::math::Vector;
+use sandbox::engine::neighbors::Grid;
 
 /// A crowd in the cells of the engine's grid.
 pub struct Field {

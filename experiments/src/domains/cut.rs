@@ -1,8 +1,7 @@
 //! Cuts of the plane into parts, one per process.
 
 use rayon::prelude::*;
-
-use crate::engine::math::{Vector, bounds};
+use sandbox::engine::math::{Vector, bounds};
 
 /// A way to cut a crowd.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,9 +1,8 @@
 //! The bytes that a process would send for each agent that another process reads.
 
+use sandbox::engine::agents::Agents;
+use sandbox::engine::pairs::Columns;
 use serde::Serialize;
-
-use crate::engine::agents::Agents;
-use crate::engine::pairs::Columns;
 
 /// Bytes per agent and frame, by exchange.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]

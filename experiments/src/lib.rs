@@ -1,0 +1,14 @@
+//! Finished experiments: measurements that answered a question once, and can be repeated. Their findings are in the
+//! documents named below. They are no part of the program `sandbox`, whose benchmarks they extend.
+//!
+//! | experiment | question | findings |
+//! |---|---|---|
+//! | [`domains`] | how would crowds divide among processes? | docs/scaling.md |
+//! | [`compare`] | how fast are other engines on the same crowds? | docs/performance.md |
+//! | [`walls`] | how accurate are the integrals over walls by this and other methods? | docs/accuracy.md |
+
+#![warn(clippy::unwrap_used)]
+
+pub mod compare;
+pub mod domains;
+pub mod walls;
