@@ -43,7 +43,7 @@ impl Seen {
         for goal in goals {
             match *goal {
                 Goal::Point(point) => {
-                    let found = seen.look_from(floor, point);
+                    let found = seen.look_from(floor, point, point);
                     found.ok_or(WayError::NotOnFloor(point))?;
                 }
                 Goal::Line(line) => {
@@ -53,8 +53,9 @@ impl Seen {
                     }
                     for piece in pieces {
                         let [a, b] = shortened(piece, margin);
-                        seen.look_from(floor, a);
-                        seen.look_from(floor, b);
+                        let middle = (a + b) / 2.0;
+                        seen.look_from(floor, a, middle);
+                        seen.look_from(floor, b, middle);
                         seen.look_across(floor, [a, b]);
                     }
                 }
@@ -81,15 +82,16 @@ impl Seen {
         expand(&floor.mesh, sights, enter, see);
     }
 
-    /// Adds everything that sees a point of the goal; `None` if it is not on the floor.
-    fn look_from(&mut self, floor: &Floor, point: Vector) -> Option<()> {
+    /// Adds everything that sees a point of the goal, the end of the line with this `middle`; `None` if it is not on the
+    /// floor.
+    fn look_from(&mut self, floor: &Floor, point: Vector, middle: Vector) -> Option<()> {
         let mesh = &floor.mesh;
         let t = floor.locate(point)?;
         let corners = mesh.corners(t);
         // From a point on a side, a view through this side would have no right and left border.
-        let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-        let eye = point + (middle - point) * INSIDE;
-        let target = self.add(Source::Point { point, eye });
+        let inside = (corners[0] + corners[1] + corners[2]) / 3.0;
+        let eye = point + (inside - point) * INSIDE;
+        let target = self.add(Source::Point { point, eye, middle });
         let mut sights = Vec::new();
         for side in 0..3 {
             let view = View {

@@ -11,7 +11,7 @@ use super::floor::Floor;
 use super::goal::{Goal, Seen};
 use super::parts::Parts;
 use super::region::{Candidate, Region};
-use super::targets::{Entry, Targets};
+use super::targets::{Entry, Source, Targets};
 use crate::engine::math::Vector;
 
 /// An agent keeps its way until another one is shorter by this, meters: no agent wavers between two ways.
@@ -159,11 +159,18 @@ impl PathMap {
     /// For positions in the entry's triangle and between it and the target.
     pub fn way_over(&self, floor: &Floor, p: Vector, number: usize) -> Option<Way> {
         let entry = self.parts.entry(number)?;
-        if !self.targets.bends(floor, entry.target, p) {
+        let source = self.targets.source(entry.target);
+        let is_beside = source.is_none_or(|source| source.is_beside_line(p));
+        if !is_beside || !self.targets.bends(floor, entry.target, p) {
             return None;
         }
         let way = self.over(floor, p, (number, entry));
         (way.sight > 0.0).then_some(way)
+    }
+
+    /// The part of the goal that entry number `number` leads to, if it leads there.
+    pub fn source(&self, number: usize) -> Option<&Source> {
+        self.targets.source(self.parts.entry(number)?.target)
     }
 
     /// Points on the borders of what the target of entry number `number` sees, on its right and on its left, meters.

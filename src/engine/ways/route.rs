@@ -7,7 +7,8 @@ use super::corner::Bend;
 use super::floor::Floor;
 use super::goal::Goal;
 use super::map::{Next, PathMap, SLACK, Way};
-use super::steer::{around, between_borders};
+use super::steer::{End, around, between_borders};
+use super::targets::Source;
 use super::{MOST_GOALS, WayError};
 use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
@@ -21,8 +22,8 @@ const SHARE: f64 = 0.15;
 /// They move this far at most until then, meters.
 const LONGEST: f64 = 0.8;
 
-/// Lines are shortened by this at both ends, so that bodies fit between the ends, meters.
-const LINE_MARGIN: f64 = 0.25;
+/// Lines are shortened by this at both ends, so that no end lies on a wall, meters.
+const LINE_MARGIN: f64 = 0.01;
 
 /// Path maps to the places and goals of a scene.
 #[derive(Debug, Clone)]
@@ -223,15 +224,24 @@ impl Ways {
                 Some(around(&self.floor, at, corner, route.clearance))
             }
             Next::Goal(end) => {
-                // Agents that see the end from the start walk straight if their bodies fit.
+                let map = route.map.map(|map| &self.maps[usize::from(map)]);
+                let source = map.and_then(|map| map.source(way.entry));
+                // Agents that see a point from the start, or a line before them, walk straight if their bodies fit. The
+                // end of a line is passed like the jamb of a door.
+                let rounds = match source {
+                    Some(Source::Line { .. }) => false,
+                    Some(source) if source.ends().is_some() => true,
+                    _ => rounds,
+                };
                 let least = walker.radius + CLEARANCE[0];
                 let gap = if rounds { route.clearance } else { least };
-                let borders = route.map.and_then(|map| {
-                    let map = &self.maps[usize::from(map)];
-                    map.borders(&self.floor, way.entry)
-                });
-                let end = (end, way.distance);
-                let way_around = borders.and_then(|borders| between_borders(p, end, borders, gap));
+                let borders = map.and_then(|map| map.borders(&self.floor, way.entry));
+                let end = End {
+                    point: end,
+                    distance: way.distance,
+                    line: source.and_then(Source::ends),
+                };
+                let way_around = borders.and_then(|borders| between_borders(p, &end, borders, gap));
                 route.rounds = rounds && way_around.is_some();
                 way_around.map(|(heading, nearest)| {
                     route.reach = route.reach.min(SHARE * nearest);

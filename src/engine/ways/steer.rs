@@ -39,36 +39,69 @@ pub fn around(
     ahead * way.x + aside * way.y
 }
 
-/// The direction in which an agent at `p` walks to the end of its way, `end`, `distance` meters away, that passes the borders of what the end
-/// sees, on its right and on its left, with `gap` meters where there is room for it; and the distance to the nearest of
-/// these that is in the way, meters. `None`: straight.
+/// The end of an agent's way.
+pub struct End {
+    /// The point of the goal nearest to the agent, meters.
+    pub point: Vector,
+    /// Its distance, meters.
+    pub distance: f64,
+    /// The ends of the goal's line, meters; `None` if the goal is a point.
+    pub line: Option<[Vector; 2]>,
+}
+
+/// The direction in which an agent at `p` walks to the end of its way, past the borders of what the end sees, on its right
+/// and on its left, with `gap` meters where there is room for it; and the distance to the nearest of these that is in
+/// the way, meters. `None`: straight. The ends of a line are passed like the jambs of a door.
 pub fn between_borders(
     p: Vector,
-    (end, distance): (Vector, f64),
+    end: &End,
     [right, left]: [Vector; 2],
     gap: f64,
 ) -> Option<(Vector, f64)> {
-    let ahead = ahead(end - p, distance);
+    let ahead = ahead(end.point - p, end.distance);
     let aside = perpendicular(ahead);
     let seen = |point: Vector| Vector::new(ahead.dot(&(point - p)), aside.dot(&(point - p)));
-    // Only points before the end count, if they are too near to the straight line. The end may be near to them, too.
+    // Only points before the end count, if they are too near to the straight line. A point may be near to them, too.
     let too_near = |border: Vector| {
-        let gap = gap.min((end - border).norm());
+        let gap = match end.line {
+            None => gap.min((end.point - border).norm()),
+            Some(_) => gap,
+        };
         let point = seen(border);
-        let counts = (0.0..distance).contains(&point.x) && point.y.abs() < gap;
+        let counts = (0.0..end.distance).contains(&point.x) && point.y.abs() < gap;
         counts.then_some((point, gap))
     };
     // The agent looks against the end's view.
     let (on_right, on_left) = (too_near(left), too_near(right));
-    let least = on_right.map(|(point, gap)| (past(point, true, gap), point.norm()));
-    let most = on_left.map(|(point, gap)| (past(point, true, -gap), point.norm()));
-    let way = match (least, most) {
+    let jambs = end.line.map(|line| {
+        let [one, other] = line.map(seen);
+        let [right, left] = if one.y < other.y {
+            [one, other]
+        } else {
+            [other, one]
+        };
+        [(right, gap), (left, gap)]
+    });
+    let least = [on_right, jambs.map(|[right, _]| right)];
+    let least = least.into_iter().flatten();
+    let least = least.map(|(point, gap)| (past(point, true, gap), point.norm()));
+    let least = least.reduce(|a, b| if a.0.perp(&b.0) > 0.0 { b } else { a });
+    let most = [on_left, jambs.map(|[_, left]| left)];
+    let most = most.into_iter().flatten();
+    let most = most.map(|(point, gap)| (past(point, true, -gap), point.norm()));
+    let most = most.reduce(|a, b| if a.0.perp(&b.0) < 0.0 { b } else { a });
+    let turns_left = least.filter(|(way, _)| way.y > 0.0);
+    let turns_right = most.filter(|(way, _)| way.y < 0.0);
+    let way = match (turns_left, turns_right) {
         (None, None) => return None,
-        (Some((way, _)), None) | (None, Some((way, _))) => way,
-        (Some(least), Some(most)) => middle(least, most),
+        (Some(one), Some(other)) => middle(one, other),
+        (Some(one), None) | (None, Some(one)) => match (least, most) {
+            (Some(least), Some(most)) if least.0.perp(&most.0) < 0.0 => middle(least, most),
+            _ => one.0,
+        },
     };
     let way = bounded(way);
-    let near = [least, most].into_iter().flatten();
+    let near = [turns_left, turns_right].into_iter().flatten();
     let nearest = near.map(|(_, away)| away).fold(f64::INFINITY, f64::min);
     Some((ahead * way.x + aside * way.y, nearest))
 }

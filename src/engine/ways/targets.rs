@@ -15,6 +15,8 @@ pub enum Source {
         point: Vector,
         /// From where one looks: beside it, inside of its triangle.
         eye: Vector,
+        /// The middle of the line that ends here; for a goal that is a point, the point.
+        middle: Vector,
     },
     /// The nearest point of a line, meters.
     Line {
@@ -23,6 +25,26 @@ pub enum Source {
         /// The direction away from it.
         away: Vector,
     },
+}
+
+impl Source {
+    /// The ends of the line that it belongs to, meters; `None` for a goal that is a point.
+    pub fn ends(&self) -> Option<[Vector; 2]> {
+        match *self {
+            Self::Point { point, middle, .. } => {
+                (point != middle).then(|| [point, middle * 2.0 - point])
+            }
+            Self::Line { ends, .. } => Some(ends),
+        }
+    }
+
+    /// Is this still the nearest part of its line from `p`? An end is, as long as `p` lies beside the line.
+    pub fn is_beside_line(&self, p: Vector) -> bool {
+        match *self {
+            Self::Point { point, middle, .. } => (p - point).dot(&(middle - point)) <= 0.0,
+            Self::Line { .. } => true,
+        }
+    }
 }
 
 /// The targets of a path map, by number: the bends of the floor, then the sources.
