@@ -76,6 +76,7 @@ mod statistics;
 mod steering;
 mod stuck;
 mod voronoi;
+mod waiting;
 mod walking;
 mod walking_profiles;
 mod walls;

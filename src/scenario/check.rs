@@ -103,8 +103,8 @@ impl Contents {
         let default = ProfileChoice::Named(ProfileName(DEFAULT_PROFILE.to_owned()));
         let choice = keys.profile.as_ref().unwrap_or(&default);
         let blend = profiles::blend(choice, &keys.parameters).under("profile")?;
-        scene.journeys = journeys::journeys(keys, &scene.walls)?;
         let mut notes = self.notes;
+        scene.journeys = journeys::journeys(keys, (&scene.walls, &behind), &mut notes)?;
         notes.extend(Crowd::new(keys, &blend, &behind, &mut scene).enter()?);
         let duration_secs = duration(keys);
         crowding::check(keys, &scene, duration_secs)?;

@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 use super::crowd::MOST_NUMBERED;
 use super::error::{Problem, Under, suggestion};
 use super::file::{self, File};
+use super::floor_plan::Rings;
 use super::places::{self, Stage};
 use super::quote::shown;
 use super::shapes::{Point, Ring as GivenRing};
-use super::spots::spots;
+use super::waiting::waiting_area;
 use crate::engine::geometry::{Ring, Walls};
 use crate::engine::journeys::{
-    Change, ChangeKind, Choice, Exit, Journey, JourneyStage, Journeys, Kind, Place, Queue,
-    WaitingArea, Zone,
+    Change, ChangeKind, Choice, Exit, Journey, JourneyStage, Journeys, Kind, Place, Queue, Zone,
 };
 use crate::engine::math::{Vector, direction};
 
@@ -32,9 +32,17 @@ const LONGEST_TAIL: f64 = 1000.0;
 const WITHIN: f64 = 0.5;
 
 /// The places, journeys and zones of a file, among `walls`.
-pub(super) fn journeys(keys: &File, walls: &Walls) -> Result<Journeys, Problem> {
+///
+/// `behind` are the floors behind exits and entrances. Adds notes about waiting areas in walls.
+pub(super) fn journeys(
+    keys: &File,
+    (walls, behind): (&Walls, &Rings),
+    notes: &mut Vec<String>,
+) -> Result<Journeys, Problem> {
     let mut found = Found {
         walls,
+        behind,
+        notes,
         journeys: Journeys::default(),
         numbers: BTreeMap::new(),
     };
@@ -69,6 +77,8 @@ pub(super) fn journeys(keys: &File, walls: &Walls) -> Result<Journeys, Problem> 
 /// Places and journeys so far.
 struct Found<'a> {
     walls: &'a Walls,
+    behind: &'a Rings,
+    notes: &'a mut Vec<String>,
     journeys: Journeys,
     /// The number of each place by its name.
     numbers: BTreeMap<String, u16>,
@@ -84,8 +94,12 @@ impl Found<'_> {
             self.add("waypoints", k, &given.name, waypoint(given))?;
         }
         for (k, given) in keys.waiting_areas.iter().enumerate() {
-            let kind = self.waiting_area(given);
-            self.add("waiting_areas", k, &given.name, kind)?;
+            let place = format!("waiting_areas[{k}]");
+            let area = waiting_area(given, self.walls, self.behind);
+            let (kind, note) = area.under(&place)?;
+            self.notes
+                .extend(note.map(|note| format!("{place}.{note}")));
+            self.add("waiting_areas", k, &given.name, Ok(kind))?;
         }
         for (k, given) in keys.queues.iter().enumerate() {
             let queue = queue(given, self.walls);
@@ -135,18 +149,6 @@ impl Found<'_> {
             let reason = format!("there is no place named `{}`{near}{known}", shown(name));
             Problem::new("", reason)
         })
-    }
-
-    fn waiting_area(&self, given: &places::WaitingArea) -> Result<Kind, Problem> {
-        let area = ring(&given.area).under("area")?;
-        let lasting = given.for_secs.as_ref().map(|secs| secs.times());
-        let lasting = lasting.transpose().under("for_secs")?;
-        Ok(Kind::Waiting(WaitingArea {
-            spots: spots(&area, self.walls, given.facing.map(Into::into)),
-            area,
-            until: given.until_secs,
-            lasting,
-        }))
     }
 
     fn add_journey(&mut self, given: &places::Journey) -> Result<(), Problem> {

@@ -63,6 +63,7 @@ mod shapes;
 mod shipped;
 mod spots;
 mod view;
+mod waiting;
 mod wall_lists;
 mod ways;
 

@@ -10,7 +10,7 @@ const DENSEST: f64 = 6.0;
 /// The most spots of an area.
 const MOST_SPOTS: f64 = 20_000.0;
 /// Spots keep this distance from walls, meters.
-const FROM_WALLS: f64 = 0.3;
+pub(super) const FROM_WALLS: f64 = 0.3;
 
 /// Spots in an area, the first ones to take first: points of a sequence that fills the area evenly however many of
 /// them are taken, and those nearest to `facing` before others of the same density.

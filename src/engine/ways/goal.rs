@@ -26,10 +26,11 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// What sees `goals`. Lines are shortened by `margin` meters at both ends.
+    /// What sees `goals`. Lines are shortened by `margin` meters at both ends. Lines off the floor, such as sides of a
+    /// waiting area along a wall, are left out.
     ///
     /// # Errors
-    /// A goal is not on the floor.
+    /// A point, or all of the goals, is not on the floor.
     pub fn new(floor: &Floor, goals: &[Goal], margin: f64) -> Result<Self, WayError> {
         let bends = 2 * floor.corners.len();
         let mut seen = Self {
@@ -40,6 +41,7 @@ impl Seen {
             },
             views: Vec::new(),
         };
+        let mut off = None;
         for goal in goals {
             match *goal {
                 Goal::Point(point) => {
@@ -49,7 +51,7 @@ impl Seen {
                 Goal::Line(line) => {
                     let pieces = free_parts(floor, line);
                     if pieces.is_empty() {
-                        return Err(WayError::NotOnFloor(line[0]));
+                        off = off.or(Some(line[0]));
                     }
                     for piece in pieces {
                         let [a, b] = shortened(piece, margin);
@@ -61,7 +63,10 @@ impl Seen {
                 }
             }
         }
-        Ok(seen)
+        match off.filter(|_| seen.targets.sources.is_empty()) {
+            Some(point) => Err(WayError::NotOnFloor(point)),
+            None => Ok(seen),
+        }
     }
 
     /// Adds a part of a goal; returns its number.

@@ -1,0 +1,92 @@
+//! Waiting areas: the free part of the given area, and the spots in it.
+
+use super::error::{Problem, Under};
+use super::floor_plan::{Rings, free, outlines};
+use super::journeys::ring;
+use super::off_floor::OFF;
+use super::places::WaitingArea;
+use super::quote::shown;
+use super::spots::{FROM_WALLS, spots};
+use crate::engine::geometry::{Area, Ring, Walls};
+use crate::engine::journeys::{Kind, WaitingArea as Waiting};
+use crate::engine::math::{Vector, direction, perpendicular};
+
+/// A smaller part of an area that lies in walls comes from rounding.
+const ROUNDING: f64 = 1e-6;
+/// A note says how much of an area is free if it is less than this part.
+const NEARLY_ALL: f64 = 0.99;
+
+/// The waiting area of a file, and a note if much of it is not free. `behind` are the floors behind exits and entrances,
+/// on which agents do not wait.
+///
+/// If a part of the area is not free, agents wait in the rest, in the largest part if walls divide it. They have arrived
+/// when they are well inside: its sides lie along walls, or end there, where bodies do not fit.
+pub(super) fn waiting_area(
+    given: &WaitingArea,
+    walls: &Walls,
+    behind: &Rings,
+) -> Result<(Kind, Option<String>), Problem> {
+    let whole = ring(&given.area).under("area")?;
+    let parts = free_parts(&whole, walls, behind).under("area")?;
+    let part = largest(&parts).ok_or_else(|| Problem::new("area", OFF))?;
+    let share = part.area() / whole.area();
+    let note = (share < NEARLY_ALL).then(|| note(&given.name, parts.len(), share));
+    // Pillars in it do not change its outline.
+    let is_whole = part.exterior.area() > (1.0 - ROUNDING) * whole.area();
+    let [around, area] = match is_whole {
+        true => [whole.clone(), whole],
+        false => [part.exterior.clone(), inner(&part.exterior).under("area")?],
+    };
+    let lasting = given.for_secs.as_ref().map(|secs| secs.times());
+    let lasting = lasting.transpose().under("for_secs")?;
+    let waiting = Waiting {
+        spots: spots(&around, walls, given.facing.map(Into::into)),
+        area,
+        until: given.until_secs,
+        lasting,
+    };
+    Ok((Kind::Waiting(waiting), note))
+}
+
+/// The parts of the floor in a ring.
+fn free_parts(whole: &Ring, walls: &Walls, behind: &Rings) -> Result<Vec<Area>, Problem> {
+    let (mut floors, mut bodies) = outlines(walls.obstacles());
+    floors.insert(0, vec![whole.points().to_vec()]);
+    bodies.extend(behind.iter().cloned());
+    free(&floors, &bodies).map_err(|error| Problem::new("", error.to_string()))
+}
+
+/// The largest part of a ring that is as far from its sides as spots are from walls; all of it if it is narrow.
+fn inner(ring: &Ring) -> Result<Ring, Problem> {
+    let sides = around(ring, FROM_WALLS);
+    let parts = free(&[vec![ring.points().to_vec()]], &sides);
+    let parts = parts.map_err(|error| Problem::new("", error.to_string()))?;
+    Ok(largest(&parts).map_or_else(|| ring.clone(), |part| part.exterior.clone()))
+}
+
+fn largest(parts: &[Area]) -> Option<&Area> {
+    parts.iter().max_by(|a, b| a.area().total_cmp(&b.area()))
+}
+
+/// Rectangles around the sides of `ring` that reach `distance` meters from them, counterclockwise.
+fn around(ring: &Ring, distance: f64) -> Rings {
+    let corners = ring.points();
+    let ends = corners.iter().cycle().skip(1);
+    let rectangle = |(start, end): (&Vector, &Vector)| {
+        let along = direction(end - start) * distance;
+        let (start, end, left) = (start - along, end + along, perpendicular(along));
+        vec![start - left, end - left, end + left, start + left]
+    };
+    corners.iter().zip(ends).map(rectangle).collect()
+}
+
+fn note(name: &str, parts: usize, share: f64) -> String {
+    let (name, percent) = (shown(name), 100.0 * share);
+    match parts {
+        1 => format!("area: {percent:.1} % of `{name}` is free floor; agents wait there"),
+        _ => format!(
+            "area: walls divide the free floor of `{name}` into {parts} parts; agents wait in the largest, {percent:.1} % \
+             of the area: draw it within one room if they should wait in another"
+        ),
+    }
+}
