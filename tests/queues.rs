@@ -4,7 +4,7 @@ use sandbox::engine::journeys::Status;
 use sandbox::engine::simulation::Simulation;
 use serde_json::{Value, json};
 
-use crate::common::simulated::{after, go_on, scenario};
+use crate::common::simulated::{after, go_on, measured, scenario};
 
 /// A room of 20 × 10 m with an exit in its right wall and a queue along `path` before it.
 fn room<const N: usize>(path: [[i32; 2]; N]) -> Value {
@@ -77,4 +77,48 @@ fn a_queue_through_a_wall_is_refused() {
     let expected = "f.json: queues[0].path[1]: a wall stands between this point and the next; \
                     lead the path around it";
     assert_eq!(message, expected);
+}
+
+/// The mean delay of agents that walk 2 m to the end of a queue of `length` meters, which leads on to an exit; the path
+/// turns half way if `turns`.
+fn delay(length: f64, turns: bool, positions: &[[f64; 2]]) -> f64 {
+    let corner = match turns {
+        true => json!([
+            [25, 5],
+            [25.0 - 0.5 * length, 5],
+            [25.0 - 0.5 * length, 5.0 + 0.5 * length]
+        ]),
+        false => json!([[25, 5], [25.0 - length, 5]]),
+    };
+    let agents: Vec<Value> = positions
+        .iter()
+        .map(|[x, y]| json!({"position": [x, y], "journey": "buy"}))
+        .collect();
+    let summary = measured(json!({
+        "profile": "walk+sph", "duration_secs": 600, "stop": {"when_empty": true},
+        "walkable_area": [[[[0, 0], [30, 0], [30, 20], [0, 20]]]],
+        "exits": [{"name": "east", "line": [[30, 4], [30, 6]]}],
+        "queues": [{"name": "till", "path": corner, "service_secs": 3}],
+        "journeys": [{"name": "buy", "stages": ["till", "east"]}],
+        "agents": agents,
+        "measurements": [{"egress": {}}],
+    }));
+    summary.metric("delay_secs").unwrap()
+}
+
+#[test]
+fn the_walk_along_an_empty_queue_is_no_delay() {
+    let alone = |length: f64| delay(length, false, &[[23.0 - length, 5.0]]);
+    let delays = [5.0, 10.0, 17.0].map(alone);
+    for secs in delays {
+        assert!((2.5..3.5).contains(&secs), "{delays:?}");
+        assert!((secs - delays[0]).abs() < 0.3, "{delays:?}");
+    }
+    let around = [5.0, 10.0, 17.0].map(|length| {
+        let start = [25.0 - 0.5 * length, 7.0 + 0.5 * length];
+        delay(length, true, &[start])
+    });
+    for secs in around {
+        assert!((secs - delays[0]).abs() < 0.3, "{around:?}");
+    }
 }

@@ -138,6 +138,12 @@ impl PathMap {
         }
     }
 
+    /// The way from a position, on the floor or in a wall.
+    pub fn way_from(&self, floor: &Floor, p: Vector) -> Option<Way> {
+        let here = floor.locate(p).or_else(|| floor.nearest(p))?;
+        self.way(floor, p, here, None)
+    }
+
     /// The way from `p`, which lies in triangle `t`. `None` if the goal cannot be reached from there. An agent that
     /// walks toward `held` goes on until this corner is behind it or another way is shorter by [`SLACK`].
     pub fn way(&self, floor: &Floor, p: Vector, t: u32, held: Option<Bend>) -> Option<Way> {

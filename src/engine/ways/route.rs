@@ -176,9 +176,7 @@ impl Ways {
     }
 
     fn from(&self, map: u16, p: Vector) -> Option<Way> {
-        let floor = &self.floor;
-        let here = floor.locate(p).or_else(|| floor.nearest(p))?;
-        self.maps[usize::from(map)].way(floor, p, here, None)
+        self.maps[usize::from(map)].way_from(&self.floor, p)
     }
 
     /// Finds the route of an agent from where it is, and the point that it walks to, meters. `seed` is that of the

@@ -1,12 +1,15 @@
 //! How long people take to leave: the times by which parts of them have left, and their delays.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Measure;
+use crate::engine::journeys::Kind;
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
-use crate::engine::ways::Destination;
+use crate::engine::ways::{Destination, Goal, PathMap};
 
 /// Of the people on one journey, or on all journeys: how many have left at an exit, the mean time from entry to exit,
 /// the times by which 50 %, 95 % and all have left, the mean wait in queues and waiting areas, and the mean and the
@@ -98,6 +101,9 @@ pub struct Seen {
     arrivals: usize,
     /// The delays of the agents that have left, seconds.
     delays: Vec<f64>,
+    /// The path maps to the fronts of queues, which follow from the scene.
+    #[serde(skip)]
+    fronts: BTreeMap<u16, Option<PathMap>>,
 }
 
 impl Egress {
@@ -112,11 +118,27 @@ impl Egress {
     }
 }
 
-/// The length of the shortest way from `p` to a place, meters; 0 if there is none.
-fn length(simulation: &Simulation, p: Vector, place: u16) -> f64 {
-    let ways = simulation.scene().ways.as_ref();
-    let way = ways.and_then(|ways| ways.way(p, Destination::Place(place)));
-    way.map_or(0.0, |way| way.length)
+impl Seen {
+    /// The length of the shortest way from `from` to a place at which an agent at `end` ends a stage, meters; 0 if there
+    /// is none. Of a queue, that place is the front, up to which agents are served, and the rest of the way there does not
+    /// count.
+    fn length(&mut self, simulation: &Simulation, number: u16, [from, end]: [Vector; 2]) -> f64 {
+        let scene = simulation.scene();
+        let Some(ways) = &scene.ways else {
+            return 0.0;
+        };
+        let (way, rest) = match &scene.journeys.places[usize::from(number)].kind {
+            Kind::Queue(queue) => {
+                let front = queue.path[0];
+                let new = || PathMap::new(&ways.floor, &[Goal::Point(front)], 0.0).ok();
+                let map = self.fronts.entry(number).or_insert_with(new);
+                let way = map.as_ref().and_then(|map| map.way_from(&ways.floor, from));
+                (way, (front - end).norm())
+            }
+            _ => (ways.way(from, Destination::Place(number)), 0.0),
+        };
+        way.map_or(0.0, |way| (way.length - rest).max(0.0))
+    }
 }
 
 impl Measure for Egress {
@@ -145,7 +167,7 @@ impl Measure for Egress {
         for arrival in &simulation.outcome().arrivals[seen.arrivals..] {
             let walker = seen.walkers.get_mut(arrival.id as usize);
             if let (Some(trip), Some(walker)) = (arrival.trip, walker.and_then(Option::take)) {
-                let last = length(simulation, walker.from, trip.exit);
+                let last = seen.length(simulation, trip.exit, [walker.from; 2]);
                 let free = (walker.length + last) / walker.speed;
                 // People whose preferred speed is 0 do not walk freely.
                 let delay = Some(arrival.time - walker.due - free);
@@ -167,7 +189,8 @@ impl Measure for Egress {
                 continue;
             };
             let position = agents.position[i];
-            let walker = seen.walkers[agents.id[i] as usize].get_or_insert_with(|| Walker {
+            let slot = agents.id[i] as usize;
+            let mut walker = seen.walkers[slot].unwrap_or_else(|| Walker {
                 due: (agents.walks_from.get(i)).map_or(trip.entered, |from| from.max(trip.entered)),
                 speed: (agents.preferred_speed.get(i).copied()).unwrap_or(scene.preferred_speed),
                 stage: trip.stage,
@@ -176,10 +199,11 @@ impl Measure for Egress {
                 length: 0.0,
             });
             if walker.stage != trip.stage {
-                walker.length += length(simulation, walker.from, walker.place);
+                walker.length += seen.length(simulation, walker.place, [walker.from, position]);
                 (walker.stage, walker.from) = (trip.stage, position);
             }
             walker.place = trip.place;
+            seen.walkers[slot] = Some(walker);
         }
     }
 
