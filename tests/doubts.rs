@@ -124,3 +124,64 @@ fn a_line_without_region_has_no_density_and_speed() {
     };
     assert_eq!([line(false), line(true)], [2, 4]);
 }
+
+#[test]
+fn the_size_in_the_note_is_that_of_the_plan_without_the_floor_behind_exits() {
+    let mut room = room();
+    room["walkable_area"] = json!([[[[0, 0], [1200, 0], [1200, 10], [0, 10]]]]);
+    room["exits"] = json!([{"name": "east", "line": [[1200, 4], [1200, 6]]}]);
+    let text = note(&room);
+    assert!(
+        text.starts_with("walkable_area: 1200 m × 10 m for 20 agent(s)"),
+        "{text}"
+    );
+    room["walkable_area"] = json!([[[[0, 0], [299, 0], [299, 10], [0, 10]]]]);
+    room["exits"] = json!([{"name": "east", "line": [[299, 4], [299, 6]]}]);
+    room["crowds"][0]["number"] = json!(60);
+    assert_eq!(notes(&room), [""; 0]);
+}
+
+#[test]
+fn people_who_come_too_late_to_start_walking_are_named() {
+    let waits = |from: f64, premovement: Value| {
+        let mut late = room();
+        late["entrances"] = json!([{"name": "gate", "line": [[0, 4], [0, 6]], "per_sec": 0.5, "from_secs": from,
+                                    "premovement_secs": premovement}]);
+        notes(&late)
+    };
+    let expected = "premovement_secs: agents that never start walking before the end of the run, 120 s: all of gate";
+    assert_eq!(waits(80.0, json!(60)), [expected]);
+    assert_eq!(waits(80.0, json!({"uniform": [50, 70]})), [expected]);
+    assert_eq!(waits(50.0, json!(60)), [""; 0]);
+    assert_eq!(waits(80.0, json!({"uniform": [0, 70]})), [""; 0]);
+}
+
+#[test]
+fn exits_of_whose_lines_much_lies_off_the_floor_are_noted() {
+    let with_line = |line: Value| {
+        let mut room = room();
+        room["exits"] = json!([{"name": "east", "line": line}]);
+        notes(&room)
+    };
+    for (line, percent) in [
+        // Across a corner; from the floor out through a wall; past the end of an edge.
+        (json!([[13, 8.5], [10.5, 11]]), 79),
+        (json!([[11, 5], [13.5, 5.1]]), 60),
+        (json!([[12, 8], [12, 11]]), 33),
+    ] {
+        let expected = format!(
+            "exits[0].line: {percent} % of `east` lies in obstacles or outside of the walkable area, where nobody passes; \
+             draw the line on the floor, or on its edge"
+        );
+        assert_eq!(with_line(line.clone()), [expected], "{line}");
+    }
+    // On an edge, on two edges at a corner as its chord, inside, and a little too long.
+    for line in [
+        json!([[12, 4], [12, 6]]),
+        json!([[12, 8], [10, 10]]),
+        json!([[9, 2], [9, 9]]),
+        json!([[12, 8], [12, 10.1]]),
+    ] {
+        assert_eq!(with_line(line.clone()), [""; 0], "{line}");
+    }
+}

@@ -95,6 +95,14 @@ impl Arrivals {
 }
 
 impl Arrivals {
+    /// No agent arrives before this, seconds; `None`: no agent arrives.
+    pub fn first(&self) -> Option<f64> {
+        match self {
+            Self::Constant(flow) | Self::Poisson(flow) => Some(flow.from),
+            Self::At(times) => times.first().copied(),
+        }
+    }
+
     /// About how many agents arrive until `end` seconds.
     pub fn about(&self, end: f64) -> f64 {
         match self {

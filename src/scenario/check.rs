@@ -112,7 +112,7 @@ impl Contents {
         off_floor::check(keys, &scene)?;
         scene.pushes = pushes(&keys.events)?;
         periodic::check(keys, &scene)?;
-        scene.ways = ways::ways(keys, &scene, &mut notes)?;
+        scene.ways = ways::ways(keys, (&scene, &behind), &mut notes)?;
         scene.integrator = keys.integrator.for_scene(&scene);
         scene.clock = numerics::clock_for(keys, &scene)?;
         let placed = scene.agents.len() as u64;

@@ -1,8 +1,10 @@
-//! Checks that people can pass the lines of exits.
+//! Checks that people can pass the lines of exits, and notes on lines of which much lies off the floor.
 
 use super::error::Problem;
+use super::floor_plan::Rings;
 use super::journeys::SHORTEST_LINE;
 use super::quote::shown;
+use crate::engine::geometry::Ring;
 use crate::engine::journeys::{Kind, Place};
 use crate::engine::math::{Vector, direction, perpendicular};
 use crate::engine::ways::Floor;
@@ -15,6 +17,8 @@ const MOST_STEPS: f64 = 1e4;
 const BESIDE: f64 = 0.1;
 /// A line is at a floor that begins nearer than this, meters.
 const NEAR: f64 = 0.02;
+/// A note says how much of a line is off the floor if it is more than this part.
+const MUCH: f64 = 0.1;
 /// The number of bisections that find the end of the floor between two points.
 const HALVINGS: u32 = 20;
 
@@ -44,6 +48,30 @@ pub(super) fn check(places: &[Place], floor: &Floor) -> Result<(), Problem> {
         return Err(Problem::new(format!("exits[{k}].line"), reason));
     }
     Ok(())
+}
+
+/// Notes on exits of `places` of whose lines much lies in obstacles or outside of the walkable area as it is drawn,
+/// without the floors `behind` exits and entrances.
+pub(super) fn notes(places: &[Place], floor: &Floor, behind: &Rings) -> Vec<String> {
+    let behind = behind
+        .iter()
+        .filter_map(|ring| Ring::new(ring.clone()).ok());
+    let behind: Vec<Ring> = behind.collect();
+    let note = |(k, place): (usize, &Place)| {
+        let Kind::Exit(exit) = &place.kind else {
+            return None;
+        };
+        let share = Line::new(floor, exit.line).share_off(&behind);
+        (share > MUCH).then(|| {
+            format!(
+                "exits[{k}].line: {:.0} % of `{}` lies in obstacles or outside of the walkable area, where nobody passes; \
+                 draw the line on the floor, or on its edge",
+                100.0 * share,
+                shown(&place.name)
+            )
+        })
+    };
+    places.iter().enumerate().filter_map(note).collect()
 }
 
 /// A line on a floor, as points in order.
@@ -83,6 +111,21 @@ impl<'a> Line<'a> {
 
     fn is_at_floor(&self, step: f64) -> bool {
         self.sides(step, NEAR) != [false; 2]
+    }
+
+    /// The part of it that is not at the floor without some areas.
+    fn share_off(&self, areas: &[Ring]) -> f64 {
+        let is_off = |k: &u32| {
+            // Between points: at the ends, rounding decides.
+            let p = self.at(f64::from(*k) + 0.5);
+            let mut beside = [NEAR, -NEAR]
+                .map(|distance| p + self.normal * distance)
+                .into_iter();
+            beside.all(|p| {
+                self.floor.locate(p).is_none() || areas.iter().any(|area| area.contains(p))
+            })
+        };
+        (0..self.steps).filter(is_off).count() as f64 / f64::from(self.steps)
     }
 
     /// Whether a part of it that people can pass is as long as the shortest line.

@@ -25,19 +25,22 @@ pub(super) fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
             "no agents enter: add `crowds`, `grids`, `agents`, `sources`, `entrances` or `from`";
         return vec![none.to_owned()];
     }
-    let floor = floor(&scene.walls, entering).into_iter();
+    let floor = floor(keys, &scene.walls, entering).into_iter();
     floor
         .chain(speeds(keys, scene))
         .chain(endless(scene))
         .collect()
 }
 
-/// A note on a floor that is so large or empty that its unit may not be meters.
-fn floor(walls: &Walls, entering: u64) -> Option<String> {
+/// A note on a floor that is so large or empty that its unit may not be meters. Its size is that of the plan, without the
+/// floors behind exits and entrances.
+fn floor(keys: &File, walls: &Walls, entering: u64) -> Option<String> {
+    let corners = keys.walkable_area.iter().flatten().flatten();
+    let corners = corners.flat_map(|ring| ring.0.iter().map(|&corner| corner.into()));
+    let [low, high] = bounds(corners)?;
+    let extent = high - low;
     let unbounded = walls.obstacles().iter().filter(|one| one.is_unbounded());
     let outlines: Vec<&[Vector]> = unbounded.flat_map(|one| one.rings()).collect();
-    let [low, high] = bounds(outlines.iter().copied().flatten().copied())?;
-    let extent = high - low;
     let solids = walls.obstacles().iter().filter(|one| !one.is_unbounded());
     let twice = |ring: &[Vector]| -> f64 {
         let ends = ring.iter().cycle().skip(1);

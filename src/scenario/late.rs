@@ -55,14 +55,20 @@ pub(super) fn idle(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
     let initial = scene.agents.iter().zip(0..);
     let idle = initial.filter(|&(agent, id)| wait(agent, id) >= last && end > 0.0);
     let count = idle.count();
-    let later = scene.sources.iter().map(|one| (&one.name, one.group));
-    let later = later.chain(scene.entrances.iter().map(|one| (&one.name, one.group)));
-    let all_wait = later.filter(|&(_, group)| {
-        let premovement = &scene.groups[usize::from(group)].traits.premovement;
-        let waits = premovement.as_ref().map(|time| time.share_up_to(last));
-        waits.is_some_and(|walking| walking <= 0.0)
+    let sources = scene.sources.iter();
+    let sources = sources.map(|one| (&one.name, one.group, Some(one.start)));
+    let entrances = scene.entrances.iter();
+    let entrances = entrances.map(|one| (&one.name, one.group, one.arrivals.first()));
+    // Those who come after the end have a note of their own.
+    let later = sources.chain(entrances).filter_map(|(name, group, first)| {
+        let first = first.filter(|&first| first <= last)?;
+        let premovement = scene.groups[usize::from(group)]
+            .traits
+            .premovement
+            .as_ref()?;
+        (premovement.share_up_to(last - first) <= 0.0).then_some(name)
     });
-    let named = all_wait.map(|(name, _)| format!("all of {}", shown(name)));
+    let named = later.map(|name| format!("all of {}", shown(name)));
     let some = (count > 0).then(|| format!("{count} of the {} at the start", scene.agents.len()));
     let who: Vec<String> = some.into_iter().chain(named).collect();
     (!who.is_empty()).then(|| {

@@ -29,10 +29,10 @@ pub(super) fn waiting_area(
     let whole = ring(&given.area).under("area")?;
     let parts = free_parts(&whole, walls, behind).under("area")?;
     let part = largest(&parts).ok_or_else(|| Problem::new("area", OFF))?;
-    let share = part.area() / whole.area();
-    let note = (share < NEARLY_ALL).then(|| note(&given.name, parts.len(), share));
     // Pillars in it do not change its outline.
-    let is_whole = part.exterior.area() > (1.0 - ROUNDING) * whole.area();
+    let share = part.exterior.area() / whole.area();
+    let note = (share < NEARLY_ALL).then(|| note(&given.name, parts.len(), share));
+    let is_whole = share > 1.0 - ROUNDING;
     let [around, area] = match is_whole {
         true => [whole.clone(), whole],
         false => [part.exterior.clone(), inner(&part.exterior).under("area")?],

@@ -54,11 +54,11 @@ pub(super) enum To {
     Away,
 }
 
-/// The path maps of a scene that is otherwise complete; `None` if agents walk straight. Adds notes about places that
-/// no agent can choose.
+/// The path maps of a scene that is otherwise complete; `None` if agents walk straight. `behind` are the floors behind
+/// exits and entrances. Adds notes about places that no agent can choose, and exits off the floor.
 pub(super) fn ways(
     keys: &File,
-    scene: &Scene,
+    (scene, behind): (&Scene, &Rings),
     notes: &mut Vec<String>,
 ) -> Result<Option<Arc<Ways>>, Problem> {
     let has_journeys = scene.groups.iter().any(|group| group.journey.is_some());
@@ -110,6 +110,7 @@ pub(super) fn ways(
     let ways = prepared.ways(prepared.width)?;
     prepared.check_goals(&ways)?;
     notes.extend(prepared.check_journeys(&ways)?);
+    notes.extend(doors::notes(places, &ways.floor, behind));
     prepared.check_bodies(&ways.floor, notes)?;
     // Where nothing can stand between a place of the floor and a goal, agents walk straight.
     Ok((has_journeys || ways.bend()).then(|| Arc::new(ways)))
