@@ -32,7 +32,10 @@ pub(super) fn waiting_area(
     // Pillars in it do not change its outline.
     let share = part.exterior.area() / whole.area();
     let note = (share < NEARLY_ALL).then(|| note(&given.name, parts.len(), share));
-    let is_whole = share > 1.0 - ROUNDING;
+    // Ways lead to an area as it is drawn if hardly anything stands in its sides, and nothing at its corners.
+    let mut corners = whole.points().iter();
+    let is_clear = share >= NEARLY_ALL && corners.all(|&p| walls.obstacle_at(p).is_none());
+    let is_whole = is_clear || share > 1.0 - ROUNDING;
     let [around, area] = match is_whole {
         true => [whole.clone(), whole],
         false => [part.exterior.clone(), inner(&part.exterior).under("area")?],
