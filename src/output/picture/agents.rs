@@ -5,7 +5,7 @@ use super::{Coloring, Field, Frame, Picture, xy};
 use crate::engine::journeys::Status;
 use crate::engine::simulation::Simulation;
 use crate::output::colors::Rgb;
-use crate::output::plot::{BLACK, Disc, Mark, Style};
+use crate::output::plot::{BLACK, Disc, Mark, Style, label_lines};
 use crate::output::scenery::WALKING;
 
 /// The color of agents in pictures of ways, and of those without a value.
@@ -133,9 +133,18 @@ enum Look {
     Agent(Rgb),
     Dot(Rgb),
     Line(Style),
+    /// Another line of the entry before.
+    Rest,
 }
 
 impl Entry {
+    /// The entry in lines whose texts are at most `most` points wide, if words are.
+    pub fn lines(self, most: f64) -> impl Iterator<Item = Self> {
+        let lines = label_lines(&self.text, most).into_iter();
+        let looks = std::iter::once(self.look).chain(std::iter::repeat_with(|| Look::Rest));
+        lines.zip(looks).map(|(text, look)| Self { text, look })
+    }
+
     /// Its sample, which begins at a place.
     pub fn sample(&self, [x, y]: [f64; 2], frame: &Frame) -> Vec<Mark> {
         let at = |points: f64| [x + frame.meters(points), y];
@@ -143,6 +152,7 @@ impl Entry {
             Look::Agent(color) => vec![Mark::dots([at(8.0)], Style::full(*color, 3.0, ""))],
             Look::Dot(color) => vec![Mark::dots([at(8.0)], Style::full(*color, 1.7, ""))],
             Look::Line(style) => vec![Mark::Line(vec![at(0.0), at(11.0)], style.clone())],
+            Look::Rest => Vec::new(),
         }
     }
 }

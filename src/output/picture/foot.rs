@@ -36,7 +36,9 @@ pub fn rows(picture: &Picture, frame: &Frame, has_paths: bool) -> Vec<Vec<(f64, 
     let scale = label_width(&format!("{length} m"));
     let mut x = MARGIN + length * frame.scale + BESIDE + scale + 2.0 * BESIDE + GAP;
     let mut rows = vec![Vec::new()];
-    for entry in agents::legend(picture, has_paths) {
+    let most = frame.size()[0] - 2.0 * MARGIN - SAMPLE;
+    let entries = agents::legend(picture, has_paths).into_iter();
+    for entry in entries.flat_map(|entry| entry.lines(most)) {
         let width = SAMPLE + label_width(&entry.text);
         if x + width > frame.size()[0] && x > MARGIN {
             rows.push(Vec::new());
@@ -80,4 +82,35 @@ pub fn marks(picture: &Picture, frame: &Frame, has_paths: bool) -> Vec<Mark> {
         }
     }
     marks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::math::Vector;
+    use crate::engine::scene::{Region, Scene};
+    use crate::output::picture::Crowd;
+
+    #[test]
+    fn on_panels_of_any_width_the_legend_ends_before_the_color_bar() {
+        let (scene, crowd) = (Scene::default(), Crowd::default());
+        let (min, max) = (Vector::zeros(), Vector::new(2.0, 8.0));
+        let picture = Picture::of_scene((&scene, &crowd), String::new(), Region { min, max });
+        for width in [100.0, 130.0, 160.0, 190.0, 640.0] {
+            let frame = Frame::around([min, max], [width, 300.0], height(4));
+            assert!(
+                frame.size()[0] <= width + 1e-9,
+                "{width}: {:?}",
+                frame.size()
+            );
+            for (x, entry) in rows(&picture, &frame, true).into_iter().flatten() {
+                let end = x + SAMPLE + label_width(&entry.text);
+                assert!(
+                    end <= frame.size()[0],
+                    "{width}: {} ends at {end}",
+                    entry.text
+                );
+            }
+        }
+    }
 }

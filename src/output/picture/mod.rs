@@ -32,6 +32,8 @@ const OF_SEVERAL: [f64; 2] = [440.0, 340.0];
 const WIDE: f64 = 1.3;
 /// The smallest panel, points.
 const SMALLEST: [f64; 2] = [150.0, 90.0];
+/// The least width and height of a scene on narrow sheets, points.
+const LEAST: f64 = 40.0;
 /// The color of texts.
 const NAME: Rgb = [90, 92, 100];
 /// Around what is shown, points.
@@ -99,9 +101,10 @@ impl Frame {
     /// Around a part of the plane, in a panel of at most `most` points, of which `foot` are below it.
     fn around([low, high]: [Vector; 2], most: [f64; 2], foot: f64) -> Self {
         let room = [most[0] - 2.0 * MARGIN, most[1] - MARGIN - foot];
+        let room = room.map(|room| room.max(LEAST));
         let extent = high - low;
         let scale = (room[0] / extent.x).min(room[1] / extent.y);
-        let lengths = [0, 1].map(|k| (extent[k] * scale).max(SMALLEST[k]) / scale);
+        let lengths = [0, 1].map(|k| (extent[k] * scale).max(SMALLEST[k].min(room[k])) / scale);
         let more = (Vector::from(lengths) - extent) * 0.5;
         let margin = |x: f64, y: f64| Vector::new(x, y) / scale;
         Self {

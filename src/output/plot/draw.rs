@@ -270,3 +270,8 @@ impl<DB: DrawingBackend> Page<'_, DB> {
 pub fn label_width(text: &str) -> f64 {
     width_of(text, super::LABEL_SIZE)
 }
+
+/// The lines of a label that is broken at blanks so that it fits into `most` points, if its words do.
+pub fn label_lines(text: &str, most: f64) -> Vec<String> {
+    lines(text, super::LABEL_SIZE, most)
+}

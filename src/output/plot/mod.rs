@@ -20,7 +20,7 @@ mod print;
 
 pub use animation::Animation;
 pub use axis::Axis;
-pub use draw::label_width;
+pub use draw::{label_lines, label_width};
 pub use output::PlotError;
 pub use print::{PAPER_DPI, Print};
 
