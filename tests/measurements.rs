@@ -8,7 +8,8 @@ use sandbox::engine::simulation::{Fault, Simulation};
 use sandbox::runs::drive::{Observer, Run};
 use sandbox::runs::summary::Summary;
 use sandbox::scenario::Scenario;
-use sandbox::scenario::measurements::{Walk, Watched};
+use sandbox::scenario::measurements::{Integrity, Measure as _, Walk, Watched};
+use serde::Deserialize as _;
 use serde_json::json;
 
 /// The times of four arrivals with gaps of about 1, 4 and 1 s, and the measurements that count `arrivals`.
@@ -119,6 +120,27 @@ fn inside_is_what_the_polygon_says_wherever_it_is_not_the_rim() {
         assert_eq!(is_seen(&horseshoe, None, p), solid.contains(p), "{p:?}");
     }
     assert!(!is_seen(&horseshoe, None, vector(0.0, 4.0)));
+}
+
+#[test]
+fn agents_in_walls_are_named_at_most_ten_of_them() {
+    let mut scene = scene(Vec::new(), blend("sph"));
+    let at = |k: u32| vector(f64::from(k), 0.0);
+    scene.agents = (0..14).map(|k| person(at(k), at(k))).collect();
+    let crowd = Simulation::new(scene).unwrap();
+    // The observer keeps the walls of the first simulation, in which nobody is.
+    let named = |right: f64| {
+        let wall = polygon(&[[2.5, -1.0], [right, -1.0], [right, 1.0], [2.5, 1.0]]);
+        let mut watched = Watched::default();
+        watched.observe(&with_person(vec![wall], None));
+        watched.observe(&crowd);
+        let data = Integrity {}.data(&watched);
+        let ids = data.map(|(_, ids)| Vec::<u32>::deserialize(ids).unwrap());
+        (watched.agents_through_walls(&crowd), ids)
+    };
+    assert_eq!(named(2.6), (0, None));
+    assert_eq!(named(4.5), (2, Some(vec![3, 4])));
+    assert_eq!(named(13.5), (11, Some((3..13).collect())));
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 
 use crate::lab::reproduce::published_for;
@@ -9,7 +10,7 @@ use crate::output::table::Table;
 use crate::runs::drive::{End, Run};
 use crate::runs::identity::Identity;
 use crate::runs::summary::{JourneyResult, PlaceResult, Summary, value};
-use crate::scenario::measurements::{HEADWAY, Measurement, STUCK_AFTER, StuckGroup};
+use crate::scenario::measurements::{HEADWAY, Integrity, Measurement, STUCK_AFTER, StuckGroup};
 use crate::scenario::quote::shown;
 
 /// The summary, with version, identity, all settings, threads and run times.
@@ -66,6 +67,7 @@ pub fn text(run: &Run) -> String {
             metric.name, metric.unit
         );
     }
+    text += &through_walls(run);
     if run.scenario.measurements.iter().any(has_thresholds) {
         text += "  (thresholds are from the literature, not safety limits: docs/measurements.md)\n";
     }
@@ -119,6 +121,19 @@ fn ending(run: &Run) -> String {
         );
     }
     text
+}
+
+/// The ids of the agents that `integrity` has found in walls; empty without any.
+fn through_walls(run: &Run) -> String {
+    let mut data = run.metrics.data();
+    let ids = data.find(|(name, _)| name == Integrity::NAME);
+    let ids = ids.and_then(|(_, ids)| Vec::<u32>::deserialize(ids).ok());
+    let Some(ids) = ids else {
+        return String::new();
+    };
+    let ids: Vec<String> = ids.iter().map(u32::to_string).collect();
+    let first = ids.join(", ");
+    format!("  through walls, by id (at most ten): {first}; `sandbox inspect --agent` shows them\n")
 }
 
 /// Whether it compares with thresholds of the literature.

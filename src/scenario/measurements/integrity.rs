@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 use super::Measure;
 use super::fence::Fence;
@@ -16,6 +17,14 @@ use crate::engine::simulation::Simulation;
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Integrity {}
+
+impl Integrity {
+    /// The name of its data: the ids of the first agents that were inside an obstacle or moved through a wall.
+    pub const NAME: &str = "ids_through_walls";
+}
+
+/// The most ids to name.
+const MOST_IDS: usize = 10;
 
 /// What an independent observer has seen of a run.
 #[derive(Debug, Default, Serialize, Deserialize)]
@@ -61,6 +70,11 @@ impl Measure for Integrity {
             Some(seen.highest_speed),
             (count > 0).then(|| mean.sqrt()),
         ]
+    }
+
+    fn data(&self, seen: &Watched) -> Option<(String, Value)> {
+        let ids: Vec<u32> = seen.through_walls.iter().copied().take(MOST_IDS).collect();
+        (!ids.is_empty()).then(|| (Self::NAME.to_owned(), json!(ids)))
     }
 }
 
