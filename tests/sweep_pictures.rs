@@ -142,6 +142,32 @@ fn maps_have_each_mean_in_the_cell_of_its_two_values() {
 }
 
 #[test]
+fn settings_that_are_objects_have_labels_without_json() {
+    let speeds =
+        r#"[1.3, {"normal": {"mean": 1.3, "std": 0.2}}, {"normal": {"mean": 1.1, "std": 0.2}}]"#;
+    let grid = format!(r#"{{"grids.0.preferred_speed": {speeds}, "viscosity": [0, 5]}}"#);
+    let (folder, path) = folder(&format!(r#"{{"scenario": "room.json", "grid": {grid}}}"#));
+    let study = Study::read(&path, None).unwrap();
+    let store = Store::open(&folder.path().join("out")).unwrap();
+    run(&study, Shard::WHOLE, &store, &()).unwrap();
+    let gathered = Gathered::of(&study, &store);
+    let over = sheet(&gathered, &drawing(&[], &["grids.0.preferred_speed"]));
+    let ticks = over.panels[0].x.ticks.iter();
+    let ticks: Vec<&str> = ticks.map(|(_, name)| name.as_str()).collect();
+    let expected = [
+        "1.3",
+        "normal(mean=1.3, std=0.2)",
+        "normal(mean=1.1, std=0.2)",
+    ];
+    assert_eq!(ticks, expected);
+    let other = sheet(&gathered, &drawing(&["density_mean_0.2s"], &["viscosity"]));
+    let lines = lines(&other.panels[0]).into_iter();
+    let names: Vec<String> = lines.map(|(name, _)| name).collect();
+    let expected = expected.map(|value| format!("grids.0.preferred_speed={value}"));
+    assert_eq!(names, expected);
+}
+
+#[test]
 fn what_cannot_be_drawn_is_refused_with_what_can() {
     let (_folder, study, store) = studied();
     let unknown = drawing(&[], &["pressure"]).check(&study).unwrap_err();

@@ -27,6 +27,7 @@ mod entries;
 mod gathered;
 mod pictures;
 mod plan;
+mod readable;
 mod seeds;
 mod shard;
 mod study;

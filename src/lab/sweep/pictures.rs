@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use super::Study;
-use super::cell::{LABEL, plain, short};
+use super::cell::{LABEL, plain};
 use super::gathered::{Combination, Gathered};
+use super::readable::{readable, readables};
 use crate::analysis::statistics::MeanStd;
 use crate::output::colors::{ColorMap, Rgb};
 use crate::output::plot::{Axis, Cells, ColorBar, Corner, LINES, Mark, Panel, Point, Sheet, Style};
@@ -287,9 +288,8 @@ fn other(combination: &Combination, over: &[&str], axes: &[String]) -> String {
         .filter(|(key, _)| named && !over.contains(&key.as_str()));
     let label = cell.label().filter(|_| !named).map(str::to_owned);
     let values = shown.map(|(key, value)| match (key.as_str(), &value["name"]) {
-        (_, Value::String(name)) => name.clone(),
-        ("profile", _) => short(value),
-        (key, _) => format!("{key}={}", short(value)),
+        (_, Value::String(_)) | ("profile", _) => readable(value),
+        (key, _) => format!("{key}={}", readable(value)),
     });
     label
         .into_iter()
@@ -349,7 +349,7 @@ impl Scale {
     fn axis(&self, name: &str) -> Axis {
         match self.numeric {
             true => Axis::linear(name, around(self.values.iter().filter_map(Value::as_f64))),
-            false => Axis::names(name, self.values.iter().map(short)),
+            false => Axis::names(name, readables(&self.values)),
         }
     }
 }
