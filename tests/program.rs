@@ -19,6 +19,7 @@ mod draw;
 mod from_runs;
 mod interrupts;
 mod killed;
+mod labels;
 mod live;
 mod manual;
 mod measure_cli;

@@ -216,7 +216,7 @@ fn what_is_measured_is_outlined_with_its_name() {
         ..options(DebugAgents::None)
     };
     let (recording, _) = recorded(&measured, 1);
-    let names = recording.static_texts("/world/geometry/measured", "Points2D:labels");
+    let names = recording.static_texts("/world/geometry/measured/names", "Points2D:labels");
     assert_eq!(names, ["measured: door"]);
     assert!(!recording.entities().contains("/world/geometry/sources"));
 }

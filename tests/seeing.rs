@@ -208,8 +208,8 @@ fn a_recording_has_sources_measurements_color_ranges_and_the_end_of_the_run() {
     run_json(&[&run[..], &["--set", "view.speed_range=[0,0.5]"]].concat());
     let recording = Recording::read(&rrd);
     let names = |entity: &str| recording.static_texts(entity, "Points2D:labels");
-    assert_eq!(names("/world/geometry/sources"), ["source bus"]);
-    let measured = names("/world/geometry/measured");
+    assert_eq!(names("/world/geometry/sources/names"), ["source bus"]);
+    let measured = names("/world/geometry/measured/names");
     assert_eq!(measured, ["measured: density", "measured: door"]);
     let layout = Recording::layout(&rrd);
     for name in [

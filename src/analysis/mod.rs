@@ -6,6 +6,8 @@
 
 pub mod statistics;
 
+pub mod round;
+
 pub mod wave;
 
 pub mod front;

@@ -2,6 +2,8 @@
 
 use rayon::prelude::*;
 
+use super::round;
+
 use crate::engine::math::Vector;
 use crate::engine::ways::{Destination, Next, Way, Ways};
 
@@ -110,11 +112,7 @@ impl WayField {
     /// Bands of length.
     pub fn bands(&self) -> Bands {
         let longest = self.longest().max(1e-3);
-        let least = longest / MOST_BANDS;
-        let decade = 10_f64.powf(least.log10().floor());
-        let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade);
-        let width = steps.into_iter().find(|step| *step >= least);
-        let width = width.unwrap_or(least);
+        let width = round::step(longest / MOST_BANDS);
         Bands {
             width,
             count: (longest / width).ceil().max(1.0) as u32,

@@ -7,6 +7,8 @@ pub mod colors;
 
 pub mod scenery;
 
+pub mod labels;
+
 pub mod recording;
 
 pub mod trajectory;

@@ -2,12 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::analysis::round;
 use crate::engine::agents::Agents;
 use crate::engine::geometry::Ring;
 use crate::engine::journeys::{Kind, Place, Queue, Status, Trip, Zone};
 use crate::engine::math::{Vector, bounds, direction, perpendicular};
 use crate::engine::scene::{Goal, Group, Scene};
 use crate::output::colors::Rgb;
+use crate::scenario::floor_plan::Label;
 
 /// The color of zones.
 pub const ZONE: Rgb = [213, 94, 0];
@@ -49,6 +51,12 @@ pub fn stage_color(trip: Option<&Trip>) -> Rgb {
         }
         _ => NO_STAGE,
     }
+}
+
+/// Whether some journey has more than one stage, so that stages can differ.
+pub fn has_stages(scene: &Scene) -> bool {
+    let mut journeys = scene.journeys.journeys.iter();
+    journeys.any(|journey| journey.stages.len() > 1)
 }
 
 /// The lines of a place: its line, its outline (closed), or the path of a queue.
@@ -103,9 +111,66 @@ pub fn named(kind: &str, name: &str) -> String {
     }
 }
 
+/// A text as names are compared: a measurement of the exit `West_door` may be named `exit west door`.
+fn plain(text: &str) -> String {
+    text.replace('_', " ").to_lowercase()
+}
+
+/// The names of places, zones, entrances and sources, with and without their kinds, as names are compared.
+fn names(scene: &Scene) -> BTreeSet<String> {
+    let journeys = &scene.journeys;
+    let places = journeys.places.iter();
+    let places = places.map(|place| (place.kind.name(), place.name.as_str()));
+    let zones = journeys.zones.iter();
+    let zones = zones.map(|zone| ("zone", zone.name.as_str()));
+    let entrances = scene.entrances.iter();
+    let entrances = entrances.map(|entrance| ("entrance", entrance.name.as_str()));
+    let sources = scene.sources.iter();
+    let sources = sources.map(|source| ("source", source.name.as_str()));
+    let all = places.chain(zones).chain(entrances).chain(sources);
+    all.flat_map(|(kind, name)| [plain(name), plain(&named(kind, name))])
+        .collect()
+}
+
+/// Each place that measurements observe, once, with its names; without those that something else in the scene has.
+pub fn observed_once<P: PartialEq + Clone>(
+    scene: &Scene,
+    observed: &[(String, P)],
+) -> Vec<(String, P)> {
+    let known = names(scene);
+    let mut all: Vec<(String, P)> = Vec::new();
+    for (k, (_, place)) in observed.iter().enumerate() {
+        if observed[..k].iter().any(|(_, other)| other == place) {
+            continue;
+        }
+        let own = observed[k..].iter().filter(|(_, other)| other == place);
+        let mut names: Vec<&str> = Vec::new();
+        for (name, _) in own {
+            if !name.is_empty() && !known.contains(&plain(name)) && !names.contains(&name.as_str())
+            {
+                names.push(name);
+            }
+        }
+        all.push((names.join(", "), place.clone()));
+    }
+    all
+}
+
+/// The texts that are not the name of something in the scene or of what is `observed`: that has a label of its own.
+pub fn own_texts<'a>(
+    scene: &Scene,
+    observed: impl Iterator<Item = &'a str>,
+    texts: &'a [Label],
+) -> impl Iterator<Item = &'a Label> {
+    let mut known = names(scene);
+    known.extend(observed.map(plain));
+    let texts = texts.iter();
+    texts.filter(move |label| !known.contains(&plain(&label.text)))
+}
+
 /// The name of a zone with its factor.
 pub fn zone_name(zone: &Zone) -> String {
-    format!("{}: speed × {}", zone.name, zone.speed_factor)
+    format!("{}: speed × {}", zone.name, round::brief(zone.speed_factor))
 }
 
 /// Parallel lines that fill a ring, this far apart, meters.

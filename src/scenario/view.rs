@@ -3,6 +3,7 @@
 use super::error::Problem;
 use super::file;
 use super::range::region;
+use crate::analysis::round::end;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Group, Region, Scene};
 
@@ -54,14 +55,14 @@ pub(super) fn of(given: Option<&file::View>, scene: &Scene) -> Result<View, Prob
     })
 }
 
-/// 1.2 times the largest rest density of any profile, at most 10 P/m².
+/// 1.2 times the largest rest density of any profile, at most 10 P/m²; up to a round number.
 fn most_density(scene: &Scene) -> f64 {
     let densities = scene.groups.iter();
     let largest = densities.map(|group| group.blend.sph.rest_density_max);
-    (DENSITY * largest.fold(0.0, f64::max)).clamp(1.0, MOST_DENSITY)
+    end((DENSITY * largest.fold(0.0, f64::max)).clamp(1.0, MOST_DENSITY))
 }
 
-/// The 99th percentile of the preferred speeds of the group with the fastest people, m/s.
+/// The 99th percentile of the preferred speeds of the group with the fastest people, m/s; up to a round number.
 fn most_speed(scene: &Scene) -> f64 {
     let of_group = |group: &Group| match &group.traits.preferred_speed {
         Some(speeds) => speeds.quantile(PART),
@@ -73,11 +74,11 @@ fn most_speed(scene: &Scene) -> f64 {
         .iter()
         .filter_map(|agent| agent.preferred_speed);
     let fastest = groups.chain(own).fold(0.0, f64::max);
-    if fastest > 0.0 {
+    end(if fastest > 0.0 {
         fastest
     } else {
         scene.max_speed
-    }
+    })
 }
 
 /// The bounding box of walls, agents, goals, sources, entrances and latecomers, with a margin.

@@ -89,20 +89,29 @@ impl Recording {
 
     /// The texts in a static component.
     pub fn static_texts(&self, entity: &str, component: &str) -> Vec<String> {
+        let row = self.static_row(entity, component);
+        row.map(|texts| strings(&texts)).unwrap_or_default()
+    }
+
+    /// The pairs in a static component.
+    pub fn static_pairs(&self, entity: &str, component: &str) -> Vec<[f64; 2]> {
+        let row = self.static_row(entity, component);
+        let values = row.and_then(|row| numbers(row.as_fixed_size_list_opt()?.values()));
+        pairs(&values.unwrap_or_default())
+    }
+
+    /// What was logged last in a static component.
+    fn static_row(&self, entity: &str, component: &str) -> Option<ArrayRef> {
         let component = ComponentIdentifier::try_new(component).unwrap();
         let entity = EntityPath::from(entity);
         let chunks = self.store.iter_physical_chunks();
         let own = chunks.filter(|chunk| chunk.is_static() && *chunk.entity_path() == entity);
-        // What was logged last counts.
-        let mut found: Vec<_> = own
-            .filter_map(|chunk| {
-                let row = chunk.num_rows().checked_sub(1)?;
-                let values = chunk.component_batch_raw(component, row)?.ok()?;
-                Some((chunk.row_ids().last(), strings(&values)))
-            })
-            .collect();
-        found.sort();
-        found.pop().map(|(_, texts)| texts).unwrap_or_default()
+        let rows = own.filter_map(|chunk| {
+            let row = chunk.num_rows().checked_sub(1)?;
+            let values = chunk.component_batch_raw(component, row)?.ok()?;
+            Some((chunk.row_ids().last(), values))
+        });
+        rows.max_by_key(|(id, _)| *id).map(|(_, values)| values)
     }
 
     /// The coordinates in a component of an entity, by frame.
@@ -117,8 +126,8 @@ impl Recording {
     /// The pairs in a component of an entity, by frame: positions or vectors.
     pub fn pairs(&self, entity: &str, component: &str) -> Vec<(i64, Vec<[f64; 2]>)> {
         let rows = self.coordinates(entity, component).into_iter();
-        let pairs = |values: Vec<f64>| values.chunks_exact(2).map(|xy| [xy[0], xy[1]]).collect();
-        rows.map(|(frame, values)| (frame, pairs(values))).collect()
+        rows.map(|(frame, values)| (frame, pairs(&values)))
+            .collect()
     }
 
     /// The numbers in a component of an entity, by frame.
@@ -151,6 +160,10 @@ impl Recording {
         rows.sort_by_key(|&(frame, _)| frame);
         rows
     }
+}
+
+fn pairs(values: &[f64]) -> Vec<[f64; 2]> {
+    values.chunks_exact(2).map(|xy| [xy[0], xy[1]]).collect()
 }
 
 fn strings(array: &ArrayRef) -> Vec<String> {

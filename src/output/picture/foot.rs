@@ -2,6 +2,7 @@
 
 use super::agents::{self, Entry};
 use super::{Frame, MARGIN, Picture, TEXT_HEIGHT, scene};
+use crate::analysis::round;
 use crate::output::plot::{BLACK, Label, Mark, label_width};
 
 /// The height of a single row, points.
@@ -33,7 +34,7 @@ fn length(frame: &Frame) -> f64 {
 /// first.
 pub fn rows(picture: &Picture, frame: &Frame, has_paths: bool) -> Vec<Vec<(f64, Entry)>> {
     let length = length(frame);
-    let scale = label_width(&format!("{length} m"));
+    let scale = label_width(&format!("{} m", round::text(length)));
     let mut x = MARGIN + length * frame.scale + BESIDE + scale + 2.0 * BESIDE + GAP;
     let mut rows = vec![Vec::new()];
     let most = frame.size()[0] - 2.0 * MARGIN - SAMPLE;
@@ -72,7 +73,7 @@ pub fn marks(picture: &Picture, frame: &Frame, has_paths: bool) -> Vec<Mark> {
     let left = frame.min.x + frame.meters(MARGIN);
     let mut marks = scene::scale_bar([left, first], length, frame);
     let beside = left + length + frame.meters(BESIDE);
-    marks.push(text([beside, first], format!("{length} m")));
+    marks.push(text([beside, first], format!("{} m", round::text(length))));
     for (k, row) in rows.into_iter().enumerate() {
         for (x, entry) in row {
             let place = [frame.min.x + frame.meters(x), height(k)];

@@ -5,7 +5,6 @@ mod agents;
 mod crowd;
 mod foot;
 mod forces;
-mod labels;
 mod paths;
 mod regions;
 mod scene;
@@ -17,13 +16,14 @@ use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
 use crate::output::colors::{ColorMap, Rgb};
+use crate::output::labels::{Labels, Placed, Screen, along_lines};
 use crate::output::plot::{
-    Axis, Cells, ColorBar, LABEL_SIZE, Mark, Panel, PlotError, Print, Sheet,
+    Axis, Cells, ColorBar, LABEL_SIZE, Label as Text, Mark, Panel, PlotError, Print, Sheet, Style,
+    label_width,
 };
 use crate::output::scenery;
 use crate::scenario::floor_plan::Label;
 use crate::scenario::measurements::Observed;
-use labels::Labels;
 
 /// The largest panel, points: alone, and one of several.
 const ALONE: [f64; 2] = [640.0, 460.0];
@@ -36,6 +36,8 @@ const SMALLEST: [f64; 2] = [150.0, 90.0];
 const LEAST: f64 = 40.0;
 /// The color of texts.
 const NAME: Rgb = [90, 92, 100];
+/// The width of the line from a label to its point, points.
+const LEADER: f64 = 0.4;
 /// Around what is shown, points.
 const MARGIN: f64 = 10.0;
 
@@ -115,10 +117,15 @@ impl Frame {
         }
     }
 
-    /// The corners of the part above the scale bar and the legend.
-    fn inside(&self) -> [Vector; 2] {
+    /// Where labels are: above the scale bar and the legend.
+    fn screen(&self) -> Screen {
         let foot = Vector::new(0.0, self.meters(self.foot - 4.0));
-        [self.min + foot, self.max]
+        Screen {
+            inside: [self.min + foot, self.max],
+            scale: self.scale,
+            height: TEXT_HEIGHT,
+            width: label_width,
+        }
     }
 
     fn axes(&self) -> [Axis; 2] {
@@ -255,7 +262,9 @@ impl<'a> Picture<'a> {
 
     fn panel(&self, frame: &Frame, paths: Option<&Paths>) -> Panel {
         let scene = self.scene;
-        let mut labels = Labels::new(frame, self.avoided(frame));
+        let mut labels = Labels::new(frame.screen(), self.avoided(frame));
+        // The names of places first: they are the most important.
+        let places = scene::places(self, frame, &mut labels);
         let mut below = scene::ground(scene);
         let mut above = Vec::new();
         let drawn = paths.zip(self.simulation);
@@ -283,15 +292,17 @@ impl<'a> Picture<'a> {
         marks.extend(scene::zones(scene, frame, paths.is_none(), &mut labels));
         marks.extend(scene::sources(scene, &mut labels));
         marks.append(&mut above);
-        marks.extend(scene::places(self, frame, &mut labels));
+        marks.extend(places);
         marks.extend(scene::goals(self, frame, &mut labels));
-        if paths.is_none() {
-            marks.extend(regions::marks(self.observed, &mut labels));
-        }
-        for label in self.labels {
+        // Texts lie in their rooms; names of measurements find other places.
+        let observed = self.observed.iter().map(|(name, _)| name.as_str());
+        for label in scenery::own_texts(scene, observed, self.labels) {
             labels.add_within(label, NAME);
         }
-        marks.extend(labels.into_marks());
+        if paths.is_none() {
+            marks.extend(regions::marks(scene, self.observed, &mut labels));
+        }
+        marks.extend(written(labels));
         marks.extend(foot::marks(self, frame, paths.is_some()));
         let [x, y] = frame.axes();
         Panel {
@@ -304,15 +315,12 @@ impl<'a> Picture<'a> {
         }
     }
 
-    /// Where agents and walls are.
+    /// Where agents, walls, places and zones are.
     fn avoided(&self, frame: &Frame) -> Vec<Vector> {
         let apart = frame.meters(0.5 * TEXT_HEIGHT);
-        let walls = self.scene.walls.iter().flat_map(|wall| {
-            let count = (wall.length() / apart).ceil().clamp(1.0, 1e4);
-            (0..=count as u32)
-                .map(move |k| wall.start + (wall.end - wall.start) * (f64::from(k) / count))
-        });
-        walls.chain(self.crowd.position.iter().copied()).collect()
+        let mut points = along_lines(self.scene, apart);
+        points.extend(&self.crowd.position);
+        points
     }
 
     /// The mass of an average person, kg, if walls are colored: there is one color bar only.
@@ -327,6 +335,25 @@ impl<'a> Picture<'a> {
         let walls = || self.wall_mass().map(|_| forces::bar());
         field.or(coloring).cloned().or_else(walls)
     }
+}
+
+/// The marks of labels, with lines to the points of those that are far from them.
+fn written(labels: Labels) -> impl Iterator<Item = Mark> {
+    let placed = labels.into_placed();
+    let line = |label: &Placed| {
+        let ends = [label.leader?, label.at].map(xy).to_vec();
+        Some(Mark::Line(ends, Style::full(label.color, LEADER, "")))
+    };
+    let leaders: Vec<Mark> = placed.iter().filter_map(line).collect();
+    let texts = placed.into_iter().map(|label| {
+        Mark::Label(Text {
+            at: xy(label.at),
+            side: label.side,
+            text: label.text,
+            color: dark(label.color),
+        })
+    });
+    leaders.into_iter().chain(texts)
 }
 
 /// A darker color, for text.

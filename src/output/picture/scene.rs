@@ -1,13 +1,12 @@
 //! The marks of a scene: ground, walls, places, zones, sources and goals.
 
-use super::labels::{AROUND, Labels};
 use super::{Frame, Picture, dark, light, xy};
 use crate::engine::agents::Agents;
-use crate::engine::geometry::Walls;
-use crate::engine::journeys::{Kind, Place};
-use crate::engine::math::{Vector, bounds, direction, perpendicular};
+use crate::engine::journeys::Kind;
+use crate::engine::math::Vector;
 use crate::engine::scene::Scene;
 use crate::output::colors::Rgb;
+use crate::output::labels::{AROUND, Labels, around, of_place};
 use crate::output::plot::{BLACK, Mark, Style};
 use crate::output::scenery::{self, ZONE};
 
@@ -23,10 +22,6 @@ const FAR: f64 = 1e7;
 const NAMED_GOALS: usize = 8;
 /// Half of a goal's cross, points.
 const CROSS: f64 = 3.0;
-/// The names of exits narrower than this lie beside them, points.
-const NARROW: f64 = 50.0;
-/// How far behind an exit people need room: it may lie that far from walls, meters.
-const BEHIND: f64 = 3.5;
 
 /// Outside, floor and solid bodies.
 pub fn ground(scene: &Scene) -> Vec<Mark> {
@@ -136,26 +131,11 @@ pub fn sources(scene: &Scene, labels: &mut Labels) -> Vec<Mark> {
     marks
 }
 
-/// Places for the label of an area: above, below, beside, and if `inside` first in the middle.
-pub fn around(corners: &[Vector], inside: bool) -> Vec<(Vector, [i8; 2])> {
-    let [low, high] = bounds(corners.iter().copied()).unwrap_or_default();
-    let middle = (low + high) * 0.5;
-    let at = |[x, y]: [i8; 2]| {
-        let half = (high - low) * 0.5;
-        let side = Vector::new(f64::from(x), f64::from(y));
-        (middle + half.component_mul(&side), [x, y])
-    };
-    let mut places: Vec<_> = AROUND.into_iter().map(at).collect();
-    if inside {
-        places.rotate_right(1);
-    }
-    places
-}
-
 /// Exits, waypoints, waiting areas and queues with their names.
 pub fn places(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark> {
     let mut marks = Vec::new();
     let all = &picture.scene.journeys.places;
+    let screen = frame.screen();
     for (k, place) in all.iter().enumerate() {
         let color = scenery::color(&place.kind);
         let lines: Vec<Vector> = scenery::lines(place);
@@ -186,52 +166,10 @@ pub fn places(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark
         let similar = all
             .iter()
             .filter(|other| other.kind.name() == place.kind.name());
-        let around = label_places(&picture.scene.walls, place, &lines, frame);
-        labels.add_of(similar.count(), &text, (color, &around));
+        let spots = of_place(&picture.scene.walls, place, &lines, &screen);
+        labels.add_of(similar.count(), &text, (color, &spots));
     }
     marks
-}
-
-/// Where the name of a place can be.
-fn label_places(
-    walls: &Walls,
-    place: &Place,
-    lines: &[Vector],
-    frame: &Frame,
-) -> Vec<(Vector, [i8; 2])> {
-    match &place.kind {
-        Kind::Exit(_) | Kind::Line(_) => {
-            let [a, b] = [lines[0], lines[1]];
-            let (middle, aside) = ((a + b) * 0.5, perpendicular(direction(b - a)));
-            let is_out = |way: &Vector| walls.obstacle_at(middle + way * BEHIND).is_some();
-            let out = [aside, -aside].into_iter().find(is_out).unwrap_or(aside);
-            let side = |way: Vector| {
-                let part = |x: f64| (x * 1.4).round().clamp(-1.0, 1.0) as i8;
-                (middle + way * frame.meters(2.0), [part(way.x), part(way.y)])
-            };
-            // Beside the floor behind a narrow exit, where it covers no walls.
-            let beside = |end: Vector| {
-                let (_, side) = side(direction(end - middle) + out);
-                (end + out * frame.meters(2.0), side)
-            };
-            let is_narrow = (b - a).norm() * frame.scale < NARROW && place.is_exit();
-            let narrow = [b, a].map(beside).into_iter().filter(|_| is_narrow);
-            let others = AROUND.map(|side| (middle, side));
-            narrow
-                .chain([side(out), side(-out)])
-                .chain(others)
-                .collect()
-        }
-        Kind::Disk { .. } | Kind::Waiting(_) => around(lines, false),
-        Kind::Queue(queue) => {
-            let front = queue.path[0];
-            let back = queue.path.get(1).copied().unwrap_or(front);
-            let away = direction(front - back);
-            let first = [away.x, away.y].map(|x| (x * 1.4).round() as i8);
-            let sides = std::iter::once(first).chain(AROUND);
-            sides.map(|side| (front, side)).collect()
-        }
-    }
 }
 
 /// The goals and groups of the initial agents.

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use indicatif::HumanFloatCount;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 
 use super::font::width_of;
 use super::layout::NUMBER;
+use crate::analysis::round;
 
 /// More numbers on an axis would not make it clearer.
 const MOST_TICKS: i32 = 10;
@@ -93,16 +93,17 @@ impl Axis {
         if axis.ticks.is_empty() && (last - first).is_finite() && first != last {
             let values = match self.is_log {
                 false => {
-                    let ticks = linear_ticks(self.range, most.max(2));
+                    // plotters' own lose the last tick to rounding errors.
+                    let ticks = round::ticks(self.range, most.max(2));
                     // One number does not say how long the axis is.
                     match ticks.len() {
-                        0 | 1 => linear_ticks(self.range, 2 * most.max(2)),
+                        0 | 1 => round::ticks(self.range, 2 * most.max(2)),
                         _ => ticks,
                     }
                 }
                 true => log_ticks(self.range, most),
             };
-            axis.ticks = values.into_iter().map(|v| (v, number(v))).collect();
+            axis.ticks = values.into_iter().map(|v| (v, round::text(v))).collect();
         }
         axis
     }
@@ -135,17 +136,6 @@ impl ValueFormatter<f64> for Axis {
     }
 }
 
-/// Multiples of 1, 2 or 5 times a power of ten. plotters' own lose the last tick to rounding errors.
-fn linear_ticks([first, last]: [f64; 2], most: i32) -> Vec<f64> {
-    let rough = (last - first) / f64::from(most.max(1));
-    let decade = 10_f64.powf(rough.log10().floor());
-    let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade);
-    let step = steps.into_iter().find(|step| *step > 0.999 * rough);
-    let step = step.unwrap_or(rough);
-    let (from, to) = ((first / step - 1e-6).ceil(), (last / step + 1e-6).floor());
-    (from as i64..=to as i64).map(|k| k as f64 * step).collect()
-}
-
 /// 1, 2 and 5 times every power of ten, or only powers of ten if there is little room. plotters' `LogCoord` has
 /// powers of ten only, so that an axis of less than a decade may have no tick.
 fn log_ticks([first, last]: [f64; 2], most: i32) -> Vec<f64> {
@@ -159,13 +149,4 @@ fn log_ticks([first, last]: [f64; 2], most: i32) -> Vec<f64> {
     let inside = first * (1.0 - 1e-9)..=last * (1.0 + 1e-9);
     let values = decades.flat_map(|decade| factors.iter().map(move |f| f * 10_f64.powi(decade)));
     values.filter(|value| inside.contains(value)).collect()
-}
-
-/// A number with commas between thousands and as many decimals as it needs.
-fn number(value: f64) -> String {
-    let text = match value.abs() {
-        f64::MIN_POSITIVE..0.9e-3 => format!("{value:.1e}").replace(".0e", "e"),
-        _ => format!("{:.9}", HumanFloatCount(value)),
-    };
-    text.replace('-', "\u{2212}")
 }

@@ -6,6 +6,7 @@ use rerun::{
 
 use super::crowd::Maps;
 use super::error::Cause;
+use crate::analysis::round;
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
 use crate::output::colors::ColorMap;
@@ -30,7 +31,7 @@ const UNIT: f64 = 0.045;
 /// Bands of color of a bar.
 const BANDS: u16 = 64;
 /// The most steps between numbers.
-const MOST_STEPS: f64 = 5.0;
+const MOST_STEPS: i32 = 5;
 const TEXT: Color = Color(rerun::Rgba32::from_rgb(214, 214, 222));
 
 /// The region with its bar.
@@ -79,7 +80,7 @@ fn log_bar(
     let image = image.with_draw_order(30.0);
     let parts: [&dyn AsComponents; 2] = [&place, &image];
     stream.log_static(format!("{entity}/colors"), &parts)?;
-    let numbers = numbers([first, last]);
+    let numbers = round::ticks([first, last], MOST_STEPS);
     let at = |value: f64| low + height * (value - first) / (last - first);
     let ticks = numbers.iter().map(|&value| {
         let y = at(value) as f32;
@@ -90,11 +91,12 @@ fn log_bar(
         .with_radii([Radius::new_ui_points(0.6)])
         .with_draw_order(30.0);
     let middle = (left + NUMBERS * side) as f32;
-    let above = [0.5 * (left + right), low + height + UNIT * side].map(|x| x as f32);
+    let top = (low + height + UNIT * side).min(view.max.y);
+    let above = [0.5 * (left + right), top].map(|x| x as f32);
     let places = numbers
         .iter()
         .map(|&value| [middle, (at(value) + RAISED * side) as f32]);
-    let texts = numbers.iter().map(|&value| brief(value));
+    let texts = numbers.iter().map(|&value| round::text(value));
     let names = Points2D::new(places.chain([above]))
         .with_labels(texts.chain([unit.to_owned()]))
         .with_colors([TEXT])
@@ -103,26 +105,4 @@ fn log_bar(
         .with_draw_order(31.0);
     let parts: [&dyn AsComponents; 2] = [&ticks, &names];
     Ok(stream.log_static(entity, &parts)?)
-}
-
-/// Round numbers in a range.
-fn numbers([first, last]: [f64; 2]) -> Vec<f64> {
-    let rough = (last - first) / MOST_STEPS;
-    let decade = 10_f64.powf(rough.log10().floor());
-    let steps = [1.0, 2.0, 5.0, 10.0].map(|k| k * decade);
-    let step = steps.into_iter().find(|&step| step >= 0.999 * rough);
-    let step = step.unwrap_or(10.0 * decade);
-    let (from, to) = ((first / step - 1e-6).ceil(), (last / step + 1e-6).floor());
-    let count = (to - from).max(0.0) as u32;
-    (0..=count).map(|k| (from + f64::from(k)) * step).collect()
-}
-
-/// A number with at most four significant digits.
-pub fn brief(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let decimals = 3 - value.abs().log10().floor() as i32;
-    let unit = 10_f64.powi(decimals);
-    format!("{}", (value * unit).round() / unit)
 }

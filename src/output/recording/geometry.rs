@@ -7,12 +7,14 @@ use rerun::{
 };
 
 use super::error::Cause;
+use super::names::Names;
 use crate::engine::agents::Agents;
 use crate::engine::geometry::Polygon;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::period::Axis;
 use crate::engine::scene::{Region, Scene};
 use crate::output::colors::Rgb;
+use crate::output::labels::AROUND;
 use crate::output::scenery;
 
 /// The filled obstacles: an image below everything else.
@@ -39,11 +41,16 @@ const BEYOND: u8 = 2;
 const WALL: Color = Color(Rgba32::from_rgb(214, 214, 222));
 const GOAL: Color = Color(Rgba32::from_rgb(95, 211, 120));
 
-/// Logs walls, obstacles and the goals of the scene's agents.
-pub fn log(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result<(), Cause> {
+/// Logs walls, obstacles and the goals of the scene's agents, and adds the names of goals.
+pub fn log(
+    stream: &RecordingStream,
+    scene: &Scene,
+    agents: &Agents,
+    names: &mut Names,
+) -> Result<(), Cause> {
     log_still(stream, scene.walls.obstacles())?;
     log_period(stream, scene, agents)?;
-    log_goals(stream, scene, agents)
+    log_goals(stream, (scene, agents), names)
 }
 
 /// Logs the direction of y, walls and obstacles.
@@ -211,18 +218,26 @@ impl Raster {
     }
 }
 
-fn log_goals(stream: &RecordingStream, scene: &Scene, agents: &Agents) -> Result<(), Cause> {
+fn log_goals(
+    stream: &RecordingStream,
+    (scene, agents): (&Scene, &Agents),
+    names: &mut Names,
+) -> Result<(), Cause> {
     let goals = scenery::goals(scene, agents);
     if goals.is_empty() {
         return Ok(());
     }
-    let mut points = Points2D::new(goals.iter().map(|(p, _)| xy(*p)))
+    if goals.len() <= NAMED_GOALS {
+        let [r, g, b, _] = GOAL.to_array();
+        for ((goal, _), text) in goals.iter().zip(scenery::goal_labels(scene, &goals)) {
+            let spots: Vec<_> = AROUND[..8].iter().map(|&side| (*goal, side)).collect();
+            names.add("goals/names", goals.len(), &text, ([r, g, b], &spots));
+        }
+    }
+    let points = Points2D::new(goals.iter().map(|(p, _)| xy(*p)))
         .with_radii([Radius::new_ui_points(5.0)])
         .with_colors([GOAL])
         .with_draw_order(6.0);
-    if goals.len() <= NAMED_GOALS {
-        points = points.with_labels(scenery::goal_labels(scene, &goals));
-    }
     Ok(stream.log_static("world/geometry/goals", &points)?)
 }
 

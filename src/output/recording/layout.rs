@@ -12,11 +12,20 @@ use super::views::{Property, View};
 use super::{
     RecordingOptions, SIM_TIME, bars, crowd, events, focus, moment, places, text, wall_forces,
 };
+use crate::analysis::round::brief;
+use crate::engine::math::Vector;
+use crate::engine::scene::Region;
 
 /// Length of the loop that plays first, seconds.
 const LOOP: f64 = 10.0;
 /// The loop begins before the opening moment if less than this is left of the run, seconds.
 const SHORTEST_LOOP: f64 = 2.0;
+
+/// The usual size of the viewer without its panels, pixels, and the height of a view's title.
+const WINDOW: [f64; 2] = [1300.0, 800.0];
+const TITLE: f64 = 24.0;
+/// An arrangement is clearly better than another if it shows the crowd this many times as large.
+const CLEARLY: f64 = 1.15;
 
 /// The state of a recording, on which its layout depends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,6 +57,8 @@ pub struct Content {
     pub kind: Kind,
     /// Whether agents visit places.
     pub has_journeys: bool,
+    /// Whether the agents of some journey have more than one stage.
+    pub has_stages: bool,
     /// Whether there are queues or waiting areas.
     pub has_waiting: bool,
     /// The entities with the lengths of ways, which are hidden at first.
@@ -66,6 +77,7 @@ impl Content {
         Self {
             kind,
             has_journeys: false,
+            has_stages: false,
             has_waiting: false,
             fields: Vec::new(),
             has_wall_forces: false,
@@ -86,12 +98,17 @@ pub fn layout(
     let agents = followed(all, opening, content);
     let root = match content.kind {
         Kind::Moment => moment(agents, content),
-        _ => Vertical::new([
-            crowds(all, options, content),
-            below(all, options, agents, content),
-        ])
-        .with_row_shares([11.0, 10.0])
-        .into(),
+        _ => {
+            let arrangement = Arrangement::of(&options.view);
+            let crowds = crowds(all, options, arrangement, content);
+            let rest = rest(all, (options, arrangement), agents, content);
+            match arrangement {
+                Arrangement::Tall => Horizontal::new([crowds, rest]).into(),
+                _ => Vertical::new([crowds, rest])
+                    .with_row_shares(arrangement.row_shares())
+                    .into(),
+            }
+        }
     };
     let blueprint = Blueprint::new(root)
         .with_auto_views(false)
@@ -102,14 +119,65 @@ pub fn layout(
     (blueprint, properties)
 }
 
+/// Where the two views of the whole crowd are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Arrangement {
+    /// Side by side above the rest.
+    Columns,
+    /// One above the other, above the rest: for wide plans.
+    Wide,
+    /// Side by side, left of the rest: for tall plans.
+    Tall,
+}
+
+impl Arrangement {
+    /// The arrangement in which this part of the plane is largest, but columns unless another is clearly better.
+    fn of(view: &Region) -> Self {
+        let shown = bars::with_bar(view);
+        let scale = |other: &Self| {
+            let extent = shown.max - shown.min;
+            Vector::from(other.panel()).component_div(&extent).min()
+        };
+        let better = |other: &Self| scale(other) > CLEARLY * scale(&Self::Columns);
+        let mut others = [Self::Wide, Self::Tall].into_iter();
+        others.find(better).unwrap_or(Self::Columns)
+    }
+
+    /// The heights of the views of the whole crowd and of the rest.
+    fn row_shares(self) -> [f32; 2] {
+        match self {
+            Self::Wide => [13.0, 8.0],
+            _ => [11.0, 10.0],
+        }
+    }
+
+    /// The usual width and height of a view of the whole crowd, pixels.
+    fn panel(self) -> [f64; 2] {
+        let [width, height] = WINDOW;
+        let [crowds, rest] = self.row_shares().map(f64::from);
+        let above = height * crowds / (crowds + rest);
+        match self {
+            Self::Columns => [0.5 * width, above - TITLE],
+            Self::Wide => [width, 0.5 * above - TITLE],
+            Self::Tall => [0.25 * width, height - TITLE],
+        }
+    }
+}
+
+/// The usual width and height of a view of the whole crowd, pixels.
+pub fn panel(view: &Region) -> [f64; 2] {
+    Arrangement::of(view).panel()
+}
+
 /// The whole crowd by density, and by speed or stage.
 fn crowds(
     properties: &mut Vec<Property>,
     options: &RecordingOptions,
+    arrangement: Arrangement,
     content: &Content,
 ) -> ContainerLike {
     let shown = bars::with_bar(&options.view);
-    let range = |[first, last]: [f64; 2]| format!("{}–{}", bars::brief(first), bars::brief(last));
+    let range = |[first, last]: [f64; 2]| format!("{}–{}", brief(first), brief(last));
     let density = format!("Density {} P/m²", range(options.density_range));
     let density = View::of_crowd(&density, content)
         .with(bars::DENSITY)
@@ -120,13 +188,16 @@ fn crowds(
         .colored_by(crowd::SPEED_COLORS)
         .add(properties, &shown);
     let mut beside = speed;
-    if content.has_journeys {
+    if content.has_stages {
         let stage = View::of_crowd("Stage of the journey", content)
             .colored_by(crowd::STAGE_COLORS)
             .add(properties, &options.view);
         beside = Tabs::new([stage, beside]).into();
     }
-    Horizontal::new([density, beside]).into()
+    match arrangement {
+        Arrangement::Wide => Vertical::new([density, beside]).into(),
+        _ => Horizontal::new([density, beside]).into(),
+    }
 }
 
 /// The views of the followed agents, the one of the opening moment first; each with its view and its name.
@@ -157,9 +228,9 @@ fn followed(
 }
 
 /// The followed agents with their forces over time, all debug agents, plots and texts.
-fn below(
+fn rest(
     properties: &mut Vec<Property>,
-    options: &RecordingOptions,
+    (options, arrangement): (&RecordingOptions, Arrangement),
     agents: Vec<(String, ContainerLike)>,
     content: &Content,
 ) -> ContainerLike {
@@ -181,8 +252,12 @@ fn below(
         .dimmed()
         .add(properties, &options.view);
     tabs.push(everywhere);
+    let agents = Tabs::new(tabs).into();
+    if arrangement == Arrangement::Tall {
+        return Vertical::new([agents, Horizontal::new(others).into()]).into();
+    }
     let [plots, texts] = others;
-    Horizontal::new([Tabs::new(tabs).into(), plots, texts])
+    Horizontal::new([agents, plots, texts])
         .with_column_shares([9.0, 4.0, 4.0])
         .into()
 }
@@ -278,5 +353,38 @@ fn texts(content: &Content) -> ContainerLike {
         .into(),
         Kind::Moment => document("Scenario", text::DOCUMENT),
         Kind::Measurement => document("Measurement", text::DOCUMENT),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plans_of_any_shape_fill_most_of_their_views() {
+        for (aspect, expected) in [
+            (0.25, Some(Arrangement::Tall)),
+            (0.7, None),
+            (1.0, Some(Arrangement::Columns)),
+            (2.0, Some(Arrangement::Columns)),
+            (3.5, None),
+            (5.0, Some(Arrangement::Wide)),
+            (8.0, Some(Arrangement::Wide)),
+        ] {
+            let (min, max) = (Vector::zeros(), Vector::new(10.0 * aspect, 10.0));
+            let view = Region { min, max };
+            let chosen = Arrangement::of(&view);
+            assert!(
+                expected.is_none_or(|one| one == chosen),
+                "{aspect}: {chosen:?}"
+            );
+            let extent = bars::with_bar(&view).max;
+            let filled = |arrangement: Arrangement| {
+                let parts = extent.component_div(&Vector::from(arrangement.panel()));
+                parts.min() / parts.max()
+            };
+            assert!(filled(chosen) > 0.45, "{aspect}: {}", filled(chosen));
+            assert!(filled(Arrangement::Columns) > 0.45 || chosen != Arrangement::Columns);
+        }
     }
 }

@@ -4,6 +4,7 @@ use rerun::RecordingStream;
 
 use super::error::RecordingError;
 use super::layout::{Content, Kind};
+use super::names::Names;
 use super::output::{Destination, Output};
 use super::session::Session;
 use super::snapshot::Snapshot;
@@ -50,7 +51,9 @@ impl MeasuredRecorder {
         let output = Output::open(&to.into(), &options)?;
         let log_own = |stream: &RecordingStream| {
             geometry::log_still(stream, walls.obstacles())?;
-            marked::log(stream, &marked)?;
+            let mut names = Names::of_walls(&options.view, walls);
+            marked::log(stream, &marked, &mut names)?;
+            names.log(stream)?;
             Ok((text::of_measurement(stream, &options)?, Debug::default()))
         };
         let content = Content::new(Kind::Measurement, geometry::has_outside(walls.obstacles()));

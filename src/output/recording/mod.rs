@@ -7,9 +7,10 @@
 //! | entity | what |
 //! |---|---|
 //! | `world/geometry/{walls,obstacles,goals}` | static |
-//! | `world/geometry/{exits,waypoints,waiting_areas,queues,queue_spots,zones,entrances,names}` | static |
+//! | `world/geometry/{exits,waypoints,waiting_areas,queues,queue_spots,zones,entrances}` | static |
+//! | `world/geometry/names`, `world/geometry/…/names` | the names of places and rooms, and of what else is shown |
 //! | `world/geometry/measured_{regions,lines}` | static; where a crowd was measured |
-//! | `world/geometry/{sources,pushes,measured}` | outlines with names, static |
+//! | `world/geometry/{sources,pushes,measured}` | outlines, static |
 //! | `world/legend/{density,speed}` | color bars, static |
 //! | `world/wall_forces` | walls colored by the force on them, if the run measures it |
 //! | `world/ways/…` | the lengths of the ways to each place and goal as an image, hidden at first |
@@ -39,6 +40,7 @@ mod marked;
 mod markers;
 mod measured;
 mod moment;
+mod names;
 mod output;
 mod places;
 mod read;
@@ -68,11 +70,13 @@ use crate::engine::clock::Clock;
 use crate::engine::math::Vector;
 use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
+use crate::output::scenery;
 use crate::scenario::floor_plan::Label;
 use events::{Events, Line};
 use focus::Focus;
 use follow::{Follow, Moment};
 use layout::{Content, Kind};
+use names::Names;
 use output::Output;
 use session::Session;
 use snapshot::Snapshot;
@@ -170,6 +174,7 @@ impl Recorder {
         };
         let content = Content {
             has_journeys: !scene.journeys.places.is_empty(),
+            has_stages: scenery::has_stages(scene),
             has_waiting: places::has_waiting(scene),
             fields: places::fields(scene),
             has_wall_forces: options.body_mass.is_some(),
@@ -289,12 +294,14 @@ fn log_scene(
     options: &RecordingOptions,
 ) -> Result<(), error::Cause> {
     let scene: &Scene = simulation.scene();
-    geometry::log(stream, scene, simulation.frame().agents)?;
+    let mut names = Names::of_scene(&options.view, scene);
+    places::log(stream, scene, &mut names)?;
+    geometry::log(stream, scene, simulation.frame().agents, &mut names)?;
     stats::log_entrances(stream, scene)?;
-    places::log(stream, scene, options)?;
     places::log_ways(stream, scene)?;
     places::log_series(stream, scene)?;
-    markers::log(stream, scene, options)?;
+    markers::log(stream, scene, options, &mut names)?;
+    names.log(stream)?;
     if options.body_mass.is_some() {
         wall_forces::log_style(stream)?;
     }

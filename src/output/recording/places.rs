@@ -7,27 +7,24 @@ use rerun::{
     entity_path,
 };
 
-use super::RecordingOptions;
 use super::error::Cause;
 use super::geometry::xy;
-use super::markers::{label_place, text_width};
+use super::names::Names;
+use crate::analysis::round;
 use crate::analysis::way_field::{Grid, WayField};
 use crate::engine::journeys::{Kind, Place, Status};
-use crate::engine::math::{Vector, bounds};
+use crate::engine::math::bounds;
 use crate::engine::scene::Scene;
 use crate::engine::simulation::Simulation;
 use crate::engine::ways::Destination;
 use crate::output::colors::{ColorMap, Rgb};
-use crate::output::scenery;
-use crate::scenario::floor_plan::Label;
+use crate::output::{labels, scenery};
 
 /// The time series of places: agents in queues and waiting areas, and agents that have passed exits.
 pub const PRESENT: &str = "present";
 pub const PASSED: &str = "passed";
 /// The color of entrances.
 const ENTRANCE: Rgb = [0, 170, 200];
-/// The color of texts.
-const LABEL: Rgb = [200, 200, 200];
 
 /// The distance between the lines of a hatched zone, meters.
 const HATCHING: f64 = 0.8;
@@ -60,12 +57,8 @@ fn strips(lines: Vec<Vec<[f32; 2]>>, color: Rgb, width: f32) -> LineStrips2D {
         .with_draw_order(4.0)
 }
 
-/// Logs the places and zones of a scene, and the texts of the options.
-pub fn log(
-    stream: &RecordingStream,
-    scene: &Scene,
-    options: &RecordingOptions,
-) -> Result<(), Cause> {
+/// Logs the places and zones of a scene, and adds their names.
+pub fn log(stream: &RecordingStream, scene: &Scene, names: &mut Names) -> Result<(), Cause> {
     let places = &scene.journeys.places;
     for (name, is_kind) in KINDS {
         let own = places.iter().filter(|place| is_kind(&place.kind));
@@ -88,7 +81,8 @@ pub fn log(
     }
     log_spots(stream, scene)?;
     log_zones(stream, scene)?;
-    log_names(stream, scene, options)
+    add_names(scene, names);
+    Ok(())
 }
 
 /// Logs the spots of queues.
@@ -131,56 +125,30 @@ fn log_zones(stream: &RecordingStream, scene: &Scene) -> Result<(), Cause> {
     Ok(stream.log_static("world/geometry/zones", &strips.with_draw_order(-1.0))?)
 }
 
-/// Logs the names of places and zones below them, and texts; the viewer writes labels below their points.
-fn log_names(
-    stream: &RecordingStream,
-    scene: &Scene,
-    options: &RecordingOptions,
-) -> Result<(), Cause> {
+/// Adds the names of places, entrances and zones.
+fn add_names(scene: &Scene, names: &mut Names) {
+    const ENTITY: &str = "names";
     let journeys = &scene.journeys;
-    let below = |text: &str, points: Vec<Vector>| label_place(text, points, &options.view);
-    let places = journeys.places.iter().map(|place| {
-        let text = scenery::named(place.kind.name(), &place.name);
-        let at = match &place.kind {
-            Kind::Queue(queue) => xy(queue.path[0]),
-            _ => below(&text, scenery::lines(place)),
-        };
-        (at, text, scenery::color(&place.kind))
-    });
-    let zones = journeys.zones.iter().map(|zone| {
-        let text = scenery::named("zone", &scenery::zone_name(zone));
-        let at = below(&text, zone.area.points().to_vec());
-        (at, text, scenery::ZONE)
-    });
-    let entrances = scene.entrances.iter().map(|entrance| {
-        let text = scenery::named("entrance", &entrance.name);
-        let at = below(&text, entrance.line.to_vec());
-        (at, text, ENTRANCE)
-    });
-    let labels = options.labels.iter();
-    let fits = |label: &&Label| {
-        let length = text_width(&scenery::brief(&label.text), &options.view);
-        label.width.is_none_or(|width| width >= length)
-    };
-    let labels = labels.filter(fits);
-    let labels: Vec<_> = labels
-        .map(|label| (xy(label.at), scenery::brief(&label.text), LABEL))
-        .collect();
-    let named = places.chain(zones).chain(entrances);
-    let all: Vec<_> = named.chain(labels.iter().cloned()).collect();
-    if all.is_empty() {
-        return Ok(());
+    let places = &journeys.places;
+    for place in places {
+        let kind = place.kind.name();
+        let text = scenery::named(kind, &place.name);
+        let similar = places.iter().filter(|other| other.kind.name() == kind);
+        let lines = scenery::lines(place);
+        let spots = labels::of_place(&scene.walls, place, &lines, names.screen());
+        let color = scenery::color(&place.kind);
+        names.add(ENTITY, similar.count(), &text, (color, &spots));
     }
-    let dots = all.len() - labels.len();
-    let radius = |k| Radius::new_ui_points(if k < dots { 2.0 } else { 0.0 });
-    let radii = (0..all.len()).map(radius);
-    let points = Points2D::new(all.iter().map(|(at, ..)| *at))
-        .with_labels(all.iter().map(|(_, text, _)| text.as_str()))
-        .with_colors(all.iter().map(|(.., color)| colored(*color)))
-        .with_radii(radii)
-        .with_show_labels(true)
-        .with_draw_order(7.0);
-    Ok(stream.log_static("world/geometry/names", &points)?)
+    for zone in &journeys.zones {
+        let text = scenery::named("zone", &scenery::zone_name(zone));
+        let spots = labels::around(zone.area.points(), true);
+        names.add(ENTITY, journeys.zones.len(), &text, (scenery::ZONE, &spots));
+    }
+    for entrance in &scene.entrances {
+        let text = scenery::named("entrance", &entrance.name);
+        let spots = labels::around(&entrance.line, false);
+        names.add(ENTITY, scene.entrances.len(), &text, (ENTRANCE, &spots));
+    }
 }
 
 /// The destinations with a path map, and the entities of their pictures.
@@ -238,7 +206,11 @@ fn log_field(stream: &RecordingStream, entity: EntityPath, field: &WayField) -> 
         let [from, to] = [band, band + 1].map(|band| f64::from(band) * bands.width);
         let [r, g, b] = map.color((0.5 * (from + to)) as f32);
         let color = Rgba32::from_rgb(r, g, b);
-        (band as u16 + 1, format!("{from} to {to} m"), color)
+        (
+            band as u16 + 1,
+            format!("{} to {} m", round::text(from), round::text(to)),
+            color,
+        )
     };
     let others = [
         (0, "no way".to_owned(), Rgba32::TRANSPARENT),

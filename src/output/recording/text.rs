@@ -6,7 +6,8 @@ use rerun::external::arrow::array::{ArrayRef, Float64Array, StringArray, UInt64A
 use rerun::{AnyValues, RecordingStream, TextDocument};
 
 use super::error::Cause;
-use super::{DebugAgents, RecordingOptions, arrows, bars};
+use super::{DebugAgents, RecordingOptions, arrows};
+use crate::analysis::round::brief;
 use crate::engine::profile::Term;
 use crate::engine::scene::Scene;
 use crate::output::colors::WALL_FORCE_RANGE;
@@ -35,7 +36,7 @@ impl Document {
         opening: Option<String>,
     ) -> Self {
         let [density, speed] = [options.density_range, options.speed_range];
-        let at = |[first, last]: [f64; 2], part: f64| bars::brief(first + (last - first) * part);
+        let at = |[first, last]: [f64; 2], part: f64| brief(first + (last - first) * part);
         let before = format!(
             "# {}\n\n{}\n\n\
              ## Legend\n\
@@ -110,7 +111,7 @@ pub fn of_run(
     let agents = "`agent:id`, `agent:density` ρ and `agent:rest_density` ρ⁰ in P/m², `agent:pressure` \
                   p = k (ρ − ρ⁰) in 1/s², `agent:speed` in m/s (three digits each).";
     let mut rest = String::new();
-    if !scene.journeys.places.is_empty() {
+    if scenery::has_stages(scene) {
         let names = scenery::STAGES.map(|(name, _)| name).join(", ");
         rest += &format!("* Colors by stage of the journey, from stage 1: {names}; gray: ended.\n");
     }

@@ -27,19 +27,21 @@ impl Observed {
 }
 
 impl Measurement {
-    /// The line and the regions that it observes, each with the words that the names of its values begin with.
+    /// The line and the regions that it observes; the first with the words that the names of its values begin with, the
+    /// others without a name.
     pub fn observed(&self) -> Vec<(String, Observed)> {
         let common = common_words(&self.names());
-        let place = |(key, place): (&'static str, Observed)| {
+        let place = |(k, (key, place)): (usize, (&'static str, Observed))| {
             let kind = key.split('.').next().unwrap_or(key).replace('_', " ");
-            let name = if common.is_empty() {
-                kind
-            } else {
-                common.clone()
+            let name = match (k, common.is_empty()) {
+                (0, true) => kind,
+                (0, false) => common.clone(),
+                _ => String::new(),
             };
             (name, place)
         };
-        self.observed_places().into_iter().map(place).collect()
+        let places = self.observed_places().into_iter().enumerate();
+        places.map(place).collect()
     }
 
     /// The line and the regions that it observes, by their keys.

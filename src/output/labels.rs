@@ -1,0 +1,313 @@
+//! Labels that do not cover each other, in pictures and in views of recordings.
+
+use crate::engine::geometry::Walls;
+use crate::engine::journeys::{Kind, Place};
+use crate::engine::math::{Vector, bounds, direction, perpendicular};
+use crate::engine::scene::Scene;
+use crate::output::colors::Rgb;
+use crate::output::scenery::{self, brief};
+use crate::scenario::floor_plan::Label;
+
+/// Labels keep this distance from their points, points.
+pub const GAP: f64 = 4.0;
+/// Where no place beside its point is free, a label is at most this many times its height away, with a line to its
+/// point.
+const FARTHEST: u32 = 7;
+/// More similar things than this have labels only where these cover nothing, at most this many times their height away.
+const FEW: usize = 8;
+const NEAR: u32 = 2;
+/// The names of exits narrower than this lie beside them, points.
+const NARROW: f64 = 50.0;
+/// An area is tall if it is that many times as high as wide.
+const TALL: f64 = 1.5;
+/// How far behind an exit people need room: it may lie that far from walls, meters.
+const BEHIND: f64 = 3.5;
+
+/// All eight sides of a point and its center, the best first.
+pub const AROUND: [[i8; 2]; 9] = [
+    [0, 1],
+    [0, -1],
+    [1, 0],
+    [-1, 0],
+    [1, 1],
+    [-1, 1],
+    [1, -1],
+    [-1, -1],
+    [0, 0],
+];
+
+/// A point, and the side of it on which a label may be.
+pub type Spot = (Vector, [i8; 2]);
+
+/// Where labels are shown.
+#[derive(Debug, Clone, Copy)]
+pub struct Screen {
+    /// The part of the plane in which they must be, meters.
+    pub inside: [Vector; 2],
+    /// Points per meter.
+    pub scale: f64,
+    /// The height of a label, points.
+    pub height: f64,
+    /// The width of a text, points.
+    pub width: fn(&str) -> f64,
+}
+
+impl Screen {
+    /// A length in points, in meters.
+    pub fn meters(&self, points: f64) -> f64 {
+        points / self.scale
+    }
+}
+
+/// A label with its place.
+#[derive(Debug, Clone)]
+pub struct Placed {
+    /// Its text.
+    pub text: String,
+    /// The color of what it belongs to.
+    pub color: Rgb,
+    /// The corners of the box around it, meters.
+    pub around: [Vector; 2],
+    /// Where it is: −1, 0 or 1 for left of the point, centered, right of it; and for below, centered, above.
+    pub side: [i8; 2],
+    /// Its point that is nearest to the point that it belongs to.
+    pub at: Vector,
+    /// The point that it belongs to, if a line must lead there.
+    pub leader: Option<Vector>,
+}
+
+/// The labels of a panel or view.
+pub struct Labels {
+    screen: Screen,
+    placed: Vec<Placed>,
+    /// Points that labels cover only if they find no other place nearby, by x.
+    avoided: Vec<Vector>,
+}
+
+/// A possible place of a label.
+struct Candidate {
+    around: [Vector; 2],
+    spot: Spot,
+    at: Vector,
+    /// The distance from its point, points.
+    distance: f64,
+}
+
+impl Labels {
+    /// No labels yet. They cover the points `avoided` only if they find no other place.
+    pub fn new(screen: Screen, mut avoided: Vec<Vector>) -> Self {
+        avoided.sort_by(|a, b| a.x.total_cmp(&b.x));
+        Self {
+            screen,
+            placed: Vec::new(),
+            avoided,
+        }
+    }
+
+    /// Adds a label at the first of `spots` where it fits inside and covers no other label, or farther away with a line
+    /// to its point; if possible, at one where it covers none of the avoided points. Where nothing is free there is no
+    /// label. Returns whether there is one.
+    pub fn add(&mut self, text: &str, color: Rgb, spots: &[Spot]) -> bool {
+        self.add_of(1, text, (color, spots))
+    }
+
+    /// Adds the label of one of `count` similar things. If there are many, only near its point and where it covers
+    /// nothing.
+    pub fn add_of(&mut self, count: usize, text: &str, (color, spots): (Rgb, &[Spot])) -> bool {
+        let text = brief(text);
+        let width = (self.screen.width)(&text);
+        let is_one_of_many = count > FEW;
+        let rings = if is_one_of_many { NEAR } else { FARTHEST };
+        let rings = (0..rings).map(|ring| GAP + f64::from(ring) * self.screen.height);
+        let candidates = rings.flat_map(|distance| {
+            let outward = spots.iter();
+            let outward = outward.filter(move |(_, side)| *side != [0, 0] || distance == GAP);
+            outward.map(move |&spot| (spot, distance))
+        });
+        let candidates = candidates.map(|(spot, distance)| self.candidate(width, spot, distance));
+        let free: Vec<Candidate> = candidates.filter(|one| self.is_free(one)).collect();
+        let empty = free.iter().find(|one| self.is_empty(one));
+        let Some(found) = empty.or(free.first().filter(|_| !is_one_of_many)) else {
+            return false;
+        };
+        let (point, side) = found.spot;
+        self.placed.push(Placed {
+            text,
+            color,
+            around: found.around,
+            side,
+            at: found.at,
+            leader: (found.distance > GAP).then_some(point),
+        });
+        true
+    }
+
+    /// Adds a text in the middle of its room, or a line above or below, if it fits there.
+    pub fn add_within(&mut self, label: &Label, color: Rgb) -> bool {
+        let room = label
+            .width
+            .map_or(f64::INFINITY, |width| width * self.screen.scale);
+        let line = Vector::new(0.0, self.screen.meters(self.screen.height));
+        let spots = [0.0, 1.0, -1.0].map(|lines| (label.at + line * lines, [0, 0]));
+        (self.screen.width)(&brief(&label.text)) <= room && self.add(&label.text, color, &spots)
+    }
+
+    fn candidate(&self, width: f64, spot: Spot, distance: f64) -> Candidate {
+        let screen = &self.screen;
+        // Some room between two labels in a row.
+        let size = [width + 0.5 * screen.height, screen.height].map(|side| screen.meters(side));
+        let half = Vector::from(size) * 0.5;
+        let side = Vector::from(spot.1.map(f64::from));
+        let at = spot.0 + side * screen.meters(distance);
+        let center = at + side.component_mul(&half);
+        Candidate {
+            around: [center - half, center + half],
+            spot,
+            at,
+            distance,
+        }
+    }
+
+    /// Whether a label fits there inside, and covers no other label.
+    fn is_free(&self, place: &Candidate) -> bool {
+        let [low, high] = place.around;
+        let [least, most] = self.screen.inside;
+        let covers = |placed: &Placed| {
+            let [l, h] = placed.around;
+            low.x < h.x && l.x < high.x && low.y < h.y && l.y < high.y
+        };
+        let fits = low == low.sup(&least) && high == high.inf(&most);
+        fits && !self.placed.iter().any(covers)
+    }
+
+    /// Whether a label there covers none of the points to avoid.
+    fn is_empty(&self, place: &Candidate) -> bool {
+        let [low, high] = place.around;
+        let first = self.avoided.partition_point(|p| p.x < low.x);
+        let column = self.avoided[first..].iter().take_while(|p| p.x <= high.x);
+        !column.into_iter().any(|p| (low.y..=high.y).contains(&p.y))
+    }
+
+    /// All labels, in the order in which they were added.
+    pub fn into_placed(self) -> Vec<Placed> {
+        self.placed
+    }
+}
+
+/// Points along all walls, places and zones, at most `apart` meters from each other.
+pub fn along_lines(scene: &Scene, apart: f64) -> Vec<Vector> {
+    let journeys = &scene.journeys;
+    let places = journeys.places.iter().map(scenery::lines);
+    let zones = journeys.zones.iter();
+    let lines = places.chain(zones.map(|zone| scenery::closed(&zone.area)));
+    let walls = along_walls(&scene.walls, apart);
+    let along = |line: Vec<Vector>| {
+        let sides = line.windows(2);
+        let points = sides.flat_map(|side| along(side[0], side[1], apart));
+        points.collect::<Vec<_>>()
+    };
+    walls.chain(lines.flat_map(along)).collect()
+}
+
+/// Points along all walls, at most `apart` meters from each other.
+pub fn along_walls(walls: &Walls, apart: f64) -> impl Iterator<Item = Vector> {
+    let walls = walls.iter();
+    walls.flat_map(move |wall| along(wall.start, wall.end, apart))
+}
+
+fn along(start: Vector, end: Vector, apart: f64) -> impl Iterator<Item = Vector> {
+    let count = ((end - start).norm() / apart).ceil().clamp(1.0, 1e4);
+    (0..=count as u32).map(move |k| start + (end - start) * (f64::from(k) / count))
+}
+
+/// Spots for the label of an area: above, below, beside (first, if it is tall), and if `inside` first in the middle.
+pub fn around(corners: &[Vector], inside: bool) -> Vec<Spot> {
+    let [low, high] = bounds(corners.iter().copied()).unwrap_or_default();
+    let middle = (low + high) * 0.5;
+    let at = |[x, y]: [i8; 2]| {
+        let half = (high - low) * 0.5;
+        let side = Vector::new(f64::from(x), f64::from(y));
+        (middle + half.component_mul(&side), [x, y])
+    };
+    let mut spots: Vec<_> = AROUND.into_iter().map(at).collect();
+    if high.y - low.y > TALL * (high.x - low.x) {
+        // Above it may be another one.
+        spots[..4].rotate_left(2);
+    }
+    if inside {
+        spots.rotate_right(1);
+    }
+    spots
+}
+
+/// Spots for the name of a place with these lines.
+pub fn of_place(walls: &Walls, place: &Place, lines: &[Vector], screen: &Screen) -> Vec<Spot> {
+    match &place.kind {
+        Kind::Exit(_) | Kind::Line(_) => {
+            let [a, b] = [lines[0], lines[1]];
+            let (middle, aside) = ((a + b) * 0.5, perpendicular(direction(b - a)));
+            let is_out = |way: &Vector| walls.obstacle_at(middle + way * BEHIND).is_some();
+            let out = [aside, -aside].into_iter().find(is_out).unwrap_or(aside);
+            let side = |way: Vector| {
+                let part = |x: f64| (x * 1.4).round().clamp(-1.0, 1.0) as i8;
+                (
+                    middle + way * screen.meters(2.0),
+                    [part(way.x), part(way.y)],
+                )
+            };
+            // Beside the floor behind a narrow exit, where it covers no walls.
+            let beside = |end: Vector| {
+                let (_, side) = side(direction(end - middle) + out);
+                (end + out * screen.meters(2.0), side)
+            };
+            let is_narrow = (b - a).norm() * screen.scale < NARROW && place.is_exit();
+            let narrow = [b, a].map(beside).into_iter().filter(|_| is_narrow);
+            let others = AROUND.map(|side| (middle, side));
+            narrow
+                .chain([side(out), side(-out)])
+                .chain(others)
+                .collect()
+        }
+        Kind::Disk { .. } | Kind::Waiting(_) => around(lines, false),
+        Kind::Queue(queue) => {
+            let front = queue.path[0];
+            let back = queue.path.get(1).copied().unwrap_or(front);
+            let away = direction(front - back);
+            let first = [away.x, away.y].map(|x| (x * 1.4).round() as i8);
+            let sides = std::iter::once(first).chain(AROUND);
+            sides.map(|side| (front, side)).collect()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_of_one_point_never_overlap_and_stay_inside() {
+        let [least, most] = [Vector::zeros(), Vector::new(10.0, 10.0)];
+        let screen = Screen {
+            inside: [least, most],
+            scale: 40.0,
+            height: 9.6,
+            width: |text| 5.0 * text.len() as f64,
+        };
+        let mut labels = Labels::new(screen, Vec::new());
+        let spots = AROUND.map(|side| (Vector::new(5.0, 5.0), side));
+        for k in 0..60 {
+            labels.add(&format!("label {k}"), [0; 3], &spots);
+        }
+        let placed = labels.into_placed();
+        assert!(placed.len() > 12, "{}", placed.len());
+        for (k, Placed { around, .. }) in placed.iter().enumerate() {
+            let [low, high] = around;
+            assert!(low.x >= least.x && low.y >= least.y && high.x <= most.x && high.y <= most.y);
+            for other in &placed[..k] {
+                let [l, h] = other.around;
+                let apart = h.x <= low.x || high.x <= l.x || h.y <= low.y || high.y <= l.y;
+                assert!(apart);
+            }
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! The names of what a recording shows, where they do not cover each other before the viewer zooms in.
+
+use rerun::{AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStream};
+
+use super::error::Cause;
+use super::geometry::xy;
+use super::{bars, layout};
+use crate::engine::geometry::Walls;
+use crate::engine::math::Vector;
+use crate::engine::scene::{Region, Scene};
+use crate::output::colors::Rgb;
+use crate::output::labels::{Labels, Placed, Screen, Spot, along_lines, along_walls};
+use crate::scenario::floor_plan::Label;
+
+/// The usual width of a letter, and what a label has beside its text, pixels.
+const LETTER: f64 = 6.0;
+const RIM: f64 = 8.0;
+/// The height of a label, and how far its middle is below its point, pixels.
+const HEIGHT: f64 = 23.0;
+const BELOW: f64 = 12.0;
+
+/// How far the line to a label reaches from its rim to its middle.
+const INTO: f64 = 0.6;
+
+/// The width of a label in the viewer, pixels.
+fn width(text: &str) -> f64 {
+    LETTER * text.chars().count() as f64 + RIM
+}
+
+/// The names, each with the entity that it belongs to.
+pub struct Names {
+    labels: Labels,
+    screen: Screen,
+    entities: Vec<String>,
+}
+
+impl Names {
+    /// For views of this part of the plane. Names cover walls only if they find no other place.
+    pub fn of_walls(view: &Region, walls: &Walls) -> Self {
+        Self::new(view, |apart| along_walls(walls, apart).collect())
+    }
+
+    /// For views of this part of the plane. Names cover walls, places and zones only if they find no other place.
+    pub fn of_scene(view: &Region, scene: &Scene) -> Self {
+        Self::new(view, |apart| along_lines(scene, apart))
+    }
+
+    /// Names that avoid the points that `avoided` returns for a distance between them, meters.
+    fn new(view: &Region, avoided: impl FnOnce(f64) -> Vec<Vector>) -> Self {
+        let panel = Vector::from(layout::panel(view));
+        let shown = bars::with_bar(view);
+        let extent = shown.max - shown.min;
+        let scale = panel.component_div(&extent).min();
+        // The viewer shows what is around the view, too; color bars are at its right.
+        let more = (panel / scale - extent) * 0.5;
+        let inside = [
+            view.min - more,
+            Vector::new(view.max.x, view.max.y + more.y),
+        ];
+        let screen = Screen {
+            inside,
+            scale,
+            height: HEIGHT,
+            width,
+        };
+        let avoided = avoided(screen.meters(0.5 * HEIGHT));
+        Self {
+            labels: Labels::new(screen, avoided),
+            screen,
+            entities: Vec::new(),
+        }
+    }
+
+    /// Where they are shown.
+    pub fn screen(&self) -> &Screen {
+        &self.screen
+    }
+
+    /// Adds the name of something in `entity`, one of `count` similar things.
+    pub fn add(&mut self, entity: &str, count: usize, text: &str, place: (Rgb, &[Spot])) {
+        let is_placed = !text.is_empty() && self.labels.add_of(count, text, place);
+        self.entities.extend(is_placed.then(|| entity.to_owned()));
+    }
+
+    /// Adds a text in the middle of its room.
+    pub fn add_within(&mut self, entity: &str, label: &Label, color: Rgb) {
+        let is_placed = self.labels.add_within(label, color);
+        self.entities.extend(is_placed.then(|| entity.to_owned()));
+    }
+
+    /// Logs the names of each entity below it.
+    pub fn log(self, stream: &RecordingStream) -> Result<(), Cause> {
+        let placed = self.labels.into_placed();
+        let all: Vec<(String, Placed)> = self.entities.into_iter().zip(placed).collect();
+        let above = Vector::new(0.0, self.screen.meters(BELOW));
+        for (k, (entity, _)) in all.iter().enumerate() {
+            if all[..k].iter().any(|(other, _)| other == entity) {
+                continue;
+            }
+            let own = || {
+                let own = all.iter().filter(|(other, _)| other == entity);
+                own.map(|(_, label)| label)
+            };
+            let color = |label: &Placed| {
+                let [r, g, b] = label.color;
+                Color::from_rgb(r, g, b)
+            };
+            let middle = |label: &Placed| (label.around[0] + label.around[1]) * 0.5;
+            let far = || own().filter(|label| label.leader.is_some());
+            // To a place inside of the label: it keeps its size when the viewer zooms in.
+            let end = |label: &Placed| label.at + (middle(label) - label.at) * INTO;
+            let lines = far().filter_map(|label| Some([xy(label.leader?), xy(end(label))]));
+            let lines = LineStrips2D::new(lines)
+                .with_colors(far().map(color))
+                .with_radii([Radius::new_ui_points(0.4)])
+                .with_draw_order(7.0);
+            // The viewer writes labels below their points.
+            let points = Points2D::new(own().map(|label| xy(middle(label) + above)))
+                .with_labels(own().map(|label| label.text.as_str()))
+                .with_colors(own().map(color))
+                .with_radii([Radius::new_ui_points(0.0)])
+                .with_show_labels(true)
+                .with_draw_order(7.0);
+            let parts: [&dyn AsComponents; 2] = [&lines, &points];
+            stream.log_static(format!("world/geometry/{entity}"), &parts)?;
+        }
+        Ok(())
+    }
+}
