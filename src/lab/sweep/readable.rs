@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 use super::cell::plain;
 
 /// The most letters of a label.
-const LONGEST: usize = 32;
+const LONGEST: usize = 48;
 
 /// A value as a label, shortened in the middle if it is long.
 pub fn readable(value: &Value) -> String {
@@ -94,7 +94,7 @@ mod tests {
         let label = readable(&json!(long));
         assert_eq!(label.chars().count(), LONGEST);
         assert!(label.starts_with("xxx") && label.contains('…') && label.ends_with("yyy"));
-        for letters in 1..40 {
+        for letters in 1..60 {
             let text: String = ('a'..='z').cycle().take(letters).collect();
             let label = readable(&json!(text));
             assert_eq!(label == text, letters <= LONGEST, "{label}");
