@@ -7,6 +7,10 @@ use crate::lab::suite::{Case, Check, Runs};
 
 type Checks = Result<Vec<Check>, LabError>;
 
+/// Why ten people do not always slow a hundred with RVO.
+const FEW_AGAINST: &str = "ten people against a hundred change their time by less than chance does: by -1 to 3 % over \
+     three seeds";
+
 /// All cases, by number of ISO 20414.
 pub const CASES: [Case; 9] = [
     Case {
@@ -51,7 +55,7 @@ pub const CASES: [Case; 9] = [
         about: "100 people walk to another room against 0, 10, 50 and 100 others, through 10 m × 2 m (NIST 2.8)",
         runs: &COUNTERFLOW,
         judge: counterflow,
-        misses: &[],
+        misses: &[("rvo->sph", FEW_AGAINST)],
         picture: ("against 100", 20.0),
     },
     Case {
