@@ -7,7 +7,7 @@ use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::measurements::Left;
 use serde_json::{Value, json};
 
-use crate::common::simulated::{after, measured, start};
+use crate::common::simulated::{after, measured, scenario, start};
 
 /// A room of 10 × 10 m with a door of this width in a wall of this thickness, and an exit `behind` meters behind the
 /// door; `None`: on the edge of the plan, without a wall.
@@ -199,4 +199,32 @@ fn bodies_that_walk_on_behind_an_exit_count_nowhere() {
         simulation.integrate().unwrap();
     }
     assert!(most > 3, "{most} bodies walk on at once");
+}
+
+/// Two rooms a distance apart, with an exit of the first on its edge between them.
+fn rooms(apart: f64) -> Value {
+    let x = 10.0 + apart;
+    json!({
+        "walkable_area": [
+            [[[0, 0], [10, 0], [10, 10], [0, 10]]],
+            [[[x, 0], [x + 10.0, 0], [x + 10.0, 10], [x, 10]]],
+        ],
+        "exits": [{"name": "east", "line": [[10, 4], [10, 6]]}],
+        "crowds": [
+            {"name": "free", "area": [[2, 2], [8, 2], [8, 8], [2, 8]], "number": 10},
+            {"name": "locked in", "area": [[x + 2.0, 2], [x + 8.0, 2], [x + 8.0, 8], [x + 2.0, 8]], "number": 10},
+        ],
+        "stop": {"when_empty": true},
+    })
+}
+
+#[test]
+fn no_way_leads_from_another_room_through_the_wall_behind_an_exit() {
+    for apart in [0.7, 1.0, 2.0, 2.9, 3.1, 5.0, 7.0, 7.3] {
+        let refused = scenario(&rooms(apart), &[]).err().unwrap();
+        assert!(refused.contains("no way leads"), "{apart} m: {refused}");
+    }
+    let mut alone = rooms(1.0);
+    alone["crowds"].as_array_mut().unwrap().truncate(1);
+    assert_eq!(after(&alone, &[], 60.0).outcome().arrivals.len(), 10);
 }

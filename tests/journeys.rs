@@ -162,6 +162,29 @@ fn shares_and_fewest_split_a_crowd_as_asked() {
     assert!(east.abs_diff(300) < 35, "{east} of 400");
 }
 
+/// The line of one option lies on the way to the other.
+#[test]
+fn shares_hold_where_the_way_to_one_place_crosses_the_line_of_another() {
+    let document = json!({
+        "walkable_area": [[[[0, 0], [40, 0], [40, 10], [0, 10]]]],
+        "exits": [{"name": "end", "line": [[40, 0], [40, 10]]}],
+        "waypoints": [{"name": "near", "line": [[10, 0], [10, 10]]}, {"name": "far", "line": [[20, 0], [20, 10]]}],
+        "journeys": [{"name": "walk", "stages": [{"shares": {"near": 1, "far": 1}}, "end"]}],
+        "grids": [{"min": [1, 1], "max": [8, 9], "columns": 6, "rows": 6, "journey": "walk"}],
+    });
+    let drawn = |simulation: &Simulation| {
+        let places = &simulation.progress().places;
+        [1, 2].map(|place| places[place].bound)
+    };
+    let mut simulation = start(&document, &[]);
+    simulation.evaluate().unwrap();
+    let bound = drawn(&simulation);
+    let simulation = after(&document, &[], 60.0);
+    let places = &simulation.progress().places;
+    assert_eq!([1, 2].map(|place| places[place].passed), bound);
+    assert!(bound[0] > 5 && bound[1] > 5, "{bound:?}");
+}
+
 #[test]
 fn the_quickest_exit_relieves_the_nearest_one() {
     let out = |choice: &str| {

@@ -12,8 +12,17 @@ pub(super) type Door = ([Vector; 2], f64);
 /// The floor behind the line of an exit on the edge of the walkable area is this long, meters: the bodies of those who
 /// have left walk on there. The floor behind an entrance ends at [`WIDE_AT`].
 pub(super) const BEHIND: f64 = WALKS_ON + BEFORE_WALLS;
-/// Where another room lies behind an exit, but not near, the floor ends this far before it, meters.
+/// Another room that is this near behind a line, meters, is next door: the line lies in a door between both. Walls of
+/// buildings are not thicker.
+const NEXT_DOOR: f64 = 0.6;
+/// Where another room lies farther behind, the floor ends this far before it, meters: no way leads through the wall
+/// between.
 const BEFORE_ROOMS: f64 = 0.5;
+/// The same before rooms nearer than [`WIDE_AT`].
+const BEFORE_NEAR_ROOMS: f64 = 0.1;
+/// Rooms nearer than [`WIDE_AT`] are looked for at these parts of the line, and not at its ends, beside which the floor
+/// of its own room may go on.
+const PARTS: [f64; 3] = [0.1, 0.5, 0.9];
 /// That floor begins this far before the line, meters, so that rounding leaves no gap between.
 pub(super) const OVERLAP: f64 = 0.01;
 
@@ -35,8 +44,8 @@ pub(super) struct Opening {
     widens: f64,
 }
 
-/// The floors behind the lines of exits and entrances that lie on the edge of the walkable area. Where another room lies
-/// behind, the floor ends there; the floors of two lines do not touch unless their lines are that near.
+/// The floors behind the lines of exits and entrances that lie on the edge of the walkable area. They end before other
+/// rooms, unless these are next door; the floors of two lines do not touch unless their lines are that near.
 pub(super) fn openings(walkable: &[Area], doors: &[Door]) -> Vec<Opening> {
     let is_floor = |p: Vector| walkable.iter().any(|area| area.contains(p));
     let openings = doors
@@ -76,14 +85,15 @@ impl Opening {
         let wall = room(out, ROOM_BEHIND)?;
         let steps = (1..=STEPS).map(|k| wall + (reach - wall) * f64::from(k) / f64::from(STEPS));
         let is_room = |step: &f64| {
-            let far = [a, b].into_iter().filter(|_| *step > WIDE_AT);
-            let mut places = far.chain([middle]).map(|place| place + out * *step);
-            places.any(is_floor)
+            let ends = [0.0, 1.0].into_iter().filter(|_| *step > WIDE_AT);
+            let mut parts = ends.chain(PARTS);
+            parts.any(|part| is_floor(a + (b - a) * part + out * *step))
         };
         let room = steps.into_iter().find(is_room);
-        let depth = room.map_or(reach, |step| match step > WIDE_AT {
-            true => step - BEFORE_ROOMS,
-            false => step,
+        let depth = room.map_or(reach, |step| match step {
+            _ if step <= NEXT_DOOR => step,
+            _ if step <= WIDE_AT => step - BEFORE_NEAR_ROOMS,
+            _ => step - BEFORE_ROOMS,
         });
         Some(Self {
             ends: [a, b],

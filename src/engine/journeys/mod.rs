@@ -41,6 +41,18 @@ pub struct JourneyStage {
     pub places: Vec<u16>,
 }
 
+impl JourneyStage {
+    /// The places whose lines count for an agent bound for `chosen`: all of the stage, but shares are kept, unless an agent
+    /// bound for an exit crosses the line of another one.
+    pub fn passed<'a>(&'a self, chosen: &'a u16, places: &[Place]) -> &'a [u16] {
+        let is_drawn = matches!(self.choice, Choice::Shares(_));
+        match is_drawn && !places[usize::from(*chosen)].is_exit() {
+            true => std::slice::from_ref(chosen),
+            false => &self.places,
+        }
+    }
+}
+
 /// How an agent chooses between places.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Choice {

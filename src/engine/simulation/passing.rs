@@ -111,7 +111,9 @@ impl Crowd {
             let trip = trip.filter(|trip| trip.status == Status::Walking);
             let own = trip.map_or(&[][..], |trip| {
                 let journey = &scene.journeys.journeys[usize::from(trip.journey)];
-                &journey.stage(trip.stage).places
+                journey
+                    .stage(trip.stage)
+                    .passed(&trip.place, &scene.journeys.places)
             });
             let crossings = own.iter().chain(&closed).filter_map(|&place| {
                 let place = usize::from(place);
