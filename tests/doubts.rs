@@ -185,3 +185,62 @@ fn exits_of_whose_lines_much_lies_off_the_floor_are_noted() {
         assert_eq!(with_line(line.clone()), [""; 0], "{line}");
     }
 }
+
+#[test]
+fn rooms_that_nearly_touch_are_noted() {
+    let rooms = |gap: f64| {
+        with(
+            "walkable_area",
+            json!([
+                [[[0, 0], [12, 0], [12, 10], [0, 10]]],
+                [[[-10, 2], [-gap, 2], [-gap, 8], [-10, 8]]],
+            ]),
+        )
+    };
+    for (gap, text) in [(0.001, "1 mm at (-0.00, 5.00)"), (0.015, "15 mm")] {
+        let found = note(&rooms(gap));
+        assert!(
+            found.contains(text) && found.contains("nobody passes"),
+            "{found}"
+        );
+    }
+    for gap in [0.0, 0.1] {
+        assert_eq!(notes(&rooms(gap)), [""; 0], "{gap}");
+    }
+}
+
+#[test]
+fn agents_at_the_same_point_are_noted() {
+    let agents = json!([{"position": [2, 3]}, {"position": [2, 3]}, {"position": [4, 3]}]);
+    let found = note(&with("agents", agents));
+    assert!(
+        found.contains("1 agent(s)") && found.contains("(2, 3)"),
+        "{found}"
+    );
+}
+
+#[test]
+fn an_exit_just_behind_an_entrance_lies_on_the_floor() {
+    let entrance =
+        json!([{"name": "in", "line": [[11.9, 4], [11.9, 6]], "per_sec": 1, "number": 2}]);
+    let found = notes(&with("entrances", entrance));
+    assert!(
+        !found.iter().any(|note| note.contains("lies in obstacles")),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn agents_and_grids_off_the_floor_are_refused() {
+    let behind = json!([{"position": [14, 5]}]);
+    let far = json!([{"position": [500, 5]}]);
+    let grid = json!([{"min": [10, 4], "max": [15, 6], "columns": 6, "rows": 3}]);
+    for (key, value, place) in [
+        ("agents", behind, "agents[0].position"),
+        ("agents", far, "agents[0].position"),
+        ("grids", grid, "grids[0]"),
+    ] {
+        let refused = scenario(&with(key, value), &[]).err().unwrap();
+        assert!(refused.contains(place), "{refused}");
+    }
+}

@@ -7,6 +7,7 @@ use sandbox::engine::simulation::Simulation;
 use sandbox::scenario::measurements::Left;
 use serde_json::{Value, json};
 
+use crate::common::bounded::config;
 use crate::common::simulated::{after, measured, scenario, start};
 
 /// A room of 10 × 10 m with a door of this width in a wall of this thickness, and an exit `behind` meters behind the
@@ -98,7 +99,7 @@ fn beyond(simulation: &Simulation, p: Vector) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(12) })]
+    #![proptest_config(config(12))]
 
     /// In crowds with SPH, agents once left up to 0.27 m before the line, when they touched another one that crossed it.
     #[test]

@@ -312,6 +312,11 @@ fn places_and_journeys_that_cannot_work_are_refused_with_place_and_fix() {
     );
     refused(
         "/journeys/0/stages/0",
+        json!({"shares": {"east": 2, "west": -1}}),
+        "shares.west: must be at least 0 and at most 1e9, not -1",
+    );
+    refused(
+        "/journeys/0/stages/0",
         json!({"nearest": ["east"], "fewest": ["west"]}),
         "give one of `nearest`",
     );

@@ -284,6 +284,7 @@ const RELATIONS: &[&str] = &[
     "profiles in one blend",
     "no free point is near",
     "needs either `",
+    ", and not both",
     "is for `per_sec`",
     "is for `trajectory`",
     "either `trajectory` or `people`",

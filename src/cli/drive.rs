@@ -160,8 +160,8 @@ fn warn_of_the_step(scene: &Scene) {
                 .to_owned(),
         };
         talk(&format!(
-            "warning: time_step_secs {step} is {:.1} times {}, the largest step at which a crowd comes to rest; {advice}",
-            step / largest,
+            "warning: time_step_secs {step} is {} times {}, the largest step at which a crowd comes to rest; {advice}",
+            three_digits(step / largest),
             three_digits(largest),
         ));
     }

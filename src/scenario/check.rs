@@ -15,7 +15,7 @@ use super::profiles::{ProfileChoice, ProfileName};
 use super::range::{self, region};
 use super::{
     PlanFile, Scenario, doubts, from, journeys, late, measurements, numerics, off_floor, periodic,
-    plan, preset, profiles, view, ways,
+    plan, preset, profiles, slits, view, ways,
 };
 use crate::engine::geometry::Polygon;
 use crate::engine::period::Period;
@@ -110,6 +110,7 @@ impl Contents {
         crowding::check(keys, &scene, duration_secs)?;
         measurements::check(&keys.measurements, &scene.journeys.journeys)?;
         off_floor::check(keys, &scene)?;
+        off_floor::check_starts(keys, &scene, &behind)?;
         scene.pushes = pushes(&keys.events)?;
         periodic::check(keys, &scene)?;
         scene.ways = ways::ways(keys, (&scene, &behind), &mut notes)?;
@@ -119,6 +120,7 @@ impl Contents {
         let fewer = self.need.initial.saturating_sub(placed); // crowds with a density
         let entering = self.need.entering - fewer;
         notes.extend(doubts::notes(keys, &scene, entering));
+        notes.extend(slits::note(&scene.walls));
         Ok(Scenario {
             name: keys.name.clone().unwrap_or_else(|| stem.into_owned()),
             description: keys.description.clone().unwrap_or_default(),

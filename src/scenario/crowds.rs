@@ -144,7 +144,12 @@ impl Building<'_> {
         let number = match (given.number, given.density) {
             (Some(number), None) => number as usize,
             (None, Some(density)) => (density * size).round() as usize,
-            _ => return Err(Problem::new("", "needs either `number` or `density`")),
+            _ => {
+                return Err(Problem::new(
+                    "",
+                    "needs `number` or `density`, and not both",
+                ));
+            }
         };
         let draws = [
             &given.preferred_speed,

@@ -29,6 +29,7 @@ pub(super) fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
     floor
         .chain(speeds(keys, scene))
         .chain(endless(scene))
+        .chain(coincident(scene))
         .collect()
 }
 
@@ -80,6 +81,22 @@ fn speeds(keys: &File, scene: &Scene) -> Vec<String> {
         )
     };
     fast.map(note).collect()
+}
+
+/// A note on agents that start at the same point as another.
+fn coincident(scene: &Scene) -> Option<String> {
+    let positions = scene.agents.iter().map(|agent| agent.position);
+    let mut positions: Vec<Vector> = positions.collect();
+    positions.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let same = positions.windows(2).filter(|pair| pair[0] == pair[1]);
+    let same: Vec<Vector> = same.map(|pair| pair[0]).collect();
+    let first = same.first()?;
+    Some(format!(
+        "{} agent(s) start exactly where another one does, the first at ({}, {}): are two groups on one spot?",
+        same.len(),
+        first.x,
+        first.y
+    ))
 }
 
 /// Notes on the journeys after which agents stay on the floor, unless they end in waiting areas.

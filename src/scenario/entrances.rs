@@ -141,7 +141,12 @@ impl Entrance {
                 times.sort_by(f64::total_cmp);
                 return Ok(Arrivals::At(times));
             }
-            _ => return Err(Problem::new("", "needs either `per_sec` or `at_secs`")),
+            _ => {
+                return Err(Problem::new(
+                    "",
+                    "needs `per_sec` or `at_secs`, and not both",
+                ));
+            }
         };
         if flow.until <= flow.from {
             let reason = format!(

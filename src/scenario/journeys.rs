@@ -214,7 +214,7 @@ impl Found<'_> {
             return Err(Problem::new("", reason));
         };
         if let Choice::Shares(weights) = &choice
-            && weights.iter().sum::<f64>() <= 0.0
+            && weights.iter().all(|&weight| weight == 0.0)
         {
             let reason = "the weights must have a sum above 0";
             return Err(Problem::new(key, reason));

@@ -61,6 +61,7 @@ mod setting;
 mod settings;
 mod shapes;
 mod shipped;
+mod slits;
 mod spots;
 mod view;
 mod waiting;

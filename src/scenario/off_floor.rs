@@ -1,10 +1,15 @@
-//! Rejects zones, regions and lines off the floor: there is nothing to slow or to measure.
+//! Rejects zones, regions and lines off the floor, where there is nothing to slow or to measure, and agents off the floor.
 
 use super::error::{Problem, Under};
 use super::file::File;
-use super::floor_plan::{FloorPlanError, is_line_on_floor, is_on_floor};
+use super::floor_plan::{FloorPlanError, Rings, is_line_on_floor, is_on_floor};
 use super::measurements::Observed;
+use super::origin::{Member, Origins};
+use crate::engine::geometry::Ring;
+use crate::engine::journeys::Place;
+use crate::engine::math::Vector;
 use crate::engine::scene::Scene;
+use crate::engine::ways::nearest_on;
 
 /// The reason why an area or a line is refused.
 pub(super) const OFF: &str =
@@ -27,6 +32,54 @@ pub(super) fn check(keys: &File, scene: &Scene) -> Result<(), Problem> {
         }
     }
     Ok(())
+}
+
+/// Single agents in obstacles start at the nearest free point, which may be this far away, meters.
+const NEAR: f64 = 2.0;
+
+/// Rejects agents of `agents` and `grids` that start on the floors `behind` exits and entrances, and single ones that start
+/// far off the floor.
+pub(super) fn check_starts(keys: &File, scene: &Scene, behind: &Rings) -> Result<(), Problem> {
+    let rings = behind.iter().map(|ring| Ring::new(ring.clone()));
+    let rings: Vec<Ring> = rings.filter_map(Result::ok).collect();
+    let origins = Origins::new(keys, scene);
+    for (k, agent) in scene.agents.iter().enumerate() {
+        let member = Member {
+            agent: Some(k),
+            group: agent.group,
+        };
+        let Some(key) = origins.start_key(member) else {
+            continue;
+        };
+        let p = agent.position;
+        let at = format!("({:.2}, {:.2})", p.x, p.y);
+        if rings.iter().any(|ring| ring.contains(p)) && !is_on_line(scene, p) {
+            let reason = format!(
+                "an agent starts at {at}, behind the line of an exit or entrance and outside of the walkable area; move it \
+                 onto the floor"
+            );
+            return Err(Problem::new(key, reason));
+        }
+        if origins.single(member).is_none() || scene.walls.obstacle_at(p).is_none() {
+            continue;
+        }
+        let free = scene.walls.free_point_near(p);
+        let distance = free.map_or(f64::INFINITY, |free| (free - p).norm());
+        if distance > NEAR {
+            let reason = match distance.is_finite() {
+                true => format!("{at} lies {distance:.1} m off the floor; move it onto the floor"),
+                false => OFF.to_owned(),
+            };
+            return Err(Problem::new(key, reason));
+        }
+    }
+    Ok(())
+}
+
+/// Whether a point lies on the line of an exit, at the edge of both floors.
+fn is_on_line(scene: &Scene, p: Vector) -> bool {
+    let mut lines = scene.journeys.places.iter().filter_map(Place::line);
+    lines.any(|[a, b]| (nearest_on(p, a, b) - p).norm() < 1e-6)
 }
 
 fn accept(is_on: Result<bool, FloorPlanError>) -> Result<(), Problem> {

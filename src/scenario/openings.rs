@@ -38,6 +38,8 @@ pub(super) struct Opening {
     ends: [Vector; 2],
     /// The direction from the first end to the second, and out of the area.
     directions: [Vector; 2],
+    /// The room that the line has before the edge of the area, meters.
+    before: f64,
     /// Meters.
     depth: f64,
     /// It is wider by this on both sides from [`WIDE_AT`] on, meters.
@@ -68,12 +70,13 @@ impl Opening {
     /// `None` if there is room to cross the line, or none on both sides.
     fn of(is_floor: &impl Fn(Vector) -> bool, ([a, b], reach): Door) -> Option<Self> {
         const STEPS: u32 = 300;
-        let middle = (a + b) * 0.5;
-        let room = |way: Vector, length: f64| {
+        let room_at = |part: f64, way: Vector, length: f64| {
+            let start = a + (b - a) * part;
             let steps = (1..=STEPS).map(|k| length * f64::from(k) / f64::from(STEPS));
-            let mut places = steps.map(|step| (step, is_floor(middle + way * step)));
+            let mut places = steps.map(|step| (step, is_floor(start + way * step)));
             places.find(|(_, is_floor)| !is_floor).map(|(step, _)| step)
         };
+        let room = |way: Vector, length: f64| room_at(0.5, way, length);
         let along = direction(b - a);
         let normal = perpendicular(along);
         let out = [normal, -normal]
@@ -95,9 +98,12 @@ impl Opening {
             _ if step <= WIDE_AT => step - BEFORE_NEAR_ROOMS,
             _ => step - BEFORE_ROOMS,
         });
+        let before = PARTS.map(|part| room_at(part, out, wall).unwrap_or(wall));
+        let before = before.into_iter().fold(wall, f64::min) - ROOM_BEHIND / f64::from(STEPS);
         Some(Self {
             ends: [a, b],
             directions: [along, out],
+            before: before.max(0.0),
             depth,
             widens: 0.0,
         })
@@ -144,9 +150,10 @@ impl Opening {
         (0.0..=self.depth).contains(&step) && (-aside..=width + aside).contains(&across)
     }
 
-    /// The floor behind the line, counterclockwise.
+    /// The floor behind the edge of the area, counterclockwise.
     pub(super) fn outline(&self) -> Vec<Vector> {
-        let mut outline: Vec<Vector> = self.ring(0.0).into_iter().map(Vector::from).collect();
+        let ring = self.ring(self.before);
+        let mut outline: Vec<Vector> = ring.into_iter().map(Vector::from).collect();
         let [along, out] = self.directions;
         if along.perp(&out) < 0.0 {
             outline.reverse();

@@ -100,6 +100,15 @@ impl<'a> Origins<'a> {
         }
     }
 
+    /// The key that says where a single agent or a grid starts: `agents[1].position`, or `grids[0]`.
+    pub(super) fn start_key(&self, member: Member) -> Option<String> {
+        match self.item(member) {
+            Item::Agent(k) => Some(format!("agents[{k}].position")),
+            Item::Grid(k) => Some(format!("grids[{k}]")),
+            _ => None,
+        }
+    }
+
     /// The key that gives the goal: `agents[1].goal`, or `goal` at the top of the file.
     pub(super) fn goal_key(&self, member: Member) -> String {
         let keys = self.keys;

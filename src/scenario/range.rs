@@ -45,7 +45,9 @@ fn check_value(schema: &'static Value, value: &Value) -> Result<(), Problem> {
                 return Err(Problem::new("", format!("missing key `{key}`")));
             }
             object.iter().try_for_each(|(key, value)| {
-                let checked = check_value(&schema["properties"][key], value);
+                let known = schema["properties"].get(key);
+                let of_key = known.unwrap_or(&schema["additionalProperties"]);
+                let checked = check_value(of_key, value);
                 checked.map_err(|problem| problem.under(key))
             })
         }

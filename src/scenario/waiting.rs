@@ -31,7 +31,8 @@ pub(super) fn waiting_area(
     let part = largest(&parts).ok_or_else(|| Problem::new("area", OFF))?;
     // Pillars in it do not change its outline.
     let share = part.exterior.area() / whole.area();
-    let note = (share < NEARLY_ALL).then(|| note(&given.name, parts.len(), share));
+    let free = part.area() / whole.area();
+    let note = (free < NEARLY_ALL).then(|| note(&given.name, parts.len(), free));
     // Ways lead to an area as it is drawn if hardly anything stands in its sides, and nothing at its corners.
     let mut corners = whole.points().iter();
     let is_clear = share >= NEARLY_ALL && corners.all(|&p| walls.obstacle_at(p).is_none());

@@ -5,6 +5,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
+/// `count` cases, times `BAD_INPUT_TIMES` if that is set.
+pub fn config(count: u32) -> Config {
+    let times = std::env::var("BAD_INPUT_TIMES").map_or(1, |times| times.parse().unwrap());
+    Config {
+        failure_persistence: None,
+        ..Config::with_cases(count * times)
+    }
+}
+
 /// Runs `count` cases, times `BAD_INPUT_TIMES` if that is set, on a single thread.
 ///
 /// `case` returns its memory limit: the number of bytes that it may have allocated at once.
@@ -13,9 +22,7 @@ pub fn cases<S: Strategy>(
     input: impl FnOnce() -> S + Send,
     case: impl Fn(S::Value) -> u64 + Sync,
 ) {
-    let times = std::env::var("BAD_INPUT_TIMES").map_or(1, |times| times.parse().unwrap());
-    let mut config = Config::with_cases(count * times);
-    config.failure_persistence = None;
+    let config = config(count);
     // Allocations on other threads would not be counted.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     pool.unwrap().install(|| {

@@ -27,7 +27,7 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
         let piece = without_srid(piece)?;
         let wkt = Wkt::<f64>::from_str(piece).map_err(|reason| FloorPlanError::Syntax {
             format: "WKT",
-            reason: format!("line {line}: {reason}"),
+            reason: format!("line {line}: {reason}{}", formats(piece)),
         })?;
         let place = match several {
             true => format!("line {line}"),
@@ -39,6 +39,19 @@ pub fn shapes(text: &str) -> Result<Vec<Shape>, FloorPlanError> {
         })?;
     }
     Ok(shapes)
+}
+
+/// Names the formats of plans if a piece that cannot be read does not look like WKT.
+fn formats(piece: &str) -> &'static str {
+    let word = piece.split(|c: char| !c.is_ascii_alphabetic()).next();
+    let word = word.unwrap_or_default().to_ascii_uppercase();
+    match ["POLYGON", "POINT", "LINE", "GEOMETRYCOLLECTION"]
+        .iter()
+        .any(|name| word.contains(name))
+    {
+        true => "",
+        false => "; plans are WKT, GeoJSON or JuPedSim's XML",
+    }
 }
 
 /// Splits a text into its geometries, each with the line that it begins on, from 1.
