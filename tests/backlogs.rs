@@ -40,3 +40,26 @@ fn the_backlog_is_reported_and_recorded() {
     assert_eq!(most, largest as f64);
     assert_eq!(Some(series[series.len() - 1].1[0]), waiting.as_f64());
 }
+
+/// Twelve agents, who stand for long, before a counter with room for eight.
+const QUEUE: &str = r#"{
+  "walkable_area": [[[[0, 0], [20, 0], [20, 10], [0, 10]]]],
+  "crowds": [{"area": [[10, 2], [18, 2], [18, 8], [10, 8]], "number": 12, "journey": "j"}],
+  "queues": [{"name": "counter", "path": [[0.5, 5], [4, 5]], "service_secs": 1000}],
+  "obstacles": [[[4.3, 4], [4.5, 4], [4.5, 6], [4.3, 6]]],
+  "exits": [{"name": "out", "line": [[20, 4], [20, 6]]}],
+  "journeys": [{"name": "j", "stages": ["counter", "out"]}],
+  "duration_secs": 60
+}"#;
+
+#[test]
+fn queues_longer_than_their_line_are_reported() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("queue.json");
+    let room = "has room for 8: the others gathered at its end";
+    for (path, is_full) in [("[4, 5]", true), ("[4, 5], [4, 1]", false)] {
+        fs::write(&file, QUEUE.replace("[4, 5]", path)).unwrap();
+        let said = stderr(&run(&["run", file.to_str().unwrap()]));
+        assert_eq!(said.contains(room), is_full, "{said}");
+    }
+}

@@ -244,3 +244,87 @@ fn agents_and_grids_off_the_floor_are_refused() {
         assert!(refused.contains(place), "{refused}");
     }
 }
+
+#[test]
+fn peaks_of_forces_that_count_the_random_start_are_noted() {
+    let measured = |key: &str, from: f64, spacing: &str| {
+        let mut room = with(
+            "measurements",
+            json!([{"egress": {}}, {key: {"from_secs": from}}]),
+        );
+        room["crowds"][0]["spacing"] = json!(spacing);
+        notes(&room)
+    };
+    for key in ["body_forces", "wall_forces"] {
+        let [found] = measured(key, 0.0, "random").try_into().unwrap();
+        assert!(
+            found.starts_with(&format!("measurements[1].{key}: ")),
+            "{found}"
+        );
+        assert_eq!(measured(key, 3.0, "random"), [""; 0]);
+        assert_eq!(measured(key, 0.0, "grid"), [""; 0]);
+    }
+}
+
+#[test]
+fn obstacles_off_the_floor_and_floors_in_floors_are_noted() {
+    let off = json!([[[3, 3], [4, 3], [4, 4]], [[20, 2], [21, 2], [21, 3]]]);
+    let found = note(&with("obstacles", off));
+    assert!(
+        found.starts_with("obstacles[1]: obstacles wholly off the floor"),
+        "{found}"
+    );
+    let mut floors = room();
+    let inner = json!([[[2, 2], [3, 2], [3, 3]]]);
+    floors["walkable_area"].as_array_mut().unwrap().push(inner);
+    let found = note(&floors);
+    assert!(
+        found.starts_with("walkable_area[1]: floor wholly inside"),
+        "{found}"
+    );
+}
+
+#[test]
+fn crowds_mostly_off_the_floor_are_noted() {
+    let area = |right: f64| {
+        let mut room = room();
+        room["crowds"][0]["area"] = json!([[0, 0], [right, 0], [right, 10], [0, 10]]);
+        notes(&room)
+    };
+    assert_eq!(area(40.0), [""; 0]);
+    let [found] = area(60.0).try_into().unwrap();
+    assert!(found.contains("120.0 m² of its 600.0 m²"), "{found}");
+}
+
+#[test]
+fn entrances_on_the_line_of_their_own_exit_are_noted() {
+    let entrance = |line: Value| {
+        let entrance = json!([{"name": "in", "line": line, "per_sec": 1, "number": 2}]);
+        notes(&with("entrances", entrance))
+    };
+    let [found] = entrance(json!([[12, 4], [12, 6]])).try_into().unwrap();
+    assert!(
+        found.starts_with("entrances[0].line: agents enter on the line of the exit `east`"),
+        "{found}"
+    );
+    assert_eq!(entrance(json!([[0, 4], [0, 6]])), [""; 0]);
+}
+
+#[test]
+fn places_and_journeys_without_agents_are_noted() {
+    let mut room = room();
+    room["waypoints"] = json!([{"name": "a", "at": [4, 5]}, {"name": "b", "at": [6, 5]}]);
+    room["journeys"] = json!([{"name": "long", "stages": ["a", "b", "east"]}, {"name": "short", "stages": ["east"]}]);
+    room["crowds"][0]["journey"] = json!("short");
+    let found = note(&room);
+    assert!(
+        found.starts_with("no agents use the journey `long` and 2 more"),
+        "{found}"
+    );
+    room["crowds"][0]["journey"] = json!("long");
+    let found = note(&room);
+    assert!(
+        found.starts_with("no agents use the journey `short`;"),
+        "{found}"
+    );
+}

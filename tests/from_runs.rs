@@ -130,7 +130,7 @@ fn a_line_measures_the_same_in_a_run_and_in_its_trajectories() {
     let Measurement::LineFlow(line) = &scenario.measurements[0] else {
         panic!("{:?}", scenario.measurements)
     };
-    let (values, (_, passages)) = line.of_tracks(&tracks, 0.0, scenario.scene.clock);
+    let (values, (_, passages)) = line.of_tracks(&tracks, 0.0, &scenario.scene);
     let own = metrics.results(&simulation);
     assert_eq!(own.len(), values.len());
     for (of_run, (name, of_data)) in own.iter().zip(values) {

@@ -10,7 +10,7 @@ use sandbox::runs::summary::Summary;
 use sandbox::scenario::Scenario;
 use sandbox::scenario::measurements::{Integrity, Measure as _, Walk, Watched};
 use serde::Deserialize as _;
-use serde_json::json;
+use serde_json::{Value, json};
 
 /// The times of four arrivals with gaps of about 1, 4 and 1 s, and the measurements that count `arrivals`.
 fn arrivals(arrivals: u32) -> (Vec<f64>, Summary) {
@@ -268,5 +268,26 @@ fn one_page_defines_every_measurement() {
     assert!(measurements.len() >= 25, "{measurements:?}");
     for key in measurements {
         assert!(first_cells.contains(&format!("`{key}`")), "{key}");
+    }
+}
+
+#[test]
+fn densities_count_the_walkable_part_of_a_region() {
+    let densities = |region: Value| {
+        let summary = measured(json!({
+            "walkable_area": [[[[0, 0], [12, 0], [12, 2], [0, 2]]]], "goal": [11, 1], "duration_secs": 8,
+            "crowds": [{"area": [[0, 0], [4, 0], [4, 2], [0, 2]], "number": 12}],
+            "measurements": [{"walks": {"name": "walks", "region": region}},
+                             {"line_flow": {"name": "line", "line": [[7, 0], [7, 2]], "region": region}}],
+        }));
+        ["walks_density_per_m2", "line_density_per_m2"].map(|name| summary.metric(name).unwrap())
+    };
+    let inside = densities(json!([[4, 0], [7, 2]]));
+    let across_the_walls = densities(json!([[4, -1], [7, 4]]));
+    for (inside, across) in inside.into_iter().zip(across_the_walls) {
+        assert!(
+            inside > 0.1 && (inside - across).abs() < 1e-12 * inside,
+            "{inside} {across}"
+        );
     }
 }

@@ -174,11 +174,11 @@ fn an_agent_that_starts_outside_is_moved_with_a_note_that_says_from_where_and_ho
     let folder = tempfile::tempdir().unwrap();
     let outside = json!({
         "duration_secs": 0.1, "goal": [9, 5], "walkable_area": [[[[0, 0], [10, 0], [10, 10], [0, 10]]]],
-        "agents": [{"position": [2, 2]}, {"position": [20, 5]}]
+        "agents": [{"position": [2, 2]}, {"position": [11.5, 5]}]
     });
     fs::write(folder.path().join("f.json"), outside.to_string()).unwrap();
     let output = run_in(folder.path(), &["run", "f.json"]);
     let said = String::from_utf8_lossy(&output.stderr);
-    let note = "to the nearest free point (the first: agent 1, from (20, 5) by 10.00 m)";
+    let note = "to the nearest free point (the first: agent 1, from (11.5, 5) by 1.50 m)";
     assert!(said.contains(note), "{said}");
 }

@@ -3,13 +3,14 @@
 use super::arguments::RecordOptions;
 use super::output::ids;
 use super::talk;
+use crate::engine::journeys::Kind;
 use crate::engine::scene::Scene;
 use crate::engine::simulation::{EventKind, Limited, SPOT_RADIUS, Simulation};
 use crate::runs::drive::Run;
 use crate::scenario::quote::shown;
 
-/// Prints notes on displaced agents, stopped moves, clamped speeds, agents that waited for room and pushes without
-/// agents.
+/// Prints notes on displaced agents, stopped moves, clamped speeds, agents that waited for room, queues that were too long
+/// for their line, and pushes without agents.
 pub fn print(run: &Run) {
     let simulation = &run.simulation;
     let outcome = simulation.outcome();
@@ -48,6 +49,21 @@ pub fn print(run: &Run) {
         talk(&format!(
             "note: up to {largest} agent(s) waited for room at \"{name}\" (first at {time:.1} s){rest}"
         ));
+    }
+    let places = &simulation.scene().journeys.places;
+    for (place, state) in places.iter().zip(&simulation.progress().places) {
+        if let Kind::Queue(queue) = &place.kind
+            && state.longest > queue.room()
+        {
+            talk(&format!(
+                "note: up to {} agents stood in the queue \"{}\", whose line of {:.1} m has room for {}: the others \
+                 gathered at its end",
+                state.longest,
+                shown(&place.name),
+                queue.length,
+                queue.room()
+            ));
+        }
     }
     for event in simulation.events() {
         if event.kind == EventKind::PushBegan(0) {

@@ -121,6 +121,7 @@ impl Contents {
         let entering = self.need.entering - fewer;
         notes.extend(doubts::notes(keys, &scene, entering));
         notes.extend(slits::note(&scene.walls));
+        notes.extend(plan::without_effect(keys)?);
         Ok(Scenario {
             name: keys.name.clone().unwrap_or_else(|| stem.into_owned()),
             description: keys.description.clone().unwrap_or_default(),

@@ -7,15 +7,15 @@ use super::catalog::HIGHEST_DENSITY;
 use super::crowd::{Behavior, Crowd as Building};
 use super::distribution::{self, Draw, traits};
 use super::error::{Problem, Under};
-use super::floor_plan::{free, outlines};
+use super::floor_plan::{free, outlines, rings};
 use super::goals::Aim;
 use super::off_floor::OFF;
 use super::plan;
 use super::profiles::ProfileChoice;
 use super::schema::word;
-use super::shapes::Ring;
+use super::shapes::{Outline, Ring};
 use crate::engine::agents::{NewAgent, RADIUS_RANGE};
-use crate::engine::geometry::{Area, Ring as Outline};
+use crate::engine::geometry::Area;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::packing::{self, Body, Space};
 use crate::engine::random::{self, Purpose};
@@ -23,6 +23,8 @@ use crate::engine::scene::Region;
 
 /// The most parts of an area whose agents a note counts.
 const MOST_COUNTS: usize = 4;
+/// Crowds are noted if less than this part of their area is free floor.
+const MOSTLY_OFF: f64 = 0.25;
 /// The share of radii that may be smaller than assumed.
 const RARE: f64 = 1e-6;
 
@@ -46,7 +48,7 @@ pub(super) struct Crowd {
     pub name: Option<String>,
     /// Where they stand, corners in meters: one ring, or a list of rings (the outline, then the holes). Walls and
     /// obstacles in it are left out.
-    pub area: Place,
+    pub area: Outline,
     /// The number of agents.
     #[schemars(range(min = 1))]
     pub number: Option<u32>,
@@ -89,21 +91,10 @@ pub(super) struct Crowd {
     pub premovement_secs: Option<Draw>,
 }
 
-/// An area: its corners, or its rings
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub(super) enum Place {
-    Ring(Ring),
-    Rings(#[schemars(length(min = 1))] Vec<Ring>),
-}
-
 impl Crowd {
     /// An upper bound on its number of agents: the area may have holes and contain obstacles.
     pub(super) fn most(&self) -> u64 {
-        let outline = match &self.area {
-            Place::Ring(ring) => Some(ring),
-            Place::Rings(rings) => rings.first(),
-        };
+        let outline = self.area.rings().first();
         let corners: Vec<Vector> = outline.map_or(Vec::new(), |Ring(corners)| {
             corners.iter().map(|&corner| corner.into()).collect()
         });
@@ -192,6 +183,13 @@ impl Building<'_> {
             Problem::new("", reason)
         })?;
         self.notes.extend(divided(&areas, &places, place));
+        let drawn = plan::area(given.area.rings()).under("area")?.area();
+        if size < MOSTLY_OFF * drawn {
+            self.notes.push(format!(
+                "{place}.area: {size:.1} m² of its {drawn:.1} m² are free floor, and all its agents start there; check that \
+                 it is where it should be"
+            ));
+        }
         let behavior = Behavior {
             journey,
             direction: target.direction,
@@ -212,15 +210,9 @@ impl Building<'_> {
 
     /// The part of an area outside of all obstacles and inside of the walkable area as it is given, without the floors
     /// behind exits, and inside of the period.
-    fn free_area(&self, given: &Place) -> Result<Vec<Area>, Problem> {
-        let rings = match given {
-            Place::Ring(ring) => std::slice::from_ref(ring),
-            Place::Rings(rings) => rings,
-        };
-        let area = plan::area(rings)?;
-        let backwards = |ring: &Outline| ring.points().iter().rev().copied().collect();
-        let mut own: Vec<Vec<Vector>> = area.holes.iter().map(backwards).collect();
-        own.insert(0, area.exterior.points().to_vec());
+    fn free_area(&self, given: &Outline) -> Result<Vec<Area>, Problem> {
+        let area = plan::area(given.rings())?;
+        let own = rings(&[area]);
         let (mut floors, mut bodies) = outlines(self.scene.walls.obstacles());
         bodies.extend(self.behind.iter().cloned());
         if let Some(period) = &self.scene.period {

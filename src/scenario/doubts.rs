@@ -2,12 +2,17 @@
 
 use std::collections::BTreeSet;
 
+use super::crowds::Spacing;
 use super::file::File;
+use super::journeys::TO_NEAREST_EXIT;
+use super::measurements::Measurement;
 use super::quote::shown;
+use crate::engine::entrance::Entrance;
 use crate::engine::geometry::Walls;
 use crate::engine::journeys::Kind;
 use crate::engine::math::{Vector, bounds};
 use crate::engine::scene::Scene;
+use crate::engine::ways::nearest_on;
 
 /// Floors with a longer side are doubtful, meters.
 const LONG: f64 = 300.0;
@@ -15,6 +20,8 @@ const LONG: f64 = 300.0;
 /// agent shows how the model walks.
 const SIDE_IF_EMPTY: f64 = 100.0;
 const EMPTY: f64 = 0.01;
+/// Agents enter on the line of an exit if theirs is nearer, meters.
+const AT_EXIT: f64 = 0.1;
 /// Crowds do not run faster, m/s.
 const FAST: f64 = 4.0;
 
@@ -30,6 +37,9 @@ pub(super) fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
         .chain(speeds(keys, scene))
         .chain(endless(scene))
         .chain(coincident(scene))
+        .chain(peaks(keys))
+        .chain(at_exits(scene))
+        .chain(unused(scene))
         .collect()
 }
 
@@ -96,6 +106,72 @@ fn coincident(scene: &Scene) -> Option<String> {
         same.len(),
         first.x,
         first.y
+    ))
+}
+
+/// Notes on the largest forces of runs that begin with crowds at random places.
+fn peaks(keys: &File) -> Vec<String> {
+    let is_random = keys
+        .crowds
+        .iter()
+        .any(|crowd| crowd.spacing == Spacing::Random);
+    let measured = keys.measurements.iter().enumerate().filter(|_| is_random);
+    let note = |(k, given): (usize, &Measurement)| {
+        let key = given.peaks_from_start()?;
+        Some(format!(
+            "measurements[{k}].{key}: crowds start at random places, where forces are larger than after the first steps; \
+             give `from_secs` of a few seconds, so that the start does not count"
+        ))
+    };
+    measured.filter_map(note).collect()
+}
+
+/// Notes on entrances whose agents walk to an exit on whose line they enter.
+fn at_exits(scene: &Scene) -> Vec<String> {
+    let journeys = &scene.journeys;
+    let entrances = scene.entrances.iter().enumerate();
+    let note = |(k, entrance): (usize, &Entrance)| {
+        let journey = scene.groups[usize::from(entrance.group)].journey?;
+        let first = journeys.journeys[usize::from(journey)].stages.first()?;
+        let places = first.places.iter();
+        let mut places = places.map(|&place| &journeys.places[usize::from(place)]);
+        let middle = 0.5 * (entrance.line[0] + entrance.line[1]);
+        let exit = places.find(|place| {
+            let line = place.line().filter(|_| place.is_exit());
+            line.is_some_and(|[a, b]| (nearest_on(middle, a, b) - middle).norm() < AT_EXIT)
+        })?;
+        Some(format!(
+            "entrances[{k}].line: agents enter on the line of the exit `{}` and walk to it; give them another exit, or move \
+             the line",
+            shown(&exit.name)
+        ))
+    };
+    entrances.filter_map(note).collect()
+}
+
+/// A note on journeys that no agents take, and on places that no agents walk to.
+fn unused(scene: &Scene) -> Option<String> {
+    let journeys = &scene.journeys;
+    let used: BTreeSet<u16> = scene.groups.iter().filter_map(|one| one.journey).collect();
+    let taken = used.iter().map(|&one| &journeys.journeys[usize::from(one)]);
+    let stages = taken.flat_map(|journey| &journey.stages);
+    let places: BTreeSet<u16> = stages.flat_map(|stage| stage.places.clone()).collect();
+    let given = journeys.journeys.iter().enumerate();
+    let given = given
+        .filter(|(k, journey)| !used.contains(&(*k as u16)) && journey.name != TO_NEAREST_EXIT);
+    let idle = given.map(|(_, journey)| format!("the journey `{}`", shown(&journey.name)));
+    let others = journeys.places.iter().enumerate();
+    let others = others.filter(|(k, _)| !places.contains(&(*k as u16)));
+    let others =
+        others.map(|(_, place)| format!("the {} `{}`", place.kind.name(), shown(&place.name)));
+    let names: Vec<String> = idle.chain(others).collect();
+    let (first, more) = names.split_first()?;
+    let more = match more.len() {
+        0 => String::new(),
+        count => format!(" and {count} more"),
+    };
+    Some(format!(
+        "no agents use {first}{more}; give it to a crowd or a journey, or remove it"
     ))
 }
 

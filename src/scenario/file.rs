@@ -19,7 +19,7 @@ use super::places::{Exit, Journey, Queue, WaitingArea, Waypoint, Zone};
 use super::preset::Preset;
 use super::profiles::ProfileChoice;
 use super::schema::word;
-use super::shapes::{Corners, Label, Obstacle, Point, Ring};
+use super::shapes::{Corners, Label, Outline, Point, Ring};
 use super::ways::WayFinding;
 use crate::engine::boundary::WallMethod;
 use crate::engine::clock::PAPER_TIME_STEP;
@@ -122,7 +122,7 @@ pub(super) struct File {
     /// Solid bodies, corners in meters, in either orientation: a list of polygons, each a list of corners or of rings
     /// (the outline, then the holes), or the name of a WKT, GeoJSON or JuPedSim XML file.
     #[schemars(schema_with = "obstacles")]
-    pub obstacles: Vec<Obstacle>,
+    pub obstacles: Vec<Outline>,
     /// The scene repeats itself without end.
     pub periodic: Option<Periodic>,
     /// The goal of agents that have none of their own. Default in a periodic scene: along the axis.
@@ -367,7 +367,7 @@ fn walkable_area(generator: &mut SchemaGenerator) -> Schema {
 }
 
 fn obstacles(generator: &mut SchemaGenerator) -> Schema {
-    let obstacle = generator.subschema_for::<Obstacle>();
+    let obstacle = generator.subschema_for::<Outline>();
     json_schema!({"anyOf": [floor_plan(), {"type": "array", "items": obstacle}]})
 }
 

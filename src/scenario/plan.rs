@@ -10,7 +10,7 @@ use super::file::File;
 use super::openings::{BEHIND, Door, OVERLAP, Opening, WIDE_AT, openings};
 use super::periodic;
 use super::setting::Setting;
-use super::shapes::{Obstacle, Point, Ring as GivenRing};
+use super::shapes::{Outline, Point, Ring as GivenRing};
 use crate::engine::geometry::{Area, Polygon, Ring};
 use crate::engine::math::Vector;
 use crate::engine::period::Period;
@@ -124,13 +124,24 @@ fn ring_value(ring: &Ring) -> Value {
 
 /// The number of walls of a scene: one per corner, in a periodic scene of three periods.
 pub(super) fn walls(file: &File) -> u64 {
-    let rings = file.obstacles.iter().flat_map(|obstacle| match obstacle {
-        Obstacle::Ring(ring) => std::slice::from_ref(ring),
-        Obstacle::Polygon(rings) => rings,
-    });
+    let rings = file.obstacles.iter().flat_map(Outline::rings);
     let rings = rings.chain(file.walkable_area.iter().flatten().flatten());
     let corners: u64 = rings.map(|ring| ring.0.len() as u64).sum();
     corners * if file.periodic.is_some() { 3 } else { 1 }
+}
+
+/// Notes on obstacles off the floor, and on floors inside other floors.
+pub(super) fn without_effect(file: &File) -> Result<Vec<String>, Problem> {
+    let floors = file.walkable_area.iter().flatten().enumerate();
+    let floors = floors.map(|(k, rings)| (WALKABLE_AREA, k, rings.as_slice()));
+    let bodies = file.obstacles.iter().enumerate();
+    let bodies = bodies.map(|(k, body)| (OBSTACLES, k, body.rings()));
+    let polygon = |(list, k, given)| Ok((format!("{list}[{k}]"), rings(given)?, list == OBSTACLES));
+    let polygons: Vec<_> = floors
+        .chain(bodies)
+        .map(polygon)
+        .collect::<Result<_, Problem>>()?;
+    FloorPlan::without_effect(polygons.into_iter()).map_err(problem)
 }
 
 /// What surrounds people.
@@ -214,17 +225,13 @@ pub(super) fn area(given: &[GivenRing]) -> Result<Area, Problem> {
 }
 
 /// A body, with its copies in a periodic scene.
-fn obstacle(given: &Obstacle, period: Option<&Period>) -> Result<Vec<Polygon>, Problem> {
+fn obstacle(given: &Outline, period: Option<&Period>) -> Result<Vec<Polygon>, Problem> {
     if let Some(period) = period {
-        let rings = match given {
-            Obstacle::Ring(ring) => vec![points(ring)?],
-            Obstacle::Polygon(given) => rings(given)?,
-        };
-        return periodic::bodies(&rings, period);
+        return periodic::bodies(&rings(given.rings())?, period);
     }
     let polygon = match given {
-        Obstacle::Ring(ring) => Polygon::new(points(ring)?.into_iter().map(Into::into).collect()),
-        Obstacle::Polygon(given) => {
+        Outline::Ring(ring) => Polygon::new(points(ring)?.into_iter().map(Into::into).collect()),
+        Outline::Rings(given) => {
             let area = FloorPlan::obstacle(&rings(given)?).map_err(problem)?;
             Polygon::filling(area)
         }

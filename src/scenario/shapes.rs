@@ -23,12 +23,22 @@ impl From<Point> for Vector {
 #[serde(transparent)]
 pub(super) struct Ring(#[schemars(length(min = 3))] pub Vec<Point>);
 
-/// A solid body: its corners, or its rings
+/// A polygon: its corners, or its rings
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub(super) enum Obstacle {
+pub(super) enum Outline {
     Ring(Ring),
-    Polygon(#[schemars(length(min = 1))] Vec<Ring>),
+    Rings(#[schemars(length(min = 1))] Vec<Ring>),
+}
+
+impl Outline {
+    /// The outline, then the holes.
+    pub fn rings(&self) -> &[Ring] {
+        match self {
+            Self::Ring(ring) => std::slice::from_ref(ring),
+            Self::Rings(rings) => rings,
+        }
+    }
 }
 
 /// The lower left and the upper right corner

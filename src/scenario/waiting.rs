@@ -1,7 +1,7 @@
 //! Waiting areas: the free part of the given area, and the spots in it.
 
 use super::error::{Problem, Under};
-use super::floor_plan::{Rings, free, outlines};
+use super::floor_plan::{Rings, free, parts_on_floor};
 use super::journeys::ring;
 use super::off_floor::OFF;
 use super::places::WaitingArea;
@@ -27,7 +27,8 @@ pub(super) fn waiting_area(
     behind: &Rings,
 ) -> Result<(Kind, Option<String>), Problem> {
     let whole = ring(&given.area).under("area")?;
-    let parts = free_parts(&whole, walls, behind).under("area")?;
+    let parts = parts_on_floor(&whole, walls, behind);
+    let parts = parts.map_err(|error| Problem::new("area", error.to_string()))?;
     let part = largest(&parts).ok_or_else(|| Problem::new("area", OFF))?;
     // Pillars in it do not change its outline.
     let share = part.exterior.area() / whole.area();
@@ -50,14 +51,6 @@ pub(super) fn waiting_area(
         lasting,
     };
     Ok((Kind::Waiting(waiting), note))
-}
-
-/// The parts of the floor in a ring.
-fn free_parts(whole: &Ring, walls: &Walls, behind: &Rings) -> Result<Vec<Area>, Problem> {
-    let (mut floors, mut bodies) = outlines(walls.obstacles());
-    floors.insert(0, vec![whole.points().to_vec()]);
-    bodies.extend(behind.iter().cloned());
-    free(&floors, &bodies).map_err(|error| Problem::new("", error.to_string()))
 }
 
 /// The largest part of a ring that is as far from its sides as spots are from walls; all of it if it is narrow.

@@ -156,6 +156,11 @@ impl Queue {
         end[1] + direction(end[1] - end[0]) * left
     }
 
+    /// The number of agents that have room on its line; the others gather at its end.
+    pub fn room(&self) -> u32 {
+        1 + (self.length / self.spacing) as u32
+    }
+
     /// The corner of the path that comes next for an agent that stands near corner `k` and walks to the spot behind
     /// `ahead` agents.
     pub fn next_corner(&self, k: usize, ahead: usize) -> usize {

@@ -28,6 +28,7 @@ impl Crowd {
             };
             trip.chooses_at = u64::MAX;
             state.tickets += 1;
+            state.longest = state.longest.max(waiting as u32 + 1);
             trip.hold = Some(end);
             self.agents.goal[i] = end;
             return;

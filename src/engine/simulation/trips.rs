@@ -47,6 +47,8 @@ pub struct PlaceState {
     pub(super) nearer: Vec<u32>,
     /// The number of tickets given out for its queue.
     pub(super) tickets: u32,
+    /// The largest number of agents that have stood in its queue at once.
+    pub longest: u32,
     /// Which spots of the waiting area are taken.
     taken: Vec<bool>,
 }
@@ -62,6 +64,7 @@ impl Default for PlaceState {
             ready: 0.0,
             nearer: Vec::new(),
             tickets: 0,
+            longest: 0,
             taken: Vec::new(),
         }
     }

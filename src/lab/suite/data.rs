@@ -94,7 +94,7 @@ pub(super) fn measured(label: &str, case: &case::Case) -> Result<Summary, LabErr
     };
     for measurement in &scenario.measurements {
         if let Measurement::LineFlow(line) = measurement {
-            let (values, passages) = line.of_tracks(&tracks, at, scenario.scene.clock);
+            let (values, passages) = line.of_tracks(&tracks, at, &scenario.scene);
             let number = |(name, value): (String, Option<f64>)| (name, value.into());
             summary.metrics.extend(values.into_iter().map(number));
             summary.data.extend([passages]);

@@ -22,7 +22,7 @@ mod wkt;
 mod xml;
 
 pub use error::FloorPlanError;
-pub use on_floor::{is_line_on_floor, is_on_floor};
+pub use on_floor::{is_line_on_floor, is_on_floor, parts_on_floor};
 pub use shape::Label;
 pub use unite::{Rings, free, outlines, rings};
 pub use wkt::to_wkt;
@@ -145,6 +145,23 @@ impl FloorPlan {
             is_obstacle: true,
         };
         shape.area()
+    }
+
+    /// Notes on obstacles off the floor, and on floors inside other floors. Each polygon has its place in messages, its
+    /// rings, and whether it is an obstacle.
+    ///
+    /// # Errors
+    /// Those of [`FloorPlan::walkable`].
+    pub fn without_effect(
+        polygons: impl Iterator<Item = (String, Vec<Vec<[f64; 2]>>, bool)>,
+    ) -> Result<Vec<String>, FloorPlanError> {
+        let shapes = polygons.map(|(place, rings, is_obstacle)| Shape {
+            place,
+            name: None,
+            rings,
+            is_obstacle,
+        });
+        idle::notes(&shapes.collect::<Vec<_>>())
     }
 
     /// The solid bodies of the plan: the surroundings of the walkable area, then the obstacles.

@@ -29,7 +29,7 @@ pub struct BodyForces {
     /// The start, seconds.
     #[schemars(range(min = 0, max = LONGEST_TIME))]
     #[serde(default)]
-    from_secs: f64,
+    pub(super) from_secs: f64,
     /// The end, seconds. Default: the end of the run.
     #[schemars(range(min = 0, max = LONGEST_TIME))]
     until_secs: Option<f64>,

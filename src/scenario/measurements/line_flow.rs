@@ -5,11 +5,13 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::Measure;
+use super::window::walkable_area;
 use crate::analysis::crossing::{Balance, Line, Passages};
 use crate::engine::clock::Clock;
+use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 use crate::engine::period::Period;
-use crate::engine::scene::Region;
+use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::range::{region, wide_region};
@@ -154,8 +156,8 @@ impl Measure for LineFlow {
         self.see(seen, &moment, gone, there);
     }
 
-    fn values(&self, seen: &Seen, _: &Simulation) -> Vec<Option<f64>> {
-        self.results(seen)
+    fn values(&self, seen: &Seen, simulation: &Simulation) -> Vec<Option<f64>> {
+        self.results(seen, &simulation.scene().walls)
     }
 
     fn data(&self, seen: &Seen) -> Option<(String, Value)> {
@@ -173,11 +175,11 @@ struct Moment<'a> {
 
 impl LineFlow {
     /// The values, by their names, and the data for people in `tracks` from the time `at` in it, seconds, on. They are
-    /// measured as in a run whose frames are those of `clock` and begin at `at`.
-    pub fn of_tracks(&self, tracks: &Tracks, at: f64, clock: Clock) -> Measured {
+    /// measured as in a run of `scene` that begins at `at`.
+    pub fn of_tracks(&self, tracks: &Tracks, at: f64, scene: &Scene) -> Measured {
         let times: Vec<[f64; 2]> = (0..tracks.ids.len()).map(|p| tracks.times_of(p)).collect();
         let last = times.iter().map(|[_, last]| *last).fold(at, f64::max);
-        let mut clock = clock;
+        let mut clock = scene.clock;
         let mut seen = Seen::default();
         for frame in 0..=clock.frame_at(last - at) {
             clock.go_to(frame);
@@ -196,7 +198,7 @@ impl LineFlow {
             self.see(&mut seen, &moment, std::iter::empty(), there);
         }
         let names = self.names().into_iter().map(|(name, _)| name);
-        let values = names.zip(self.results(&seen)).collect();
+        let values = names.zip(self.results(&seen, &scene.walls)).collect();
         (values, (self.name().to_owned(), json!(seen.times)))
     }
 
@@ -267,7 +269,7 @@ impl LineFlow {
         }
     }
 
-    fn results(&self, seen: &Seen) -> Vec<Option<f64>> {
+    fn results(&self, seen: &Seen, walls: &Walls) -> Vec<Option<f64>> {
         let flow = self.flow(&seen.times);
         let region = self.region.and_then(|corners| region("", corners).ok());
         let ends = flow.map_or([f64::NAN; 2], |(ends, _)| ends);
@@ -285,7 +287,7 @@ impl LineFlow {
             flow.map(|(_, flow)| flow),
             region
                 .filter(|_| count > 0.0)
-                .map(|region| agents / (count * region.area())),
+                .map(|region| agents / (count * walkable_area(region, walls))),
             (moving > 0.0).then(|| speeds / moving),
         ]
     }

@@ -222,6 +222,15 @@ impl Measurement {
         places.into_iter().filter_map(found).collect()
     }
 
+    /// The key of a measurement of the largest forces that begins with the run.
+    pub(super) fn peaks_from_start(&self) -> Option<&'static str> {
+        match self {
+            Self::BodyForces(keys) if keys.from_secs == 0.0 => Some("body_forces"),
+            Self::WallForces(keys) if keys.from_secs == 0.0 => Some("wall_forces"),
+            _ => None,
+        }
+    }
+
     /// The mass of an average person, kg, if it measures forces on walls.
     pub fn mass_on_walls(&self) -> Option<f64> {
         match self {

@@ -5,6 +5,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::Measure;
+use super::window::walkable_area;
+use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
@@ -71,8 +73,8 @@ impl Walks {
     }
 
     /// Square meters.
-    fn area(&self) -> Option<f64> {
-        Some(region("", self.region?).ok()?.area())
+    fn area(&self, walls: &Walls) -> Option<f64> {
+        Some(walkable_area(region("", self.region?).ok()?, walls))
     }
 }
 
@@ -142,11 +144,13 @@ impl Measure for Walks {
         }
     }
 
-    fn values(&self, seen: &Seen, _: &Simulation) -> Vec<Option<f64>> {
+    fn values(&self, seen: &Seen, simulation: &Simulation) -> Vec<Option<f64>> {
         let walks = || seen.walks.iter().flatten().map(|(walk, _)| walk);
         let sum = |of: fn(&Walk) -> f64| walks().map(of).sum::<f64>();
         let (secs, meters) = (sum(|walk| walk.secs), sum(|walk| walk.meters));
-        let product = self.area().map(|area| area * seen.secs);
+        let product = self
+            .area(&simulation.scene().walls)
+            .map(|area| area * seen.secs);
         let per_area = |sum: f64| product.filter(|of| *of > 0.0).map(|of| sum / of);
         let delays = walks().filter_map(|walk| Some(walk.started_secs? - walk.due_secs));
         vec![

@@ -3,9 +3,11 @@
 use super::is_due;
 use crate::analysis::body_forces::BODY_MASS;
 use crate::analysis::local::{Local, local};
+use crate::engine::geometry::{Area, Ring, Walls};
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
+use crate::scenario::floor_plan::parts_on_floor;
 use crate::scenario::range::{region, wide_region};
 use crate::scenario::shapes::Corners;
 
@@ -20,6 +22,23 @@ pub const MOST_MASS: f64 = 1000.0;
 /// The mass of an average person if none is given, kg.
 pub fn body_mass() -> f64 {
     BODY_MASS
+}
+
+/// The part of a region in which people can walk, square meters.
+pub fn walkable_area(region: Region, walls: &Walls) -> f64 {
+    let whole = region.area();
+    let corners = Ring::new(region.corners().to_vec());
+    let parts = corners.map(|corners| parts_on_floor(&corners, walls, &Vec::new()));
+    let Ok(Ok(parts)) = parts else {
+        return whole;
+    };
+    let free: f64 = parts.iter().map(Area::area).sum();
+    // Without walls in it, rounding must not change its area.
+    if free > whole * (1.0 - 1e-9) {
+        whole
+    } else {
+        free
+    }
 }
 
 /// The times and the place of samples.
