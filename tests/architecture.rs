@@ -78,7 +78,7 @@ fn place_of(path: &Path) -> (String, String) {
 }
 
 /// Wings that count as one module: their files may use each other.
-const WHOLE: [&str; 2] = ["scenario", "cli"];
+const WHOLE: [&str; 1] = ["cli"];
 
 /// Every identifier directly after `prefix` in a text, including the entries of a `{…}` list.
 fn names_after(text: &str, prefix: &str) -> Vec<String> {

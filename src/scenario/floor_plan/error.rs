@@ -1,8 +1,7 @@
 //! Errors in floor plans.
 
+use crate::scenario::error::quote::{shown, shown_message};
 use std::path::PathBuf;
-
-use crate::scenario::quote::{shown, shown_message};
 
 /// Why a file or text is not a floor plan, with advice.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -1,13 +1,13 @@
 //! GeoJSON (RFC 7946), in meters. The only file that names the geojson crate.
 
+use crate::scenario::error::quote::shown;
+use crate::scenario::error::suggestion;
 use geojson::{Feature, GeoJson, Geometry, GeometryValue, Position};
 use serde_json::Value;
 
 use super::error::FloorPlanError;
 use super::shape::{Geometry as Parts, Shape, part};
 use super::wkt::IN_DEGREES;
-use crate::scenario::error::suggestion;
-use crate::scenario::quote::shown;
 
 /// The property that says what a feature is. Without it, a feature is floor.
 const KIND: &str = "kind";

@@ -5,7 +5,7 @@ use super::shape::{SAME, Shape};
 use super::unite::{free, rings};
 use crate::engine::geometry::Area;
 use crate::engine::math::{Vector, bounds};
-use crate::scenario::quote::shown;
+use crate::scenario::error::quote::shown;
 
 /// Plans with more polygons are not searched: all pairs of bounding boxes are compared.
 const MOST: usize = 5_000;

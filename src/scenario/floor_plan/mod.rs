@@ -11,6 +11,7 @@
 //! does not depend on how a plan is cut into pieces.
 //! Orientation, third coordinates, a closing point and repeated points do not matter.
 
+use crate::scenario::input;
 mod boundary;
 mod error;
 mod geojson;
@@ -31,7 +32,6 @@ use std::path::Path;
 
 use crate::engine::geometry::{Area, Polygon, PolygonError, Ring};
 use crate::engine::math::bounds;
-use crate::scenario::input;
 use shape::Shape;
 
 /// The area that a person needs to stand, m².

@@ -1,11 +1,11 @@
 //! Measurements of arrivals: their number, flows (Tables 1 and 2), pauses.
 
+use crate::scenario::keys::limits::LONGEST_TIME;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Measure;
 use crate::engine::simulation::Simulation;
-use crate::scenario::file::LONGEST_TIME;
 
 /// (n − 1) / (time of the n-th counted arrival − time of the first), P/s.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]

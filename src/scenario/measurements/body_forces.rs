@@ -1,5 +1,8 @@
 //! Forces on people, in newtons.
 
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::Corners;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -8,9 +11,6 @@ use super::Measure;
 use super::window::{MOST_MASS, Window, body_mass, every};
 use crate::analysis::body_forces::{BodyForces as Seen, PersonForce, THRESHOLDS, WIDTH, pressed};
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::file::LONGEST_TIME;
-use crate::scenario::shapes::Corners;
 
 /// The name of the values if none is given.
 const NAME: &str = "body_force";

@@ -1,11 +1,11 @@
 //! The smallest distance between the centers of two agents.
 
+use crate::scenario::keys::limits::LONGEST_TIME;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Measure, is_due};
 use crate::engine::simulation::Simulation;
-use crate::scenario::file::LONGEST_TIME;
 
 /// Time between the frames that are measured, seconds.
 const EVERY_SECS: f64 = 0.1;

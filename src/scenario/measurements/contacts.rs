@@ -1,15 +1,14 @@
 //! Contacts between agents, for the speed of sound.
 
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::{Corners, region};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Measure;
 use crate::analysis::sound::{self, Contacts};
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::file::LONGEST_TIME;
-use crate::scenario::range::region;
-use crate::scenario::shapes::Corners;
 
 /// The mean number of contacts per agent in a region at one time, and their modulus M along x, m²: with it linear
 /// theory gives the speed of sound (see [`crate::analysis::sound`]).

@@ -1,15 +1,14 @@
 //! Mean and standard deviation of ρ_i at one time (Tables 1 and 2).
 
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::{Corners, region};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Measure;
 use crate::analysis::statistics::MeanStd;
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::file::LONGEST_TIME;
-use crate::scenario::range::region;
-use crate::scenario::shapes::Corners;
 
 /// Mean and population standard deviation of ρ_i at one time, over all agents or those in a region, P/m².
 #[derive(Debug, Clone, Deserialize, JsonSchema)]

@@ -1,5 +1,8 @@
 //! How long people are in dense crowds and stand, and how large dense crowds are.
 
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::Corners;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -8,9 +11,6 @@ use super::Measure;
 use super::window::{Window, every};
 use crate::analysis::exposure::{DENSITIES, Exposed, Exposure as Seen, PersonExposure};
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::file::LONGEST_TIME;
-use crate::scenario::shapes::Corners;
 
 /// The name of the values if none is given.
 const NAME: &str = "exposure";

@@ -1,5 +1,6 @@
 //! Computing time per frame, by stage.
 
+use crate::scenario::keys::limits::LONGEST_TIME;
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
@@ -8,7 +9,6 @@ use serde_json::{Value, json};
 
 use super::Measure;
 use crate::engine::simulation::{Simulation, Stage};
-use crate::scenario::file::LONGEST_TIME;
 
 /// The computing time per frame from a given time on, milliseconds, for each stage. It depends on the machine and on
 /// what runs beside it, so it is data rather than a value.

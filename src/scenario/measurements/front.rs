@@ -1,5 +1,8 @@
 //! The front of a start or a push that runs through a crowd: how fast, and how far.
 
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::{Corners, Point, region, wide_region};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -9,10 +12,6 @@ use crate::analysis::front;
 use crate::analysis::statistics::Estimate;
 use crate::engine::math::{Vector, direction};
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::file::LONGEST_TIME;
-use crate::scenario::range::{region, wide_region};
-use crate::scenario::shapes::{Corners, Point};
 
 /// The name of the values if none is given.
 const NAME: &str = "front";

@@ -1,12 +1,12 @@
 //! Jitter: the kinetic energy of a crowd that should rest.
 
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Mean, Measure, is_due};
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::file::LONGEST_TIME;
 
 /// The share of the agents, the least dense ones, that count as the rim of a crowd.
 const RIM: f64 = 0.25;

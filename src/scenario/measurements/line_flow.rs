@@ -1,5 +1,8 @@
 //! The flow of people across a line, with density and speed before it.
 
+use crate::scenario::error::Problem;
+use crate::scenario::keys::shapes::{Corners, Point, region, wide_region};
+use crate::scenario::trajectories::Tracks;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -13,10 +16,6 @@ use crate::engine::math::Vector;
 use crate::engine::period::Period;
 use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::range::{region, wide_region};
-use crate::scenario::shapes::{Corners, Point};
-use crate::scenario::trajectories::Tracks;
 
 /// Values by their names, and data with their name.
 type Measured = (Vec<(String, Option<f64>)>, (String, Value));

@@ -61,9 +61,9 @@ pub use walks::{Walk, Walks};
 pub use wall_forces::WallForces;
 pub use wave::{Wave, WaveData};
 
-use super::crowd::journey_named;
 use super::error::{Problem, Under};
-use super::range::region;
+use super::keys::places::journey_named;
+use super::keys::shapes::region;
 use crate::engine::journeys::Journey;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;

@@ -1,5 +1,8 @@
 //! Collective oscillations: the spectrum of the mean velocities in boxes.
 
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::{Corners, region, wide_region};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -9,10 +12,6 @@ use super::window::Window;
 use crate::analysis::oscillation::Oscillation as Found;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::file::LONGEST_TIME;
-use crate::scenario::range::{region, wide_region};
-use crate::scenario::shapes::Corners;
 
 /// The name of the values if none is given.
 const NAME: &str = "oscillation";

@@ -1,10 +1,10 @@
 //! Measurements during a run, whatever they measure.
 
+use crate::scenario::error::Problem;
 use serde_json::Value;
 
 use super::Measure;
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
 
 /// A measurement during a run, whatever it measures: the methods of [`Measure`].
 pub trait Running: Send + Sync {

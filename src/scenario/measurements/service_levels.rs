@@ -1,5 +1,8 @@
 //! Levels of service: how much room people have.
 
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::Corners;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -7,9 +10,6 @@ use super::Measure;
 use super::window::{Window, every};
 use crate::analysis::service::{LEVELS, Levels};
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::file::LONGEST_TIME;
-use crate::scenario::shapes::Corners;
 
 /// The name of the values if none is given.
 const NAME: &str = "service";

@@ -1,12 +1,12 @@
 //! All agents at one time, for pictures.
 
+use crate::scenario::keys::limits::LONGEST_TIME;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::Measure;
 use crate::engine::simulation::Simulation;
-use crate::scenario::file::LONGEST_TIME;
 
 /// All agents at one time: positions, radii, speeds and densities.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]

@@ -1,12 +1,12 @@
 //! Mean speed by density: the fundamental diagram of the crowd's own densities.
 
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{Mean, Measure, is_due};
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::file::LONGEST_TIME;
 
 /// The mean speed of agents with ρ_i in bins 1 P/m² wide, m/s, between two times.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]

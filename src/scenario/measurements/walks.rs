@@ -1,5 +1,8 @@
 //! What each agent walks: when it starts, how far and how long; density, speed and flow from these.
 
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::{Corners, region, wide_region};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -9,10 +12,6 @@ use super::window::walkable_area;
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::file::LONGEST_TIME;
-use crate::scenario::range::{region, wide_region};
-use crate::scenario::shapes::Corners;
 
 /// The name of the values if none is given.
 const NAME: &str = "walks";

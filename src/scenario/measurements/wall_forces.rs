@@ -1,5 +1,7 @@
 //! Forces on walls, in newtons per meter.
 
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -8,8 +10,6 @@ use super::Measure;
 use super::window::{MOST_MASS, Window, body_mass, every};
 use crate::analysis::wall_forces::{CellForce, WallForces as Seen};
 use crate::engine::simulation::Simulation;
-use crate::scenario::error::Problem;
-use crate::scenario::file::LONGEST_TIME;
 
 /// The name of the values if none is given.
 const NAME: &str = "wall_force";

@@ -8,8 +8,7 @@ use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::floor_plan::parts_on_floor;
-use crate::scenario::range::{region, wide_region};
-use crate::scenario::shapes::Corners;
+use crate::scenario::keys::shapes::{Corners, region, wide_region};
 
 /// Time between two samples if none is given, seconds.
 pub fn every() -> f64 {

@@ -3,7 +3,7 @@
 use super::Unit;
 use super::tracks::Entry;
 use crate::engine::math::Vector;
-use crate::scenario::quote::shown;
+use crate::scenario::error::quote::shown;
 
 /// Known names of the columns, in lower case; the first is ours.
 const IDS: [&str; 5] = ["id", "persid", "personid", "ped_id", "pid"];

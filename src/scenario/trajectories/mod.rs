@@ -9,6 +9,7 @@
 //!
 //! Results are in meters and seconds. Frame f is at the time f / fps.
 
+use crate::scenario::error::quote::shown;
 mod columns;
 mod error;
 #[cfg(feature = "program")]
@@ -32,8 +33,6 @@ use std::path::Path;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::scenario::quote::shown;
 
 /// The first bytes of an HDF5 file.
 const HDF5_MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";

@@ -1,5 +1,7 @@
 //! Reads text: columns separated by blanks or tabs below comments, or CSV below a header.
 
+use crate::scenario::input;
+use crate::scenario::input::Lines;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
@@ -7,7 +9,6 @@ use super::error::ReadError;
 use super::line::{self, Columns, words};
 use super::tracks::{Contents, Tracks};
 use super::{FRAME_RATES, ReadOptions, Unit, frame_rate};
-use crate::scenario::input::{self, Lines};
 
 /// Reads the text format of PeTrack and the Pedestrian Dynamics Data Archive.
 pub fn read_text(path: &Path, file: impl Read, options: &ReadOptions) -> Result<Tracks, ReadError> {

@@ -6,7 +6,7 @@ use crate::engine::geometry::Walls;
 use crate::engine::journeys::Kind;
 use crate::engine::math::{Vector, direction};
 use crate::engine::simulation::Simulation;
-use crate::scenario::quote::shown;
+use crate::scenario::error::quote::shown;
 
 /// Agents whose centers are this far ahead touch, or almost, as a multiple of the sum of the radii.
 const TOUCHING: f64 = 1.25;

@@ -1,0 +1,166 @@
+//! Checks that people can pass the lines of exits, and notes on lines of which much lies off the floor.
+
+use crate::engine::geometry::Ring;
+use crate::engine::journeys::{Kind, Place};
+use crate::engine::math::{Vector, direction, perpendicular};
+use crate::engine::ways::Floor;
+use crate::scenario::build::journeys::SHORTEST_LINE;
+use crate::scenario::error::Problem;
+use crate::scenario::error::quote::shown;
+use crate::scenario::floor_plan::Rings;
+
+/// The distance between the points of a line that are looked at, meters.
+const STEP: f64 = 0.01;
+/// On longer lines, this many points are looked at.
+const MOST_STEPS: f64 = 1e4;
+/// People pass a line where the floor reaches this far on both sides of it, meters.
+const BESIDE: f64 = 0.1;
+/// A line is at a floor that begins nearer than this, meters.
+const NEAR: f64 = 0.02;
+/// A note says how much of a line is off the floor if it is more than this part.
+const MUCH: f64 = 0.1;
+/// The number of bisections that find the end of the floor between two points.
+const HALVINGS: u32 = 20;
+
+/// Checks that each exit of `places`, which come first, has a part on the floor that is wide enough for a person.
+pub fn check(places: &[Place], floor: &Floor) -> Result<(), Problem> {
+    for (k, place) in places.iter().enumerate() {
+        let Kind::Exit(exit) = &place.kind else {
+            continue;
+        };
+        let line = Line::new(floor, exit.line);
+        if line.is_passable() {
+            continue;
+        }
+        let name = shown(&place.name);
+        let reason = match line.end_of_floor() {
+            Some([x, y]) => format!(
+                "no person can pass `{name}`: it leaves the walkable area, or meets an obstacle, at ({x}, {y}); end it \
+                 there, or move what is in the way"
+            ),
+            None if line.is_at_floor(0.0) => format!(
+                "no person can pass `{name}`: a wall or an obstacle is in the way; move it, or the line"
+            ),
+            None => format!(
+                "`{name}` lies in an obstacle or outside of the walkable area; move it onto the floor"
+            ),
+        };
+        return Err(Problem::new(format!("exits[{k}].line"), reason));
+    }
+    Ok(())
+}
+
+/// Notes on exits of `places` of whose lines much lies in obstacles or outside of the walkable area as it is drawn,
+/// without the floors `behind` exits and entrances.
+pub fn notes(places: &[Place], floor: &Floor, behind: &Rings) -> Vec<String> {
+    let behind = behind
+        .iter()
+        .filter_map(|ring| Ring::new(ring.clone()).ok());
+    let behind: Vec<Ring> = behind.collect();
+    let note = |(k, place): (usize, &Place)| {
+        let Kind::Exit(exit) = &place.kind else {
+            return None;
+        };
+        let share = Line::new(floor, exit.line).share_off(&behind);
+        (share > MUCH).then(|| {
+            format!(
+                "exits[{k}].line: {:.0} % of `{}` lies in obstacles or outside of the walkable area, where nobody passes; \
+                 draw the line on the floor, or on its edge",
+                100.0 * share,
+                shown(&place.name)
+            )
+        })
+    };
+    places.iter().enumerate().filter_map(note).collect()
+}
+
+/// A line on a floor, as points in order.
+struct Line<'a> {
+    floor: &'a Floor,
+    start: Vector,
+    /// From one point to the next, meters.
+    step: Vector,
+    steps: u32,
+    /// Of length 1.
+    normal: Vector,
+}
+
+impl<'a> Line<'a> {
+    fn new(floor: &'a Floor, [a, b]: [Vector; 2]) -> Self {
+        let steps = ((b - a).norm() / STEP).clamp(1.0, MOST_STEPS).ceil();
+        Self {
+            floor,
+            start: a,
+            step: (b - a) / steps,
+            steps: steps as u32,
+            normal: perpendicular(direction(b - a)),
+        }
+    }
+
+    fn at(&self, step: f64) -> Vector {
+        self.start + self.step * step
+    }
+
+    /// Whether the floor reaches `distance` meters to the left and to the right of a point.
+    fn sides(&self, step: f64, distance: f64) -> [bool; 2] {
+        [1.0, -1.0].map(|sign| {
+            let beside = self.at(step) + self.normal * (sign * distance);
+            self.floor.locate(beside).is_some()
+        })
+    }
+
+    fn is_at_floor(&self, step: f64) -> bool {
+        self.sides(step, NEAR) != [false; 2]
+    }
+
+    /// The part of it that is not at the floor without some areas.
+    fn share_off(&self, areas: &[Ring]) -> f64 {
+        let is_off = |k: &u32| {
+            // Between points: at the ends, rounding decides.
+            let p = self.at(f64::from(*k) + 0.5);
+            let mut beside = [NEAR, -NEAR]
+                .map(|distance| p + self.normal * distance)
+                .into_iter();
+            beside.all(|p| {
+                self.floor.locate(p).is_none() || areas.iter().any(|area| area.contains(p))
+            })
+        };
+        (0..self.steps).filter(is_off).count() as f64 / f64::from(self.steps)
+    }
+
+    /// Whether a part of it that people can pass is as long as the shortest line.
+    fn is_passable(&self) -> bool {
+        // At both ends, rounding may decide.
+        let least = SHORTEST_LINE - 3.0 * self.step.norm();
+        let mut length = 0.0;
+        (0..=self.steps).any(|k| {
+            let is_free = self.sides(f64::from(k), BESIDE) == [true; 2];
+            length = if is_free {
+                length + self.step.norm()
+            } else {
+                0.0
+            };
+            is_free && length - self.step.norm() >= least
+        })
+    }
+
+    /// The point at which it first enters or leaves the floor, meters, rounded to centimeters; `None` if it does
+    /// neither.
+    fn end_of_floor(&self) -> Option<[f64; 2]> {
+        let mut steps = 0..self.steps;
+        let k = steps
+            .find(|&k| self.is_at_floor(f64::from(k)) != self.is_at_floor(f64::from(k + 1)))?;
+        let (mut low, mut high) = (f64::from(k), f64::from(k + 1));
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            match self.is_at_floor(middle) == self.is_at_floor(low) {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        let p = self.at(low);
+        // + 0.0 turns −0 into 0.
+        let rounded = |x: f64| (100.0 * x).round() / 100.0 + 0.0;
+        Some([rounded(p.x), rounded(p.y)])
+    }
+}

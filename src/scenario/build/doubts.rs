@@ -1,0 +1,199 @@
+//! Notes on scenarios that are valid but doubtful: units, speeds, journeys without end, no agents.
+
+use std::collections::BTreeSet;
+
+use crate::engine::entrance::Entrance;
+use crate::engine::geometry::Walls;
+use crate::engine::journeys::Kind;
+use crate::engine::math::{Vector, bounds};
+use crate::engine::scene::Scene;
+use crate::engine::ways::nearest_on;
+use crate::scenario::build::journeys::TO_NEAREST_EXIT;
+use crate::scenario::error::quote::shown;
+use crate::scenario::file::File;
+use crate::scenario::keys::people::Spacing;
+use crate::scenario::measurements::Measurement;
+
+/// Floors with a longer side are doubtful, meters.
+const LONG: f64 = 300.0;
+/// Floors with a longer side and fewer people per square meter are doubtful, too. Small empty rooms are not: a single
+/// agent shows how the model walks.
+const SIDE_IF_EMPTY: f64 = 100.0;
+const EMPTY: f64 = 0.01;
+/// Agents enter on the line of an exit if theirs is nearer, meters.
+const AT_EXIT: f64 = 0.1;
+/// Crowds do not run faster, m/s.
+const FAST: f64 = 4.0;
+
+/// The notes on a complete scene that at most `entering` agents enter.
+pub fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
+    if entering == 0 {
+        let none =
+            "no agents enter: add `crowds`, `grids`, `agents`, `sources`, `entrances` or `from`";
+        return vec![none.to_owned()];
+    }
+    let floor = floor(keys, &scene.walls, entering).into_iter();
+    floor
+        .chain(speeds(keys, scene))
+        .chain(endless(scene))
+        .chain(coincident(scene))
+        .chain(peaks(keys))
+        .chain(at_exits(scene))
+        .chain(unused(scene))
+        .collect()
+}
+
+/// A note on a floor that is so large or empty that its unit may not be meters. Its size is that of the plan, without the
+/// floors behind exits and entrances.
+fn floor(keys: &File, walls: &Walls, entering: u64) -> Option<String> {
+    let corners = keys.walkable_area.iter().flatten().flatten();
+    let corners = corners.flat_map(|ring| ring.0.iter().map(|&corner| corner.into()));
+    let [low, high] = bounds(corners)?;
+    let extent = high - low;
+    let unbounded = walls.obstacles().iter().filter(|one| one.is_unbounded());
+    let outlines: Vec<&[Vector]> = unbounded.flat_map(|one| one.rings()).collect();
+    let solids = walls.obstacles().iter().filter(|one| !one.is_unbounded());
+    let twice = |ring: &[Vector]| -> f64 {
+        let ends = ring.iter().cycle().skip(1);
+        ring.iter().zip(ends).map(|(a, b)| a.perp(b)).sum()
+    };
+    // The outlines of floors and of the solids in them run in opposite senses.
+    let outer: f64 = outlines.iter().map(|ring| twice(ring)).sum();
+    let size = 0.5 * outer.abs() - solids.map(|solid| solid.area()).sum::<f64>();
+    let density = entering as f64 / size.max(f64::MIN_POSITIVE);
+    let is_empty = extent.max() > SIDE_IF_EMPTY && density < EMPTY;
+    (extent.max() > LONG || is_empty).then(|| {
+        format!(
+            "walkable_area: {:.0} m × {:.0} m for {entering} agent(s): check that the unit is meters",
+            extent.x, extent.y
+        )
+    })
+}
+
+/// Notes on preferred speeds above those of running crowds.
+fn speeds(keys: &File, scene: &Scene) -> Vec<String> {
+    let mut found = Vec::new();
+    let own = (scene.preferred_speed, "preferred_speed".to_owned());
+    found.push(own);
+    for (k, agent) in keys.agents.iter().enumerate() {
+        let speed = agent.preferred_speed;
+        found.extend(speed.map(|speed| (speed, format!("agents[{k}].preferred_speed"))));
+    }
+    for group in &scene.groups {
+        let speed = group.traits.preferred_speed.as_ref();
+        let place = || format!("preferred_speed of {}", shown(&group.name));
+        found.extend(speed.map(|speed| (speed.mean(), place())));
+    }
+    let fast = found.into_iter().filter(|(speed, _)| *speed > FAST);
+    let note = |(speed, place)| {
+        format!(
+            "{place}: {speed} m/s is faster than crowds run: check that the unit is m/s (walking is 1.3 m/s)"
+        )
+    };
+    fast.map(note).collect()
+}
+
+/// A note on agents that start at the same point as another.
+fn coincident(scene: &Scene) -> Option<String> {
+    let positions = scene.agents.iter().map(|agent| agent.position);
+    let mut positions: Vec<Vector> = positions.collect();
+    positions.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let same = positions.windows(2).filter(|pair| pair[0] == pair[1]);
+    let same: Vec<Vector> = same.map(|pair| pair[0]).collect();
+    let first = same.first()?;
+    Some(format!(
+        "{} agent(s) start exactly where another one does, the first at ({}, {}): are two groups on one spot?",
+        same.len(),
+        first.x,
+        first.y
+    ))
+}
+
+/// Notes on the largest forces of runs that begin with crowds at random places.
+fn peaks(keys: &File) -> Vec<String> {
+    let is_random = keys
+        .crowds
+        .iter()
+        .any(|crowd| crowd.spacing == Spacing::Random);
+    let measured = keys.measurements.iter().enumerate().filter(|_| is_random);
+    let note = |(k, given): (usize, &Measurement)| {
+        let key = given.peaks_from_start()?;
+        Some(format!(
+            "measurements[{k}].{key}: crowds start at random places, where forces are larger than after the first steps; \
+             give `from_secs` of a few seconds, so that the start does not count"
+        ))
+    };
+    measured.filter_map(note).collect()
+}
+
+/// Notes on entrances whose agents walk to an exit on whose line they enter.
+fn at_exits(scene: &Scene) -> Vec<String> {
+    let journeys = &scene.journeys;
+    let entrances = scene.entrances.iter().enumerate();
+    let note = |(k, entrance): (usize, &Entrance)| {
+        let journey = scene.groups[usize::from(entrance.group)].journey?;
+        let first = journeys.journeys[usize::from(journey)].stages.first()?;
+        let places = first.places.iter();
+        let mut places = places.map(|&place| &journeys.places[usize::from(place)]);
+        let middle = 0.5 * (entrance.line[0] + entrance.line[1]);
+        let exit = places.find(|place| {
+            let line = place.line().filter(|_| place.is_exit());
+            line.is_some_and(|[a, b]| (nearest_on(middle, a, b) - middle).norm() < AT_EXIT)
+        })?;
+        Some(format!(
+            "entrances[{k}].line: agents enter on the line of the exit `{}` and walk to it; give them another exit, or move \
+             the line",
+            shown(&exit.name)
+        ))
+    };
+    entrances.filter_map(note).collect()
+}
+
+/// A note on journeys that no agents take, and on places that no agents walk to.
+fn unused(scene: &Scene) -> Option<String> {
+    let journeys = &scene.journeys;
+    let used: BTreeSet<u16> = scene.groups.iter().filter_map(|one| one.journey).collect();
+    let taken = used.iter().map(|&one| &journeys.journeys[usize::from(one)]);
+    let stages = taken.flat_map(|journey| &journey.stages);
+    let places: BTreeSet<u16> = stages.flat_map(|stage| stage.places.clone()).collect();
+    let given = journeys.journeys.iter().enumerate();
+    let given = given
+        .filter(|(k, journey)| !used.contains(&(*k as u16)) && journey.name != TO_NEAREST_EXIT);
+    let idle = given.map(|(_, journey)| format!("the journey `{}`", shown(&journey.name)));
+    let others = journeys.places.iter().enumerate();
+    let others = others.filter(|(k, _)| !places.contains(&(*k as u16)));
+    let others =
+        others.map(|(_, place)| format!("the {} `{}`", place.kind.name(), shown(&place.name)));
+    let names: Vec<String> = idle.chain(others).collect();
+    let (first, more) = names.split_first()?;
+    let more = match more.len() {
+        0 => String::new(),
+        count => format!(" and {count} more"),
+    };
+    Some(format!(
+        "no agents use {first}{more}; give it to a crowd or a journey, or remove it"
+    ))
+}
+
+/// Notes on the journeys after which agents stay on the floor, unless they end in waiting areas.
+fn endless(scene: &Scene) -> Vec<String> {
+    let used: BTreeSet<u16> = scene.groups.iter().filter_map(|one| one.journey).collect();
+    let note = |journey: u16| {
+        let journey = &scene.journeys.journeys[usize::from(journey)];
+        let mut last = journey.stages.last()?.places.iter();
+        let stays =
+            |kind: &Kind| matches!(kind, Kind::Line(_) | Kind::Disk { .. } | Kind::Queue(_));
+        let place = last.find_map(|&place| {
+            let place = &scene.journeys.places[usize::from(place)];
+            stays(&place.kind).then_some(place)
+        })?;
+        Some(format!(
+            "journey `{}`: agents that have passed its last place, the {} `{}`, stand there until the end of the run; \
+             add an exit as last stage if they should leave",
+            shown(&journey.name),
+            place.kind.name(),
+            shown(&place.name),
+        ))
+    };
+    used.into_iter().filter_map(note).collect()
+}

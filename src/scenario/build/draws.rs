@@ -1,0 +1,135 @@
+//! Distributions of a file → those of a scene, and the traits that are drawn from them.
+
+use crate::engine::distribution::{ADULTS, Distribution, DistributionError, Family};
+use crate::engine::traits::Traits;
+use crate::scenario::error::numbers::brief;
+use crate::scenario::error::{Problem, Under};
+use crate::scenario::keys::distribution::{
+    Draw, Exponential, Lognormal, MASSES, RADII, SPEED, SPEEDS, Spread, WAITS, WEIDMANN_AGE,
+    Weighted,
+};
+
+impl Draw {
+    /// Whether it gives walking speeds.
+    fn is_of_speeds(&self) -> bool {
+        match self {
+            Self::Number(_) => false,
+            Self::WeidmannAge => true,
+            Self::From(from) => matches!(**from, Spread::WeidmannAge(_)),
+        }
+    }
+
+    /// The distribution, truncated to `range`.
+    fn distribution(&self, range: [f64; 2]) -> Result<Distribution, Problem> {
+        let made = |name: &str, family: &Family, min: Option<f64>, max: Option<f64>| {
+            let [low, high] = range;
+            let bounds = [min.unwrap_or(low).max(low), max.unwrap_or(high).min(high)];
+            Distribution::new(family, bounds).map_err(|error| {
+                let reason = match error {
+                    DistributionError::Outside { value, .. } => {
+                        let (low, high) = (brief(low), brief(high));
+                        format!("{value} is not between {low} and {high}, the range of this key")
+                    }
+                    DistributionError::Empty { low, high } => format!(
+                        "fewer than one in a million draws lie between {} and {}; move the distribution there, or \
+                         widen its bounds",
+                        brief(low),
+                        brief(high)
+                    ),
+                    error => error.to_string(),
+                };
+                Problem::new(name, reason)
+            })
+        };
+        let from = match self {
+            Self::Number(value) => return made("", &Family::Constant(*value), None, None),
+            Self::WeidmannAge => return made("", &Family::WeidmannAge(ADULTS), None, None),
+            Self::From(from) => from.as_ref(),
+        };
+        match from {
+            Spread::Uniform(ends) => made("uniform", &Family::Uniform(*ends), None, None),
+            Spread::Normal(of) => {
+                let family = Family::Normal([of.mean, of.std]);
+                made("normal", &family, of.min, of.max)
+            }
+            Spread::Lognormal(of) => made(
+                "lognormal",
+                &of.family().under("lognormal")?,
+                of.min,
+                of.max,
+            ),
+            Spread::Weibull(of) => {
+                let family = Family::Weibull([of.scale, of.shape]);
+                made("weibull", &family, of.min, of.max)
+            }
+            Spread::Gamma(of) => {
+                let family = Family::Gamma([of.shape, of.scale]);
+                made("gamma", &family, of.min, of.max)
+            }
+            Spread::Exponential(Exponential::Mean(mean)) => {
+                made("exponential", &Family::Exponential(*mean), None, None)
+            }
+            Spread::Exponential(Exponential::Bounded(of)) => {
+                let family = Family::Exponential(of.mean);
+                made("exponential", &family, of.min, of.max)
+            }
+            Spread::Values(values) => {
+                let values = values.iter().map(|&Weighted(pair)| pair).collect();
+                made("values", &Family::Values(values), None, None)
+            }
+            Spread::WeidmannAge(ages) => {
+                made("weidmann_age", &Family::WeidmannAge(*ages), None, None)
+            }
+        }
+    }
+}
+
+impl Lognormal {
+    fn family(&self) -> Result<Family, Problem> {
+        match (self.mean, self.std, self.log_mean, self.log_std) {
+            (Some(mean), Some(std), None, None) => Ok(Family::log_normal_with(mean, std)),
+            (None, None, Some(mean), Some(std)) => Ok(Family::LogNormal([mean, std])),
+            _ => {
+                let reason = "needs either `mean` and `std`, or `log_mean` and `log_std`";
+                Err(Problem::new("", reason))
+            }
+        }
+    }
+}
+
+impl Draw {
+    /// The distribution of a time in seconds.
+    pub fn times(&self) -> Result<Distribution, Problem> {
+        match self.is_of_speeds() {
+            true => {
+                let reason = format!("`{WEIDMANN_AGE}` is for `{SPEED}` only");
+                Err(Problem::new("", reason))
+            }
+            false => self.distribution(WAITS),
+        }
+    }
+}
+
+/// The traits of agents, from the keys `preferred_speed`, `radius`, `mass` and `premovement_secs`.
+pub fn traits(
+    [preferred_speed, radius, mass, premovement_secs]: [&Option<Draw>; 4],
+) -> Result<Traits, Problem> {
+    let of = |key: &str, draw: &Option<Draw>, range| {
+        let made = draw
+            .as_ref()
+            .map(|draw| match draw.is_of_speeds() && key != SPEED {
+                true => Err(Problem::new(
+                    "",
+                    format!("`{WEIDMANN_AGE}` is for `{SPEED}` only"),
+                )),
+                false => draw.distribution(range),
+            });
+        made.transpose().under(key)
+    };
+    Ok(Traits {
+        preferred_speed: of(SPEED, preferred_speed, SPEEDS)?,
+        radius: of("radius", radius, RADII)?,
+        mass: of("mass", mass, MASSES)?,
+        premovement: of("premovement_secs", premovement_secs, WAITS)?,
+    })
+}

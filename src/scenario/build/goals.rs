@@ -1,0 +1,96 @@
+//! Where agents without a journey walk: to a point, or in a direction.
+
+use crate::engine::math::{Vector, direction};
+use crate::engine::scene::Goal;
+use crate::scenario::build::people::Population;
+use crate::scenario::error::{Problem, Under};
+use crate::scenario::keys::goals::Aim;
+
+/// Where agents walk.
+#[derive(Debug, Clone, Copy)]
+pub struct Target {
+    /// Their goals; where they start, if they have a journey or a direction.
+    pub goal: Goal,
+    /// The direction in which they walk instead, of length 1.
+    pub direction: Option<Vector>,
+}
+
+impl Target {
+    /// To where they start.
+    const START: Self = Self::to(Goal::Offset(Vector::new(0.0, 0.0)));
+
+    pub const fn to(goal: Goal) -> Self {
+        Self {
+            goal,
+            direction: None,
+        }
+    }
+
+    fn along(direction: Vector) -> Self {
+        Self {
+            direction: Some(direction),
+            ..Self::START
+        }
+    }
+
+    /// The goal of an agent that starts at `place`, meters.
+    pub fn goal_from(&self, place: Vector) -> Vector {
+        match self.goal {
+            Goal::Point(goal) => goal,
+            Goal::Offset(offset) => place + offset,
+        }
+    }
+}
+
+impl Population<'_> {
+    /// The target of agents with the goal `given`, or with a journey, or with the scenario's goal. In a periodic scene
+    /// without goal they walk along the axis.
+    pub fn target(
+        &self,
+        given: Option<Aim>,
+        journey: Option<u16>,
+        remove_within: Option<f64>,
+    ) -> Result<Target, Problem> {
+        let target = match (given, journey) {
+            (Some(aim), _) => self.aimed(aim).under("goal")?,
+            // Each place of a journey becomes the goal in its turn.
+            (None, Some(_)) => Target::START,
+            (None, None) => self.default_target()?,
+        };
+        if target.direction.is_some() && remove_within.is_some() {
+            let reason = "agents that walk in a direction reach no goal and never leave; remove it";
+            return Err(Problem::new("remove_within", reason));
+        }
+        Ok(target)
+    }
+
+    fn aimed(&self, aim: Aim) -> Result<Target, Problem> {
+        match aim {
+            Aim::Point(_) if self.scene.period.is_some() => {
+                let reason = "in a periodic scene agents walk in a direction, not to a point; give one, such as \
+                              {\"direction\": [1, 0]}, or nothing to walk along the axis";
+                Err(Problem::new("", reason))
+            }
+            Aim::Point(point) => Ok(Target::to(Goal::Point(point.into()))),
+            Aim::Heading(heading) => {
+                let way = direction(heading.direction.into());
+                match way == Vector::zeros() {
+                    true => Err(Problem::new("direction", "must not be [0, 0]")),
+                    false => Ok(Target::along(way)),
+                }
+            }
+        }
+    }
+
+    fn default_target(&self) -> Result<Target, Problem> {
+        if let Some(aim) = self.file.goal {
+            return self.aimed(aim).under("goal");
+        }
+        if let Some(period) = &self.scene.period {
+            return Ok(Target::along(direction(period.way(1))));
+        }
+        let reason =
+            "no goal: set `goal` or `journey` here, `goal` at the top of the file, or add `exits`";
+        Err(Problem::new("", reason))
+    }
+}

@@ -1,0 +1,400 @@
+//! Exits, waypoints, waiting areas, queues, journeys and zones of a file → those of a scene.
+
+use std::collections::BTreeMap;
+
+use crate::engine::geometry::{Ring, Walls};
+use crate::engine::journeys::{
+    Change, ChangeKind, Choice, Exit, Journey, JourneyStage, Journeys, Kind, Place, Queue, Zone,
+};
+use crate::engine::math::{Vector, direction};
+use crate::scenario::build::people::MOST_NUMBERED;
+use crate::scenario::build::waiting::waiting_area;
+use crate::scenario::error::quote::shown;
+use crate::scenario::error::{Problem, Under, suggestion};
+use crate::scenario::file;
+use crate::scenario::file::File;
+use crate::scenario::floor_plan::Rings;
+use crate::scenario::keys::places;
+use crate::scenario::keys::places::Stage;
+use crate::scenario::keys::shapes::{Point, Ring as GivenRing};
+
+/// The name of the journey of people without goal and journey in scenarios with exits.
+pub const TO_NEAREST_EXIT: &str = "nearest exit";
+/// Shorter lines are an error, meters.
+pub const SHORTEST_LINE: f64 = 0.3;
+/// Lengths may be off by this from rounding, meters.
+const ROUNDING: f64 = 1e-6;
+/// Default distance between people in a queue, meters.
+const SPACING: f64 = 0.5;
+/// A queue that goes on beyond its path ends this far before a wall, meters.
+const TAIL_GAP: f64 = 0.3;
+/// Farther walls do not end a queue, meters.
+const LONGEST_TAIL: f64 = 1000.0;
+/// Default radius of a waypoint, meters.
+const WITHIN: f64 = 0.5;
+
+/// The places, journeys and zones of a file, among `walls`.
+///
+/// `behind` are the floors behind exits and entrances. Adds notes about waiting areas in walls.
+pub fn journeys(
+    keys: &File,
+    (walls, behind): (&Walls, &Rings),
+    notes: &mut Vec<String>,
+) -> Result<Journeys, Problem> {
+    let mut found = Found {
+        walls,
+        behind,
+        notes,
+        journeys: Journeys::default(),
+        numbers: BTreeMap::new(),
+    };
+    found.add_places(keys)?;
+    for (k, given) in keys.journeys.iter().enumerate() {
+        found.add_journey(given).under(&format!("journeys[{k}]"))?;
+    }
+    let exits = keys.exits.iter().map(|exit| found.numbers[&exit.name]);
+    let exits: Vec<u16> = exits.collect();
+    if !exits.is_empty() {
+        found.journeys.journeys.push(Journey {
+            name: TO_NEAREST_EXIT.to_owned(),
+            stages: vec![JourneyStage {
+                choice: Choice::Nearest,
+                places: exits,
+            }],
+        });
+    }
+    for (k, given) in keys.zones.iter().enumerate() {
+        let name = format!("zones[{k}]");
+        found.journeys.zones.push(Zone {
+            area: ring(&given.area).under(&format!("{name}.area"))?,
+            name: given.name.clone().unwrap_or(name),
+            speed_factor: given.speed_factor,
+        });
+    }
+    found.add_changes(keys)?;
+    found.check_waits()?;
+    Ok(found.journeys)
+}
+
+/// Places and journeys so far.
+struct Found<'a> {
+    walls: &'a Walls,
+    behind: &'a Rings,
+    notes: &'a mut Vec<String>,
+    journeys: Journeys,
+    /// The number of each place by its name.
+    numbers: BTreeMap<String, u16>,
+}
+
+impl Found<'_> {
+    fn add_places(&mut self, keys: &File) -> Result<(), Problem> {
+        for (k, given) in keys.exits.iter().enumerate() {
+            let exit = exit(given);
+            self.add("exits", k, &given.name, exit)?;
+        }
+        for (k, given) in keys.waypoints.iter().enumerate() {
+            self.add("waypoints", k, &given.name, waypoint(given))?;
+        }
+        for (k, given) in keys.waiting_areas.iter().enumerate() {
+            let place = format!("waiting_areas[{k}]");
+            let area = waiting_area(given, self.walls, self.behind);
+            let (kind, note) = area.under(&place)?;
+            self.notes
+                .extend(note.map(|note| format!("{place}.{note}")));
+            self.add("waiting_areas", k, &given.name, Ok(kind))?;
+        }
+        for (k, given) in keys.queues.iter().enumerate() {
+            let queue = queue(given, self.walls);
+            self.add("queues", k, &given.name, queue)?;
+        }
+        Ok(())
+    }
+
+    fn add(
+        &mut self,
+        list: &str,
+        k: usize,
+        name: &str,
+        kind: Result<Kind, Problem>,
+    ) -> Result<(), Problem> {
+        let place = format!("{list}[{k}]");
+        let number = self.journeys.places.len();
+        if number >= MOST_NUMBERED {
+            let reason = format!("more than {MOST_NUMBERED} places");
+            return Err(Problem::new(place, reason));
+        }
+        if self
+            .numbers
+            .insert(name.to_owned(), number as u16)
+            .is_some()
+        {
+            let reason = format!("there are two places named `{}`; rename one", shown(name));
+            return Err(Problem::new(format!("{place}.name"), reason));
+        }
+        self.journeys.places.push(Place {
+            name: name.to_owned(),
+            kind: kind.under(&place)?,
+        });
+        Ok(())
+    }
+
+    fn number(&self, name: &str) -> Result<u16, Problem> {
+        self.numbers.get(name).copied().ok_or_else(|| {
+            let known = self.numbers.keys().map(String::as_str);
+            let near = suggestion(name, known.clone());
+            let known: Vec<String> = known.map(|name| format!("`{name}`")).collect();
+            let known = match known.as_slice() {
+                [] => "; the scenario has no exits, waypoints, waiting areas or queues".to_owned(),
+                names if near.is_empty() => format!("; there are {}", names.join(", ")),
+                _ => String::new(),
+            };
+            let reason = format!("there is no place named `{}`{near}{known}", shown(name));
+            Problem::new("", reason)
+        })
+    }
+
+    fn add_journey(&mut self, given: &places::Journey) -> Result<(), Problem> {
+        let is_known = |journey: &Journey| journey.name == given.name;
+        if self.journeys.journeys.iter().any(is_known) || given.name == TO_NEAREST_EXIT {
+            let reason = format!(
+                "there are two journeys named `{}`; rename one",
+                shown(&given.name)
+            );
+            return Err(Problem::new("name", reason));
+        }
+        let stages = given.stages.iter().enumerate();
+        let stages = stages.map(|(k, stage)| self.stage(stage).under(&format!("stages[{k}]")));
+        let stages: Vec<JourneyStage> = stages.collect::<Result<_, _>>()?;
+        let is_exit = |&place: &u16| self.journeys.places[usize::from(place)].is_exit();
+        let early = stages.split_last().and_then(|(_, before)| {
+            before
+                .iter()
+                .position(|stage| stage.places.iter().any(is_exit))
+        });
+        if let Some(k) = early {
+            let reason = "people leave at an exit, so it must be in the last stage";
+            return Err(Problem::new(format!("stages[{k}]"), reason));
+        }
+        self.journeys.journeys.push(Journey {
+            name: given.name.clone(),
+            stages,
+        });
+        Ok(())
+    }
+
+    fn stage(&self, given: &Stage) -> Result<JourneyStage, Problem> {
+        let choice = match given {
+            Stage::Place(name) => {
+                return Ok(JourneyStage {
+                    choice: Choice::Nearest,
+                    places: vec![self.number(name)?],
+                });
+            }
+            Stage::Choice(choice) => choice,
+        };
+        let places::Choice {
+            nearest,
+            quickest,
+            fewest,
+            shares,
+        } = choice;
+        let lists = [
+            (Choice::Nearest, "nearest", nearest),
+            (Choice::Quickest, "quickest", quickest),
+            (Choice::Fewest, "fewest", fewest),
+        ];
+        let mut given = lists.into_iter().filter_map(|(choice, key, names)| {
+            let names = names.as_ref()?;
+            Some((choice, key, names.iter().collect::<Vec<_>>()))
+        });
+        let shares = shares.as_ref().map(|shares| {
+            let weights = shares.values().copied().collect();
+            (Choice::Shares(weights), "shares", shares.keys().collect())
+        });
+        let (Some((choice, key, names)), None) = (given.next().or(shares), given.next()) else {
+            let reason = "give one of `nearest`, `quickest`, `fewest` and `shares`";
+            return Err(Problem::new("", reason));
+        };
+        if let Choice::Shares(weights) = &choice
+            && weights.iter().all(|&weight| weight == 0.0)
+        {
+            let reason = "the weights must have a sum above 0";
+            return Err(Problem::new(key, reason));
+        }
+        let mut places: Vec<u16> = Vec::new();
+        for (k, name) in names.into_iter().enumerate() {
+            let place = format!("{key}[{k}]");
+            let number = self.number(name).under(&place)?;
+            if places.contains(&number) {
+                let reason = format!("`{}` is listed twice; remove one", shown(name));
+                return Err(Problem::new(place, reason));
+            }
+            places.push(number);
+        }
+        Ok(JourneyStage { choice, places })
+    }
+
+    /// The changes of places by closing times and events.
+    fn add_changes(&mut self, keys: &File) -> Result<(), Problem> {
+        let mut changes = Vec::new();
+        for (k, exit) in keys.exits.iter().enumerate() {
+            let place = self.numbers[&exit.name];
+            for (n, &[from, until]) in exit.closed_secs.iter().enumerate() {
+                if until <= from {
+                    let reason = format!("it ends at {until} s, before it begins at {from} s");
+                    return Err(Problem::new(format!("exits[{k}].closed_secs[{n}]"), reason));
+                }
+                let kinds = [(from, ChangeKind::Close), (until, ChangeKind::Open)];
+                changes.extend(kinds.map(|(at, kind)| Change { at, place, kind }));
+            }
+        }
+        for (k, event) in keys.events.iter().enumerate() {
+            if let Some(change) = self.change(event).under(&format!("events[{k}]"))? {
+                changes.push(change);
+            }
+        }
+        changes.sort_by(|a, b| a.at.total_cmp(&b.at));
+        self.journeys.changes = changes;
+        Ok(())
+    }
+
+    /// Checks that agents do not wait forever before the last stage of a journey.
+    fn check_waits(&self) -> Result<(), Problem> {
+        let Journeys {
+            places,
+            journeys,
+            changes,
+            ..
+        } = &self.journeys;
+        let is_endless = |&place: &u16| match &places[usize::from(place)].kind {
+            Kind::Waiting(waiting) => {
+                let released = changes.iter().any(|change| change.place == place);
+                waiting.until.is_none() && waiting.lasting.is_none() && !released
+            }
+            _ => false,
+        };
+        for (k, journey) in journeys.iter().enumerate() {
+            let before_last = journey.stages.iter().rev().skip(1);
+            let mut visited = before_last.flat_map(|stage| stage.places.iter().copied());
+            if let Some(place) = visited.find(is_endless) {
+                let reason = format!(
+                    "agents would wait forever in `{}`: give it `until_secs` or `for_secs`, or an event that releases it",
+                    shown(&places[usize::from(place)].name)
+                );
+                return Err(Problem::new(format!("journeys[{k}]"), reason));
+            }
+        }
+        Ok(())
+    }
+
+    fn change(&self, event: &file::Event) -> Result<Option<Change>, Problem> {
+        let given = [
+            ("open", &event.open, ChangeKind::Open),
+            ("close", &event.close, ChangeKind::Close),
+            ("release", &event.release, ChangeKind::Release),
+        ];
+        let mut given = given.into_iter().filter(|(_, name, _)| name.is_some());
+        let Some((key, Some(name), kind)) = given.next() else {
+            return Ok(None);
+        };
+        let place = self.number(name).under(key)?;
+        let (fits, wanted) = match (&self.journeys.places[usize::from(place)].kind, kind) {
+            (Kind::Waiting(_), _) => (kind == ChangeKind::Release, "a waiting area"),
+            (Kind::Exit(_), _) => (kind != ChangeKind::Release, "an exit"),
+            (Kind::Queue(_), _) => (false, "a queue"),
+            (Kind::Line(_) | Kind::Disk { .. }, _) => (false, "a waypoint"),
+        };
+        if !fits {
+            let reason = format!(
+                "`{}` is {wanted}; exits can open and close, and waiting areas can be released",
+                shown(name)
+            );
+            return Err(Problem::new(key, reason));
+        }
+        Ok(Some(Change {
+            at: event.at_secs,
+            place,
+            kind,
+        }))
+    }
+}
+
+fn exit(given: &places::Exit) -> Result<Kind, Problem> {
+    Ok(Kind::Exit(Exit {
+        line: line(&given.line).under("line")?,
+        most_per_sec: given.most_per_sec,
+    }))
+}
+
+fn waypoint(given: &places::Waypoint) -> Result<Kind, Problem> {
+    match (given.line, given.at) {
+        (Some(ends), None) if given.within.is_none() => Ok(Kind::Line(line(&ends).under("line")?)),
+        (None, Some(at)) => Ok(Kind::Disk {
+            at: at.into(),
+            within: given.within.unwrap_or(WITHIN),
+        }),
+        _ => {
+            let reason = "give either `line`, or `at` and perhaps `within`";
+            Err(Problem::new("", reason))
+        }
+    }
+}
+
+fn queue(given: &places::Queue, walls: &Walls) -> Result<Kind, Problem> {
+    let path: Vec<Vector> = given.path.iter().map(|&p| p.into()).collect();
+    if path.len() < 2 {
+        let reason = "needs at least 2 points: the front, and where the queue goes on";
+        return Err(Problem::new("path", reason));
+    }
+    let mut length = 0.0;
+    let mut tail = (path[0], Vector::zeros());
+    for (k, pair) in path.windows(2).enumerate() {
+        let way = pair[1] - pair[0];
+        let problem = |reason| Err(Problem::new(format!("path[{k}]"), reason));
+        if way == Vector::zeros() {
+            return problem("the same point as the next one; remove one");
+        }
+        if first_wall(walls, pair[0], pair[1]).is_some() {
+            return problem(
+                "a wall stands between this point and the next; lead the path around it",
+            );
+        }
+        length += way.norm();
+        tail = (pair[1], direction(way) * LONGEST_TAIL);
+    }
+    let wall = first_wall(walls, tail.0, tail.0 + tail.1);
+    length += wall.map_or(f64::INFINITY, |part| {
+        (part * LONGEST_TAIL - TAIL_GAP).max(0.0)
+    });
+    let service = given.service_secs.times().under("service_secs")?;
+    Ok(Kind::Queue(Queue {
+        path,
+        length,
+        spacing: given.spacing.unwrap_or(SPACING),
+        servers: given.servers.unwrap_or(1),
+        mean_service: service.mean(),
+        service,
+    }))
+}
+
+/// The part of the way from `a` to `b` up to the first wall, if there is one.
+fn first_wall(walls: &Walls, a: Vector, b: Vector) -> Option<f64> {
+    let near = walls.near_any(&[a, b], 0.0);
+    walls.first_crossing(a, b, &near).map(|(part, _)| part)
+}
+
+fn line(given: &[Point; 2]) -> Result<[Vector; 2], Problem> {
+    let [a, b] = given.map(Vector::from);
+    let length = (b - a).norm();
+    if length < SHORTEST_LINE - ROUNDING {
+        let length = (length * 1e3).round() / 1e3;
+        let reason = format!("{length} m long; no person fits through less than {SHORTEST_LINE} m");
+        return Err(Problem::new("", reason));
+    }
+    Ok([a, b])
+}
+
+pub fn ring(GivenRing(given): &GivenRing) -> Result<Ring, Problem> {
+    let points = given.iter().map(|&p| p.into()).collect();
+    Ring::new(points).map_err(|error| Problem::new("", error.to_string()))
+}

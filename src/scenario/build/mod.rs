@@ -1,0 +1,29 @@
+//! The keys of a file → a scene: walls, places, ways and people, and what is refused or noted on the way.
+
+pub mod bodies;
+pub mod crowds;
+pub mod doors;
+pub mod doubts;
+pub mod draws;
+pub mod entrances;
+pub mod from;
+pub mod goals;
+pub mod journeys;
+pub mod need;
+pub mod numerics;
+pub mod off_floor;
+pub mod openings;
+pub mod origin;
+pub mod overcrowded;
+pub mod overlaps;
+pub mod people;
+pub mod periodic;
+pub mod profiles;
+pub mod reach;
+pub mod slits;
+pub mod spots;
+pub mod surroundings;
+pub mod view;
+pub mod waiting;
+pub mod wall_lists;
+pub mod ways;

@@ -1,0 +1,90 @@
+//! Rejects zones, regions and lines off the floor, where there is nothing to slow or to measure, and agents off the floor.
+
+use crate::engine::geometry::Ring;
+use crate::engine::journeys::Place;
+use crate::engine::math::Vector;
+use crate::engine::scene::Scene;
+use crate::engine::ways::nearest_on;
+use crate::scenario::build::origin::{Member, Origins};
+use crate::scenario::error::{Problem, Under};
+use crate::scenario::file::File;
+use crate::scenario::floor_plan::{FloorPlanError, Rings, is_line_on_floor, is_on_floor};
+use crate::scenario::measurements::Observed;
+
+/// The reason why an area or a line is refused.
+pub const OFF: &str = "lies in obstacles or outside of the walkable area; move it onto the floor";
+
+/// Rejects zones, and regions and lines of measurements, that lie wholly in obstacles or outside of the walkable area.
+pub fn check(keys: &File, scene: &Scene) -> Result<(), Problem> {
+    let walls = &scene.walls;
+    for (k, zone) in scene.journeys.zones.iter().enumerate() {
+        let place = format!("zones[{k}].area");
+        accept(is_on_floor(zone.area.points(), walls)).under(&place)?;
+    }
+    for (k, measurement) in keys.measurements.iter().enumerate() {
+        for (key, observed) in measurement.observed_places() {
+            let found = match observed {
+                Observed::Region(region) => is_on_floor(&region.corners(), walls),
+                Observed::Line(ends) => is_line_on_floor(ends, walls),
+            };
+            accept(found).under(&format!("measurements[{k}].{key}"))?;
+        }
+    }
+    Ok(())
+}
+
+/// Single agents in obstacles start at the nearest free point, which may be this far away, meters.
+const NEAR: f64 = 2.0;
+
+/// Rejects agents of `agents` and `grids` that start on the floors `behind` exits and entrances, and single ones that start
+/// far off the floor.
+pub fn check_starts(keys: &File, scene: &Scene, behind: &Rings) -> Result<(), Problem> {
+    let rings = behind.iter().map(|ring| Ring::new(ring.clone()));
+    let rings: Vec<Ring> = rings.filter_map(Result::ok).collect();
+    let origins = Origins::new(keys, scene);
+    for (k, agent) in scene.agents.iter().enumerate() {
+        let member = Member {
+            agent: Some(k),
+            group: agent.group,
+        };
+        let Some(key) = origins.start_key(member) else {
+            continue;
+        };
+        let p = agent.position;
+        let at = format!("({:.2}, {:.2})", p.x, p.y);
+        if rings.iter().any(|ring| ring.contains(p)) && !is_on_line(scene, p) {
+            let reason = format!(
+                "an agent starts at {at}, behind the line of an exit or entrance and outside of the walkable area; move it \
+                 onto the floor"
+            );
+            return Err(Problem::new(key, reason));
+        }
+        if origins.single(member).is_none() || scene.walls.obstacle_at(p).is_none() {
+            continue;
+        }
+        let free = scene.walls.free_point_near(p);
+        let distance = free.map_or(f64::INFINITY, |free| (free - p).norm());
+        if distance > NEAR {
+            let reason = match distance.is_finite() {
+                true => format!("{at} lies {distance:.1} m off the floor; move it onto the floor"),
+                false => OFF.to_owned(),
+            };
+            return Err(Problem::new(key, reason));
+        }
+    }
+    Ok(())
+}
+
+/// Whether a point lies on the line of an exit, at the edge of both floors.
+fn is_on_line(scene: &Scene, p: Vector) -> bool {
+    let mut lines = scene.journeys.places.iter().filter_map(Place::line);
+    lines.any(|[a, b]| (nearest_on(p, a, b) - p).norm() < 1e-6)
+}
+
+fn accept(is_on: Result<bool, FloorPlanError>) -> Result<(), Problem> {
+    match is_on {
+        Ok(true) => Ok(()),
+        Ok(false) => Err(Problem::new("", OFF)),
+        Err(error) => Err(Problem::new("", error.to_string())),
+    }
+}

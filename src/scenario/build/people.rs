@@ -1,0 +1,305 @@
+//! Agents, grids, crowds, sources and entrances of a file → groups, agents, sources and entrances of a scene.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::engine::agents::NewAgent;
+use crate::engine::math::Vector;
+use crate::engine::packing::Body;
+use crate::engine::placement::Grid;
+use crate::engine::profile::Blend;
+use crate::engine::scene::{Goal, Group, Region, Scene, Source};
+use crate::engine::traits::Traits;
+use crate::scenario::build::draws::traits;
+use crate::scenario::build::goals::Target;
+use crate::scenario::build::journeys::TO_NEAREST_EXIT;
+use crate::scenario::build::{overlaps, profiles};
+use crate::scenario::error::{Problem, Under};
+use crate::scenario::file::File;
+use crate::scenario::keys::people;
+use crate::scenario::keys::places::journey_named;
+use crate::scenario::keys::profiles::ProfileChoice;
+use crate::scenario::keys::shapes::{Corners, region};
+
+/// Most groups or pushes: their numbers have 16 bits.
+pub const MOST_NUMBERED: usize = u16::MAX as usize;
+
+/// Most different profiles defined in full: each takes its own sum over all agents.
+const MOST_CUSTOM: usize = 1_000;
+
+/// Relative rounding error that a speed clamped to `max_speed` may have.
+const ROUNDING: f64 = 1e-9;
+
+/// Adds the agents to a scene.
+pub struct Population<'a> {
+    pub file: &'a File,
+    default: &'a Blend,
+    /// The outlines of the floors behind exits and entrances, where no crowd starts.
+    pub behind: &'a [Vec<Vector>],
+    pub scene: &'a mut Scene,
+    /// Groups of single agents, by behavior.
+    shared: BTreeMap<String, u16>,
+    /// The different profiles defined in full.
+    custom: BTreeSet<String>,
+    /// For readers of the results.
+    pub notes: Vec<String>,
+    /// The bodies of the first agents of the scene, as far as they have been needed.
+    pub bodies: Vec<Body>,
+}
+
+impl<'a> Population<'a> {
+    /// `default` is the blend of agents that name no profile; `behind` are the floors behind exits and entrances.
+    pub fn new(
+        file: &'a File,
+        default: &'a Blend,
+        behind: &'a [Vec<Vector>],
+        scene: &'a mut Scene,
+    ) -> Self {
+        Self {
+            file,
+            default,
+            behind,
+            scene,
+            shared: BTreeMap::new(),
+            custom: BTreeSet::new(),
+            notes: Vec::new(),
+            bodies: Vec::new(),
+        }
+    }
+
+    /// Adds the people of `from`, single agents, grids, crowds, sources, then entrances. Their number has been checked.
+    /// Returns notes for readers of the results.
+    pub fn enter(mut self) -> Result<Vec<String>, Problem> {
+        if let Some(from) = &self.file.from {
+            self.add_data(from).under("from")?;
+        }
+        for (k, agent) in self.file.agents.iter().enumerate() {
+            self.agent(agent).under(&format!("agents[{k}]"))?;
+        }
+        for (k, grid) in self.file.grids.iter().enumerate() {
+            let name = format!("grids[{k}]");
+            self.grid(grid, &name).under(&name)?;
+        }
+        for (k, crowd) in self.file.crowds.iter().enumerate() {
+            let name = format!("crowds[{k}]");
+            self.crowd(crowd, k as u32, &name).under(&name)?;
+        }
+        for (k, source) in self.file.sources.iter().enumerate() {
+            let name = format!("sources[{k}]");
+            self.source(source, &name).under(&name)?;
+        }
+        for (k, entrance) in self.file.entrances.iter().enumerate() {
+            let name = format!("entrances[{k}]");
+            self.entrance(entrance, &name).under(&name)?;
+        }
+        self.note_bodies();
+        self.notes.extend(overlaps::note(&self.bodies));
+        Ok(self.notes)
+    }
+
+    fn agent(&mut self, agent: &people::Agent) -> Result<(), Problem> {
+        let [x, y] = agent.velocity.unwrap_or_default();
+        let own = agent.preferred_speed;
+        let own = own.map(|speed| self.scene.own_speeds(speed)[1]);
+        let (speed, most) = (x.hypot(y), own.unwrap_or(self.scene.max_speed));
+        if speed > most * (1.0 + ROUNDING) {
+            let reason = format!(
+                "the speed {speed} m/s is above max_speed {most}; lower it, or raise max_speed"
+            );
+            return Err(Problem::new("velocity", reason));
+        }
+        let journey = self.journey(agent.journey.as_deref(), agent.goal.is_some())?;
+        let target = self.target(agent.goal, journey, agent.remove_within)?;
+        let position = agent.position.into();
+        let group = self.shared_group(Behavior {
+            journey,
+            direction: target.direction,
+            profile: agent.profile.as_ref(),
+            remove_within: agent.remove_within,
+            counted: agent.counted,
+        })?;
+        self.scene.agents.push(NewAgent {
+            velocity: [x, y].into(),
+            radius: agent.radius,
+            mass: agent.mass,
+            mean_density: agent.mean_density,
+            preferred_speed: agent.preferred_speed,
+            premovement: agent.premovement_secs,
+            ..NewAgent::at(position, target.goal_from(position), group)
+        });
+        Ok(())
+    }
+
+    fn grid(&mut self, given: &people::Grid, place: &str) -> Result<(), Problem> {
+        for (key, is_given) in [
+            ("start_secs", given.start_secs.is_some()),
+            ("every_secs", given.every_secs.is_some()),
+            ("times", given.times.is_some()),
+        ] {
+            if is_given {
+                let reason = "is a key of `sources`; agents of `grids` enter once, at the start";
+                return Err(Problem::new(key, reason));
+            }
+        }
+        let (grid, target) = self.placed(given)?;
+        let group = self.grid_group(given, target.direction, place)?;
+        let first_id = self.scene.agents.len() as u32;
+        let agents = grid.positions(self.scene.seed, first_id);
+        let agents =
+            agents.map(|position| NewAgent::at(position, target.goal_from(position), group));
+        self.scene.agents.extend(agents);
+        Ok(())
+    }
+
+    fn source(&mut self, given: &people::Grid, place: &str) -> Result<(), Problem> {
+        let (grid, target) = self.placed(given)?;
+        let [start, every] = given.schedule();
+        let source = Source {
+            name: given.name.as_deref().unwrap_or(place).to_owned(),
+            grid,
+            group: self.grid_group(given, target.direction, place)?,
+            goal: target.goal,
+            start,
+            every,
+            times: given.times,
+        };
+        self.scene.sources.push(source);
+        Ok(())
+    }
+
+    /// The grid and the target of a grid or source.
+    fn placed(&self, given: &people::Grid) -> Result<(Grid, Target), Problem> {
+        let Region { min, max } = region("min", Corners([given.min, given.max]))?;
+        let grid = Grid {
+            min,
+            max,
+            columns: given.columns,
+            rows: given.rows,
+            jitter: given.jitter,
+        };
+        for (key, cells, extent) in [
+            ("columns", grid.columns, max.x - min.x),
+            ("rows", grid.rows, max.y - min.y),
+        ] {
+            if cells > 1 && extent == 0.0 && grid.jitter == 0.0 {
+                let reason = format!(
+                    "{cells} agents would stand at one point: `min` and `max` are 0 m apart; move one, or set `jitter`"
+                );
+                return Err(Problem::new(key, reason));
+            }
+        }
+        let has_goal = given.goal.is_some() || given.goal_offset.is_some();
+        let journey = self.journey(given.journey.as_deref(), has_goal)?;
+        let target = match (given.goal, given.goal_offset) {
+            (_, Some(_)) if self.scene.period.is_some() => {
+                let reason =
+                    "in a periodic scene agents walk in a direction, not to a point; remove it";
+                return Err(Problem::new("goal_offset", reason));
+            }
+            (Some(_), Some(_)) => {
+                let reason = "either `goal` or `goal_offset`, not both";
+                return Err(Problem::new("goal_offset", reason));
+            }
+            (None, Some(offset)) => Target::to(Goal::Offset(offset.into())),
+            (goal, None) => self.target(goal, journey, given.remove_within)?,
+        };
+        Ok((grid, target))
+    }
+
+    /// The journey of agents that name `given`; `None` if they walk to a goal.
+    pub fn journey(&self, given: Option<&str>, has_goal: bool) -> Result<Option<u16>, Problem> {
+        let journeys = &self.scene.journeys.journeys;
+        match given {
+            Some(_) if has_goal => {
+                let reason = "either a goal or a `journey`, not both";
+                Err(Problem::new("journey", reason))
+            }
+            Some(name) => journey_named(journeys, name).under("journey").map(Some),
+            None if has_goal || self.file.goal.is_some() => Ok(None),
+            None => Ok(journey_named(journeys, TO_NEAREST_EXIT).ok()),
+        }
+    }
+
+    /// The group of single agents with this behavior; creates it if needed.
+    fn shared_group(&mut self, behavior: Behavior) -> Result<u16, Problem> {
+        let key = format!("{behavior:?}");
+        if let Some(&group) = self.shared.get(&key) {
+            return Ok(group);
+        }
+        let group = self.group("agents", behavior, Traits::default())?;
+        self.shared.insert(key, group);
+        Ok(group)
+    }
+
+    /// The group of the agents of a grid or source.
+    fn grid_group(
+        &mut self,
+        given: &people::Grid,
+        direction: Option<Vector>,
+        place: &str,
+    ) -> Result<u16, Problem> {
+        let has_goal = given.goal.is_some() || given.goal_offset.is_some();
+        let behavior = Behavior {
+            journey: self.journey(given.journey.as_deref(), has_goal)?,
+            direction,
+            profile: given.profile.as_ref(),
+            remove_within: given.remove_within,
+            counted: given.counted,
+        };
+        let draws = [
+            &given.preferred_speed,
+            &given.radius,
+            &given.mass,
+            &given.premovement_secs,
+        ];
+        let name = given.name.as_deref().unwrap_or(place);
+        self.group(name, behavior, traits(draws)?)
+    }
+
+    /// Adds a group.
+    pub fn group(
+        &mut self,
+        name: &str,
+        behavior: Behavior,
+        traits: Traits,
+    ) -> Result<u16, Problem> {
+        if self.scene.groups.len() >= MOST_NUMBERED {
+            let reason = format!(
+                "more than {MOST_NUMBERED} groups of agents; put several into one grid or source, or give \
+                 single agents the same profile, `remove_within` and `counted`"
+            );
+            return Err(Problem::new("", reason));
+        }
+        if let Some(ProfileChoice::Custom(custom)) = behavior.profile {
+            self.custom.insert(format!("{custom:?}"));
+            if self.custom.len() > MOST_CUSTOM {
+                let reason = format!(
+                    "more than {MOST_CUSTOM} different profiles defined in full; let agents share profiles"
+                );
+                return Err(Problem::new("profile", reason));
+            }
+        }
+        let blend = match behavior.profile {
+            None => self.default.clone(),
+            Some(choice) => profiles::blend(choice, &self.file.parameters).under("profile")?,
+        };
+        Ok(self.scene.add_group(Group {
+            name: name.to_owned(),
+            blend,
+            removal_radius: behavior.remove_within,
+            counted: behavior.counted.unwrap_or(true),
+            journey: behavior.journey,
+            direction: behavior.direction,
+            traits,
+        }))
+    }
+}
+
+/// The keys that decide on an agent's group.
+#[derive(Debug, Clone, Copy)]
+pub struct Behavior<'a> {
+    pub journey: Option<u16>,
+    pub direction: Option<Vector>,
+    pub profile: Option<&'a ProfileChoice>,
+    pub remove_within: Option<f64>,
+    pub counted: Option<bool>,
+}

@@ -1,0 +1,107 @@
+//! What pictures and recordings show: the part of the plane, the first moment, the ranges of their colors.
+
+use crate::analysis::round::end;
+use crate::engine::math::{Vector, bounds};
+use crate::engine::scene::{Group, Region, Scene};
+use crate::scenario::error::Problem;
+use crate::scenario::file;
+use crate::scenario::keys::shapes::region;
+
+/// Margin of the default region around walls, agents, goals and sources, meters.
+const MARGIN: f64 = 1.0;
+/// The density with the last color, as a part of the largest rest density in the scene.
+const DENSITY: f64 = 1.2;
+/// The largest default density with the last color, P/m².
+const MOST_DENSITY: f64 = 10.0;
+/// The part of the people whose preferred speeds are within the default range of speeds.
+const PART: f64 = 0.99;
+
+/// What pictures and recordings show.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// The visible part of the plane, meters.
+    pub region: Region,
+    /// The time at which a recording opens, seconds; `None`: at the moment of the highest density.
+    pub opens_at_secs: Option<f64>,
+    /// The densities with the first and the last color, P/m².
+    pub density_range: [f64; 2],
+    /// The speeds with the first and the last color, m/s.
+    pub speed_range: [f64; 2],
+}
+
+/// The view that a scenario asks for, completed from its scene.
+pub fn of(given: Option<&file::View>, scene: &Scene) -> Result<View, Problem> {
+    let given = given.cloned().unwrap_or_default();
+    let region = match given.region {
+        Some(corners) => region("region", corners)?,
+        None => surroundings(scene),
+    };
+    if region.min.x == region.max.x || region.min.y == region.max.y {
+        let reason = "encloses no area: its corners must differ in x and in y";
+        return Err(Problem::new("region", reason));
+    }
+    let range = |key: &str, range: Option<[f64; 2]>, default: f64| match range {
+        Some([first, last]) if first >= last => {
+            let reason = "the first value must be less than the second";
+            Err(Problem::new(key, reason))
+        }
+        range => Ok(range.unwrap_or([0.0, default])),
+    };
+    Ok(View {
+        region,
+        opens_at_secs: given.opens_at_secs,
+        density_range: range("density_range", given.density_range, most_density(scene))?,
+        speed_range: range("speed_range", given.speed_range, most_speed(scene))?,
+    })
+}
+
+/// 1.2 times the largest rest density of any profile, at most 10 P/m²; up to a round number.
+fn most_density(scene: &Scene) -> f64 {
+    let densities = scene.groups.iter();
+    let largest = densities.map(|group| group.blend.sph.rest_density_max);
+    end((DENSITY * largest.fold(0.0, f64::max)).clamp(1.0, MOST_DENSITY))
+}
+
+/// The 99th percentile of the preferred speeds of the group with the fastest people, m/s; up to a round number.
+fn most_speed(scene: &Scene) -> f64 {
+    let of_group = |group: &Group| match &group.traits.preferred_speed {
+        Some(speeds) => speeds.quantile(PART),
+        None => scene.preferred_speed,
+    };
+    let groups = scene.groups.iter().map(of_group);
+    let own = scene
+        .agents
+        .iter()
+        .filter_map(|agent| agent.preferred_speed);
+    let fastest = groups.chain(own).fold(0.0, f64::max);
+    end(if fastest > 0.0 {
+        fastest
+    } else {
+        scene.max_speed
+    })
+}
+
+/// The bounding box of walls, agents, goals, sources, entrances and latecomers, with a margin.
+fn surroundings(scene: &Scene) -> Region {
+    let corners = scene.walls.iter().map(|wall| wall.start);
+    let late = scene.latecomers.iter().map(|late| &late.agent);
+    let agents = scene
+        .agents
+        .iter()
+        .chain(late)
+        .flat_map(|agent| [agent.position, agent.goal]);
+    let sources = scene
+        .sources
+        .iter()
+        .flat_map(|source| [source.grid.min, source.grid.max]);
+    let lines = scene.entrances.iter();
+    let lines = lines.flat_map(|entrance| [entrance.line[0], entrance.line[1], entrance.goal]);
+    let margin = Vector::new(MARGIN, MARGIN);
+    let [low, high] = bounds(corners.chain(agents).chain(sources).chain(lines)).unwrap_or_default();
+    let period = scene.period;
+    let [low, high] = period.map_or([low, high], |period| period.clipped([low, high]));
+    Region {
+        min: low - margin,
+        max: high + margin,
+    }
+}

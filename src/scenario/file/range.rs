@@ -1,0 +1,171 @@
+//! Checks numbers against the ranges of the schema, with error messages.
+
+use std::fmt;
+
+use serde::Deserialize;
+use serde_json::{Map, Value};
+
+use crate::scenario::error::numbers::brief;
+use crate::scenario::error::{Problem, in_plain_words};
+use crate::scenario::file::schema::{allows, resolved, root, ways, words_of};
+
+/// Rejects numbers out of range, empty names, lists that must not be empty, missing keys, and values of the wrong type
+/// that serde would accept (a list of values in place of an object) or would reject without naming their place.
+pub fn check(document: &Value) -> Result<(), Problem> {
+    check_value(root(), document)
+}
+
+fn check_value(schema: &'static Value, value: &Value) -> Result<(), Problem> {
+    if value.is_null() && may_be_null(resolved(schema)) {
+        return Ok(());
+    }
+    let Some(schema) = chosen(schema, value) else {
+        return Ok(());
+    };
+    check_type(schema, value)?;
+    match value {
+        Value::Number(number) => Range::of(schema).check(number.as_f64().unwrap_or(f64::NAN)),
+        Value::String(text) if text.is_empty() && schema["minLength"] == 1 => {
+            Err(Problem::new("", "must not be empty"))
+        }
+        Value::Array(list) if list.is_empty() && schema["minItems"] == 1 => {
+            Err(Problem::new("", "must not be empty"))
+        }
+        Value::Array(list) => {
+            let item = resolved(&schema["items"]);
+            let check = |(k, value)| {
+                check_value(item, value).map_err(|problem| problem.under(&format!("[{k}]")))
+            };
+            list.iter().enumerate().try_for_each(check)
+        }
+        Value::Object(object) => {
+            if let Some(key) = required(schema).find(|&key| !object.contains_key(key)) {
+                return Err(Problem::new("", format!("missing key `{key}`")));
+            }
+            object.iter().try_for_each(|(key, value)| {
+                let known = schema["properties"].get(key);
+                let of_key = known.unwrap_or(&schema["additionalProperties"]);
+                let checked = check_value(of_key, value);
+                checked.map_err(|problem| problem.under(key))
+            })
+        }
+        _ => Ok(()),
+    }
+}
+
+fn may_be_null(schema: &Value) -> bool {
+    let mut ways = schema["anyOf"].as_array().into_iter().flatten();
+    allows(schema, "null") || ways.any(|way| allows(way, "null"))
+}
+
+/// Rejects values of another type in place of an object or a number, and in place of a described list of fixed length.
+fn check_type(schema: &Value, value: &Value) -> Result<(), Problem> {
+    let wrong = if allows(schema, "object") && !value.is_object() {
+        Map::<String, Value>::deserialize(value).err()
+    } else if allows(schema, "number") {
+        f64::deserialize(value).err()
+    } else {
+        let length = value.as_array().map(|list| list.len() as u64);
+        let right = match schema.get("maxItems").and_then(Value::as_u64) {
+            Some(most) => length == Some(most),
+            None => length.is_some() || !allows(schema, "array"),
+        };
+        return match words_of(schema).filter(|_| !right) {
+            Some(words) => Err(Problem::new("", format!("must be {words}"))),
+            None => Ok(()),
+        };
+    };
+    wrong.map_or(Ok(()), |error| {
+        Err(Problem::new("", in_plain_words(&error.to_string())))
+    })
+}
+
+/// The schema itself or, if it has alternatives, the one that `value` is meant to match: the only one, else the first
+/// that it fits, else (for a list) the first that allows a list.
+fn chosen(schema: &'static Value, value: &Value) -> Option<&'static Value> {
+    let schema = resolved(schema);
+    let Some(all) = ways(schema) else {
+        return Some(schema);
+    };
+    let all: Vec<&'static Value> = all.collect();
+    let is_list = |way: &&'static Value| value.is_array() && allows(resolved(way), "array");
+    let way = match all.as_slice() {
+        [only] => Some(*only),
+        all => {
+            let fitting = all.iter().copied().find(|way| fits(way, value));
+            fitting.or_else(|| all.iter().copied().find(is_list))
+        }
+    };
+    chosen(way?, value)
+}
+
+/// Whether the value has the type of the schema, its required keys, and a first item that fits.
+fn fits(schema: &'static Value, value: &Value) -> bool {
+    let Some(schema) = chosen(schema, value) else {
+        return false;
+    };
+    let name = match value {
+        Value::Null => "null",
+        Value::Bool(_) => "boolean",
+        Value::Number(_) if allows(schema, "integer") => "integer",
+        Value::Number(_) => "number",
+        Value::String(_) => "string",
+        Value::Array(_) => "array",
+        Value::Object(_) => "object",
+    };
+    let first = value.as_array().and_then(|list| list.first());
+    allows(schema, name)
+        && required(schema).all(|key| value.get(key).is_some())
+        && first.is_none_or(|first| fits(&schema["items"], first))
+}
+
+/// The keys that an object of this schema must have.
+pub fn required(schema: &Value) -> impl Iterator<Item = &str> {
+    let keys = schema["required"].as_array().into_iter().flatten();
+    keys.filter_map(Value::as_str)
+}
+
+/// An interval of numbers that includes its upper end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    lowest: Option<f64>,
+    /// Whether `lowest` itself is excluded.
+    open: bool,
+    highest: Option<f64>,
+}
+
+impl Range {
+    /// The range that a schema gives.
+    pub fn of(schema: &Value) -> Self {
+        let bound = |key: &str| schema.get(key).and_then(Value::as_f64);
+        let above = bound("exclusiveMinimum");
+        Self {
+            lowest: above.or_else(|| bound("minimum")),
+            open: above.is_some(),
+            highest: bound("maximum"),
+        }
+    }
+
+    fn check(&self, value: f64) -> Result<(), Problem> {
+        let high_enough = |lowest| value > lowest || (value == lowest && !self.open);
+        if self.lowest.is_none_or(high_enough) && self.highest.is_none_or(|most| value <= most) {
+            return Ok(());
+        }
+        let reason = format!("must be {self}, not {}", brief(value));
+        Err(Problem::new("", reason))
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let from = if self.open { "above" } else { "at least" };
+        let ends = [(from, self.lowest), ("at most", self.highest)];
+        let ends = ends
+            .into_iter()
+            .filter_map(|(words, end)| Some((words, end?)));
+        let ends: Vec<String> = ends
+            .map(|(words, end)| format!("{words} {}", brief(end)))
+            .collect();
+        f.write_str(&ends.join(" and "))
+    }
+}

@@ -1,0 +1,110 @@
+//! The JSON Schema of scenario files. It comes from the structs in [`file`](super) and `keys`: names, words, defaults
+//! and ranges from their fields, descriptions from their doc comments. The range checks and the list of settings read
+//! it.
+
+use std::sync::LazyLock;
+
+use schemars::Schema;
+use schemars::generate::SchemaSettings;
+use schemars::transform::RecursiveTransform;
+use serde_json::{Value, json};
+
+use crate::scenario::file::File;
+use crate::scenario::keys::names::OLD_KEYS;
+
+static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
+    let settings = SchemaSettings::draft2020_12().with_transform(RecursiveTransform(tidy));
+    let schema = settings.into_generator().into_root_schema_for::<File>();
+    schema.to_value()
+});
+
+/// The JSON Schema (draft 2020-12) of scenario files. Every file that the program accepts is valid. The schema does
+/// not check relations between values (order of corners, at least one goal).
+pub fn schema() -> Value {
+    let mut schema = SCHEMA.clone();
+    schema["properties"]["$schema"] =
+        json!({"type": "string", "description": "The location of this schema, for editors."});
+    for (old, new) in OLD_KEYS {
+        let mut property = schema["properties"][new].clone();
+        property["deprecated"] = true.into();
+        property["description"] = format!("The old name of `{new}`.").into();
+        schema["properties"][old] = property;
+    }
+    schema
+}
+
+/// Joins the lines of descriptions, drops defaults that say nothing, and gives integers their largest value.
+fn tidy(schema: &mut Schema) {
+    if let Some(Value::String(description)) = schema.get_mut("description") {
+        *description = description.replace('\n', " ");
+    }
+    let says_nothing = |default: &Value| match default {
+        Value::Object(keys) => keys.values().all(Value::is_null),
+        other => *other == Value::Null || *other == json!([]),
+    };
+    if schema.get("default").is_some_and(says_nothing) {
+        schema.remove("default");
+    }
+    let largest = match schema.remove("format") {
+        Some(Value::String(format)) if format == "uint32" => json!(u32::MAX),
+        Some(Value::String(format)) if format == "uint64" => json!(u64::MAX),
+        _ => return,
+    };
+    if schema.get("maximum").is_none() {
+        schema.insert("maximum".to_owned(), largest);
+    }
+}
+
+/// The schema of a whole file.
+pub fn root() -> &'static Value {
+    &SCHEMA
+}
+
+/// The schema of a top-level key or parameter; `Null` for other names.
+pub fn property(key: &str) -> &'static Value {
+    let objects = [
+        &SCHEMA["properties"],
+        &SCHEMA["$defs"]["Parameters"]["properties"],
+    ];
+    let found = objects.into_iter().find_map(|keys| keys.get(key));
+    found.unwrap_or(&Value::Null)
+}
+
+/// The schema that `schema` refers to, or `schema` itself.
+pub fn resolved(schema: &'static Value) -> &'static Value {
+    let name = schema["$ref"]
+        .as_str()
+        .and_then(|path| path.strip_prefix("#/$defs/"));
+    name.map_or(schema, |name| resolved(&SCHEMA["$defs"][name]))
+}
+
+/// The alternatives of a schema that has some, without `null`.
+pub fn ways(schema: &'static Value) -> Option<impl Iterator<Item = &'static Value>> {
+    let ways = ["anyOf", "oneOf"]
+        .into_iter()
+        .find_map(|key| schema[key].as_array())?;
+    let only_ways = schema.get("type").is_none(); // else they are conditions on its object
+    only_ways.then(|| ways.iter().filter(|way| way["type"] != "null"))
+}
+
+/// Whether the schema allows this JSON type.
+pub fn allows(schema: &Value, name: &str) -> bool {
+    match &schema["type"] {
+        Value::Array(names) => names.iter().any(|one| one == name),
+        one => one == name,
+    }
+}
+
+/// The words for the values of a definition: its description, unless that is a sentence about an object.
+pub fn words_of(definition: &Value) -> Option<String> {
+    let description = definition["description"].as_str()?;
+    let first = description
+        .chars()
+        .next()
+        .filter(|_| !description.ends_with('.'))?;
+    Some(format!(
+        "{}{}",
+        first.to_lowercase(),
+        &description[first.len_utf8()..]
+    ))
+}

@@ -1,0 +1,39 @@
+//! Calibrated profiles: profiles of the paper with a walking law, and parameters that were fitted to experiments.
+
+use std::sync::LazyLock;
+
+use serde::Deserialize;
+
+use crate::scenario::keys::catalog::Parameters;
+
+/// A calibrated profile.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Calibrated {
+    /// Its name.
+    pub name: &'static str,
+    /// The people whom it describes, and what it was fitted to.
+    pub about: &'static str,
+    /// The calibration that gives its parameters.
+    pub study: &'static str,
+    /// The profile of the paper that it changes.
+    pub base: &'static str,
+    /// Its parameters where they are not the paper's.
+    pub parameters: Parameters,
+}
+
+/// All calibrated profiles.
+static ALL: LazyLock<Vec<Calibrated>> = LazyLock::new(|| {
+    let text = include_str!("calibrated.json");
+    serde_json::from_str(text).unwrap_or_default() // a test reads it
+});
+
+/// All calibrated profiles.
+pub fn all() -> &'static [Calibrated] {
+    &ALL
+}
+
+/// The calibrated profile of this name.
+pub fn named(name: &str) -> Option<&'static Calibrated> {
+    ALL.iter().find(|profile| profile.name == name)
+}

@@ -1,0 +1,34 @@
+//! The keys of goals, and of how agents find their ways.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::scenario::keys::shapes::Point;
+
+/// A goal: a point, or a direction
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Aim {
+    Point(Point),
+    Heading(Heading),
+}
+
+/// Instead of a point: agents walk in a direction, without end.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Heading {
+    /// The direction [x, y]; only the ratio of the two matters.
+    #[schemars(inner(range(min = -1e6, max = 1e6)))]
+    pub direction: [f64; 2],
+}
+
+/// How agents find their ways.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WayFinding {
+    /// Around walls.
+    #[default]
+    Paths,
+    /// Straight toward the goal, as in the paper.
+    Straight,
+}

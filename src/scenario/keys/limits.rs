@@ -1,0 +1,15 @@
+//! Limits and defaults that several keys share.
+
+/// Default duration, seconds.
+pub const DEFAULT_DURATION: f64 = 60.0;
+/// Default profile.
+pub const DEFAULT_PROFILE: &str = "sph";
+/// The longest time, seconds.
+pub const LONGEST_TIME: f64 = 1e7;
+/// The largest coordinate, meters. Beyond this, walls and contacts lose precision.
+pub const FARTHEST: f64 = 1e6;
+
+/// The largest strength or stiffness.
+pub const STRONGEST: f64 = 1e9;
+/// The highest density, P/m².
+pub const HIGHEST_DENSITY: f64 = 1000.0;

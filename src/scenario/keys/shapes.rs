@@ -1,0 +1,95 @@
+//! Points and polygons in a file.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::engine::math::Vector;
+use crate::engine::scene::Region;
+use crate::scenario::error::Problem;
+use crate::scenario::floor_plan;
+use crate::scenario::keys::limits::FARTHEST;
+
+/// A point [x, y] in meters
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Point(#[schemars(inner(range(min = -FARTHEST, max = FARTHEST)))] pub [f64; 2]);
+
+impl From<Point> for Vector {
+    fn from(Point(point): Point) -> Self {
+        point.into()
+    }
+}
+
+/// A ring: its corners in order, in either orientation
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Ring(#[schemars(length(min = 3))] pub Vec<Point>);
+
+/// A polygon: its corners, or its rings
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Outline {
+    Ring(Ring),
+    Rings(#[schemars(length(min = 1))] Vec<Ring>),
+}
+
+impl Outline {
+    /// The outline, then the holes.
+    pub fn rings(&self) -> &[Ring] {
+        match self {
+            Self::Ring(ring) => std::slice::from_ref(ring),
+            Self::Rings(rings) => rings,
+        }
+    }
+}
+
+/// The lower left and the upper right corner
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Corners(pub [Point; 2]);
+
+/// A text at a point
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Label {
+    /// The text.
+    #[schemars(length(min = 1))]
+    pub text: String,
+    /// Its middle.
+    pub at: Point,
+    /// The width of its room, meters; a wider text is left out. Default: no limit.
+    #[schemars(range(min = 0, max = FARTHEST))]
+    pub width: Option<f64>,
+}
+
+impl From<&Label> for floor_plan::Label {
+    fn from(given: &Label) -> Self {
+        Self {
+            text: given.text.clone(),
+            at: given.at.into(),
+            width: given.width,
+        }
+    }
+}
+
+/// A region from its lower left and upper right corner, which must be in this order.
+pub fn region(key: &str, Corners([min, max]): Corners) -> Result<Region, Problem> {
+    let (min, max): (Vector, Vector) = (min.into(), max.into());
+    if min.x <= max.x && min.y <= max.y {
+        return Ok(Region { min, max });
+    }
+    let reason = format!(
+        "the lower left corner comes first: ({}, {}) is not below and left of ({}, {})",
+        min.x, min.y, max.x, max.y
+    );
+    Err(Problem::new(key, reason))
+}
+
+/// A region with an area.
+pub fn wide_region(key: &str, corners: Corners) -> Result<Region, Problem> {
+    let found = region(key, corners)?;
+    match found.area() {
+        0.0 => Err(Problem::new(key, "has no area")),
+        _ => Ok(found),
+    }
+}

@@ -1,0 +1,256 @@
+//! The contents of a file → a scenario that can run, or the first problem.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::engine::geometry::Polygon;
+use crate::engine::period::Period;
+use crate::engine::profile::Override;
+use crate::engine::scene::{Push, Scene};
+use crate::scenario::build::need::Need;
+use crate::scenario::build::people::{MOST_NUMBERED, Population};
+use crate::scenario::build::surroundings::Surroundings;
+use crate::scenario::build::{
+    doubts, journeys, numerics, off_floor, overcrowded, periodic, profiles, slits, surroundings,
+    view, ways,
+};
+use crate::scenario::error::{Problem, Under, in_plain_words};
+use crate::scenario::file::{File, range};
+use crate::scenario::keys::limits::{DEFAULT_DURATION, DEFAULT_PROFILE};
+use crate::scenario::keys::profiles::{ProfileChoice, ProfileName};
+use crate::scenario::keys::shapes::region;
+use crate::scenario::read::plans::PlanFile;
+use crate::scenario::read::scenario::Scenario;
+use crate::scenario::read::{data, late, plans};
+use crate::scenario::trajectories::Tracks;
+use crate::scenario::{file, measurements};
+
+/// A document whose keys and values have been checked one by one.
+#[derive(Debug, Clone)]
+pub struct Contents {
+    /// With its preset expanded and the files that it names inlined.
+    document: Value,
+    /// The files that it names.
+    plans: Vec<PlanFile>,
+    keys: File,
+    /// Notes on these files, for readers of the results.
+    notes: Vec<String>,
+    /// The size of its run.
+    pub need: Need,
+}
+
+impl Contents {
+    /// Reads `document`, and the files that it names from the folder of `path`.
+    pub fn of(document: Value, path: &Path) -> Result<Self, Problem> {
+        let mut document = plans::complete_preset(document);
+        without_schema(&mut document)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut notes = Vec::new();
+        let mut plans = plans::fill(&mut document, folder, &mut notes)?;
+        let mut keys = Self::check_keys(&document)?;
+        plans.extend(data::fill(&mut document, &mut keys, folder, &mut notes)?);
+        let need = Need::of(&keys, &numerics::first_clock(&keys), duration(&keys))?;
+        Ok(Self {
+            document,
+            plans,
+            keys,
+            notes,
+            need,
+        })
+    }
+
+    /// Checks names, types and ranges.
+    pub fn check_keys(document: &Value) -> Result<File, Problem> {
+        range::check(document)?;
+        serde_path_to_error::deserialize(document).map_err(|error| {
+            let path = error.path().to_string();
+            let path = if path == "." { String::new() } else { path };
+            Problem::new(path, in_plain_words(&error.into_inner().to_string()))
+        })
+    }
+
+    /// The trajectories from which the scenario begins, and the time in them at which it does, seconds; `None` if it
+    /// names no file. The file's name is relative to the folder of `path`.
+    pub fn trajectories(&self, path: &Path) -> Result<Option<(Tracks, f64)>, Problem> {
+        let Some(given) = &self.keys.from else {
+            return Ok(None);
+        };
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let file = given.trajectory.as_ref().map(|name| folder.join(name));
+        let tracks = file.map(|file| data::tracks(&file, given)).transpose();
+        tracks.under("from")
+    }
+
+    /// The end of the run, and the time up to which what begins is not late, seconds: the later end of the file without
+    /// settings, `own`, if they make the run shorter.
+    pub fn ends(&self, own: Option<&Value>) -> [f64; 2] {
+        let end = duration(&self.keys);
+        let own = own.map(|own| own["duration_secs"].as_f64().unwrap_or(DEFAULT_DURATION));
+        [end, own.map_or(end, |own| own.max(end))]
+    }
+
+    /// A note on what begins after the end of the run.
+    pub fn late(&self, [end, last]: [f64; 2]) -> Option<String> {
+        late::note(&self.document, end, last)
+    }
+
+    /// Checks relations between values and places the agents. The name of the file `path` is the default name of the
+    /// scenario.
+    pub fn scenario(self, path: &Path) -> Result<Scenario, Problem> {
+        let keys = &self.keys;
+        periodic::check_keys(keys)?;
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let Surroundings { solids, behind } = surroundings::surroundings(keys)?;
+        let mut scene = empty_scene(keys, solids);
+        let default = ProfileChoice::Named(ProfileName(DEFAULT_PROFILE.to_owned()));
+        let choice = keys.profile.as_ref().unwrap_or(&default);
+        let blend = profiles::blend(choice, &keys.parameters).under("profile")?;
+        let mut notes = self.notes;
+        scene.journeys = journeys::journeys(keys, (&scene.walls, &behind), &mut notes)?;
+        notes.extend(Population::new(keys, &blend, &behind, &mut scene).enter()?);
+        let duration_secs = duration(keys);
+        overcrowded::check(keys, &scene, duration_secs)?;
+        measurements::check(&keys.measurements, &scene.journeys.journeys)?;
+        off_floor::check(keys, &scene)?;
+        off_floor::check_starts(keys, &scene, &behind)?;
+        scene.pushes = pushes(&keys.events)?;
+        periodic::check(keys, &scene)?;
+        scene.ways = ways::ways(keys, (&scene, &behind), &mut notes)?;
+        scene.integrator = keys.integrator.for_scene(&scene);
+        scene.clock = numerics::clock_for(keys, &scene)?;
+        let placed = scene.agents.len() as u64;
+        let fewer = self.need.initial.saturating_sub(placed); // crowds with a density
+        let entering = self.need.entering - fewer;
+        notes.extend(doubts::notes(keys, &scene, entering));
+        notes.extend(slits::note(&scene.walls));
+        notes.extend(surroundings::without_effect(keys)?);
+        Ok(Scenario {
+            name: keys.name.clone().unwrap_or_else(|| stem.into_owned()),
+            description: keys.description.clone().unwrap_or_default(),
+            seed: seed(keys),
+            duration_secs,
+            stop: keys.stop.clone(),
+            measurements: keys.measurements.clone(),
+            view: view::of(keys.view.as_ref(), &scene).under("view")?,
+            labels: keys.labels.iter().map(Into::into).collect(),
+            changes: Vec::new(),
+            debug_agents: match &keys.debug_agents {
+                Some(ids) => without_repetition(ids)?,
+                None => spread(entering),
+            },
+            entering,
+            profile_name: blend.name,
+            document: self.document,
+            files: self.plans,
+            notes,
+            passage_width: ways::passable(keys, &scene),
+            scene,
+        })
+    }
+}
+
+/// Removes `$schema`, by which editors find the schema.
+fn without_schema(document: &mut Value) -> Result<(), Problem> {
+    let given = document
+        .as_object_mut()
+        .and_then(|document| document.remove("$schema"));
+    match given {
+        None | Some(Value::String(_)) => Ok(()),
+        Some(_) => {
+            let reason = "must be text, the location of the schema";
+            Err(Problem::new("$schema", reason))
+        }
+    }
+}
+
+fn duration(keys: &File) -> f64 {
+    keys.duration_secs.unwrap_or(DEFAULT_DURATION)
+}
+
+fn seed(keys: &File) -> u64 {
+    keys.seed.unwrap_or(Scene::default().seed)
+}
+
+/// The scene without agents, sources and pushes.
+fn empty_scene(keys: &File, solids: Vec<Polygon>) -> Scene {
+    let paper = Scene::default();
+    let seed = seed(keys);
+    Scene {
+        seed: keys.population_seed.unwrap_or(seed),
+        behavior_seed: Some(keys.behavior_seed.unwrap_or(seed)),
+        clock: numerics::first_clock(keys),
+        wall_method: keys.wall_method,
+        precision: keys.precision,
+        neighbor_lists: keys.neighbor_lists,
+        preferred_speed: keys.preferred_speed.unwrap_or(paper.preferred_speed),
+        max_speed: keys.max_speed.unwrap_or(paper.max_speed),
+        max_speed_ratio: max_speed_ratio(keys, &paper),
+        period: keys.periodic.map(Period::from),
+        ..Scene::with_obstacles(solids)
+    }
+}
+
+/// s_max / s_pref of agents with a preferred speed of their own; `None` if the file gives s_max.
+fn max_speed_ratio(keys: &File, paper: &Scene) -> Option<f64> {
+    let preferred = keys.preferred_speed.filter(|&speed| speed > 0.0);
+    let ratio = paper.max_speed / preferred.unwrap_or(paper.preferred_speed);
+    keys.max_speed.is_none().then_some(ratio)
+}
+
+fn pushes(events: &[file::Event]) -> Result<Vec<Push>, Problem> {
+    if events.len() > MOST_NUMBERED {
+        let reason = format!(
+            "{} events; at most {MOST_NUMBERED} are allowed",
+            events.len()
+        );
+        return Err(Problem::new("events", reason));
+    }
+    let push = |(k, event): (usize, &file::Event)| {
+        let place = format!("events[{k}]");
+        let given = (event.for_secs, event.region);
+        let changes = [&event.open, &event.close, &event.release];
+        let changes = changes.into_iter().flatten().count();
+        let (lasting, corners) = match (given, changes) {
+            ((Some(lasting), Some(corners)), 0) => (lasting, corners),
+            ((None, None), 1) => return Ok(None),
+            _ => {
+                let reason = "give one of `open`, `close` and `release`, or both `for_secs` and `region` of a push";
+                return Err(Problem::new(place, reason));
+            }
+        };
+        Ok(Some(Push {
+            region: region("region", corners).under(&place)?,
+            name: event.name.clone().unwrap_or(place),
+            at: event.at_secs,
+            lasting,
+            change: Override {
+                goal_scale: event.goal_scale,
+                ignore_contact: event.ignore_contact,
+                ignore_sph: event.ignore_sph,
+            },
+        }))
+    };
+    let pushes = events.iter().enumerate().map(push);
+    pushes.filter_map(Result::transpose).collect()
+}
+
+/// A dozen ids spread evenly over `entering` agents, or all ids if there are fewer.
+fn spread(entering: u64) -> Vec<u32> {
+    const DOZEN: u64 = 12;
+    let count = entering.min(DOZEN);
+    let ids = (0..count).map(|k| (2 * k + 1) * entering / (2 * count));
+    ids.map(|id| id as u32).collect() // at most MOST_AGENTS
+}
+
+fn without_repetition(ids: &[u32]) -> Result<Vec<u32>, Problem> {
+    let mut seen = BTreeSet::new();
+    for (k, id) in ids.iter().enumerate() {
+        if !seen.insert(id) {
+            let reason = format!("agent {id} is listed twice; remove one");
+            return Err(Problem::new(format!("debug_agents[{k}]"), reason));
+        }
+    }
+    Ok(ids.to_vec())
+}

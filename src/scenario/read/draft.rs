@@ -1,0 +1,175 @@
+//! A scenario file with its settings, read and checked key by key, before any agents are placed.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::scenario::build::need::Need;
+use crate::scenario::error::{Problem, ScenarioError};
+use crate::scenario::read::check::Contents;
+use crate::scenario::read::scenario::Scenario;
+use crate::scenario::read::setting::Setting;
+use crate::scenario::read::{document, late, plans};
+use crate::scenario::trajectories::Tracks;
+
+/// A scenario whose names, types and ranges are valid. Relations between values are not checked yet.
+#[derive(Debug, Clone)]
+pub struct Draft {
+    contents: Contents,
+    inputs: Inputs,
+}
+
+/// The file and the settings of a draft: error messages name the one that caused a problem.
+#[derive(Debug, Clone)]
+struct Inputs {
+    file: String,
+    /// The file without settings; `None` if there are none.
+    without: Option<Value>,
+    /// The settings with their paths in the document.
+    settings: Vec<(String, Setting)>,
+}
+
+impl Draft {
+    /// Reads a scenario from JSON and applies the settings. Messages call it `file`; paths in it are relative to the
+    /// folder of `file`.
+    ///
+    /// # Errors
+    /// The text is not JSON, a name, type or range is wrong, or there are too many agents.
+    pub fn read(text: &str, file: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
+        let mut inputs = Inputs {
+            file: file.to_owned(),
+            without: None,
+            settings: Vec::with_capacity(settings.len()),
+        };
+        let mut document = document::read(text, file)?;
+        document::rename_old_keys(&mut document).map_err(|problem| inputs.blame(problem))?;
+        if document.is_object() && !settings.is_empty() {
+            inputs.without = Some(document.clone());
+            for setting in settings {
+                let path = setting.apply(&mut document);
+                let path = path.map_err(|problem| setting.refused(problem))?;
+                inputs.settings.push((path, setting.clone()));
+            }
+        }
+        let contents = Contents::of(document, Path::new(file));
+        let mut contents = contents.map_err(|problem| inputs.blame(problem))?;
+        inputs.check_replaced()?;
+        contents.need.text = text.len() as u64;
+        Ok(Self { contents, inputs })
+    }
+
+    /// The size of its run.
+    pub fn need(&self) -> &Need {
+        &self.contents.need
+    }
+
+    /// The trajectories from which it begins, and the time in them at which it does, seconds; `None` if it names no
+    /// file.
+    ///
+    /// # Errors
+    /// The file has changed since [`read`](Self::read), and is invalid now.
+    pub fn trajectories(&self) -> Result<Option<(Tracks, f64)>, ScenarioError> {
+        let tracks = self.contents.trajectories(Path::new(&self.inputs.file));
+        tracks.map_err(|problem| self.inputs.blame(problem))
+    }
+
+    /// Checks the relations between values and places the agents.
+    ///
+    /// # Errors
+    /// The first problem, with its place.
+    pub fn scenario(self) -> Result<Scenario, ScenarioError> {
+        let Self { contents, inputs } = self;
+        let ends = contents.ends(inputs.without.as_ref());
+        let late = contents.late(ends);
+        let scenario = contents.scenario(Path::new(&inputs.file));
+        let mut scenario = scenario.map_err(|problem| inputs.blame(problem))?;
+        scenario.notes.extend(late);
+        scenario.notes.extend(late::idle(&scenario.scene, ends));
+        scenario.changes = inputs.changes();
+        Ok(scenario)
+    }
+
+    /// The [`scenario`](Self::scenario) and the size of its run, if it fits into `there` bytes of memory (`None`: no
+    /// limit). Writing its outputs takes `output` bytes per agent.
+    ///
+    /// # Errors
+    /// It does not fit, or an error of [`scenario`](Self::scenario).
+    pub fn within(
+        self,
+        there: Option<u64>,
+        output: u64,
+    ) -> Result<(Scenario, Need), ScenarioError> {
+        let (file, need) = (self.inputs.file.clone(), self.contents.need);
+        let check = |need: &Need| need.check(&file, output, there.unwrap_or(u64::MAX));
+        check(&need)?;
+        let scenario = self.scenario()?;
+        let need = need.with_lists(&scenario.scene);
+        check(&need)?;
+        Ok((scenario, need))
+    }
+}
+
+impl Inputs {
+    /// Checks the values in the file that settings replace.
+    fn check_replaced(&self) -> Result<(), ScenarioError> {
+        let Some(document) = &self.without else {
+            return Ok(());
+        };
+        for (path, setting) in &self.settings {
+            let key = &setting.path()[0];
+            let is_there = setting.value_in(document).is_some_and(|v| !v.is_null());
+            let Some(value) = document.get(key).filter(|_| is_there) else {
+                continue;
+            };
+            if value.is_string() && plans::KEYS.contains(&key.as_str()) {
+                continue; // the name of a file
+            }
+            let problem = Contents::check_keys(&json!({ key: value })).err();
+            // Other settings may mend what lies elsewhere.
+            if let Some(problem) = problem.filter(|problem| problem.seen_from(path).is_some()) {
+                let file = self.file.clone();
+                return Err(ScenarioError::Invalid { file, problem });
+            }
+        }
+        Ok(())
+    }
+
+    /// The settings whose values differ from those in the file, as typed.
+    fn changes(&self) -> Vec<String> {
+        let differs = |(path, setting): &&(String, Setting)| {
+            let before = self
+                .without
+                .as_ref()
+                .and_then(|file| setting.value_in(file));
+            // Elements that were added to a list have no value in the file.
+            path.ends_with(']') || before != Some(setting.value())
+        };
+        let changes = self.settings.iter().filter(differs);
+        let mut changes: Vec<_> = changes.map(|(_, setting)| setting.brief()).collect();
+        changes.dedup(); // a floor plan sets several keys
+        changes
+    }
+
+    /// The error for a problem: it names the setting that put the value there, else the file, and the settings if the
+    /// file is valid without them.
+    fn blame(&self, problem: Problem) -> ScenarioError {
+        for (path, setting) in self.settings.iter().rev() {
+            if let Some(problem) = problem.seen_from(path) {
+                return setting.refused(problem);
+            }
+        }
+        let mut file = self.file.clone();
+        if let Some(document) = &self.without {
+            let path = Path::new(&self.file);
+            let alone = Contents::of(document.clone(), path);
+            if alone.and_then(|contents| contents.scenario(path)).is_ok() {
+                let settings = self.settings.iter();
+                let mut settings: Vec<_> = settings.map(|(_, one)| format!(" {one}")).collect();
+                settings.dedup();
+                file.push_str(" with");
+                file.extend(settings);
+            }
+        }
+        ScenarioError::Invalid { file, problem }
+    }
+}

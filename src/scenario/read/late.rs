@@ -1,0 +1,110 @@
+//! Notes on events, closures and measurements that begin after the end of a run, and on agents that never start walking
+//! in it.
+
+use serde_json::Value;
+
+use crate::engine::agents::NewAgent;
+use crate::engine::random::Purpose;
+use crate::engine::scene::Scene;
+use crate::scenario::error::numbers::brief;
+use crate::scenario::error::quote::shown;
+
+/// Lists, and the keys of their elements that say when something begins.
+const BEGIN: [(&str, &str); 3] = [
+    ("events", "at_secs"),
+    ("sources", "start_secs"),
+    ("entrances", "from_secs"),
+];
+/// The same for what is measured.
+const MEASURED: [&str; 3] = ["at_secs", "from_secs", "start_secs"];
+/// The measurement of the flow until a time.
+const FLOW_UNTIL: [&str; 2] = ["flow_until", "until_secs"];
+/// Most places in the note.
+const MOST_NAMED: usize = 4;
+
+/// A note on what begins after `last`, in a run that ends at `end`, seconds. Both are the same unless the run is
+/// shorter than its scenario.
+pub fn note(document: &Value, end: f64, last: f64) -> Option<String> {
+    let late = times(document).into_iter().filter(|(_, at)| *at > last);
+    let late: Vec<(String, f64)> = late.collect();
+    let (place, at) = late.first()?;
+    let others = late.iter().skip(1).map(|(place, _)| place.as_str());
+    let mut named: Vec<String> = others.take(MOST_NAMED - 1).map(str::to_owned).collect();
+    if late.len() > MOST_NAMED {
+        named.push(format!("{} more", late.len() - MOST_NAMED));
+    }
+    let (at, end) = (brief(*at), brief(end));
+    let mut note = format!("{place}: {at} s is after the end of the run, {end} s");
+    if !named.is_empty() {
+        note += "; so are ";
+        note += &named.join(", ");
+    }
+    Some(note)
+}
+
+/// A note on the agents that enter, but have not started walking by `last`, in a run that ends at `end`, seconds.
+pub fn idle(scene: &Scene, [end, last]: [f64; 2]) -> Option<String> {
+    let wait = |agent: &NewAgent, id: u32| {
+        let traits = &scene.groups[usize::from(agent.group)].traits;
+        let drawn = || {
+            let premovement = traits.premovement.as_ref()?;
+            Some(premovement.draw(scene.seed, Purpose::Premovement, id))
+        };
+        agent.premovement.or_else(drawn).unwrap_or(0.0)
+    };
+    let initial = scene.agents.iter().zip(0..);
+    let idle = initial.filter(|&(agent, id)| wait(agent, id) >= last && end > 0.0);
+    let count = idle.count();
+    let sources = scene.sources.iter();
+    let sources = sources.map(|one| (&one.name, one.group, Some(one.start)));
+    let entrances = scene.entrances.iter();
+    let entrances = entrances.map(|one| (&one.name, one.group, one.arrivals.first()));
+    // Those who come after the end have a note of their own.
+    let later = sources.chain(entrances).filter_map(|(name, group, first)| {
+        let first = first.filter(|&first| first <= last)?;
+        let premovement = scene.groups[usize::from(group)]
+            .traits
+            .premovement
+            .as_ref()?;
+        (premovement.share_up_to(last - first) <= 0.0).then_some(name)
+    });
+    let named = later.map(|name| format!("all of {}", shown(name)));
+    let some = (count > 0).then(|| format!("{count} of the {} at the start", scene.agents.len()));
+    let who: Vec<String> = some.into_iter().chain(named).collect();
+    (!who.is_empty()).then(|| {
+        let (who, end) = (who.join(", "), brief(end));
+        format!("premovement_secs: agents that never start walking before the end of the run, {end} s: {who}")
+    })
+}
+
+/// The times at which something begins, seconds, with their places.
+fn times(document: &Value) -> Vec<(String, f64)> {
+    let mut times = Vec::new();
+    for (list, key) in BEGIN {
+        for (k, element) in elements(&document[list]) {
+            let at = element[key].as_f64();
+            times.extend(at.map(|at| (format!("{list}[{k}].{key}"), at)));
+        }
+    }
+    for (k, exit) in elements(&document["exits"]) {
+        for (l, closed) in elements(&exit["closed_secs"]) {
+            let from = closed[0].as_f64();
+            times.extend(from.map(|from| (format!("exits[{k}].closed_secs[{l}]"), from)));
+        }
+    }
+    for (k, measurement) in elements(&document["measurements"]) {
+        for (kind, keys) in measurement.as_object().into_iter().flatten() {
+            let own = (kind == FLOW_UNTIL[0]).then_some(FLOW_UNTIL[1]);
+            let found = MEASURED.into_iter().chain(own).filter_map(|key| {
+                let at = keys[key].as_f64()?;
+                Some((format!("measurements[{k}].{kind}.{key}"), at))
+            });
+            times.extend(found);
+        }
+    }
+    times
+}
+
+fn elements(list: &Value) -> impl Iterator<Item = (usize, &Value)> {
+    list.as_array().into_iter().flatten().enumerate()
+}

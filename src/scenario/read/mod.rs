@@ -1,0 +1,12 @@
+//! The text of a file, with settings, presets and the files that it names → a checked [`Scenario`](scenario::Scenario).
+
+pub mod check;
+pub mod data;
+pub mod document;
+pub mod draft;
+pub mod effective;
+pub mod late;
+pub mod plans;
+pub mod scenario;
+pub mod setting;
+pub mod shipped;

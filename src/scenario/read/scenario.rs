@@ -1,0 +1,154 @@
+//! A checked scenario.
+
+use std::io::ErrorKind;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::engine::scene::Scene;
+use crate::engine::ways::Ways;
+use crate::scenario::build::view::View;
+use crate::scenario::build::ways;
+use crate::scenario::error::ScenarioError;
+use crate::scenario::file::Stop;
+use crate::scenario::floor_plan::Label;
+use crate::scenario::input;
+use crate::scenario::measurements::Measurement;
+use crate::scenario::read::document;
+use crate::scenario::read::draft::Draft;
+use crate::scenario::read::plans::PlanFile;
+use crate::scenario::read::setting::Setting;
+use crate::scenario::read::shipped::SHIPPED;
+
+/// A checked scenario: what to simulate, for how long, and what to measure and show.
+#[derive(Debug, Clone)]
+pub struct Scenario {
+    /// Its name.
+    pub name: String,
+    /// What it shows, in one line; may be empty.
+    pub description: String,
+    /// What to simulate.
+    pub scene: Scene,
+    /// The key `seed`: the seed of the population and of behavior, unless they have their own.
+    pub seed: u64,
+    /// Simulated time, seconds.
+    pub duration_secs: f64,
+    /// When to stop earlier.
+    pub stop: Stop,
+    /// What to measure.
+    pub measurements: Vec<Measurement>,
+    /// What pictures and recordings show.
+    pub view: View,
+    /// Texts in them.
+    pub labels: Vec<Label>,
+    /// Ids of the agents whose forces a recording shows. Some of them may never enter.
+    pub debug_agents: Vec<u32>,
+    /// Upper bound on the agents that enter during the run; all ids are lower.
+    pub entering: u64,
+    /// The name of the default profile, for agents that name none.
+    pub profile_name: String,
+    /// The file with the settings applied, its preset expanded and the contents of the files that it names.
+    pub document: Value,
+    /// The files that it names.
+    pub files: Vec<PlanFile>,
+    /// The settings that differ from the file, as typed: `gas_constant=400`, `seed 2`.
+    pub changes: Vec<String>,
+    /// What was changed to make it run, for readers of its results.
+    pub notes: Vec<String>,
+    /// Agents find ways through passages of at least this width, meters; `None`: they walk straight.
+    pub passage_width: Option<f64>,
+}
+
+impl Scenario {
+    /// The [`document`](Self::document) as indented JSON, which [`parse`](Self::parse) reads.
+    pub fn to_text(&self) -> String {
+        document::write(&self.document)
+    }
+
+    /// The mass of an average person, kg, if the scenario measures forces on walls.
+    pub fn mass_on_walls(&self) -> Option<f64> {
+        self.measurements
+            .iter()
+            .find_map(Measurement::mass_on_walls)
+    }
+
+    /// The floor without path maps, for goals that agents get during the run; `None` if agents walk straight, or see
+    /// everything.
+    ///
+    /// # Errors
+    /// The walls cross, or lie too far away.
+    pub fn floor(&self) -> Result<Option<Ways>, ScenarioError> {
+        let width = self.passage_width.filter(|_| !self.scene.walls.is_empty());
+        let floor = width.map(|width| ways::floor(&self.scene, width));
+        floor.transpose().map_err(|problem| ScenarioError::Invalid {
+            file: self.name.clone(),
+            problem,
+        })
+    }
+
+    /// Reads a scenario from JSON; see [`Draft::read`].
+    ///
+    /// # Errors
+    /// The first problem in the text or the settings, with its place.
+    pub fn parse(text: &str, file: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
+        Draft::read(text, file, settings)?.scenario()
+    }
+
+    /// Reads a scenario from a file.
+    ///
+    /// # Errors
+    /// The file cannot be read or is too long, or an error of [`parse`](Self::parse).
+    pub fn load(path: &Path, settings: &[Setting]) -> Result<Self, ScenarioError> {
+        let text = read_text(path)?;
+        Self::parse(&text, &path.display().to_string(), settings)
+    }
+
+    /// Reads one of the built-in scenarios.
+    ///
+    /// # Errors
+    /// An unknown name, or an error of [`parse`](Self::parse) caused by the settings.
+    pub fn shipped(name: &str, settings: &[Setting]) -> Result<Self, ScenarioError> {
+        Self::parse(shipped_text(name)?, &format!("{name}.json"), settings)
+    }
+}
+
+/// The text of one of the built-in scenarios.
+///
+/// # Errors
+/// An unknown name.
+pub fn shipped_text(name: &str) -> Result<&'static str, ScenarioError> {
+    let found = SHIPPED.iter().find(|shipped| shipped.name == name);
+    let shipped = found.ok_or_else(|| ScenarioError::UnknownName {
+        name: name.to_owned(),
+        known: SHIPPED.map(|shipped| shipped.name).join(", "),
+    })?;
+    Ok(shipped.text)
+}
+
+/// Reads the text of a scenario file.
+///
+/// # Errors
+/// The file cannot be read, or is longer than 256 MiB.
+pub fn read_text(path: &Path) -> Result<String, ScenarioError> {
+    input::text(path).map_err(|error| ScenarioError::Unreadable {
+        file: path.display().to_string(),
+        reason: unreadable_because(&error),
+    })
+}
+
+/// The system's message about a file, with advice.
+fn unreadable_because(error: &std::io::Error) -> String {
+    let said = error.to_string();
+    let said = said.split(" (os error").next().unwrap_or_default();
+    match error.kind() {
+        ErrorKind::NotFound => {
+            format!("{said}; `sandbox list` shows the built-in scenarios")
+        }
+        ErrorKind::IsADirectory => format!("{said}; a scenario is a file"),
+        ErrorKind::InvalidData => {
+            format!("{said}; save it as UTF-8, or continue a checkpoint with `sandbox resume`")
+        }
+        ErrorKind::FileTooLarge => format!("{said}; a scenario must be shorter"),
+        _ => said.to_owned(),
+    }
+}
