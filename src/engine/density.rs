@@ -18,8 +18,7 @@ use crate::engine::pairs::{
 };
 
 /// Parameters of SPH density and pressure, shared by all profiles of a blend.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
-#[serde(default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SphParameters {
     /// h, meters (§5.2).
     pub support_radius: f64,

@@ -8,8 +8,7 @@ use crate::engine::neighbors::BLOCK;
 use crate::engine::pairs::{Level, dispatch};
 
 /// Parameters of Eq. 17.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
-#[serde(default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GoalForce {
     /// K^goal, dimensionless.
     pub goal_scale: f64,

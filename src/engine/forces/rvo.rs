@@ -20,8 +20,7 @@ use crate::engine::math::Vector;
 use crate::engine::random::{self, Purpose};
 
 /// Parameters of Eq. 20 and of its sampling.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
-#[serde(default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rvo {
     /// w, meters: the weight of the time to collision.
     pub collision_weight: f64,

@@ -20,8 +20,7 @@ use crate::engine::neighbors::{BLOCK, Run};
 use crate::engine::pairs::{Bodies, Level, Real, Simd, dispatch, each};
 
 /// Parameters of Eqs. 18 and 19 and of the field of view.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
-#[serde(default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SocialForce {
     /// V₀, m²/s².
     pub agent_strength: f64,

@@ -22,7 +22,7 @@ pub fn check(keys: &File, scene: &Scene) -> Result<(), Problem> {
         accept(is_on_floor(zone.area.points(), walls)).under(&place)?;
     }
     for (k, measurement) in keys.measurements.iter().enumerate() {
-        for (key, observed) in measurement.observed_places() {
+        for (key, observed) in measurement.places() {
             let found = match observed {
                 Observed::Region(region) => is_on_floor(&region.corners(), walls),
                 Observed::Line(ends) => is_line_on_floor(ends, walls),

@@ -142,7 +142,7 @@ pub fn check(keys: &File, scene: &Scene) -> Result<(), Problem> {
     let measured = keys.measurements.iter().enumerate();
     let measured = measured.flat_map(|(k, measurement)| {
         let places = measurement.places().into_iter();
-        places.map(move |(key, region)| (format!("measurements[{k}].{key}"), region))
+        places.map(move |(key, place)| (format!("measurements[{k}].{key}"), place.bounds()))
     });
     let zones = scene.journeys.zones.iter().map(|zone| {
         let [min, max] = bounds(zone.area.points().iter().copied()).unwrap_or_default();

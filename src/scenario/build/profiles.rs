@@ -1,15 +1,11 @@
 //! Profiles and blends: their keys in a file, and their conversion to blends of the engine.
 
-use serde_json::Map;
-
-use crate::engine::density::SphParameters;
 use crate::engine::profile::{Blend, BlendStep, Profile};
-use crate::scenario::error::numbers::plain as plain_value;
+use crate::scenario::error::numbers::brief;
 use crate::scenario::error::quote::shown;
 use crate::scenario::error::{Problem, Under, suggestion};
 use crate::scenario::keys::catalog;
 use crate::scenario::keys::catalog::Parameters;
-use crate::scenario::keys::names::names;
 use crate::scenario::keys::profiles::{CustomProfile, ProfileChoice, ProfileName, Step};
 
 /// Converts a profile or blend; the scenario-wide values `overriding` override its own.
@@ -161,26 +157,27 @@ fn own_parameters(choice: &ProfileChoice) -> Parameters {
 
 /// The SPH parameters given anywhere in a blend, which apply to all of it.
 fn shared_by(custom: &CustomProfile, steps: &[Step]) -> Result<Parameters, Problem> {
-    let mut shared = Map::new();
+    let mut shared = Parameters::default();
     let of_steps = steps.iter().enumerate().map(|(k, step)| {
         let own = own_parameters(&step.profile);
         (format!("blend[{k}].profile."), own)
     });
     let of_all = std::iter::once((String::new(), custom.parameters));
-    for (place, own) in of_all.chain(of_steps) {
-        let own = own.given();
-        for &key in names::<SphParameters>() {
-            let Some(here) = own.get(key) else { continue };
-            let before = shared.entry(key).or_insert_with(|| here.clone());
+    for (place, mut own) in of_all.chain(of_steps) {
+        for (key, field) in catalog::SPH {
+            let Some(here) = *field(&mut own) else {
+                continue;
+            };
+            let before = *field(&mut shared).get_or_insert(here);
             if before != here {
                 let reason = format!(
                     "must be the same in all profiles of a blend: {} here, {} before; give it once",
-                    plain_value(here),
-                    plain_value(before)
+                    brief(here),
+                    brief(before)
                 );
                 return Err(Problem::new(format!("{place}parameters.{key}"), reason));
             }
         }
     }
-    Ok(catalog::from_values(shared))
+    Ok(shared)
 }

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
-use crate::scenario::keys::catalog::Parameters;
+use crate::scenario::keys::parameters::Parameters;
 
 /// A calibrated profile.
 #[derive(Debug, Deserialize)]

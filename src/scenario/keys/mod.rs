@@ -9,6 +9,7 @@ pub mod goals;
 pub mod limits;
 pub mod names;
 pub mod numerics;
+pub mod parameters;
 pub mod people;
 pub mod periodic;
 pub mod places;

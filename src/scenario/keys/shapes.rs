@@ -72,11 +72,20 @@ impl From<&Label> for floor_plan::Label {
     }
 }
 
+/// The region of corners that [`region`] has checked.
+impl From<Corners> for Region {
+    fn from(Corners([min, max]): Corners) -> Self {
+        let (min, max) = (min.into(), max.into());
+        Self { min, max }
+    }
+}
+
 /// A region from its lower left and upper right corner, which must be in this order.
-pub fn region(key: &str, Corners([min, max]): Corners) -> Result<Region, Problem> {
-    let (min, max): (Vector, Vector) = (min.into(), max.into());
+pub fn region(key: &str, corners: Corners) -> Result<Region, Problem> {
+    let region = Region::from(corners);
+    let (min, max) = (region.min, region.max);
     if min.x <= max.x && min.y <= max.y {
-        return Ok(Region { min, max });
+        return Ok(region);
     }
     let reason = format!(
         "the lower left corner comes first: ({}, {}) is not below and left of ({}, {})",

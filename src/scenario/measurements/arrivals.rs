@@ -1,11 +1,11 @@
 //! Measurements of arrivals: their number, flows (Tables 1 and 2), pauses.
 
-use crate::scenario::keys::limits::LONGEST_TIME;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::Measure;
+use super::{Measure, Observed};
 use crate::engine::simulation::Simulation;
+use crate::scenario::keys::limits::LONGEST_TIME;
 
 /// (n − 1) / (time of the n-th counted arrival − time of the first), P/s.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -61,6 +61,10 @@ pub struct Locked {
 impl Measure for FlowOfFirst {
     type Seen = ();
 
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
+
     fn names(&self) -> Vec<(String, &'static str)> {
         vec![("flow_per_s".to_owned(), "P/s")]
     }
@@ -73,6 +77,10 @@ impl Measure for FlowOfFirst {
 
 impl Measure for FlowUntil {
     type Seen = ();
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
 
     fn names(&self) -> Vec<(String, &'static str)> {
         vec![(format!("flow_first_{}s_per_s", self.until_secs), "P/s")]
@@ -91,6 +99,10 @@ impl Measure for FlowUntil {
 impl Measure for Evacuated {
     type Seen = ();
 
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
+
     fn names(&self) -> Vec<(String, &'static str)> {
         vec![("evacuated".to_owned(), "agents")]
     }
@@ -102,6 +114,10 @@ impl Measure for Evacuated {
 
 impl Measure for Uncounted {
     type Seen = ();
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
 
     fn names(&self) -> Vec<(String, &'static str)> {
         vec![("uncounted".to_owned(), "agents")]
@@ -115,6 +131,10 @@ impl Measure for Uncounted {
 
 impl Measure for Pauses {
     type Seen = ();
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
 
     fn names(&self) -> Vec<(String, &'static str)> {
         let between = "flow_between_pauses_per_s".to_owned();
@@ -132,6 +152,10 @@ impl Measure for Pauses {
 
 impl Measure for Locked {
     type Seen = ();
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
 
     fn names(&self) -> Vec<(String, &'static str)> {
         vec![("locked".to_owned(), "runs")]

@@ -1,16 +1,16 @@
 //! Forces on people, in newtons.
 
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::Corners;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::Measure;
 use super::window::{MOST_MASS, Window, body_mass, every};
+use super::{Measure, Observed};
 use crate::analysis::body_forces::{BodyForces as Seen, PersonForce, THRESHOLDS, WIDTH, pressed};
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::Corners;
 
 /// The name of the values if none is given.
 const NAME: &str = "body_force";
@@ -61,6 +61,10 @@ impl BodyForces {
 impl Measure for BodyForces {
     /// With the time between two samples, seconds.
     type Seen = (Seen, f64);
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Observed::region("body_forces.region", self.region)
+    }
 
     fn check(&self) -> Result<(), Problem> {
         self.window().check("body_forces")

@@ -1,11 +1,11 @@
 //! The smallest distance between the centers of two agents.
 
-use crate::scenario::keys::limits::LONGEST_TIME;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Measure, is_due};
+use super::{Measure, Observed, is_due};
 use crate::engine::simulation::Simulation;
+use crate::scenario::keys::limits::LONGEST_TIME;
 
 /// Time between the frames that are measured, seconds.
 const EVERY_SECS: f64 = 0.1;
@@ -23,6 +23,10 @@ pub struct Closest {
 
 impl Measure for Closest {
     type Seen = Option<f64>;
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
 
     fn names(&self) -> Vec<(String, &'static str)> {
         vec![("closest_centers".to_owned(), "D_i + D_j")]

@@ -1,14 +1,14 @@
 //! Contacts between agents, for the speed of sound.
 
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::{Corners, region};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::Measure;
+use super::{Measure, Observed};
 use crate::analysis::sound::{self, Contacts};
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::{Corners, region};
 
 /// The mean number of contacts per agent in a region at one time, and their modulus M along x, m²: with it linear
 /// theory gives the speed of sound (see [`crate::analysis::sound`]).
@@ -25,6 +25,10 @@ pub struct ContactsAt {
 impl Measure for ContactsAt {
     type Seen = Option<Contacts>;
 
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Observed::region("contacts.region", Some(self.region))
+    }
+
     fn check(&self) -> Result<(), Problem> {
         region("contacts.region", self.region).map(|_| ())
     }
@@ -38,8 +42,7 @@ impl Measure for ContactsAt {
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
         let frame = simulation.frame();
         if frame.clock.frame() == frame.clock.frame_at(self.at_secs) {
-            let region = region("", self.region).ok();
-            *seen = region.and_then(|region| sound::contacts(simulation, &region));
+            *seen = sound::contacts(simulation, &self.region.into());
         }
     }
 

@@ -1,15 +1,15 @@
 //! Crowd pressure: density times the variance of the velocities.
 
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::Corners;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::Measure;
 use super::window::{Window, every};
+use super::{Measure, Observed};
 use crate::analysis::crowd_pressure::{BEFORE_ACCIDENT, Pressures};
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::Corners;
 
 /// The name of the values if none is given.
 const NAME: &str = "crowd_pressure";
@@ -52,6 +52,10 @@ impl CrowdPressure {
 impl Measure for CrowdPressure {
     /// With the time between two samples, seconds.
     type Seen = (Pressures, f64);
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Observed::region("crowd_pressure.region", self.region)
+    }
 
     fn check(&self) -> Result<(), Problem> {
         self.window().check("crowd_pressure")

@@ -1,14 +1,15 @@
 //! Mean and standard deviation of ρ_i at one time (Tables 1 and 2).
 
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::{Corners, region};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::Measure;
+use super::{Measure, Observed};
 use crate::analysis::statistics::MeanStd;
+use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::{Corners, region};
 
 /// Mean and population standard deviation of ρ_i at one time, over all agents or those in a region, P/m².
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -23,6 +24,10 @@ pub struct Density {
 
 impl Measure for Density {
     type Seen = [Option<f64>; 2];
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Observed::region("density.region", self.region)
+    }
 
     fn check(&self) -> Result<(), Problem> {
         self.region.map_or(Ok(()), |corners| {
@@ -45,7 +50,7 @@ impl Measure for Density {
         if frame.clock.frame() != frame.clock.frame_at(self.at_secs) || densities.is_empty() {
             return;
         }
-        let region = self.region.and_then(|corners| region("", corners).ok());
+        let region = self.region.map(Region::from);
         let positions = &frame.agents.position;
         let inside = frame.agents.present();
         let inside = inside.filter(|&i| region.is_none_or(|r| r.contains(positions[i])));

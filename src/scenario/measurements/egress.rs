@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Measure;
+use super::{Measure, Observed};
 use crate::engine::journeys::Kind;
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
@@ -143,6 +143,10 @@ impl Seen {
 
 impl Measure for Egress {
     type Seen = Seen;
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
 
     fn names(&self) -> Vec<(String, &'static str)> {
         let of = self.journey.as_ref();

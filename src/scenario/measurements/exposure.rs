@@ -1,16 +1,16 @@
 //! How long people are in dense crowds and stand, and how large dense crowds are.
 
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::Corners;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::Measure;
 use super::window::{Window, every};
+use super::{Measure, Observed};
 use crate::analysis::exposure::{DENSITIES, Exposed, Exposure as Seen, PersonExposure};
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::Corners;
 
 /// The name of the values if none is given.
 const NAME: &str = "exposure";
@@ -57,6 +57,10 @@ impl Exposure {
 impl Measure for Exposure {
     /// With the time between two samples, seconds.
     type Seen = (Seen, f64);
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Observed::region("exposure.region", self.region)
+    }
 
     fn check(&self) -> Result<(), Problem> {
         self.window().check("exposure")

@@ -1,14 +1,14 @@
 //! Computing time per frame, by stage.
 
-use crate::scenario::keys::limits::LONGEST_TIME;
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::Measure;
+use super::{Measure, Observed};
 use crate::engine::simulation::{Simulation, Stage};
+use crate::scenario::keys::limits::LONGEST_TIME;
 
 /// The computing time per frame from a given time on, milliseconds, for each stage. It depends on the machine and on
 /// what runs beside it, so it is data rather than a value.
@@ -59,6 +59,10 @@ impl FrameTime {
 impl Measure for FrameTime {
     /// The times at the first and at the last frame, and the number of agents in the last one.
     type Seen = (Option<Spent>, Option<Spent>, usize);
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
 
     fn observe(&self, (first, last, agents): &mut Self::Seen, simulation: &Simulation) {
         let frame = simulation.frame();

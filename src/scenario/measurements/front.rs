@@ -1,17 +1,18 @@
 //! The front of a start or a push that runs through a crowd: how fast, and how far.
 
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::{Corners, Point, region, wide_region};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::Measure;
+use super::{Measure, Observed};
 use crate::analysis::front;
 use crate::analysis::statistics::Estimate;
 use crate::engine::math::{Vector, direction};
+use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::{Corners, Point, wide_region};
 
 /// The name of the values if none is given.
 const NAME: &str = "front";
@@ -96,6 +97,10 @@ impl Measure for Front {
     /// The agents that were there at the start, by id; `None` before it.
     type Seen = Option<Vec<Reached>>;
 
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Observed::region("front.region", self.region)
+    }
+
     fn check(&self) -> Result<(), Problem> {
         if self.way() == Vector::zeros() {
             return Err(Problem::new("front.direction", "must not be [0, 0]"));
@@ -134,7 +139,7 @@ impl Measure for Front {
         }
         let way = self.way();
         let people = seen.get_or_insert_with(|| {
-            let region = self.region.and_then(|corners| region("", corners).ok());
+            let region = self.region.map(Region::from);
             let is_there = |p: Vector| region.is_none_or(|region| region.contains(p));
             let there = agents.present().filter(|&i| is_there(agents.position[i]));
             let mut people: Vec<Reached> = there

@@ -6,8 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::Measure;
 use super::fence::Fence;
+use super::{Measure, Observed};
 use crate::engine::math::{Vector, are_finite, numbers_are_finite};
 use crate::engine::simulation::Simulation;
 
@@ -44,6 +44,10 @@ pub struct Watched {
 
 impl Measure for Integrity {
     type Seen = Watched;
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
 
     fn names(&self) -> Vec<(String, &'static str)> {
         vec![

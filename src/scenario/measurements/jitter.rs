@@ -1,12 +1,12 @@
 //! Jitter: the kinetic energy of a crowd that should rest.
 
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Mean, Measure, is_due};
+use super::{Mean, Measure, Observed, is_due};
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
 
 /// The share of the agents, the least dense ones, that count as the rim of a crowd.
 const RIM: f64 = 0.25;
@@ -27,6 +27,10 @@ pub struct Jitter {
 impl Measure for Jitter {
     /// Over agents and frames: all, inside and rim.
     type Seen = [Mean; 3];
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
 
     fn check(&self) -> Result<(), Problem> {
         if self.from_secs > self.to_secs {

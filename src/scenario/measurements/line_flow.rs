@@ -1,14 +1,11 @@
 //! The flow of people across a line, with density and speed before it.
 
-use crate::scenario::error::Problem;
-use crate::scenario::keys::shapes::{Corners, Point, region, wide_region};
-use crate::scenario::trajectories::Tracks;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::Measure;
 use super::window::walkable_area;
+use super::{Measure, Observed};
 use crate::analysis::crossing::{Balance, Line, Passages};
 use crate::engine::clock::Clock;
 use crate::engine::geometry::Walls;
@@ -16,6 +13,9 @@ use crate::engine::math::Vector;
 use crate::engine::period::Period;
 use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::keys::shapes::{Corners, Point, wide_region};
+use crate::scenario::trajectories::Tracks;
 
 /// Values by their names, and data with their name.
 type Measured = (Vec<(String, Option<f64>)>, (String, Value));
@@ -85,21 +85,8 @@ impl LineFlow {
     }
 
     fn line(&self) -> Line {
-        let [start, end] = self.ends();
+        let [start, end] = self.line.map(Vector::from);
         Line { start, end }
-    }
-
-    /// The ends of the line, meters.
-    pub(super) fn ends(&self) -> [Vector; 2] {
-        self.line.map(Vector::from)
-    }
-
-    pub(super) fn around_line(&self) -> Region {
-        let Line { start, end } = self.line();
-        Region {
-            min: start.inf(&end),
-            max: start.sup(&end),
-        }
     }
 
     /// The times of the first and the last passage that count, and the flow between them, P/s.
@@ -111,6 +98,15 @@ impl LineFlow {
 
 impl Measure for LineFlow {
     type Seen = Seen;
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        let line = (
+            "line_flow.line",
+            Observed::Line(self.line.map(Vector::from)),
+        );
+        let region = Observed::region("line_flow.region", self.region);
+        std::iter::once(line).chain(region).collect()
+    }
 
     fn check(&self) -> Result<(), Problem> {
         let problem = |key: &str, reason: &str| Err(Problem::new(key, reason));
@@ -237,7 +233,7 @@ impl LineFlow {
         }
         let every = clock.frame_at(EVERY_SECS).max(1);
         let is_due = clock.frame().is_multiple_of(every);
-        let region = self.region.and_then(|corners| region("", corners).ok());
+        let region = self.region.map(Region::from);
         let mut sample = Sample {
             time: now,
             ..Sample::default()
@@ -270,7 +266,7 @@ impl LineFlow {
 
     fn results(&self, seen: &Seen, walls: &Walls) -> Vec<Option<f64>> {
         let flow = self.flow(&seen.times);
-        let region = self.region.and_then(|corners| region("", corners).ok());
+        let region = self.region.map(Region::from);
         let ends = flow.map_or([f64::NAN; 2], |(ends, _)| ends);
         let samples = seen.samples.iter();
         let samples = samples.filter(|sample| (ends[0]..=ends[1]).contains(&sample.time));

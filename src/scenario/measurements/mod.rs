@@ -63,9 +63,7 @@ pub use wave::{Wave, WaveData};
 
 use super::error::{Problem, Under};
 use super::keys::places::journey_named;
-use super::keys::shapes::region;
 use crate::engine::journeys::Journey;
-use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use mean::Mean;
 use running::{Running, started};
@@ -88,6 +86,9 @@ pub trait Measure: fmt::Debug + Clone + Send + Sync + 'static {
     fn names(&self) -> Vec<(String, &'static str)> {
         Vec::new()
     }
+
+    /// Where it observes people, by the keys that say so; nowhere in particular if it is empty.
+    fn places(&self) -> Vec<(&'static str, Observed)>;
 
     /// The time until which it needs densities, seconds.
     fn needs_density_until(&self) -> Option<f64> {
@@ -197,29 +198,9 @@ impl Measurement {
         }
     }
 
-    /// The regions that it observes and the boxes around its lines, by their keys.
-    pub(super) fn places(&self) -> Vec<(&'static str, Region)> {
-        let places = match self {
-            Self::Density(keys) => vec![("density.region", keys.region)],
-            Self::Front(keys) => vec![("front.region", keys.region)],
-            Self::Oscillation(keys) => vec![("oscillation.region", Some(keys.region))],
-            Self::Contacts(keys) => vec![("contacts.region", Some(keys.region))],
-            Self::Walks(keys) => vec![("walks.region", keys.region)],
-            Self::Exposure(keys) => vec![("exposure.region", keys.region)],
-            Self::ServiceLevels(keys) => vec![("service_levels.region", keys.region)],
-            Self::CrowdPressure(keys) => vec![("crowd_pressure.region", keys.region)],
-            Self::BodyForces(keys) => vec![("body_forces.region", keys.region)],
-            Self::LineFlow(keys) => {
-                let line = ("line_flow.line", keys.around_line());
-                let region = keys.region.and_then(|corners| region("", corners).ok());
-                let region = region.map(|region| ("line_flow.region", region));
-                return std::iter::once(line).chain(region).collect();
-            }
-            _ => Vec::new(),
-        };
-        let found =
-            |(key, corners): (&'static str, Option<_>)| Some((key, region("", corners?).ok()?));
-        places.into_iter().filter_map(found).collect()
+    /// Where it observes people, by the keys that say so.
+    pub(super) fn places(&self) -> Vec<(&'static str, Observed)> {
+        self.started().places()
     }
 
     /// The key of a measurement of the largest forces that begins with the run.

@@ -3,6 +3,7 @@
 use super::Measurement;
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
+use crate::scenario::keys::shapes::Corners;
 
 /// Where a measurement observes people.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +15,23 @@ pub enum Observed {
 }
 
 impl Observed {
+    /// The region that the key `key` gives, if it does.
+    pub(super) fn region(key: &'static str, region: Option<Corners>) -> Vec<(&'static str, Self)> {
+        let region = region.map(|corners| (key, Self::Region(corners.into())));
+        region.into_iter().collect()
+    }
+
+    /// The smallest rectangle around it.
+    pub(in crate::scenario) fn bounds(&self) -> Region {
+        match *self {
+            Self::Region(region) => region,
+            Self::Line([start, end]) => Region {
+                min: start.inf(&end),
+                max: start.sup(&end),
+            },
+        }
+    }
+
     /// Its outline, closed, or the line, meters.
     pub fn outline(&self) -> Vec<Vector> {
         match self {
@@ -40,17 +58,8 @@ impl Measurement {
             };
             (name, place)
         };
-        let places = self.observed_places().into_iter().enumerate();
+        let places = self.places().into_iter().enumerate();
         places.map(place).collect()
-    }
-
-    /// The line and the regions that it observes, by their keys.
-    pub(in crate::scenario) fn observed_places(&self) -> Vec<(&'static str, Observed)> {
-        let place = |(key, region): (&'static str, Region)| match self {
-            Self::LineFlow(keys) if key.ends_with(".line") => (key, Observed::Line(keys.ends())),
-            _ => (key, Observed::Region(region)),
-        };
-        self.places().into_iter().map(place).collect()
     }
 }
 

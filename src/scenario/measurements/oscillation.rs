@@ -1,17 +1,17 @@
 //! Collective oscillations: the spectrum of the mean velocities in boxes.
 
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::{Corners, region, wide_region};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::Measure;
 use super::window::Window;
+use super::{Measure, Observed};
 use crate::analysis::oscillation::Oscillation as Found;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::{Corners, wide_region};
 
 /// The name of the values if none is given.
 const NAME: &str = "oscillation";
@@ -94,7 +94,7 @@ impl Oscillation {
 
     /// The boxes that were never empty.
     fn found(&self, seen: &Seen) -> Option<Found> {
-        let [columns, rows] = self.boxes(&region("", self.region).ok()?);
+        let [columns, rows] = self.boxes(&self.region.into());
         let boxes = columns * rows;
         let series = |k: usize| -> Option<Vec<[f64; 2]>> {
             seen.velocities
@@ -111,6 +111,10 @@ impl Oscillation {
 
 impl Measure for Oscillation {
     type Seen = Seen;
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Observed::region("oscillation.region", Some(self.region))
+    }
 
     fn check(&self) -> Result<(), Problem> {
         self.window().check(NAME)?;

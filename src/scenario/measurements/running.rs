@@ -1,15 +1,16 @@
 //! Measurements during a run, whatever they measure.
 
-use crate::scenario::error::Problem;
 use serde_json::Value;
 
-use super::Measure;
+use super::{Measure, Observed};
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
 
 /// A measurement during a run, whatever it measures: the methods of [`Measure`].
 pub trait Running: Send + Sync {
     fn check(&self) -> Result<(), Problem>;
     fn names(&self) -> Vec<(String, &'static str)>;
+    fn places(&self) -> Vec<(&'static str, Observed)>;
     fn needs_density_until(&self) -> Option<f64>;
     fn observe(&mut self, simulation: &Simulation);
     fn values(&self, simulation: &Simulation) -> Vec<Option<f64>>;
@@ -31,6 +32,10 @@ impl<M: Measure> Running for (M, M::Seen) {
 
     fn names(&self) -> Vec<(String, &'static str)> {
         self.0.names()
+    }
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        self.0.places()
     }
 
     fn needs_density_until(&self) -> Option<f64> {

@@ -1,15 +1,15 @@
 //! Levels of service: how much room people have.
 
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::Corners;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::Measure;
 use super::window::{Window, every};
+use super::{Measure, Observed};
 use crate::analysis::service::{LEVELS, Levels};
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::Corners;
 
 /// The name of the values if none is given.
 const NAME: &str = "service";
@@ -50,6 +50,10 @@ impl ServiceLevels {
 
 impl Measure for ServiceLevels {
     type Seen = Levels;
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Observed::region("service_levels.region", self.region)
+    }
 
     fn check(&self) -> Result<(), Problem> {
         self.window().check("service_levels")

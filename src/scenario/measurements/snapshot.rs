@@ -1,12 +1,12 @@
 //! All agents at one time, for pictures.
 
-use crate::scenario::keys::limits::LONGEST_TIME;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::Measure;
+use super::{Measure, Observed};
 use crate::engine::simulation::Simulation;
+use crate::scenario::keys::limits::LONGEST_TIME;
 
 /// All agents at one time: positions, radii, speeds and densities.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -61,6 +61,10 @@ impl Snapshot {
 
 impl Measure for SnapshotAt {
     type Seen = Option<Snapshot>;
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
 
     fn needs_density_until(&self) -> Option<f64> {
         Some(self.at_secs)

@@ -1,12 +1,12 @@
 //! Mean speed by density: the fundamental diagram of the crowd's own densities.
 
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Mean, Measure, is_due};
+use super::{Mean, Measure, Observed, is_due};
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
 
 /// The mean speed of agents with ρ_i in bins 1 P/m² wide, m/s, between two times.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -28,6 +28,10 @@ pub struct SpeedByDensity {
 
 impl Measure for SpeedByDensity {
     type Seen = Vec<Mean>;
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
 
     fn check(&self) -> Result<(), Problem> {
         if self.bins.is_empty() || !self.bins.is_sorted_by(|a, b| a < b) {

@@ -1,17 +1,18 @@
 //! What each agent walks: when it starts, how far and how long; density, speed and flow from these.
 
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::{Corners, region, wide_region};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::Measure;
 use super::window::walkable_area;
+use super::{Measure, Observed};
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
+use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
+use crate::scenario::keys::shapes::{Corners, wide_region};
 
 /// The name of the values if none is given.
 const NAME: &str = "walks";
@@ -73,12 +74,16 @@ impl Walks {
 
     /// Square meters.
     fn area(&self, walls: &Walls) -> Option<f64> {
-        Some(walkable_area(region("", self.region?).ok()?, walls))
+        Some(walkable_area(self.region?.into(), walls))
     }
 }
 
 impl Measure for Walks {
     type Seen = Seen;
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Observed::region("walks.region", self.region)
+    }
 
     fn check(&self) -> Result<(), Problem> {
         if let Some(until) = self.until_secs.filter(|until| *until <= self.from_secs) {
@@ -110,7 +115,7 @@ impl Measure for Walks {
         let last = self.until_secs.map(|until| clock.frame_at(until));
         let is_due = clock.frame() > first && last.is_none_or(|last| clock.frame() <= last);
         seen.secs += if is_due { step } else { 0.0 };
-        let region = self.region.and_then(|corners| region("", corners).ok());
+        let region = self.region.map(Region::from);
         seen.walks.resize(agents.entered() as usize, None);
         for i in agents.present() {
             let (id, position) = (agents.id[i], agents.position[i]);

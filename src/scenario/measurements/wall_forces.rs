@@ -1,15 +1,15 @@
 //! Forces on walls, in newtons per meter.
 
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::Measure;
 use super::window::{MOST_MASS, Window, body_mass, every};
+use super::{Measure, Observed};
 use crate::analysis::wall_forces::{CellForce, WallForces as Seen};
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
 
 /// The name of the values if none is given.
 const NAME: &str = "wall_force";
@@ -59,6 +59,10 @@ impl WallForces {
 impl Measure for WallForces {
     /// With the time between two samples, seconds.
     type Seen = (Seen, f64);
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
 
     fn check(&self) -> Result<(), Problem> {
         self.window().check("wall_forces")

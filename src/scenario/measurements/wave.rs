@@ -1,14 +1,14 @@
 //! The wave that a push sends along x through a crowd: its speed, amplitude and reflection.
 
-use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::{Measure, is_due};
+use super::{Measure, Observed, is_due};
 use crate::analysis::wave::{self, Run, SpaceTime, Strip};
 use crate::engine::simulation::Simulation;
+use crate::scenario::error::Problem;
+use crate::scenario::keys::limits::LONGEST_TIME;
 
 /// The speed at which a wave arrives at an obstacle, m/s, its amplitude, m/s, and how much of it is reflected, found in
 /// the space-time diagram of a strip along x (see [`crate::analysis::wave`]); the diagram itself is its data.
@@ -85,6 +85,10 @@ impl WaveData {
 
 impl Measure for Wave {
     type Seen = Option<SpaceTime>;
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
 
     fn check(&self) -> Result<(), Problem> {
         match self.strip().bins() {

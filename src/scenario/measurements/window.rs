@@ -8,7 +8,7 @@ use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::floor_plan::parts_on_floor;
-use crate::scenario::keys::shapes::{Corners, region, wide_region};
+use crate::scenario::keys::shapes::{Corners, wide_region};
 
 /// Time between two samples if none is given, seconds.
 pub fn every() -> f64 {
@@ -84,7 +84,7 @@ impl Window {
 
     /// The region.
     pub fn region(&self) -> Option<Region> {
-        region("", self.region?).ok()
+        self.region.map(Region::from)
     }
 
     /// The agents in the region with what is around them, with pressures if `pressure`.

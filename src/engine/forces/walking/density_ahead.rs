@@ -21,8 +21,7 @@ use crate::engine::pairs::prelude::*;
 use crate::engine::pairs::{Bodies, Lanes, PairSum, Real, Simd, add_pairs, load, splat, spread};
 
 /// Parameters of the law of the density ahead.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
-#[serde(default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DensityAhead {
     /// ρ_jam, P/m²: the density ahead at which an agent stands.
     pub jam_density: f64,

@@ -9,8 +9,7 @@ use crate::engine::frame::Frame;
 use crate::engine::math::Vector;
 
 /// Parameters of the drag.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
-#[serde(default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drag {
     /// γ₀, m²/s.
     pub drag_per_density: f64,

@@ -4,7 +4,7 @@ mod cause;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Measure, is_due};
+use super::{Measure, Observed, is_due};
 use crate::engine::journeys::Status;
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
@@ -76,6 +76,10 @@ pub struct StuckGroup {
 impl Measure for Stuck {
     /// By id; `None` for agents that are absent or do not walk.
     type Seen = Vec<Option<Headway>>;
+
+    fn places(&self) -> Vec<(&'static str, Observed)> {
+        Vec::new()
+    }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
         if is_due(simulation, [0.0, f64::INFINITY], EVERY) {
