@@ -38,10 +38,10 @@ const NEAR: f64 = 2.0;
 
 /// Rejects agents of `agents` and `grids` that start on the floors `behind` exits and entrances, and single ones that start
 /// far off the floor.
-pub fn check_starts(keys: &File, scene: &Scene, behind: &Rings) -> Result<(), Problem> {
+pub fn check_starts(origins: &Origins, behind: &Rings) -> Result<(), Problem> {
     let rings = behind.iter().map(|ring| Ring::new(ring.clone()));
     let rings: Vec<Ring> = rings.filter_map(Result::ok).collect();
-    let origins = Origins::new(keys, scene);
+    let scene = origins.scene;
     for (k, agent) in scene.agents.iter().enumerate() {
         let member = Member {
             agent: Some(k),

@@ -12,9 +12,9 @@ pub struct Member {
     pub group: u16,
 }
 
-/// The list of a file that an agent comes from, and the number of its item there.
+/// The list of a file that agents come from, and the number of its item there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Item {
+pub enum Item {
     From,
     Agent(usize),
     Grid(usize),
@@ -23,58 +23,70 @@ enum Item {
     Entrance(usize),
 }
 
-/// What the agents of a scene come from.
-pub struct Origins<'a> {
-    keys: &'a File,
-    scene: &'a Scene,
-    /// The first group of a grid. From there on, each grid, crowd, source and entrance has its own group, in this
-    /// order.
-    first_grid: usize,
-    /// The number of the first one of `agents`, which come after the people of `from`.
-    first_single: usize,
+impl std::fmt::Display for Item {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::From => f.write_str("from"),
+            Self::Agent(k) => write!(f, "agents[{k}]"),
+            Self::Grid(k) => write!(f, "grids[{k}]"),
+            Self::Crowd(k) => write!(f, "crowds[{k}]"),
+            Self::Source(k) => write!(f, "sources[{k}]"),
+            Self::Entrance(k) => write!(f, "entrances[{k}]"),
+        }
+    }
 }
 
-impl<'a> Origins<'a> {
-    pub fn new(keys: &'a File, scene: &'a Scene) -> Self {
-        let lists = [
-            keys.grids.len(),
-            keys.crowds.len(),
-            keys.sources.len(),
-            keys.entrances.len(),
-        ];
-        let first_grid = scene.groups.len().saturating_sub(lists.iter().sum());
-        let mut agents = scene.agents.iter();
-        let before_grids = agents
-            .position(|agent| usize::from(agent.group) >= first_grid)
-            .unwrap_or(scene.agents.len());
-        Self {
+/// The items of a file in the order in which they were added to a scene, each with the numbers of agents and of groups
+/// that the scene then had.
+#[derive(Debug, Default)]
+pub struct Items(Vec<(Item, [usize; 2])>);
+
+impl Items {
+    /// Notes that an item has been added to `scene`.
+    pub fn add(&mut self, item: Item, scene: &Scene) {
+        self.0
+            .push((item, [scene.agents.len(), scene.groups.len()]));
+    }
+
+    /// What the agents of `scene` come from, which has been built from `keys`.
+    pub fn origins<'a>(&'a self, keys: &'a File, scene: &'a Scene) -> Origins<'a> {
+        Origins {
             keys,
             scene,
-            first_grid,
-            first_single: before_grids.saturating_sub(keys.agents.len()),
+            items: self,
         }
     }
 
-    fn item(&self, member: Member) -> Item {
-        let Some(mut k) = usize::from(member.group).checked_sub(self.first_grid) else {
-            let single = member
-                .agent
-                .and_then(|agent| agent.checked_sub(self.first_single));
-            return single.map_or(Item::From, Item::Agent);
-        };
-        let keys = self.keys;
-        let lists = [
-            (keys.grids.len(), Item::Grid as fn(usize) -> Item),
-            (keys.crowds.len(), Item::Crowd),
-            (keys.sources.len(), Item::Source),
-        ];
-        for (length, item) in lists {
-            match k.checked_sub(length) {
-                Some(rest) => k = rest,
-                None => return item(k),
-            }
+    /// The item that placed the agent of this number at the start.
+    pub fn of_agent(&self, k: usize) -> Item {
+        self.after(|[agents, _]| agents <= k)
+    }
+
+    fn of(&self, member: Member) -> Item {
+        match member.agent {
+            Some(agent) => self.of_agent(agent),
+            None => self.after(|[_, groups]| groups <= usize::from(member.group)),
         }
-        Item::Entrance(k)
+    }
+
+    /// The first item after those `before`.
+    fn after(&self, before: impl Fn([usize; 2]) -> bool) -> Item {
+        let k = self.0.partition_point(|&(_, counts)| before(counts));
+        self.0.get(k).map_or(Item::From, |&(item, _)| item)
+    }
+}
+
+/// What the agents of a scene come from.
+#[derive(Clone, Copy)]
+pub struct Origins<'a> {
+    pub keys: &'a File,
+    pub scene: &'a Scene,
+    pub items: &'a Items,
+}
+
+impl Origins<'_> {
+    fn item(&self, member: Member) -> Item {
+        self.items.of(member)
     }
 
     /// The number of an agent whose body is given alone, as one of `agents`.
@@ -86,7 +98,7 @@ impl<'a> Origins<'a> {
     /// What messages call an agent: `agents[1]`, or the name of its group.
     pub fn name(&self, member: Member) -> String {
         match self.item(member) {
-            Item::Agent(k) => format!("agents[{k}]"),
+            item @ Item::Agent(_) => item.to_string(),
             _ => self.scene.groups[usize::from(member.group)].name.clone(),
         }
     }
@@ -103,8 +115,8 @@ impl<'a> Origins<'a> {
     /// The key that says where a single agent or a grid starts: `agents[1].position`, or `grids[0]`.
     pub fn start_key(&self, member: Member) -> Option<String> {
         match self.item(member) {
-            Item::Agent(k) => Some(format!("agents[{k}].position")),
-            Item::Grid(k) => Some(format!("grids[{k}]")),
+            item @ Item::Agent(_) => Some(format!("{item}.position")),
+            item @ Item::Grid(_) => Some(item.to_string()),
             _ => None,
         }
     }
@@ -112,25 +124,18 @@ impl<'a> Origins<'a> {
     /// The key that gives the goal: `agents[1].goal`, or `goal` at the top of the file.
     pub fn goal_key(&self, member: Member) -> String {
         let keys = self.keys;
-        let (list, k, goal, offset) = match self.item(member) {
-            Item::From => {
-                let has_goal = keys.from.as_ref().is_some_and(|from| from.goal.is_some());
-                return if has_goal { "from.goal" } else { "goal" }.to_owned();
-            }
-            Item::Agent(k) => ("agents", k, keys.agents[k].goal, None),
-            Item::Grid(k) => ("grids", k, keys.grids[k].goal, keys.grids[k].goal_offset),
-            Item::Crowd(k) => ("crowds", k, keys.crowds[k].goal, None),
-            Item::Source(k) => (
-                "sources",
-                k,
-                keys.sources[k].goal,
-                keys.sources[k].goal_offset,
-            ),
-            Item::Entrance(k) => ("entrances", k, keys.entrances[k].goal, None),
+        let item = self.item(member);
+        let (goal, offset) = match item {
+            Item::From => (keys.from.as_ref().and_then(|from| from.goal), None),
+            Item::Agent(k) => (keys.agents[k].goal, None),
+            Item::Grid(k) => (keys.grids[k].goal, keys.grids[k].goal_offset),
+            Item::Crowd(k) => (keys.crowds[k].goal, None),
+            Item::Source(k) => (keys.sources[k].goal, keys.sources[k].goal_offset),
+            Item::Entrance(k) => (keys.entrances[k].goal, None),
         };
         match (goal, offset) {
-            (Some(_), _) => format!("{list}[{k}].goal"),
-            (None, Some(_)) => format!("{list}[{k}].goal_offset"),
+            (Some(_), _) => format!("{item}.goal"),
+            (None, Some(_)) => format!("{item}.goal_offset"),
             (None, None) => "goal".to_owned(),
         }
     }

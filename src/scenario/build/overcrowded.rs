@@ -5,16 +5,20 @@ use crate::engine::math::Vector;
 use crate::engine::placement::Grid;
 use crate::engine::scene::Scene;
 use crate::scenario::build::need;
+use crate::scenario::build::origin::Items;
 use crate::scenario::error::Problem;
 use crate::scenario::file::File;
-use crate::scenario::keys::from::FromData;
 
 /// Most agents, or corners of obstacles, in one square meter. Ten agents are a crush, and run time grows with the
 /// square of the density.
 const MOST_PER_CELL: usize = 1_000;
 
 /// Rejects overcrowded cells, and agents inside obstacles with no free point nearby.
-pub fn check(file: &File, scene: &Scene, duration_secs: f64) -> Result<(), Problem> {
+pub fn check(
+    file: &File,
+    (scene, items): (&Scene, &Items),
+    duration_secs: f64,
+) -> Result<(), Problem> {
     let corners: Vec<Vector> = scene.walls.iter().map(|wall| wall.start).collect();
     if let Some((k, count)) = crowded(&corners) {
         let place = format!("obstacles[{}]", scene.walls.wall(k as u32).obstacle);
@@ -27,10 +31,13 @@ pub fn check(file: &File, scene: &Scene, duration_secs: f64) -> Result<(), Probl
     }
     let people: Vec<Vector> = scene.agents.iter().map(|agent| agent.position).collect();
     if let Some((k, count)) = crowded(&people) {
-        return Err(Problem::new(place_of(file, k), too_close(count, people[k])));
+        return Err(Problem::new(
+            items.of_agent(k).to_string(),
+            too_close(count, people[k]),
+        ));
     }
     if let Some((k, reason)) = locked(&scene.walls, &people) {
-        return Err(Problem::new(place_of(file, k), reason));
+        return Err(Problem::new(items.of_agent(k).to_string(), reason));
     }
     let last_entry = need::last_entry(file, &scene.clock, duration_secs);
     for (k, (source, given)) in scene.sources.iter().zip(&file.sources).enumerate() {
@@ -77,24 +84,6 @@ pub fn near(p: Vector) -> String {
 /// The lower left corner of the square meter around a point.
 pub fn cell(p: &Vector) -> [i32; 2] {
     [p.x.floor() as i32, p.y.floor() as i32]
-}
-
-/// The list element that places agent `id` at the start.
-fn place_of(file: &File, id: usize) -> String {
-    let first = file.from.as_ref().map_or(0, FromData::initial) as usize;
-    let mut before = first + file.agents.len();
-    if id < first {
-        return "from".to_owned();
-    } else if id < before {
-        return format!("agents[{}]", id - first);
-    }
-    for (k, grid) in file.grids.iter().enumerate() {
-        before = before.saturating_add(grid.columns as usize * grid.rows as usize);
-        if id < before {
-            return format!("grids[{k}]");
-        }
-    }
-    "crowds".to_owned()
 }
 
 /// The first of `points` in an overcrowded square meter, and the number of points there.

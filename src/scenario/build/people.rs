@@ -12,6 +12,7 @@ use crate::engine::traits::Traits;
 use crate::scenario::build::draws::traits;
 use crate::scenario::build::goals::Target;
 use crate::scenario::build::journeys::TO_NEAREST_EXIT;
+use crate::scenario::build::origin::{Item, Items};
 use crate::scenario::build::{overlaps, profiles};
 use crate::scenario::error::{Problem, Under};
 use crate::scenario::file::File;
@@ -67,33 +68,45 @@ impl<'a> Population<'a> {
     }
 
     /// Adds the people of `from`, single agents, grids, crowds, sources, then entrances. Their number has been checked.
-    /// Returns notes for readers of the results.
-    pub fn enter(mut self) -> Result<Vec<String>, Problem> {
+    /// Returns notes for readers of the results, and what has been added.
+    pub fn enter(mut self) -> Result<(Vec<String>, Items), Problem> {
+        let mut items = Items::default();
         if let Some(from) = &self.file.from {
             self.add_data(from).under("from")?;
+            items.add(Item::From, self.scene);
         }
         for (k, agent) in self.file.agents.iter().enumerate() {
-            self.agent(agent).under(&format!("agents[{k}]"))?;
+            let item = Item::Agent(k);
+            self.agent(agent).under(&item.to_string())?;
+            items.add(item, self.scene);
         }
         for (k, grid) in self.file.grids.iter().enumerate() {
-            let name = format!("grids[{k}]");
+            let item = Item::Grid(k);
+            let name = item.to_string();
             self.grid(grid, &name).under(&name)?;
+            items.add(item, self.scene);
         }
         for (k, crowd) in self.file.crowds.iter().enumerate() {
-            let name = format!("crowds[{k}]");
+            let item = Item::Crowd(k);
+            let name = item.to_string();
             self.crowd(crowd, k as u32, &name).under(&name)?;
+            items.add(item, self.scene);
         }
         for (k, source) in self.file.sources.iter().enumerate() {
-            let name = format!("sources[{k}]");
+            let item = Item::Source(k);
+            let name = item.to_string();
             self.source(source, &name).under(&name)?;
+            items.add(item, self.scene);
         }
         for (k, entrance) in self.file.entrances.iter().enumerate() {
-            let name = format!("entrances[{k}]");
+            let item = Item::Entrance(k);
+            let name = item.to_string();
             self.entrance(entrance, &name).under(&name)?;
+            items.add(item, self.scene);
         }
         self.note_bodies();
         self.notes.extend(overlaps::note(&self.bodies));
-        Ok(self.notes)
+        Ok((self.notes, items))
     }
 
     fn agent(&mut self, agent: &people::Agent) -> Result<(), Problem> {

@@ -15,7 +15,6 @@ use crate::scenario::build::doors;
 use crate::scenario::build::origin::{Member, Origins};
 use crate::scenario::error::Problem;
 use crate::scenario::error::quote::shown;
-use crate::scenario::file::File;
 use crate::scenario::floor_plan::{Rings, free, outlines};
 use crate::scenario::keys::goals::WayFinding;
 
@@ -45,10 +44,11 @@ pub enum To {
 /// The path maps of a scene that is otherwise complete; `None` if agents walk straight. `behind` are the floors behind
 /// exits and entrances. Adds notes about places that no agent can choose, and exits off the floor.
 pub fn ways(
-    keys: &File,
-    (scene, behind): (&Scene, &Rings),
+    origins: Origins,
+    behind: &Rings,
     notes: &mut Vec<String>,
 ) -> Result<Option<Arc<Ways>>, Problem> {
+    let Origins { keys, scene, .. } = origins;
     let has_journeys = scene.groups.iter().any(|group| group.journey.is_some());
     if !keys.exits.is_empty() && !scene.groups.is_empty() && !has_journeys {
         let reason =
@@ -87,13 +87,13 @@ pub fn ways(
     }
     let prepared = Prepared {
         scene,
-        origins: Origins::new(keys, scene),
+        origins,
         starts: &starts,
         places,
         goals: &goals,
-        width: passable(keys, scene).unwrap_or_default(),
+        width: passable(&origins).unwrap_or_default(),
         is_given: keys.min_passage_width.is_some(),
-        widest: Widest::all(scene, &Origins::new(keys, scene)),
+        widest: Widest::all(scene, &origins),
     };
     let ways = prepared.ways(prepared.width)?;
     prepared.check_goals(&ways)?;
@@ -115,9 +115,10 @@ fn floor_of(scene: &Scene, starts: &[Start], width: f64) -> Result<Floor, Proble
 }
 
 /// The width below which agents take no passage, meters; `None`: they walk straight.
-pub fn passable(keys: &File, scene: &Scene) -> Option<f64> {
+pub fn passable(origins: &Origins) -> Option<f64> {
+    let keys = origins.keys;
     let least = || {
-        let widest = Widest::all(scene, &Origins::new(keys, scene)).into_iter();
+        let widest = Widest::all(origins.scene, origins).into_iter();
         widest.map(|widest| widest.alone).fold(0.0, f64::max)
     };
     let finds = keys.navigation == WayFinding::Paths;

@@ -109,15 +109,16 @@ impl Contents {
         let blend = profiles::blend(choice, &keys.parameters).under("profile")?;
         let mut notes = self.notes;
         scene.journeys = journeys::journeys(keys, (&scene.walls, &behind), &mut notes)?;
-        notes.extend(Population::new(keys, &blend, &behind, &mut scene).enter()?);
+        let (of_people, items) = Population::new(keys, &blend, &behind, &mut scene).enter()?;
+        notes.extend(of_people);
         let duration_secs = duration(keys);
-        overcrowded::check(keys, &scene, duration_secs)?;
+        overcrowded::check(keys, (&scene, &items), duration_secs)?;
         measurements::check(&keys.measurements, &scene.journeys.journeys)?;
         off_floor::check(keys, &scene)?;
-        off_floor::check_starts(keys, &scene, &behind)?;
+        off_floor::check_starts(&items.origins(keys, &scene), &behind)?;
         scene.pushes = pushes(&keys.events)?;
         periodic::check(keys, &scene)?;
-        scene.ways = ways::ways(keys, (&scene, &behind), &mut notes)?;
+        scene.ways = ways::ways(items.origins(keys, &scene), &behind, &mut notes)?;
         scene.integrator = keys.integrator.for_scene(&scene);
         scene.clock = numerics::clock_for(keys, &scene)?;
         let placed = scene.agents.len() as u64;
@@ -145,7 +146,7 @@ impl Contents {
             document: self.document,
             files: self.plans,
             notes,
-            passage_width: ways::passable(keys, &scene),
+            passage_width: ways::passable(&items.origins(keys, &scene)),
             scene,
         })
     }
