@@ -8,19 +8,19 @@ use super::expansion::Border;
 use super::mesh::Mesh;
 use crate::engine::math::{Vector, direction, perpendicular};
 
-/// Widens what a corner sees beyond the lines of its walls, radians, so that no position on such a line is lost by
-/// rounding. The shortest way never needs it.
+/// Widens the visible cone of a corner beyond the lines of its walls, radians, so that rounding loses no position on
+/// such a line. Shortest ways never need it.
 const MARGIN: f64 = 1e-6;
-/// The distance from the corner of a point that stands for a direction, meters. No wall ends there: it must not be
-/// close to agents that turn around the corner.
+/// The distance from a corner to a point that represents a direction, meters. No wall ends at such a point: it must be
+/// far from agents that turn around the corner.
 const FAR: f64 = 1000.0;
 
 /// How a way bends at a corner, seen from the way's end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Turn {
-    /// The corner's walls are on the right of the direction from the corner.
+    /// The corner's walls are on the right of the direction from the corner to the way's end.
     First,
-    /// The corner's walls are on the left of it.
+    /// The corner's walls are on the left of this direction.
     Last,
 }
 
@@ -28,7 +28,7 @@ impl Turn {
     /// Both, in order.
     pub const BOTH: [Self; 2] = [Self::First, Self::Last];
 
-    /// The other one: at its two ends, a way around a corner has different turns.
+    /// The opposite turn: seen from its two ends, a way around a corner has opposite turns.
     pub fn other(self) -> Self {
         match self {
             Self::First => Self::Last,
@@ -36,9 +36,9 @@ impl Turn {
         }
     }
 
-    /// A point in the direction of `along` from a corner, turned a little so that no position in this direction is
-    /// lost: on the border of the positions from which ways with this turn bend at the corner and go on from it against
-    /// `along`.
+    /// A point on the edge of the region from which ways with this turn bend at the corner and then continue against
+    /// `along`. It lies in the direction of `along` from the corner, rotated a little so that rounding loses no
+    /// position on the edge.
     #[inline]
     pub fn beyond(self, corner: Vector, along: Vector) -> Vector {
         let margin = match self {
@@ -59,7 +59,7 @@ pub struct Bend {
 }
 
 impl Bend {
-    /// The number of this bend, if those of all corners are numbered in order.
+    /// The number of this bend; bends are numbered corner by corner, in the order of [`Turn::BOTH`].
     pub fn index(self) -> usize {
         2 * self.corner as usize + usize::from(self.turn == Turn::Last)
     }
@@ -73,8 +73,8 @@ impl Bend {
     }
 }
 
-/// A corner with more than 180° of floor around it. The triangles around it are its fan, counterclockwise from one
-/// wall to the other. Here, closed passages are walls.
+/// A corner with at least 180° of floor around it. The triangles around it are its fan, counterclockwise from one wall
+/// to the other. Here, closed passages are walls.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Corner {
     /// Its place, meters.
@@ -83,7 +83,7 @@ pub struct Corner {
     pub fan: Vec<(u32, usize)>,
     /// The angles of the fan's sides from the first wall, radians: one more than triangles.
     angles: Vec<f64>,
-    /// For each turn, a point on the border of what is seen beyond the corner's other wall, meters.
+    /// For each turn, a point on the extension of the corner's other wall, where the visible cone ends, meters.
     pub rays: [Vector; 2],
     /// Half of the width of the narrowest way around it, meters.
     pub room: f64,
@@ -127,7 +127,7 @@ impl Corner {
             });
             mesh.room(t, k, sides[0].min(sides[1]))
         });
-        // Narrower places are dents in the walls.
+        // Narrower places are dents in the walls, not ways.
         let passable = rooms.filter(|&room| room >= least_width);
         let room = 0.5 * passable.fold(f64::INFINITY, f64::min);
         let place = mesh.corners(start.0)[start.1];
@@ -163,7 +163,7 @@ impl Corner {
         mesh.border(t, k)
     }
 
-    /// The angles between which ways end that make `turn`, radians.
+    /// The range of the angles at which the ends of ways with this `turn` lie, radians.
     fn sector(&self, turn: Turn) -> [f64; 2] {
         let total = self.angles[self.fan.len()];
         match turn {
@@ -172,8 +172,8 @@ impl Corner {
         }
     }
 
-    /// What this corner, number `bend.corner`, sees of triangle `i` of its fan for ways with the turn of `bend`: the
-    /// borders on the right and on the left.
+    /// The right and left edges of the visible cone of this corner, number `bend.corner`, in triangle `i` of its fan,
+    /// for ways with the turn of `bend`; `None` if the cone misses the triangle.
     pub fn view(&self, mesh: &Mesh, i: usize, bend: Bend) -> Option<[Border; 2]> {
         let turn = bend.turn;
         let [low, high] = self.sector(turn);

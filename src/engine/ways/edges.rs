@@ -20,8 +20,8 @@ pub struct Edges {
     pub closed: BTreeSet<Edge>,
 }
 
-/// An end of an edge this near to another edge is on it, meters, or as a part of the extent: corners of floor plans are
-/// moved by up to a micrometer to given corners.
+/// An end of an edge within this distance of another edge lies on it: in meters, and as a fraction of the floor's
+/// extent. Snapping moves the corners of floor plans by up to a micrometer.
 const TOUCHING: f64 = 4e-6;
 const TOUCHING_PART: f64 = 4e-8;
 
@@ -94,13 +94,13 @@ impl Edges {
         self.cut(cuts, vec![Vec::new(); self.closed.len()]);
     }
 
-    /// Splits edges where those in `crossing` cross others: at an end that lies on the other edge, else where they
-    /// cross.
+    /// Splits the edges in `crossing` and the edges that they cross: at an end that lies on the other edge, otherwise
+    /// at the crossing.
     pub fn split(&mut self, crossing: &[Edge]) {
         let [low, high] = bounds(self.points.iter().copied()).unwrap_or_default();
         let touching = TOUCHING.max((high - low).max() * TOUCHING_PART);
         let all = self.all();
-        // The triangulation may turn edges around.
+        // The triangulation may swap the ends of edges.
         let crossing: BTreeSet<Edge> = crossing.iter().copied().map(Self::sorted).collect();
         let mut cuts: Vec<Vec<usize>> = vec![Vec::new(); all.len()];
         let points = &mut self.points;
@@ -149,7 +149,7 @@ impl Edges {
             parts.collect::<Vec<Edge>>()
         };
         let walls = self.walls.iter().zip(of_walls);
-        // Two walls at the same place enclose nothing.
+        // Two identical walls cancel: nothing lies between them.
         let mut odd = BTreeSet::new();
         for part in walls.flat_map(|(&wall, cuts)| parts(wall, cuts)) {
             if !odd.remove(&part) {

@@ -1,4 +1,4 @@
-//! The targets that shortest ways from a triangle can go straight to.
+//! The first targets of the shortest ways from each triangle.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -11,20 +11,20 @@ use super::region::{Candidate, best};
 use super::targets::{Entry, Source, Targets};
 use crate::engine::math::Vector;
 
-/// Ways whose lengths differ by less than this are not told apart, meters.
+/// Ways whose lengths differ by less than this count as equally long, meters.
 pub const TIE: f64 = 1e-9;
 /// Triangles with more entries are pruned early, to save memory.
 const MANY: u32 = 100;
 
-/// All entries that can be the best somewhere in their triangle.
+/// The entries of all triangles. Each can be the shortest somewhere in its triangle.
 pub struct Entries<'a> {
     floor: &'a Floor,
     targets: &'a Targets,
     /// The entries of each triangle.
     found: Vec<Vec<Entry>>,
-    /// For each triangle, the number of entries at which they are pruned next.
+    /// For each triangle, the number of entries that triggers the next pruning.
     many: Vec<u32>,
-    /// For each triangle, a length that the best way from anywhere in it does not exceed, meters.
+    /// For each triangle, an upper bound of the length of the shortest way from anywhere in it, meters.
     most: Vec<f64>,
 }
 
@@ -42,7 +42,7 @@ impl<'a> Entries<'a> {
         for (t, target, view) in views {
             entries.add(t, target, &view);
         }
-        // The nearest first: they bound the lengths of most ways, and views of other corners end early.
+        // The nearest first: their upper bounds end the views of most other corners early.
         let rest = &targets.rest;
         let reached = (0..rest.len()).filter(|&bend| rest[bend].is_finite());
         let mut bends: Vec<usize> = reached.collect();
@@ -62,8 +62,8 @@ impl<'a> Entries<'a> {
         entries
     }
 
-    /// Adds a target to triangle `t`. False if it cannot be the best anywhere in it, and so not behind it either: the
-    /// better way goes on as well.
+    /// Adds a target to triangle `t`. False if it cannot be the shortest anywhere in it. Then it is not the shortest
+    /// behind the triangle either: ways from there cross the triangle, where another way is shorter.
     fn add(&mut self, t: u32, target: u32, view: &View) -> bool {
         let corners = self.floor.mesh.corners(t);
         let (nearest, farthest) = match self.targets.source(target) {
@@ -105,7 +105,7 @@ impl<'a> Entries<'a> {
         self.found.into_iter()
     }
 
-    /// Drops entries of triangle `t` that can be the best nowhere in it.
+    /// Drops the entries of triangle `t` that are nowhere the shortest in it.
     fn prune(&mut self, t: usize) {
         let (floor, targets, found) = (self.floor, self.targets, &mut self.found[t]);
         let candidates = found
@@ -128,7 +128,7 @@ impl<'a> Entries<'a> {
     }
 }
 
-/// The least and the greatest distance of a point from a triangle's points.
+/// The least and the greatest distance from a point to the points of a triangle.
 fn from_point(point: Vector, corners: [Vector; 3]) -> (f64, f64) {
     let ends = |k: usize| (corners[k], corners[(k + 1) % 3]);
     let is_inside = (0..3).all(|k| side(ends(k).0, ends(k).1, point) >= 0.0);
@@ -142,10 +142,11 @@ fn from_point(point: Vector, corners: [Vector; 3]) -> (f64, f64) {
     (nearest, distances.fold(0.0, f64::max))
 }
 
-/// Finds the lengths of the ways from all bends by Dijkstra's algorithm, from those that see the goal.
+/// Computes the lengths of the ways from all bends by Dijkstra's algorithm, which starts at the bends that see the
+/// goal.
 pub fn spread(floor: &Floor, targets: &mut Targets) {
     let Targets { rest, next, .. } = targets;
-    // Lengths from 0 are ordered as their bits are.
+    // The bits of numbers that are not negative sort like the numbers.
     let reached = rest.iter().enumerate().filter(|(_, rest)| rest.is_finite());
     let mut queue: BinaryHeap<Reverse<(u64, usize)>> = reached
         .map(|(bend, rest)| Reverse((rest.to_bits(), bend)))

@@ -1,19 +1,19 @@
-//! Triangular expansion (Bungiu et al. 2014): everything that is visible from a point, or in one direction.
+//! Triangular expansion (Bungiu et al. 2014): everything that is visible from a point, or along one direction.
 
 use super::mesh::Mesh;
 use crate::engine::math::Vector;
 
-/// From where one looks.
+/// The viewpoint of a cone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Eye {
-    /// From a point, meters.
+    /// A point, meters.
     Near(Vector),
-    /// From infinity, in this direction.
+    /// Infinitely far away, looking in this direction.
     Far(Vector),
 }
 
 impl Eye {
-    /// Above 0 if `p` lies on the left of the ray from here through `through`.
+    /// Positive if `p` lies on the left of the ray from here through `through`.
     #[inline]
     pub fn side(&self, through: Vector, p: Vector) -> f64 {
         match *self {
@@ -22,7 +22,8 @@ impl Eye {
         }
     }
 
-    /// A vector in the direction of the ray through `through`; [`side`](Self::side) changes by its length per meter.
+    /// A vector along the ray through `through`. [`side`](Self::side) changes by its length per meter of distance from
+    /// the ray.
     #[inline]
     pub fn ray(&self, through: Vector) -> Vector {
         match *self {
@@ -32,7 +33,7 @@ impl Eye {
     }
 }
 
-/// A point on the border of what is seen.
+/// A point on an edge of a visible cone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Border {
     /// The point, meters.
@@ -42,26 +43,26 @@ pub struct Border {
     pub number: u32,
 }
 
-/// A cone, or a strip if its eye is far.
+/// A visible cone, or a strip if its eye is at infinity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    /// From where one looks.
+    /// The viewpoint.
     pub eye: Eye,
-    /// The right border.
+    /// A point on its right edge.
     pub right: Border,
-    /// The left border.
+    /// A point on its left edge.
     pub left: Border,
 }
 
 impl View {
-    /// Does `p` lie in it, borders included? Only for points in front of the eye.
+    /// Whether `p` lies in the cone, edges included. Only for points in front of the eye.
     #[inline]
     pub fn holds(&self, p: Vector) -> bool {
         self.eye.side(self.right.at, p) >= 0.0 && self.eye.side(self.left.at, p) <= 0.0
     }
 
-    /// The part of it that leaves a triangle through the side from `r` to `l`, which lie on the right and on the left
-    /// as seen from inside.
+    /// The part of the cone that leaves a triangle through the portal from `r` to `l`, its right and left end as seen
+    /// from inside; `None` if nothing is left of the cone.
     pub fn through(&self, [r, l]: [Border; 2]) -> Option<Self> {
         let Self { eye, right, left } = *self;
         let is_left_of = |a: Border, b: Border| eye.side(b.at, a.at) > 0.0;
@@ -75,19 +76,20 @@ impl View {
     }
 }
 
-/// A view into a triangle.
+/// A visible cone that enters a triangle.
 #[derive(Debug, Clone, Copy)]
 pub struct Sight {
     /// The triangle.
     pub triangle: u32,
-    /// The side through which it is seen.
+    /// The side through which the cone enters.
     pub side: usize,
-    /// What is seen of it.
+    /// The part of the cone that enters.
     pub view: View,
 }
 
-/// Follows `sights` to everything behind them. Calls `enter` for every triangle that is seen, and goes on behind it if
-/// that returns true; and calls `see` for every point opposite to the side through which its triangle is seen.
+/// Expands `sights` from triangle to triangle. Calls `enter` for every visible triangle, and expands behind it if that
+/// returns true. Calls `see` for every visible point that lies opposite to the side through which the cone enters its
+/// triangle.
 pub fn expand(
     mesh: &Mesh,
     mut sights: Vec<Sight>,

@@ -19,24 +19,23 @@ pub struct Floor {
     pub grid: Grid,
     /// The corners that shortest ways bend around.
     pub corners: Vec<Corner>,
-    /// Their places again, side by side, meters.
+    /// The places of the corners again, contiguous in memory, meters.
     places: Vec<Vector>,
-    /// The corner at each corner of each triangle, with the triangle's place in the corner's fan.
+    /// For each corner of each triangle, the number of the [`Corner`] there and the index of the triangle in its fan.
     pub at: Vec<[Option<(u32, u32)>; 3]>,
     /// The straight ways to bend b come from the bends with the numbers `ways[starts[b]..starts[b + 1]]`.
     ways: Vec<u32>,
     starts: Vec<u32>,
 }
 
-/// The search for a triangle goes from one to the next this often.
+/// A search walks over at most this many triangles before it uses the grid.
 const STEPS: usize = 3;
 
-/// A straight way between two corners. The turn of each is that of a way that ends at the other.
+/// A straight way between two corners, each with the turn there of ways that end at the other corner.
 type StraightWay = [Bend; 2];
 
 impl Floor {
-    /// Prepares areas that touch at points at most; passages narrower than `least_width` meters are
-    /// closed.
+    /// Prepares areas that share at most points; passages narrower than `least_width` meters are closed.
     ///
     /// # Errors
     /// As [`Mesh::new`].
@@ -66,7 +65,7 @@ impl Floor {
     fn find_ways(&mut self) {
         let all = (0..self.corners.len() as u32).into_par_iter();
         let found: Vec<Vec<StraightWay>> = all.map(|c| self.look_around(c)).collect();
-        // A way that goes on to b came to a from the other side.
+        // A way that continues from a to b reached a from the other side.
         let before = |bend: Bend| Bend {
             turn: bend.turn.other(),
             ..bend
@@ -84,7 +83,7 @@ impl Floor {
         self.ways = ways.into_iter().map(|[_, from]| from).collect();
     }
 
-    /// The bends from which straight ways lead to `bend`, which then go on as ways do that bend there.
+    /// The bends from which a straight way leads to `bend` and can bend there.
     pub fn before(&self, bend: usize) -> impl Iterator<Item = usize> {
         let [from, to] = [bend, bend + 1].map(|b| self.starts[b] as usize);
         self.ways[from..to].iter().map(|&before| before as usize)
@@ -101,7 +100,7 @@ impl Floor {
             + corners.sum::<usize>()
     }
 
-    /// The number of the borders of all views from points: the points of the mesh, and a ray for each bend.
+    /// The number of borders that do not belong to a path map: the points of the mesh, and a ray for each bend.
     pub fn borders(&self) -> usize {
         self.mesh.points().len() + 2 * self.corners.len()
     }
@@ -182,9 +181,9 @@ impl Floor {
         ways
     }
 
-    /// Calls `enter` for every triangle from which a way can go straight to `bend`, with the part of it from which that
-    /// is so, and goes on behind the triangle if that returns true. Calls `see` for every point of the mesh that is seen
-    /// through the opposite side of its triangle.
+    /// Expands the view of a bend. Calls `enter` for every triangle from which a way can go straight to `bend`, with
+    /// the visible cone in it, and expands behind the triangle if that returns true. Calls `see` for every visible
+    /// point of the mesh that lies opposite to the side through which the cone enters its triangle.
     pub fn look_from(
         &self,
         bend: Bend,
@@ -235,8 +234,8 @@ impl Floor {
             let (Some(here), Some(there)) = (here, there) else {
                 continue;
             };
-            // The way crosses this side, or the walls of both corners lie on the side of the way where this triangle is
-            // not.
+            // The walls of the two corners lie on opposite sides of the way, or both on the side away from this
+            // triangle.
             if here == there || here == turn {
                 found.push([(c, here), (other, there)].map(|(corner, turn)| Bend { corner, turn }));
             }

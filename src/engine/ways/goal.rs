@@ -1,4 +1,5 @@
-//! What sees a goal: corners, and the parts of triangles from which agents go straight to it.
+//! The visibility of goals: the corners that see a goal, and the parts of triangles from which agents walk straight to
+//! it.
 
 use super::WayError;
 use super::corner::Bend;
@@ -17,7 +18,7 @@ pub enum Goal {
     Line([Vector; 2]),
 }
 
-/// What sees some goals.
+/// Everything that sees some goals.
 pub struct Seen {
     /// The parts of the goals, and the lengths of the ways from bends, infinite for bends that do not see a goal.
     pub targets: Targets,
@@ -26,8 +27,8 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// What sees `goals`. Lines are shortened by `margin` meters at both ends. Lines off the floor, such as sides of a
-    /// waiting area along a wall, are left out.
+    /// Finds everything that sees `goals`. Lines are shortened by `margin` meters at both ends. Lines off the floor,
+    /// such as sides of a waiting area along a wall, are left out.
     ///
     /// # Errors
     /// A point, or all of the goals, is not on the floor.
@@ -76,7 +77,7 @@ impl Seen {
         (targets.rest.len() + targets.sources.len() - 1) as u32
     }
 
-    /// Follows `sights` from part `target` of the goal.
+    /// Expands `sights` from part `target` of the goal.
     fn follow(&mut self, floor: &Floor, target: u32, sights: Vec<Sight>) {
         let Self { views, targets } = self;
         let enter = |sight: &Sight| {
@@ -87,13 +88,13 @@ impl Seen {
         expand(&floor.mesh, sights, enter, see);
     }
 
-    /// Adds everything that sees a point of the goal, the end of the line with this `middle`; `None` if it is not on the
-    /// floor.
+    /// Adds everything that sees `point`, which is a goal or an end of the line with this `middle`; `None` if it is not
+    /// on the floor.
     fn look_from(&mut self, floor: &Floor, point: Vector, middle: Vector) -> Option<()> {
         let mesh = &floor.mesh;
         let t = floor.locate(point)?;
         let corners = mesh.corners(t);
-        // From a point on a side, a view through this side would have no right and left border.
+        // For a point on a side, the visible cone through this side would have no width.
         let inside = (corners[0] + corners[1] + corners[2]) / 3.0;
         let eye = point + (inside - point) * INSIDE;
         let target = self.add(Source::Point { point, eye, middle });
@@ -119,7 +120,7 @@ impl Seen {
         Some(())
     }
 
-    /// Adds everything from which the nearest point of the goal's line lies between its ends.
+    /// Adds everything that sees the goal's line at a right angle: its nearest point lies between the ends of the line.
     fn look_across(&mut self, floor: &Floor, [a, b]: [Vector; 2]) {
         let mesh = &floor.mesh;
         for away in [perpendicular(b - a), -perpendicular(b - a)] {
@@ -169,10 +170,10 @@ impl Seen {
     }
 }
 
-/// How far the eye of a point moves to the inside of its triangle, as a part of the distance to its middle.
+/// The eye of a point lies toward the middle of its triangle by this fraction of the distance.
 const INSIDE: f64 = 1e-7;
 
-/// Notes that the corner of the floor at corner k of triangle `t` sees part `target` of the goal.
+/// Records that the floor's corner at corner k of triangle `t` sees part `target` of the goal.
 fn meet(floor: &Floor, (t, k): (u32, usize), target: u32, targets: &mut Targets) {
     if let Some((c, i)) = floor.at[t as usize][k] {
         let corner = &floor.corners[c as usize];
@@ -230,10 +231,10 @@ fn free_parts(floor: &Floor, [a, b]: [Vector; 2]) -> Vec<[Vector; 2]> {
     ends.map(|ends| ends.map(|part| a + along * part)).collect()
 }
 
-/// Gaps between the parts of a line that come from rounding, as a part of its length.
+/// Smaller gaps between the parts of a line come from rounding, as a fraction of its length.
 const GAP: f64 = 1e-9;
 
-/// A line that is shorter by `margin` at both ends, at least a hundredth of it.
+/// A line shortened by `margin` at both ends; at least a hundredth of it remains.
 fn shortened([a, b]: [Vector; 2], margin: f64) -> [Vector; 2] {
     let length = (b - a).norm();
     let part = (margin / length).min(0.495);

@@ -1,5 +1,5 @@
-//! Cells over the floor, with the triangles that reach into each. A cell with many triangles has cells of its own, so
-//! that few triangles are near any point, on floors far larger than their rooms too.
+//! A grid over the floor. Each cell lists the triangles that overlap it. Cells with many triangles are divided again,
+//! so that all lists are short, even on floors far larger than their rooms.
 
 use std::collections::VecDeque;
 
@@ -12,7 +12,7 @@ const MANY: usize = 10;
 const PER_TRIANGLE: usize = 12;
 /// The smallest cells, meters.
 const SMALLEST: f64 = 0.01;
-/// Triangles this near to a cell are listed in it, so that none is lost by rounding, meters.
+/// Triangles within this distance of a cell are listed in it, so that rounding loses none, meters.
 const MARGIN: f64 = 1e-6;
 
 /// Equal cells that cover a rectangle, in rows from the lower left.
@@ -30,9 +30,9 @@ struct Block {
 /// What a cell holds.
 #[derive(Debug, Clone, Copy)]
 enum Cell {
-    /// Triangles, as a part of the list.
+    /// Triangles: this range of the list.
     Few { start: u32, count: u32 },
-    /// Cells: this block.
+    /// Smaller cells: this block.
     Many(u32),
 }
 
@@ -191,7 +191,7 @@ impl Grid {
         }
     }
 
-    /// The triangle nearest to `p`, of those the one with the least number.
+    /// The triangle nearest to `p`; of equally near ones, the one with the smallest number.
     pub fn nearest(&self, mesh: &Mesh, p: Vector) -> Option<u32> {
         let whole = &self.blocks[0];
         let high = whole.low + whole.size.component_mul(&whole.count());

@@ -5,7 +5,7 @@ use super::targets::Entry;
 /// Entries one list after the other; the last of each list is marked.
 #[derive(Debug, Clone)]
 pub enum Lists {
-    /// Target and borders; all numbers are small.
+    /// Target and borders; all numbers fit into 16 bits.
     Short(Vec<[u16; 3]>),
     /// Target and borders.
     Long(Vec<[u32; 3]>),
@@ -73,7 +73,7 @@ impl Lists {
         Some((Entry { target, borders }, is_last))
     }
 
-    /// The list that begins with entry `first`, with the numbers of its entries; empty beyond the last.
+    /// The entries of the list that begins with entry `first`, with their numbers; empty beyond the last entry.
     #[inline]
     pub fn from(&self, first: usize) -> impl Iterator<Item = (usize, Entry)> {
         let mut next = Some(first);
@@ -90,7 +90,7 @@ impl Lists {
         (0..self.len()).filter_map(|k| self.get(k).map(|(entry, _)| entry))
     }
 
-    /// Gives back memory that is not used.
+    /// Releases unused memory.
     pub fn shrink(&mut self) {
         match self {
             Self::Short(all) => all.shrink_to_fit(),

@@ -14,7 +14,7 @@ use super::region::{Candidate, Region};
 use super::targets::{Entry, Source, Targets};
 use crate::engine::math::Vector;
 
-/// An agent keeps its way until another one is shorter by this, meters: no agent wavers between two ways.
+/// An agent switches to another way only if that is shorter by this, meters, so that no agent wavers between two ways.
 pub const SLACK: f64 = 0.5;
 
 /// What an agent walks toward next.
@@ -26,10 +26,11 @@ pub enum Next {
     Corner {
         /// Which, and how the way bends there.
         bend: Bend,
-        /// Points on the borders of what the corner sees: on the side of its walls, then on the other, meters.
+        /// Points on the edges of the corner's visible cone, meters: first on the side of its walls, then on the other.
         borders: [Vector; 2],
     },
-    /// This point, where the agent comes out of a place too narrow for ways, meters.
+    /// This point on the way out of a place from which no target is visible, such as a niche behind a closed passage,
+    /// meters.
     Out(Vector),
 }
 
@@ -55,8 +56,8 @@ pub struct Way {
     pub next: Next,
     /// The distance to it, meters.
     pub distance: f64,
-    /// What comes first is seen from everywhere within this distance, in the same triangle and on the way there,
-    /// meters, at most 1.
+    /// The next point stays visible within this distance, in the same triangle and on the way to the next point,
+    /// meters; at most 1.
     pub sight: f64,
     /// The number of the map's entry for this way; `NO_ENTRY` if it has none.
     pub entry: usize,
@@ -67,9 +68,10 @@ pub struct Way {
 pub struct PathMap {
     targets: Targets,
     parts: Parts,
-    /// From triangles without entries, in order: the next triangle, and the length of the way from its middle, meters.
+    /// The triangles without entries, in order, each with the next triangle on the way out and the length of the way
+    /// from the middle of the next one, meters.
     out: Vec<(u32, u32, f64)>,
-    /// The memory that building it took in addition, bytes.
+    /// The additional memory that building it took, bytes.
     building: usize,
 }
 
@@ -161,8 +163,8 @@ impl PathMap {
         Some(kept.unwrap_or(best))
     }
 
-    /// The way from `p` over entry number `number`, if `p` still lies where its target is seen and the way bends there.
-    /// For positions in the entry's triangle and between it and the target.
+    /// The way from `p` over entry `number`, if its target is still visible from `p` and the way still bends there. `p`
+    /// must lie in the entry's triangle, or between it and the target.
     pub fn way_over(&self, floor: &Floor, p: Vector, number: usize) -> Option<Way> {
         let entry = self.parts.entry(number)?;
         let source = self.targets.source(entry.target);
@@ -174,12 +176,12 @@ impl PathMap {
         (way.sight > 0.0).then_some(way)
     }
 
-    /// The part of the goal that entry number `number` leads to, if it leads there.
+    /// The part of the goal that is the target of entry `number`; `None` if the target is a corner.
     pub fn source(&self, number: usize) -> Option<&Source> {
         self.targets.source(self.parts.entry(number)?.target)
     }
 
-    /// Points on the borders of what the target of entry number `number` sees, on its right and on its left, meters.
+    /// Points on the right and left edges of the visible cone of the target of entry `number`, meters.
     pub fn borders(&self, floor: &Floor, number: usize) -> Option<[Vector; 2]> {
         let entry = self.parts.entry(number)?;
         Some(entry.borders.map(|b| self.targets.border(floor, b)))
@@ -230,7 +232,7 @@ impl PathMap {
         for (number, entry) in self.parts.at(floor, p, t) {
             let rest = self.targets.rest(entry.target);
             let way = self.targets.nearest(floor, entry.target, p) - p;
-            // Most ways are longer: no root for them.
+            // Most ways are longer: skip them without a square root.
             let left = least - rest;
             if left > 0.0 && way.norm_squared() < left * left && holds(entry) {
                 least = way.norm() + rest;
@@ -240,8 +242,8 @@ impl PathMap {
         best
     }
 
-    /// The way over `held` from `p` in triangle `t`, if it goes straight there, bends there, and is longer than `least`
-    /// by at most [`SLACK`].
+    /// The way over `held` from `p` in triangle `t`, if `held` is visible from `p`, the way bends there, and its length
+    /// exceeds `least` by at most [`SLACK`].
     fn kept(&self, floor: &Floor, (p, t): (Vector, u32), held: Bend, least: f64) -> Option<Way> {
         let target = held.index() as u32;
         let distance = (floor.place(held) - p).norm();
@@ -252,7 +254,7 @@ impl PathMap {
         let mut entries = self.parts.at(floor, p, t);
         let holds = |entry: Entry| entry.target == target && self.targets.holds(floor, entry, p);
         if let Some(found) = entries.find(|&(_, entry)| holds(entry)) {
-            // Longer than the shortest: it is compared with others again soon.
+            // This way is not the shortest. Without an entry, it is soon compared with others again.
             let entry = NO_ENTRY;
             return Some(Way {
                 entry,
@@ -269,7 +271,8 @@ impl PathMap {
         })
     }
 
-    /// The way from a position in triangle `t` from which no target is seen, but from another part of the triangle.
+    /// The way from a position in triangle `t` without a visible target: first to a part of the triangle from which a
+    /// target is visible.
     fn way_in(&self, floor: &Floor, p: Vector, t: u32) -> Option<Way> {
         let mut best: Option<Way> = None;
         self.parts.each(floor, t, |corners, entry| {
@@ -322,20 +325,20 @@ impl PathMap {
         self.targets.bend(self.targets.next[bend.index()])
     }
 
-    /// Where ways end that bend around this corner last, meters.
+    /// The end of ways whose last corner is this one, meters; `None` if another corner follows.
     pub fn end_after(&self, floor: &Floor, bend: Bend) -> Option<Vector> {
         let next = self.targets.next[bend.index()];
         self.targets.source(next)?;
         Some(self.targets.nearest(floor, next, floor.place(bend)))
     }
 
-    /// Does a wall or a closed passage stand between the goal and some place of the floor from which a way leads there?
+    /// Whether some way bends, because a wall or a closed passage hides the goal.
     pub fn bends(&self) -> bool {
         let mut entries = self.parts.all();
         !self.out.is_empty() || entries.any(|entry| self.targets.bend(entry.target).is_some())
     }
 
-    /// The memory that building it took in addition, bytes.
+    /// The additional memory that building it took, bytes.
     pub fn building_bytes(&self) -> usize {
         self.building
     }
@@ -348,7 +351,7 @@ impl PathMap {
     }
 }
 
-/// A corner comes next. `borders`: what it sees, on the right and on the left.
+/// A corner as the next point, with points on the right and left edges of its visible cone.
 fn toward(bend: Bend, [right, left]: [Vector; 2]) -> Next {
     let borders = match bend.turn {
         Turn::First => [right, left],
@@ -357,10 +360,10 @@ fn toward(bend: Bend, [right, left]: [Vector; 2]) -> Next {
     Next::Corner { bend, borders }
 }
 
-/// Distances to the border of what is seen are not distinguished beyond this, meters.
+/// Distances to the edges of a visible cone are clamped to this, meters.
 const FAR: f64 = 1.0;
 
-/// Regions reach this far where there are gaps between them, meters.
+/// Regions are widened by this where rounding leaves gaps between them, meters.
 const GAP: f64 = 1e-6;
 
 /// An agent this near to the middle of an opening is in it, meters.

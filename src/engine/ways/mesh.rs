@@ -38,11 +38,11 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Triangulates areas that touch at points at most. Passages narrower than `least_width` meters are closed: each
-    /// is a side of triangles that ways do not cross.
+    /// Triangulates areas that share at most points. Passages narrower than `least_width` meters are closed: each is a
+    /// side of triangles that ways do not cross.
     ///
     /// # Errors
-    /// Edges that still cross where they were split, or coordinates that the triangulation cannot represent.
+    /// Edges still cross after they were split, or the triangulation cannot represent a coordinate.
     pub fn new(areas: &[Area], least_width: f64) -> Result<Self, WayError> {
         let mut edges = Edges::of(areas);
         let open = Self::of(&mut edges)?;
@@ -86,7 +86,7 @@ impl Mesh {
         &self.points
     }
 
-    /// Corner k of triangle `t`, as a border of what is seen.
+    /// Corner k of triangle `t`, as an edge of a visible cone.
     pub fn border(&self, t: u32, k: usize) -> Border {
         let number = self.triangle(t).corners[k];
         Border {
@@ -136,14 +136,14 @@ impl Mesh {
         (0..3).find(is_along).unwrap_or(0)
     }
 
-    /// Does triangle `t` contain `p`, borders included?
+    /// Whether triangle `t` contains `p`, borders included.
     pub fn contains(&self, t: u32, p: Vector) -> bool {
         let corners = self.corners(t);
         (0..3).all(|k| side(corners[k], corners[(k + 1) % 3], p) >= 0.0)
     }
 
-    /// A distance, at most `most` meters, within which `p` stays in triangle `t`, in a neighbor of it, or between it and
-    /// `place`.
+    /// A distance, at most `most` meters, by which `p` can move in any direction and still be in triangle `t`, in a
+    /// neighbor of it, or between it and `place`.
     pub fn room_before(&self, t: u32, p: Vector, place: Vector, most: f64) -> f64 {
         let mut room = most;
         for (ends, next) in self.sides(t) {
@@ -179,9 +179,9 @@ impl Mesh {
         sides.fold(f64::INFINITY, f64::min)
     }
 
-    /// The distance from corner k of triangle `t` to the nearest wall on the other side of the opposite side, at most
-    /// `most`, which is at most the distance to the ends of that side. A wall counts if its nearest point is not an
-    /// end: in a Delaunay triangulation no end is nearer than those of the triangle's sides (Demyen and Buro 2006).
+    /// The distance from corner k of triangle `t` to the nearest wall behind the opposite side, at most `most`, which
+    /// is at most the distance to the ends of that side. Walls whose nearest point is an end are skipped: in a Delaunay
+    /// triangulation no end is nearer than the corners of the triangle (Demyen and Buro 2006).
     pub fn room(&self, t: u32, k: usize, most: f64) -> f64 {
         let c = self.corners(t)[k];
         let mut least = most;
@@ -206,7 +206,7 @@ impl Mesh {
     }
 }
 
-/// Above 0 if `p` lies on the left of the line from `a` to `b`, exactly opposite for the line from `b` to `a`.
+/// Positive if `p` lies on the left of the line from `a` to `b`. Swapping `a` and `b` negates it exactly.
 pub fn side(a: Vector, b: Vector, p: Vector) -> f64 {
     if (a.x, a.y) <= (b.x, b.y) {
         (b - a).perp(&(p - a))
@@ -230,10 +230,11 @@ pub fn nearest_on(p: Vector, a: Vector, b: Vector) -> Vector {
     a + along * ((p - a).dot(&along) / squared).clamp(0.0, 1.0)
 }
 
-/// Edges are split where they cross at most this often: rounding can make the parts cross again.
+/// Crossing edges are split at most this many times: rounding can make the parts cross again.
 const MOST_SPLITS: usize = 4;
 
-/// The triangles inside: those behind an odd number of walls from outside. `closed`: the edges that are no walls.
+/// The triangles of the floor: those with an odd number of walls between them and the outside. `closed` lists the edges
+/// that are not walls.
 fn floor(
     triangulation: &ConstrainedDelaunayTriangulation<Point2<f64>>,
     closed: &BTreeSet<[usize; 2]>,
@@ -297,10 +298,10 @@ fn from_line([a, b]: [Vector; 2], p: Vector, most: f64) -> f64 {
     part(side(a, b, p), b - a, most)
 }
 
-/// `product` divided by the length of a vector, at most `most`, which most quotients exceed.
+/// `product` divided by the length of a vector, clamped to `most`, which most quotients exceed.
 #[inline]
 pub fn part(product: f64, vector: Vector, most: f64) -> f64 {
-    // No root and no division for them.
+    // These need neither a square root nor a division.
     if product > 0.0 && product * product >= most * most * vector.norm_squared() {
         most
     } else {

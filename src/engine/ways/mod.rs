@@ -1,10 +1,10 @@
-//! Ways around walls: for each goal, a map that tells from a position alone where to go next.
+//! Ways around walls: for each goal, a map with the next point to walk to from any position.
 //!
 //! A [`Floor`] is a constrained Delaunay triangulation of the areas that people walk in, with the corners that shortest
-//! ways bend around and the ways between corners. A [`PathMap`] has the way to one goal from any position: the
-//! [`Next`] point or corner, and the length. It is exact for polygons with holes, shared by all agents with that
-//! goal, and needs no search per agent; an agent that is pushed somewhere else asks again. [`around`] keeps clear of
-//! the corners on the way.
+//! ways bend around and the ways between corners. A [`PathMap`] has the way to one goal from any position: the [`Next`]
+//! point or corner, and the length. It is exact for polygons with holes, shared by all agents with that goal, and needs
+//! no search per agent; an agent that is pushed off its way looks it up again. [`around`] keeps clear of the corners on
+//! the way.
 
 mod corner;
 mod edges;
@@ -37,7 +37,7 @@ pub use steer::around;
 
 use crate::engine::math::Vector;
 
-/// The most goals that are added later.
+/// The most goals that can be added after the start.
 const MOST_GOALS: usize = 1000;
 
 /// Why ways cannot be computed.

@@ -1,9 +1,9 @@
 //! Passages that are too narrow for ways.
 //!
-//! A passage lies between a corner of a wall and the nearest point of another wall, or between two corners, if no wall
-//! reaches into the circle that has these points as the ends of a diameter. A disc as wide as that passes there, and none
-//! that is wider. Two passages never cross: one end of the one would lie in the circle of the other. The widths of
-//! triangles (Demyen and Buro 2006) do not find all passages (Kallmann 2014).
+//! A passage connects a corner with the nearest point of another wall, or with another corner, if no wall reaches into
+//! the circle whose diameter it is. A disc with this diameter is the widest that passes there. Two passages never
+//! cross: an end of one would lie in the circle of the other. The widths of triangles (Demyen and Buro 2006) do not
+//! find all passages (Kallmann 2014).
 
 use super::mesh::{Mesh, nearest_on, to_segment};
 use crate::engine::math::Vector;
@@ -26,17 +26,17 @@ pub enum End {
     Wall {
         /// The numbers of the wall's ends.
         ends: [u32; 2],
-        /// The end of the passage, meters. If that is its beginning, corner and wall touch.
+        /// The end of the passage, meters. If it equals the beginning, the corner touches the wall.
         at: Vector,
     },
 }
 
-/// Passages are closed if they are narrower by more than this, meters: rounding must not close a door that is exactly
-/// wide enough.
+/// Passages are closed if they are narrower than the least width by more than this, meters: rounding must not close a
+/// door of exactly that width.
 const EXACT: f64 = 1e-6;
 /// A corner this near to a wall touches it, meters.
 const TOUCHING: f64 = 1e-6;
-/// Rounding errors are smaller, meters.
+/// An upper bound of rounding errors, meters.
 const TINY: f64 = 1e-9;
 /// The cosine of a right angle to within rounding.
 const RIGHT: f64 = 1e-6;
@@ -54,7 +54,7 @@ pub fn narrow(mesh: &Mesh, least: f64) -> Vec<Narrow> {
             fans[point as usize].push((t, k));
         }
     }
-    // For each triangle, the last corner around which it was found.
+    // For each triangle, the last corner whose surroundings contained it.
     let mut last = vec![u32::MAX; mesh.triangles().len()];
     for (point, fan) in fans.iter().enumerate() {
         let here = Surroundings::new(mesh, (point as u32, fan), least, &mut last);
@@ -74,8 +74,8 @@ struct Surroundings<'a> {
 }
 
 impl<'a> Surroundings<'a> {
-    /// The walls nearer than `least` meters to a corner, which has this fan. `last` keeps for each triangle the last
-    /// corner around which it was found.
+    /// The walls nearer than `least` meters to a corner with this fan. `last` has, for each triangle, the last corner
+    /// whose surroundings contained it.
     fn new(
         mesh: &'a Mesh,
         (corner, fan): (u32, &'a [(u32, usize)]),
@@ -136,7 +136,8 @@ impl<'a> Surroundings<'a> {
         }
     }
 
-    /// Is the straight line to `at`, a point of the walls that `ends_at`, a passage narrower than `least` meters?
+    /// Whether the straight line to `at` is a passage narrower than `least` meters. `ends_at` is true for the walls
+    /// that contain `at`.
     fn is_passage(&self, at: Vector, least: f64, ends_at: impl Fn(&[u32; 2]) -> bool) -> bool {
         let way = at - self.place;
         let length = way.norm();
@@ -163,7 +164,7 @@ impl<'a> Surroundings<'a> {
         })
     }
 
-    /// Does the floor begin here in this direction?
+    /// Whether there is floor in this direction from the corner.
     fn is_free(&self, way: Vector) -> bool {
         self.fan.iter().any(|&(t, k)| {
             let corners = self.mesh.corners(t);

@@ -1,4 +1,4 @@
-//! Which entries can be the best where: triangles with many of them are halved until few are left.
+//! Subdivides triangles, so that each part lists only the few entries that can be the shortest in it.
 
 use rayon::prelude::*;
 
@@ -8,15 +8,15 @@ use super::region::{Candidate, Corners, best};
 use super::targets::{Entry, Targets};
 use crate::engine::math::Vector;
 
-/// Parts with more entries are halved if that pays.
+/// Parts with more entries are halved if it pays.
 const FEW: usize = 8;
-/// Halving pays if it does not repeat the entries of a triangle more often than this.
+/// Halving pays if the subdivision lists at most this many times the entries of the part.
 const REPEATS: usize = 2;
-/// To find out which entries can be the best, parts are halved down to this length of the longest side, meters, but not
-/// more often than this.
+/// To find the entries that can be the shortest, parts are halved until their longest side is no longer than this,
+/// meters, but at most this many times.
 const LEAST_SIZE: f64 = 0.3;
 const MOST_HALVINGS: u32 = 12;
-/// Triangles that are divided at once.
+/// The number of triangles that are divided at once.
 const CHUNK: usize = 1024;
 
 /// Marks parts that are halved.
@@ -27,8 +27,8 @@ const NONE: u32 = HALVED - 1;
 /// The parts of all triangles.
 #[derive(Debug, Clone)]
 pub struct Parts {
-    /// First those that are whole triangles, then the halves in pairs: the number of the first entry, or `HALVED` and
-    /// the number of the first half.
+    /// First the whole triangles, then the halves in pairs. Each is the number of its first entry, or `HALVED` combined
+    /// with the number of its first half.
     parts: Vec<u32>,
     /// The entries of each part in the order of their targets.
     entries: Lists,
@@ -49,17 +49,18 @@ fn halves([a, b, c]: Corners) -> [Corners; 2] {
     [[a, middle, c], [middle, b, c]]
 }
 
-/// A part with its halves, while parts are found.
+/// A node of the subdivision during construction.
 struct Part {
-    /// The entries that can be the best in it, in order.
+    /// The entries that can be the shortest in it, in order.
     entries: Vec<Entry>,
-    /// The number of entries in the parts in which it ends.
+    /// The number of entries that its undivided parts list.
     listed: usize,
     halves: Option<Box<[Part; 2]>>,
 }
 
 impl Part {
-    /// Finds the best of some candidates in the part with these corners, which comes of `depth` halvings.
+    /// Keeps the candidates that can be the shortest in the part with these corners; `depth` counts the halvings so
+    /// far.
     fn new(candidates: &[&Candidate], corners: Corners, depth: u32) -> Self {
         let mut best = best(candidates, corners);
         let sides = (0..3).map(|k| (corners[(k + 1) % 3] - corners[k]).norm());
@@ -86,7 +87,7 @@ impl Part {
 }
 
 impl Parts {
-    /// Divides the triangles of a floor, which have these entries in order.
+    /// Subdivides the triangles of a floor; `found` gives the entries of each triangle in order.
     pub fn new(
         floor: &Floor,
         targets: &Targets,
@@ -134,7 +135,7 @@ impl Parts {
         self.entries.get(k).map(|(entry, _)| entry)
     }
 
-    /// The entries that can be the best at `p`, which lies in triangle `t`, with their numbers.
+    /// The entries that can be the shortest at `p`, which lies in triangle `t`, with their numbers.
     #[inline]
     pub fn at(&self, floor: &Floor, p: Vector, t: u32) -> impl Iterator<Item = (usize, Entry)> {
         let mut part = self.parts[t as usize];
@@ -166,7 +167,7 @@ impl Parts {
         }
     }
 
-    /// Has triangle `t` no entries?
+    /// Whether triangle `t` has no entries.
     pub fn is_empty(&self, t: u32) -> bool {
         self.parts[t as usize] == NONE
     }

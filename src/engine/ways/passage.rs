@@ -1,4 +1,4 @@
-//! The narrowest passage of the widest way: how wide a body can be that reaches a place at all.
+//! The narrowest passage of the widest way to a place: no wider body can reach it.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -50,8 +50,8 @@ impl Floor {
             .any(|side| side.is_some())
     }
 
-    /// The passages on the widest ways to the nearest of `points`, among those that are closed; points off the floor are
-    /// left out. By Dijkstra's algorithm over the triangles: only closed passages limit how wide a way is.
+    /// For every triangle, the narrowest closed passage on the widest way to any of `points`; points off the floor are
+    /// ignored. Uses Dijkstra's algorithm over the triangles: only closed passages limit the width of a way.
     pub fn passages(&self, points: impl Iterator<Item = Vector>) -> Passages {
         let mesh = &self.mesh;
         let mut search = Search {
@@ -86,12 +86,12 @@ impl Floor {
 struct Search {
     /// For each triangle, the narrowest passage of the widest way.
     widest: Vec<Option<Passage>>,
-    /// The bits of widths, which are ordered as the widths are, and the triangles from which the search goes on.
+    /// The bits of widths, which sort like the widths, and the triangles from which the search continues.
     queue: BinaryHeap<(u64, Reverse<u32>)>,
 }
 
 impl Search {
-    /// A way with this narrowest passage leads to triangle `t`.
+    /// Records that a way with this narrowest passage leads to triangle `t`.
     fn reach(&mut self, t: u32, passage: Passage) {
         let before = &mut self.widest[t as usize];
         if before.is_none_or(|before| before.width < passage.width) {

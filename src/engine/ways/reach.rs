@@ -10,14 +10,14 @@ impl Ways {
         self.way(p, to).filter(Way::is_wide)
     }
 
-    /// Does a way lead from `p` to a destination that is nowhere narrower than the floor's least width?
+    /// Whether a way from `p` to a destination is nowhere narrower than the floor's least width.
     pub fn is_open(&self, p: Vector, to: Destination) -> bool {
         self.open_way(p, to).is_some()
     }
 
-    /// The lengths of the ways from `p` to some places, meters; infinite where every way is somewhere narrower than the
-    /// floor's least width. Where this is so for all of them, as in a niche into which an agent was pushed, the lengths are
-    /// those of the ways out, through any passage.
+    /// The lengths of the ways from `p` to some places, meters; infinite if every way is somewhere narrower than the
+    /// floor's least width. If this holds for all places, as in a niche that an agent was pushed into, the lengths are
+    /// those of the ways out through any passage.
     pub fn lengths(&self, p: Vector, places: &[u16]) -> Vec<f64> {
         let ways = places
             .iter()
@@ -41,7 +41,7 @@ impl Ways {
 }
 
 impl Way {
-    /// Does it lead through no closed passage?
+    /// Whether the way crosses no closed passage.
     fn is_wide(&self) -> bool {
         !matches!(self.next, Next::Out(_))
     }

@@ -1,4 +1,4 @@
-//! The positions from which a way goes straight to a target.
+//! Regions: the positions from which a way goes straight to a target.
 
 use super::entries::TIE;
 use super::floor::Floor;
@@ -9,7 +9,7 @@ use crate::engine::math::{Vector, direction};
 /// A triangle, or a part of one.
 pub type Corners = [Vector; 3];
 
-/// An entry with what its regions depend on.
+/// An entry with the data that its regions depend on.
 pub struct Candidate {
     /// The entry.
     pub entry: Entry,
@@ -20,7 +20,7 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// Looks up what the regions of an entry depend on.
+    /// Looks up the data that the regions of an entry depend on.
     pub fn new(floor: &Floor, targets: &Targets, entry: Entry) -> Self {
         let ends = match targets.source(entry.target) {
             Some(&Source::Line { ends, .. }) => ends,
@@ -44,7 +44,7 @@ impl Candidate {
         (self.nearest(p) - p).norm() + self.rest
     }
 
-    /// Does the entry hold at all of `points`?
+    /// Whether the entry holds at all of `points`.
     pub fn covers(&self, points: &[Vector]) -> bool {
         let mut limits = self.limits.iter();
         limits.all(|limit| points.iter().all(|&p| limit.holds(p, TIE)))
@@ -56,8 +56,8 @@ pub struct Region {
     /// The mean of the corners, meters.
     pub center: Vector,
     corners: Polygon,
-    /// For each corner a length, meters: no way over the target from p is shorter than the mean of these with the weights
-    /// with which p is the mean of the corners.
+    /// A lower bound at each corner, meters. Interpolated barycentrically, it bounds the length of any way from p over
+    /// the target.
     least: [f64; MOST_CORNERS],
 }
 
@@ -87,19 +87,20 @@ impl Region {
         })
     }
 
-    /// Is the way over the target of `rival` no longer from everywhere in this region?
+    /// Whether the way over the target of `rival` is nowhere longer in this region.
     pub fn is_beaten(&self, rival: &Candidate) -> bool {
         let points = self.corners.points();
-        // Distances are convex functions: between the corners, they do not exceed the means of those at the corners.
+        // Distances are convex functions: inside the region they do not exceed the interpolation of their values at the
+        // corners.
         let mut pairs = points.iter().zip(&self.least);
         pairs.all(|(&p, least)| rival.length(p) <= least + TIE) && rival.covers(points)
     }
 }
 
-/// With this many shorter ways each is compared.
+/// Each candidate is compared with at most this many shorter ones.
 const RIVALS: usize = 8;
 
-/// The candidates that can be the best somewhere in a part, in the order of their targets.
+/// The candidates that can be the shortest somewhere in a part, in the order of their targets.
 pub fn best<'a>(candidates: &[&'a Candidate], corners: Corners) -> Vec<&'a Candidate> {
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     let distances = corners.iter().map(|p| (p - middle).norm());
@@ -108,7 +109,7 @@ pub fn best<'a>(candidates: &[&'a Candidate], corners: Corners) -> Vec<&'a Candi
     let mut nearest: Vec<(f64, &Candidate)> = lengths.collect();
     nearest.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut kept: Vec<&Candidate> = Vec::new();
-    // From anywhere in the part, a way is no longer than this.
+    // An upper bound of the shortest way from anywhere in the part.
     let mut most = f64::INFINITY;
     for (length, candidate) in nearest {
         if length - radius > most {
@@ -133,7 +134,7 @@ pub fn best<'a>(candidates: &[&'a Candidate], corners: Corners) -> Vec<&'a Candi
     kept
 }
 
-/// A triangle gets one more corner from each of three half-planes.
+/// Clipping a triangle with three half-planes adds at most one corner each.
 const MOST_CORNERS: usize = 6;
 
 /// A convex polygon of a few corners.
@@ -153,7 +154,7 @@ impl Polygon {
         &self.corners[..self.count]
     }
 
-    /// Keeps the part where `value`, which is linear, is not below 0.
+    /// Keeps the part where the linear function `value` is not negative.
     fn clip(&mut self, value: impl Fn(Vector) -> f64) {
         let (old, count) = (self.corners, self.count);
         let values = old.map(value);

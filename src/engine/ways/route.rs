@@ -16,10 +16,10 @@ use crate::engine::random::{self, Purpose};
 /// Agents keep this distance from corners in addition to their radius, drawn for each agent, meters.
 const CLEARANCE: [f64; 2] = [0.05, 0.6];
 
-/// Agents keep their aim until they have moved this part of the distance to what comes next. Headings err by a few
-/// degrees.
+/// Agents keep their aim until they have moved this fraction of the distance to the next point. Until then, their
+/// headings are off by a few degrees at most.
 const SHARE: f64 = 0.15;
-/// They move this far at most until then, meters.
+/// They find a new aim after this distance at the latest, meters.
 const LONGEST: f64 = 0.8;
 
 /// Lines are shortened by this at both ends, so that no end lies on a wall, meters.
@@ -33,7 +33,7 @@ pub struct Ways {
     /// The number of places; their maps come first.
     places: usize,
     goals: Vec<Vector>,
-    /// The number of goals from the beginning; the others were added.
+    /// The number of goals given at the start; the others were added later.
     first_goals: usize,
     pub(super) maps: Vec<PathMap>,
 }
@@ -52,13 +52,13 @@ pub enum Destination {
 pub struct Route {
     /// Where the agent was when its aim was last found, meters.
     found: Vector,
-    /// The aim is found again when the agent is this far from there, meters.
+    /// The aim is found again when the agent is this far from `found`, meters.
     reach: f64,
     /// The triangle in which the way was found.
     triangle: u32,
     /// The number of the map's entry for it.
     entry: u32,
-    /// There, the way was longer than the shortest by this at most, meters.
+    /// At `found`, the length of the way exceeded that of the shortest by at most this, meters.
     excess: f64,
     /// The number of its path map; `None`: straight to its goal.
     map: Option<u16>,
@@ -68,7 +68,7 @@ pub struct Route {
     length: f64,
     /// The distance that the agent keeps from corners, meters.
     clearance: f64,
-    /// Is the agent on its way around the last corner, and sees the end?
+    /// Whether the agent sees the end and still turns around the last corner.
     rounds: bool,
 }
 
@@ -148,7 +148,7 @@ impl Ways {
         self.from(map, p)
     }
 
-    /// Can `route` come from here?
+    /// Whether the corner, the triangle and the map of `route` exist.
     pub fn knows(&self, route: &Route) -> bool {
         let corners = self.floor.corners.len();
         let is_known = match route.first {
@@ -160,7 +160,7 @@ impl Ways {
         is_known && route.map.is_none_or(|map| usize::from(map) < maps)
     }
 
-    /// Does a wall or a closed passage stand between a goal and some place of the floor from which a way leads there?
+    /// Whether some way bends, because a wall or a closed passage hides its goal.
     pub fn bend(&self) -> bool {
         self.maps.iter().any(PathMap::bends)
     }
@@ -179,7 +179,7 @@ impl Ways {
         self.maps[usize::from(map)].way_from(&self.floor, p)
     }
 
-    /// Finds the route of an agent from where it is, and the point that it walks to, meters. `seed` is that of the
+    /// Updates the route of an agent and returns the point that it walks toward, meters. `seed` is that of the
     /// population.
     pub fn aim(&self, walker: &Walker, route: &mut Option<Route>, seed: u64) -> Vector {
         let p = walker.position;
@@ -224,8 +224,8 @@ impl Ways {
             Next::Goal(end) => {
                 let map = route.map.map(|map| &self.maps[usize::from(map)]);
                 let source = map.and_then(|map| map.source(way.entry));
-                // Agents that see a point from the start, or a line before them, walk straight if their bodies fit. The
-                // end of a line is passed like the jamb of a door.
+                // Agents that see a goal point from their start, or have a goal line in front of them, walk straight if
+                // their bodies fit. They pass the end of a line like the jamb of a door.
                 let rounds = match source {
                     Some(Source::Line { .. }) => false,
                     Some(source) if source.ends().is_some() => true,
@@ -252,12 +252,12 @@ impl Ways {
         way_around.map_or(place, |heading| p + heading * ahead)
     }
 
-    /// The way from `p` for an agent on `route`: over the same entry, as long as it holds at `p` and is certainly not
-    /// longer than the shortest by [`SLACK`].
+    /// The way from `p` for an agent on `route`. The agent keeps its entry as long as the entry holds at `p` and its
+    /// way is certainly at most [`SLACK`] longer than the shortest.
     fn go_on(&self, route: &mut Route, p: Vector) -> Option<Way> {
         let (floor, map) = (&self.floor, &self.maps[usize::from(route.map?)]);
         if let Some(way) = map.way_over(floor, p, route.entry as usize) {
-            // The shortest way was longer by the distance moved at most.
+            // Moving shortened the shortest way by at most the distance moved.
             let excess = route.excess + way.length - route.length + (p - route.found).norm();
             route.set(floor, p, &way, excess);
             if route.reach > 0.0 && excess < SLACK {
@@ -279,7 +279,7 @@ impl Ways {
 }
 
 impl Route {
-    /// The agent at `p` takes a way that is longer than the shortest by at most `excess` meters.
+    /// Takes a way from `p` that is at most `excess` meters longer than the shortest.
     fn set(&mut self, floor: &Floor, p: Vector, way: &Way, excess: f64) {
         let place = match way.next {
             Next::Corner { bend, .. } => floor.place(bend),
@@ -294,11 +294,11 @@ impl Route {
 /// The aim of an agent that walks to a corner is at least this far away, meters.
 const NEAREST: f64 = 1.0;
 
-/// The most points of a course: far more than any way has corners.
+/// The most points of a course, far more than the corners of any way.
 const MOST_POINTS: usize = 10_000;
 
 impl Ways {
-    /// Is there a path map to this destination?
+    /// Whether there is a path map to this destination.
     pub fn leads_to(&self, to: Destination) -> bool {
         self.map_to(to).is_some()
     }
@@ -308,14 +308,13 @@ impl Ways {
         &self.goals
     }
 
-    /// The points that the shortest way from `p` leads over, meters: its corners in order, then its end. Empty if
-    /// there is no way.
+    /// The points of the shortest way from `p`, meters: its corners in order, then its end. Empty if there is no way.
     pub fn course(&self, p: Vector, to: Destination) -> Vec<Vector> {
         let first = self.map_to(to).zip(self.way(p, to));
         first.map_or(Vec::new(), |(map, way)| self.points(map, way.next))
     }
 
-    /// The points that the rest of a route leads over, as in [`course`](Self::course).
+    /// The points of the rest of a route, as in [`course`](Self::course).
     pub fn course_of(&self, route: &Route) -> Vec<Vector> {
         match route.map {
             Some(map) => self.points(map, self.first(route)),
@@ -373,7 +372,7 @@ impl Ways {
 }
 
 impl Route {
-    /// Does an agent at `position` still follow the route?
+    /// Whether an agent at `position` still follows the route.
     #[inline]
     pub fn holds(&self, position: Vector) -> bool {
         self.reach > 0.0 && (position - self.found).norm_squared() < self.reach * self.reach

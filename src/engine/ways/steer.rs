@@ -1,12 +1,13 @@
-//! Steering toward what comes next, with clearance at corners.
+//! Steering toward the next point, with clearance at corners.
 
 use super::corner::{Bend, Turn};
 use super::floor::Floor;
 use crate::engine::math::{Vector, direction, perpendicular};
 
-/// The direction in which an agent at `p` walks around a corner `distance` meters away, keeping `clearance` meters from corners where there is
-/// room for it: along the tangent of the circle around the corner, on the side away from its walls, and between the
-/// borders `near` and `far` of what the corner sees, on the side of its walls and on the other.
+/// The heading of an agent at `p` that walks around a corner `distance` meters away: the tangent of the circle around
+/// the corner, on the side away from its walls. It stays between `near` and `far`, points on the edges of the corner's
+/// visible cone on the side of the walls and on the other side. It keeps `clearance` meters from all of them where
+/// there is room.
 pub fn around(
     floor: &Floor,
     (p, distance): (Vector, f64),
@@ -15,7 +16,7 @@ pub fn around(
 ) -> Vector {
     let corner = &floor.corners[bend.corner as usize];
     let ahead = ahead(corner.place - p, distance);
-    // To the side away from the corner's walls.
+    // Sideways, away from the corner's walls.
     let aside = match bend.turn {
         Turn::First => -perpendicular(ahead),
         Turn::Last => perpendicular(ahead),
@@ -24,7 +25,7 @@ pub fn around(
     let seen = |point: Vector| Vector::new(ahead.dot(&(point - p)), aside.dot(&(point - p)));
     let (near, far) = (seen(near), seen(far));
     let own = turn(clearance.min(corner.room), distance);
-    // Mostly, this heading passes both points far enough away.
+    // In most cases this heading keeps clear of both points.
     let is_past_near = match near.y < 0.0 {
         true => near.perp(&own) >= clearance,
         false => near.norm_squared() * own.y * own.y >= clearance * clearance,
@@ -49,9 +50,9 @@ pub struct End {
     pub line: Option<[Vector; 2]>,
 }
 
-/// The direction in which an agent at `p` walks to the end of its way, past the borders of what the end sees, on its right
-/// and on its left, with `gap` meters where there is room for it; and the distance to the nearest of these that is in
-/// the way, meters. `None`: straight. The ends of a line are passed like the jambs of a door.
+/// The heading from `p` to the end of the way that keeps `gap` meters, where there is room, from both edges of the
+/// end's visible cone, on which `right` and `left` lie; and the distance to the nearer of the points that it evades,
+/// meters. `None` if the agent can walk straight. Agents pass the ends of a line like the jambs of a door.
 pub fn between_borders(
     p: Vector,
     end: &End,
@@ -61,7 +62,8 @@ pub fn between_borders(
     let ahead = ahead(end.point - p, end.distance);
     let aside = perpendicular(ahead);
     let seen = |point: Vector| Vector::new(ahead.dot(&(point - p)), aside.dot(&(point - p)));
-    // Only points before the end count, if they are too near to the straight line. A point may be near to them, too.
+    // Only points before the end and too near to the straight line count. If the goal is a point, it may itself lie
+    // near to them.
     let too_near = |border: Vector| {
         let gap = match end.line {
             None => gap.min((end.point - border).norm()),
@@ -71,7 +73,7 @@ pub fn between_borders(
         let counts = (0.0..end.distance).contains(&point.x) && point.y.abs() < gap;
         counts.then_some((point, gap))
     };
-    // The agent looks against the end's view.
+    // Seen from the agent, right and left are swapped.
     let (on_right, on_left) = (too_near(left), too_near(right));
     let jambs = end.line.map(|line| {
         let [one, other] = line.map(seen);
@@ -106,7 +108,7 @@ pub fn between_borders(
     Some((ahead * way.x + aside * way.y, nearest))
 }
 
-/// A direction that turns by [`MOST_TURN`] at most.
+/// Clamps the turn of a heading to [`MOST_TURN`].
 fn bounded(way: Vector) -> Vector {
     if way.x < MOST_TURN.x {
         Vector::new(MOST_TURN.x, MOST_TURN.y.copysign(way.y))
@@ -115,8 +117,8 @@ fn bounded(way: Vector) -> Vector {
     }
 }
 
-/// The direction `own` past a corner at this distance, turned so that it passes the points `near` and `far` on both
-/// sides with `clearance` meters where there is enough room.
+/// The heading `own` past a corner at this distance, turned so that it keeps `clearance` meters from the points `near`
+/// and `far` on both sides where there is enough room.
 fn between(own: (Vector, f64), (near, far): (Vector, Vector), clearance: f64) -> Vector {
     let past_near = past(near, near.y < 0.0, clearance);
     let is_wider = past_near.x.max(past_near.y) > 0.0 && own.0.perp(&past_near) > 0.0;
@@ -133,8 +135,8 @@ fn between(own: (Vector, f64), (near, far): (Vector, Vector), clearance: f64) ->
     }
 }
 
-/// Between two directions past points at these distances: in the middle if they are equally near, else along that of the
-/// nearer point, which is passed first.
+/// A heading between two headings past points at these distances: in the middle if the points are equally near,
+/// otherwise closer to the heading past the nearer point, which the agent passes first.
 fn middle((one, one_away): (Vector, f64), (other, other_away): (Vector, f64)) -> Vector {
     direction(one * other_away.powi(2) + other * one_away.powi(2))
 }
@@ -144,12 +146,12 @@ fn ahead(way: Vector, length: f64) -> Vector {
     if length > 0.0 { way / length } else { way }
 }
 
-/// The largest angle between the heading and the shortest way, 1.3 radians, as a direction. Below a right angle the way
-/// left gets shorter with every step.
+/// The largest angle between the heading and the shortest way, 1.3 radians, as a unit vector. It is below a right
+/// angle, so that every step shortens the rest of the way.
 const MOST_TURN: Vector = Vector::new(0.267_498_828_624_587_4, 0.963_558_185_417_193);
 
-/// The direction that passes a point at `to` at a distance of `gap` meters on the left; if the point does not count, only
-/// the turn away from it.
+/// The heading that keeps `gap` meters to the left of a point at `to`. If the point does not count, the same turn from
+/// straight ahead.
 fn past(to: Vector, counts: bool, gap: f64) -> Vector {
     let distance = to.norm();
     let turn = turn(gap, distance);
@@ -161,7 +163,7 @@ fn past(to: Vector, counts: bool, gap: f64) -> Vector {
     }
 }
 
-/// The direction, seen from a direction toward a point, that passes the point at a distance of `gap` meters.
+/// The heading that passes a point `distance` meters straight ahead with a gap of `gap` meters.
 fn turn(gap: f64, distance: f64) -> Vector {
     let sine = if gap.abs() < distance {
         gap / distance

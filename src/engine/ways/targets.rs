@@ -1,4 +1,4 @@
-//! What ways go straight to: corners and parts of goals.
+//! The targets of straight ways: corners and parts of goals.
 
 use super::corner::{Bend, Turn};
 use super::expansion::Eye;
@@ -13,16 +13,16 @@ pub enum Source {
     Point {
         /// The point.
         point: Vector,
-        /// From where one looks: beside it, inside of its triangle.
+        /// The viewpoint: beside the point, inside its triangle.
         eye: Vector,
-        /// The middle of the line that ends here; for a goal that is a point, the point.
+        /// The middle of the line that ends here; the point itself if the goal is a point.
         middle: Vector,
     },
     /// The nearest point of a line, meters.
     Line {
         /// The ends of the line.
         ends: [Vector; 2],
-        /// The direction away from it.
+        /// The direction in which it looks: at a right angle to the line.
         away: Vector,
     },
 }
@@ -38,7 +38,7 @@ impl Source {
         }
     }
 
-    /// Is this still the nearest part of its line from `p`? An end is, as long as `p` lies beside the line.
+    /// Whether this is still the part of its line nearest to `p`. An end is, as long as `p` lies beyond it.
     pub fn is_beside_line(&self, p: Vector) -> bool {
         match *self {
             Self::Point { point, middle, .. } => (p - point).dot(&(middle - point)) <= 0.0,
@@ -50,28 +50,28 @@ impl Source {
 /// The targets of a path map, by number: the bends of the floor, then the sources.
 #[derive(Debug, Clone, Default)]
 pub struct Targets {
-    /// The length of the way from each bend on, meters; infinite if there is none.
+    /// The length of the rest of the way from each bend, meters; infinite if there is none.
     pub rest: Vec<f64>,
     /// For each bend, the target that comes next.
     pub next: Vec<u32>,
-    /// For each bend, the direction beyond which the way over it does not bend around its walls.
+    /// For each bend, the direction beyond which ways over it do not bend around its walls.
     pub beyond: Vec<[f32; 2]>,
     /// The parts of the goals.
     pub sources: Vec<Source>,
-    /// Points on the borders of what sources see, in addition to those of the floor, meters.
+    /// Points on the edges of the visible cones of the sources, in addition to those of the floor, meters.
     pub borders: Vec<Vector>,
 }
 
-/// A target that the shortest way from some part of a triangle goes straight to.
+/// The first target of the shortest ways from some part of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Entry {
     /// The number of the target.
     pub target: u32,
-    /// The numbers of the borders on the right and on the left of what the target sees of the triangle.
+    /// The numbers of the borders on the right and left edge of the target's visible cone in the triangle.
     pub borders: [u32; 2],
 }
 
-/// A half-plane: what lies on the left of the ray from an eye through a point (`sign` 1), or on the right (−1).
+/// A half-plane: the points on the left of the ray from an eye through a point (`sign` 1), or on its right (−1).
 #[derive(Debug, Clone, Copy)]
 pub struct Limit {
     eye: Eye,
@@ -81,7 +81,7 @@ pub struct Limit {
 }
 
 impl Limit {
-    /// Above 0 inside, in proportion to the distance from the border.
+    /// Positive inside, proportional to the distance from the border.
     #[inline]
     pub fn inside(&self, p: Vector) -> f64 {
         self.eye.side(self.through, p) * self.sign
@@ -93,7 +93,7 @@ impl Limit {
         part(self.inside(p), self.eye.ray(self.through), most)
     }
 
-    /// Does `p` lie in it, or within `margin` meters of it?
+    /// Whether `p` lies in it, or within `margin` meters of it.
     #[inline]
     pub fn holds(&self, p: Vector, margin: f64) -> bool {
         let inside = self.inside(p);
@@ -119,7 +119,7 @@ impl Targets {
             .get((target as usize).checked_sub(self.rest.len())?)
     }
 
-    /// From where a target looks.
+    /// The viewpoint of a target.
     #[inline]
     pub fn eye(&self, floor: &Floor, target: u32) -> Eye {
         match self.source(target) {
@@ -148,7 +148,7 @@ impl Targets {
         }
     }
 
-    /// The length of the way from a target on, meters.
+    /// The length of the rest of the way from a target, meters.
     #[inline]
     pub fn rest(&self, target: u32) -> f64 {
         self.rest.get(target as usize).copied().unwrap_or_default()
@@ -160,7 +160,7 @@ impl Targets {
         (self.nearest(floor, target, p) - p).norm() + self.rest(target)
     }
 
-    /// Finds the directions beyond which ways do not bend, when all targets and what comes next are known.
+    /// Computes the directions in `beyond`. All targets and `next` must be known.
     pub fn find_beyond(&mut self, floor: &Floor) {
         let directions = (0..self.next.len()).map(|number| {
             let bend = Bend::of_index(number);
@@ -172,14 +172,14 @@ impl Targets {
         self.beyond = directions.collect();
     }
 
-    /// A point in the direction beyond which the way over a bend does not bend around its walls, meters.
+    /// A point in the direction beyond which ways over a bend do not bend around its walls, meters.
     #[inline]
     pub fn beyond(&self, floor: &Floor, bend: Bend) -> Vector {
         let [x, y] = self.beyond[bend.index()].map(f64::from);
         floor.place(bend) + Vector::new(x, y)
     }
 
-    /// The half-planes whose common part the target of an entry sees of the triangle.
+    /// The half-planes whose intersection is the visible cone of an entry's target in the triangle.
     #[inline]
     pub fn cone(&self, floor: &Floor, entry: Entry) -> [Limit; 2] {
         let eye = self.eye(floor, entry.target);
@@ -187,7 +187,7 @@ impl Targets {
         [(right, 1.0), (left, -1.0)].map(|(through, sign)| Limit { eye, through, sign })
     }
 
-    /// The half-planes whose common part is where an entry holds.
+    /// The half-planes whose intersection is the region where an entry holds.
     #[inline]
     pub fn limits(&self, floor: &Floor, entry: Entry) -> [Limit; 3] {
         let [right, left] = self.cone(floor, entry);
@@ -199,7 +199,7 @@ impl Targets {
         [right, left, bends]
     }
 
-    /// Does `entry` hold at `p`?
+    /// Whether `entry` holds at `p`: its target is visible, and the way bends or ends there.
     #[inline]
     pub fn holds(&self, floor: &Floor, entry: Entry, p: Vector) -> bool {
         let eye = self.eye(floor, entry.target);
@@ -209,7 +209,7 @@ impl Targets {
             && self.bends(floor, entry.target, p)
     }
 
-    /// Does the way from `p` over a target bend there around walls, or end?
+    /// Whether the way from `p` over a target bends there around walls, or ends.
     #[inline]
     pub fn bends(&self, floor: &Floor, target: u32, p: Vector) -> bool {
         let Some(bend) = self.bend(target) else {
