@@ -1,5 +1,6 @@
 //! The architecture: wings and modules use only those declared above them, each foreign crate is used in one place,
-//! there is no `unwrap` outside of tests, and no file has more than 400 lines. The last two hold for `experiments`, too.
+//! there is no `unwrap` outside of tests, and no file has more than 400 lines. The last two hold for `experiments`,
+//! too.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -51,8 +51,8 @@ fn flow(room: &Value, profile: &str, seeds: u64) -> [f64; 2] {
     [mean, (squares / ((seeds - 1) * seeds) as f64).sqrt()]
 }
 
-/// Doors of some widths in walls of some thicknesses, with the line of the exit in the door and up to 10 m behind it. In
-/// the thinnest wall, the line may also lie on the edge of the plan: flows differ by less than 3 %, seeds apart.
+/// Doors of some widths in walls of some thicknesses, with the line of the exit in the door and up to 10 m behind it.
+/// In the thinnest wall, the line may also lie on the edge of the plan: flows differ by less than 3 %, seeds apart.
 #[test]
 fn a_door_lets_out_as_many_people_wherever_the_line_of_the_exit_lies() {
     let doors = [
@@ -101,7 +101,8 @@ fn beyond(simulation: &Simulation, p: Vector) -> f64 {
 proptest! {
     #![proptest_config(config(12))]
 
-    /// In crowds with SPH, agents once left up to 0.27 m before the line, when they touched another one that crossed it.
+    /// In crowds with SPH, agents once left up to 0.27 m before the line, when they touched another one that crossed
+    /// it.
     #[test]
     fn agents_leave_in_the_frame_in_which_they_cross_the_line(
         width in 0.8..3.0,

@@ -288,8 +288,8 @@ fn where_obstacles_overlap_the_nearest_free_point_may_be_a_corner_between_two() 
     assert_eq!(cross.obstacle_at(free), None);
 }
 
-/// In front of one wall of a corner, the way out was on the line of the other wall; by rounding it could be behind that,
-/// and an agent that was moved there walked out of the room.
+/// In front of one wall of a corner, the way out was on the line of the other wall; by rounding it could be behind
+/// that, and an agent that was moved there walked out of the room.
 #[test]
 fn the_way_out_into_a_corner_keeps_clear_of_both_walls() {
     for k in 0..1000 {

@@ -1,5 +1,5 @@
-//! A resumed run is the same run, wherever it is cut: in every coarse frame, in the other frames, and twice in a row. The
-//! whole state is compared, byte by byte, so that a difference shows before it moves anybody.
+//! A resumed run is the same run, wherever it is cut: in every coarse frame, in the other frames, and twice in a row.
+//! The whole state is compared, byte by byte, so that a difference shows before it moves anybody.
 //!
 //! Some 500 cuts; more with `BAD_INPUT_TIMES=20 cargo test --release --test engine -- resumed`.
 

@@ -123,8 +123,8 @@ impl BodyForces {
         }
     }
 
-    /// For each of [`THRESHOLDS`]: the number of people above it in any sample, and the largest number of intervals of one
-    /// person above it without a break.
+    /// For each of [`THRESHOLDS`]: the number of people above it in any sample, and the largest number of intervals of
+    /// one person above it without a break.
     pub fn above(&self) -> [(u32, f64); 3] {
         std::array::from_fn(|k| {
             let longest = self.people.iter().map(|own| own.spells[k].longest());

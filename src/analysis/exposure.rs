@@ -11,8 +11,8 @@ pub const DENSITIES: [f64; 3] = [4.0, 5.0, 6.0];
 /// Below this speed people count as standing, m/s.
 pub const SLOW: f64 = 0.2;
 
-/// For how many intervals between samples of time a sample stands: the one before it, and none at the beginning, so that
-/// `n` samples stand for `n - 1` intervals.
+/// For how many intervals between samples of time a sample stands: the one before it, and none at the beginning, so
+/// that `n` samples stand for `n - 1` intervals.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Weight {
     has_begun: bool,

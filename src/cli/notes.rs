@@ -9,8 +9,8 @@ use crate::engine::simulation::{EventKind, Limited, SPOT_RADIUS, Simulation};
 use crate::runs::drive::Run;
 use crate::scenario::quote::shown;
 
-/// Prints notes on displaced agents, stopped moves, clamped speeds, agents that waited for room, queues that were too long
-/// for their line, and pushes without agents.
+/// Prints notes on displaced agents, stopped moves, clamped speeds, agents that waited for room, queues that were too
+/// long for their line, and pushes without agents.
 pub fn print(run: &Run) {
     let simulation = &run.simulation;
     let outcome = simulation.outcome();

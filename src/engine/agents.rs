@@ -73,7 +73,7 @@ pub struct Agents {
     pub mass: Vec<f64>,
     /// ρ̂_i of the previous frame, P/m², unclamped (§4.2).
     pub mean_density: Vec<f64>,
-    /// Is ρ̂_i still unset? The next frame with a density sets it.
+    /// Whether ρ̂_i is still unset. The next frame with a density sets it.
     pub newcomer: Vec<bool>,
     /// Index of the agent's group in the scene.
     pub group: Vec<u16>,
@@ -107,8 +107,8 @@ pub struct Agents {
     pub max_speed: Vec<f64>,
     /// The time from which the agent walks, seconds. Empty while no agent had to wait.
     pub walks_from: Vec<f64>,
-    /// How often the agent has gone round: the number of periods from its position to where it would be without the
-    /// period. Empty in scenes without period; agents that entered since the last sort have no entry yet.
+    /// The number of laps: the periods from the agent's position to the position that it would have without the period.
+    /// Empty in scenes without period; agents that entered since the last sort have no entry yet.
     pub laps: Vec<i32>,
     next_id: u32,
 }
@@ -169,8 +169,8 @@ impl Agents {
         index.filter(|&i| self.is_present(i))
     }
 
-    /// Whether agent `i` is present: it has not left by an exit, behind which only its body walks on. Forces act between
-    /// all bodies; measurements, trajectories and pictures show the agents that are present.
+    /// Whether agent `i` is present: it has not left by an exit, behind which only its body walks on. Forces act
+    /// between all bodies; measurements, trajectories and pictures show the agents that are present.
     #[inline]
     pub fn is_present(&self, i: usize) -> bool {
         let trip = self.trip.get(i).and_then(Option::as_ref);

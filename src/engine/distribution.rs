@@ -1,7 +1,7 @@
-//! Distributions of what differs from agent to agent: speeds, radii, times.
+//! Distributions of the properties that differ between agents: speeds, radii, times.
 //!
-//! A draw is the quantile of one uniform random number. So a truncated distribution is exact and never rejects a draw,
-//! and each agent uses one number of its own stream.
+//! A draw is the quantile of one uniform random number. Truncated distributions are therefore exact and never reject a
+//! draw, and each agent uses one number of its own stream.
 
 use rand::Rng;
 use rand::distr::Open01;

@@ -3,8 +3,8 @@
 //! [`scattered`] throws darts, with a minimum distance between bodies that begins as large as their number allows and
 //! shrinks when no place is left. Throws go only to cells that may still have room; after some throws, the cells are
 //! quartered, and those without room are dropped (Ebeida et al. 2012, A simple algorithm for maximal Poisson-disk
-//! sampling in high dimensions). So the last free places are found, too. Everything is computed in one order on one
-//! thread from one stream of random numbers.
+//! sampling in high dimensions). This also finds the last free places. Everything is computed on one thread in a fixed
+//! order from one stream of random numbers.
 
 mod cells;
 mod taken;
@@ -41,7 +41,8 @@ const TIGHTER: f64 = 0.985;
 const MOST_PITCHES: f64 = 4.0;
 /// Bodies keep this distance in addition, meters: far above the rounding of coordinates up to 10⁶ m.
 const ROUNDING: f64 = 1e-9;
-/// The part of the bodies found to fit that [`scattered`] reports as fitting: fewer bodies have other radii.
+/// [`scattered`] reports this fraction of the bodies that it could place as fitting, because fewer bodies have other
+/// radii.
 const SURE: f64 = 0.98;
 
 /// Where the centers of bodies may be: in some areas, clear of walls.
@@ -90,7 +91,7 @@ impl<'a> Space<'a> {
         !self.index.around(p).is_empty()
     }
 
-    /// Is there room for a body of this radius? `near` is a buffer.
+    /// Whether there is room for a body of this radius. `near` is a buffer.
     fn has_room(&self, p: Vector, radius: f64, near: &mut Vec<u32>) -> bool {
         near.clear();
         self.walls.near(p, radius + ROUNDING, near);
@@ -101,7 +102,7 @@ impl<'a> Space<'a> {
 /// Random places for bodies of these `radii`, in their order, evenly spread and clear of the bodies `others`.
 ///
 /// # Errors
-/// They do not fit: the number that does, about.
+/// They do not fit; the error is the number that fits, about.
 pub fn scattered(
     space: &Space,
     others: &[Body],
@@ -126,7 +127,7 @@ pub fn scattered(
         throwing.fill(0.0, random);
     }
     if throwing.is_incomplete() {
-        // Bodies that are far apart waste room: begin again.
+        // Bodies that are far apart waste room: start again.
         throwing = Throwing::new(space, others, &sorted);
         throwing.fill(0.0, random);
     }
@@ -199,7 +200,7 @@ impl<'a> Throwing<'a> {
 /// Places on a triangular lattice, as wide as possible, clear of the bodies `others`.
 ///
 /// # Errors
-/// They do not fit: the number that does.
+/// They do not fit; the error is the number that fits.
 pub fn lattice(space: &Space, others: &[Body], radii: &[f64]) -> Result<Vec<Vector>, usize> {
     if radii.is_empty() {
         return Ok(Vec::new());

@@ -55,7 +55,7 @@ pub struct Simulation {
     derived: Derived,
     buffers: Buffers,
     stages: StageTimes,
-    /// The density is requested in all frames before this one.
+    /// The density is requested for all frames before this one.
     density_until: u64,
 }
 
@@ -78,10 +78,10 @@ struct Crowd {
     schedule: schedule::Schedule,
     progress: Progress,
     outcome: Outcome,
-    /// Have agents entered or left since they were last sorted?
+    /// Whether agents have entered or left since they were last sorted.
     changed: bool,
-    /// Have entries, choices and all else that changes the state in a coarse frame been made in this frame? They are
-    /// made once, however often the frame is evaluated.
+    /// Whether entries, choices and all other changes of the state in a coarse frame have been made in this frame. They
+    /// are made once, however often the frame is evaluated.
     decided: bool,
 }
 
@@ -91,9 +91,9 @@ struct Derived {
     neighbors: Neighbors,
     packed: Packed,
     fields: Fields,
-    /// Do the fields match the crowd?
+    /// Whether the fields match the crowd.
     evaluated: bool,
-    /// Are all numbers of the evaluated frame finite?
+    /// Whether all numbers of the evaluated frame are finite.
     finite: bool,
 }
 
@@ -131,7 +131,7 @@ pub struct Arrival {
     pub time: f64,
     /// Position at the end of that move, meters.
     pub position: Vector,
-    /// Does it count as evacuated?
+    /// Whether it counts as evacuated.
     pub counted: bool,
     /// The journey that ended here; `None` for agents that walked to a goal of their own.
     pub trip: Option<TripEnd>,
@@ -274,7 +274,8 @@ impl Simulation {
         self.density_until = self.density_until.max(frame);
     }
 
-    /// Evaluates the current frame again, with the density, for a breakdown of a faulty frame. The state stays the same.
+    /// Evaluates the current frame again, with the density, for a breakdown of a faulty frame. The state stays the
+    /// same.
     ///
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
@@ -289,8 +290,9 @@ impl Simulation {
         self.derived.packed = Packed::new(precision);
     }
 
-    /// From the next evaluation on, also computes the quantities in `more`, though nothing reads them: to measure
-    /// the time saved by not computing them. Agents are sorted again; their motion stays identical to the last bit.
+    /// From the next evaluation on, also computes the quantities in `more`, although nothing reads them: this measures
+    /// the time that is saved by not computing them. Agents are sorted again; their motion stays identical to the last
+    /// bit.
     pub fn pay_for(&mut self, more: &Needs) {
         self.fixed.needs = self.fixed.needs.with(more);
         self.crowd.changed = true; // rebuild neighbor lists with the new ranges
@@ -335,7 +337,7 @@ impl Simulation {
         &self.crowd.outcome
     }
 
-    /// Will more agents enter?
+    /// Whether more agents will enter.
     pub fn expects_agents(&self) -> bool {
         self.crowd.schedule.expects_agents(&self.fixed.scene)
     }
@@ -355,7 +357,7 @@ impl Simulation {
         self.crowd.schedule.backlogs(&self.fixed.scene)
     }
 
-    /// What agent `i` would decide about the place of its stage now; `None` if it does not walk to a place.
+    /// The decision that agent `i` would make now about the place of its stage; `None` if it does not walk to a place.
     pub fn decision(&self, i: usize) -> Option<Decision> {
         let trip = self.crowd.agents.trip.get(i)?.as_ref()?;
         let chooser = Chooser {
@@ -371,7 +373,7 @@ impl Simulation {
 static NO_FIELDS: LazyLock<Fields> = LazyLock::new(Fields::default);
 
 impl Derived {
-    /// The frame, during its evaluation with the fields computed so far.
+    /// The frame; during its evaluation, with the fields computed so far.
     fn frame<'a>(&'a self, fixed: &'a Fixed, crowd: &'a Crowd) -> Frame<'a> {
         Frame {
             clock: &crowd.clock,

@@ -74,7 +74,8 @@ impl Checkpoint {
         }
     }
 
-    /// Was it written by this version of the engine? Another version can resume, but perhaps not to the same bits.
+    /// Whether it was written by this version of the engine. Another version can resume it, but perhaps not to the same
+    /// bits.
     pub fn is_of_this_engine(&self) -> bool {
         self.engine == ENGINE
     }

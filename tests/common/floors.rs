@@ -157,8 +157,8 @@ fn small(rng: &mut ChaCha8Rng) -> f64 {
     }
 }
 
-/// Rooms side by side. Each wall between them has parts of several thicknesses with doors and slits between; other walls
-/// meet them in Ts, some with a notch. Pillars stand anywhere, also at and in walls.
+/// Rooms side by side. Each wall between them has parts of several thicknesses with doors and slits between; other
+/// walls meet them in Ts, some with a notch. Pillars stand anywhere, also at and in walls.
 fn drawn(rng: &mut ChaCha8Rng) -> Plan {
     let [w, h] = [rng.random_range(8.0..14.0), rng.random_range(5.0..9.0)];
     let mut rings = vec![rectangle([0.0, 0.0], [w, h])];

@@ -12,8 +12,8 @@ pub fn parsed(document: &Value) -> Scenario {
     Scenario::parse(&document.to_string(), "f", &[]).unwrap()
 }
 
-/// `count` people at random in a box, moving, at least 0.2 m apart. Their density rises: at rest density, rounding decides
-/// on the sign of the pressure, and the sign on the force.
+/// `count` people at random in a box, moving, at least 0.2 m apart. Their density rises: at rest density, rounding
+/// decides on the sign of the pressure, and the sign on the force.
 pub fn people(count: usize, extent: Vector) -> Vec<NewAgent> {
     let mut random = stream(3, Purpose::Crowd, 0, 0);
     let mut number = |low: f64, high: f64| random.random_range(low..high);

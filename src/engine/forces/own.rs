@@ -14,7 +14,7 @@ pub trait Force: Debug + Send + Sync {
     /// The name in breakdowns.
     fn name(&self) -> &str;
 
-    /// Does [`acceleration`](Self::acceleration) read densities or pressures? If so, they are computed in every
+    /// Whether [`acceleration`](Self::acceleration) reads densities or pressures. If so, they are computed in every
     /// frame.
     fn needs_density(&self) -> bool {
         false

@@ -22,8 +22,7 @@ pub struct Journeys {
     pub zones: Vec<Zone>,
 }
 
-/// What agents do one after the other. A journey that does not end at an exit ends where its last stage ends; its
-/// agents stay there.
+/// A sequence of stages. If the last stage is not an exit, agents stay there when they have finished it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Journey {
     /// Name in reports.
@@ -42,8 +41,9 @@ pub struct JourneyStage {
 }
 
 impl JourneyStage {
-    /// The places whose lines count for an agent bound for `chosen`: all of the stage, but shares are kept, unless an agent
-    /// bound for an exit crosses the line of another one.
+    /// The places whose lines count for an agent bound for `chosen`: all places of the stage. With shares, only
+    /// `chosen` counts, so that the shares hold; but an agent bound for an exit leaves by any exit of the stage that it
+    /// crosses.
     pub fn passed<'a>(&'a self, chosen: &'a u16, places: &[Place]) -> &'a [u16] {
         let is_drawn = matches!(self.choice, Choice::Shares(_));
         match is_drawn && !places[usize::from(*chosen)].is_exit() {
@@ -100,7 +100,7 @@ pub struct Zone {
 }
 
 impl Journeys {
-    /// The factor on the preferred speed at `p`: the least of all zones there.
+    /// The factor on the preferred speed at `p`: the smallest of all zones there.
     pub fn speed_factor(&self, p: Vector) -> f64 {
         let here = self.zones.iter().filter(|zone| zone.area.contains(p));
         let factors = here.map(|zone| zone.speed_factor);

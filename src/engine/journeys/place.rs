@@ -10,11 +10,11 @@ use crate::engine::ways::{Goal, nearest_on};
 pub struct Place {
     /// Name in reports.
     pub name: String,
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
 }
 
-/// What a place is.
+/// The kind of a place.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Kind {
     /// Agents leave here.
@@ -48,11 +48,11 @@ pub struct Exit {
 pub struct WaitingArea {
     /// Where, corners in meters.
     pub area: Ring,
-    /// Spots to stand, the first ones taken first, meters.
+    /// Spots to stand, in the order in which they are taken, meters.
     pub spots: Vec<Vector>,
     /// Until when, seconds; `None`: no given time.
     pub until: Option<f64>,
-    /// How long after its arrival an agent goes on, seconds; `None`: never.
+    /// The time from its arrival after which an agent goes on, seconds; `None`: never.
     pub lasting: Option<Distribution>,
 }
 
@@ -66,9 +66,9 @@ pub struct Queue {
     pub length: f64,
     /// The distance between agents, meters.
     pub spacing: f64,
-    /// How many agents are served at a time.
+    /// The number of agents that are served at a time.
     pub servers: u32,
-    /// How long an agent is served, seconds.
+    /// The time that it takes to serve an agent, seconds.
     pub service: Distribution,
     /// Its mean, seconds.
     pub mean_service: f64,
@@ -87,7 +87,7 @@ impl Kind {
 }
 
 impl Place {
-    /// What agents walk to, for a path map.
+    /// The points and lines that agents walk to, for a path map.
     pub fn goals(&self) -> Vec<Goal> {
         match &self.kind {
             Kind::Exit(Exit { line, .. }) | Kind::Line(line) => vec![Goal::Line(*line)],
@@ -139,7 +139,7 @@ fn nearest(points: impl Iterator<Item = Vector>, p: Vector) -> Vector {
 }
 
 impl Queue {
-    /// Where the agent with `ahead` agents before it stands, meters. Beyond the end of the path, the queue goes on in
+    /// The spot of the agent with `ahead` agents before it, meters. Beyond the end of the path, the queue goes on in
     /// the same direction up to a wall.
     pub fn spot(&self, ahead: usize) -> Vector {
         let mut left = self.length.min(ahead as f64 * self.spacing);

@@ -1,10 +1,10 @@
-//! How far an agent has come on its journey.
+//! The progress of an agent on its journey.
 
 use serde::{Deserialize, Serialize};
 
 use crate::engine::math::Vector;
 
-/// How far an agent has come on its journey.
+/// The progress of an agent on its journey.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Trip {
     /// The number of its journey.
@@ -19,7 +19,7 @@ pub struct Trip {
     pub hold: Option<Vector>,
     /// The frame in which it chooses between places again.
     pub chooses_at: u64,
-    /// How often it has chosen.
+    /// The number of its choices so far.
     pub choices: u32,
     /// When it entered, seconds.
     pub entered: f64,
@@ -33,8 +33,8 @@ impl Trip {
         matches!(self.status, Status::Outside { .. })
     }
 
-    /// The place that the agent walks to or is at; `None` once it has left the journey for a goal of its own, or has left
-    /// by an exit.
+    /// The place that the agent walks to or is at; `None` once it has left the journey for a goal of its own, or has
+    /// left by an exit.
     pub fn place_ahead(&self) -> Option<u16> {
         let has_left = self.status == Status::Finished && self.hold.is_none();
         (!has_left && !self.is_outside()).then_some(self.place)
@@ -64,12 +64,13 @@ pub enum Status {
         /// The frame in which it has been served, once it is being served.
         until: Option<u64>,
     },
-    /// It has ended its journey and stays; or it has left it, `hold` is `None`, and it walks to its goal.
+    /// It has ended its journey and stays. Or it has abandoned the journey and walks to its goal; then `hold` is
+    /// `None`.
     Finished,
-    /// It has left by an exit. Its body walks on behind the line, so that people before the line do not walk into a gap
-    /// that no door has.
+    /// It has left by an exit. Its body walks on behind the line, so that agents before the line do not walk into a gap
+    /// that real doors do not have.
     Outside {
-        /// The frame in which the body is removed at the latest.
+        /// The last frame of the body.
         until: u64,
     },
 }

@@ -1,4 +1,4 @@
-//! How many agents are bound for each place, by their distances.
+//! The number of agents bound for each place, by distance.
 
 use super::{Crowd, PlaceState};
 use crate::engine::journeys::Status;
@@ -6,13 +6,13 @@ use crate::engine::scene::Scene;
 
 /// The flow through a place is observed over this time, seconds.
 const OBSERVED: f64 = 10.0;
-/// The width of the classes of distances in which agents are counted, meters.
+/// The width of the bins of distances in which agents are counted, meters.
 const BIN: f64 = 0.5;
-/// Farther agents are counted as this far, meters.
+/// Larger distances are clamped to this, meters.
 const FARTHEST_BIN: f64 = 500.0;
 
 impl PlaceState {
-    /// Counts an agent that has come to be bound for this place from `length` meters away, or no longer is.
+    /// Counts an agent `length` meters away that is now bound for this place (`comes`), or no longer bound for it.
     pub(super) fn count(&mut self, length: f64, comes: bool) {
         let bin = (length.min(FARTHEST_BIN) / BIN) as usize;
         let last = self.nearer.last().copied().unwrap_or(0);

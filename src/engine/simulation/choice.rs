@@ -9,18 +9,18 @@ use crate::engine::random::{self, Purpose};
 use crate::engine::scene::Scene;
 use crate::engine::ways::{Destination, SLACK};
 
-/// Agents that choose the nearest place look again after this, seconds.
+/// Agents that choose the nearest place choose again after this time, seconds.
 const NEAREST_EVERY: f64 = 1.0;
-/// Agents that choose the quickest place look again after a time in this range, seconds.
+/// Agents that choose the quickest place choose again after a random time in this range, seconds.
 const QUICKEST_EVERY: [f64; 2] = [2.0, 5.0];
-/// An agent changes to a place that it expects to pass in less than this part of the time.
+/// An agent changes to another place if the expected time there is less than this fraction of its own.
 const CLEARLY_QUICKER: f64 = 0.8;
 /// The least flow that agents expect through an exit, P/(m s): about what Weidmann (1993) gives.
 const FLOW_PER_METER: f64 = 1.3;
-/// Where agents stand more densely than this within [`BEFORE`] meters of a line, P/m², there is a crowd before it: then
-/// its flow is what it lets through. A free stream with the least flow has 0.9 P/m².
+/// If the density within [`BEFORE`] meters of a line is above this, P/m², a crowd stands before it, and its flow is its
+/// capacity. A free stream with the least flow has 0.9 P/m².
 const CROWD: f64 = 1.5;
-/// Before a line is what lies within this distance, meters.
+/// The area before a line ends at this distance, meters.
 const BEFORE: f64 = 2.0;
 /// The fewest passes after the first one from which a flow is computed.
 const FEWEST_OBSERVED: usize = 5;
@@ -40,19 +40,19 @@ pub(super) struct Chooser<'a> {
 pub struct Prospect {
     /// The number of the place.
     pub place: u16,
-    /// Is it anything but a closed exit?
+    /// Whether it is not a closed exit.
     pub open: bool,
     /// The length of the way there, meters; infinite if the agent cannot get there.
     pub length: f64,
     /// The number of agents that are bound for it.
     pub bound: u32,
-    /// Of a stage with shares: its weight.
+    /// Its weight, for a stage with shares.
     pub weight: Option<f64>,
-    /// Of a stage of which agents choose the quickest place: what the agent expects if it can get there.
+    /// The expected times, for a stage where agents choose the quickest place, if the agent can get there.
     pub expected: Option<Expected>,
 }
 
-/// The times that an agent expects until it has passed a place and walked to its next stage.
+/// The times that an agent expects for passing a place and walking to its next stage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Expected {
     /// Walking to the place, seconds.
@@ -61,25 +61,25 @@ pub struct Expected {
     pub ahead: u32,
     /// The flow through the place, P/s.
     pub flow: f64,
-    /// Until these agents have passed, seconds.
+    /// Waiting until these agents have passed, seconds.
     pub waiting: f64,
     /// Walking from the place to the next stage, seconds.
     pub onward: f64,
 }
 
 impl Expected {
-    /// All together, seconds: the crowd ahead passes while the agent walks.
+    /// The total time, seconds: the crowd ahead passes while the agent walks.
     pub fn total(&self) -> f64 {
         self.walking.max(self.waiting) + self.onward
     }
 }
 
-/// What an agent decides about the place of its stage.
+/// The decision of an agent about the place of its stage.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Decision {
     /// The place.
     pub place: u16,
-    /// Why this one.
+    /// The reason for it.
     pub reason: Reason,
     /// All places of the stage, in its order.
     pub prospects: Vec<Prospect>,
@@ -105,8 +105,8 @@ pub enum Reason {
 }
 
 impl Chooser<'_> {
-    /// The place for the current stage of `trip`, and the frame in which the agent chooses again. `before` is the place
-    /// that it walks to.
+    /// Chooses the place for the current stage of `trip`. Also returns the frame in which the agent chooses again.
+    /// `before` is the place that it walks to now.
     pub(super) fn choose(&self, trip: &Trip, before: Option<u16>) -> (u16, u64) {
         let decision = self.decide(trip, before);
         let clock = &self.crowd.clock;
@@ -116,7 +116,7 @@ impl Chooser<'_> {
         let chooses_at = match self.stage(trip).choice {
             Choice::Nearest if self.stage(trip).places.len() == 1 => u64::MAX,
             Choice::Nearest if is_kept => again(NEAREST_EVERY),
-            // The first time at random, so that not all agents look in the same frame.
+            // The first time is random, so that not all agents choose in the same frame.
             Choice::Nearest => again(self.random(trip).random_range(0.0..NEAREST_EVERY) + 1e-9),
             Choice::Quickest => {
                 let [least, most] = QUICKEST_EVERY;
@@ -127,7 +127,7 @@ impl Chooser<'_> {
         (decision.place, chooses_at)
     }
 
-    /// Decides between the places of the current stage of `trip`. `before` is the place that the agent walks to.
+    /// Decides between the places of the current stage of `trip`. `before` is the place that the agent walks to now.
     pub(super) fn decide(&self, trip: &Trip, before: Option<u16>) -> Decision {
         let stage = self.stage(trip);
         let prospects = self.prospects(trip);
@@ -259,7 +259,8 @@ impl Chooser<'_> {
         way.map_or(f64::INFINITY, |way| way.length)
     }
 
-    /// What the agent expects of a place to which its way has this length, meters, and of the way to the next stage.
+    /// The times that the agent expects for a place at the end of a way of this length, meters, and for the way to the
+    /// next stage.
     fn expect(&self, place: u16, length: f64, onward: Option<&JourneyStage>) -> Expected {
         let own = self.crowd.agents.preferred_speed.get(self.agent);
         let speed = own.copied().unwrap_or(self.scene.preferred_speed);
@@ -283,9 +284,9 @@ impl Chooser<'_> {
         }
     }
 
-    /// The flow that an agent expects through a place, P/s. Through an exit with a crowd before it, that is the flow
-    /// observed there. An exit without a crowd could let more through than it does: there it is the flow per meter
-    /// observed at the best exit.
+    /// The flow that an agent expects through a place, P/s. For an exit with a crowd before it, this is the flow
+    /// observed there. An exit without a crowd is below its capacity: its flow follows from the largest flow per meter
+    /// observed at any exit.
     fn flow(&self, place: &Place, state: &PlaceState) -> f64 {
         let most = match &place.kind {
             Kind::Exit(exit) => exit.most_per_sec.unwrap_or(f64::INFINITY),
@@ -310,8 +311,8 @@ impl Chooser<'_> {
         (per_meter * width).min(most)
     }
 
-    /// The flow through a place since the first of the agents that passed it during the last seconds, P/s; `None` if
-    /// these were too few.
+    /// The flow through a place during the last seconds, P/s, from the first of the agents that passed it in this time;
+    /// `None` if too few did.
     fn observed(&self, state: &PlaceState) -> Option<f64> {
         let clock = &self.crowd.clock;
         let others = state.recent.len().checked_sub(1)?;
@@ -320,7 +321,8 @@ impl Chooser<'_> {
     }
 }
 
-/// The places that the agent can get to and that are not closed; if all of these are closed, all that it can get to.
+/// The places that the agent can reach and that are not closed; if all reachable places are closed, all reachable
+/// places.
 fn candidates(prospects: &[Prospect]) -> Vec<u16> {
     let can_reach_any = prospects.iter().any(|prospect| prospect.length.is_finite());
     let reached = prospects.iter();
@@ -330,8 +332,8 @@ fn candidates(prospects: &[Prospect]) -> Vec<u16> {
     chosen.map(|prospect| prospect.place).collect()
 }
 
-/// The place with the least value; `before` unless another one is `better` than it. Also returns whether `before` is
-/// kept though another one has the least value.
+/// The place with the least value, but `before` unless that place is `better`. Also returns whether `before` is kept
+/// although another place has the least value.
 fn best(
     places: &[u16],
     before: Option<u16>,

@@ -1,4 +1,4 @@
-//! Agents that come in through entrances, and latecomers: on coarse frames, where there is room.
+//! Agents that come in through entrances, and latecomers. They enter on coarse frames, where there is room.
 
 use rand::Rng;
 use rand::distr::Open01;
@@ -38,7 +38,7 @@ pub struct Backlog<'a> {
 }
 
 impl Gate {
-    /// Could a run have come to this?
+    /// Whether a run can reach this progress.
     pub(super) fn is_sound(&self) -> bool {
         self.entered <= self.arrived && self.last.is_none_or(|last| last >= 0.0)
     }
@@ -54,7 +54,7 @@ impl Gate {
         arrivals.time(self.arrived, self.last, scene.seed, k as u32)
     }
 
-    /// Will more agents enter?
+    /// Whether more agents will enter.
     pub(super) fn expects_agents(&self, scene: &Scene, k: usize) -> bool {
         self.waiting() > 0 || self.next(scene, k).is_some()
     }
@@ -75,14 +75,14 @@ impl Gate {
 pub(super) struct Late {
     /// Number of agents that have arrived.
     arrived: u32,
-    /// The numbers of those that wait for room, ascending.
+    /// The numbers of the latecomers that wait for room, ascending.
     waiting: Vec<u32>,
     /// The largest number of agents that waited, and the first frame in which they did.
     largest: (u32, u64),
 }
 
 impl Late {
-    /// Does this progress fit `scene`?
+    /// Whether this progress fits `scene`.
     pub(super) fn fits(&self, scene: &Scene) -> bool {
         let is_known = |&number: &u32| number < self.arrived;
         self.arrived as usize <= scene.latecomers.len()
@@ -90,12 +90,12 @@ impl Late {
             && self.waiting.is_sorted_by(|a, b| a < b)
     }
 
-    /// Will more agents enter?
+    /// Whether more agents will enter.
     pub(super) fn expects_agents(&self, scene: &Scene) -> bool {
         !self.waiting.is_empty() || (self.arrived as usize) < scene.latecomers.len()
     }
 
-    /// The latecomers that wait, under the name of their group; `None` if the scene has none.
+    /// The waiting latecomers, under the name of their first group; `None` if the scene has none.
     pub(super) fn backlog<'a>(&self, scene: &'a Scene) -> Option<Backlog<'a>> {
         Some(Backlog {
             name: scene.latecomers_name()?,
@@ -119,7 +119,7 @@ impl Scene {
         }
     }
 
-    /// The name under which reports count the latecomers, that of their first group; `None` if there are none.
+    /// The name of the latecomers in reports, which is that of their first group; `None` if there are none.
     pub fn latecomers_name(&self) -> Option<&str> {
         let first = self.latecomers.first()?;
         let group = self.groups.get(usize::from(first.agent.group))?;
@@ -128,7 +128,7 @@ impl Scene {
 }
 
 impl Crowd {
-    /// Lets those latecomers in that have arrived and have room. None waits for another one.
+    /// Lets in all latecomers that have arrived and have room. They do not queue for each other.
     pub(super) fn follow_latecomers(&mut self, scene: &Scene) -> Result<(), Fault> {
         let frame = self.clock.frame();
         let mut late = std::mem::take(&mut self.schedule.late);
@@ -169,7 +169,7 @@ impl Crowd {
         bodies.map(|(&position, &radius)| (position, radius))
     }
 
-    /// Lets agents in through entrance `k` as far as they have arrived and there is room.
+    /// Lets in the agents that have arrived at entrance `k`, as long as there is room.
     pub(super) fn follow_entrance(&mut self, scene: &Scene, k: usize) -> Result<(), Fault> {
         let frame = self.clock.frame();
         let mut gate = self.schedule.gates[k];
@@ -193,7 +193,7 @@ impl Crowd {
         Ok(())
     }
 
-    /// The next agent to come through an entrance, at a random place with room; `None` if there is no room.
+    /// The next agent that enters through an entrance, at a random place with room; `None` if there is no room.
     fn next_through(&self, scene: &Scene, entrance: &Entrance) -> Option<NewAgent> {
         let id = self.agents.entered();
         let traits = &scene.groups[usize::from(entrance.group)].traits;

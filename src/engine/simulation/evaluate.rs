@@ -18,10 +18,11 @@ use crate::engine::pairs::{Level, dispatch, each};
 use crate::engine::profile::{Blend, Override};
 
 impl Simulation {
-    /// Runs `work` on a thread of the thread pool, unless the crowd is too small for a second thread. From any other
-    /// thread, every parallel loop would wait until the pool has woken up.
+    /// Runs `work` on a thread of the thread pool, unless the crowd is too small for a second thread. Started from
+    /// another thread, every parallel loop would wait until the pool wakes up.
     pub(super) fn on_pool<T: Send>(&mut self, work: impl FnOnce(&mut Self) -> T + Send) -> T {
-        // Loops are divided into tasks from two tasks on; choices of velocity, which take long, from two agents on.
+        // Loops run in parallel if they have at least two tasks. Choices of velocity take long: these run in parallel
+        // from two agents on.
         let alone = self.crowd.agents.len().div_ceil(BLOCK) < 2 * self.fixed.task();
         if alone || rayon::current_thread_index().is_some() {
             return work(self);
@@ -54,7 +55,8 @@ impl Simulation {
         }
     }
 
-    /// Has an agent left the period? Then the agents are sorted in this frame, so that observers see all of them in it.
+    /// Whether an agent has left the period. Then the agents are sorted in this frame, so that observers see all agents
+    /// inside.
     fn has_left_period(&self) -> bool {
         let positions = self.crowd.agents.position.par_iter();
         self.fixed.scene.period.is_some_and(|period| {
@@ -63,8 +65,8 @@ impl Simulation {
         })
     }
 
-    /// Sorts the agents into cells, and lists the walls near them. Those that have left the period come in at its other
-    /// end.
+    /// Sorts the agents into cells, and lists the walls near them. Agents that have left the period reenter at its
+    /// other end.
     pub(super) fn sort_agents(&mut self) {
         let (fixed, crowd, derived) = (&self.fixed, &mut self.crowd, &mut self.derived);
         if let Some(period) = &fixed.scene.period {
@@ -117,7 +119,7 @@ impl Simulation {
         });
     }
 
-    /// Finds the next points on the ways around walls: of all agents if it is time, else of those without one.
+    /// Finds the next points on the ways around walls: for all agents if `is_time`, otherwise for those without one.
     pub(super) fn follow_ways(&mut self, is_time: bool) {
         let (scene, agents) = (&self.fixed.scene, &mut self.crowd.agents);
         if let Some(ways) = &scene.ways {
@@ -160,8 +162,8 @@ impl Simulation {
         });
     }
 
-    /// Step 3, walking laws: decides in coarse frames, and in any frame for agents that entered since, how fast agents
-    /// may walk.
+    /// Step 3, walking laws: sets the speeds that agents may walk at, in coarse frames for all agents and in other
+    /// frames for those that entered since.
     pub(super) fn update_walking_laws(&mut self) {
         if !self.fixed.needs.walking {
             return;
@@ -258,7 +260,7 @@ impl Fixed {
         }
     }
 
-    /// How agent `i` wants to walk by RVO.
+    /// The input of RVO for agent `i`.
     fn wish(&self, frame: &Frame, i: usize) -> Wish {
         let free = frame.fields.preferred_velocity[i];
         let has_law = self.blend(frame.agents, i).rvo_has_law();
@@ -298,7 +300,7 @@ impl Fixed {
         }
     }
 
-    /// Splits a range of agents wherever group or push changes.
+    /// Splits a range of agents wherever the group or the push changes.
     #[inline]
     pub(super) fn each_span(
         &self,

@@ -1,4 +1,4 @@
-//! New goals for agents, given between two frames from outside.
+//! New goals for agents, set from outside between two frames.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::engine::ways::{Destination, WayError, Ways};
 pub struct Absent {
     /// Seconds.
     time: f64,
-    /// The number of agents that have entered, if the agent has not.
+    /// The number of agents that have entered, if this agent has not.
     entered: Option<u32>,
 }
 
@@ -78,12 +78,13 @@ impl Simulation {
         }
     }
 
-    /// Gives agents, by id, new goals in meters, to which they walk from the next frame on: around walls if the scene has
-    /// path maps. An agent on a journey leaves it and stays at its goal; other agents leave there if their group does.
+    /// Gives agents, by id, new goals in meters. They walk there from the next frame on, around walls if the scene has
+    /// path maps. An agent on a journey abandons it and stays at its goal. Other agents leave at their goal if their
+    /// group does.
     ///
     /// # Errors
-    /// An agent is absent or walks in a direction, or a goal is not on the floor or cannot be reached. No agent has a new
-    /// goal then.
+    /// An agent is absent or walks in a direction, or a goal is not on the floor or cannot be reached. Then no agent
+    /// gets a new goal.
     pub fn set_goals(&mut self, new: &[(u32, Vector)]) -> Result<(), GoalError> {
         let new = self.indexed(new)?;
         self.find_ways(&new)?;
@@ -99,7 +100,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Agents find their ways on this floor from now on, if they have walked straight toward their goals so far.
+    /// From now on, agents find their ways on this floor. No effect if the scene has path maps already.
     pub fn add_ways(&mut self, ways: Ways) {
         self.fixed.scene.ways.get_or_insert_with(|| Arc::new(ways));
     }
@@ -174,7 +175,7 @@ impl Simulation {
 }
 
 impl Crowd {
-    /// Agent `i` gives up its journey: its place in a queue or waiting area becomes free.
+    /// Agent `i` abandons its journey: its place in a queue or waiting area becomes free.
     fn leave_journey(&mut self, scene: &Scene, i: usize) {
         let group = usize::from(self.agents.group[i]);
         if scene.groups[group].journey.is_none() {

@@ -13,8 +13,8 @@ impl Simulation {
     /// Step 5: moves all agents by one frame and removes those that have reached their goal.
     ///
     /// # Errors
-    /// A position, velocity, density or acceleration is not finite; the fault tells which, of which agent and in
-    /// which frame. No agent has moved then.
+    /// A position, velocity, density or acceleration is not finite; the fault names the quantity, the agent and the
+    /// frame. Then no agent moves.
     pub fn integrate(&mut self) -> Result<(), Fault> {
         self.on_pool(Self::advance)
     }
@@ -207,7 +207,7 @@ impl Simulation {
         };
         let not_finite = |values: &[Vector]| values.iter().position(|&v| !is_finite(v));
         let density = || fields.density.iter().position(|d| !d.is_finite());
-        // Causes before effects: a position that is not finite can make all forces on its agent not finite.
+        // Causes before effects: a non-finite position can make all forces on its agent non-finite.
         None.or_else(|| Some((not_finite(&agents.position)?, "position")))
             .or_else(|| Some((not_finite(&agents.velocity)?, "velocity")))
             .or_else(|| Some((density()?, "density")))
@@ -222,7 +222,7 @@ impl Crowd {
         let group = |i: usize| &scene.groups[usize::from(agents.group[i])];
         let has_arrived = |i: usize| {
             let squared = (agents.goal[i] - agents.position[i]).norm_squared();
-            // Most agents are far from their goal: no root for them.
+            // Most agents are far from their goal: skip them without a square root.
             let radius = group(i).removal_radius;
             radius.is_some_and(|radius| {
                 squared <= radius * radius * (1.0 + ROUNDING) && squared.sqrt() <= radius
@@ -255,7 +255,7 @@ impl Crowd {
     }
 }
 
-/// A generous bound on relative rounding errors of squared distances.
+/// An upper bound of the relative rounding errors of squared distances.
 const ROUNDING: f64 = 1e-12;
 
 /// The motion of an agent. Both velocities are clamped to s_max.
@@ -296,7 +296,7 @@ fn move_freely(
     motions: &[Motion],
     (positions, velocities): (&mut [Vector], &mut [Vector]),
 ) -> bool {
-    // Counting needs no branch.
+    // Counting is branchless.
     let too_fast = motions.iter().map(|motion| !motion.is_within(limit));
     if too_fast.map(u64::from).sum::<u64>() > 0 {
         return false;
@@ -320,7 +320,7 @@ fn farthest(positions: &[Vector], before: &[Vector]) -> f64 {
     greatest(&ways, |&way| way)
 }
 
-/// What limits a move.
+/// The limits of a move.
 struct Limits<'a> {
     /// s_max, m/s.
     speed: f64,
@@ -332,9 +332,9 @@ struct Limits<'a> {
 /// Statistics of moves.
 #[derive(Default)]
 struct Moves {
-    /// Where moves began that were stopped at a wall, meters.
+    /// The starting points of the moves that were stopped at a wall, meters.
     contained: Vec<Vector>,
-    /// Where moves began after which the speed was clamped, meters.
+    /// The starting points of the moves after which the speed was clamped, meters.
     clamped: Vec<Vector>,
     /// Largest squared distance of any agent from its position at the last sort, m².
     farthest: f64,

@@ -1,4 +1,4 @@
-//! Moves that were limited, and where.
+//! The number and the places of limited moves.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,11 @@ use crate::engine::math::Vector;
 const CELL: f64 = 1.0;
 /// The radius of [`Limited::spot`], meters.
 pub const SPOT_RADIUS: f64 = 2.0;
-/// The most cells. Moves elsewhere are only counted; a crowd that explodes reaches any number of cells.
+/// The most cells; moves in further cells are counted without their place. A crowd that explodes would fill any number
+/// of cells.
 const MOST_CELLS: usize = 4096;
 
-/// The number of moves that were limited, and where they began.
+/// The number of limited moves, and the places where they began.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Limited {
     /// The number of these moves.

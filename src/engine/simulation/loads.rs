@@ -1,4 +1,4 @@
-//! What presses on people and walls: the pressure and contact forces of a frame, pair by pair and wall by wall.
+//! The pressure and contact forces of a frame on agents and walls, pair by pair and wall by wall.
 
 use rayon::prelude::*;
 
@@ -10,8 +10,9 @@ use crate::engine::neighbors::{BLOCK, TASK};
 use crate::engine::pairs::Columns;
 
 impl Simulation {
-    /// Σ_j r_ij ⊗ a_ij of each agent of the evaluated frame as xx, xy and yy, m²/s², where a_ij is the acceleration of i
-    /// by the pressure (Eq. 11) and contact (Eq. 22) of j: by the force functions of the frame, in double precision.
+    /// Σ_j r_ij ⊗ a_ij of each agent of the evaluated frame as xx, xy and yy, m²/s², where a_ij is the acceleration of
+    /// i by the pressure (Eq. 11) and contact (Eq. 22) of j. Uses the force functions of the frame, in double
+    /// precision.
     pub fn virials(&self) -> Vec<[f64; 3]> {
         let frame = self.frame();
         let (agents, fields, near) = (frame.agents, frame.fields, frame.neighbors.near());
@@ -41,8 +42,8 @@ impl Simulation {
         found
     }
 
-    /// Passes `take` each agent that a wall presses in the evaluated frame, the wall, and the acceleration by it, m/s²:
-    /// pressure (Eq. 12) and contact (Eq. 23).
+    /// Calls `take` for each agent and wall that press on each other in the evaluated frame, with the acceleration of
+    /// the agent, m/s²: pressure (Eq. 12) and contact (Eq. 23).
     pub fn each_wall_push(&self, mut take: impl FnMut(usize, u32, Vector)) {
         let frame = self.frame();
         if frame.fields.acceleration.is_empty() {

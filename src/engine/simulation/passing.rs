@@ -1,8 +1,9 @@
 //! Lines that agents cross: waypoints, and exits, where they leave.
 //!
-//! Who has crossed the line of an exit has left: it counts as arrived, and is not present any more. Its body walks on for
-//! [`WALKS_ON`] meters, felt by all forces. Otherwise people before the line would walk into the room that a vanished body
-//! leaves, and a door would let out more people the nearer the line is to it.
+//! An agent that has crossed the line of an exit has left: it counts as arrived, and is no longer present. Its body
+//! walks on for [`WALKS_ON`] meters, and all forces still act on it and come from it. Without the body, agents before
+//! the line would walk into the gap that it leaves, and the flow through a door would be higher the nearer the line is
+//! to it.
 
 use rayon::prelude::*;
 
@@ -16,14 +17,15 @@ use crate::engine::ways::{nearest_on, side};
 
 /// Agents that may not pass an exit stop this far before its line, meters.
 const STOP_BEFORE: f64 = 1e-3;
-/// The body of an agent that has left by an exit walks on this far behind the line, meters: with less, the flow through a
-/// door depends on where the line lies, because people walk slower behind a crowd than behind nobody.
+/// The body of an agent that has left by an exit walks on this far behind the line, meters. With less, the flow through
+/// a door would depend on the position of the line, because agents walk slower behind a crowd than with free floor
+/// ahead.
 pub const WALKS_ON: f64 = 6.0;
-/// It ends this far before a wall, meters, so that no body is held up there.
+/// The walk ends this far before a wall, meters, so that no body is stopped there.
 pub const BEFORE_WALLS: f64 = 1.0;
-/// Its goal is this far behind the end of its way, meters.
+/// The goal of the body is this far behind the end of its way, meters.
 const GOAL_BEHIND: f64 = 5.0;
-/// A body that has not come to the end of its way is removed after this time, seconds.
+/// A body that has not reached the end of its way is removed after this time, seconds.
 const OUTSIDE_SECS: f64 = 30.0;
 
 /// A move across the line of a place.
@@ -32,9 +34,9 @@ struct Crossing {
     agent: usize,
     place: usize,
     line: [Vector; 2],
-    /// The part of the move before the line.
+    /// The fraction of the move before the line.
     part: f64,
-    /// Whether the agent has met another one on the line, and has not crossed it.
+    /// Whether the agent has not crossed the line, but met another agent on it.
     met: bool,
 }
 
@@ -72,7 +74,7 @@ impl Simulation {
     }
 
     /// Agents that have crossed the line of their place go on to the next stage, or leave if it is an exit. At closed
-    /// exits, and at those that as many agents have passed as may, they stop before the line.
+    /// exits, and at exits that have reached their limit per second, they stop before the line.
     pub(super) fn pass_lines(&mut self) {
         let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
         if scene.journeys.places.is_empty() {
@@ -139,9 +141,9 @@ impl Crowd {
         found
     }
 
-    /// Agents that meet another one on the line of their exit, which comes from the other side: neither could cross it.
-    /// Both bodies touch the line, and each other. The agents of `passing` cross a line in this frame: they stand behind
-    /// it already, and those that follow them have not met anyone.
+    /// Agents that meet an agent from the other side on the line of their exit, so that neither can cross it: both
+    /// bodies touch the line and each other. The agents of `passing` cross a line in this frame and are already behind
+    /// it, so agents that follow them do not count as meeting them.
     fn meetings(&self, scene: &Scene, passing: &[Crossing]) -> Vec<Crossing> {
         let agents = &self.agents;
         let touching = |agent: usize| {
@@ -203,7 +205,7 @@ impl Crowd {
                 continue;
             }
             if let Some(rate) = exit.most_per_sec {
-                // What a frame is too late is not lost.
+                // The delay to the next frame does not reduce the rate.
                 state.ready = state.ready.max(now - self.clock.time_step()) + 1.0 / rate;
             }
             self.take_place(i, crossing.place);
@@ -213,7 +215,7 @@ impl Crowd {
         self.leave(scene, leaving);
     }
 
-    /// Agent `i` passes a place of its stage, perhaps not the one that it had chosen.
+    /// Agent `i` passes a place of its stage, which may differ from the one that it chose.
     fn take_place(&mut self, i: usize, place: usize) {
         if let Some(trip) = &mut self.agents.trip[i] {
             let bound = &mut self.progress.places[usize::from(trip.place)].bound;
@@ -343,7 +345,7 @@ fn across([a, b]: [Vector; 2], way: Vector) -> Vector {
     }
 }
 
-/// How far a body can walk on from `p` in the direction `way`, meters.
+/// The distance that a body can walk on from `p` in the direction `way`, meters.
 fn room_ahead(scene: &Scene, p: Vector, way: Vector) -> f64 {
     let length = WALKS_ON + BEFORE_WALLS;
     let end = p + way * length;
@@ -352,7 +354,7 @@ fn room_ahead(scene: &Scene, p: Vector, way: Vector) -> f64 {
     part.map_or(WALKS_ON, |(part, _)| part * length - BEFORE_WALLS)
 }
 
-/// The part of a move after which it crosses a line; `None` if it does not.
+/// The fraction of a move after which it crosses a line; `None` if it does not.
 fn crossed([from, to]: [Vector; 2], [a, b]: [Vector; 2]) -> Option<f64> {
     let [start, end] = [from, to].map(|p| side(a, b, p));
     let [left, right] = [a, b].map(|p| side(from, to, p));

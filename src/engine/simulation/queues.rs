@@ -6,7 +6,7 @@ use crate::engine::journeys::{Kind, Queue, Status};
 use crate::engine::math::Vector;
 use crate::engine::scene::Scene;
 
-/// Agents this near to the end of a queue join it, meters.
+/// Agents within this distance of the end of a queue join it, meters.
 const JOINING: f64 = 1.0;
 
 impl Crowd {
@@ -33,7 +33,7 @@ impl Crowd {
             self.agents.goal[i] = end;
             return;
         }
-        // Straight to the end of the queue where nothing stands between; else along its path.
+        // Straight to the end of the queue if no wall stands between; otherwise along its path.
         let sees = |p: Vector| {
             let near = scene.walls.near_any(&[position, p], 0.0);
             scene.walls.first_crossing(position, p, &near).is_none()

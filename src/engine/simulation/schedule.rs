@@ -48,7 +48,7 @@ pub(super) struct Schedule {
     pub(super) late: Late,
     /// Active pushes: index of the push and frame of its end.
     pushing: Vec<(u16, u64)>,
-    /// Has each push of the scene begun?
+    /// Whether each push of the scene has begun.
     begun: Vec<bool>,
     events: Vec<Event>,
 }
@@ -81,7 +81,7 @@ impl Schedule {
         gates.chain(self.late.backlog(scene))
     }
 
-    /// Does this progress fit `scene`?
+    /// Whether this progress fits `scene`.
     pub(super) fn fits(&self, scene: &Scene) -> bool {
         let (sources, pushes) = (scene.sources.len(), scene.pushes.len());
         let known = |&(push, _): &(u16, u64)| usize::from(push) < pushes;
@@ -111,7 +111,7 @@ impl Source {
 }
 
 impl Simulation {
-    /// On coarse frames: agents enter, and pushes begin and end, as they are due.
+    /// On coarse frames: lets in the agents that are due, and begins and ends pushes.
     pub(super) fn follow_schedule(&mut self) -> Result<(), Fault> {
         let (scene, crowd) = (&self.fixed.scene, &mut self.crowd);
         let nothing = scene.sources.is_empty() && scene.pushes.is_empty();
@@ -141,7 +141,7 @@ impl Simulation {
 }
 
 impl Crowd {
-    /// Are the decisions of a coarse frame due?
+    /// Whether the decisions of a coarse frame are due.
     pub(super) fn decides(&self) -> bool {
         self.clock.is_coarse() && !self.decided
     }

@@ -9,7 +9,7 @@ use super::Simulation;
 pub enum Stage {
     /// Entries and pushes, coarse.
     Schedule,
-    /// Stages of journeys: choices, waiting and queues, coarse; and lines that agents cross.
+    /// Journeys: choices, waiting and queues, coarse; and crossings of lines.
     Journeys,
     /// Sorting agents into cells (the paper builds a kd-tree), when neighbor lists are rebuilt.
     Sort,

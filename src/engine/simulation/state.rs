@@ -9,24 +9,24 @@ use crate::engine::agents::Agents;
 use crate::engine::math::Vector;
 use crate::engine::scene::Scene;
 
-/// The state: together with the scene, it determines the rest of a run. Densities, pressures, forces and other
-/// fields are computed from it. If no force reads the density, the mean density ρ̂ serves observers only
-/// ([`Simulation::request_density_until`]). The state then still contains it while it is requested, so that a
-/// resumed run observes the same densities.
+/// The state: together with the scene, it determines the rest of a run. Densities, pressures, forces and other fields
+/// are computed from it. If no force reads the density, only observers use the mean density ρ̂
+/// ([`Simulation::request_density_until`]). The state contains it as long as they request it, so that a resumed run
+/// observes the same densities.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct State {
     frame: u64,
     agents: Agents,
     /// Positions of all agents when they were last sorted, meters.
     sorted_at: Vec<Vector>,
-    /// Have agents entered or left since?
+    /// Whether agents have entered or left since.
     crowd_changed: bool,
-    /// Are the decisions of this frame, if it is a coarse one, among the state?
+    /// Whether the state includes the decisions of this frame, if it is a coarse one.
     decided: bool,
     schedule: Schedule,
     progress: Progress,
     outcome: Outcome,
-    /// Was the density computed in this frame?
+    /// Whether the density was computed in this frame.
     has_density: bool,
 }
 
@@ -36,9 +36,9 @@ pub struct State {
 pub struct StateError;
 
 impl Simulation {
-    /// The state of the current frame. A run resumed from it evaluates the frame again if it was evaluated, and makes no
-    /// decision twice. Take it before [`set_goals`](Self::set_goals): the agents of a resumed run would walk to new goals
-    /// one frame earlier.
+    /// The state of the current frame. A resumed run evaluates the frame again if it was evaluated, and makes no
+    /// decision twice. Take it before [`set_goals`](Self::set_goals): the agents of a resumed run would walk to new
+    /// goals one frame earlier.
     pub fn state(&self) -> State {
         let crowd = &self.crowd;
         State {
@@ -103,7 +103,7 @@ impl Simulation {
 }
 
 impl State {
-    /// Does this state fit `scene`?
+    /// Whether this state fits `scene`.
     fn check(&self, scene: &Scene) -> Result<(), StateError> {
         let agents = &self.agents;
         let mut groups = agents.group.iter().map(|&group| usize::from(group));

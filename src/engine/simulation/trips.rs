@@ -15,7 +15,7 @@ use crate::engine::neighbors::{BLOCK, TASK};
 use crate::engine::random::{self, Purpose};
 use crate::engine::scene::Scene;
 
-/// How many agents have begun each journey, and the state of each place.
+/// The number of agents that have begun each journey, and the state of each place.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
     /// The number of agents that have begun each journey.
@@ -31,7 +31,7 @@ pub struct Progress {
 /// The state of a place.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlaceState {
-    /// Can agents pass the exit? Do agents wait in the waiting area?
+    /// Whether agents can pass the exit, or wait in the waiting area.
     pub open: bool,
     /// The number of agents that have chosen it and have not yet passed it.
     pub bound: u32,
@@ -43,7 +43,7 @@ pub struct PlaceState {
     pub(super) recent: Vec<u64>,
     /// When the next agent may pass, seconds.
     pub(super) ready: f64,
-    /// Agents bound for it: `nearer[k]` of them are nearer than k half meters.
+    /// `nearer[k]` is the number of agents bound for it that are nearer than k half meters.
     pub(super) nearer: Vec<u32>,
     /// The number of tickets given out for its queue.
     pub(super) tickets: u32,
@@ -71,7 +71,7 @@ impl Default for PlaceState {
 }
 
 impl PlaceState {
-    /// An agent that was bound for this place passes it.
+    /// Records that an agent that was bound for this place passes it.
     pub(super) fn pass(&mut self, clock: &Clock, scene: &Scene) {
         self.bound = self.bound.saturating_sub(1);
         self.passed += 1;
@@ -81,7 +81,8 @@ impl PlaceState {
         }
     }
 
-    /// Takes the first free one of `spots`, or the free one nearest to a point; beyond the last spot if none is free.
+    /// Takes the first free one of `spots`, or the free one nearest to a point, and returns its index; if none is free,
+    /// an index beyond the last spot.
     fn free_spot(&mut self, spots: &[Vector], near: Option<Vector>) -> usize {
         self.taken.resize(self.taken.len().max(spots.len()), false);
         let mut free = (0..spots.len()).filter(|&k| !self.taken[k]);
@@ -107,7 +108,7 @@ impl PlaceState {
 }
 
 impl Progress {
-    /// Does this progress fit `scene`?
+    /// Whether this progress fits `scene`.
     pub(super) fn fits(&self, scene: &Scene) -> bool {
         let journeys = &scene.journeys;
         let is_new = self.places.is_empty() && self.begun.is_empty();
@@ -117,7 +118,7 @@ impl Progress {
     }
 }
 
-/// Does this trip fit `scene`?
+/// Whether this trip fits `scene`.
 pub(super) fn fits(trip: &Trip, scene: &Scene) -> bool {
     let journeys = &scene.journeys;
     usize::from(trip.journey) < journeys.journeys.len()
@@ -238,7 +239,7 @@ impl Crowd {
         if before != Some(place) {
             let changes = before.map(|before| (before, false)).into_iter();
             let changes = changes.chain([(place, true)]);
-            // The next agents to choose see this choice.
+            // Agents that choose after this one see its choice.
             let lengths = scene.journeys.has_quickest().then(|| {
                 let lengths = changes.clone().map(|(place, _)| chooser.length(place));
                 lengths.collect::<Vec<f64>>()

@@ -25,7 +25,7 @@ pub struct Crowd {
     pub profile: &'static str,
     /// Changes to the profile's parameters.
     pub parameters: Parameters,
-    /// Do the agents walk, every other one to the right and the rest to the left? Otherwise their goals are their own
+    /// Whether the agents walk, alternately to the right and to the left. Otherwise their goals are their own
     /// positions.
     pub streams: bool,
 }

@@ -53,9 +53,9 @@ pub struct ParameterResult {
     pub interval: Option<[f64; 2]>,
     /// The part of the bounds that the interval covers, on the scale of the search.
     pub covers: Option<f64>,
-    /// Do the values determine it? Its interval covers at most half of the bounds.
+    /// Whether the values determine it: its interval covers at most half of the bounds.
     pub identified: bool,
-    /// Is it at a bound? Then its optimum may lie outside.
+    /// Whether it is at a bound. Then its optimum may lie outside.
     pub at_bound: bool,
 }
 

@@ -50,7 +50,7 @@ impl Comparison {
         self.difference().map(|difference| difference / self.paper)
     }
 
-    /// Is our mean inside the band? No if a run gave no value; `None` without a band.
+    /// Whether our mean is inside the band; false if a run gave no value, `None` without a band.
     pub fn is_kept(&self) -> Option<bool> {
         /// Limits such as 0.015 are not exact in binary.
         const ROUNDING: f64 = 1e-12;

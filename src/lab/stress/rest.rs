@@ -128,9 +128,9 @@ pub struct Remains {
 }
 
 impl Remains {
-    /// Is the time step stable? Agents must stay apart and inside the room, and the crowds must come to rest, or at
-    /// least not move because of the step. If a step is too long, velocities reverse in every frame; oscillations of
-    /// the model itself take several frames.
+    /// Whether the time step is stable: agents must stay apart and inside the room, and the crowds must come to rest,
+    /// or at least not move because of the step. If a step is too long, velocities reverse in every frame; oscillations
+    /// of the model itself take several frames.
     pub fn are_stable(&self) -> bool {
         let moves_on = self.persistence > 0.0;
         let rests = self.speed.is_some_and(|speed| speed <= RESTING || moves_on);

@@ -109,7 +109,7 @@ impl Check {
         }
     }
 
-    /// Is the value as expected? A missing value is only if any is.
+    /// Whether the value is as expected. A missing value passes only if any value would.
     pub fn is_passed(&self) -> bool {
         let [low, high] = self.bounds();
         let range = low - ROUNDING..=high + ROUNDING;

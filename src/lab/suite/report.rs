@@ -118,7 +118,7 @@ impl Report {
         lines.collect()
     }
 
-    /// Does a profile pass a case with all seeds? `None` without a finding.
+    /// Whether a profile passes a case with all seeds; `None` without a finding.
     fn is_passed(&self, case: &Case, profile: &str) -> Option<bool> {
         let own = |one: &&Finding| one.case.id == case.id && one.profile == profile;
         let mut own = self.findings.iter().filter(own).peekable();

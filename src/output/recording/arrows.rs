@@ -85,7 +85,8 @@ pub fn in_words(term: Term) -> String {
     term.name().replace('_', " ")
 }
 
-/// The arrows of these forces at the origin, the first one broad, and their names beside the tips. Arrows too short to see have no names.
+/// The arrows of these forces at the origin, the first one broad, and their names beside the tips. Arrows too short to
+/// see have no names.
 pub fn named(forces: &[Force]) -> (Arrows2D, Points2D) {
     let rgb = |[r, g, b]: Rgb| Color::from_rgb(r, g, b);
     let vectors: Vec<Vector> = forces.iter().map(|force| arrow(force.1)).collect();

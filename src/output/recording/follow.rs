@@ -25,7 +25,7 @@ pub struct Densest {
     id: Option<u32>,
     /// The largest density in the crowd when it was chosen, P/m².
     density: f64,
-    /// Has the asked moment passed? Then only a leaving agent is replaced.
+    /// Whether the requested moment has passed. Then only a leaving agent is replaced.
     settled: bool,
 }
 

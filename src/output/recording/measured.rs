@@ -33,8 +33,8 @@ pub struct MeasuredRecorder {
 }
 
 impl MeasuredRecorder {
-    /// Begins a recording. Every person is a disc of `radius` meters; `marked` regions and lines are drawn. There are no debug agents, whatever the options
-    /// say.
+    /// Begins a recording. Every person is a disc of `radius` meters; `marked` regions and lines are drawn. There are
+    /// no debug agents, whatever the options say.
     ///
     /// # Errors
     /// The file cannot be written, or no viewer answers.

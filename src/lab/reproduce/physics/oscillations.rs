@@ -1,4 +1,4 @@
-//! Do dense crowds oscillate? Spectra of locally averaged velocities by density.
+//! Oscillations of dense crowds: spectra of locally averaged velocities by density.
 
 use super::super::product::{Needs, Product};
 use super::{grouped, label, mean, profile, write};
