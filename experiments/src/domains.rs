@@ -57,11 +57,11 @@ struct Row {
     cut: &'static str,
     /// A frame of the whole crowd on one thread.
     ms_per_frame: Range,
-    /// Agents of the largest part over the mean.
+    /// The number of agents in the largest part, divided by the mean.
     agents_ratio: f64,
-    /// Pairs of near agents of the part with the most over the mean.
+    /// The largest number of pairs of near agents in a part, divided by the mean.
     pairs_ratio: f64,
-    /// The work of the part with the most over the mean, estimated from agents, pairs and RVO.
+    /// The largest work of a part, divided by the mean; estimated from agents, pairs and RVO.
     work_ratio: f64,
     /// Agents of other parts that a part reads.
     halo_mean: f64,
@@ -73,7 +73,7 @@ struct Row {
     bytes: Traffic,
     /// Kilobytes into the part with the largest halo, in a coarse frame with new lists.
     kilobytes_most: f64,
-    /// What becomes of the cut; none for crowds at rest.
+    /// How the balance drifts; `None` for crowds at rest.
     drift: Option<Drift>,
     model: Vec<Modeled>,
 }
