@@ -1,11 +1,12 @@
 //! The architecture: wings and modules use only those declared above them, each foreign crate is used in one place,
-//! there is no `unwrap` outside of tests, and no file has more than 400 lines. The last two hold for `experiments`,
-//! too.
+//! there is no `unwrap` outside of tests, no file has more than 400 lines, and no line more than 120 characters. The
+//! checks of `unwrap` and of lengths of files hold for `experiments`, too.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 const LONGEST_FILE: usize = 400;
+const LONGEST_LINE: usize = 120;
 
 fn source() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
@@ -258,6 +259,24 @@ fn no_file_is_longer_than_four_hundred_lines() {
     {
         let length = fs::read_to_string(&path).unwrap().lines().count();
         assert!(length <= LONGEST_FILE, "{}: {length} lines", path.display());
+    }
+}
+
+#[test]
+fn no_line_is_longer_than_120_characters_except_in_tables() {
+    // `scenario` still has longer lines.
+    let wings = files(&source()).into_iter();
+    for path in wings.filter(|path| place_of(path).0 != "scenario") {
+        for (k, line) in fs::read_to_string(&path).unwrap().lines().enumerate() {
+            let is_table = ["//! |", "/// |"].map(|row| line.trim_start().starts_with(row));
+            let is_short = line.chars().count() <= LONGEST_LINE;
+            assert!(
+                is_short || is_table.contains(&true),
+                "{}:{}: {line}",
+                path.display(),
+                k + 1
+            );
+        }
     }
 }
 

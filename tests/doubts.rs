@@ -170,8 +170,8 @@ fn exits_of_whose_lines_much_lies_off_the_floor_are_noted() {
         (json!([[12, 8], [12, 11]]), 33),
     ] {
         let expected = format!(
-            "exits[0].line: {percent} % of `east` lies in obstacles or outside of the walkable area, where nobody passes; \
-             draw the line on the floor, or on its edge"
+            "exits[0].line: {percent} % of `east` lies in obstacles or outside of the walkable area, where nobody \
+             passes; draw the line on the floor, or on its edge"
         );
         assert_eq!(with_line(line.clone()), [expected], "{line}");
     }

@@ -13,8 +13,9 @@ use sandbox::output::colors::ColorMap;
 const HALL: &str = r#"{"name": "hall", "duration_secs": 20, "profile": "sph", "preferred_speed": 1,
     "walkable_area": [[[[0,0],[20,0],[20,10],[0,10]]]],
     "view": {"region": [[0,0],[20,10]], "density_range": [0, 4]},
-    "agents": [{"position": [2,5], "goal": [2,5]}, {"position": [8,5], "goal": [8,5]}, {"position": [8.5,5], "goal": [8.5,5]},
-               {"position": [14,8], "goal": [14,8]}, {"position": [2,1.5], "goal": [19,1.5]}]}"#;
+    "agents": [{"position": [2,5], "goal": [2,5]}, {"position": [8,5], "goal": [8,5]},
+               {"position": [8.5,5], "goal": [8.5,5]}, {"position": [14,8], "goal": [14,8]},
+               {"position": [2,1.5], "goal": [19,1.5]}]}"#;
 
 struct Folder(tempfile::TempDir);
 

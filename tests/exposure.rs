@@ -275,8 +275,9 @@ fn busy() -> Value {
         "exits": [{"name": "door", "line": [[8, 2.5], [8, 3.5]]}],
         "journeys": [{"name": "out", "stages": [{"nearest": ["door"]}]}],
         "grids": [{"min": [0.3, 0.3], "max": [7.7, 5.7], "columns": 13, "rows": 9, "jitter": 0.1, "journey": "out"}],
-        "measurements": [{"egress": {}}, {"exposure": {}}, {"service_levels": {"every_secs": 0.3}}, {"crowd_pressure": {}},
-                         {"body_forces": {"every_secs": 0.2}}, {"wall_forces": {"every_secs": 0.2}}, {"walks": {}},
+        "measurements": [{"egress": {}}, {"exposure": {}}, {"service_levels": {"every_secs": 0.3}},
+                         {"crowd_pressure": {}}, {"body_forces": {"every_secs": 0.2}},
+                         {"wall_forces": {"every_secs": 0.2}}, {"walks": {}},
                          {"jitter": {"from_secs": 0, "to_secs": 8}}],
     })
 }

@@ -113,7 +113,8 @@ fn polygons_without_effect_are_noted() {
 #[test]
 fn of_equal_floors_all_but_the_first_are_noted() {
     let rooms = ["POLYGON ((0 0, 9 0, 9 9, 0 9))"; 3].join("\n");
-    let note = "line 2 and 1 more: floor wholly inside other floor (line 1) adds nothing; remove it, or make it an obstacle";
+    let note = "line 2 and 1 more: floor wholly inside other floor (line 1) adds nothing; remove it, or make it an \
+                obstacle";
     assert_eq!(floor_plan::parse(&rooms).unwrap().notes, [note]);
     // An area in the hole of another one is no part of it.
     let yard =

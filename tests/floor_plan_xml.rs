@@ -115,7 +115,8 @@ fn errors_name_the_place_and_the_fix() {
     for (text, words) in [
         (
             plan("m", &room(&(wall + &far)), ""),
-            "room 0, subroom 1: the walls do not join: no wall or door leads from (4, 0) to the wall that begins at (9, 9)",
+            "room 0, subroom 1: the walls do not join: no wall or door leads from (4, 0) to the wall that begins at \
+             (9, 9)",
         ),
         (
             plan("m", &room(bad), ""),

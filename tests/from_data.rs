@@ -347,7 +347,8 @@ fn problems_with_the_data_name_their_place_and_the_fix() {
             &text,
             from(json!({"at_secs": 4})),
             json!({"goal": null, "periodic": {"axis": "x", "length": 30}}),
-            "from: in a periodic scene none come in, and 1 people appear after the start; set `until_secs` to `at_secs`",
+            "from: in a periodic scene none come in, and 1 people appear after the start; set `until_secs` to \
+             `at_secs`",
         ),
     ] {
         let said = message(text, from, more);

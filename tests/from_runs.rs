@@ -109,7 +109,8 @@ fn a_run_does_not_replace_the_data_that_it_begins_from() {
 #[test]
 fn a_line_measures_the_same_in_a_run_and_in_its_trajectories() {
     let mut document = room();
-    document["measurements"] = json!([{"line_flow": {"line": [[8, 0], [8, 8]], "region": [[6, 2], [8, 6]], "part": [0.2, 0.8]}}]);
+    let line = json!({"line": [[8, 0], [8, 8]], "region": [[6, 2], [8, 6]], "part": [0.2, 0.8]});
+    document["measurements"] = json!([{ "line_flow": line }]);
     document["duration_secs"] = json!(12);
     let scenario = Scenario::parse(&document.to_string(), "f", &[]).unwrap();
     let folder = tempfile::tempdir().unwrap();

@@ -357,7 +357,9 @@ fn places_and_journeys_that_cannot_work_are_refused_with_place_and_fix() {
     };
     assert_eq!(with_wall(1.0), Ok(()));
     let closed = with_wall(0.0).unwrap_err();
-    assert!(closed.contains("journeys: of `out`: no way leads from (6.5, 2.6), where agents of grids[0] start, to `east`: walls close it off"), "{closed}");
+    let expected = "journeys: of `out`: no way leads from (6.5, 2.6), where agents of grids[0] start, to `east`: \
+                    walls close it off";
+    assert!(closed.contains(expected), "{closed}");
     let narrow = with_wall(0.3).unwrap_err();
     assert!(
         narrow.contains("narrower than 0.53 m, too narrow for"),

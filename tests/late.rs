@@ -20,7 +20,10 @@ fn notes(more: &Value, settings: &[&str]) -> Vec<String> {
 #[test]
 fn what_begins_after_the_end_is_noted_with_its_place() {
     let close = |at: f64| json!({"events": [{"at_secs": at, "close": "east"}]});
-    let exit = |from: f64| json!({"exits": [{"name": "east", "line": [[9, 4], [9, 6]], "closed_secs": [[0, 0.1], [from, 900]]}]});
+    let exit = |from: f64| {
+        json!({"exits": [{"name": "east", "line": [[9, 4], [9, 6]],
+                          "closed_secs": [[0, 0.1], [from, 900]]}]})
+    };
     let source = |start: f64| {
         json!({"sources": [{"min": [0, 5], "max": [0, 9], "columns": 1, "rows": 4, "every_secs": 1,
                             "start_secs": start}]})

@@ -169,7 +169,10 @@ fn a_person_between_walls_whose_corners_are_at_the_same_height_is_not_inside() {
 #[test]
 fn walks_of_people_at_a_steady_speed_give_their_density_speed_and_flow() {
     // Five people 3 m apart cross a region of 10 m × 2 m at 1.4 m/s: each is there for 10 / 1.4 s.
-    let agents = (0..5).map(|k| json!({"position": [-3.0 * f64::from(k) - 1.0, 0], "velocity": [1.4, 0], "goal": [100, 0]}));
+    let agents = (0..5).map(|k| {
+        let x = -3.0 * f64::from(k) - 1.0;
+        json!({"position": [x, 0], "velocity": [1.4, 0], "goal": [100, 0]})
+    });
     let summary = measured(json!({
         "duration_secs": 20, "profile": "sph", "agents": agents.collect::<Vec<_>>(),
         "measurements": [{"walks": {"region": [[0, -1], [10, 1]], "until_secs": 18}}, {"walks": {"name": "all"}}],

@@ -18,8 +18,8 @@ fn a_grid_that_is_too_dense_is_noted_with_its_place_and_density() {
         json!({"goal": [9, 9], "grids": [{"min": [4, 4], "max": [5, 5], "columns": cells, "rows": cells,
                                           "radius": 0.24}]})
     };
-    let note = "400 of 400 agents overlap others by more than half a radius at the start, up to 400 P/m², in the square \
-                meter from (4, 4) to (5, 5); give them more room, or check the units";
+    let note = "400 of 400 agents overlap others by more than half a radius at the start, up to 400 P/m², in the \
+                square meter from (4, 4) to (5, 5); give them more room, or check the units";
     assert_eq!(notes(&grid(20)), [note]);
     assert_eq!(notes(&grid(4)).len(), 1, "0.25 m apart");
     assert_eq!(notes(&grid(3)).len(), 0, "0.33 m apart");

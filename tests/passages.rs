@@ -110,16 +110,17 @@ fn files_whose_bodies_fit_no_way_are_refused_with_the_passage_and_others_get_a_n
     let mut given = narrow.clone();
     given["min_passage_width"] = json!(0.2);
     let error = refused(&given);
-    assert!(
-        error.contains("agents[0]: bodies 0.8 m wide need 0.48 m with turned shoulders, and the widest way has a passage of 0.42 m at (8"),
-        "{error}"
-    );
+    let expected = "agents[0]: bodies 0.8 m wide need 0.48 m with turned shoulders, and the widest way has a passage \
+                    of 0.42 m at (8";
+    assert!(error.contains(expected), "{error}");
     let notes = |profile: &str, width: f64| {
         let mut document = with_people(rooms(profile, width, 0.2), 0.25, &people);
         document["min_passage_width"] = json!(0.2);
         scenario(&document, &[]).unwrap().notes
     };
-    assert!(notes("walk+sph", 0.42)[0].contains("agents[0]: on the way to (14, 4), bodies 0.5 m wide fit only with turned shoulders in a passage of 0.42 m"));
+    let expected = "agents[0]: on the way to (14, 4), bodies 0.5 m wide fit only with turned shoulders in a passage \
+                    of 0.42 m";
+    assert!(notes("walk+sph", 0.42)[0].contains(expected));
     assert!(notes("sph", 0.42)[0].contains("bodies 0.5 m wide can stick in a passage of 0.42 m"));
     assert_eq!(notes("sph", 0.52), Vec::<String>::new());
     // Another way is wide enough.

@@ -131,11 +131,13 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
     ],
     [
         "profile=fs",
-        "--set profile=fs: unknown profile `fs`; did you mean `sf`? (known profiles: sf, rvo, sf+sph, rvo+sph, sph, sf->sph, rvo->sph, walk+sph)",
+        "--set profile=fs: unknown profile `fs`; did you mean `sf`? (known profiles: sf, rvo, sf+sph, rvo+sph, sph, \
+         sf->sph, rvo->sph, walk+sph)",
     ],
     [
         "profile={\"base\": \"sf\", \"parameters\": {\"candidates\": 0}}",
-        r#"--set profile={"base": "sf", "parameters": {"candidates": 0}}: parameters.candidates: must be at least 1 and at most 1e6, not 0"#,
+        "--set profile={\"base\": \"sf\", \"parameters\": {\"candidates\": 0}}: parameters.candidates: must be at \
+         least 1 and at most 1e6, not 0",
     ],
     [
         "rest_density_min=6",
@@ -151,7 +153,9 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
     ],
     [
         "sources.0.rwos=5",
-        "--set sources.0.rwos=5: unknown key `rwos`; did you mean `rows`? Expected one of `name`, `min`, `max`, `columns`, `rows`, `jitter`, `goal`, `goal_offset`, `journey`, `profile`, `remove_within`, `counted`, `preferred_speed`, `radius`, `mass`, `premovement_secs`, `start_secs`, `every_secs`, `times`",
+        "--set sources.0.rwos=5: unknown key `rwos`; did you mean `rows`? Expected one of `name`, `min`, `max`, \
+         `columns`, `rows`, `jitter`, `goal`, `goal_offset`, `journey`, `profile`, `remove_within`, `counted`, \
+         `preferred_speed`, `radius`, `mass`, `premovement_secs`, `start_secs`, `every_secs`, `times`",
     ],
     [
         "profile.base=sf",

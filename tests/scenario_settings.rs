@@ -58,7 +58,8 @@ fn the_keys_of_nested_objects_are_documented() {
         ("events", 1),
     ] {
         let first = json!({"?": 0, "position": [0, 0], "min": [0, 0], "max": [0, 0], "columns": 1, "rows": 1,
-            "every_secs": 1, "line": [[0, 0], [0, 9]], "area": [[0, 0], [9, 0], [9, 9]], "at_secs": 0, "for_secs": 0, "region": [[0, 0], [0, 0]]});
+            "every_secs": 1, "line": [[0, 0], [0, 9]], "area": [[0, 0], [9, 0], [9, 9]], "at_secs": 0, "for_secs": 0,
+            "region": [[0, 0], [0, 0]]});
         let documented = &nested.iter().find(|(name, _)| name == list).unwrap().1;
         let documented: Vec<&str> = documented.split(", ").collect();
         let optional = documented.iter().filter(|key| key.ends_with('?'));
@@ -78,9 +79,9 @@ fn the_keys_of_nested_objects_are_documented() {
     for (path, keys) in [
         (
             "measurements",
-            "one of density, flow_of_first, flow_until, egress, evacuated, uncounted, pauses, locked, snapshot, wave, front, \
-             oscillation, contacts, jitter, closest, integrity, speed_by_density, walks, line_flow, exposure, service_levels, crowd_pressure, \
-             body_forces, wall_forces or frame_time",
+            "one of density, flow_of_first, flow_until, egress, evacuated, uncounted, pauses, locked, snapshot, wave, \
+             front, oscillation, contacts, jitter, closest, integrity, speed_by_density, walks, line_flow, exposure, \
+             service_levels, crowd_pressure, body_forces, wall_forces or frame_time",
         ),
         ("measurements.density", "at_secs, region?"),
         (

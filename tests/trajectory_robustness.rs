@@ -259,7 +259,9 @@ fn databases_with_changed_values_are_read_or_refused() {
         .unwrap();
     let connection = Mutex::new(connection); // a case may run on any thread
     let name = path.display().to_string();
-    let value = || prop_oneof![30 => (0..12_i64).prop_map(|n| n.to_string()), 1 => select(values.to_vec()).prop_map(str::to_owned)];
+    let number = || (0..12_i64).prop_map(|n| n.to_string());
+    let other = || select(values.to_vec()).prop_map(str::to_owned);
+    let value = || prop_oneof![30 => number(), 1 => other()];
     let row = || prop::collection::vec(value(), 5);
     let rates = ["'1e-300'", "0", "-1", "NULL", "'x'", "1e7", "16"];
     let rate = || prop_oneof![4 => Just("'10'"), 1 => select(rates.to_vec())];

@@ -206,7 +206,8 @@ fn errors_about_goals_name_the_key_that_gives_the_goal_and_the_agents() {
         "agents": [{"position": [2, 5], "goal": [5, 5]}, {"position": [2, 6], "goal": [5, 5]}],
         "grids": [{"min": [3, 1], "max": [4, 2], "columns": 2, "rows": 2, "goal": [5, 5]}],
         "crowds": [{"name": "all", "area": [[6, 1], [9, 1], [9, 4]], "number": 2, "goal": [5, 5]}],
-        "sources": [{"min": [1, 8], "max": [2, 9], "columns": 2, "rows": 1, "every_secs": 1, "times": 1, "goal": [5, 5]}],
+        "sources": [{"min": [1, 8], "max": [2, 9], "columns": 2, "rows": 1, "every_secs": 1, "times": 1,
+                     "goal": [5, 5]}],
         "entrances": [{"line": [[4, 8], [5, 8]], "at_secs": [1], "goal": [5, 5]}],
     });
     let error = |change: &dyn Fn(&mut Value)| {

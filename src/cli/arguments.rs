@@ -119,7 +119,14 @@ pub struct RecordOptions {
     #[arg(long, value_name = "N", default_value_t = 5, requires = "record", value_parser = every_frames)]
     pub record_every: u64,
     /// Start recording at this time, seconds
-    #[arg(long, value_name = "SECS", default_value_t = 0.0, requires = "record", allow_negative_numbers = true, value_parser = seconds)]
+    #[arg(
+        long,
+        value_name = "SECS",
+        default_value_t = 0.0,
+        requires = "record",
+        allow_negative_numbers = true,
+        value_parser = seconds
+    )]
     pub record_from: f64,
     /// Agents whose forces the recording shows: ids, all or none [default: the scenario's choice]
     #[arg(
@@ -148,7 +155,13 @@ pub struct TrajectoryOptions {
     #[arg(long = "trajectory", value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Frames per second of the trajectories; must divide the simulation's frame rate
-    #[arg(long = "trajectory-fps", value_name = "N", default_value_t = 10.0, requires = "files", value_parser = frame_rate)]
+    #[arg(
+        long = "trajectory-fps",
+        value_name = "N",
+        default_value_t = 10.0,
+        requires = "files",
+        value_parser = frame_rate
+    )]
     pub fps: f64,
 }
 
@@ -188,7 +201,14 @@ pub struct DrawOptions {
     #[arg(long, value_name = "SECS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = seconds)]
     pub at: f64,
     /// The first moment of an animation, seconds
-    #[arg(long, value_name = "SECS", requires = "to", conflicts_with = "at", allow_negative_numbers = true, value_parser = seconds)]
+    #[arg(
+        long,
+        value_name = "SECS",
+        requires = "to",
+        conflicts_with = "at",
+        allow_negative_numbers = true,
+        value_parser = seconds
+    )]
     pub from: Option<f64>,
     /// The end of an animation, seconds
     #[arg(long, value_name = "SECS", requires = "from", allow_negative_numbers = true, value_parser = seconds)]
@@ -208,7 +228,12 @@ pub struct DrawOptions {
     #[arg(long, value_name = "SECS", value_parser = positive_seconds)]
     pub trails: Option<f64>,
     /// Show a field below the agents, by the SPH kernel
-    #[arg(long, value_name = "NAME", conflicts_with = "paths", value_parser = PossibleValuesParser::new(["density", "speed"]))]
+    #[arg(
+        long,
+        value_name = "NAME",
+        conflicts_with = "paths",
+        value_parser = PossibleValuesParser::new(["density", "speed"])
+    )]
     pub field: Option<String>,
     /// Show the ways to an exit, waypoint, waiting area or queue, or to a point; may be repeated
     #[arg(long, value_name = "PLACE|X,Y", allow_hyphen_values = true)]

@@ -99,7 +99,12 @@ pub struct TimingOptions {
     #[command(flatten)]
     print: PrintOptions,
     /// Size of the largest crowd, if the benchmark measures several sizes
-    #[arg(long, value_name = "AGENTS", default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(1_000..))]
+    #[arg(
+        long,
+        value_name = "AGENTS",
+        default_value_t = 1_000_000,
+        value_parser = clap::value_parser!(u32).range(1_000..)
+    )]
     largest: u32,
 }
 

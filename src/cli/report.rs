@@ -100,7 +100,8 @@ fn ending(run: &Run) -> String {
         return text;
     }
     text += &format!(
-        "{stuck} of {remain} agents are stuck: they made less than {HEADWAY} m of headway in {STUCK_AFTER} s of walking.\n"
+        "{stuck} of {remain} agents are stuck: they made less than {HEADWAY} m of headway in {STUCK_AFTER} s of \
+         walking.\n"
     );
     for StuckGroup {
         cause,

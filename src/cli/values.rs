@@ -143,7 +143,8 @@ pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
         let mut known = ["svg", "png", "pdf", "gif", "mp4", "webm"].iter();
         match known.any(|known| extension.eq_ignore_ascii_case(known)) {
             true => Ok(path),
-            false => Err("a picture's name must end in .svg, .png or .pdf, that of an animation in .gif, .png, .mp4 or .webm"),
+            false => Err("a picture's name must end in .svg, .png or .pdf, that of an animation in .gif, .png, .mp4 or \
+                          .webm"),
         }
     })
 }

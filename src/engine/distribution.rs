@@ -113,7 +113,8 @@ pub enum DistributionError {
     Shape(f64),
     /// The bounds leave nothing to draw from.
     #[error(
-        "fewer than one in a million draws lie between {low} and {high}; move the distribution there, or widen its bounds"
+        "fewer than one in a million draws lie between {low} and {high}; move the distribution there, or widen its \
+         bounds"
     )]
     Empty {
         /// The lower bound.

@@ -45,8 +45,10 @@ pub fn hall(rng: &mut ChaCha8Rng, most: u32) -> Value {
         "walkable_area": [[[[0, 0], [30, 0], [30, 12], [0, 12]]]],
         "obstacles": [[[9, 0], [9.3, 0], [9.3, 8], [9, 8]], [[20, 4], [20.3, 4], [20.3, 12], [20, 12]]],
         "exits": [exit, {"name": "north", "line": [[22, 12], [24, 12]], "closed_secs": [[from, from + 1.0]]}],
-        "waypoints": [{"name": "gap", "line": [[9.3, 8.3], [9.3, 11.7]]}, {"name": "spot", "at": [15, 8], "within": 1.5}],
-        "waiting_areas": [{"name": "pit", "area": [[11, 1], [18, 1], [18, 6], [11, 6]], "for_secs": {"exponential": 1}}],
+        "waypoints": [{"name": "gap", "line": [[9.3, 8.3], [9.3, 11.7]]},
+                      {"name": "spot", "at": [15, 8], "within": 1.5}],
+        "waiting_areas": [{"name": "pit", "area": [[11, 1], [18, 1], [18, 6], [11, 6]],
+                           "for_secs": {"exponential": 1}}],
         "queues": [{"name": "till", "path": [[18, 10], [11, 10], [11, 7]], "servers": rng.random_range(1..4),
                     "service_secs": service}],
         "zones": [{"name": "slow", "area": [[20.5, 0], [25, 0], [25, 12], [20.5, 12]],
@@ -65,8 +67,8 @@ pub fn hall(rng: &mut ChaCha8Rng, most: u32) -> Value {
                      "start_secs": rng.random_range(0.0..2.0), "journey": one(rng, &journeys)}],
         "from": {"people": people, "journey": one(rng, &journeys)},
         "events": [{"at_secs": rng.random_range(0.0..5.0), "release": "pit"},
-                   {"at_secs": rng.random_range(0.0..4.0), "for_secs": 0.6, "region": [[2, 2], [15, 9]], "goal_scale": 3,
-                    "ignore_contact": true}],
+                   {"at_secs": rng.random_range(0.0..4.0), "for_secs": 0.6, "region": [[2, 2], [15, 9]],
+                    "goal_scale": 3, "ignore_contact": true}],
     })
 }
 

@@ -42,10 +42,20 @@ pub struct MeasureOptions {
     pub support_radius: f64,
     /// How the regions hidden by walls are integrated: exactly with overlaps once (union), exactly for each wall
     /// (exact), or at the paper's single points (representative)
-    #[arg(long, value_name = "NAME", default_value = "union", value_parser = PossibleValuesParser::new(["union", "exact", "representative"]))]
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = "union",
+        value_parser = PossibleValuesParser::new(["union", "exact", "representative"])
+    )]
     pub wall_method: String,
     /// Density assumed behind walls: the same as at the person's place, or the rest density as in the engine
-    #[arg(long, value_name = "NAME", default_value = "same", value_parser = PossibleValuesParser::new(["same", "rest"]))]
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = "same",
+        value_parser = PossibleValuesParser::new(["same", "rest"])
+    )]
     pub behind_walls: String,
     /// Largest rest density for --behind-walls rest, P/m²
     #[arg(long, value_name = "P/m²", default_value_t = 5.0, value_parser = length)]

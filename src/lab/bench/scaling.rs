@@ -58,8 +58,9 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     for row in &mut rows {
         row.ratio_to_10000 = reference.map(|reference| median(row) / reference);
     }
-    let memory = "Memory is what the process holds with the crowd running, and at its peak, minus what it held before the \
-                  first crowd. It includes the program and its threads: below about 100,000 agents it means little.";
+    let memory = "Memory is what the process holds with the crowd running, and at its peak, minus what it held before \
+                  the first crowd. It includes the program and its threads: below about 100,000 agents it means \
+                  little.";
     let unknown =
         "The memory of a process is read from /proc/self/status, which this system does not have.";
     let memory = if before.is_some() { memory } else { unknown };

@@ -24,7 +24,8 @@ use crate::scenario::{Scenario, Setting, built_in, floor_plan};
 
 pub const BENCHMARK: Benchmark = Benchmark {
     name: "stages",
-    about: "time per stage of a frame, of shipped scenarios, dense crowds that avoid, and a dense hall with walking laws",
+    about: "time per stage of a frame, of shipped scenarios, dense crowds that avoid, and a dense hall with walking \
+            laws",
     run,
 };
 
@@ -165,11 +166,11 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
         sheet: picture(&rows),
         rows: json!(rows),
         notes: vec![format!(
-            "Stages are medians, in ms per frame; every repeat takes the same frames. Scenarios as shipped: {stretches}. \
-             Streams: {agents} agents from {from:.1} to {:.1} s, half of them walking to the right and half to the left. \
-             Hall: {} pillars stand between the agents, at 4.7 P/m², and their goal; from {from:.1} to {:.1} s, without \
-             and with a walking law. Measuring: the scenario's measurements and the search for agents that stand, as in every run; \
-             it is not part of the frame. – : a stage that never runs.",
+            "Stages are medians, in ms per frame; every repeat takes the same frames. Scenarios as shipped: \
+             {stretches}. Streams: {agents} agents from {from:.1} to {:.1} s, half of them walking to the right and \
+             half to the left. Hall: {} pillars stand between the agents, at 4.7 P/m², and their goal; from {from:.1} \
+             to {:.1} s, without and with a walking law. Measuring: the scenario's measurements and the search for \
+             agents that stand, as in every run; it is not part of the frame. – : a stage that never runs.",
             until(streaming),
             bays[0] * bays[1],
             until(walking)

@@ -61,8 +61,8 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
         sheet: picture(&rows, &counts),
         rows: json!(rows),
         notes: vec![
-            "The crowd of `scaling`. Every number of threads moves its own copy, and the copies take turns; speed-ups are \
-             ratios of times in the same turn. A small crowd is a single task, for which no thread is woken."
+            "The crowd of `scaling`. Every number of threads moves its own copy, and the copies take turns; speed-ups \
+             are ratios of times in the same turn. A small crowd is a single task, for which no thread is woken."
                 .to_owned(),
         ],
     })

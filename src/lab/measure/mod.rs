@@ -164,7 +164,8 @@ pub enum MeasureError {
     Nobody(f64, f64, f64, f64),
     /// No distance and no floor limit Voronoi cells.
     #[error(
-        "nothing limits the Voronoi cells: there is no walkable area; give one with --geometry, or a distance with --voronoi-cutoff"
+        "nothing limits the Voronoi cells: there is no walkable area; give one with --geometry, or a distance with \
+         --voronoi-cutoff"
     )]
     Unlimited,
     /// The number of a region, from 1, that is outside of the walkable area.

@@ -27,7 +27,8 @@ const FLOW: &str = "flow.csv";
 const EXPOSURE: &str = "exposure.csv";
 const ALARMS: &str = "alarms.csv";
 
-const AGENT_COLUMNS: &str = "frame,time,id,x,y,vel_x,vel_y,speed,density,density_from_walls,density_of_others,voronoi_density";
+const AGENT_COLUMNS: &str = "frame,time,id,x,y,vel_x,vel_y,speed,density,density_from_walls,density_of_others,\
+                             voronoi_density";
 const FIELD_COLUMNS: &str = "x,y,density,vel_x,vel_y,speed,flow_x,flow_y,people";
 
 /// The names of all files that a measurement may write, with its recording and its pictures.

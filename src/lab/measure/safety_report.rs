@@ -59,7 +59,8 @@ fn left(departures: &Departures) -> String {
     ]
     .map(time);
     format!(
-        "\nlast seen       {left} of {people} people before the last frame: 50 % by {half}, 95 % by {most}, all by {all}\n"
+        "\nlast seen       {left} of {people} people before the last frame: 50 % by {half}, 95 % by {most}, all by \
+         {all}\n"
     )
 }
 

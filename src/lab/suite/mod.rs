@@ -60,8 +60,8 @@ pub struct Chosen<'a> {
 }
 
 /// Why crowds of the paper's profiles are too fast.
-pub const NOTHING_SLOWS: &str = "nothing slows a crowd whose agents all walk at the same velocity: pressure, contact and \
-     avoidance act on differences of velocity or on overlaps only";
+pub const NOTHING_SLOWS: &str = "nothing slows a crowd whose agents all walk at the same velocity: pressure, contact \
+                                 and avoidance act on differences of velocity or on overlaps only";
 
 impl Suite {
     /// All cases, in the order of the report.

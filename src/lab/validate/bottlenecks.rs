@@ -10,8 +10,8 @@ const TOLERANCES: [f64; 3] = [0.06, 0.10, 0.10];
 const DISTANCE: &str = "avoidance keeps people before the door farther apart than pupils stand";
 
 /// Why crowds of `walk+sph` are too loose before wide gaps.
-const WIDE: &str = "people speed up before a wide gap at densities at which they hardly move in corridors; one time gap \
-     gives the one or the other";
+const WIDE: &str = "people speed up before a wide gap at densities at which they hardly move in corridors; one time \
+                    gap gives the one or the other";
 
 /// The profiles of the paper, which miss nearly all of these scenes.
 const MISSES: &[(&str, &str)] = &[

@@ -23,7 +23,8 @@ pub const SPEEDS: [(&str, f64, f64); 7] = [
 pub const CASES: [Case; 2] = [
     Case {
         id: "speeds",
-        about: "people of 1.34 m/s in an endless corridor of 1.8 m, beside runs in corridors of 1.8 to 3 m (Hermes project)",
+        about: "people of 1.34 m/s in an endless corridor of 1.8 m, beside runs in corridors of 1.8 to 3 m (Hermes \
+                project)",
         runs: &[
             SPEEDS[0].0,
             SPEEDS[1].0,
@@ -47,7 +48,8 @@ pub const CASES: [Case; 2] = [
     },
     Case {
         id: "single-file",
-        about: "single file around an oval of 26.8 m: mean speeds within the 10 to 90 % band of measured ones (RiMEA 16)",
+        about: "single file around an oval of 26.8 m: mean speeds within the 10 to 90 % band of measured ones (RiMEA \
+                16)",
         runs: &[BANDS[0].0, BANDS[1].0, BANDS[2].0, BANDS[3].0],
         judge: single_file,
         misses: &[

@@ -49,7 +49,8 @@ pub const CASES: [Case; 2] = [
     },
     Case {
         id: "data-corridor",
-        about: "220 people enter a corridor of 1.8 m where and when they did (Hermes project, 2009, run uo-180-180-180)",
+        about: "220 people enter a corridor of 1.8 m where and when they did (Hermes project, 2009, run \
+                uo-180-180-180)",
         runs: &[LINES[1].0],
         judge: |runs| checks(runs, LINES[1]),
         misses: MISSES,

@@ -117,8 +117,8 @@ pub fn of_run(
     }
     if let Some(mass) = options.body_mass {
         rest += &format!(
-            "* Force on walls (`world/wall_forces`), the mean over 1 m for people of {mass} kg: yellow 0, orange {:.0}, \
-             dark red {WALL_FORCE_RANGE} N/m and more. Not a safety limit.\n",
+            "* Force on walls (`world/wall_forces`), the mean over 1 m for people of {mass} kg: yellow 0, orange \
+             {:.0}, dark red {WALL_FORCE_RANGE} N/m and more. Not a safety limit.\n",
             0.5 * WALL_FORCE_RANGE,
         );
     }
