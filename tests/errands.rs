@@ -20,7 +20,7 @@ use crate::common::plans::{Ring, contains, margin};
 const BEHIND_LINES: f64 = 4.25;
 /// Agents stop in front of walls; rounding and uniting areas move walls by less than this, meters.
 const ROUNDING: f64 = 1e-5;
-/// Far more than any case takes.
+/// A case that takes longer hangs.
 const LONGEST: Duration = Duration::from_secs(120);
 /// The most memory that a case holds at once, bytes.
 const MEMORY: u64 = 64 << 20;

@@ -232,6 +232,7 @@ fn an_aborted_run_leaves_whole_frames() {
     let mut simulation = Simulation::new(scene).unwrap();
     let create = |path: &PathBuf| Trajectory::create(path, &mut simulation, VIEW, 50.0).unwrap();
     let mut files: Vec<Trajectory> = paths.iter().map(create).collect();
+    // Databases store their rows once a second.
     for wait in [0, 1100, 0, 0] {
         simulation.evaluate().unwrap();
         std::thread::sleep(std::time::Duration::from_millis(wait));

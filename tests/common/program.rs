@@ -56,6 +56,9 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
+/// A program that has not written its first output after this time hangs.
+const LONGEST: Duration = Duration::from_secs(120);
+
 /// Starts the program and waits until each of the files is longer than the given number of bytes.
 pub fn start_and_wait(arguments: &[&str], files: &[(&Path, u64)]) -> Child {
     let mut child = Command::new(PROGRAM)
@@ -67,7 +70,7 @@ pub fn start_and_wait(arguments: &[&str], files: &[(&Path, u64)]) -> Child {
     let start = Instant::now();
     let length = |file: &Path| fs::metadata(file).map_or(0, |about| about.len());
     while files.iter().any(|(file, bytes)| length(file) <= *bytes) {
-        assert!(start.elapsed() < Duration::from_secs(120));
+        assert!(start.elapsed() < LONGEST, "{arguments:?} hangs");
         assert_eq!(child.try_wait().unwrap(), None, "{arguments:?} has ended");
         std::thread::sleep(Duration::from_millis(2));
     }
