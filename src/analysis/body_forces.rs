@@ -1,9 +1,9 @@
-//! How hard a crowd presses on each person: the virial stress of pressure and contact, and the force that follows.
+//! The pressure of a crowd on each person: the virial stress of pressure and contact, and the resulting force.
 //!
-//! σ_i = −(ρ_i/2) (Σ_j r_ij ⊗ f_ij + Σ_k 2 (r_i − r_k*) ⊗ f_ik), N/m: over the agents j and over the walls k, which
-//! count as a person at its mirror image. f is body mass × m_i × the acceleration by Eqs. 11, 12, 22 and 23, and ρ_i is
-//! the density of [`local`](super::local). The force on a person is the largest principal pressure, −σ, times the width
-//! of a person. Social forces, RVO and goal forces do not press.
+//! σ_i = −(ρ_i/2) (Σ_j r_ij ⊗ f_ij + Σ_k 2 (r_i − r_k*) ⊗ f_ik), N/m: summed over the agents j and over the walls k. A
+//! wall counts as a person at the mirror image of the agent. f is body mass × m_i × the acceleration by Eqs. 11, 12, 22
+//! and 23, and ρ_i is the density of [`local`](super::local). The force on a person is the largest principal pressure,
+//! −σ, times the width of a person. Social forces, RVO and goal forces do not press.
 
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,7 @@ pub const WIDTH: f64 = 0.5;
 /// (Hopkins et al. 1993), as Lee and Hughes (2006) give them. Not safety limits.
 pub const THRESHOLDS: [f64; 3] = [623.0, 1112.0, 6227.0];
 
-/// A person and what presses on it.
+/// A person with the stress and the force on it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Pressed {
     /// The agent's id.
@@ -33,7 +33,7 @@ pub struct Pressed {
     pub force: f64,
 }
 
-/// What presses on each agent of an evaluated frame, by id.
+/// The stress and the force on each agent of an evaluated frame, by id.
 pub fn pressed(simulation: &Simulation, body_mass: f64) -> Vec<Pressed> {
     let frame = simulation.frame();
     let (agents, walls) = (frame.agents, frame.walls);
@@ -66,7 +66,7 @@ fn principal_pressure([xx, xy, yy]: [f64; 3]) -> f64 {
     -0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy)
 }
 
-/// What was seen of one person.
+/// The observations of one person.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 struct Person {
     /// The largest force, newtons.
@@ -77,7 +77,7 @@ struct Person {
     last: u32,
 }
 
-/// What was seen of people at several times.
+/// The observations of people at several times.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BodyForces {
     /// The largest force so far, and when, seconds.

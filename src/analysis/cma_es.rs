@@ -187,7 +187,7 @@ impl CmaEs {
         self.step_path = &self.step_path * kept + self.root.whitened(&way) * added;
         let length = self.step_path.norm();
 
-        // A long step path stalls the other path, so that the covariance does not grow too fast.
+        // A long step path stalls the covariance path, so that the covariance does not grow too fast.
         let early = (1.0 - kept.powi(2 * self.generation)).sqrt();
         let bound = (1.4 + 2.0 / (n as f64 + 1.0)) * of.expected_length;
         let stalled = length / early >= bound;
@@ -212,8 +212,8 @@ impl CmaEs {
     }
 }
 
-/// A coordinate reflected at 0 and 1 until it lies between them. It comes no farther from any place between them, so
-/// the reflected points of a distribution whose center is inside are a narrower distribution.
+/// A coordinate reflected at 0 and 1 until it lies between them. Reflection brings it no farther from any point between
+/// them, so reflecting the points of a distribution with its center inside narrows the distribution.
 pub fn reflected(coordinate: f64) -> f64 {
     let turned = coordinate.rem_euclid(2.0);
     if turned > 1.0 { 2.0 - turned } else { turned }

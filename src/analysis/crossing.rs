@@ -19,8 +19,8 @@ impl Line {
         (self.end - self.start).norm()
     }
 
-    /// Where the path from `from` to `to` crosses the line, as a fraction of the path, and whether forward. A point on
-    /// the line counts as right of it.
+    /// The point at which the path from `from` to `to` crosses the line, as a fraction of the path, and whether it
+    /// crosses forward. A point on the line counts as right of it.
     pub fn crossed(&self, from: Vector, to: Vector) -> Option<(f64, bool)> {
         let way = self.end - self.start;
         let [before, after] = [from, to].map(|p| way.perp(&(p - self.start)));
@@ -34,9 +34,9 @@ impl Line {
     }
 }
 
-/// How often a person has crossed a line forward, minus how often backward, and the extremes of that so far. A person
-/// who sways back and forth across the line passes it once: a crossing is a passage if the balance reaches a new
-/// extreme.
+/// The balance of a person at a line: the crossings forward minus the crossings backward, with the extremes so far. A
+/// crossing is a passage if the balance reaches a new extreme, so a person who sways back and forth across the line
+/// passes it once.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Balance {
     now: i64,

@@ -10,7 +10,7 @@ use super::local::Local;
 /// observation of one crowd, not a safety limit.
 pub const BEFORE_ACCIDENT: f64 = 0.02;
 
-/// What was seen of people at several times.
+/// The observations of people at several times.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pressures {
     /// The person with the highest pressure so far, and when, seconds.

@@ -1,4 +1,4 @@
-//! How long people are in dense crowds and how long they stand, and how large the crowds are.
+//! The time that people spend in dense crowds and the time that they stand, and the size of the crowds.
 //!
 //! The densities are usual thresholds in the literature on crowds (Fruin 1993, Still 2014), not safety limits.
 
@@ -11,8 +11,8 @@ pub const DENSITIES: [f64; 3] = [4.0, 5.0, 6.0];
 /// Below this speed people count as standing, m/s.
 pub const SLOW: f64 = 0.2;
 
-/// For how many intervals between samples of time a sample stands: the one before it, and none at the beginning, so
-/// that `n` samples stand for `n - 1` intervals.
+/// The number of intervals between samples that a sample represents: the interval before it, and none for the first
+/// sample. So `n` samples represent `n - 1` intervals.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Weight {
     has_begun: bool,
@@ -25,7 +25,7 @@ impl Weight {
     }
 }
 
-/// In how many intervals in a row a condition held: now, and at most.
+/// The number of consecutive intervals in which a condition held: up to now, and the maximum.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spell {
     now: u32,
@@ -56,7 +56,7 @@ pub struct Alarm {
     pub spell: Spell,
 }
 
-/// How much of a crowd is above one of [`DENSITIES`] at one time.
+/// The part of a crowd above one of [`DENSITIES`] at one time.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Dense {
     /// m²: Σ 1/ρ over these people.
@@ -65,11 +65,11 @@ pub struct Dense {
     pub people: u32,
 }
 
-/// What was seen of people at several times.
+/// The observations of people at several times.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Exposure {
-    /// By number of the person: in how many intervals it was above each of [`DENSITIES`], and slower than [`SLOW`];
-    /// `None` if in no sample.
+    /// By number of the person: the number of intervals above each of [`DENSITIES`], and slower than [`SLOW`]; `None`
+    /// if in no sample.
     intervals: Vec<[Option<u32>; 4]>,
     /// One per density.
     pub alarms: [Alarm; 3],
@@ -103,7 +103,7 @@ pub struct PersonExposure {
 }
 
 impl Exposure {
-    /// Adds the people at one time; returns how much of them is above each density.
+    /// Adds the people at one time; returns the part of them above each density.
     pub fn add<'a>(&mut self, people: impl Iterator<Item = &'a Local>) -> [Dense; 3] {
         let mut dense = [Dense::default(); 3];
         let weight = self.weight.of_next();

@@ -2,9 +2,9 @@
 
 use super::statistics::{Estimate, Line, jackknife};
 
-/// Fewer points have no line.
+/// The fewest points for a line.
 const FEWEST: usize = 4;
-/// A slowness this many standard errors from zero belongs to a front; a smaller one to a start at once.
+/// A slowness at least this many standard errors from zero belongs to a front; a smaller one, to a simultaneous start.
 const CLEAR: f64 = 2.0;
 
 /// A front.
@@ -14,13 +14,13 @@ pub struct Front {
     pub slowness: Estimate,
     /// dx/dt, m/s; `None` if the slowness is less than two standard errors from zero.
     pub speed: Option<Estimate>,
-    /// When it is at place 0, seconds.
+    /// The time at which it is at place 0, seconds.
     pub starts: f64,
 }
 
 impl Front {
-    /// Through (place in meters, time in seconds), in any order. The standard errors are those of a jackknife over six
-    /// blocks of neighboring points. `None` for fewer than four points, or if they are in one place.
+    /// Fits a front to points (place in meters, time in seconds), in any order. The standard errors are those of a
+    /// jackknife over six blocks of neighboring points. `None` for fewer than four points, or if they are in one place.
     pub fn through(points: &[[f64; 2]]) -> Option<Self> {
         if points.len() < FEWEST {
             return None;

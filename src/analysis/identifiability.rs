@@ -2,7 +2,7 @@
 //! approximation of the sum of their squares).
 //!
 //! Residuals have the standard deviation 1. Parameters are coordinates of the unit cube; before any residual, each is
-//! uniform in it (variance 1/12). So every parameter has an interval, and one without slopes has the whole range.
+//! uniform in it (variance 1/12). So every parameter has an interval; a parameter without slopes has the whole range.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -16,11 +16,11 @@ const UNIFORM_VARIANCE: f64 = 1.0 / 12.0;
 pub struct Slopes {
     /// By parameter, per range of the parameter.
     pub slopes: Vec<f64>,
-    /// The variances of their errors. They are subtracted from the squares of the slopes, which chance makes too large.
+    /// The variances of their errors. They are subtracted from the squares of the slopes, to remove the bias by noise.
     pub variances: Vec<f64>,
 }
 
-/// What is known about the parameters.
+/// The knowledge about the parameters.
 #[derive(Debug, Clone)]
 pub struct Knowledge {
     covariance: DMatrix<f64>,
@@ -35,7 +35,7 @@ impl Knowledge {
             let variances = DVector::from_column_slice(variances);
             information += &slopes * slopes.transpose() - DMatrix::from_diagonal(&variances);
         }
-        // Where chance explains more than there is, nothing is known.
+        // Negative eigenvalues are noise: they carry no information.
         let mut eigen = SymmetricEigen::new(information);
         eigen.eigenvalues.apply(|value| *value = value.max(0.0));
         let variance = |value: f64| 1.0 / (value + 1.0 / UNIFORM_VARIANCE);
@@ -45,7 +45,7 @@ impl Knowledge {
         }
     }
 
-    /// Half the width of the 95 % interval of a parameter, in parts of its range.
+    /// Half the width of the 95 % interval of a parameter, as a fraction of its range.
     pub fn half_width(&self, parameter: usize) -> f64 {
         NORMAL_95 * self.covariance[(parameter, parameter)].sqrt()
     }

@@ -1,8 +1,8 @@
 //! The density around each person and the variance of the velocities there, of people in runs and in trajectories.
 //!
 //! Both are means with the kernel of Eq. 13 at h = √5 m. Its second moment is that of the Gaussian exp(−r²/R²)/(π R²)
-//! with R = 1 m of Helbing, Johansson and Al-Abideen (2007), and unlike that one it ends: walls hide a part of it that
-//! is known exactly. Every person counts as one, whatever its mass.
+//! with R = 1 m of Helbing, Johansson and Al-Abideen (2007). Unlike the Gaussian it has compact support, so that the
+//! part hidden by walls can be computed exactly. Every person counts as one, whatever its mass.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,13 +15,13 @@ use crate::engine::math::Vector;
 use crate::engine::period::Period;
 use crate::engine::simulation::Simulation;
 
-/// The kernel: h = √5 m, and the union of what walls hide.
+/// The kernel: h = √5 m, and the union of the regions hidden by walls.
 pub const KERNEL: Kernel = Kernel {
     support_radius: 2.236_067_977_499_79,
     walls: WallMethod::Union,
 };
 
-/// A person at one time, with what is around it.
+/// A person at one time, with its surroundings.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Local {
     /// The number of the person, the same at all times.
@@ -59,7 +59,7 @@ impl People {
         all
     }
 
-    /// The agents of a run that are present, by id: the order of sums does not depend on that of the agents in memory.
+    /// The agents of a run that are present, by id, so that the order of sums does not depend on the order in memory.
     pub fn of(agents: &Agents, period: Option<&Period>) -> Self {
         let mut order: Vec<usize> = agents.present().collect();
         order.sort_unstable_by_key(|&i| agents.id[i]);
@@ -99,7 +99,7 @@ impl People {
         )
     }
 
-    /// The surroundings of people; all of them must be outside of the obstacles.
+    /// The surroundings of people, all of whom must be outside of the obstacles.
     fn among<'a>(&self, walls: &'a Walls) -> Surroundings<'a> {
         let hide = |p, near: &mut Vec<u32>| Hidden {
             share: KERNEL.share(walls, p, near),
@@ -109,8 +109,8 @@ impl People {
         Surroundings::new(walls, &self.positions, &[], KERNEL.support_radius, hide)
     }
 
-    /// The people with what is around them, in their order, with pressures if `pressure`: ρ Var(v), where Var(v) =
-    /// Σ W |v_j − V|² / Σ W and V is the mean velocity with the same weights.
+    /// The people with their surroundings, in their order, with pressures if `pressure`: ρ Var(v), where Var(v) = Σ W
+    /// |v_j − V|² / Σ W and V is the mean velocity with the same weights.
     pub fn local(&self, around: &Surroundings, pressure: bool) -> Vec<Local> {
         let sums = around.from_people(true);
         let moments = pressure.then(|| around.moments(&self.velocities));
@@ -131,7 +131,7 @@ impl People {
     }
 }
 
-/// The agents of an evaluated frame with what is around them, by id, with pressures if `pressure`.
+/// The agents of an evaluated frame with their surroundings, by id, with pressures if `pressure`.
 pub fn local(simulation: &Simulation, pressure: bool) -> Vec<Local> {
     let scene = simulation.scene();
     let people = People::of(simulation.frame().agents, scene.period.as_ref());

@@ -9,9 +9,9 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-/// Shorter series have no spectrum.
+/// The shortest series with a spectrum.
 const FEWEST_SAMPLES: usize = 16;
-/// Half the width of the main lobe of a Hann window, in resolutions: a pure oscillation has its power within.
+/// Half the width of the main lobe of a Hann window, in resolutions. It contains the power of a pure oscillation.
 const LOBE: f64 = 2.0;
 
 /// A velocity, m/s, or its Fourier transform: real and imaginary part.
@@ -20,7 +20,7 @@ type Complex = [f64; 2];
 /// The power of a velocity by angular frequency and sense of rotation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Spectrum {
-    /// From one frequency to the next, rad/s; the first one is 0.
+    /// The distance between two frequencies, rad/s; the first frequency is 0.
     pub step: f64,
     /// 2π over the duration of the series, rad/s: peaks closer than this cannot be told apart.
     pub resolution: f64,
@@ -42,7 +42,7 @@ impl Spectrum {
         let sum = |k: usize| series.iter().map(|v| v[k]).sum::<f64>();
         let mean = [0, 1].map(|k| sum(k) / count as f64);
         let window = |n: usize| 0.5 - 0.5 * (TAU * (n as f64 + 0.5) / count as f64).cos();
-        // Zeros at the end: the spectrum has more points, not a finer resolution.
+        // Zero padding: the spectrum has more points, but no finer resolution.
         let mut windowed = vec![[0.0; 2]; (2 * count).next_power_of_two()];
         for (n, (to, v)) in windowed.iter_mut().zip(series).enumerate() {
             *to = [0, 1].map(|k| (v[k] - mean[k]) * window(n));
@@ -121,7 +121,7 @@ impl Spectrum {
         spin.is_finite().then_some(spin)
     }
 
-    /// The frequency with the most power, rad/s, of those that are no trend: from two resolutions on. `None` without
+    /// The frequency with the most power, rad/s, above the trend, that is, from two resolutions on. `None` without
     /// power.
     pub fn peak(&self) -> Option<f64> {
         let densities: Vec<[f64; 2]> = self.densities().collect();
@@ -145,7 +145,7 @@ impl Spectrum {
     }
 }
 
-/// How the mean velocities in boxes oscillate.
+/// The oscillations of the mean velocities in boxes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Oscillation {
     /// The mean spectrum over all boxes.

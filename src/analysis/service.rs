@@ -15,7 +15,7 @@ pub const QUEUE: [f64; 5] = [13.0, 10.0, 7.0, 3.0, 2.0];
 /// The names of the levels.
 pub const LEVELS: [char; 6] = ['a', 'b', 'c', 'd', 'e', 'f'];
 
-/// In how many samples people had each level, A to F.
+/// The number of samples of people at each level, A to F.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Levels {
     /// By the thresholds of walkways.

@@ -1,4 +1,4 @@
-//! The measurement site: the parts of a kernel that walls hide, from people and from grid cells.
+//! The measurement site: the parts of a kernel that walls hide from people and from grid cells.
 
 use crate::engine::boundary::WallMethod;
 use crate::engine::geometry::{Polygon, Walls};
@@ -32,7 +32,7 @@ impl Kernel {
     }
 }
 
-/// What walls hide from a person.
+/// The part of the kernel that walls hide from a person.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hidden {
     /// Σ_k ∫ W over P_k, the part of the kernel behind walls.
@@ -82,7 +82,8 @@ impl Site {
         !near.iter().any(|&k| walls.wall(k).crossing(p, q).is_some())
     }
 
-    /// What walls hide from a person at `p`. `near` holds the walls within h of `p`, then those within h of the eye.
+    /// The part of the kernel that walls hide from a person at `p`. `near` holds the walls within h of `p`, then those
+    /// within h of the eye.
     pub fn hidden(&self, p: Vector, near: &mut Vec<u32>, kernel: &Kernel) -> Hidden {
         let h = kernel.support_radius;
         if !self.is_inside(p) {

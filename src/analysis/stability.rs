@@ -132,7 +132,7 @@ pub struct Mode {
     pub correction: f64,
     /// The steepest walking law: speed per distance, 1/s.
     pub steepness: f64,
-    /// How much a walking law changes the speed of an agent with that of the one ahead.
+    /// The derivative of the speed that a walking law gives an agent with respect to the speed of the agent ahead.
     pub damping: f64,
     /// The friction of walking laws in the densest crowds, 1/s.
     pub friction: f64,

@@ -28,7 +28,7 @@ pub struct Surroundings<'a> {
     neighbors: Neighbors,
     /// The walls near each agent.
     near_walls: Vec<Vec<u32>>,
-    /// What walls hide from each agent.
+    /// The part of the kernel that walls hide from each agent.
     hidden: Vec<Hidden>,
     /// The index of each person.
     index: Vec<usize>,
@@ -83,7 +83,7 @@ impl<'a> Surroundings<'a> {
         }
     }
 
-    /// What walls hide from a person.
+    /// The part of the kernel that walls hide from a person.
     pub fn hidden(&self, person: usize) -> Hidden {
         self.hidden[self.index[person]]
     }

@@ -1,4 +1,4 @@
-//! How hard people press on walls: the reactions to the pressure (Eq. 12) and contact (Eq. 23) of walls.
+//! The forces of people on walls: the reactions to the pressure (Eq. 12) and contact (Eq. 23) of walls.
 //!
 //! Each force acts at the point of the wall that is nearest to the agent. Its component normal to the wall is added to
 //! a cell of at most 0.2 m of the wall; the force per meter is the mean over 1 m of the outline of the obstacle, around
@@ -187,7 +187,7 @@ pub struct Peak {
     pub force: f64,
     /// Seconds.
     pub time: f64,
-    /// Where it acts on average, meters.
+    /// The point where it acts on average, meters.
     pub place: Vector,
 }
 
@@ -202,7 +202,7 @@ pub struct CellForce {
     pub max_n_per_m: f64,
 }
 
-/// What was seen of walls at several times.
+/// The observations of walls at several times.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct WallForces {
     /// Built from the walls at the first time.

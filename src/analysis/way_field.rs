@@ -58,7 +58,7 @@ pub struct WayField {
     /// The length of the way from each cell, meters; `None` outside of the floor, and where no way leads or every way
     /// is somewhere narrower than the floor's least width.
     pub lengths: Vec<Option<f64>>,
-    /// What comes first on the way from each cell: equal numbers for the same corner.
+    /// The first corner on the way from each cell, as a number.
     next: Vec<u32>,
 }
 
@@ -81,7 +81,7 @@ impl Bands {
 /// The most bands.
 const MOST_BANDS: f64 = 14.0;
 
-/// The numbers of what comes first, if it is no corner.
+/// The numbers that stand for no way, and for a way without a corner.
 const NOTHING: u32 = u32::MAX;
 const GOAL: u32 = u32::MAX - 1;
 
@@ -119,7 +119,7 @@ impl WayField {
         }
     }
 
-    /// Whether another corner comes first in the cell on the right of cell `k` or above it.
+    /// Whether the first corner is another one in the cell on the right of cell `k` or above it.
     pub fn is_border(&self, k: usize) -> bool {
         let differs = |other: usize| {
             let next = self.next.get(other).copied().unwrap_or(NOTHING);
@@ -129,7 +129,7 @@ impl WayField {
         self.next[k] != NOTHING && ((!is_last && differs(k + 1)) || differs(k + self.grid.columns))
     }
 
-    /// The numbers of the corners that come first somewhere.
+    /// The numbers of all first corners.
     pub fn corners(&self) -> Vec<u32> {
         let corners = self.next.iter().copied().filter(|&next| next < GOAL);
         let mut corners: Vec<u32> = corners.map(|bend| bend / 2).collect();

@@ -140,7 +140,7 @@ fn sums<R: Real, S: Simd>(simd: S, bodies: &Bodies<R>, block: &ClusterBlock, out
     }
 }
 
-/// What the densities of a block follow from.
+/// The input for the densities of a block.
 struct Given<'a> {
     /// Seconds since the moving average was last stored.
     time_step: f64,
@@ -190,7 +190,7 @@ fn complete<R: Real>(
     }
 }
 
-/// What step 1B reads.
+/// The input of step 1B.
 #[derive(Clone, Copy)]
 pub struct Input<'a, P> {
     /// The state of the crowd.

@@ -23,14 +23,15 @@ pub struct Entrance {
     pub group: u16,
     /// Their goal, meters.
     pub goal: Vector,
-    /// When agents arrive. Each enters at once if there is room, and else waits for it.
+    /// When agents arrive. Each enters at once if there is room, and otherwise waits for room.
     pub arrivals: Arrivals,
 }
 
 /// An agent that comes in at a place of its own, such as the first one at which a person was recorded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Latecomer {
-    /// When it arrives, seconds. It enters at once if there is room between the other bodies, and else waits for it.
+    /// When it arrives, seconds. It enters at once if there is room between the other bodies, and otherwise waits for
+    /// room.
     pub at: f64,
     /// The agent; a speed above its s_max is clamped to it.
     pub agent: NewAgent,

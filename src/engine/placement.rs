@@ -1,4 +1,4 @@
-//! Where agents enter: at the cell centers of a rectangle, with jitter.
+//! The places where agents enter: the cell centers of a rectangle, with jitter.
 
 use rand::Rng;
 

@@ -90,7 +90,7 @@ pub struct Override {
 pub struct Terms {
     /// Eq. 17.
     pub goal: Option<Vector>,
-    /// What a walking law takes away.
+    /// The reduction of the speed by a walking law.
     pub walking: Option<Vector>,
     /// Eq. 18.
     pub social_agents: Option<Vector>,
@@ -115,7 +115,7 @@ pub struct Terms {
 pub enum Term {
     /// Eq. 17.
     Goal,
-    /// What a walking law takes away.
+    /// The reduction of the speed by a walking law.
     Walking,
     /// Eq. 18.
     SocialAgents,

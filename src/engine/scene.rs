@@ -126,7 +126,7 @@ pub struct Push {
     pub lasting: f64,
     /// Agents that are here when the push begins take part.
     pub region: Region,
-    /// What changes for these agents.
+    /// The changes for these agents.
     pub change: Override,
 }
 
@@ -358,7 +358,7 @@ fn different<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
     different
 }
 
-/// What a scene needs, decided once. Everything else is never computed.
+/// The quantities that a scene needs, decided once. No other quantity is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Needs {
     /// Density, read in every frame by SPH forces, blending or forces from outside this crate.

@@ -1,8 +1,8 @@
 //! The lab: experiments of many runs. The paper's tables and figures ([`reproduce`]), studies over settings and seeds
 //! ([`sweep`]), run time on this [`machine`] ([`mod@bench`]), hard cases and the largest stable time step ([`stress`]),
 //! run time against error ([`accuracy`]), cases with known answers ([`suite`], [`mod@verify`]), scenes of experiments
-//! ([`mod@validate`]), and the search for parameters that meet them ([`calibrate`]). [`measure`] finds densities,
-//! fields, fundamental diagrams and flows of any trajectory, [`differences`] what differs between two results.
+//! ([`mod@validate`]), and the search for parameters that reproduce them ([`calibrate`]). [`measure`] computes
+//! densities, fields, fundamental diagrams and flows of any trajectory; [`differences`] compares two results.
 
 pub mod error;
 

@@ -50,7 +50,7 @@ impl Display for Breakdown {
 }
 
 impl Breakdown {
-    /// What it says about the agent's way and journey, line by line; empty without both.
+    /// The lines about the agent's way and journey; empty without both.
     pub fn way_and_visit(&self) -> String {
         let mut text = String::new();
         // Writing to a string cannot fail.

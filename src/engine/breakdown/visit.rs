@@ -1,4 +1,4 @@
-//! What an agent on a journey does, where, and why there.
+//! The activity of an agent on a journey, its place, and the reason for that place.
 
 use serde::Serialize;
 
@@ -19,7 +19,7 @@ pub struct Visit {
     /// What the agent does.
     #[serde(flatten)]
     pub doing: Doing,
-    /// How long it has waited in waiting areas and queues before, seconds.
+    /// The time that it has waited in waiting areas and queues before, seconds.
     pub waited_secs: f64,
     /// Why it walks to this place; `None` unless it walks.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,7 +36,7 @@ pub enum Doing {
     Waiting {
         /// Since when, seconds.
         since_secs: f64,
-        /// Until when at most, seconds; `None`: until it is released.
+        /// The latest time until which it waits, seconds; `None`: until it is released.
         until_secs: Option<f64>,
     },
     /// It stands in a queue.
@@ -50,7 +50,7 @@ pub enum Doing {
     Served {
         /// Since when it has been in the queue, seconds.
         since_secs: f64,
-        /// When it goes on, seconds.
+        /// The time at which it goes on, seconds.
         until_secs: f64,
     },
     /// It has ended its journey and stays.
@@ -64,7 +64,7 @@ pub struct Why {
     pub choice: String,
     /// The reason, in words.
     pub reason: &'static str,
-    /// When it looks again, seconds; `None`: never.
+    /// The time at which it chooses again, seconds; `None`: never.
     pub looks_again_secs: Option<f64>,
     /// All places of the stage.
     pub alternatives: Vec<Alternative>,
@@ -81,10 +81,10 @@ pub struct Alternative {
     pub length: Option<f64>,
     /// The number of agents that are bound for it.
     pub bound: u32,
-    /// Of a stage with shares: its weight.
+    /// Its weight, for a stage with shares.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub weight: Option<f64>,
-    /// Of `quickest`: what the agent expects.
+    /// The expected times, for `quickest`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expected: Option<Times>,
 }
@@ -98,7 +98,7 @@ pub struct Times {
     pub ahead: u32,
     /// The flow through the place, P/s; `None` if it is unlimited.
     pub flow_per_sec: Option<f64>,
-    /// Until these agents have passed, seconds.
+    /// Waiting until these agents have passed, seconds.
     pub waiting_secs: f64,
     /// Walking from the place to the next stage, seconds.
     pub onward_secs: f64,

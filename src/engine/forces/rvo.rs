@@ -57,7 +57,7 @@ pub struct Situation {
     pub walls: Vec<Wall>,
 }
 
-/// How an agent wants to walk, and may.
+/// The velocity that an agent wants, and the limits on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wish {
     /// v_i^pref, m/s.

@@ -1,4 +1,4 @@
-//! How hard near agents press on each other: the virial of pressure and contact.
+//! The pressure of near agents on each other: the virial of pressure and contact.
 
 use std::ops::Range;
 

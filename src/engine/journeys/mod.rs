@@ -34,7 +34,7 @@ pub struct Journey {
 /// A stage of a journey: a visit to one of some places.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JourneyStage {
-    /// How an agent chooses.
+    /// The agent's way of choosing.
     pub choice: Choice,
     /// The numbers of the places, at least one.
     pub places: Vec<u16>,
@@ -69,15 +69,15 @@ pub enum Choice {
 /// A change of a place at a given time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Change {
-    /// When, seconds.
+    /// The time of the change, seconds.
     pub at: f64,
     /// The number of the place.
     pub place: u16,
-    /// What happens.
+    /// The kind of the change.
     pub kind: ChangeKind,
 }
 
-/// What happens to a place.
+/// The kind of a change of a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ChangeKind {
     /// An exit opens.

@@ -50,7 +50,7 @@ pub struct WaitingArea {
     pub area: Ring,
     /// Spots to stand, in the order in which they are taken, meters.
     pub spots: Vec<Vector>,
-    /// Until when, seconds; `None`: no given time.
+    /// The time until which they wait, seconds; `None`: no given time.
     pub until: Option<f64>,
     /// The time from its arrival after which an agent goes on, seconds; `None`: never.
     pub lasting: Option<Distribution>,

@@ -15,15 +15,15 @@ pub struct Trip {
     pub place: u16,
     /// What it does.
     pub status: Status,
-    /// Where it stands or wants to stand, meters; `None` while it walks to its place.
+    /// The spot where it stands or wants to stand, meters; `None` while it walks to its place.
     pub hold: Option<Vector>,
     /// The frame in which it chooses between places again.
     pub chooses_at: u64,
     /// The number of its choices so far.
     pub choices: u32,
-    /// When it entered, seconds.
+    /// The time of its entry, seconds.
     pub entered: f64,
-    /// How long it has waited in waiting areas and queues, seconds.
+    /// The time that it has waited in waiting areas and queues, seconds.
     pub waited: f64,
 }
 

@@ -51,16 +51,16 @@ pub struct Ranges {
     pub wide: Option<f64>,
     /// The longest step of any agent in a frame, s_max Δt, meters.
     pub longest_step: f64,
-    /// How far any agent may move between sorts, meters; within it no wall is missed.
+    /// The distance that any agent may move between sorts without missing a wall, meters.
     pub drift: f64,
-    /// How far any agent may move between sorts so that no neighbor is missed either, meters; at most `drift`.
+    /// The distance that any agent may move between sorts without missing a neighbor, meters; at most `drift`.
     pub margin: f64,
     /// Agents are also neighbors across the ends of this period, in which all of them are at the sort.
     pub period: Option<Period>,
 }
 
 impl Ranges {
-    /// How far agents of these radii act on each other, meters.
+    /// The distance within which agents of these radii act on each other, meters.
     pub fn interaction(&self, widest: f64) -> f64 {
         let avoidance = self.avoidance.unwrap_or_default();
         self.support.max(2.0 * widest).max(avoidance)

@@ -13,7 +13,7 @@ use crate::engine::period::Period;
 /// bounds.
 #[derive(Debug, Clone, Default)]
 pub struct Columns<R: Real> {
-    /// What the density sums read.
+    /// The input of the density sums.
     pub bodies: Bodies<R>,
     /// m_j/ρ_j, m² (1B).
     pub volume: Vec<R>,
@@ -48,7 +48,7 @@ pub struct Bodies<R: Real> {
     pub heading_y: Vec<R>,
 }
 
-/// How far the forces of an agent reach.
+/// The reach of the forces of an agent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
     /// h, meters.

@@ -128,7 +128,7 @@ impl Blend {
         self.steps.len() > 1
     }
 
-    /// How far the forces of an agent with this blend reach.
+    /// The reach of the forces of an agent with this blend.
     pub fn reach(&self) -> Reach {
         Reach {
             support_radius: self.sph.support_radius,
@@ -278,7 +278,7 @@ impl Blend {
     }
 }
 
-/// How profiles are mixed at a density.
+/// The mix of profiles at a density.
 #[derive(Clone, Copy, PartialEq)]
 struct Mix {
     /// The index of the last profile that acts. The one before it has the rest of the weight.

@@ -1,4 +1,4 @@
-//! What walls do to an agent, wall by wall.
+//! The forces of walls on an agent, wall by wall.
 
 use super::{Blend, Override, feels_contact, feels_sph};
 use crate::engine::boundary::WallMethod;

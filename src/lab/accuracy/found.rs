@@ -34,7 +34,7 @@ impl Measured {
         self.error > self.interval
     }
 
-    /// The error or half its confidence interval, whichever is larger: smaller errors cannot be told from 0.
+    /// The error or half its confidence interval, whichever is larger: smaller errors cannot be distinguished from 0.
     pub fn bound(&self) -> f64 {
         self.error.max(self.interval)
     }
@@ -92,7 +92,7 @@ const POSITIONS: [(f64, &str); 4] = [
 const PARTS: [(f64, &str); 3] = [(0.05, "5 %"), (0.02, "2 %"), (0.01, "1 %")];
 
 impl Found {
-    /// The one error by which settings are compared. For motion: of positions after about a second, in meters. For
+    /// The error by which settings are compared. For motion: the error of positions after about a second, meters. For
     /// statistics: the largest relative error.
     pub fn overall(&self, point: &Point) -> Option<f64> {
         match self.scene.kind {

@@ -1,4 +1,4 @@
-//! How fast two crowds with almost equal starts diverge.
+//! The divergence of two crowds with almost equal starts.
 
 use std::f64::consts::TAU;
 

@@ -1,9 +1,10 @@
-//! Run time against error: the cost of each numerical choice, and how far its result is from the model's own limit.
+//! Run time against error: the cost of each numerical choice, and the distance of its result from the limit of the
+//! model for small steps.
 //!
 //! Every point is a scenario under some settings, as `--set` takes them; the studies `accuracy_*.json` list them
-//! ([`Trial`]). Its cost is milliseconds per simulated second on one thread. Its error is one of two: how far agents
-//! are from their positions in a run at Δt/64 ([`Motion`]), before chaos takes over ([`Lyapunov`]); or how far the
-//! means of measurements over seeds are from those of a run with a fine step.
+//! ([`Trial`]). Its cost is milliseconds per simulated second on one thread. Its error is one of two: the distance of
+//! agents from their positions in a run at Δt/64 ([`Motion`]), before chaos takes over ([`Lyapunov`]); or the distance
+//! of the means of measurements over seeds from those of a run with a fine step.
 
 mod cost;
 mod found;

@@ -1,4 +1,4 @@
-//! What `sandbox accuracy` prints and writes.
+//! The report of `sandbox accuracy`.
 
 use super::found::{self, Found};
 use super::scenes::names;

@@ -15,7 +15,7 @@ use crate::lab::jobs::read;
 use crate::lab::sweep::Study;
 use crate::scenario::{Scenario, Setting, built_in};
 
-/// How a scene is judged.
+/// The way in which a scene is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// By the positions of agents in the first two seconds.
@@ -32,7 +32,7 @@ type Push = fn(Vector, Vector) -> Vector;
 pub struct Scene {
     /// Its name on the command line.
     pub name: &'static str,
-    /// How its errors are measured.
+    /// The way in which its errors are measured.
     pub kind: Kind,
     /// Whether quick plans skip it unless it is named.
     pub is_long: bool,

@@ -21,7 +21,7 @@ use crate::runs::store::Store;
 use crate::runs::summary::Summary;
 use crate::scenario::Setting;
 
-/// What to measure.
+/// The plan of a measurement.
 #[derive(Clone)]
 pub struct Plan {
     /// The scenes.
@@ -32,14 +32,15 @@ pub struct Plan {
     pub quick: bool,
 }
 
-/// How often each cost is measured.
+/// The number of measurements of each cost.
 const TURNS: usize = 5;
-/// When the crowds of scenes that are judged by statistics are dense, seconds: their costs are measured from then on.
+/// The time from which the crowds of scenes judged by statistics are dense, seconds: their costs are measured from then
+/// on.
 const DENSE_AT: f64 = 15.0;
 /// The number of seeds of a quick plan.
 const FEW_SEEDS: u64 = 2;
 
-/// A scene and what is tried in it.
+/// A scene and its trials.
 struct Task {
     scene: Scene,
     study: Study,
@@ -50,7 +51,7 @@ struct Task {
     quick: bool,
 }
 
-/// Does the jobs of the plan whose results are not in `store`, and writes tables and pictures.
+/// Runs the jobs of the plan that have no results in `store`, and writes tables and pictures.
 ///
 /// # Errors
 /// A run or a file fails.

@@ -1,4 +1,4 @@
-//! The positions of agents in the first seconds, and how far they are from the reference.
+//! The positions of agents in the first seconds, and their distances from the reference.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -121,7 +121,7 @@ pub struct Trajectories {
     pub trials: Vec<(Errors, Option<Errors>)>,
     /// The approximate error of the limit itself.
     pub limit: Errors,
-    /// How fast small differences grow.
+    /// The growth of small differences.
     pub lyapunov: Lyapunov,
 }
 

@@ -1,8 +1,8 @@
-//! What is tried in a scene: values of the numerical choices ("knobs") that act in it.
+//! The trials in a scene: values of the numerical choices ("knobs") that act in it.
 //!
 //! Every entry of the scene's study is a trial, except the first one, which has no settings, and `reference`, with
 //! which statistics are compared. A trial's label is `KNOB` or `KNOB: CURVE`; pictures join the points of a curve by a
-//! line. ` (best)` marks the value with which the knob has no error of its own.
+//! line. ` (best)` marks the value at which the knob adds no error.
 
 use serde::{Serialize, Serializer};
 use serde_json::Value;

@@ -22,10 +22,10 @@ pub use stages::{Started, Stretch, begin};
 
 use crate::lab::error::LabError;
 
-/// How much to measure.
+/// The amount of work of a measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// How often the same steps are repeated.
+    /// The number of repetitions of the same steps.
     pub repeats: usize,
     /// Small crowds and few steps: a check that everything works; the times are meaningless.
     pub quick: bool,

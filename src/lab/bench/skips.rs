@@ -1,4 +1,4 @@
-//! What each skip saves: the time of a scene with and without it.
+//! The time that each skip saves: the time of a scene with and without it.
 //!
 //! A skip is undone in one of two ways. Either the engine computes more than it needs ([`Simulation::pay_for`]), or the
 //! skipped work is done beside the engine, on the frozen frame, through the public API. The engine does not know
@@ -32,7 +32,7 @@ pub const BENCHMARK: Benchmark = Benchmark {
 pub struct Skip {
     /// Its name in reports.
     pub name: &'static str,
-    /// What is skipped, in one line.
+    /// The skipped work, in one line.
     pub about: &'static str,
     /// How to do the skipped work in a scene, or why there is nothing to skip.
     undo: fn(&Simulation) -> Result<Undone, &'static str>,

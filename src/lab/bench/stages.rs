@@ -114,7 +114,7 @@ struct Row {
     ms_per_frame: Range,
     /// The stages that run, by name.
     stages_ms: BTreeMap<&'static str, Range>,
-    /// The scenario's measurements, and those of every run; beside the stages.
+    /// The scenario's measurements and those of every run, which are not part of the stages.
     measurements_ms: Range,
 }
 

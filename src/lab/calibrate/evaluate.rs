@@ -22,7 +22,7 @@ use crate::scenario::Setting;
 pub struct Evaluator<'a> {
     /// The calibration.
     pub calibration: &'a Calibration,
-    /// The part of the cells that this process computes first.
+    /// The shard of the cells that this process computes first.
     pub shard: Shard,
     /// The finished cells.
     pub store: &'a Store,
@@ -30,14 +30,14 @@ pub struct Evaluator<'a> {
     pub listener: &'a dyn Listener,
 }
 
-/// The values of one target at one point: for each seed a value, or why there is none.
+/// The values of one target at one point: for each seed a value, or the reason why there is none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
     /// By seed.
     pub runs: Vec<Result<f64, String>>,
 }
 
-/// A point with the samples of all targets that were asked, in order.
+/// A point with the samples of all requested targets, in order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluated {
     /// Coordinates between 0 and 1.
@@ -58,7 +58,7 @@ impl Sample {
         MeanStd::of(&values.collect::<Vec<f64>>())
     }
 
-    /// The part of the runs that failed.
+    /// The fraction of the runs that failed.
     pub fn failed(&self) -> f64 {
         let failed = self.runs.iter().filter(|run| run.is_err()).count();
         failed as f64 / self.runs.len().max(1) as f64
@@ -114,8 +114,8 @@ impl Evaluator<'_> {
         Ok(points.iter().enumerate().map(evaluated).collect())
     }
 
-    /// The cells of these runs; and the runs whose scenarios are invalid, such as crowds of people too large to fit, as
-    /// failures.
+    /// The cells of these runs, and the runs with invalid scenarios as failures, such as crowds of people too large to
+    /// fit.
     fn cells(
         &self,
         points: &[Vec<f64>],
@@ -175,8 +175,8 @@ impl Evaluator<'_> {
         case.map_err(|error| error.to_string())
     }
 
-    /// The states of all cells after those without one were computed. A failed cell is not tried again: it would fail
-    /// again.
+    /// The states of all cells, after cells without a state were computed. Failed cells are not tried again: they would
+    /// fail again.
     fn computed(&self, study: &Study) -> Result<Vec<State>, LabError> {
         for shard in [self.shard, Shard::WHOLE] {
             let states = Gathered::of(study, self.store).states;

@@ -79,7 +79,7 @@ pub(super) struct SceneKeys {
     pub values: Option<Vec<ValueKeys>>,
 }
 
-/// A value of a scene: a text is its quantity.
+/// A value of a scene; a text stands for its quantity.
 #[derive(Debug)]
 pub(super) struct ValueKeys {
     pub quantity: String,
@@ -87,7 +87,7 @@ pub(super) struct ValueKeys {
     pub tolerance: Option<f64>,
 }
 
-/// How far runs are off the measured values.
+/// The residuals of runs.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Rule {
@@ -95,7 +95,7 @@ pub struct Rule {
     pub clip: f64,
     /// The residual of a failed run, tolerances.
     pub penalty: f64,
-    /// A run has failed if people are left at its end and none of them left in its last seconds, this many.
+    /// A run has failed if people remain at its end and none has left in this many seconds before it.
     pub stuck_secs: f64,
 }
 
@@ -115,7 +115,7 @@ impl Default for Rule {
 pub struct Screening {
     /// The number of trajectories.
     pub trajectories: usize,
-    /// Parameters that change no value by more than this over their range are not searched, tolerances.
+    /// Parameters whose range changes no value by more than this are not searched, tolerances.
     pub drop_below: f64,
     /// The seed of the trajectories.
     pub seed: u64,
@@ -139,7 +139,7 @@ pub struct Search {
     pub population: Option<usize>,
     /// Most generations.
     pub generations: usize,
-    /// The standard deviation of the first generation, in parts of the bounds.
+    /// The standard deviation of the first generation, as a fraction of the bounds.
     pub spread: f64,
     /// The seed of the points.
     pub seed: u64,
@@ -156,7 +156,7 @@ impl Default for Search {
     }
 }
 
-/// Implemented by hand: the errors of an untagged enum do not name the wrong key.
+/// Implemented by hand, because the errors of an untagged enum do not name the wrong key.
 impl<'de> Deserialize<'de> for ValueKeys {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(ValueVisitor)

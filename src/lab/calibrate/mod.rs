@@ -3,10 +3,10 @@
 //! A [`Calibration`] is one file: parameters with bounds, scenes with measured values and tolerances, seeds. [`run`]
 //! computes the starting point, a screening ([`morris`](crate::analysis::morris)), the generations of a search
 //! ([`cma_es`](crate::analysis::cma_es)), slopes around the best point
-//! ([`identifiability`](crate::analysis::identifiability)), and the errors of the fitted values and of those that the
-//! search has not seen. The points of each stage are the cells of a sweep; finished cells are kept in the store, and
-//! everything else follows from them. So a calibration that is interrupted goes on where it was, any number of
-//! processes can share one folder, and the results have the same bytes however often it was interrupted.
+//! ([`identifiability`](crate::analysis::identifiability)), and the errors of the fitted values and of the held-out
+//! values. The points of each stage are the cells of a sweep; finished cells are kept in the store, and everything else
+//! is computed from them. An interrupted calibration therefore continues from its finished cells, any number of
+//! processes can share one folder, and the results are identical to the last byte after any number of interruptions.
 
 mod evaluate;
 mod file;

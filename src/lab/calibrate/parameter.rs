@@ -13,14 +13,15 @@ use crate::scenario::{Problem, Setting};
 pub struct Parameter {
     /// Its name.
     pub name: String,
-    /// The keys that have its value; `*` stands for every element of a list.
+    /// The keys that get its value; `*` stands for every element of a list.
     pub(super) keys: Vec<String>,
     /// The least and the largest value.
     pub bounds: [f64; 2],
     /// The value at which the search begins.
     pub start: f64,
     scale: Scale,
-    /// Half the width of the uniform distribution around the value that the keys get; `None`: they get the value.
+    /// Half the width of the uniform distribution around the value that the keys get; `None`: the keys get the value
+    /// itself.
     half_width: Option<f64>,
 }
 
@@ -83,7 +84,7 @@ impl Parameter {
         }
     }
 
-    /// What its keys get for a value.
+    /// The setting of its keys for a value.
     pub(super) fn written(&self, value: f64) -> Value {
         match self.half_width {
             None => json!(value),
@@ -91,7 +92,7 @@ impl Parameter {
         }
     }
 
-    /// The settings that give a scene with this document the value; none if the scene has none of the keys.
+    /// The settings that set the value in a scene with this document; empty if the scene has none of the keys.
     pub(super) fn settings(&self, value: f64, document: &Value) -> Result<Vec<Setting>, LabError> {
         let paths = self.keys.iter().flat_map(|key| places(key, document));
         let setting = |path: String| {

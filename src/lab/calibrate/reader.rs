@@ -16,7 +16,7 @@ use crate::scenario::{Problem, Setting, suggestion};
 
 /// The profile of the validation's cases unless the file's settings have another.
 const PROFILE: &str = "sph";
-/// Largest tolerance, as a part of the measured value.
+/// Largest tolerance, as a fraction of the measured value.
 const LARGEST_TOLERANCE: f64 = 10.0;
 
 /// Reads the scenes of a file.
@@ -190,7 +190,7 @@ impl Reader<'_> {
         case.ok_or_else(|| format!("the validation has no run {label}"))
     }
 
-    /// The number of the scene with the settings of all scenes and its own; a new one unless it is there already.
+    /// The number of the scene with the common settings and its own; it is added if it is new.
     fn scene(
         &mut self,
         name: String,

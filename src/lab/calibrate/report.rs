@@ -1,4 +1,4 @@
-//! What is printed and written about a calibration.
+//! The report of a calibration.
 
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -12,9 +12,9 @@ use crate::lab::error::LabError;
 use crate::runs::identity::ENGINE;
 use crate::runs::store::Store;
 
-/// A parameter whose interval covers more of its bounds than this is not identified.
+/// A parameter is not identified if its interval covers more than this fraction of its bounds.
 const MOST: f64 = 0.5;
-/// Closer to a bound than this part of the bounds, a parameter is at the bound.
+/// A parameter is at a bound if it is closer to it than this fraction of the bounds.
 const NEAR: f64 = 0.02;
 
 /// The files that `write` and the pictures write.
@@ -30,11 +30,11 @@ pub const FILES: [&str; 9] = [
     "screening.png",
 ];
 
-/// A calibration with everything that was found.
+/// A calibration with its results.
 pub struct Report<'a> {
     /// The calibration.
     pub calibration: &'a Calibration,
-    /// What was found.
+    /// The results.
     pub found: Found,
 }
 
@@ -51,7 +51,7 @@ pub struct ParameterResult {
     pub bounds: [f64; 2],
     /// Its 95 % interval; `None` if it was not searched.
     pub interval: Option<[f64; 2]>,
-    /// The part of the bounds that the interval covers, on the scale of the search.
+    /// The fraction of the bounds that the interval covers, on the scale of the search.
     pub covers: Option<f64>,
     /// Whether the values determine it: its interval covers at most half of the bounds.
     pub identified: bool,
@@ -59,12 +59,12 @@ pub struct ParameterResult {
     pub at_bound: bool,
 }
 
-/// How far the runs of one point are off one measured value.
+/// The deviation of the runs of one point from one measured value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Errors {
     /// The mean over the seeds that gave a value.
     pub mean: Option<f64>,
-    /// Its difference from the measured value, as a part of it.
+    /// Its difference from the measured value, as a fraction of the measured value.
     pub error: Option<f64>,
     /// The residual, tolerances.
     pub residual: Option<f64>,
@@ -87,7 +87,7 @@ pub struct ValueResult {
     pub quantity: String,
     /// The measured value.
     pub measured: f64,
-    /// The tolerance, as a part of it.
+    /// The tolerance, as a fraction of the measured value.
     pub tolerance: f64,
     /// With the starting point.
     pub start: Errors,
@@ -175,7 +175,7 @@ impl Report<'_> {
         Some([start?, best?])
     }
 
-    /// The number of trials of the search, that of all trials, and how often a run of theirs gave no value.
+    /// The number of trials of the search, the number of all trials, and the number of their runs without a value.
     pub(super) fn counts(&self) -> [usize; 3] {
         let trials = &self.found.trials;
         let in_search = |trial: &&Trial| matches!(trial.stage, Stage::Generation(_));
@@ -187,7 +187,7 @@ impl Report<'_> {
         ]
     }
 
-    /// All results as one object. It has no times and no paths: equal calibrations give equal bytes.
+    /// All results as one object. It contains no times and no paths, so equal calibrations give equal bytes.
     pub fn json(&self) -> Value {
         let of = self.calibration;
         let [_, points, failures] = self.counts();

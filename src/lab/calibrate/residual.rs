@@ -1,11 +1,11 @@
-//! How far runs are off the measured values, in tolerances.
+//! The residuals of runs: their distances from the measured values, in tolerances.
 
 use super::evaluate::{Evaluated, Sample};
 use super::file::Rule;
 use super::scene::Target;
 
 /// The ratio of a value to the measured one in tolerances: ln(value/measured)/ln(1 + tolerance). It is 1 at the upper
-/// end of the tolerance, and twice and half the measured value are equally far off.
+/// end of the tolerance. Twice and half the measured value have residuals of equal size.
 pub fn ratio(value: f64, target: &Target) -> f64 {
     (value / target.measured).ln() / target.tolerance.ln_1p()
 }
@@ -16,7 +16,7 @@ pub fn residual(sample: &Sample, target: &Target, rule: &Rule) -> Option<f64> {
     Some(ratio(mean, target).clamp(-rule.clip, rule.clip))
 }
 
-/// The square of the residual, of which failed runs are a part with the penalty.
+/// The square of the residual; failed runs enter with the penalty.
 pub fn square(sample: &Sample, target: &Target, rule: &Rule) -> f64 {
     let failed = sample.failed();
     let own = residual(sample, target, rule).unwrap_or(rule.penalty);
@@ -43,7 +43,7 @@ pub fn noise(sample: &Sample, target: &Target) -> Option<f64> {
 }
 
 impl Evaluated {
-    /// The root of the mean square over these targets, which its samples are of.
+    /// The root of the mean square over these targets, to which its samples belong.
     pub fn misfit(&self, targets: &[&Target], rule: &Rule) -> f64 {
         let samples = self.samples.iter().zip(targets.iter().copied());
         root_mean_square(samples, rule).unwrap_or(f64::INFINITY)

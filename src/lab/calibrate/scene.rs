@@ -1,4 +1,4 @@
-//! Scenes, and what was measured there: cases of the validation, or own scenarios.
+//! Scenes with their measured values: cases of the validation, or own scenarios.
 
 use serde::Serialize;
 
@@ -18,9 +18,9 @@ const THROUGH_WALLS: &str = "agents_through_walls";
 pub enum Set {
     /// The search minimizes its residual.
     Fit,
-    /// The search does not see it: the same kind of scene.
+    /// Held out from the search: the same kind of scene.
     HoldOut,
-    /// The search does not see it: another kind of scene.
+    /// Held out from the search: another kind of scene.
     Transfer,
 }
 
@@ -38,7 +38,7 @@ impl Set {
     }
 }
 
-/// One run, apart from parameters and seed.
+/// One run, without parameters and seed.
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// Its name in messages.
@@ -64,12 +64,12 @@ pub struct Target {
     pub quantity: String,
     /// The measured value.
     pub measured: f64,
-    /// The tolerance, as a part of it.
+    /// The tolerance, as a fraction of the measured value.
     pub tolerance: f64,
     pub(super) reading: Reading,
 }
 
-/// How the value of a run is found.
+/// The source of a run's value.
 #[derive(Clone)]
 pub(super) enum Reading {
     /// A check of a case of the validation: its number.
@@ -79,7 +79,7 @@ pub(super) enum Reading {
 }
 
 impl Target {
-    /// The value of a run, or why it has none.
+    /// The value of a run, or the reason why it has none.
     pub(super) fn read(&self, scene: &Scene, run: &RunResult, rule: &Rule) -> Result<f64, String> {
         let through = run.summary.metric(THROUGH_WALLS).unwrap_or_default();
         if through > 0.0 {
@@ -110,7 +110,7 @@ impl Scene {
         self.case.expected_secs
     }
 
-    /// Why a run is stuck; `None` if it is not.
+    /// The reason why a run is stuck; `None` if it is not.
     fn stuck(&self, run: &RunResult, secs: f64) -> Option<String> {
         let waiting = run.summary.backlogs.iter();
         let waiting: u32 = waiting.map(|backlog| backlog.at_end).sum();

@@ -9,9 +9,9 @@ use crate::analysis::morris::{Effect, Trajectories};
 use crate::analysis::statistics::{MeanStd, Range};
 use crate::lab::error::LabError;
 
-/// The distance from the best point at which slopes are measured, in parts of the bounds.
+/// The distance from the best point at which slopes are measured, as a fraction of the bounds.
 pub const SLOPE_STEP: f64 = 0.1;
-/// The search ends when no parameter varies by more than this, in parts of the bounds.
+/// The search ends when no parameter varies by more than this, as a fraction of the bounds.
 pub const CONVERGED: f64 = 1e-3;
 
 /// The stage that a point belongs to.
@@ -81,7 +81,7 @@ pub struct Found {
     pub generations: Vec<Generation>,
     /// The number of the best trial.
     pub best: usize,
-    /// What the values tell of the searched parameters.
+    /// The identifiability of the searched parameters.
     pub knowledge: Knowledge,
     /// The starting and the best point with all targets and the final seeds.
     pub compared: [Evaluated; 2],
@@ -178,8 +178,8 @@ impl Stages<'_> {
         }))
     }
 
-    /// The parameters that are searched: those that change a value by `drop_below`. A parameter without an effect that
-    /// could be computed is searched, too.
+    /// The parameters that are searched: those that change a value by `drop_below`. A parameter whose effects could not
+    /// be computed is searched, too.
     fn searched(&self, screened: Option<&Screened>) -> Result<Vec<usize>, LabError> {
         let of = self.evaluator.calibration;
         let all = 0..of.parameters.len();
@@ -251,7 +251,7 @@ impl Stages<'_> {
         Ok(generations)
     }
 
-    /// What the values tell of the parameters: the slopes of their residuals around the best trial.
+    /// The identifiability of the parameters, from the slopes of the residuals around the best trial.
     fn knowledge(&mut self, best: usize, searched: &[usize]) -> Result<Knowledge, LabError> {
         let center = self.trials[best].evaluated.point.clone();
         let ends = searched.iter().flat_map(|&k| {
@@ -266,7 +266,7 @@ impl Stages<'_> {
         self.add("slopes at the best point", Stage::Slopes, &ends)?;
         let (before, pairs) = self.trials.split_at(first);
         let best = &before[best];
-        // Residuals that no parameters explain count as noise of all values.
+        // Residuals that no parameter explains count as noise of all values.
         let free = self.targets.len() as f64 - searched.len() as f64;
         let squares = best.misfit.powi(2) * self.targets.len() as f64;
         let unexplained = (squares / free.max(1.0)).max(1.0);
@@ -294,7 +294,7 @@ impl Stages<'_> {
 }
 
 /// The slopes of a residual from the differences of all seeds, over `scale`. The errors of all slopes are taken to be
-/// equal, because those of few seeds are uncertain themselves. A parameter at which no run gave a value has no slope.
+/// equal, because those of few seeds are uncertain themselves. A parameter has no slope if no run gave a value there.
 fn slopes(differences: &[Option<MeanStd>], scale: f64) -> Slopes {
     let errors = differences.iter().flatten().filter(|of| of.count > 1);
     let squares: Vec<f64> = errors.map(|of| of.error().powi(2)).collect();

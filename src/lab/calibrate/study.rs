@@ -42,7 +42,7 @@ pub struct Calibration {
     pub seeds: Vec<u64>,
     /// The seeds of the errors that are reported.
     pub final_seeds: Vec<u64>,
-    /// How far runs are off the measured values.
+    /// The residuals of runs.
     pub rule: Rule,
     /// The screening, if there is one.
     pub screening: Option<Screening>,
@@ -190,7 +190,7 @@ impl Calibration {
         Ok(())
     }
 
-    /// The settings that give a scene these values of all parameters.
+    /// The settings that set all parameters of a scene to these values.
     pub(super) fn settings(&self, scene: &Scene, values: &[f64]) -> Result<Vec<Setting>, String> {
         let parameters = self.parameters.iter().zip(values);
         let settings =
@@ -227,7 +227,7 @@ impl Calibration {
         self.search.population.unwrap_or_else(usual)
     }
 
-    /// The files that it is read from, apart from its own.
+    /// The other files that it is read from.
     pub fn inputs(&self) -> BTreeSet<PathBuf> {
         let scenes = self.scenes.iter();
         scenes

@@ -87,7 +87,7 @@ impl Report<'_> {
         table.table().markdown()
     }
 
-    /// The searched parameters whose errors depend on each other.
+    /// The searched parameters with correlated errors.
     fn correlated(&self) -> Vec<(String, f64)> {
         let searched = &self.found.searched;
         let name = |k: usize| &self.calibration.parameters[searched[k]].name;

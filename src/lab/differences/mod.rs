@@ -1,4 +1,4 @@
-//! What differs between two results: two runs as `--json` reports them, or two trajectory files.
+//! The differences between two results: two runs as `--json` reports them, or two trajectory files.
 
 mod reports;
 mod tracks;
@@ -25,7 +25,7 @@ pub struct Difference {
     pub b: Value,
 }
 
-/// What differs between two results A and B.
+/// The differences between two results A and B.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Differences {
     /// Settings; empty for trajectories.
@@ -99,7 +99,7 @@ impl Differences {
 }
 
 /// The values that differ between two objects, and the number of values that are equal. Objects and lists inside are
-/// compared value by value; entries of lists, which may be many, come last.
+/// compared value by value; entries of lists come last, because there may be many.
 fn different(a: &Map<String, Value>, b: &Map<String, Value>) -> (Vec<Difference>, usize) {
     let [a, b] = [a, b].map(|values| {
         let mut all = Map::new();

@@ -16,7 +16,7 @@ const SETTINGS: &str = "settings";
 #[error("not the result of a run; write one with `sandbox run SCENARIO --json > FILE`")]
 pub struct NotAReport;
 
-/// What differs between two runs, as `--json` reports them. Run times are not compared.
+/// The differences between two runs, as `--json` reports them. Run times are not compared.
 ///
 /// # Errors
 /// A value is not the result of a run.

@@ -12,7 +12,7 @@ use crate::scenario::trajectories::Tracks;
 /// Two positions of a person at the same time differ if they are farther apart than this, meters.
 const DIFFER: f64 = 1e-9;
 
-/// What differs between two trajectory files: totals, and the positions of people with the same id at the same time.
+/// The differences between two trajectory files: totals, and the positions of people with the same id at the same time.
 pub fn of_tracks(a: &Tracks, b: &Tracks) -> Differences {
     let mut differences = Differences::default();
     differences.add_results(&totals(a), &totals(b));
@@ -39,7 +39,7 @@ fn totals(tracks: &Tracks) -> Map<String, Value> {
     all.as_object().cloned().unwrap_or_default()
 }
 
-/// How far people with the same id are apart at the same times: in `b`, where `a` has 0.
+/// The distances between people with the same id at the same times, as the value in `b`; the value in `a` is 0.
 fn positions(a: &Tracks, b: &Tracks) -> Vec<Difference> {
     let rows = |tracks: &Tracks| -> BTreeMap<(i64, i64), Vector> {
         let frames = (0..tracks.frames.len()).flat_map(|k| {

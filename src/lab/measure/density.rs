@@ -76,8 +76,8 @@ impl History {
         }
     }
 
-    /// The part of ρ_i of a person of this mass that its own weight makes, P/m². Behind walls, the crowd that is
-    /// assumed to be as dense as at the person's position includes it.
+    /// The part of ρ_i that comes from the weight of the person, which has this mass, P/m². The crowd that is assumed
+    /// behind walls is as dense as at the person's position, so its density includes this part.
     pub fn own_part(&self, parts: &Parts, mass: f64) -> f64 {
         let own = mass * kernel::density(0.0, self.support_radius);
         match self.behind {

@@ -21,7 +21,7 @@ pub enum Density {
     SphField,
     /// People in a region / its area.
     Classic,
-    /// Of a person: 1 / the area of its Voronoi cell. Of a region: the integral of these over it / its area.
+    /// For a person: 1 / the area of its Voronoi cell. For a region: the mean of this density over its area.
     Voronoi,
 }
 

@@ -48,7 +48,7 @@ use density::History;
 /// Rows measured at a time, unless a single frame has more.
 const BATCH: usize = 1 << 16;
 
-/// What to measure, and how.
+/// The options of a measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// The kernel.
@@ -61,7 +61,7 @@ pub struct Options {
     pub times: [f64; 2],
     /// Side of the cells of mean fields, meters.
     pub cell: f64,
-    /// How far Voronoi cells reach.
+    /// The reach of Voronoi cells.
     pub cells: CellLimit,
     /// Regions of the fundamental diagrams; if empty, one diagram covers everything.
     pub regions: Vec<Region>,
@@ -152,11 +152,11 @@ pub struct Measured {
     pub crossings: Vec<Crossings>,
     /// Exposure, alarms, level of service, crowd pressure.
     pub safety: Safety,
-    /// When people had left.
+    /// The times at which people had left.
     pub departures: Departures,
 }
 
-/// Why a measurement is impossible.
+/// The reason why a measurement is impossible.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeasureError {
     /// No frame is in the requested time.

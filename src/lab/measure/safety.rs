@@ -1,5 +1,5 @@
-//! What safety engineers read, in trajectories: exposure, alarms, level of service, crowd pressure, and when people
-//! have left. Forces need a model and are measured in runs only.
+//! Quantities for safety engineers, from trajectories: exposure, alarms, level of service, crowd pressure, and the
+//! times at which people have left. Forces need a model and are measured in runs only.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -12,7 +12,7 @@ use crate::analysis::service::Levels;
 use crate::analysis::site::Site;
 use crate::scenario::trajectories::Tracks;
 
-/// What was seen of people in samples of time.
+/// The observations of people in samples of time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Safety {
     /// The time between two samples, seconds: whole frames.
@@ -58,18 +58,18 @@ pub struct Sample {
     pub pressure: Option<f64>,
 }
 
-/// When parts of the people had left, seconds; `None` if they had not by the end.
+/// The times at which fractions of the people had left, seconds; `None` if they had not by the end.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Departures {
     /// The number of people.
     pub people: usize,
     /// The number of people who had left before the last frame.
     pub left: usize,
-    /// When half of the people had left.
+    /// The time at which half of the people had left.
     pub t50_secs: Option<f64>,
-    /// When 95 % had left.
+    /// The time at which 95 % had left.
     pub t95_secs: Option<f64>,
-    /// When all had left.
+    /// The time at which all had left.
     pub t100_secs: Option<f64>,
 }
 
@@ -103,7 +103,7 @@ impl Safety {
         for (moment, people) in due.into_iter().zip(&local) {
             let last = self.samples.last().map(|last| last.frame);
             if last.is_some_and(|last| moment.frame - last > self.every) {
-                // There were no people in between.
+                // There were no people in the frames between.
                 self.exposure.add([].iter());
                 self.pressures.add(moment.time, [].iter());
             }
@@ -124,7 +124,8 @@ impl Safety {
         }
     }
 
-    /// When parts of the people had left: a person leaves after the last frame with it, unless that is the last of all.
+    /// The times at which fractions of the people had left. A person leaves after its last frame, unless that is the
+    /// last frame of all.
     pub fn departures(&self, tracks: &Tracks) -> Departures {
         let seen = self.last.iter().copied().flatten();
         let end = seen.clone().max();
@@ -146,7 +147,7 @@ impl Safety {
     }
 }
 
-/// The people of a frame with what is around them.
+/// The people of a frame with their surroundings.
 fn local(moment: &Moment, site: &Site) -> Vec<Local> {
     let people = moment.people.iter();
     let people = people.map(|person| (person.number, person.position, person.velocity));

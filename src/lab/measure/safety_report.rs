@@ -1,4 +1,4 @@
-//! What safety engineers read, as text, JSON and a picture.
+//! Quantities for safety engineers, as text, JSON and a picture.
 
 use serde_json::{Value, json};
 
@@ -40,7 +40,7 @@ pub fn text(measured: &Measured) -> String {
     text + &left(departures)
 }
 
-/// What is known of the pressure above which people are counted: only about packed crowds.
+/// A note on the pressure above which people are counted: it is known only for packed crowds.
 fn meaning(safety: &Safety) -> String {
     match safety.exposure.exposed(safety.secs)[0].people > 0 {
         true => " (measured before the accident at Mina in 2006, not a safety limit)".to_owned(),
@@ -48,7 +48,7 @@ fn meaning(safety: &Safety) -> String {
     }
 }
 
-/// When people had left, in one line.
+/// The times at which people had left, in one line.
 fn left(departures: &Departures) -> String {
     let &Departures { people, left, .. } = departures;
     let time = |time: Option<f64>| time.map_or("–".to_owned(), |time| format!("{time:.2} s"));

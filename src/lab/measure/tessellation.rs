@@ -12,7 +12,7 @@ use crate::scenario::floor_plan::{self, Rings};
 /// Walls this far beyond a polygon are cut together with it, meters.
 const MARGIN: f64 = 0.1;
 
-/// How far cells reach.
+/// The reach of cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellLimit {
     /// Radius of the circle around each person that limits its cell, meters; `None`: only walls limit cells.
@@ -62,7 +62,7 @@ impl OwnCell {
 pub struct Tessellation<'a> {
     site: &'a Site,
     limit: CellLimit,
-    /// What unbounded obstacles enclose.
+    /// The area that unbounded obstacles enclose.
     floors: Vec<Rings>,
     /// The bounded obstacles.
     bodies: Rings,
@@ -92,8 +92,8 @@ impl<'a> Tessellation<'a> {
         })
     }
 
-    /// The cells of people at `positions`. `eyes` are the nearest points outside of obstacles: of the parts of a cell
-    /// between walls, the one there is the person's. `None` for a person too deep inside an obstacle.
+    /// The cells of people at `positions`. `eyes` are the nearest points outside of obstacles. Walls can divide a cell;
+    /// the part with the eye belongs to the person. `None` for a person too deep inside an obstacle.
     pub fn cells(&self, positions: &[Vector], eyes: &[Vector]) -> Vec<Option<OwnCell>> {
         let limit = |p| match self.limit.cut_off {
             Some(radius) => disk(p, radius, self.limit.quad_segments),

@@ -18,7 +18,7 @@ pub struct Published {
 /// One table of the paper.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Table {
-    /// Where it is in the paper, and what it contains.
+    /// Its place in the paper, and its contents.
     pub place: String,
     /// Its rows, in order.
     pub rows: Vec<PublishedRow>,
@@ -29,14 +29,14 @@ pub struct Table {
 pub struct PublishedRow {
     /// The profile's name (§5.5).
     pub profile: String,
-    /// What distinguishes rows of the same profile in Table 1.
+    /// The property that distinguishes rows of the same profile in Table 1.
     #[serde(flatten)]
     pub varied: Option<Varied>,
     /// Number of agents that left the room, in Table 1.
     pub evacuated: Option<f64>,
     /// Mean of ρ_i at 15 s (Table 1), or at 45 s in front of the door (Table 2), P/m².
     pub density: f64,
-    /// Standard deviation of ρ_i there and then, P/m².
+    /// Standard deviation of ρ_i at the same place and time, P/m².
     pub deviation: f64,
     /// Evacuees per second until the 350th (Table 1), or in the first 60 s (Table 2).
     pub flow: f64,

@@ -31,7 +31,7 @@ pub const PRODUCT: Product = Product {
 /// The study about Table 2; its list has that table's profiles once for each geometry.
 const CROSSING: &str = "questions_crossing";
 
-/// What the tables show: metric and head. Metrics that a study does not measure are left out.
+/// The columns of the tables: metric and head. Metrics that a study does not measure are left out.
 const COLUMNS: [(&str, &str); 10] = [
     ("evacuated", "evacuated"),
     ("locked", "locked"),

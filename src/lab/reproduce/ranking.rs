@@ -18,7 +18,7 @@ pub struct Ranking {
     pub lower: String,
     /// The paper's two values.
     pub paper: [f64; 2],
-    /// Our two means, if all runs gave a value.
+    /// Our two means; `None` if a run gave no value.
     pub ours: Option<[f64; 2]>,
     /// Number of seeds with the paper's order, and of all seeds.
     pub seeds: [usize; 2],

@@ -15,7 +15,7 @@ use crate::runs::store::Store;
 pub struct Row {
     /// The profile's name (§5.5).
     pub profile: String,
-    /// What distinguishes rows of the same profile in Table 1.
+    /// The property that distinguishes rows of the same profile in Table 1.
     #[serde(flatten)]
     pub varied: Option<Varied>,
     /// Number of agents that left the room, in Table 1.

@@ -63,7 +63,7 @@ pub fn published_for(scenario: &Scenario) -> Vec<(&'static str, f64)> {
 
 /// Whether a scenario has the settings of a row; seeds and view may differ.
 fn has_settings_of(scenario: &Scenario, row: &PublishedRow) -> bool {
-    /// Keys that do not tell runs of a row apart. The parameters are compared as they act: some defaults depend on the
+    /// Keys that do not distinguish runs of a row. The parameters are compared as they act: some defaults depend on the
     /// profile.
     const FREE: [&str; 6] = [
         "seed",

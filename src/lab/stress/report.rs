@@ -1,4 +1,4 @@
-//! What `sandbox stress` prints and writes.
+//! The report of `sandbox stress`.
 
 use serde::Serialize;
 

@@ -118,8 +118,8 @@ pub struct Remains {
     /// Root mean square speed in the last seconds, relative to the mean velocity of crowds that walk, m/s; `None` if a
     /// run failed.
     pub speed: Option<f64>,
-    /// How much of the velocities remains from one frame to the next in those seconds, Σ v(t)·v(t − Δt) / Σ v²: 1 if
-    /// all velocities are constant, −1 if all of them reverse in every frame.
+    /// The correlation of the velocities from one frame to the next in those seconds, Σ v(t)·v(t − Δt) / Σ v²: 1 if all
+    /// velocities are constant, −1 if all of them reverse in every frame.
     pub persistence: f64,
     /// The smallest distance between two centers, relative to the sum of their radii.
     pub closest: f64,

@@ -22,14 +22,14 @@ pub struct Case {
 }
 
 impl Case {
-    /// Whether `name` means it: its id, or its number without the letter.
+    /// Whether `name` refers to it: its id, or its number without the letter.
     pub fn is_named(&self, name: &str) -> bool {
         let letter = |rest: &str| rest.len() == 1 && rest.chars().all(|c| c.is_ascii_lowercase());
         let rest = self.id.strip_prefix(name);
         rest.is_some_and(|rest| rest.is_empty() || letter(rest))
     }
 
-    /// Why this profile is known to miss an expectation.
+    /// The reason why this profile misses an expectation, if it is known to.
     pub fn known_miss(&self, profile: &str) -> Option<&'static str> {
         let mut misses = self.misses.iter();
         misses.find(|(of, _)| *of == profile).map(|(_, why)| *why)
@@ -42,7 +42,7 @@ pub struct Runs<'a> {
     pub suite: &'a str,
     /// The results of all cases.
     pub own: Vec<(&'a str, &'a Summary)>,
-    /// What was measured in the data from which runs begin, by the labels of the runs.
+    /// The measurements in the data from which runs begin, by the labels of the runs.
     pub measured: &'a [(&'static str, Summary)],
 }
 
@@ -72,7 +72,7 @@ impl Runs<'_> {
             .ok_or_else(|| self.missing(label, "run"))
     }
 
-    /// What was measured in the data from which a run begins; `None` if it begins from none.
+    /// The measurements in the data from which a run begins; `None` if it begins without data.
     pub fn data(&self, label: &str) -> Option<&Summary> {
         let found = self.measured.iter().find(|(own, _)| *own == label);
         found.map(|(_, summary)| summary)
@@ -86,7 +86,7 @@ impl Runs<'_> {
         Ok(self.of(label)?.metric(name))
     }
 
-    /// When the last agent of a run left, seconds; `None` if agents are left.
+    /// The time at which the last agent of a run left, seconds; `None` if agents remain.
     ///
     /// # Errors
     /// There is no such run.
@@ -94,7 +94,7 @@ impl Runs<'_> {
         self.metric(label, "t100_secs")
     }
 
-    /// The value of one run over that of another.
+    /// The value of one run divided by that of another.
     ///
     /// # Errors
     /// One of the runs is missing.
@@ -134,7 +134,7 @@ impl Runs<'_> {
         Ok(exit.from_to_secs.map(flow))
     }
 
-    /// What the agents of a run have walked.
+    /// The walks of the agents of a run.
     ///
     /// # Errors
     /// There is no such run, or it measures no `walks`.

@@ -1,21 +1,21 @@
-//! A measured quantity beside what is expected of it.
+//! A measured quantity with its expectation.
 
 use serde::Serialize;
 
 /// Limits such as 1.6 are not exact in binary.
 const ROUNDING: f64 = 1e-9;
 
-/// What is expected of a quantity.
+/// The expectation for a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Expected {
     /// A value between two, inclusive; infinite if there is no bound.
     Between([f64; 2]),
-    /// A measured value, and how far off another may be, as a part of it.
+    /// A measured value, with a tolerance as a fraction of it.
     Near {
         /// The measured value.
         value: f64,
-        /// The part of it.
+        /// The tolerance.
         tolerance: f64,
     },
     /// Any value: it is reported.
@@ -29,7 +29,7 @@ pub struct Check {
     pub quantity: String,
     /// The value; `None` if the run gave none.
     pub value: Option<f64>,
-    /// What is expected.
+    /// The expectation.
     pub expected: Expected,
     /// The label of the run that gives the value; `None` if several do.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -47,7 +47,7 @@ impl Check {
         }
     }
 
-    /// A value that may be off a measured one by a part of it.
+    /// A value that must be within a tolerance, a fraction, of a measured one.
     pub fn near(
         quantity: impl Into<String>,
         value: Option<f64>,
@@ -121,7 +121,7 @@ impl Check {
         matches!(self.expected, Expected::Near { .. })
     }
 
-    /// How far the value is off a measured one, as a part of it.
+    /// The difference of the value from a measured one, as a fraction of the measured value.
     pub fn error(&self) -> Option<f64> {
         match self.expected {
             Expected::Near { value, .. } => Some(self.value? / value - 1.0),
@@ -129,7 +129,7 @@ impl Check {
         }
     }
 
-    /// What is expected, in words.
+    /// The expectation, in words.
     pub fn expected_written(&self) -> String {
         match self.expected {
             Expected::Any => "reported".to_owned(),

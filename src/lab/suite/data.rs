@@ -1,4 +1,4 @@
-//! Data that some cases need, and that are not part of the program: files with trajectories.
+//! Data that some cases need and that are not part of the program: trajectory files.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ pub struct DataFile {
     pub run: &'static str,
     /// Its name in the folder with the data.
     pub name: &'static str,
-    /// Where it can be had.
+    /// Its source.
     pub source: &'static str,
 }
 
@@ -23,11 +23,11 @@ pub struct DataFile {
 pub struct Skipped {
     /// The case.
     pub case: &'static Case,
-    /// Why, and where the data can be had.
+    /// The reason, and the source of the data.
     pub why: String,
 }
 
-/// Cases whose data are there, with their files by the labels of their runs, and cases whose data are missing.
+/// Cases with data, with their files by the labels of their runs, and cases whose data are missing.
 pub(super) struct Found {
     pub cases: Vec<&'static Case>,
     pub files: BTreeMap<&'static str, PathBuf>,
@@ -78,8 +78,8 @@ impl Suite {
     }
 }
 
-/// What the lines of a scenario give for the people of the data from which it begins, in the time from its beginning.
-/// They are measured as in a run, with their places at its frames.
+/// The measurements of a scenario's lines for the people of the data from which it begins, from its start on. People
+/// are measured as in a run, at their positions in its frames.
 pub(super) fn measured(label: &str, case: &case::Case) -> Result<Summary, LabError> {
     let failed = |error| LabError::of(label, error);
     let draft = case.draft().map_err(failed)?;

@@ -39,7 +39,7 @@ pub struct Suite {
     pub cases: &'static [&'static [Case]],
     /// The data that cases need, whose runs are those of the study `NAME_data`.
     pub data: &'static [DataFile],
-    /// The profiles of the study, whose misses are known.
+    /// The profiles of the study, for which known misses are listed.
     pub profiles: &'static [&'static str],
     /// Whether means over all seeds are judged, or each seed.
     pub judges_means: bool,
@@ -47,7 +47,7 @@ pub struct Suite {
     pub sheets: fn(&[Runs]) -> Vec<(&'static str, Sheet)>,
 }
 
-/// What of a suite is computed.
+/// The part of a suite that is computed.
 pub struct Chosen<'a> {
     /// The cases.
     pub cases: Vec<&'static Case>,
@@ -59,7 +59,7 @@ pub struct Chosen<'a> {
     pub data: Option<&'a Path>,
 }
 
-/// Why crowds of the paper's profiles are too fast.
+/// The reason why crowds of the paper's profiles are too fast.
 pub const NOTHING_SLOWS: &str = "nothing slows a crowd whose agents all walk at the same velocity: pressure, contact \
                                  and avoidance act on differences of velocity or on overlaps only";
 

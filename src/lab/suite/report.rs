@@ -1,4 +1,4 @@
-//! What is printed and written about a suite.
+//! The report of a suite.
 
 use serde_json::json;
 
@@ -36,7 +36,7 @@ pub struct Report {
     pub profiles: Vec<String>,
     /// The findings, by case, profile and seed.
     pub findings: Vec<Finding>,
-    /// Cases without data. They neither pass nor fail.
+    /// Cases without data, which neither pass nor fail.
     pub skipped: Vec<Skipped>,
 }
 
@@ -57,7 +57,7 @@ impl Row<'_> {
         &self.findings[0].checks[self.check]
     }
 
-    /// Walls are shown only where they do not hold.
+    /// The check of walls is shown only if it fails.
     fn is_shown(&self) -> bool {
         let mut checks = self.findings.iter().map(|one| &one.checks[self.check]);
         self.check().quantity != THROUGH_WALLS || checks.any(|check| !check.is_passed())
@@ -93,7 +93,7 @@ fn written(value: Option<f64>) -> String {
 }
 
 impl Report {
-    /// Cases that miss an expectation although they passed before, of the suite's profiles; empty if there are none.
+    /// Misses of the suite's profiles that are not known misses; empty if there are none.
     pub fn failures(&self) -> Vec<String> {
         let missed = self.findings.iter().filter(|finding| !finding.is_passed());
         let is_known = |one: &Finding| one.case.known_miss(&one.profile).is_some();
@@ -126,7 +126,7 @@ impl Report {
         Some(own.all(Finding::is_passed))
     }
 
-    /// Known misses that are none with any seed: the list of known misses should lose them.
+    /// Known misses that pass with all seeds: they should be removed from the list.
     pub fn no_longer_missed(&self) -> Vec<String> {
         let passed = |case: &'static Case| {
             let misses = case.misses.iter().map(|(profile, _)| *profile);
@@ -174,7 +174,7 @@ impl Report {
             true => "",
         };
         let table = self.table();
-        // Cases one after the other that the same profiles miss for the same reason share a line.
+        // Consecutive cases that the same profiles miss for the same reason share a line.
         let mut reasons: Vec<(Vec<&str>, Vec<&str>, &str)> = Vec::new();
         for case in self.cases() {
             let missed = case.misses.iter();

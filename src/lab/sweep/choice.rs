@@ -15,7 +15,7 @@ use crate::scenario::{Problem, SHIPPED, Setting, built_in, suggestion};
 /// The key of the scenario, which can be varied like a setting.
 pub(super) const SCENARIO: &str = "scenario";
 
-/// Where a study is read from, and with it the files that it refers to.
+/// The source of a study and of the files that it refers to.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::lab) struct Root<'a> {
     /// The study's file, relative to `scenarios/` if it is built in.

@@ -24,7 +24,7 @@ pub fn readables(values: &[Value]) -> Vec<String> {
     labels
 }
 
-/// The name of an object that has one; else its `key=value`; the items of a list; numbers and texts as they are.
+/// The name of an object, or its `key=value` pairs if it has no name; the items of a list; numbers and texts unchanged.
 fn words(value: &Value) -> String {
     match value {
         Value::Object(entries) => match entries.get("name") {
@@ -40,7 +40,7 @@ fn words(value: &Value) -> String {
     }
 }
 
-/// `mean=1.3, std=0.2`; what is inside of a key stands in parentheses: `normal(mean=1.3, std=0.2)`.
+/// `mean=1.3, std=0.2`; nested objects stand in parentheses: `normal(mean=1.3, std=0.2)`.
 fn of_entries(entries: &Map<String, Value>) -> String {
     joined(entries.iter().map(|(key, value)| match value {
         Value::Object(_) | Value::Array(_) => format!("{key}({})", words(value)),
@@ -52,7 +52,7 @@ fn joined(parts: impl Iterator<Item = String>) -> String {
     parts.collect::<Vec<_>>().join(", ")
 }
 
-/// A text of at most this many letters: of a longer one the beginning and the end.
+/// A text of at most this many letters: the beginning and the end of a longer text.
 fn shortened(text: &str, most: usize) -> String {
     let letters: Vec<char> = text.chars().collect();
     let kept = most - 1;

@@ -31,7 +31,7 @@ pub struct Study {
     pub document: Value,
     /// The names of the varied settings, without the seeds: keys of the list, then of the grid, as written.
     pub axes: Vec<String>,
-    /// How many of them are keys of the grid.
+    /// The number of keys of the grid among them.
     grid_axes: usize,
     /// Number of seeds per combination.
     pub seeds: usize,
@@ -43,7 +43,7 @@ pub struct Study {
 }
 
 impl Study {
-    /// The axes that tell cells apart: with labels, the list's other keys need not be shown.
+    /// The axes that distinguish cells: with labels, the list's other keys need not be shown.
     pub(super) fn short_axes(&self) -> Vec<String> {
         let others = self.axes.len() - self.grid_axes;
         match self.axes.split_at(others) {
@@ -195,7 +195,7 @@ impl Study {
         check_name(&name).map_err(invalid)?;
         let shared = Memory::new(memory);
         let cells: Vec<_> = (0..plan.count).map(|_| OnceLock::new()).collect();
-        // Not on rayon's threads: they could start another cell while they hold memory for the first.
+        // Not on rayon's threads: these could start another cell while they hold memory for the first.
         side_by_side(plan.count, |index| {
             cells[index].set(plan.cell(index, &shared)).ok();
             Ok::<(), StoreError>(())
@@ -246,7 +246,7 @@ pub(in crate::lab) fn check_name(name: &str) -> Result<(), Problem> {
     Err(Problem::new("name", reason))
 }
 
-/// Checks names and types. `needs` is what a file needs at least, for the message about one that is no object.
+/// Checks names and types. `needs` names the required keys, for the message about a file that is not an object.
 pub(in crate::lab) fn parse<T: DeserializeOwned>(text: &str, needs: &str) -> Result<T, Problem> {
     if !text.trim_start().starts_with('{') {
         let reason = format!("must be an object, {{…}}, with {needs}");

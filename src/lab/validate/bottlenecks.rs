@@ -20,10 +20,10 @@ const MISSES: &[(&str, &str)] = &[
     ("rvo->sph", NOTHING_SLOWS),
 ];
 
-/// And the calibrated one, at wide gaps.
+/// The calibrated profile, at wide gaps.
 const ALL_MISS: &[(&str, &str)] = &[MISSES[0], MISSES[1], MISSES[2], ("walk+sph", WIDE)];
 
-/// What was measured at a line.
+/// The measured values at a line.
 #[derive(Debug, Clone, Copy)]
 pub struct Measured {
     /// The run.
@@ -131,7 +131,7 @@ impl Measured {
         }
     }
 
-    /// Flow, density and speed at the line, beside the measured ones.
+    /// Flow, density and speed at the line, compared with the measured ones.
     pub fn checks(&self, runs: &Runs) -> Result<Vec<Check>, LabError> {
         let quantities = [
             ("flow [P/s]", "flow_per_s", self.flow),

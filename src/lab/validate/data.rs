@@ -1,5 +1,5 @@
 //! Scenes that begin with the people of an experiment, where and when they were in its trajectories. The files are not
-//! part of the program: `docs/validation.md` says how they are had.
+//! part of the program: `docs/validation.md` says how to get them.
 
 use super::bottlenecks::Measured;
 use crate::lab::error::LabError;
@@ -58,12 +58,12 @@ pub const CASES: [Case; 2] = [
     },
 ];
 
-/// What was measured in the data of the runs that have some.
+/// The measurements in the data of the runs with data.
 pub fn measured<'a>(runs: &'a Runs<'a>) -> impl Iterator<Item = Measured> + 'a {
     LINES.into_iter().filter_map(|line| at(runs, line))
 }
 
-/// What was measured in the data of a run; `None` without data.
+/// The measurements in the data of a run; `None` without data.
 fn at(runs: &Runs, (run, line): (&'static str, &'static str)) -> Option<Measured> {
     let data = runs.data(run)?;
     let value = |what: &str| data.metric(&format!("{line}_{what}")).unwrap_or(f64::NAN);

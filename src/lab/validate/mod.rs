@@ -1,4 +1,4 @@
-//! Validation: scenes of experiments, with what was measured there.
+//! Validation: scenes of experiments, with the measured values.
 
 mod bottlenecks;
 mod corridors;

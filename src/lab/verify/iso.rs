@@ -7,7 +7,7 @@ use crate::lab::suite::{Case, Check, Runs};
 
 type Checks = Result<Vec<Check>, LabError>;
 
-/// Why ten people do not always slow a hundred with RVO.
+/// The reason why ten people do not always slow a hundred with RVO.
 const FEW_AGAINST: &str = "ten people against a hundred change their time by less than chance does: by -1 to 3 % over \
      three seeds";
 
@@ -150,8 +150,8 @@ const TIMES: [(&str, Family); 4] = [
     ("weibull", Family::Weibull([139.285, 1.195])),
 ];
 
-/// Probabilities of the Kolmogorov–Smirnov test of the times of the starts. One in a hundred for each of four
-/// distributions: by chance, 4 of 100 seeds fail.
+/// Probabilities of the Kolmogorov–Smirnov test of the times of the starts. With 1 % for each of four distributions, 4
+/// of 100 seeds fail by chance.
 fn premovement_times(runs: &Runs) -> Checks {
     let walks = runs.walks("premovement times")?;
     let check = |(name, family): (&str, Family)| {

@@ -4,13 +4,13 @@ use super::speeds::{DENSITIES, ages, fundamental_diagram, single_file};
 use crate::lab::error::LabError;
 use crate::lab::suite::{Case, Check, NOTHING_SLOWS, Runs};
 
-/// Why people in single file are too slow or too fast with RVO.
+/// The reason why people in single file are too slow or too fast with RVO.
 pub const RVO_SINGLE_FILE: &str = "in a curved corridor of 0.8 m every velocity leads into a wall within seconds, and \
                                    the penalty for the time to collision slows even four people far apart to 0.4 m/s; \
                                    the more people, the less they avoid and the more they are an SPH fluid, which \
                                    nothing slows";
 
-/// Why people jam before a second opening.
+/// The reason why people jam before a second opening.
 const PUSHED_THROUGH: &str = "the pressure of the crowd pushes 10 to 15 % more people per second through the first \
      opening than walk through the second, and the rest gather before it";
 

@@ -96,7 +96,7 @@ fn widened<R: Real, S: Simd>(simd: S, numbers: Lanes<R, S>, by: f64) -> [Lanes<R
     ]
 }
 
-/// How far numbers are outside an interval; 0 inside.
+/// The distances of numbers from an interval; 0 inside.
 #[inline(always)]
 fn outside<R: Real, S: Simd>(
     simd: S,

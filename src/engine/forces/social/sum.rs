@@ -15,7 +15,7 @@ pub trait Pairs<R: Real, S: Simd> {
     fn pairs(&self, simd: S, step: usize) -> [[Lanes<R, S>; 2]; 2];
 }
 
-/// What Eq. 18 reads of the agents i of eight pairs.
+/// The input of Eq. 18: the agents i of eight pairs.
 pub struct Feeling<R: Real, S: Simd> {
     velocity: [Lanes<R, S>; 2],
     /// −T, in coordinate units per (m/s).

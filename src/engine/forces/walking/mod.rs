@@ -37,14 +37,14 @@ pub enum WalkingLaw {
     Drag(Drag),
 }
 
-/// Where an agent looks for others: a rectangle ahead of it.
+/// The rectangle ahead of an agent in which it looks for others.
 #[derive(Debug, Clone, Copy, Default)]
 struct View {
-    /// How far ahead an agent looks that stands, meters.
+    /// Its length for an agent that stands, meters.
     length: f64,
-    /// How much farther per preferred speed, seconds.
+    /// The additional length per preferred speed, seconds.
     time: f64,
-    /// How far to each side, meters.
+    /// Its width to each side, meters.
     aside: f64,
 }
 
@@ -151,7 +151,7 @@ impl WalkingLaw {
     }
 }
 
-/// What the speed that agent `i` may walk takes from its preferred velocity, m/s.
+/// The change of the preferred velocity of agent `i` that limits it to the allowed speed, m/s.
 pub fn lost_velocity(frame: &Frame, i: usize) -> Vector {
     let wish = frame.fields.preferred_velocity[i];
     let speed = wish.norm();

@@ -1,4 +1,4 @@
-//! The work that the engine skips, done beside it on its frozen frames.
+//! The work that the engine skips, done separately on its frozen frames.
 
 use std::hint::black_box;
 use std::time::Instant;

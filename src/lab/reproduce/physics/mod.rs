@@ -1,5 +1,5 @@
-//! Open questions of crowd physics: what crowds of the model do where experiments are known. Each is a study, a table
-//! and a picture; docs/questions.md says what is known and what follows.
+//! Open questions of crowd physics: the behavior of the model's crowds in situations with known experiments. Each
+//! question is a study, a table and a picture; docs/questions.md has the known results and the conclusions.
 
 mod oscillations;
 mod queue_pushes;
@@ -40,7 +40,7 @@ fn label<'a>(row: &Combination<'a>) -> &'a str {
     cell.and_then(|cell| cell.label()).unwrap_or_default()
 }
 
-/// The profile of a combination: its name, or its base and the parameters that tell it apart.
+/// The profile of a combination: its name, or its base and the parameters that distinguish it.
 fn profile(row: &Combination) -> String {
     let cell = row.cells.first();
     let value = cell.and_then(|cell| cell.value("profile"));

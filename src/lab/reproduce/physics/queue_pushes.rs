@@ -12,7 +12,7 @@ use crate::scenario::measurements::FrontData;
 const GAS_CONSTANT: f64 = 200.0;
 /// The distances on the axis, meters.
 const DISTANCES: [f64; 2] = [0.2, 1.1];
-/// The setting with the velocity of the last one in the row.
+/// The setting with the velocity of the last person in the row.
 const PUSH: &str = "agents.0.velocity";
 
 /// The table, and speed and reach by distance.
@@ -25,7 +25,7 @@ pub const PRODUCT: Product = Product {
     write: |studies, store| write(studies, store, table, sheet),
 };
 
-/// The distance from person to person, meters, from their places at the start.
+/// The distance between neighbors at the start, meters.
 fn distance(row: &Combination) -> Option<f64> {
     let found: FrontData = row.results.first()?.summary.data("front")?;
     let places = || found.people.iter().map(|of| of.place);
@@ -38,7 +38,7 @@ fn push(row: &Combination) -> Option<f64> {
     row.cells.first()?.value(PUSH)?.get(0)?.as_f64()
 }
 
-/// The mean number of agents that the push reached, without the pushed one.
+/// The mean number of agents that the push reached, without the pushed agent.
 fn reached(row: &Combination) -> Option<f64> {
     mean(row, "front_agents").map(|of| of.mean - 1.0)
 }

@@ -12,7 +12,7 @@ use crate::scenario::measurements::FrontData;
 
 /// The length that people wait on, meters.
 const LENGTH: f64 = 30.0;
-/// When they may go, seconds.
+/// The time at which they may go, seconds.
 const RELEASED: f64 = 5.0;
 /// The speed of velocity waves in start corrals of marathons (Bain and Bartolo 2019), m/s.
 const MEASURED: f64 = 1.2;
