@@ -1,4 +1,4 @@
-//! `sandbox compare`: what differs between two results.
+//! `sandbox compare`: the differences between two results.
 
 use std::path::{Path, PathBuf};
 

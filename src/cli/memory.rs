@@ -33,7 +33,7 @@ pub fn of_writing(options: &OutputOptions) -> u64 {
     parts.map(|(_, bytes)| bytes).sum::<u64>() + files.map(|path| trajectory(path)).sum::<u64>()
 }
 
-/// Memory that the recording of `inspect` takes, bytes per agent. Its printed output is made agent by agent.
+/// Memory that the recording of `inspect` takes, bytes per agent. Its printed output is produced agent by agent.
 pub fn of_inspecting(saves: bool, all: bool) -> u64 {
     let laid_open = if all { LAID_OPEN } else { 0 };
     if saves { RECORDED + laid_open } else { 0 }

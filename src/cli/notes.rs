@@ -104,7 +104,7 @@ fn displaced(scene: &Scene, agent: u32) -> String {
     format!("agent {agent}{}", from.unwrap_or_default())
 }
 
-/// How many of all `moves` were limited, and where most of them began.
+/// The number of limited moves among all `moves`, and the place where most of them began.
 fn limited(limited: &Limited, moves: u64) -> String {
     let count = limited.count;
     let percent = 100.0 * count as f64 / moves.max(1) as f64;

@@ -83,7 +83,7 @@ pub fn text(run: &Run) -> String {
     text + &ending(run)
 }
 
-/// How many agents entered, arrived and remain, why the run ended, and which agents are stuck.
+/// The numbers of agents that entered, arrived and remain, the reason why the run ended, and the agents that are stuck.
 fn ending(run: &Run) -> String {
     /// The most causes to print.
     const MOST: usize = 3;

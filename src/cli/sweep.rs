@@ -133,7 +133,7 @@ fn list(gathered: &Gathered, options: &SweepOptions) -> Result<(), Failure> {
     say(gathered.list(shard))
 }
 
-/// What the options ask to draw.
+/// The picture that the options request.
 fn drawing(options: &SweepOptions) -> Drawing {
     Drawing {
         measurements: options.draw.clone(),
@@ -144,7 +144,7 @@ fn drawing(options: &SweepOptions) -> Drawing {
 /// Merges the finished cells.
 fn merge(study: &Study, store: &Store, options: &SweepOptions) -> Result<(), Failure> {
     let gathered = Gathered::of(study, store);
-    // What was computed is written even if it cannot be drawn as asked for.
+    // The results are written even if the requested picture cannot be drawn.
     let sheet = gathered.sheet(&drawing(options));
     let drawn = sheet.as_ref().ok().and_then(Option::as_ref);
     for path in gathered.write(store, drawn)? {

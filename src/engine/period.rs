@@ -1,4 +1,4 @@
-//! Periodic scenes: the plane repeats itself along one axis, and agents that leave a period at one end come in at the
+//! Periodic scenes: the plane repeats itself along one axis, and agents that leave a period at one end reenter at the
 //! other.
 
 use serde::{Deserialize, Serialize};

@@ -26,7 +26,7 @@ pub struct Profile {
     pub name: String,
     /// Step 3.
     pub navigation: Navigation,
-    /// Step 3: what slows its walk because of the crowd; `None` in the paper's profiles.
+    /// Step 3: the law by which the crowd slows its walk; `None` in the paper's profiles.
     pub walking: Option<WalkingLaw>,
     /// Step 3B, pressure; `false` in a profile without SPH, and if k = 0.
     pub pressure: bool,

@@ -1,4 +1,4 @@
-//! A scene: everything that is known before the first frame.
+//! A scene: the complete input of a simulation.
 
 mod region;
 
@@ -67,7 +67,7 @@ pub struct Group {
     pub journey: Option<u16>,
     /// The direction in which its agents walk, of length 1, instead of to their goals.
     pub direction: Option<Vector>,
-    /// What is drawn for each of its agents.
+    /// The properties that are drawn for each of its agents.
     pub traits: Traits,
 }
 
@@ -130,7 +130,7 @@ pub struct Push {
     pub change: Override,
 }
 
-/// The lowest s_max of agents with a preferred speed of their own, m/s: also agents that walk slowly or stand can be
+/// The lowest s_max of agents with a preferred speed of their own, m/s: agents that walk slowly or stand can also be
 /// pushed.
 pub const SLOWEST_MAX_SPEED: f64 = 0.5;
 

@@ -32,9 +32,9 @@ pub const TERMS: [(&str, Rgb); 10] = [
     ("sea green", [47, 123, 92]),
 ];
 
-/// The colors of a map: more than the eye can tell apart on a smooth field.
+/// The number of colors of a map: more than the eye can distinguish on a smooth field.
 const STEPS: usize = FEW * EACH - EACH + 1;
-/// The colors of a map in recordings: few enough that equal ones repeat in the file.
+/// The number of colors of a map in recordings: few, so that equal colors repeat in the file.
 const FEW: usize = 64;
 /// The steps of a map from one of these few to the next.
 const EACH: usize = 4;

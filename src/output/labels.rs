@@ -10,8 +10,7 @@ use crate::scenario::floor_plan::Label;
 
 /// Labels keep this distance from their points, points.
 pub const GAP: f64 = 4.0;
-/// Where no place beside its point is free, a label is at most this many times its height away, with a line to its
-/// point.
+/// If no place beside its point is free, a label is at most this many times its height away, with a line to its point.
 const FARTHEST: u32 = 7;
 /// More similar things than this have labels only where these cover nothing, at most this many times their height away.
 const FEW: usize = 8;
@@ -20,7 +19,7 @@ const NEAR: u32 = 2;
 const NARROW: f64 = 50.0;
 /// An area is tall if it is that many times as high as wide.
 const TALL: f64 = 1.5;
-/// How far behind an exit people need room: it may lie that far from walls, meters.
+/// The room that people need behind an exit: the exit may lie this far from walls, meters.
 const BEHIND: f64 = 3.5;
 
 /// All eight sides of a point and its center, the best first.
@@ -39,7 +38,7 @@ pub const AROUND: [[i8; 2]; 9] = [
 /// A point, and the side of it on which a label may be.
 pub type Spot = (Vector, [i8; 2]);
 
-/// Where labels are shown.
+/// The area in which labels are shown.
 #[derive(Debug, Clone, Copy)]
 pub struct Screen {
     /// The part of the plane in which they must be, meters.
@@ -68,7 +67,7 @@ pub struct Placed {
     pub color: Rgb,
     /// The corners of the box around it, meters.
     pub around: [Vector; 2],
-    /// Where it is: −1, 0 or 1 for left of the point, centered, right of it; and for below, centered, above.
+    /// Its side: −1, 0 or 1 for left of the point, centered, right of it; and for below, centered, above.
     pub side: [i8; 2],
     /// Its point that is nearest to the point that it belongs to.
     pub at: Vector,
@@ -105,7 +104,7 @@ impl Labels {
     }
 
     /// Adds a label at the first of `spots` where it fits inside and covers no other label, or farther away with a line
-    /// to its point; if possible, at one where it covers none of the avoided points. Where nothing is free there is no
+    /// to its point; if possible, at one where it covers none of the avoided points. If nothing is free there is no
     /// label. Returns whether there is one.
     pub fn add(&mut self, text: &str, color: Rgb, spots: &[Spot]) -> bool {
         self.add_of(1, text, (color, spots))

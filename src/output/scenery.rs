@@ -1,4 +1,4 @@
-//! What pictures and recordings show of places, zones and goals: colors, outlines and names.
+//! Places, zones and goals in pictures and recordings: colors, outlines and names.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -18,7 +18,7 @@ use crate::scenario::{
     Draft, Need, SHIPPED, Scenario, ScenarioError, Setting, built_in, read_text, shipped_text,
 };
 
-/// Where a scenario comes from.
+/// The source of a scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Source {
     /// A scenario that ships with the program.
@@ -36,7 +36,7 @@ impl Source {
         Some(Self::Shipped(found.name))
     }
 
-    /// The scenario of this name that ships with the program, else a file.
+    /// The scenario of this name that ships with the program, otherwise a file.
     pub fn named(name: &str) -> Self {
         Self::shipped(name).unwrap_or_else(|| Self::File(PathBuf::from(name)))
     }

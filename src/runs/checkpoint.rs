@@ -37,7 +37,7 @@ pub struct Checkpoint {
     /// The scenario as JSON, with all settings applied.
     document: String,
     state: State,
-    /// What the measurements have seen.
+    /// The state of the measurements.
     seen: Vec<String>,
 }
 
@@ -57,7 +57,7 @@ pub enum CheckpointError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The defect.
         reason: String,
     },
 }

@@ -17,11 +17,11 @@ pub struct Run {
     pub simulation: Simulation,
     /// Its measurements.
     pub metrics: Metrics,
-    /// Why it ended; `None` until then.
+    /// The reason why it ended; `None` until then.
     pub end: Option<End>,
 }
 
-/// Why a run ends.
+/// The reason why a run ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum End {
@@ -110,7 +110,7 @@ impl Run {
         self.end = self.stops().or(is_last.then_some(End::Duration));
     }
 
-    /// Why it ended, in words.
+    /// The reason why it ended, in words.
     pub fn reason(&self) -> String {
         match self.end {
             Some(End::Empty) => "no agents are left".to_owned(),

@@ -39,7 +39,7 @@ pub type Progress<'a> = &'a mut dyn FnMut(f64);
 pub struct Job<'a> {
     /// Its name in messages.
     pub name: String,
-    /// What its result depends on.
+    /// The identity of everything that its result depends on.
     pub key: Identity,
     /// Estimated time on one core, seconds; the longest jobs begin first.
     pub expected_secs: f64,
@@ -190,7 +190,7 @@ fn missing<'a>(
     todo
 }
 
-/// What all jobs share while they run.
+/// The state that all jobs share while they run.
 struct Context<'a> {
     store: &'a Store,
     memory: Memory,

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// A chain of more symbolic links than this counts as a cycle.
 const MOST_LINKS: usize = 40;
 
-/// How an output is written, which determines how it is checked.
+/// The way an output is written, which determines its check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Manner {
     /// The file is opened and truncated.

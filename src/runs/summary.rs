@@ -61,7 +61,7 @@ pub struct Summary {
     pub places: Vec<PlaceResult>,
     /// Moves that were stopped at a wall that they would have crossed.
     pub contained_moves: u64,
-    /// How many times a speed was clamped to `max_speed`.
+    /// The number of times a speed was clamped to `max_speed`.
     pub clamped_speeds: u64,
     /// The agents that waited for room, entrance by entrance.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -138,7 +138,7 @@ impl Summary {
 pub struct JourneyResult {
     /// The name of the journey.
     pub name: String,
-    /// How its agents have left.
+    /// The departures of its agents.
     #[serde(flatten)]
     pub left: Left,
 }
@@ -164,11 +164,11 @@ pub struct PlaceResult {
     pub kind: String,
     /// The number of agents that have passed it.
     pub passed: u32,
-    /// Of an exit: the share of all agents that have left at exits.
+    /// For an exit: its share of all agents that have left at exits.
     pub share: Option<f64>,
     /// The time of the first and the last agent that left here, seconds; `None` if it is no exit.
     pub from_to_secs: Option<[f64; 2]>,
-    /// Of waiting areas and queues: the mean time that agents waited, seconds.
+    /// For waiting areas and queues: the mean time that agents waited, seconds.
     pub waited_secs: Option<f64>,
 }
 

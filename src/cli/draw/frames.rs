@@ -1,4 +1,4 @@
-//! Where pictures of a crowd come from: a simulation, a trajectory file, or a recording.
+//! The source of pictures of a crowd: a simulation, a trajectory file, or a recording.
 
 use super::super::Failure;
 use crate::engine::boundary::WallMethod;
@@ -46,7 +46,7 @@ pub struct Run {
     pub speed_range: [f64; 2],
     /// The support radius of the kernel, meters.
     pub support_radius: f64,
-    /// What its measurements observe.
+    /// The places that its measurements observe.
     pub observed: Vec<(String, Observed)>,
     /// Texts.
     pub labels: Vec<Label>,

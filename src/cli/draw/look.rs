@@ -1,4 +1,4 @@
-//! What a picture shows of a crowd: colors by a quantity, a field, paths of the last seconds.
+//! The content of a picture of a crowd: colors by a quantity, a field, paths of the last seconds.
 
 use super::super::Failure;
 use super::frames::{Run, kernel, usual};
@@ -58,7 +58,7 @@ impl Quantity {
     }
 }
 
-/// How crowds are colored in all pictures of a run.
+/// The coloring of crowds in all pictures of a run.
 pub struct Look {
     /// The column; `None`: by what agents do.
     column: Option<(String, ColorBar)>,

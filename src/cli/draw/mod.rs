@@ -36,7 +36,7 @@ const MOST_FRAMES: f64 = 100_000.0;
 /// The fastest GIFs: its times are hundredths of a second, and programs show shorter ones than two more slowly.
 const FASTEST_GIF: f64 = 50.0;
 
-/// What kind of run a name stands for.
+/// The kind of run that a name stands for.
 enum Kind {
     Scenario,
     Trajectory,

@@ -16,17 +16,17 @@ pub struct Visit {
     pub stages: usize,
     /// The name of the place.
     pub place: String,
-    /// What the agent does.
+    /// The agent's activity.
     #[serde(flatten)]
     pub doing: Doing,
     /// The time that it has waited in waiting areas and queues before, seconds.
     pub waited_secs: f64,
-    /// Why it walks to this place; `None` unless it walks.
+    /// The reason why it walks to this place; `None` unless it walks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<Why>,
 }
 
-/// What an agent on a journey does.
+/// The activity of an agent on a journey.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "status", rename_all = "snake_case")]
 pub enum Doing {
@@ -57,7 +57,7 @@ pub enum Doing {
     Finished,
 }
 
-/// Why an agent walks to its place: what it would decide if it looked now.
+/// The reason why an agent walks to its place: the decision that it would make now.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Why {
     /// The place that it would choose now.

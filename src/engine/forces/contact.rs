@@ -1,7 +1,8 @@
 //! Contact between discs, and of discs with walls (§5.4, Eqs. 22 and 23).
 //!
-//! In the paper all of the radius D_i counts. People turn their shoulders where it is narrow: a part of it may count
-//! in contacts with agents, and another with walls. Masses and personal space (RVO, entrances) keep D_i.
+//! In the paper the whole radius D_i counts. People turn their shoulders in narrow places, so only a fraction of D_i
+//! may count in contacts with agents, and another fraction in contacts with walls. Masses and personal space (RVO,
+//! entrances) use the whole D_i.
 
 use std::ops::Range;
 
@@ -21,9 +22,9 @@ pub struct Contact {
     pub agent_stiffness: Option<f64>,
     /// K^obs, 1/s².
     pub wall_stiffness: Option<f64>,
-    /// The part of D_i and D_j that counts in Eq. 22; the same in all profiles of a blend.
+    /// The fraction of D_i and D_j that counts in Eq. 22; the same in all profiles of a blend.
     pub contact_scale: f64,
-    /// The part of D_i that counts in Eq. 23.
+    /// The fraction of D_i that counts in Eq. 23.
     pub wall_contact_scale: f64,
 }
 

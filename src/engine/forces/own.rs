@@ -8,8 +8,8 @@ use crate::engine::math::Vector;
 /// A force on single agents, in addition to those of their profiles: a slope, a moving walkway, a wind. Add it to
 /// [`Scene::own_forces`](crate::engine::scene::Scene::own_forces); `examples/own_force.rs` shows one.
 ///
-/// The force acts on all agents in every frame, whatever their profile or push. It is not part of a checkpoint: add
-/// it again to the scene that a run resumes with.
+/// The force acts on all agents in every frame, whatever their profile or push. Checkpoints do not contain it: add it
+/// again to the scene with which a run resumes.
 pub trait Force: Debug + Send + Sync {
     /// The name in breakdowns.
     fn name(&self) -> &str;

@@ -52,7 +52,7 @@ impl Default for SocialForce {
     }
 }
 
-/// Agents around one cluster after the other.
+/// Buffers for the agents around a cluster, reused from cluster to cluster.
 #[derive(Default)]
 struct Buffers<R: Real> {
     runs: Vec<Run>,

@@ -29,7 +29,7 @@ pub struct Blend {
 /// One profile of a blend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlendStep {
-    /// ρ^j, P/m²: where this profile acts alone.
+    /// ρ^j, P/m²: the density at which this profile acts alone.
     pub at_density: f64,
     /// Π^j.
     pub profile: Profile,
@@ -266,7 +266,7 @@ impl Blend {
         while start < agents.end {
             let mix = self.mix(density[start]);
             let mut end = start + 1;
-            // Neighbors in memory on which the same profile acts alone, together.
+            // Groups neighbors in memory on which the same profile acts alone.
             while end < agents.end && mix.kappa == 1.0 && self.mix(density[end]) == mix {
                 end += 1;
             }

@@ -21,9 +21,9 @@ const WIDTH: f64 = 0.02;
 const NUMBERS: f64 = 0.045;
 /// The width of bar and numbers together, as a part of that side.
 const ROOM: f64 = 0.1;
-/// How far above a number its point is, as the viewer writes it below; as a part of that side.
+/// The height of a number's point above the number, which the viewer writes below it; as a fraction of that side.
 const RAISED: f64 = 0.012;
-/// The part of the region's height that the bar has.
+/// The height of the bar as a fraction of the region's height.
 const HEIGHT: f64 = 0.8;
 /// The length of a tick, and the height of the unit above the bar, as parts of that side.
 const TICK: f64 = 0.006;

@@ -29,9 +29,9 @@ pub const STAGE_COLORS: &str = "agent:stage_colors";
 /// The color maps of a recording.
 #[derive(Clone)]
 pub struct Maps {
-    /// Of densities in P/m².
+    /// For densities in P/m².
     pub density: ColorMap,
-    /// Of speeds in m/s.
+    /// For speeds in m/s.
     pub speed: ColorMap,
 }
 

@@ -21,7 +21,7 @@ pub struct Line {
     pub level: &'static str,
 }
 
-/// What has been logged so far.
+/// The state of the log.
 pub struct Events {
     /// A line on arrivals is written after this many.
     step: usize,
@@ -32,7 +32,7 @@ pub struct Events {
 }
 
 impl Events {
-    /// Of a run that at most `entering` agents enter.
+    /// The log of a run that at most `entering` agents enter.
     pub fn new(entering: u64) -> Self {
         Self {
             step: step(entering),
@@ -41,8 +41,8 @@ impl Events {
         }
     }
 
-    /// The lines on what has happened since the last call. What happened before the first call is left out: it would
-    /// only stretch the time line.
+    /// The lines on what has happened since the last call. Events before the first call are left out: they would only
+    /// stretch the time line.
     pub fn new_lines(&mut self, simulation: &Simulation) -> Vec<Line> {
         let (clock, events) = (simulation.frame().clock, simulation.events());
         let arrivals = &simulation.outcome().arrivals;

@@ -18,8 +18,8 @@ pub enum Follow {
 }
 
 /// The agent that is followed if debug agents are chosen by region, or all are: the densest one at the moment that the
-/// recording opens at. It is not known yet, so it is the densest one whenever the crowd is clearly denser than ever
-/// before, or when the previous one has left.
+/// recording opens at. That moment is not known in advance. So the densest agent is followed whenever the crowd becomes
+/// clearly denser than ever before, or when the previous agent has left.
 #[derive(Default)]
 pub struct Densest {
     id: Option<u32>,
@@ -92,8 +92,8 @@ pub struct Moment {
     asked: Option<f64>,
     /// Whether it was reached.
     is_settled: bool,
-    /// The frame and its time. Until the time that was asked for: the moment of the highest density so far, in case the
-    /// run ends before.
+    /// The frame and its time. Before the requested time: the moment of the highest density so far, in case the run
+    /// ends earlier.
     pub at: Option<(i64, f64)>,
     /// The highest density so far, P/m².
     density: f32,

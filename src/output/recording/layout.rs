@@ -50,10 +50,10 @@ pub enum Kind {
     Measurement,
 }
 
-/// What a recording has to show.
+/// The content of a recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Content {
-    /// What it is of.
+    /// Its subject.
     pub kind: Kind,
     /// Whether agents visit places.
     pub has_journeys: bool,
@@ -119,7 +119,7 @@ pub fn layout(
     (blueprint, properties)
 }
 
-/// Where the two views of the whole crowd are.
+/// The positions of the two views of the whole crowd.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Arrangement {
     /// Side by side above the rest.

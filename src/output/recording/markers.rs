@@ -1,4 +1,4 @@
-//! Where agents enter, push and are measured: outlines with names.
+//! The places where agents enter, push and are measured: outlines with names.
 
 use rerun::{Color, LineStrips2D, Radius, RecordingStream};
 
@@ -23,7 +23,7 @@ const DASH: f64 = 0.008;
 
 /// Lines through points.
 type Strips = Vec<Vec<Vector>>;
-/// How an outline is drawn.
+/// The style of an outline.
 type Draw<'a> = &'a dyn Fn(&[Vector]) -> Strips;
 /// Outlines with names, which may be empty.
 type Named = Vec<(String, Vec<Vector>)>;

@@ -90,8 +90,8 @@ const SIM_TIME: &str = "sim_time";
 pub struct RecordingOptions {
     /// Its identity: the viewer merges recordings with the same one.
     pub id: String,
-    /// What it is of, for example the scenario's name: the viewer keeps one layout for all recordings with the same
-    /// name. Not empty.
+    /// Its subject, for example the scenario's name: the viewer keeps one layout for all recordings with the same name.
+    /// Not empty.
     pub application: String,
     /// Its title in the viewer, for example the scenario's name and the settings that differ from its file.
     pub title: String,
@@ -287,7 +287,7 @@ pub fn record_moment(
     recorder.finish()
 }
 
-/// Logs what is known of a scene before the first frame.
+/// Logs the static data of a scene before the first frame.
 fn log_scene(
     stream: &RecordingStream,
     simulation: &Simulation,

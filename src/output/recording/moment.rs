@@ -62,7 +62,7 @@ fn markdown(of: &Breakdown) -> String {
     text + &rest(of.neighbors.len())
 }
 
-/// What is said of the rows beyond the most.
+/// A note on the rows beyond the most.
 fn rest(rows: usize) -> String {
     match rows.saturating_sub(MOST_ROWS) {
         0 => String::new(),

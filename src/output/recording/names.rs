@@ -19,7 +19,7 @@ const RIM: f64 = 8.0;
 const HEIGHT: f64 = 23.0;
 const BELOW: f64 = 12.0;
 
-/// How far the line to a label reaches from its rim to its middle.
+/// The length of the line to a label, as a fraction of the distance from its rim to its middle.
 const INTO: f64 = 0.6;
 
 /// The width of a label in the viewer, pixels.
@@ -71,7 +71,7 @@ impl Names {
         }
     }
 
-    /// Where they are shown.
+    /// The area where they are shown.
     pub fn screen(&self) -> &Screen {
         &self.screen
     }

@@ -18,12 +18,12 @@ use super::error::{Cause, RecordingError};
 use super::file::{Failure, FileSink};
 use super::viewer::{Address, Viewer};
 
-/// The most that a killed run loses, besides the chunk being written.
+/// The longest time whose data a killed run loses, besides the chunk being written.
 const FILE_TICK: Duration = Duration::from_secs(1);
 /// Lag of a live viewer.
 const VIEWER_TICK: Duration = Duration::from_millis(100);
 
-/// Where a recording goes: to a file, to a viewer, or to both.
+/// The destination of a recording: a file, a viewer, or both.
 #[derive(Debug, Clone, Default)]
 pub struct Destination {
     /// A file; an existing one is replaced.
@@ -144,8 +144,8 @@ impl Output {
     }
 }
 
-/// Checks that the environment variable `RERUN` does not switch recordings off. We could enable our stream in spite
-/// of it, but not the stream that rerun creates for a layout.
+/// Checks that the environment variable `RERUN` does not switch recordings off. We could override it for our stream,
+/// but not for the stream that rerun creates for a layout.
 ///
 /// # Errors
 /// Recordings are switched off.

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 /// Maximum number of queued items; the sender waits when the queue is full.
 const CAPACITY: usize = 100;
 
-/// How long an interrupted sender waits. A working receiver often pauses for less.
+/// The time that an interrupted sender waits. A working receiver often pauses for less.
 const HURRY: Duration = Duration::from_millis(200);
 /// Interval at which a waiting sender checks whether it was interrupted.
 const LOOK: Duration = Duration::from_millis(20);

@@ -1,4 +1,4 @@
-//! A recording that has begun: what recordings of runs and of measurements share.
+//! A recording that has begun: the common part of recordings of runs and of measurements.
 
 use rerun::RecordingStream;
 

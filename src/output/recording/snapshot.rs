@@ -37,7 +37,7 @@ pub struct Snapshot {
     pub places: Vec<(EntityPath, f64)>,
     /// Counted arrivals so far; `None` for measured data.
     pub evacuated: Option<usize>,
-    /// How many agents wait at each entrance.
+    /// The number of agents that wait at each entrance.
     pub waiting: Vec<u32>,
     /// The log of events since the last snapshot.
     pub events: Vec<Line>,

@@ -16,7 +16,7 @@ use super::{events, file, set_time, stats, wall_forces};
 /// Maximum number of queued snapshots; the simulation waits when the queue is full.
 const QUEUE: usize = 4;
 
-/// What shows the debug agents.
+/// The layers that show the debug agents.
 #[derive(Default)]
 pub struct Debug {
     /// The layers with all of them.
@@ -25,7 +25,7 @@ pub struct Debug {
     pub focuses: Vec<Focus>,
 }
 
-/// What the thread writes.
+/// The items that the thread writes.
 enum Item {
     Frame(Box<Snapshot>),
     Lines(Vec<Line>),

@@ -15,7 +15,7 @@ pub enum Cell {
     Missing,
 }
 
-/// How text and Markdown show numbers.
+/// The format of numbers in text and Markdown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Format {
     AllDigits,

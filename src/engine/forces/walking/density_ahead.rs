@@ -4,12 +4,12 @@
 //! γ = 1.913 and ρ_jam = 5.4 P/m². The density is that of the half disc ahead. An agent that leaves a crowd has free
 //! space before it and walks freely, at the same ρ_i (Eq. 9) at which an agent in the crowd hardly moves.
 //!
-//! ρ^ahead = Σ_j m_j K(a, r), K = 315/(32 h³) max(0, a) (1 − r²/h²)³, with the distance a along the line ahead and
-//! r = |r_ij| < h. K integrates to 1 over the half disc. It is zero at the agent's own place, so a sum without the
-//! agent itself is not too low, as a half of Eq. 9 would be by the agent's own 4/(π h²) = 1.27 P/m². It is zero beside
-//! the agent, so the speed does not jump when the agent turns. Walls add nothing: half of the view of an agent at a
-//! wall is empty at most, and its density that much lower. Agents that want to walk against agent i count
-//! max(0, 1 + 4 ê_i·ê_j), and not at all if they come straight towards it (see [`headway`](super::headway)).
+//! ρ^ahead = Σ_j m_j K(a, r), K = 315/(32 h³) max(0, a) (1 − r²/h²)³, with the distance a along the line ahead and r =
+//! |r_ij| < h. K integrates to 1 over the half disc. It is zero at the agent's own place, so a sum without the agent
+//! itself is not too low, as a half of Eq. 9 would be by the agent's own 4/(π h²) = 1.27 P/m². It is zero beside the
+//! agent, so the speed does not jump when the agent turns. Walls add nothing: at most half of the view of an agent at a
+//! wall is empty, and its density is lower by that fraction. Agents that want to walk against agent i count max(0, 1 +
+//! 4 ê_i·ê_j), and not at all if they come straight towards it (see [`headway`](super::headway)).
 
 use std::f64::consts::LN_2;
 use std::ops::Range;

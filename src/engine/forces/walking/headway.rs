@@ -1,15 +1,16 @@
 //! The headway law: agents keep a time gap to the nearest agent in their lane.
 //!
 //! A. Tordeux, M. Chraibi, A. Seyfried, Collision-free speed model for pedestrian dynamics, Traffic and Granular Flow
-//! '15 (2016): s = min(s₀, max(0, (d − ℓ)/T)), d the distance to the nearest agent in front within a lane. There a
-//! lane has sharp edges, and the speed jumps when an agent crosses one. Here the edges fade.
+//! '15 (2016): s = min(s₀, max(0, (d − ℓ)/T)), d the distance to the nearest agent in front within a lane. In their law
+//! a lane has sharp edges, and the speed jumps when an agent crosses an edge. In ours the edges fade.
 //!
 //! Q. Xu, M. Chraibi, A. Seyfried, Anticipation in a velocity-based model for pedestrian dynamics, Transportation
-//! Research C 133 (2021): people look at the distance that they expect after some time, d + t (v_j − v_i)·ê_i. Here
-//! they do so behind those who walk away from them, and keep less distance than in a crowd that moves as one.
+//! Research C 133 (2021): people look at the distance that they expect after some time, d + t (v_j − v_i)·ê_i. In our
+//! law they do so behind agents that walk away from them, so that they keep less distance than in a crowd that moves at
+//! one velocity.
 //!
-//! Agents that want to walk against agent i do not count: two agents that wait for each other would stand for ever,
-//! where people step aside.
+//! Agents that want to walk against agent i do not count: two agents that wait for each other would stand forever,
+//! whereas people step aside.
 
 use std::ops::Range;
 

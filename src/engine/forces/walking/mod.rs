@@ -1,8 +1,9 @@
-//! Walking laws: what makes an agent walk slower because of the crowd.
+//! Walking laws: agents walk slower because of the crowd.
 //!
-//! Nothing in the paper's forces slows a crowd that moves as one. A walking law does, and is not part of the paper:
-//! none of its profiles has one. [`Headway`] and [`DensityAhead`] lower the preferred speed s_i = |v_i^pref| by the
-//! agents ahead, that is, in the direction ê_i of v_i^pref. Next to Eq. 17 this is an acceleration of its own,
+//! None of the paper's forces slows a crowd whose agents all move at the same velocity. Walking laws do. They are not
+//! part of the paper, and none of its profiles has one. [`Headway`] and [`DensityAhead`] lower the preferred speed s_i
+//! = |v_i^pref| by the agents ahead, that is, in the direction ê_i of v_i^pref. Next to Eq. 17 this is an acceleration
+//! of its own,
 //!
 //! a_i = K^goal/(τ m_i) (s_i^law − s_i) ê_i,
 //!
@@ -101,7 +102,7 @@ impl WalkingLaw {
         }
     }
 
-    /// Decides how fast the agents of block `b` may walk that are due, m/s; infinite without agents in view.
+    /// Sets the speeds at which the due agents of block `b` may walk, m/s; infinite without agents in view.
     pub fn decide(
         &self,
         frame: &Frame,
