@@ -67,8 +67,8 @@ fn with_person(solids: Vec<Polygon>, place: Option<Vector>) -> Simulation {
     Simulation::new(scene).unwrap()
 }
 
-/// Does the observer see an agent cross a wall between `from` (if it is given) and `to`? The second
-/// simulation has no walls, so that the person can be anywhere.
+/// Whether the observer sees an agent cross a wall between `from` (if it is given) and `to`. The second simulation has
+/// no walls, so that the person can be anywhere.
 fn is_seen(corners: &[[f64; 2]], from: Option<Vector>, to: Vector) -> bool {
     let mut watched = Watched::default();
     watched.observe(&with_person(vec![polygon(corners)], from));

@@ -60,7 +60,7 @@ fn bytes(simulation: &Simulation) -> Vec<u8> {
 struct Whole {
     name: String,
     scene: Scene,
-    /// Are all densities requested, as recordings and trajectories do?
+    /// Whether all densities are requested, as recordings and trajectories do.
     is_observed: bool,
     /// The states of the evaluated frames, and their digests.
     frames: BTreeMap<u64, (Vec<u8>, String)>,

@@ -190,7 +190,7 @@ struct Positions {
     reach: f64,
     /// Agents in reach of each agent, without the margin.
     pairs: Vec<u32>,
-    /// Does RVO act on the agent? Empty without RVO.
+    /// Whether RVO acts on each agent. Empty without RVO.
     avoids: Vec<bool>,
     /// The share of RVO in the time of a frame.
     rvo: f64,

@@ -22,7 +22,7 @@ type Complex = [f64; 2];
 pub struct Spectrum {
     /// The distance between two frequencies, rad/s; the first frequency is 0.
     pub step: f64,
-    /// 2π over the duration of the series, rad/s: peaks closer than this cannot be told apart.
+    /// 2π over the duration of the series, rad/s: peaks closer than this cannot be distinguished.
     pub resolution: f64,
     /// Power density at each frequency of counterclockwise motion, m²/s² per rad/s. Both densities together have the
     /// integral ⟨|v − ⟨v⟩|²⟩, weighted by the window.

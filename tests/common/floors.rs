@@ -71,7 +71,7 @@ impl Plan {
             .walkable
     }
 
-    /// Does `p` lie on the floor, at least `gap` meters from all walls?
+    /// Whether `p` lies on the floor, at least `gap` meters from all walls.
     pub fn is_free(&self, p: Vector, gap: f64) -> bool {
         let (outline, bodies) = (&self.rings[0], &self.rings[1..]);
         let is_inside = contains(outline, p) && !bodies.iter().any(|body| contains(body, p));
@@ -231,7 +231,7 @@ fn scattered(
     plan
 }
 
-/// Does the first ring contain the second?
+/// Whether the first ring contains the second.
 fn holds(ring: &Ring, other: &Ring) -> bool {
     contains(ring, other[0].into())
 }

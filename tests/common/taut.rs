@@ -59,7 +59,7 @@ impl<'a> Web<'a> {
         near.filter(|&j| self.is_clear(p, self.points[j])).collect()
     }
 
-    /// Does the segment cross no wall?
+    /// Whether the segment crosses no wall.
     fn is_clear(&self, a: Vector, b: Vector) -> bool {
         let crosses = |&[c, d]: &[Vector; 2]| {
             side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0

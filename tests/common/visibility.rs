@@ -39,7 +39,7 @@ impl Sector {
         }
     }
 
-    /// Is there floor in this direction? `slack` is in radians.
+    /// Whether there is floor in this direction; `slack` is in radians.
     fn holds(&self, way: Vector, slack: f64) -> bool {
         self.angle_to(way, slack) <= self.angle + slack
     }
@@ -105,7 +105,7 @@ impl Sights {
         corners().flat_map(ends).filter(is_passage).collect()
     }
 
-    /// Is `p` floor, by the parity of the number of walls above it?
+    /// Whether `p` is floor, by the parity of the number of walls above it.
     fn is_floor(&self, p: Vector) -> bool {
         self.rings.iter().filter(|ring| contains(ring, p)).count() % 2 == 1
     }
@@ -139,7 +139,7 @@ impl Sights {
         sectors.filter(is_floor).collect()
     }
 
-    /// Does the segment stay on the floor, walls included, without passing between two walls that touch? Tests the
+    /// Whether the segment stays on the floor, walls included, without passing between two walls that touch. Tests the
     /// middles of the parts into which walls cut it.
     pub fn sees(&self, a: Vector, b: Vector) -> bool {
         let along = b - a;
@@ -179,12 +179,12 @@ impl Sights {
         middles.all(|p| !self.walls.iter().all(|wall| is_off(p, wall)) || self.is_floor(p))
     }
 
-    /// Does a shortest way go straight from `p` to a bend?
+    /// Whether a shortest way goes straight from `p` to a bend.
     pub fn sees_bend(&self, p: Vector, bend: &Sector) -> bool {
         bend.holds(p - bend.place, 1e-6) && self.sees(bend.place, p)
     }
 
-    /// Is there a corner so near to the segment that rounding decides whether it hides something?
+    /// Whether a corner is so near to the segment that rounding decides whether it hides something.
     pub fn is_close_call(&self, a: Vector, b: Vector) -> bool {
         let near = |&(p, _): &(Vector, Vec<Sector>)| {
             let is_end = (p - a).norm() < TINY || (p - b).norm() < TINY;

@@ -29,7 +29,7 @@ mod present {
         name: &'static str,
         step: Step,
         parallel: bool,
-        /// Is it measured at all sizes? The fastest on one thread is.
+        /// Whether it is measured at all sizes. The fastest on one thread is.
         all_sizes: bool,
     }
 

@@ -69,7 +69,7 @@ pub struct Setting {
     pub description: Description,
     /// Number of steps after which the work repeats.
     pub stride: u64,
-    /// Is it measured at all sizes? Otherwise only with the main crowd.
+    /// Whether it is measured at all sizes; otherwise only with the main crowd.
     pub all_sizes: bool,
     pub start: Start,
 }

@@ -8,7 +8,7 @@ use crate::engine::math::{Vector, perpendicular};
 const ANGLE_ROUNDING: f64 = 1e-12;
 
 /// Smallest distance between an agent and a wall, meters; smaller distances are clamped to it. At 0 all
-/// directions meet the wall at one point, so its parts cannot be told apart; at −0 the directions are reversed.
+/// directions meet the wall at one point, so its parts cannot be distinguished; at −0 the directions are reversed.
 const LEAST_DISTANCE: f64 = 1e-9;
 
 /// The part of the disc of radius h around an agent that one wall, or a part of it, hides.

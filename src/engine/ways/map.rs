@@ -305,7 +305,7 @@ impl PathMap {
         let beyond = floor.mesh.middle(next);
         let to_opening = (opening - p).norm();
         let length = to_opening + (beyond - opening).norm() + rest;
-        // In the opening, go on to what lies behind it.
+        // In the opening, go on to the place behind it.
         let next = if to_opening > IN_OPENING {
             opening
         } else {

@@ -5,7 +5,7 @@ use crate::lab::suite::{Case, Check, NOTHING_SLOWS, Runs};
 use crate::lab::verify::rimea::RVO_SINGLE_FILE;
 use crate::lab::verify::speeds::{BANDS, single_file};
 
-/// The tolerance of calibrations at Jülich for speeds, as a part of the measured value.
+/// The tolerance of calibrations at Jülich for speeds, as a fraction of the measured value.
 const TOLERANCE: f64 = 0.10;
 
 /// The runs, with their densities, P/m², and the mean speeds that were measured there, m/s.

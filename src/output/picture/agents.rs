@@ -16,7 +16,7 @@ const TRAIL_WIDTH: f64 = 0.6;
 const THIN: f64 = 0.3;
 /// With more people paths are thin.
 const MANY: usize = 1000;
-/// The radius of agents in pictures of a field, in parts of their own.
+/// The radius of agents in pictures of a field, as a fraction of their own.
 const SMALL: f64 = 0.4;
 /// Colors of more than this lightness, from 0 to 255, have black dots on them.
 const LIGHT: f64 = 120.0;

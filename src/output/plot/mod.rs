@@ -30,7 +30,7 @@ use crate::output::colors::{ColorMap, Rgb};
 pub const BLACK: Rgb = [0, 0, 0];
 /// Gray, for obstacles and secondary lines.
 pub const GRAY: Rgb = [140, 140, 140];
-/// Line colors that color-blind readers can tell apart (Okabe and Ito 2008).
+/// Line colors that color-blind readers can distinguish (Okabe and Ito 2008).
 pub const LINES: [Rgb; 7] = [
     [0, 114, 178],
     [213, 94, 0],

@@ -19,7 +19,7 @@ pub const SPEED: &str = "world/legend/speed";
 const GAP: f64 = 0.02;
 const WIDTH: f64 = 0.02;
 const NUMBERS: f64 = 0.045;
-/// The width of bar and numbers together, as a part of that side.
+/// The width of bar and numbers together, as a fraction of that side.
 const ROOM: f64 = 0.1;
 /// The height of a number's point above the number, which the viewer writes below it; as a fraction of that side.
 const RAISED: f64 = 0.012;

@@ -18,7 +18,7 @@ const PUSH: Rgb = [230, 110, 90];
 const MEASURED: Rgb = [200, 196, 150];
 /// The color of texts.
 const TEXT: Rgb = [200, 200, 200];
-/// The length of a dash and of the gap after it, as a part of the longest side of the visible region.
+/// The length of a dash and of the gap after it, as a fraction of the longest side of the visible region.
 const DASH: f64 = 0.008;
 
 /// Lines through points.
