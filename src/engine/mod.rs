@@ -1,7 +1,7 @@
 //! The engine: geometry, kernels, the state of the crowd, forces, and the loop of §4.1. It does not depend on files,
 //! scenario names or output. A [`Simulation`](simulation::Simulation) is built from a [`Scene`](scene::Scene) and
-//! advances it frame by frame; everything that a frame computes can be read from its [`Frame`](frame::Frame).
-//! [`breakdown`] lists everything that acts on one agent, term by term.
+//! advances it frame by frame; all results of a frame can be read from its [`Frame`](frame::Frame). [`breakdown`] lists
+//! everything that acts on one agent, term by term.
 
 pub mod math;
 

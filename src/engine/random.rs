@@ -17,7 +17,7 @@ pub enum Purpose {
     Clearance = 3,
     /// Choices between places.
     Choice = 4,
-    /// How long agents wait or are served.
+    /// The times that agents wait or are served.
     Waiting = 5,
     /// Preferred speed of an agent.
     Speed = 10,

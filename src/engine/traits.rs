@@ -1,10 +1,10 @@
-//! Traits: what is drawn for each agent when it enters.
+//! Traits: the properties that are drawn for each agent when it enters.
 
 use crate::engine::agents::{NewAgent, radius_of};
 use crate::engine::distribution::Distribution;
 use crate::engine::random::Purpose;
 
-/// Distributions of the traits of a group; `None`: as all agents of the scene.
+/// Distributions of the traits of a group; `None`: the scene's value.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Traits {
     /// s_pref, m/s.

@@ -242,8 +242,8 @@ fn first_crossing(rings: &[&Ring]) -> Option<(Vector, Vector)> {
     })
 }
 
-/// How far the edge from `c` to `d` crosses the line through `a` and `b`: the distance of the nearer end from the
-/// line, meters; negative if both ends lie on the same side.
+/// The depth to which the edge from `c` to `d` crosses the line through `a` and `b`: the distance of the nearer end
+/// from the line, meters; negative if both ends lie on the same side.
 fn depth((a, b): (Vector, Vector), (c, d): (Vector, Vector)) -> f64 {
     let along = (b - a) / (b - a).norm();
     let [c, d] = [c, d].map(|end| along.perp(&(end - a)));

@@ -6,8 +6,8 @@ use parry2d::shape::{Segment, SegmentPointLocation};
 use super::{from_parry, to_parry};
 use crate::engine::math::{Vector, perpendicular};
 
-/// How far beyond its ends a wall still stops a move, meters: more than the rounding of coordinates up to
-/// 10⁶ m, so that no agent slips between two walls at their corner.
+/// A wall stops moves up to this distance beyond its ends, meters: more than the rounding of coordinates up to 10⁶ m,
+/// so that no agent slips between two walls at their corner.
 const END_ROUNDING: f64 = 1e-9;
 
 /// More than the rounding of the distance from a line, meters, for coordinates up to 10⁶ m.

@@ -39,7 +39,7 @@ pub enum ListPolicy {
     Coarse,
 }
 
-/// How far neighbors are searched. Ranges that no profile needs are `None` and cost nothing.
+/// The ranges of the neighbor search. Ranges that no profile needs are `None` and cost nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ranges {
     /// Support radius h of SPH, meters.
@@ -98,9 +98,9 @@ impl Neighbors {
 
     /// Lists the near neighbors of all agents, as far as SPH and contact reach.
     ///
-    /// May be called some frames after the sort, as long as the lists would not be stale. The lists are built from
-    /// the positions at the sort, so that they do not depend on when they are first needed: asking for a density must
-    /// not change the order of any sum and so, by rounding, the motion.
+    /// May be called some frames after the sort, as long as the lists would not be stale. The lists are built from the
+    /// positions at the sort, so that they do not depend on when they are first needed: requesting a density must not
+    /// change the order of any sum, which would change the motion by rounding.
     pub fn list_agents(&mut self) {
         self.near.rebuild(&self.grid, &self.sorted_at, self.reach);
     }

@@ -21,7 +21,7 @@ const SMALL: f64 = 0.4;
 /// Colors of more than this lightness, from 0 to 255, have black dots on them.
 const LIGHT: f64 = 120.0;
 
-/// What the people of a picture do, as far as pictures show it, in their order.
+/// The activities of the people in a picture, in their order.
 fn doings(picture: &Picture) -> Vec<(&'static str, Rgb)> {
     match picture.simulation {
         Some(simulation) => {
@@ -32,7 +32,7 @@ fn doings(picture: &Picture) -> Vec<(&'static str, Rgb)> {
     }
 }
 
-/// What agent `i` does.
+/// The activity of agent `i`.
 fn doing(simulation: &Simulation, i: usize) -> (&'static str, Rgb) {
     let (agents, clock) = (simulation.frame().agents, simulation.frame().clock);
     if agents
@@ -116,7 +116,7 @@ pub fn trails(picture: &Picture) -> Vec<Mark> {
     lines.map(|line| Mark::Line(line, style.clone())).collect()
 }
 
-/// The time, and how many agents there are.
+/// The time, and the number of agents.
 pub fn summary(picture: &Picture) -> String {
     let count = picture.crowd.len();
     let ending = if count == 1 { "" } else { "s" };

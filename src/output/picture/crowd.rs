@@ -1,13 +1,13 @@
-//! The people in a picture, wherever they come from.
+//! The people in a picture, from any source.
 
 use std::collections::{BTreeMap, VecDeque};
 
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
 
-/// A faster move, m/s, is a jump: to the other end of a period, or to another person with the same id.
+/// Moves above this speed, m/s, are jumps: to the other end of a period, or to another person with the same id.
 const FASTEST: f64 = 12.0;
-/// Shorter times between two positions count as this long, seconds.
+/// The shortest time between two positions; shorter times are clamped to it, seconds.
 const SHORTEST: f64 = 0.1;
 
 /// The people at one moment, one entry per person.
@@ -57,7 +57,7 @@ impl Crowd {
 /// The paths of the last seconds.
 #[derive(Debug, Clone, Default)]
 pub struct Trails {
-    /// How long they are, seconds.
+    /// Their length, seconds.
     pub secs: f64,
     places: BTreeMap<i64, VecDeque<(f64, Vector)>>,
 }

@@ -9,9 +9,9 @@ use crate::output::plot::{BLACK, Label, Mark, label_width};
 const ROW: f64 = 22.0;
 /// The distance between rows, points.
 const APART: f64 = 1.15 * TEXT_HEIGHT;
-/// The scale bar is at most this part of the panel's width.
+/// The largest width of the scale bar, as a fraction of the panel's width.
 const SCALE_BAR: f64 = 0.2;
-/// Between the scale bar and its length, points.
+/// The space between the scale bar and its length, points.
 const BESIDE: f64 = 4.0;
 /// The width of an entry's sample, and the space after an entry, points.
 const SAMPLE: f64 = 14.0;

@@ -28,7 +28,7 @@ use crate::scenario::measurements::Observed;
 /// The largest panel, points: alone, and one of several.
 const ALONE: [f64; 2] = [640.0, 460.0];
 const OF_SEVERAL: [f64; 2] = [440.0, 340.0];
-/// Scenes that are more times as wide as high are wide.
+/// Scenes are wide if their width is more than this many times their height.
 const WIDE: f64 = 1.3;
 /// The smallest panel, points.
 const SMALLEST: [f64; 2] = [150.0, 90.0];
@@ -38,7 +38,7 @@ const LEAST: f64 = 40.0;
 const NAME: Rgb = [90, 92, 100];
 /// The width of the line from a label to its point, points.
 const LEADER: f64 = 0.4;
-/// Around what is shown, points.
+/// The margin around the scene, points.
 const MARGIN: f64 = 10.0;
 
 /// A picture of a crowd.
@@ -49,18 +49,18 @@ pub struct Picture<'a> {
     pub scene: &'a Scene,
     /// The people.
     pub crowd: &'a Crowd,
-    /// The simulation of these people, in the same order, if there is one: for what they do, for open and closed
+    /// The simulation of these people, in the same order, if there is one: for their activities, for open and closed
     /// places, for ways and forces on walls. Its frame must be evaluated.
     pub simulation: Option<&'a Simulation>,
     /// The part of the plane that it shows at least.
     pub view: Region,
-    /// The colors of people; `None`: by what they do.
+    /// The colors of people; `None`: by their activities.
     pub coloring: Option<Coloring>,
     /// A field below the people; their discs are then small.
     pub field: Option<Field>,
     /// The paths of the last seconds.
     pub trails: Option<&'a Trails>,
-    /// What measurements observe, with names.
+    /// The places that measurements observe, with names.
     pub observed: &'a [(String, Observed)],
     /// Texts.
     pub labels: &'a [Label],
@@ -100,7 +100,7 @@ struct Frame {
 }
 
 impl Frame {
-    /// Around a part of the plane, in a panel of at most `most` points, of which `foot` are below it.
+    /// A frame around a part of the plane, in a panel of at most `most` points, `foot` of which are below it.
     fn around([low, high]: [Vector; 2], most: [f64; 2], foot: f64) -> Self {
         let room = [most[0] - 2.0 * MARGIN, most[1] - MARGIN - foot];
         let room = room.map(|room| room.max(LEAST));
@@ -117,7 +117,7 @@ impl Frame {
         }
     }
 
-    /// Where labels are: above the scale bar and the legend.
+    /// The area for labels: above the scale bar and the legend.
     fn screen(&self) -> Screen {
         let foot = Vector::new(0.0, self.meters(self.foot - 4.0));
         Screen {
@@ -146,7 +146,7 @@ impl Frame {
 }
 
 impl<'a> Picture<'a> {
-    /// A simulation in its current frame, which must be evaluated, with agents in the colors of what they do.
+    /// A simulation in its current frame, which must be evaluated, with agents colored by their activities.
     pub fn of(simulation: &'a Simulation, crowd: &'a Crowd, title: String, view: Region) -> Self {
         Self {
             simulation: Some(simulation),
@@ -315,7 +315,7 @@ impl<'a> Picture<'a> {
         }
     }
 
-    /// Where agents, walls, places and zones are.
+    /// The points of agents, walls, places and zones.
     fn avoided(&self, frame: &Frame) -> Vec<Vector> {
         let apart = frame.meters(0.5 * TEXT_HEIGHT);
         let mut points = along_lines(self.scene, apart);

@@ -16,7 +16,7 @@ const CELL: f64 = 0.5;
 pub const BORDER: Rgb = [120, 60, 130];
 /// The number of agents whose ways are shown.
 const WAYS: usize = 12;
-/// Agents are chosen among this many.
+/// The number of agents from which these are chosen.
 const CANDIDATES: usize = 2000;
 /// The distance between arrows, points.
 const ARROWS: f64 = 34.0;
@@ -85,7 +85,8 @@ impl Paths {
         }
     }
 
-    /// Some agents far from each other: those that want to go there, else any; without agents, where agents enter.
+    /// Some agents far from each other: agents bound for the destination, otherwise any; without agents, the places
+    /// where agents enter.
     fn starts(&self, simulation: &Simulation) -> Vec<Vector> {
         let (agents, scene) = (simulation.frame().agents, simulation.scene());
         let wants = |i: &usize| match (self.place, self.to) {

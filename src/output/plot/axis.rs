@@ -9,7 +9,7 @@ use super::font::width_of;
 use super::layout::NUMBER;
 use crate::analysis::round;
 
-/// More numbers on an axis would not make it clearer.
+/// The most numbers on an axis: more would not make it clearer.
 const MOST_TICKS: i32 = 10;
 
 /// One axis of a panel.
@@ -95,7 +95,7 @@ impl Axis {
                 false => {
                     // plotters' own lose the last tick to rounding errors.
                     let ticks = round::ticks(self.range, most.max(2));
-                    // One number does not say how long the axis is.
+                    // One number does not show the scale of the axis.
                     match ticks.len() {
                         0 | 1 => round::ticks(self.range, 2 * most.max(2)),
                         _ => ticks,

@@ -1,4 +1,4 @@
-//! The font of all pictures: widths of texts, lines, and where a text begins.
+//! The font of all pictures: widths of texts, lines, and the starting points of texts.
 
 use std::sync::LazyLock;
 

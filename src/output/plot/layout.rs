@@ -14,20 +14,20 @@ pub const PAD: f64 = 2.5; // between a tick, its number and the label of the axi
 pub const BAR_WIDTH: f64 = 9.0; // of a color bar without its numbers
 pub const SAMPLE: f64 = 18.0; // of a line in a legend
 pub const NO_DATA: &str = "no data";
-/// Narrower panels are put below each other instead.
+/// The narrowest panels in a row; narrower ones are put below each other.
 const LEAST_PANEL: f64 = 90.0;
-/// The same for panels of a grid.
+/// The narrowest panels of a grid.
 pub const LEAST_CELL: f64 = 60.0;
-/// Sheets are made wider than this only for panels of theirs that do not fit otherwise.
+/// Sheets are wider than this only if their panels do not fit otherwise.
 const WIDEST: f64 = 1000.0;
-/// A legend beside panels takes this part of a sheet of given width at most; a wider one is below them.
+/// The largest width of a legend beside panels, as a fraction of a sheet of given width; a wider legend is below them.
 const BESIDE: f64 = 0.3;
-/// A legend hides this part of a panel at most.
+/// The largest fraction of a panel that a legend may hide.
 const HIDDEN: f64 = 0.2;
 /// Panels of a sheet of given width are at most this many times as high as the sheet is wide.
 const HIGHEST: f64 = 1.1;
 
-/// Where the parts of a sheet are.
+/// The positions of the parts of a sheet.
 #[derive(Debug, Clone)]
 pub struct Layout {
     /// Panels per row.
@@ -314,8 +314,8 @@ pub fn per_row(entry: f64, width: f64) -> usize {
     ((width / (entry + GAP)) as usize).max(1)
 }
 
-/// The number of panels per row, such that no more than the last place is empty: three panels are in a row or below
-/// each other.
+/// The number of panels per row, such that at most the last place is empty. Three panels are all in one row or all
+/// below each other.
 fn columns(sheet: &Sheet) -> usize {
     let count = sheet.panels.len().max(1);
     let wanted = sheet.columns.clamp(1, count);

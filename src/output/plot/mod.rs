@@ -46,7 +46,7 @@ pub const LINES: [Rgb; 7] = [
 pub struct Sheet {
     /// Title above the panels; may be empty.
     pub title: String,
-    /// Panels per row; another number if that leaves fewer places empty or if the sheet must be narrow.
+    /// Panels per row. The layout changes this number if it leaves fewer places empty or if the sheet must be narrow.
     pub columns: usize,
     /// Width and height of each panel's axes, points; with a given width of the sheet only their ratio counts.
     pub panel_size: [f64; 2],
@@ -187,7 +187,7 @@ pub struct Cells {
 pub struct Label {
     /// The point that it belongs to, axis units.
     pub at: [f64; 2],
-    /// Where it is: −1, 0 or 1 for left of the point, centered, right of it; and for below, centered, above.
+    /// Its side: −1, 0 or 1 for left of the point, centered, right of it; and for below, centered, above.
     pub side: [i8; 2],
     /// The text.
     pub text: String,

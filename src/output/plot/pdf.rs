@@ -30,7 +30,7 @@ const FIRST_IMAGE: i32 = 10;
 const FONT_NAME: Name = Name(b"F");
 /// The name of the font, which is a part of DejaVu Sans.
 const BASE_FONT: Name = Name(b"SANDBX+DejaVuSans");
-/// How well streams are compressed, from 0 to 10.
+/// The compression level of streams, from 0 to 10.
 const LEVEL: u8 = 8;
 /// The control points of a quarter of a circle.
 const ARC: f32 = 0.552_285;

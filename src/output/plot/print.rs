@@ -1,4 +1,4 @@
-//! How sheets are printed: width, resolution, titles.
+//! The print of sheets: width, resolution, titles.
 
 use std::sync::OnceLock;
 
@@ -9,7 +9,7 @@ pub const PAPER_DPI: f64 = 300.0;
 /// The resolution of pictures for screens, which are as wide as their panels need, pixels per inch.
 const SCREEN_DPI: f64 = 150.0;
 
-/// How a sheet is printed.
+/// The print of a sheet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Print {
     /// The width of the sheet, points; `None`: as wide as its panels need.
@@ -52,7 +52,7 @@ impl Print {
         ["svg", "png"].into_iter().chain(self.width.map(|_| "pdf"))
     }
 
-    /// How sheets without a print of their own are printed.
+    /// The print of sheets without a print of their own.
     pub fn of_program() -> Self {
         OF_PROGRAM.get().copied().unwrap_or_default()
     }
