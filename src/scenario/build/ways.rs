@@ -145,7 +145,7 @@ pub struct Prepared<'a> {
     pub goals: &'a [Vector],
     /// Narrower passages are closed, meters.
     pub width: f64,
-    /// Does the file give this width?
+    /// Whether the file gives this width.
     pub is_given: bool,
     /// The widest bodies.
     pub widest: Vec<Widest>,

@@ -122,8 +122,8 @@ enum Blockers {
     Against,
 }
 
-/// Do agents within `far` times the sum of the radii stand before agent `i`, which walks to `aim`, first in the direction
-/// `ahead`?
+/// Whether agents within `far` times the sum of the radii stand before agent `i`, which walks to `aim`, first in the
+/// direction `ahead`.
 fn blockers(
     simulation: &Simulation,
     i: usize,
@@ -189,7 +189,7 @@ fn named(simulation: &Simulation, aim: Aim) -> Option<String> {
     ))
 }
 
-/// Does a wall cross the straight line from `p` to `q`?
+/// Whether a wall crosses the straight line from `p` to `q`.
 fn is_between(walls: &Walls, p: Vector, q: Vector) -> bool {
     let near = walls.near_any(&[p, q], 0.0);
     walls.first_crossing(p, q, &near).is_some()
