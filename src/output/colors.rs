@@ -148,6 +148,11 @@ impl ColorMap {
     }
 }
 
+/// A lighter color: only this part of its distance from white.
+pub fn light(color: Rgb, part: f64) -> Rgb {
+    color.map(|value| (255.0 - part * (255.0 - f64::from(value))) as u8)
+}
+
 /// Viridis for densities.
 pub static DENSITY: LazyLock<ColorMap> = LazyLock::new(|| ColorMap::viridis([0.0, DENSITY_RANGE]));
 /// Yellow to dark red for forces on walls.

@@ -3,7 +3,7 @@
 use super::agents::{self, Entry};
 use super::{Frame, MARGIN, Picture, TEXT_HEIGHT, scene};
 use crate::analysis::round;
-use crate::output::plot::{BLACK, Label, Mark, label_width};
+use crate::output::plot::{Mark, label_width};
 
 /// The height of a single row, points.
 const ROW: f64 = 22.0;
@@ -61,14 +61,7 @@ pub fn marks(picture: &Picture, frame: &Frame, has_paths: bool) -> Vec<Mark> {
         let above = (count - 1 - row) as f64 * APART;
         frame.min.y + frame.meters(0.5 * ROW - 2.0 + above)
     };
-    let text = |at: [f64; 2], text: String| {
-        Mark::Label(Label {
-            at,
-            side: [1, 0],
-            text,
-            color: BLACK,
-        })
-    };
+    let text = |at: [f64; 2], text: String| Mark::label(at, [1, 0], text);
     let (length, first) = (length(frame), height(0));
     let left = frame.min.x + frame.meters(MARGIN);
     let mut marks = scene::scale_bar([left, first], length, frame);

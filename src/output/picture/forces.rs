@@ -12,18 +12,14 @@ pub fn marks(simulation: &Simulation, body_mass: f64) -> Vec<Mark> {
     let forces = outlines.per_meter(&outlines.forces(simulation, body_mass));
     let parts = outlines.cells().iter().zip(forces);
     let pressed = parts.filter(|&(_, force)| force > 0.0);
-    pressed
-        .map(|(cell, force)| {
-            let style = Style::full(WALL_FORCE.color(force as f32), 3.0, "");
-            Mark::Line(cell.ends.map(xy).to_vec(), style)
-        })
-        .collect()
+    let marks = pressed.map(|(cell, force)| {
+        let style = Style::full(WALL_FORCE.color(force as f32), 3.0, "");
+        Mark::line(cell.ends.map(xy), style)
+    });
+    marks.collect()
 }
 
 /// The colors of forces on walls.
 pub fn bar() -> ColorBar {
-    ColorBar {
-        label: "force on 1 m of wall [N/m]".to_owned(),
-        map: WALL_FORCE.clone(),
-    }
+    ColorBar::new("force on 1 m of wall [N/m]", &WALL_FORCE)
 }

@@ -197,20 +197,12 @@ impl<'a> Picture<'a> {
                 frame = self.frame(shown, panel);
             }
         }
-        let panels = match self.paths.as_slice() {
-            [] => vec![self.panel(&frame, None)],
-            paths => paths
-                .iter()
-                .map(|paths| self.panel(&frame, Some(paths)))
-                .collect(),
+        let ways = self.paths.iter();
+        let panels = match self.paths.is_empty() {
+            true => vec![self.panel(&frame, None)],
+            false => ways.map(|paths| self.panel(&frame, Some(paths))).collect(),
         };
-        Sheet {
-            title: self.title.clone(),
-            columns,
-            panel_size: frame.size(),
-            panels,
-            ..Sheet::default()
-        }
+        Sheet::new(&self.title, columns, frame.size(), panels)
     }
 
     /// Panels per row: on narrow sheets, wide ones are below each other.
@@ -229,18 +221,14 @@ impl<'a> Picture<'a> {
         let [x, y] = frame.axes();
         let bar = match self.paths.is_empty() {
             true => self.bar(),
-            false => Some(paths::bar(ColorMap::pale([0.0, 100.0], 10))),
+            false => Some(paths::bar(&ColorMap::pale([0.0, 100.0], 10))),
         };
         let panel = Panel {
             bar,
             ..Panel::new(&title, x, y, Vec::new())
         };
-        Sheet {
-            columns,
-            panel_size: frame.size(),
-            panels: vec![panel; self.paths.len().max(1)],
-            ..Sheet::default()
-        }
+        let panels = vec![panel; self.paths.len().max(1)];
+        Sheet::new("", columns, frame.size(), panels)
     }
 
     /// The frame of each panel, with room for all entries of the legend.
@@ -306,12 +294,8 @@ impl<'a> Picture<'a> {
         marks.extend(foot::marks(self, frame, paths.is_some()));
         let [x, y] = frame.axes();
         Panel {
-            title,
-            x,
-            y,
-            marks,
             bar,
-            legend: None,
+            ..Panel::new(&title, x, y, marks)
         }
     }
 
@@ -341,8 +325,8 @@ impl<'a> Picture<'a> {
 fn written(labels: Labels) -> impl Iterator<Item = Mark> {
     let placed = labels.into_placed();
     let line = |label: &Placed| {
-        let ends = [label.leader?, label.at].map(xy).to_vec();
-        Some(Mark::Line(ends, Style::full(label.color, LEADER, "")))
+        let ends = [label.leader?, label.at].map(xy);
+        Some(Mark::line(ends, Style::full(label.color, LEADER, "")))
     };
     let leaders: Vec<Mark> = placed.iter().filter_map(line).collect();
     let texts = placed.into_iter().map(|label| {
@@ -359,11 +343,6 @@ fn written(labels: Labels) -> impl Iterator<Item = Mark> {
 /// A darker color, for text.
 fn dark(color: Rgb) -> Rgb {
     color.map(|value| (f64::from(value) * 0.62) as u8)
-}
-
-/// A lighter color, for areas.
-fn light(color: Rgb, part: f64) -> Rgb {
-    color.map(|value| (255.0 - part * (255.0 - f64::from(value))) as u8)
 }
 
 fn xy(p: Vector) -> [f64; 2] {

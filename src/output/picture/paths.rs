@@ -44,11 +44,8 @@ pub struct Drawn {
 }
 
 /// The colors of lengths.
-pub fn bar(map: ColorMap) -> ColorBar {
-    ColorBar {
-        label: "length of the shortest way [m]".to_owned(),
-        map,
-    }
+pub fn bar(map: &ColorMap) -> ColorBar {
+    ColorBar::new("length of the shortest way [m]", map)
 }
 
 impl Paths {
@@ -81,7 +78,7 @@ impl Paths {
             title: format!("Ways to {}", self.name),
             field: vec![cells(field.lengths, map.clone()), borders],
             lines,
-            bar: bar(map),
+            bar: bar(&map),
         }
     }
 
@@ -122,10 +119,7 @@ impl Paths {
             .windows(2)
             .rfind(|pair| (pair[1] - pair[0]).norm() > 0.0);
         let head = last.map(|pair| head([pair[0], pair[1]], frame.meters(5.0), BLACK));
-        let line = Mark::Line(
-            points.into_iter().map(xy).collect(),
-            Style::full(BLACK, 0.9, ""),
-        );
+        let line = Mark::line(points.into_iter().map(xy), Style::full(BLACK, 0.9, ""));
         let start = Mark::dots([xy(start)], Style::full(BLACK, 1.8, ""));
         [line, start].into_iter().chain(head).collect()
     }
@@ -141,7 +135,7 @@ impl Paths {
             let reach = frame.meters(11.0);
             let along = direction(next - p) * reach.min((next - p).norm());
             let ends = [p, p + along];
-            let line = Mark::Line(ends.map(xy).to_vec(), Style::full(ARROW, 0.6, ""));
+            let line = Mark::line(ends.map(xy), Style::full(ARROW, 0.6, ""));
             Some([line, head(ends, frame.meters(3.2), ARROW)])
         };
         on_floor.filter_map(arrow).flatten().collect()
@@ -152,12 +146,8 @@ impl Paths {
 fn head([from, to]: [Vector; 2], length: f64, color: Rgb) -> Mark {
     let along = direction(to - from) * length;
     let aside = perpendicular(along) * 0.4;
-    Mark::Area(
-        [to, to - along + aside, to - along - aside]
-            .map(xy)
-            .to_vec(),
-        color,
-    )
+    let corners = [to, to - along + aside, to - along - aside];
+    Mark::Area(corners.map(xy).to_vec(), color)
 }
 
 /// Up to [`WAYS`] of some points, each as far from those before as possible.

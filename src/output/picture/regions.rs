@@ -16,8 +16,8 @@ pub fn marks(scene: &Scene, observed: &[(String, Observed)], labels: &mut Labels
     let mut marks = Vec::new();
     for (name, place) in scenery::observed_once(scene, observed) {
         let outline = place.outline();
-        let rim = outline.iter().map(|&p| xy(p)).collect();
-        marks.push(Mark::Line(rim, Style::broken(OBSERVED, 0.8, "")));
+        let rim = outline.iter().map(|&p| xy(p));
+        marks.push(Mark::line(rim, Style::broken(OBSERVED, 0.8, "")));
         if !name.is_empty() {
             labels.add(&name, OBSERVED, &around(&outline, false));
         }

@@ -1,11 +1,11 @@
 //! The marks of a scene: ground, walls, places, zones, sources and goals.
 
-use super::{Frame, Picture, dark, light, xy};
+use super::{Frame, Picture, dark, xy};
 use crate::engine::agents::Agents;
 use crate::engine::journeys::Kind;
 use crate::engine::math::Vector;
 use crate::engine::scene::Scene;
-use crate::output::colors::Rgb;
+use crate::output::colors::{Rgb, light};
 use crate::output::labels::{AROUND, Labels, around, of_place};
 use crate::output::plot::{BLACK, Mark, Style};
 use crate::output::scenery::{self, ZONE};
@@ -16,6 +16,7 @@ const SOLID: Rgb = [176, 176, 172];
 const WALL: Rgb = [52, 54, 60];
 const GOAL: Rgb = [213, 94, 0];
 const SOURCE: Rgb = [0, 150, 180];
+const CLOSED: Rgb = [190, 40, 40];
 /// Far enough to cover the panel, meters.
 const FAR: f64 = 1e7;
 /// Up to this many goals get labels.
@@ -27,8 +28,8 @@ const CROSS: f64 = 3.0;
 pub fn ground(scene: &Scene) -> Vec<Mark> {
     let obstacles = scene.walls.obstacles();
     let is_enclosed = obstacles.iter().any(|obstacle| obstacle.is_unbounded());
-    let whole = vec![[-FAR, -FAR], [FAR, -FAR], [FAR, FAR], [-FAR, FAR]];
-    let first = Mark::Area(whole, if is_enclosed { OUTSIDE } else { FLOOR });
+    let around = if is_enclosed { OUTSIDE } else { FLOOR };
+    let first = Mark::rectangle([-FAR, FAR], [-FAR, FAR], around);
     let rings = obstacles.iter().flat_map(|obstacle| obstacle.rings());
     let mut rings: Vec<(f64, &[Vector])> = rings.map(|ring| (signed_area(ring), ring)).collect();
     // The largest first: each ring lies on those around it.
@@ -75,7 +76,7 @@ pub fn walls(scene: &Scene) -> Vec<Mark> {
         // The line begins and ends within an edge, where it needs no join.
         let middle = ring.first().zip(ring.last()).map(|(a, b)| (a + b) * 0.5);
         let corners = middle.iter().chain(ring).chain(&middle).map(|&p| xy(p));
-        Mark::Line(corners.collect(), Style::full(WALL, 1.2, ""))
+        Mark::line(corners, Style::full(WALL, 1.2, ""))
     });
     outlines.collect()
 }
@@ -86,10 +87,10 @@ pub fn zones(scene: &Scene, frame: &Frame, inside: bool, labels: &mut Labels) ->
     for zone in &scene.journeys.zones {
         let style = |width| Style::full(light(ZONE, 0.7), width, "");
         let outline = scenery::closed(&zone.area).into_iter().map(xy);
-        marks.push(Mark::Line(outline.collect(), style(0.8)));
+        marks.push(Mark::line(outline, style(0.8)));
         let hatching = scenery::hatching(&zone.area, frame.meters(7.0));
-        let lines = hatching.into_iter().map(|line| line.map(xy).to_vec());
-        marks.extend(lines.map(|line| Mark::Line(line, style(0.4))));
+        let lines = hatching.into_iter().map(|line| line.map(xy));
+        marks.extend(lines.map(|line| Mark::line(line, style(0.4))));
         let name = scenery::named("zone", &scenery::zone_name(zone));
         labels.add(&name, ZONE, &around(zone.area.points(), inside));
     }
@@ -108,22 +109,13 @@ pub fn sources(scene: &Scene, labels: &mut Labels) -> Vec<Mark> {
             Vector::new(low.x, high.y),
         ];
         let outline = corners.iter().chain(&corners[..1]).map(|&p| xy(p));
-        marks.push(Mark::Line(
-            outline.collect(),
-            Style::broken(SOURCE, 1.2, ""),
-        ));
-        labels.add(
-            &scenery::named("source", &source.name),
-            SOURCE,
-            &around(&corners, false),
-        );
+        marks.push(Mark::line(outline, Style::broken(SOURCE, 1.2, "")));
+        let name = scenery::named("source", &source.name);
+        labels.add(&name, SOURCE, &around(&corners, false));
     }
     for entrance in &scene.entrances {
         let [a, b] = entrance.line;
-        marks.push(Mark::Line(
-            [a, b].map(xy).to_vec(),
-            Style::broken(SOURCE, 2.6, ""),
-        ));
+        marks.push(Mark::line([a, b].map(xy), Style::broken(SOURCE, 2.6, "")));
         let name = scenery::named("entrance", &entrance.name);
         let around = AROUND.map(|side| ((a + b) * 0.5, side));
         labels.add_of(scene.entrances.len(), &name, (SOURCE, &around));
@@ -139,33 +131,28 @@ pub fn places(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark
     for (k, place) in all.iter().enumerate() {
         let color = scenery::color(&place.kind);
         let lines: Vec<Vector> = scenery::lines(place);
-        let points = || lines.iter().map(|&p| xy(p)).collect();
         let progress = picture.simulation.map(|simulation| simulation.progress());
         let state = progress.and_then(|progress| progress.places.get(k));
         let is_closed = place.is_exit() && state.is_some_and(|state| !state.open);
-        match &place.kind {
-            Kind::Exit(_) if is_closed => {
-                marks.push(Mark::Line(points(), Style::full([190, 40, 40], 3.4, "")));
-            }
-            Kind::Exit(_) => marks.push(Mark::Line(points(), Style::full(color, 3.4, ""))),
-            Kind::Line(_) | Kind::Disk { .. } => {
-                marks.push(Mark::Line(points(), Style::broken(color, 1.6, "")));
-            }
-            Kind::Waiting(_) => marks.push(Mark::Line(points(), Style::full(color, 1.2, ""))),
-            Kind::Queue(queue) => {
-                marks.push(Mark::Line(points(), Style::full(color, 1.0, "")));
-                let spots = scenery::spots(queue).into_iter().map(xy);
-                marks.push(Mark::dots(spots, Style::broken(color, 2.0, "")));
-                let front = [xy(queue.path[0])];
-                marks.push(Mark::dots(front, Style::full(color, 3.2, "")));
-            }
+        let style = match &place.kind {
+            Kind::Exit(_) if is_closed => Style::full(CLOSED, 3.4, ""),
+            Kind::Exit(_) => Style::full(color, 3.4, ""),
+            Kind::Line(_) | Kind::Disk { .. } => Style::broken(color, 1.6, ""),
+            Kind::Waiting(_) => Style::full(color, 1.2, ""),
+            Kind::Queue(_) => Style::full(color, 1.0, ""),
+        };
+        marks.push(Mark::line(lines.iter().map(|&p| xy(p)), style));
+        if let Kind::Queue(queue) = &place.kind {
+            let spots = scenery::spots(queue).into_iter().map(xy);
+            marks.push(Mark::dots(spots, Style::broken(color, 2.0, "")));
+            let front = [xy(queue.path[0])];
+            marks.push(Mark::dots(front, Style::full(color, 3.2, "")));
         }
         let closed = if is_closed { " (closed)" } else { "" };
         let text = scenery::named(place.kind.name(), &place.name) + closed;
-        let color = if is_closed { [190, 40, 40] } else { color };
-        let similar = all
-            .iter()
-            .filter(|other| other.kind.name() == place.kind.name());
+        let color = if is_closed { CLOSED } else { color };
+        let kind = place.kind.name();
+        let similar = all.iter().filter(|other| other.kind.name() == kind);
         let spots = of_place(&picture.scene.walls, place, &lines, &screen);
         labels.add_of(similar.count(), &text, (color, &spots));
     }
@@ -192,18 +179,12 @@ pub fn goals(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark>
     let mut marks = Vec::new();
     for ((goal, _), name) in goals.iter().zip(names) {
         for across in [Vector::new(half, half), Vector::new(half, -half)] {
-            let ends = [goal - across, goal + across].map(xy).to_vec();
-            marks.push(Mark::Line(ends, Style::full(GOAL, 1.6, "")));
+            let ends = [goal - across, goal + across].map(xy);
+            marks.push(Mark::line(ends, Style::full(GOAL, 1.6, "")));
         }
         if goals.len() <= NAMED_GOALS && !name.is_empty() {
-            labels.add(
-                &name,
-                GOAL,
-                &AROUND[..8]
-                    .iter()
-                    .map(|&side| (*goal, side))
-                    .collect::<Vec<_>>(),
-            );
+            let sides = AROUND[..8].iter().map(|&side| (*goal, side));
+            labels.add(&name, GOAL, &sides.collect::<Vec<_>>());
         }
     }
     marks
@@ -212,7 +193,7 @@ pub fn goals(picture: &Picture, frame: &Frame, labels: &mut Labels) -> Vec<Mark>
 /// A bar of this length, meters, that begins at a place.
 pub fn scale_bar([x, y]: [f64; 2], length: f64, frame: &Frame) -> Vec<Mark> {
     let tick = frame.meters(2.5);
-    let line = |ends: [[f64; 2]; 2]| Mark::Line(ends.to_vec(), Style::full(dark(BLACK), 1.2, ""));
+    let line = |ends: [[f64; 2]; 2]| Mark::line(ends, Style::full(dark(BLACK), 1.2, ""));
     vec![
         line([[x, y], [x + length, y]]),
         line([[x, y - tick], [x, y + tick]]),

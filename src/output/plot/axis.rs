@@ -44,15 +44,18 @@ impl Axis {
         }
     }
 
+    /// The axis with these values and labels as its ticks.
+    pub fn ticked(mut self, ticks: impl IntoIterator<Item = (f64, String)>) -> Self {
+        self.ticks = ticks.into_iter().collect();
+        self
+    }
+
     /// An axis for categories: names at 0.5, 1.5, … in a range from 0 to the number of names.
     pub fn names(label: &str, names: impl IntoIterator<Item = String>) -> Self {
         let places = (0..).map(|k| f64::from(k) + 0.5);
-        let ticks: Vec<_> = places.zip(names).collect();
-        let range = [0.0, ticks.len() as f64];
-        Self {
-            ticks,
-            ..Self::linear(label, range)
-        }
+        let mut axis = Self::linear(label, [0.0; 2]).ticked(places.zip(names));
+        axis.range[1] = axis.ticks.len() as f64;
+        axis
     }
 
     /// The position of a value: 0 at the first end, 1 at the second.

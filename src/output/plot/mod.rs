@@ -41,6 +41,11 @@ pub const LINES: [Rgb; 7] = [
     [90, 90, 90],
 ];
 
+/// The color of line `k`: after seven colors, they repeat.
+pub fn line_color(k: usize) -> Rgb {
+    LINES[k % LINES.len()]
+}
+
 /// A picture: panels in rows.
 #[derive(Debug, Clone, Default)]
 pub struct Sheet {
@@ -58,6 +63,19 @@ pub struct Sheet {
     pub bar: Option<ColorBar>,
     /// The panels, row by row.
     pub panels: Vec<Panel>,
+}
+
+impl Sheet {
+    /// A sheet of panels, each with its own axes and color bar.
+    pub fn new(title: &str, columns: usize, panel_size: [f64; 2], panels: Vec<Panel>) -> Self {
+        Self {
+            title: title.to_owned(),
+            columns,
+            panel_size,
+            panels,
+            ..Self::default()
+        }
+    }
 }
 
 /// A pair of axes and the marks on them. Later marks cover earlier ones.
@@ -88,6 +106,18 @@ impl Panel {
             ..Self::default()
         }
     }
+
+    /// The panel with a legend.
+    pub fn with_legend(mut self, corner: Corner) -> Self {
+        self.legend = Some(corner);
+        self
+    }
+
+    /// The panel with a color bar.
+    pub fn with_bar(mut self, bar: ColorBar) -> Self {
+        self.bar = Some(bar);
+        self
+    }
 }
 
 /// A position in or beside a panel.
@@ -114,6 +144,14 @@ pub struct ColorBar {
     pub map: ColorMap,
 }
 
+impl ColorBar {
+    /// The bar of a color map.
+    pub fn new(label: &str, map: &ColorMap) -> Self {
+        let (label, map) = (label.to_owned(), map.clone());
+        Self { label, map }
+    }
+}
+
 /// A disc, in axis units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disc {
@@ -134,6 +172,13 @@ pub struct Point {
     pub y: f64,
     /// Half the length of its error bar; 0 for none.
     pub error: f64,
+}
+
+/// Without an error bar.
+impl From<[f64; 2]> for Point {
+    fn from([x, y]: [f64; 2]) -> Self {
+        Self { x, y, error: 0.0 }
+    }
 }
 
 /// The look of a line or a set of points, and its label in the legend.
@@ -165,6 +210,14 @@ impl Style {
         Self {
             broken: true,
             ..Self::full(color, width, label)
+        }
+    }
+
+    /// The style of line `k`: after seven colors, the same follow, broken.
+    pub fn nth(k: usize, width: f64, label: &str) -> Self {
+        Self {
+            broken: k >= LINES.len(),
+            ..Self::full(line_color(k), width, label)
         }
     }
 }
@@ -227,7 +280,28 @@ pub enum Mark {
 impl Mark {
     /// Points without error bars.
     pub fn dots(points: impl IntoIterator<Item = [f64; 2]>, style: Style) -> Self {
-        let dots = points.into_iter().map(|[x, y]| Point { x, y, error: 0.0 });
-        Self::Points(dots.collect(), style)
+        Self::Points(points.into_iter().map(Point::from).collect(), style)
+    }
+
+    /// A line through points.
+    pub fn line(points: impl IntoIterator<Item = [f64; 2]>, style: Style) -> Self {
+        Self::Line(points.into_iter().collect(), style)
+    }
+
+    /// A filled rectangle.
+    pub fn rectangle([left, right]: [f64; 2], [low, high]: [f64; 2], color: Rgb) -> Self {
+        let corners = vec![[left, low], [right, low], [right, high], [left, high]];
+        Self::Area(corners, color)
+    }
+
+    /// Black text beside a point; `side` as in [`Label`].
+    pub fn label(at: [f64; 2], side: [i8; 2], text: String) -> Self {
+        let color = BLACK;
+        Self::Label(Label {
+            at,
+            side,
+            text,
+            color,
+        })
     }
 }
