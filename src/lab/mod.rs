@@ -3,8 +3,11 @@
 //! run time against error ([`accuracy`]), cases with known answers ([`suite`], [`mod@verify`]), scenes of experiments
 //! ([`mod@validate`]), and the search for parameters that reproduce them ([`calibrate`]). [`measure`] computes
 //! densities, fields, fundamental diagrams and flows of any trajectory; [`differences`] compares two results.
+//! Their pictures share [`gallery`].
 
 pub mod error;
+
+pub mod gallery;
 
 pub mod jobs;
 
