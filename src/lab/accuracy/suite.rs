@@ -9,9 +9,10 @@ use super::report::Report;
 use super::scenes::{Kind, Scene, names};
 use super::trajectory::Trajectories;
 use super::trials::{Trial, few, reference, settings, trials};
-use super::{cost, statistics};
+use super::{cost, pictures, statistics};
 use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
+use crate::lab::gallery;
 use crate::lab::jobs::{read, results};
 use crate::lab::sweep::{Cell, Study};
 use crate::runs::case::RunResult;
@@ -72,7 +73,7 @@ pub fn accuracy(plan: &Plan, store: &Store, listener: &dyn Listener) -> Result<R
         quick: plan.quick,
     };
     report.write(store)?;
-    super::pictures::save(&report, store)?;
+    gallery::save(store.folder(), report.scenes.iter().map(pictures::sheet))?;
     Ok(report)
 }
 

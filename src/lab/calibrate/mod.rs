@@ -28,6 +28,7 @@ pub use search::{Found, Stage};
 pub use study::Calibration;
 
 use crate::lab::error::LabError;
+use crate::lab::gallery;
 use crate::lab::sweep::Shard;
 use crate::runs::job::Listener;
 use crate::runs::store::Store;
@@ -52,6 +53,6 @@ pub fn run<'a>(
     let report = Report { calibration, found };
     report.write(store)?;
     listener.notes("drawing 3 pictures");
-    pictures::save(&report, store)?;
+    gallery::save(store.folder(), pictures::sheets(&report))?;
     Ok(report)
 }

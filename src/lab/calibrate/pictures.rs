@@ -1,16 +1,12 @@
 //! Convergence, errors and screening as pictures.
 
-use super::report::Report;
+use super::report::{Report, ValueResult};
 use super::scene::{Set, Target};
-use super::search::Screened;
+use super::search::{Generation, Screened};
 use crate::analysis::morris::Effect;
-use crate::analysis::statistics::Range;
-use crate::lab::error::LabError;
+use crate::lab::gallery::{self, in_cell, positive};
 use crate::output::colors::{ColorMap, Rgb};
-use crate::output::plot::{
-    Axis, BLACK, Cells, ColorBar, Corner, GRAY, LINES, Label, Mark, Panel, Sheet, Style,
-};
-use crate::runs::store::Store;
+use crate::output::plot::{Axis, ColorBar, Corner, GRAY, LINES, Mark, Panel, Sheet, Style};
 
 /// Height of a row with a value, points.
 const ROW: f64 = 15.0;
@@ -21,15 +17,18 @@ const COLUMN: f64 = 78.0;
 const LEAST_SHOWN: f64 = 1e-2;
 /// The tolerances shown to each side.
 const MOST_SHOWN: f64 = 20.0;
+/// Behind residuals of at most one tolerance.
+const WITHIN: Rgb = [225, 240, 225];
 
-/// Draws `convergence`, `errors` and, if there was one, `screening`, each as SVG and PNG.
-pub fn save(report: &Report, store: &Store) -> Result<(), LabError> {
-    convergence(report).save(&store.path("convergence"))?;
-    errors(report).save(&store.path("errors"))?;
-    if let Some(screened) = &report.found.screened {
-        screening(report, screened).save(&store.path("screening"))?;
-    }
-    Ok(())
+/// `convergence`, `errors` and, if there was one, `screening`.
+pub fn sheets(report: &Report) -> Vec<(&'static str, Sheet)> {
+    let mut sheets = vec![
+        ("convergence", convergence(report)),
+        ("errors", errors(report)),
+    ];
+    let screened = report.found.screened.iter();
+    sheets.extend(screened.map(|screened| ("screening", screening(report, screened))));
+    sheets
 }
 
 /// Misfits and parameters by generation.
@@ -38,166 +37,92 @@ fn convergence(report: &Report) -> Sheet {
     let numbered = || (1..).map(f64::from).zip(generations);
     let last = generations.len().max(2) as f64;
     let start = report.found.trials[0].misfit;
-    let all = generations
-        .iter()
-        .flat_map(|of| [of.misfits.minimum, of.misfits.maximum]);
-    let all = all.chain([start]).map(|misfit| misfit.max(LEAST_SHOWN));
-    let range = Range::of(&all.collect::<Vec<_>>());
-    let y = Axis::log(
-        "misfit: root mean square residual [tolerances]",
-        [0.8 * range.minimum, 1.25 * range.maximum],
-    );
-    let line = |value: fn(&super::search::Generation) -> f64, style| {
-        Mark::Line(
-            numbered()
-                .map(|(x, of)| [x, value(of).max(LEAST_SHOWN)])
-                .collect(),
-            style,
-        )
-    };
-    let dots = |value: fn(&super::search::Generation) -> f64, style| {
-        Mark::dots(
-            numbered().map(|(x, of)| [x, value(of).max(LEAST_SHOWN)]),
-            style,
-        )
-    };
+    let misfits =
+        |of: fn(&Generation) -> f64| numbered().map(move |(x, one)| [x, of(one).max(LEAST_SHOWN)]);
+    let ends = misfits(|of| of.misfits.minimum).chain(misfits(|of| of.misfits.maximum));
+    let ends = ends.map(|at| at[1]).chain([start.max(LEAST_SHOWN)]);
+    let label = "misfit: root mean square residual [tolerances]";
+    let y = Axis::log(label, positive(ends, [0.8, 1.25]));
+    let unchanged = Style::broken(GRAY, 1.0, "start");
+    let worst = Style::broken(LINES[5], 1.6, "worst of the generation");
+    let median = Style::full(LINES[5], 1.6, "median");
+    let best = Style::full(LINES[0], 1.8, "best");
+    let so_far = Style::full(LINES[1], 1.2, "best so far");
     let marks = vec![
-        Mark::Line(
-            vec![[1.0, start], [last, start]],
-            Style::broken(GRAY, 1.0, "start"),
-        ),
-        dots(
-            |of| of.misfits.maximum,
-            Style::broken(LINES[5], 1.6, "worst of the generation"),
-        ),
-        dots(|of| of.misfits.median, Style::full(LINES[5], 1.6, "median")),
-        dots(|of| of.misfits.minimum, Style::full(LINES[0], 1.8, "best")),
-        line(|of| of.best, Style::full(LINES[1], 1.2, "best so far")),
+        Mark::line([[1.0, start], [last, start]], unchanged),
+        Mark::dots(misfits(|of| of.misfits.maximum), worst),
+        Mark::dots(misfits(|of| of.misfits.median), median),
+        Mark::dots(misfits(|of| of.misfits.minimum), best),
+        Mark::line(misfits(|of| of.best), so_far),
     ];
     let every = generations.len().div_ceil(12).max(1);
     let ticks = (1..=generations.len()).step_by(every);
-    let generation = || Axis {
-        ticks: ticks.clone().map(|k| (k as f64, k.to_string())).collect(),
-        ..Axis::linear("generation", [1.0, last])
-    };
-    let misfits = Panel {
-        legend: Some(Corner::Beside),
-        ..Panel::new("misfit", generation(), y, marks)
-    };
+    let ticks = ticks.map(|k| (k as f64, k.to_string()));
+    let x = Axis::linear("generation", [1.0, last]).ticked(ticks);
     let searched = report.found.searched.iter().enumerate();
     let curves = searched.flat_map(|(j, &k)| {
-        let color = LINES[j % LINES.len()];
-        let is_again = j >= LINES.len();
         let curve = |side: f64, style| {
-            let points =
-                numbered().filter_map(|(x, of)| Some([x, of.mean[k]? + side * of.spread[k]?]));
-            Mark::Line(points.collect(), style)
+            let point = |(x, of): (f64, &Generation)| Some([x, of.mean[k]? + side * of.spread[k]?]);
+            Mark::line(numbered().filter_map(point), style)
         };
-        let name = &report.calibration.parameters[k].name;
-        let mean = match is_again {
-            false => Style::full(color, 1.4, name),
-            true => Style::broken(color, 1.4, name),
-        };
-        let rim = || Style::full(pale(color), 0.6, "");
+        let mean = Style::nth(j, 1.4, &report.calibration.parameters[k].name);
+        let pale = mean.color.map(|part| 255 - (255 - part) / 3);
+        let rim = || Style::full(pale, 0.6, "");
         [curve(-1.0, rim()), curve(1.0, rim()), curve(0.0, mean)]
     });
-    let y = Axis::linear("part of the bounds", [0.0, 1.0]);
-    let parameters = Panel {
-        legend: Some(Corner::Beside),
-        ..Panel::new(
-            "parameters: mean and standard deviation",
-            generation(),
-            y,
-            curves.collect(),
-        )
-    };
-    Sheet {
-        title: report.calibration.name.clone(),
-        columns: 1,
-        panel_size: [330.0, 180.0],
-        panels: vec![misfits, parameters],
-        ..Sheet::default()
-    }
-}
-
-fn pale(color: Rgb) -> Rgb {
-    color.map(|part| 255 - (255 - part) / 3)
+    let title = "parameters: mean and standard deviation";
+    let part = Axis::linear("part of the bounds", [0.0, 1.0]);
+    let panels = vec![
+        Panel::new("misfit", x.clone(), y, marks).with_legend(Corner::Beside),
+        Panel::new(title, x, part, curves.collect()).with_legend(Corner::Beside),
+    ];
+    Sheet::new(&report.calibration.name, 1, [330.0, 180.0], panels)
 }
 
 /// The residuals of all values at the start and at the best point.
 fn errors(report: &Report) -> Sheet {
     let values = report.values();
-    let targets = &report.calibration.targets;
     let shown = |residual: f64| residual.clamp(-MOST_SHOWN, MOST_SHOWN);
-    let residuals = values
-        .iter()
-        .flat_map(|value| [value.start.residual, value.best.residual]);
-    let far = residuals
-        .flatten()
-        .map(|residual| shown(residual).abs())
-        .fold(2.0, f64::max)
-        * 1.05;
+    let residuals = values.iter();
+    let residuals = residuals.flat_map(|value| [value.start.residual, value.best.residual]);
+    let residuals = residuals.flatten().map(|residual| shown(residual).abs());
+    let far = residuals.fold(2.0, f64::max) * 1.05;
     let width = 2.0 * far * NAMES / 300.0;
     let rows = values.len() as f64;
     let height = |k: usize| rows - 0.5 - k as f64;
-    let mut marks: Vec<Mark> = Vec::new();
-    let band = [[-1.0, 0.0], [1.0, 0.0], [1.0, rows], [-1.0, rows]];
-    marks.push(Mark::Area(band.to_vec(), [225, 240, 225]));
-    marks.push(Mark::Line(
-        vec![[0.0, 0.0], [0.0, rows]],
-        Style::full(GRAY, 0.6, ""),
-    ));
-    marks.extend(names(targets, -far - width, height));
+    let mut marks = vec![
+        Mark::rectangle([-1.0, 1.0], [0.0, rows], WITHIN),
+        Mark::line([[0.0, 0.0], [0.0, rows]], Style::full(GRAY, 0.6, "")),
+    ];
+    marks.extend(names(&report.calibration.targets, -far - width, height));
     for (k, value) in values.iter().enumerate() {
         if let (Some(residual), Some(noise)) = (value.best.residual, value.best.noise) {
             let ends = [-1.96, 1.96].map(|side| shown(residual) + side * noise);
             let ends = ends.map(|end| [end.clamp(-far, far), height(k)]);
-            marks.push(Mark::Line(
-                ends.to_vec(),
-                Style::full(color(value.set), 0.8, ""),
-            ));
+            marks.push(Mark::line(ends, Style::full(color(value.set), 0.8, "")));
         }
     }
-    let dots =
-        |residual: fn(&super::report::ValueResult) -> Option<f64>, of: Option<Set>, style| {
-            let own = values.iter().enumerate();
-            let own = own.filter(|(_, value)| of.is_none_or(|set| value.set == set));
-            let points = own.filter_map(|(k, value)| Some([shown(residual(value)?), height(k)]));
-            Mark::dots(points.collect::<Vec<_>>(), style)
-        };
-    marks.push(dots(
-        |value| value.start.residual,
-        None,
-        Style::broken(GRAY, 2.2, "start"),
-    ));
+    let dots = |residual: fn(&ValueResult) -> Option<f64>, of: Option<Set>, style| {
+        let own = values.iter().enumerate();
+        let own = own.filter(|(_, value)| of.is_none_or(|set| value.set == set));
+        let points = own.filter_map(|(k, value)| Some([shown(residual(value)?), height(k)]));
+        Mark::dots(points, style)
+    };
+    let start = Style::broken(GRAY, 2.2, "start");
+    marks.push(dots(|value| value.start.residual, None, start));
     for set in Set::ALL {
         let style = Style::full(color(set), 2.4, &format!("best, {}", set.name()));
         if values.iter().any(|value| value.set == set) {
             marks.push(dots(|value| value.best.residual, Some(set), style));
         }
     }
-    let title = format!(
-        "{}: how far runs are off the measured values",
-        report.calibration.name
-    );
-    let x = Axis {
-        ticks: ticks(far),
-        ..Axis::linear(
-            "residual [tolerances], 95 % interval of the seeds",
-            [-far - width, far],
-        )
-    };
-    let y = blank(rows);
-    Sheet {
-        title,
-        columns: 1,
-        panel_size: [NAMES + 300.0, ROW * rows.max(4.0)],
-        panels: vec![Panel {
-            legend: Some(Corner::Beside),
-            ..Panel::new("", x, y, marks)
-        }],
-        ..Sheet::default()
-    }
+    let label = "residual [tolerances], 95 % interval of the seeds";
+    let x = Axis::linear(label, [-far - width, far]).ticked(ticks(far));
+    let panel = Panel::new("", x, blank(rows), marks).with_legend(Corner::Beside);
+    let name = &report.calibration.name;
+    let title = format!("{name}: how far runs are off the measured values");
+    let size = [NAMES + 300.0, ROW * rows.max(4.0)];
+    Sheet::new(&title, 1, size, vec![panel])
 }
 
 fn color(set: Set) -> Rgb {
@@ -209,27 +134,18 @@ fn color(set: Set) -> Rgb {
 }
 
 /// Round numbers from −`far` to `far`.
-fn ticks(far: f64) -> Vec<(f64, String)> {
-    let step = [1.0, 2.0, 5.0]
-        .into_iter()
-        .find(|step| far / step < 6.0)
-        .unwrap_or(5.0);
+fn ticks(far: f64) -> impl Iterator<Item = (f64, String)> {
+    let steps = [1.0, 2.0, 5.0];
+    let step = steps.into_iter().find(|step| far / step < 6.0);
+    let step = step.unwrap_or(5.0);
     let most = (far / step) as i32;
-    let tick = |k: i32| {
-        (
-            f64::from(k) * step,
-            (f64::from(k) * step).to_string().replace('-', "\u{2212}"),
-        )
-    };
-    (-most..=most).map(tick).collect()
+    let values = (-most..=most).map(move |k| f64::from(k) * step);
+    values.map(|value| (value, value.to_string().replace('-', "\u{2212}")))
 }
 
 /// An axis of rows without numbers.
 fn blank(rows: f64) -> Axis {
-    Axis {
-        ticks: vec![(-1.0, String::new())],
-        ..Axis::linear("", [0.0, rows])
-    }
+    Axis::linear("", [0.0, rows]).ticked([(-1.0, String::new())])
 }
 
 /// The names of values in rows.
@@ -237,129 +153,66 @@ fn names<'a>(
     targets: impl IntoIterator<Item = &'a Target>,
     x: f64,
     height: impl Fn(usize) -> f64,
-) -> Vec<Mark> {
-    let name = |(k, target): (usize, &Target)| {
-        Mark::Label(Label {
-            at: [x, height(k)],
-            side: [1, 0],
-            text: format!(" {}: {}", target.of, target.quantity),
-            color: BLACK,
-        })
-    };
-    targets.into_iter().enumerate().map(name).collect()
+) -> impl Iterator<Item = Mark> {
+    let targets = targets.into_iter().enumerate();
+    targets.map(move |(k, target)| {
+        let text = format!(" {}: {}", target.of, target.quantity);
+        Mark::label([x, height(k)], [1, 0], text)
+    })
 }
 
 /// The effects of the parameters on the misfit, and on each value.
 fn screening(report: &Report, screened: &Screened) -> Sheet {
-    let names_of: Vec<&str> = report
-        .calibration
-        .parameters
-        .iter()
-        .map(|of| of.name.as_str())
-        .collect();
+    let parameters = report.calibration.parameters.iter();
+    let parameters: Vec<&str> = parameters.map(|of| of.name.as_str()).collect();
     let most = |of: fn(&Effect) -> f64| screened.misfit.iter().map(of).fold(1.0, f64::max);
-    let [x, y] = [
-        Axis::linear(
-            "μ*: mean absolute effect on the misfit [tolerances]",
-            [0.0, 1.35 * most(|of| of.mean_absolute)],
-        ),
-        Axis::linear(
-            "σ: its standard deviation",
-            // Names lie above and below their points.
-            [-1, 1].map(|end| f64::from(end).max(-0.1) * 1.15 * most(|of| of.deviation)),
-        ),
-    ];
-    let at = |of: &Effect| [of.mean_absolute, of.deviation];
-    let dots = Mark::dots(
-        screened.misfit.iter().map(at),
-        Style::full(LINES[0], 2.4, ""),
-    );
-    let named = screened.misfit.iter().zip(&names_of);
-    let labels = named.zip([1, -1].into_iter().cycle());
-    let labels = labels.map(|((effect, name), above)| {
-        Mark::Label(Label {
-            at: at(effect),
-            side: [1, above],
-            text: format!(" {name}"),
-            color: BLACK,
-        })
-    });
-    let misfit = Panel::new(
-        "on the misfit",
-        x,
-        y,
-        std::iter::once(dots).chain(labels).collect(),
-    );
-    let panel_size = [
-        NAMES + COLUMN * names_of.len() as f64,
-        (ROW * screened.values.len() as f64).max(220.0),
-    ];
-    Sheet {
-        title: format!(
-            "{}: effects of the parameters over their bounds",
-            report.calibration.name
-        ),
-        columns: 1,
-        panel_size,
-        panels: vec![map(report, screened, &names_of), misfit],
-        ..Sheet::default()
-    }
+    let label = "μ*: mean absolute effect on the misfit [tolerances]";
+    let x = Axis::linear(label, [0.0, 1.35 * most(|of| of.mean_absolute)]);
+    // Names lie above and below their points.
+    let ends = [-0.1, 1.0].map(|end| end * 1.15 * most(|of| of.deviation));
+    let y = Axis::linear("σ: its standard deviation", ends);
+    let places = screened.misfit.iter();
+    let places = places.map(|of| [of.mean_absolute, of.deviation]);
+    let dots = Mark::dots(places.clone(), Style::full(LINES[0], 2.4, ""));
+    let named = places.zip(&parameters).zip([1, -1].into_iter().cycle());
+    let labels = named.map(|((at, name), above)| Mark::label(at, [1, above], format!(" {name}")));
+    let marks = [dots].into_iter().chain(labels).collect();
+    let misfit = Panel::new("on the misfit", x, y, marks);
+    let name = &report.calibration.name;
+    let title = format!("{name}: effects of the parameters over their bounds");
+    let width = NAMES + COLUMN * parameters.len() as f64;
+    let height = (ROW * screened.values.len() as f64).max(220.0);
+    let panels = vec![map(report, screened, &parameters), misfit];
+    Sheet::new(&title, 1, [width, height], panels)
 }
 
 /// A map of μ* over parameters and values.
 fn map(report: &Report, screened: &Screened, parameters: &[&str]) -> Panel {
-    let (columns, rows) = (parameters.len(), screened.values.len());
-    let all = screened
-        .values
-        .iter()
-        .flatten()
-        .map(|effect| effect.mean_absolute);
-    let largest = all.fold(1.0, f64::max);
+    let rows = screened.values.len();
+    let value = |effect: &Effect| effect.mean_absolute;
+    let largest = screened.values.iter().flatten().map(value);
+    let largest = largest.fold(1.0, f64::max);
+    let width = NAMES / COLUMN;
+    let mut x = Axis::names("", parameters.iter().map(|name| (*name).to_owned()));
+    x.range[0] = -width;
+    let values = screened.values.iter().rev().flatten().map(value);
     let map = ColorMap::viridis([0.0, largest as f32]);
-    let height = |k: usize| rows as f64 - 0.5 - k as f64;
-    let mut marks = vec![Mark::Cells(Cells {
-        extent: [[0.0, 0.0], [columns as f64, rows as f64]],
-        columns,
-        values: screened
-            .values
-            .iter()
-            .rev()
-            .flatten()
-            .map(|effect| Some(effect.mean_absolute))
-            .collect(),
-        map: map.clone(),
-    })];
+    let mut panel = gallery::map(
+        "mean absolute effects on the values",
+        [x, blank(rows as f64)],
+        values.map(Some).collect(),
+        ColorBar::new("μ* [tolerances]", &map),
+    );
     for (k, effects) in screened.values.iter().enumerate() {
-        marks.extend(effects.iter().enumerate().map(|(j, effect)| {
-            let color = if effect.mean_absolute > 0.5 * largest {
-                [0; 3]
-            } else {
-                [255; 3]
-            };
-            let text = format!("{:.1}", effect.mean_absolute);
-            Mark::Text([j as f64 + 0.5, height(k)], text, color)
+        let values = effects.iter().map(value).enumerate();
+        panel.marks.extend(values.map(|(j, value)| {
+            let text = format!("{value:.1}");
+            in_cell([j, rows - 1 - k], text, value > 0.5 * largest)
         }));
     }
-    let width = NAMES / COLUMN;
-    let fitted = report
-        .calibration
-        .targets
-        .iter()
-        .filter(|target| target.set == Set::Fit);
-    marks.extend(names(fitted, -width, height));
-    let x = Axis::names("", parameters.iter().map(|name| (*name).to_owned()));
-    let x = Axis {
-        range: [-width, columns as f64],
-        ..x
-    };
-    let label = "μ* [tolerances]".to_owned();
-    Panel {
-        bar: Some(ColorBar { label, map }),
-        ..Panel::new(
-            "mean absolute effects on the values",
-            x,
-            blank(rows as f64),
-            marks,
-        )
-    }
+    let fitted = report.calibration.targets.iter();
+    let fitted = fitted.filter(|target| target.set == Set::Fit);
+    let height = |k: usize| rows as f64 - 0.5 - k as f64;
+    panel.marks.extend(names(fitted, -width, height));
+    panel
 }

@@ -2,13 +2,11 @@
 
 use super::cell::Cell;
 use super::map::Detail;
-use super::report::Report;
 use super::rest::Rest;
 use crate::analysis::stability::{FITTED, Scheme};
-use crate::lab::error::LabError;
+use crate::lab::gallery;
 use crate::output::colors::ColorMap;
-use crate::output::plot::{Axis, Cells, ColorBar, Corner, LINES, Mark, Panel, Sheet, Style};
-use crate::runs::store::Store;
+use crate::output::plot::{Axis, ColorBar, Corner, LINES, Mark, Panel, Sheet, Style};
 
 /// Range of the step axis of all curves, milliseconds.
 const STEPS: [f64; 2] = [2.0, 200.0];
@@ -16,19 +14,15 @@ const STEPS: [f64; 2] = [2.0, 200.0];
 const SOFT: f64 = 20.0;
 const THIN: f64 = 0.5;
 
-/// Draws `maps.svg` and `maps.png`.
-pub fn save(report: &Report, detail: &Detail, store: &Store) -> Result<(), LabError> {
-    let cells = &report.cells;
+/// Three maps over k and ρ⁰max, and curves over k, K^ag and μ.
+pub fn sheet(cells: &[Cell], detail: &Detail) -> Sheet {
     let maps = MAPS.iter().map(|shown| map(cells, detail, shown));
-    let sheet = Sheet {
-        title: "The largest time step at which a crowd comes to rest".to_owned(),
-        columns: 3,
-        panel_size: [210.0, 185.0],
-        panels: maps.chain(curves(cells, detail)).collect(),
-        ..Sheet::default()
-    };
-    sheet.save(&store.path("maps"))?;
-    Ok(())
+    Sheet::new(
+        "The largest time step at which a crowd comes to rest",
+        3,
+        [210.0, 185.0],
+        maps.chain(curves(cells, detail)).collect(),
+    )
 }
 
 /// The quantity of a map.
@@ -71,7 +65,6 @@ fn find(cells: &[Cell], crowd: Rest) -> Option<&Cell> {
 /// A map over k and ρ⁰max, with the numbers as text.
 fn map(cells: &[Cell], detail: &Detail, shown: &Shown) -> Panel {
     let (columns, rows) = (&detail.gas_constants, &detail.rest_densities);
-    let map = ColorMap::viridis(shown.range);
     let middle = 0.5 * f64::from(shown.range[0] + shown.range[1]);
     let (mut values, mut texts) = (Vec::new(), Vec::new());
     for (row, &rest_density_max) in rows.iter().enumerate() {
@@ -84,32 +77,22 @@ fn map(cells: &[Cell], detail: &Detail, shown: &Shown) -> Panel {
             let value = find(cells, crowd).map(shown.value);
             values.push(value);
             texts.extend(value.map(|value| {
-                let color = if value > middle { [0; 3] } else { [255; 3] };
-                let place = [column as f64 + 0.5, row as f64 + 0.5];
-                Mark::Text(place, (shown.write)(value), color)
+                gallery::in_cell([column, row], (shown.write)(value), value > middle)
             }));
         }
     }
-    let cells = Mark::Cells(Cells {
-        extent: [[0.0, 0.0], [columns.len() as f64, rows.len() as f64]],
-        columns: columns.len(),
-        values,
-        map: map.clone(),
-    });
-    let marks = std::iter::once(cells).chain(texts).collect();
     let x = Axis::names("k", columns.iter().map(f64::to_string));
     let y = Axis::names("ρ⁰max [P/m²]", rows.iter().map(f64::to_string));
-    let label = shown.label.to_owned();
-    Panel {
-        bar: Some(ColorBar { label, map }),
-        ..Panel::new(shown.title, x, y, marks)
-    }
+    let bar = ColorBar::new(shown.label, &ColorMap::viridis(shown.range));
+    let mut panel = gallery::map(shown.title, [x, y], values, bar);
+    panel.marks.extend(texts);
+    panel
 }
 
 /// The results along one parameter, the formula and `auto`; steps in milliseconds.
 fn curve(title: &str, x: Axis, cells: &[(f64, &Cell)]) -> Panel {
     let along = |step: fn(&Cell) -> f64| cells.iter().map(move |(x, cell)| [*x, 1e3 * step(cell)]);
-    let line = |style, step| Mark::Line(along(step).collect(), style);
+    let line = |style, step| Mark::line(along(step), style);
     let dots = |k: usize, label, step| Mark::dots(along(step), Style::full(LINES[k], 2.4, label));
     let marks = vec![
         line(Style::broken(LINES[6], 1.0, "formula"), |cell| {
@@ -126,48 +109,44 @@ fn curve(title: &str, x: Axis, cells: &[(f64, &Cell)]) -> Panel {
         dots(4, "with Verlet", |cell| cell.limits[2].largest),
         dots(0, "largest stable", |cell| cell.limits[0].largest),
     ];
-    Panel {
-        legend: Some(Corner::LowerLeft),
-        ..Panel::new(title, x, Axis::log("Δt [ms]", STEPS), marks)
-    }
+    Panel::new(title, x, Axis::log("Δt [ms]", STEPS), marks).with_legend(Corner::LowerLeft)
 }
 
 /// Curves over k, K^ag and μ, each with the paper's other parameters.
 fn curves(cells: &[Cell], detail: &Detail) -> [Panel; 3] {
-    let paper = Rest::default();
-    let over = |values: &[f64], zero: f64, crowd: &dyn Fn(f64) -> Rest| -> Vec<(f64, &Cell)> {
-        let place = |&value: &f64| Some((value.max(zero), find(cells, crowd(value))?));
-        values.iter().filter_map(place).collect()
-    };
-    let gas_constants = over(&detail.gas_constants, 0.0, &|gas_constant| Rest {
-        gas_constant,
-        ..paper
-    });
-    let stiffnesses = over(&detail.stiffnesses, SOFT, &|agent_stiffness| Rest {
-        agent_stiffness,
-        ..paper
-    });
-    let viscosities = over(&detail.viscosities, THIN, &|viscosity| Rest {
-        viscosity,
-        ..paper
-    });
-    let stiffness = with_zero("Kᵃᵍ", SOFT, [15.0, 70_000.0], &[100.0, 1e3, 1e4]);
-    let viscosity = with_zero("μ", THIN, [0.4, 130.0], &[1.0, 5.0, 20.0, 100.0]);
-    [
+    let over = |title, x: Axis, values: &[f64], zero: f64, set: fn(&mut Rest, f64)| {
+        let place = |&value: &f64| {
+            let mut crowd = Rest::default();
+            set(&mut crowd, value);
+            Some((value.max(zero), find(cells, crowd)?))
+        };
         curve(
+            title,
+            x,
+            &values.iter().filter_map(place).collect::<Vec<_>>(),
+        )
+    };
+    [
+        over(
             "over k: ρ⁰max = 5, Kᵃᵍ = 50, μ = 0",
             Axis::log("k", [40.0, 16_000.0]),
-            &gas_constants,
+            &detail.gas_constants,
+            0.0,
+            |crowd, k| crowd.gas_constant = k,
         ),
-        curve(
+        over(
             "over Kᵃᵍ: k = 200, ρ⁰max = 5, μ = 0",
-            stiffness,
-            &stiffnesses,
+            with_zero("Kᵃᵍ", SOFT, [15.0, 70_000.0], &[100.0, 1e3, 1e4]),
+            &detail.stiffnesses,
+            SOFT,
+            |crowd, stiffness| crowd.agent_stiffness = stiffness,
         ),
-        curve(
+        over(
             "over μ: k = 200, ρ⁰max = 5, Kᵃᵍ = 50",
-            viscosity,
-            &viscosities,
+            with_zero("μ", THIN, [0.4, 130.0], &[1.0, 5.0, 20.0, 100.0]),
+            &detail.viscosities,
+            THIN,
+            |crowd, viscosity| crowd.viscosity = viscosity,
         ),
     ]
 }
@@ -175,9 +154,5 @@ fn curves(cells: &[Cell], detail: &Detail) -> [Panel; 3] {
 /// A logarithmic axis on which `zero` stands for 0.
 fn with_zero(label: &str, zero: f64, range: [f64; 2], ticks: &[f64]) -> Axis {
     let numbers = ticks.iter().map(|&value| (value, value.to_string()));
-    let ticks = std::iter::once((zero, "0".to_owned())).chain(numbers);
-    Axis {
-        ticks: ticks.collect(),
-        ..Axis::log(label, range)
-    }
+    Axis::log(label, range).ticked([(zero, "0".to_owned())].into_iter().chain(numbers))
 }

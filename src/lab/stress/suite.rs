@@ -6,6 +6,7 @@ use serde_json::Value;
 use super::cell::Cell;
 use super::fit::fit;
 use super::map::Detail;
+use super::pictures;
 use super::report::Report;
 use crate::lab::error::LabError;
 use crate::lab::jobs::{read, results};
@@ -66,7 +67,7 @@ pub fn stress(detail: &Detail, store: &Store, listener: &dyn Listener) -> Result
         jitter,
     };
     report.write(store)?;
-    super::pictures::save(&report, detail, store)?;
+    pictures::sheet(&report.cells, detail).save(&store.path("maps"))?;
     Ok(report)
 }
 

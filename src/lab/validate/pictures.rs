@@ -3,9 +3,11 @@
 use super::bottlenecks::{MEASURED, Measured};
 use super::corridors::SPEEDS;
 use super::data;
+use crate::lab::gallery::{BAND, band, curve, distinct, with_legend};
 use crate::lab::suite::Runs;
 use crate::lab::verify::speeds::BANDS;
-use crate::output::plot::{Axis, BLACK, Corner, GRAY, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::output::colors::Rgb;
+use crate::output::plot::{Axis, BLACK, GRAY, Mark, Panel, Point, Sheet, Style, line_color};
 use crate::runs::summary::Summary;
 
 /// The tolerance of measured speeds, as a part of them: half an error bar.
@@ -16,54 +18,31 @@ const POINTS: u32 = 100;
 const IN_A_ROW: usize = 4;
 /// The part of the passages from which the measured flow is drawn.
 const BEGINNING: f64 = 0.1;
+/// The end of axes of speed, m/s.
+const FASTEST: f64 = 1.6;
 
 /// `fundamental`, speeds by density, and `passages`, numbers of people over time at each line, of the scenes with runs.
 pub fn sheets(runs: &[Runs]) -> Vec<(&'static str, Sheet)> {
     let fundamental = [lines(runs), single_file(runs), corridor(runs)];
-    let passages = all(runs).map(|measured| passages(&measured, runs));
+    let fundamental: Vec<Panel> = fundamental.into_iter().flatten().collect();
+    let passages: Vec<Panel> = all(runs).filter_map(|at| passages(&at, runs)).collect();
     let all = [
-        (
-            "fundamental",
-            "Speed by density",
-            fundamental.into_iter().flatten().collect(),
-        ),
-        (
-            "passages",
-            "People past the line",
-            passages.flatten().collect::<Vec<_>>(),
-        ),
+        ("fundamental", "Speed by density", fundamental),
+        ("passages", "People past the line", passages),
     ];
     let drawn = all.into_iter().filter(|(_, _, panels)| !panels.is_empty());
     let sheet = |(stem, title, panels): (_, &str, Vec<Panel>)| {
-        let sheet = Sheet {
-            title: title.to_owned(),
-            columns: panels.len().min(IN_A_ROW),
-            panel_size: [200.0, 170.0],
-            panels: with_legend(panels),
-            ..Sheet::default()
-        };
-        (stem, sheet)
+        let columns = panels.len().min(IN_A_ROW);
+        let panels = with_legend(panels, columns);
+        (stem, Sheet::new(title, columns, [200.0, 170.0], panels))
     };
     drawn.map(sheet).collect()
 }
 
-/// The legend beside the last panel of the first row.
-fn with_legend(mut panels: Vec<Panel>) -> Vec<Panel> {
-    let place = panels.len().min(IN_A_ROW) - 1;
-    panels[place].legend = Some(Corner::Beside);
-    panels
-}
-
 /// The profiles with their colors, in the order of the runs.
-fn profiles<'a>(runs: &'a [Runs<'a>]) -> Vec<(&'a str, [u8; 3])> {
-    let mut names: Vec<&str> = Vec::new();
-    for run in runs {
-        if !names.contains(&run.profile()) {
-            names.push(run.profile());
-        }
-    }
-    let colors = LINES.into_iter().cycle();
-    names.into_iter().zip(colors).collect()
+fn profiles<'a>(runs: &'a [Runs<'a>]) -> impl Iterator<Item = (&'a str, Rgb)> {
+    let names = distinct(runs.iter().map(|run| run.profile()));
+    names.into_iter().zip((0..).map(line_color))
 }
 
 /// The mean of a value of a run over the seeds of a profile; `None` if a seed lacks it.
@@ -74,46 +53,41 @@ fn mean(runs: &[Runs], profile: &str, label: &str, value: &str) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// A line with a dot at each value, for each profile.
-fn curves<'a>(
-    runs: &'a [Runs<'a>],
-    values: impl Fn(&str) -> Vec<[f64; 2]> + 'a,
-) -> impl Iterator<Item = Mark> + 'a {
-    profiles(runs)
-        .into_iter()
-        .flat_map(move |(profile, color)| {
-            let points = values(profile);
-            [
-                Mark::Line(points.clone(), Style::full(color, 1.2, "")),
-                Mark::dots(points, Style::full(color, 2.4, profile)),
-            ]
-        })
+/// A panel with speeds by density.
+fn speeds(title: &str, density: &str, most: f64, marks: Vec<Mark>) -> Panel {
+    let x = Axis::linear(density, [0.0, most]);
+    let y = Axis::linear("speed [m/s]", [0.0, FASTEST]);
+    Panel::new(title, x, y, marks)
+}
+
+/// Speeds on rings of these runs and densities for each profile; `None` if the first profile has none.
+fn rings(runs: &[Runs], rings: &[(&str, f64)]) -> Option<Vec<Mark>> {
+    let points = |profile: &str| -> Vec<[f64; 2]> {
+        let speed = |run: &str| mean(runs, profile, run, "ring_speed_m_per_s");
+        let point = |&(run, density): &(&str, f64)| Some([density, speed(run)?]);
+        rings.iter().filter_map(point).collect()
+    };
+    let is_known = !points(runs.first()?.profile()).is_empty();
+    let curves = profiles(runs).flat_map(|(profile, color)| {
+        let style = Style::full(color, 1.2, profile);
+        curve(points(profile), style, 2.4)
+    });
+    is_known.then(|| curves.collect())
 }
 
 /// Speeds in an endless corridor.
 fn corridor(runs: &[Runs]) -> Option<Panel> {
-    let speed = |profile: &str| {
-        let speeds = SPEEDS.iter().filter_map(|(run, density, _)| {
-            mean(runs, profile, run, "ring_speed_m_per_s").map(|speed| [*density, speed])
-        });
-        speeds.collect::<Vec<_>>()
-    };
-    runs.first()
-        .filter(|run| !speed(run.profile()).is_empty())?;
-    let curve = |speed: fn(f64) -> f64| {
+    let found = rings(runs, &SPEEDS.map(|(run, density, _)| (run, density)))?;
+    let line = |speed: fn(f64) -> f64, style| {
         let densities = (1..=POINTS).map(|k| 5.0 * f64::from(k) / f64::from(POINTS));
         let points = densities.map(|density| [density, speed(density)]);
-        points
-            .filter(|[_, speed]| (0.0..=1.6).contains(speed))
-            .collect()
+        let is_shown = |at: &[f64; 2]| (0.0..=FASTEST).contains(&at[1]);
+        Mark::line(points.filter(is_shown), style)
     };
     let weidmann = |density: f64| 1.34 * (1.0 - (-1.913 * (1.0 / density - 1.0 / 5.4)).exp());
-    let sfpe = |density: f64| {
-        if density < 0.54 {
-            1.2
-        } else {
-            1.4 * (1.0 - 0.266 * density)
-        }
+    let sfpe = |density: f64| match density < 0.54 {
+        true => 1.2,
+        false => 1.4 * (1.0 - 0.266 * density),
     };
     let measured = SPEEDS.map(|(_, x, y)| Point {
         x,
@@ -121,15 +95,13 @@ fn corridor(runs: &[Runs]) -> Option<Panel> {
         error: TOLERANCE * y,
     });
     let mut marks = vec![
-        Mark::Line(curve(weidmann), Style::full(GRAY, 1.0, "Weidmann 1993")),
-        Mark::Line(curve(sfpe), Style::broken(GRAY, 1.0, "SFPE")),
+        line(weidmann, Style::full(GRAY, 1.0, "Weidmann 1993")),
+        line(sfpe, Style::broken(GRAY, 1.0, "SFPE")),
     ];
-    marks.extend(curves(runs, speed));
+    marks.extend(found);
     let style = Style::full(BLACK, 2.4, "measured, ± 10 %");
     marks.push(Mark::Points(measured.to_vec(), style));
-    let x = Axis::linear("density [P/m²]", [0.0, 5.0]);
-    let y = Axis::linear("speed [m/s]", [0.0, 1.6]);
-    Some(Panel::new("endless corridor", x, y, marks))
+    Some(speeds("endless corridor", "density [P/m²]", 5.0, marks))
 }
 
 /// Density and speed at each line, joined to what was measured there.
@@ -145,54 +117,29 @@ fn lines(runs: &[Runs]) -> Option<Panel> {
             Some([[at.density, at.speed], [density, speed]])
         });
         let found: Vec<[[f64; 2]; 2]> = found.collect();
-        let ways = found
-            .iter()
-            .map(|way| Mark::Line(way.to_vec(), Style::full(color, 0.5, "")));
-        marks.extend(ways);
-        marks.push(Mark::dots(
-            found.iter().map(|way| way[1]),
-            Style::full(color, 2.4, ""),
-        ));
+        let ways = found.iter();
+        marks.extend(ways.map(|&way| Mark::line(way, Style::full(color, 0.5, ""))));
+        let ends = found.iter().map(|way| way[1]);
+        marks.push(Mark::dots(ends, Style::full(color, 2.4, "")));
     }
     if marks.is_empty() {
         return None;
     }
     let measured = all(runs).map(|at| [at.density, at.speed]);
     marks.push(Mark::dots(measured, Style::full(BLACK, 2.4, "")));
-    let x = Axis::linear("density [P/m²]", [0.0, 8.0]);
-    let y = Axis::linear("speed [m/s]", [0.0, 1.6]);
-    Some(Panel::new(
-        "gaps, door and corridors; black: measured",
-        x,
-        y,
-        marks,
-    ))
+    let title = "gaps, door and corridors; black: measured";
+    Some(speeds(title, "density [P/m²]", 8.0, marks))
 }
 
 /// Speeds in single file, in the band of measured ones.
 fn single_file(runs: &[Runs]) -> Option<Panel> {
-    let density = |written: &str| written.parse().unwrap_or(f64::NAN);
-    let speed = |profile: &str| {
-        let speeds = BANDS.iter().filter_map(|(run, at, _)| {
-            mean(runs, profile, run, "ring_speed_m_per_s").map(|speed| [density(at), speed])
-        });
-        speeds.collect::<Vec<_>>()
-    };
-    runs.first()
-        .filter(|run| !speed(run.profile()).is_empty())?;
-    let low = BANDS.map(|(_, at, [low, _])| [density(at), low]);
-    let high = BANDS.map(|(_, at, [_, high])| [density(at), high]);
-    let band = low.into_iter().chain(high.into_iter().rev()).collect();
-    let mut marks = vec![Mark::Area(band, [225, 225, 225])];
-    marks.extend(curves(runs, speed));
-    let x = Axis::linear("density [P/m]", [0.0, 2.0]);
-    let y = Axis::linear("speed [m/s]", [0.0, 1.6]);
-    Some(Panel::new(
-        "single file; gray: measured, 10 to 90 %",
-        x,
-        y,
-        marks,
-    ))
+    let bands = BANDS.map(|(run, at, ends)| (run, at.parse().unwrap_or(f64::NAN), ends));
+    let found = rings(runs, &bands.map(|(run, density, _)| (run, density)))?;
+    let [low, high] = [0, 1].map(|end: usize| bands.map(|(_, density, ends)| [density, ends[end]]));
+    let mut marks = vec![band(&low, &high, BAND)];
+    marks.extend(found);
+    let title = "single file; gray: measured, 10 to 90 %";
+    Some(speeds(title, "density [P/m]", 2.0, marks))
 }
 
 /// What was measured at all lines, also in the data of the runs.
@@ -215,11 +162,8 @@ fn passages(at: &Measured, runs: &[Runs]) -> Option<Panel> {
             (latest, most) = (latest.max(end), most.max(count));
             let tenth = steps.get((BEGINNING * steps.len() as f64) as usize);
             begins = tenth.map_or(f64::INFINITY, |[time, _]| *time).min(begins);
-            let label = if run.seed() == runs[0].seed() {
-                profile
-            } else {
-                ""
-            };
+            let is_first = run.seed() == runs[0].seed();
+            let label = if is_first { profile } else { "" };
             marks.push(Mark::Line(steps, Style::full(color, 1.0, label)));
         }
     }
@@ -245,10 +189,7 @@ fn passages(at: &Measured, runs: &[Runs]) -> Option<Panel> {
 /// The number of people past a line over time.
 fn steps(of: &Summary, line: &str) -> Option<Vec<[f64; 2]>> {
     let times = of.data::<Vec<f64>>(line)?;
-    let steps = (1..).zip(times);
-    Some(
-        steps
-            .map(|(count, time)| [time, f64::from(count)])
-            .collect(),
-    )
+    let counts = (1..).map(f64::from);
+    let steps = times.into_iter().zip(counts);
+    Some(steps.map(|(time, count)| [time, count]).collect())
 }
