@@ -10,6 +10,7 @@ use super::watch::bar;
 use super::{Failure, note_plan, talk, tell, use_threads};
 use crate::engine::boundary::WallMethod;
 use crate::lab::error::LabError;
+use crate::lab::gallery;
 use crate::lab::measure::{
     Behind, CellLimit, Kernel, MOST_HIDDEN, Measured, MomentRecorder, Options, Report, Results,
     Site, check, files, measure, pictures, speed,
@@ -58,7 +59,7 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     let measured = measured?;
     results.finish(&measured, &tracks)?;
     recording.finish()?;
-    pictures::save(&folder, &measured, &site).map_err(LabError::from)?;
+    gallery::save(&folder, pictures::sheets(&measured, &site)).map_err(LabError::from)?;
     report_oddities(&measured);
     let report = Report {
         tracks: &tracks,

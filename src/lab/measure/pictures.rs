@@ -1,7 +1,5 @@
 //! Pictures of mean fields, fundamental diagrams and N(t).
 
-use std::path::Path;
-
 use super::{
     Class, Crossings, Density, Diagram, FrameMean, Mean, Measured, Site, region_report,
     safety_report,
@@ -9,10 +7,10 @@ use super::{
 use crate::analysis::statistics::MeanStd;
 use crate::engine::geometry::Walls;
 use crate::engine::math::{Vector, bounds};
-use crate::output::colors::{ColorMap, DENSITY, SPEED};
+use crate::lab::gallery::thinned;
+use crate::output::colors::{ColorMap, DENSITY, SPEED, light};
 use crate::output::plot::{
-    Axis, BLACK, Cells, ColorBar, Corner, GRAY, LINES, Label, Mark, Panel, PlotError, Point, Sheet,
-    Style,
+    Axis, BLACK, Cells, ColorBar, Corner, GRAY, Mark, Panel, Point, Sheet, Style, line_color,
 };
 
 /// Length of the longer side of a map, points.
@@ -21,28 +19,26 @@ const MAP_SIDE: f64 = 330.0;
 const LEAST_SIDE: f64 = 70.0;
 /// Maximum number of dots per diagram; more would hide each other.
 const MOST_DOTS: usize = 1500;
+/// The color of frames, as a part of that of their classes.
+const LIGHT: f64 = 1.0 / 3.0;
 /// Below this density, P/m², the mean speed is not meaningful and is left blank.
 const NOBODY: f64 = 1e-3;
 
 /// The file names of the pictures, without extension.
 pub const STEMS: [&str; 5] = ["fields", "fundamental_diagram", "flow", "safety", "regions"];
 
-/// Draws all pictures into `folder`, as SVG and PNG.
-///
-/// # Errors
-/// A picture cannot be written.
-pub fn save(folder: &Path, measured: &Measured, site: &Site) -> Result<(), PlotError> {
-    let [fields, diagram, flow, safety, regions] = STEMS;
-    maps(measured, &site.walls).save(&folder.join(fields))?;
-    diagrams(&measured.diagrams).save(&folder.join(diagram))?;
-    safety_report::picture(&measured.safety).save(&folder.join(safety))?;
-    if let Some(sheet) = region_report::picture(measured) {
-        sheet.save(&folder.join(regions))?;
-    }
-    if !measured.crossings.is_empty() {
-        counts(&measured.crossings).save(&folder.join(flow))?;
-    }
-    Ok(())
+/// The pictures by their stems; without regions or lines there are fewer.
+pub fn sheets(measured: &Measured, site: &Site) -> impl Iterator<Item = (&'static str, Sheet)> {
+    let crossings = &measured.crossings;
+    let sheets = [
+        Some(maps(measured, &site.walls)),
+        Some(diagrams(&measured.diagrams)),
+        (!crossings.is_empty()).then(|| counts(crossings)),
+        Some(safety_report::picture(&measured.safety)),
+        region_report::picture(measured),
+    ];
+    let named = STEMS.into_iter().zip(sheets);
+    named.filter_map(|(stem, sheet)| Some((stem, sheet?)))
 }
 
 /// Maps of density and speed, with the walls.
@@ -71,21 +67,11 @@ fn maps(measured: &Measured, walls: &Walls) -> Sheet {
         let mut marks = vec![Mark::Group(vec![field, Mark::Overlay(solid)])];
         marks.extend(walls.iter().map(|wall| {
             let ends = [wall.start, wall.end].map(|p| [p.x, p.y]);
-            Mark::Line(ends.to_vec(), Style::full(BLACK, 1.2, ""))
+            Mark::line(ends, Style::full(BLACK, 1.2, ""))
         }));
         marks.extend(places(measured));
-        Panel {
-            bar: Some(ColorBar {
-                label: label.to_owned(),
-                map: map.clone(),
-            }),
-            ..Panel::new(
-                title,
-                Axis::linear("x [m]", x),
-                Axis::linear("y [m]", y),
-                marks,
-            )
-        }
+        let (x, y) = (Axis::linear("x [m]", x), Axis::linear("y [m]", y));
+        Panel::new(title, x, y, marks).with_bar(ColorBar::new(label, map))
     };
     let columns = if width > 1.5 * height { 1 } else { 2 };
     let size = [width, height].map(|side| (side * scale).max(LEAST_SIDE));
@@ -95,7 +81,7 @@ fn maps(measured: &Measured, walls: &Walls) -> Sheet {
     let speed = map("mean speed", "speed [m/s]", &SPEED, |mean| {
         mean.speed.filter(|_| mean.density > NOBODY)
     });
-    sheet(columns, size, vec![density, speed])
+    Sheet::new("", columns, size, vec![density, speed])
 }
 
 /// The outlines of regions and the lines, with their numbers.
@@ -119,90 +105,90 @@ fn places(measured: &Measured) -> Vec<Mark> {
         [
             Mark::Line(path.clone(), Style::full(BLACK, 2.0, "")),
             Mark::Line(path, Style::full([255; 3], 1.0, "")),
-            Mark::Label(Label {
-                at: middle.into(),
-                side,
-                text,
-                color: BLACK,
-            }),
+            Mark::label(middle.into(), side, text),
         ]
     });
     marks.collect()
 }
 
+/// A quantity of diagrams: its axis, and its values of frames and of classes.
+struct Quantity {
+    label: &'static str,
+    frame: fn(&FrameMean, Density) -> Option<f64>,
+    class: fn(&Class) -> MeanStd,
+}
+
+const QUANTITIES: [Quantity; 2] = [
+    Quantity {
+        label: "speed [m/s]",
+        frame: |mean, kind| mean.speed(kind),
+        class: |class| class.speed,
+    },
+    Quantity {
+        label: "flow [1/(m s)]",
+        frame: |mean, kind| mean.flow(kind),
+        class: |class| class.flow,
+    },
+];
+
 /// Speed and flow over each density that is known, side by side: frames as dots, classes with standard deviations.
 fn diagrams(diagrams: &[Diagram]) -> Sheet {
     let known = |kind: &Density| diagrams.iter().any(|all| all.classes(*kind).is_some());
     let kinds: Vec<Density> = Density::ALL.into_iter().filter(known).collect();
-    let right = values(diagrams, &kinds, |class| class.density.mean);
-    let top = |of: OfClass, frame: OfFrame| {
-        let top = |class: &Class| of(class).mean + of(class).population_std();
-        let frames = diagrams.iter().flat_map(|diagram| &diagram.frames);
-        let frames = frames.flat_map(|mean| kinds.iter().filter_map(|&kind| frame(mean, kind)));
-        1.1 * values(diagrams, &kinds, top)
-            .chain(frames)
-            .fold(0.1, f64::max)
+    let classes = || {
+        let of = |&kind: &Density| diagrams.iter().filter_map(move |all| all.classes(kind));
+        kinds
+            .iter()
+            .flat_map(of)
+            .flat_map(|(_, classes)| classes.values())
     };
+    let right = classes().map(|class| class.density.mean);
     let right = 1.3 * right.fold(0.5, f64::max); // room for the legend
-    let panel = |kind: Density, (label, top): (&str, f64), (frame, class): (OfFrame, OfClass)| {
+    let top = |of: &Quantity| {
+        let highest = |mean: MeanStd| mean.mean + mean.population_std();
+        let frames = diagrams.iter().flat_map(|diagram| &diagram.frames);
+        let frames =
+            frames.flat_map(|mean| kinds.iter().filter_map(|&kind| (of.frame)(mean, kind)));
+        let classes = classes().map(|class| highest((of.class)(class)));
+        1.1 * classes.chain(frames).fold(0.1, f64::max)
+    };
+    let panel = |kind: Density, of: &Quantity| {
         let mut marks = Vec::new();
         for (k, diagram) in diagrams.iter().enumerate() {
-            let pale = LINES[k % LINES.len()].map(|channel| channel / 3 + 170);
-            // Thinned: more dots would hide each other.
-            let every = diagram.frames.len().div_ceil(MOST_DOTS).max(1);
-            let frames = diagram.frames.iter().step_by(every);
-            let dots = frames.filter_map(|mean| Some([mean.density(kind)?, frame(mean, kind)?]));
-            marks.push(Mark::dots(dots, Style::full(pale, 1.0, "")));
+            let frames = thinned(&diagram.frames, MOST_DOTS);
+            let dots =
+                frames.filter_map(|mean| Some([mean.density(kind)?, (of.frame)(mean, kind)?]));
+            let style = Style::full(light(line_color(k), LIGHT), 1.0, "");
+            marks.push(Mark::dots(dots, style));
         }
         for (k, diagram) in diagrams.iter().enumerate() {
             let classes = diagram.classes(kind).into_iter();
             let classes = classes.flat_map(|(_, classes)| classes.values());
-            let points = classes.map(|of| Point {
-                x: of.density.mean,
-                y: class(of).mean,
-                error: class(of).population_std(),
+            let points = classes.map(|class| {
+                let value = (of.class)(class);
+                let (x, y, error) = (class.density.mean, value.mean, value.population_std());
+                Point { x, y, error }
             });
-            let style = Style::full(LINES[k % LINES.len()], 2.6, &name(diagram, k));
+            let style = Style::full(line_color(k), 2.6, &name(diagram, k));
             marks.push(Mark::Points(points.collect(), style));
         }
         let x = Axis::linear("density [P/m²]", [0.0, right]);
-        let of = diagrams.iter().find_map(|diagram| diagram.classes(kind));
-        let title = match of {
+        let y = Axis::linear(of.label, [0.0, top(of)]);
+        let rows = diagrams.iter().find_map(|diagram| diagram.classes(kind));
+        let title = match rows {
             Some(("rows", _)) => format!("{}: people ± deviation", kind.name()),
             _ => format!("{}: frames ± deviation", kind.name()),
         };
-        let mut panel = Panel::new(&title, x, Axis::linear(label, [0.0, top]), marks);
-        panel.legend = Some(Corner::UpperRight);
-        panel
+        Panel::new(&title, x, y, marks).with_legend(Corner::UpperRight)
     };
-    let speed: (OfFrame, OfClass) = (|mean, kind| mean.speed(kind), |class| class.speed);
-    let flow: (OfFrame, OfClass) = (|mean, kind| mean.flow(kind), |class| class.flow);
-    let axes = [
-        ("speed [m/s]", top(speed.1, speed.0)),
-        ("flow [1/(m s)]", top(flow.1, flow.0)),
-    ];
-    let speeds = kinds.iter().map(|&kind| panel(kind, axes[0], speed));
-    let flows = kinds.iter().map(|&kind| panel(kind, axes[1], flow));
-    let panels = speeds.chain(flows).collect();
-    sheet(kinds.len().max(1), [210.0, 180.0], panels)
-}
-
-/// A value of a frame by a density.
-type OfFrame = fn(&FrameMean, Density) -> Option<f64>;
-/// A value of a class.
-type OfClass = fn(&Class) -> MeanStd;
-
-/// A value of all classes of all diagrams.
-fn values<'a>(
-    diagrams: &'a [Diagram],
-    kinds: &'a [Density],
-    value: impl Fn(&Class) -> f64 + 'a,
-) -> impl Iterator<Item = f64> + 'a {
-    let classes = kinds.iter().flat_map(move |&kind| {
-        let classes = diagrams.iter().filter_map(move |all| all.classes(kind));
-        classes.flat_map(|(_, classes)| classes.values())
+    let panels = QUANTITIES.iter();
+    let panels = panels.flat_map(|of| {
+        kinds
+            .iter()
+            .map(|&kind| panel(kind, of))
+            .collect::<Vec<_>>()
     });
-    classes.map(value)
+    Sheet::new("", kinds.len().max(1), [210.0, 180.0], panels.collect())
 }
 
 /// The name of a diagram in a legend.
@@ -222,7 +208,7 @@ fn counts(crossings: &[Crossings]) -> Sheet {
     let mut marks = Vec::new();
     let mut most: f64 = 1.0;
     for (k, line) in crossings.iter().enumerate() {
-        let color = LINES[k % LINES.len()];
+        let color = line_color(k);
         let styles: [(_, _, fn(_, _, &str) -> _); 2] =
             [(1, "forward", Style::full), (-1, "backward", Style::broken)];
         for (direction, name, style) in styles {
@@ -240,20 +226,8 @@ fn counts(crossings: &[Crossings]) -> Sheet {
         let middle = [0.5 * (first + last), 0.5];
         marks.push(Mark::Text(middle, "no passages".to_owned(), BLACK));
     }
-    let (x, y) = (
-        Axis::linear("t [s]", [first, last]),
-        Axis::linear("N", [0.0, 1.05 * most]),
-    );
-    let mut panel = Panel::new("crossings so far", x, y, marks);
-    panel.legend = Some(Corner::UpperLeft);
-    sheet(1, [330.0, 210.0], vec![panel])
-}
-
-fn sheet(columns: usize, panel_size: [f64; 2], panels: Vec<Panel>) -> Sheet {
-    Sheet {
-        columns,
-        panel_size,
-        panels,
-        ..Sheet::default()
-    }
+    let x = Axis::linear("t [s]", [first, last]);
+    let y = Axis::linear("N", [0.0, 1.05 * most]);
+    let panel = Panel::new("crossings so far", x, y, marks).with_legend(Corner::UpperLeft);
+    Sheet::new("", 1, [330.0, 210.0], vec![panel])
 }

@@ -4,7 +4,8 @@ use serde_json::{Value, json};
 
 use super::report::{mean_and_std, spread};
 use super::{Class, Density, Diagram, FrameMean, Measured};
-use crate::output::plot::{Axis, Corner, LINES, Mark, Panel, Sheet, Style};
+use crate::lab::gallery::thinned;
+use crate::output::plot::{Axis, Corner, Mark, Panel, Sheet, Style, line_color};
 use crate::output::table::Table;
 
 /// Maximum number of points of a curve.
@@ -112,10 +113,9 @@ pub fn picture(measured: &Measured) -> Option<Sheet> {
     let regions = regions.filter(|(diagram, _)| diagram.region.is_some());
     let [first, last] = measured.overview.times;
     let panels = regions.flat_map(|(diagram, number)| {
-        let every = diagram.frames.len().div_ceil(MOST_POINTS).max(1);
         let panel = |what: &str, label: &str, kinds: &[Density], value: ByDensity| {
             let curves = kinds.iter().map(|&kind| {
-                let frames = diagram.frames.iter().step_by(every);
+                let frames = thinned(&diagram.frames, MOST_POINTS);
                 let points = frames.filter_map(|frame| Some([frame.time, value(frame, kind)?]));
                 (kind, points.collect::<Vec<[f64; 2]>>())
             });
@@ -123,19 +123,16 @@ pub fn picture(measured: &Measured) -> Option<Sheet> {
             let values = curves.iter().flat_map(|(_, points)| points).map(|p| p[1]);
             let top = 1.35 * values.fold(0.1, f64::max); // room for the legend
             let marks = curves.into_iter().map(|(kind, points)| {
-                let color = LINES[kind as usize % LINES.len()];
                 let name = match (kind, what) {
                     (Density::SphAtPeople, "speed") => "mean of the people",
                     _ => kind.name(),
                 };
-                Mark::Line(points, Style::full(color, 1.0, name))
+                Mark::Line(points, Style::full(line_color(kind as usize), 1.0, name))
             });
             let time = Axis::linear("t [s]", [first, last.max(first + 1.0)]);
             let value = Axis::linear(label, [0.0, top]);
             let title = format!("region {number}: {what}");
-            let mut panel = Panel::new(&title, time, value, marks.collect());
-            panel.legend = Some(Corner::UpperRight);
-            panel
+            Panel::new(&title, time, value, marks.collect()).with_legend(Corner::UpperRight)
         };
         let speeds = [Density::SphAtPeople, Density::Voronoi];
         [
@@ -151,12 +148,7 @@ pub fn picture(measured: &Measured) -> Option<Sheet> {
         ]
     });
     let panels: Vec<Panel> = panels.collect();
-    (!panels.is_empty()).then(|| Sheet {
-        columns: 2,
-        panel_size: [260.0, 190.0],
-        panels,
-        ..Sheet::default()
-    })
+    (!panels.is_empty()).then(|| Sheet::new("", 2, [260.0, 190.0], panels))
 }
 
 /// A value of a frame by a density.

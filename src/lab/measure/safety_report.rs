@@ -147,43 +147,47 @@ pub fn json(measured: &Measured) -> Value {
 pub fn picture(safety: &Safety) -> Sheet {
     let samples = &safety.samples;
     let ends = [samples.first(), samples.last()].map(|of| of.map_or(0.0, |sample| sample.time));
-    let time = || Axis::linear("t [s]", [ends[0], ends[1].max(ends[0] + 1.0)]);
     let series = |value: fn(&Sample) -> Option<f64>| -> Vec<[f64; 2]> {
-        let points = samples.iter();
-        points
-            .filter_map(|sample| Some([sample.time, value(sample)?]))
-            .collect()
+        let point = |sample: &Sample| Some([sample.time, value(sample)?]);
+        samples.iter().filter_map(point).collect()
     };
-    let top = |lines: &[Vec<[f64; 2]>], least: f64| {
-        let values = lines.iter().flatten().map(|[_, y]| *y);
-        1.35 * values.fold(least, f64::max) // room for the legend
+    let panel = |title, label, least: f64, lines: Vec<(Vec<[f64; 2]>, Style)>| {
+        let values = lines.iter().flat_map(|(points, _)| points);
+        let top = 1.35 * values.map(|at| at[1]).fold(least, f64::max); // room for the legend
+        let time = Axis::linear("t [s]", [ends[0], ends[1].max(ends[0] + 1.0)]);
+        let value = Axis::linear(label, [0.0, top]);
+        let marks = lines.into_iter();
+        let marks = marks.map(|(points, style)| Mark::Line(points, style));
+        Panel::new(title, time, value, marks.collect()).with_legend(Corner::UpperRight)
     };
     let areas = [
         series(|sample| Some(sample.area_above_4)),
         series(|sample| Some(sample.area_above_5)),
         series(|sample| Some(sample.area_above_6)),
     ];
-    let y = Axis::linear("area [m²]", [0.0, top(&areas, 1.0)]);
-    let lines = areas.into_iter().zip(DENSITIES).zip(LINES);
-    let marks = lines.map(|((points, density), color)| {
+    let styles = DENSITIES.into_iter().zip(LINES).map(|(density, color)| {
         let label = format!("above {density} P/m²");
-        Mark::Line(points, Style::full(color, 1.2, &label))
+        Style::full(color, 1.2, &label)
     });
-    let mut alarms = Panel::new("alarms", time(), y, marks.collect());
-    alarms.legend = Some(Corner::UpperRight);
-    let pressure = [series(|sample| sample.pressure)];
-    let y = Axis::linear("ρ Var(v) [1/s²]", [0.0, top(&pressure, BEFORE_ACCIDENT)]);
+    let areas = areas.into_iter().zip(styles).collect();
     let label = format!("{BEFORE_ACCIDENT}: before the accident at Mina, 2006");
     let mark = ends.map(|time| [time, BEFORE_ACCIDENT]).to_vec();
-    let mut marks = vec![Mark::Line(mark, Style::broken(LINES[1], 1.2, &label))];
-    marks.extend(pressure.map(|points| Mark::Line(points, Style::full(LINES[0], 1.2, "highest"))));
-    let mut pressure = Panel::new("crowd pressure", time(), y, marks);
-    pressure.legend = Some(Corner::UpperRight);
-    Sheet {
-        title: "thresholds from the literature, not safety limits".to_owned(),
-        columns: 2,
-        panel_size: [240.0, 200.0],
-        panels: vec![alarms, pressure],
-        ..Sheet::default()
-    }
+    let pressures = vec![
+        (mark, Style::broken(LINES[1], 1.2, &label)),
+        (
+            series(|sample| sample.pressure),
+            Style::full(LINES[0], 1.2, "highest"),
+        ),
+    ];
+    let panels = vec![
+        panel("alarms", "area [m²]", 1.0, areas),
+        panel(
+            "crowd pressure",
+            "ρ Var(v) [1/s²]",
+            BEFORE_ACCIDENT,
+            pressures,
+        ),
+    ];
+    let title = "thresholds from the literature, not safety limits";
+    Sheet::new(title, 2, [240.0, 200.0], panels)
 }
