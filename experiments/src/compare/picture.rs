@@ -1,6 +1,7 @@
 //! The picture: cost over the number of agents.
 
-use sandbox::lab::bench::pictures::{around, color, curve};
+use sandbox::lab::bench::pictures::{color, medians};
+use sandbox::lab::gallery::{around, distinct};
 use sandbox::output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style};
 
 use super::DENSITY;
@@ -23,48 +24,29 @@ pub fn picture(rows: &[Row]) -> Sheet {
         .chain(&other)
         .map(|row| row.ms_per_simulated_second);
     let costs = costs.flat_map(|range| [1e-3 * range.minimum, 1e-3 * range.maximum]);
-    let x = Axis::log(
-        "agents",
-        around(rows.iter().map(|row| f64::from(row.agents)), 1.3),
-    );
+    let agents = rows.iter().map(|row| f64::from(row.agents));
+    let x = Axis::log("agents", around(agents, 1.3));
     let y = Axis::log(
         "computing time per simulated second [s]",
         around(costs, 1.5),
     );
     let panel = |title: &str, rows: &[&Row]| {
-        let mut marks = vec![Mark::Line(
-            vec![[x.range[0], 1.0], [x.range[1], 1.0]],
-            Style::broken(GRAY, 0.8, "real time"),
-        )];
+        let real_time = Style::broken(GRAY, 0.8, "real time");
+        let mut marks = vec![Mark::line(x.range.map(|agents| [agents, 1.0]), real_time)];
         marks.extend(curves(rows));
-        let mut panel = Panel::new(title, x.clone(), y.clone(), marks);
-        panel.legend = Some(Corner::LowerRight);
-        panel
+        Panel::new(title, x.clone(), y.clone(), marks).with_legend(Corner::LowerRight)
     };
-    Sheet {
-        title: format!("Cost of crowds at {DENSITY} P/m², one thread"),
-        columns: 1,
-        panel_size: [460.0, 260.0],
-        panels: vec![
-            panel("Social forces", &social),
-            panel("Velocity obstacles and speed models", &other),
-        ],
-        ..Sheet::default()
-    }
+    let title = format!("Cost of crowds at {DENSITY} P/m², one thread");
+    let panels = vec![
+        panel("Social forces", &social),
+        panel("Velocity obstacles and speed models", &other),
+    ];
+    Sheet::new(&title, 1, [460.0, 260.0], panels)
 }
 
 fn curves(rows: &[&Row]) -> Vec<Mark> {
-    let mut settings: Vec<&Row> = Vec::new();
-    for row in rows {
-        if settings
-            .iter()
-            .all(|known| known.description != row.description)
-        {
-            settings.push(row);
-        }
-    }
-    let marks = settings.iter().enumerate().flat_map(|(k, setting)| {
-        let of = &setting.description;
+    let settings = distinct(rows.iter().map(|row| &row.description));
+    let marks = settings.into_iter().enumerate().flat_map(|(k, of)| {
         let own = rows.iter().filter(|row| row.description == *of);
         let point = |row: &&Row| {
             (
@@ -76,7 +58,7 @@ fn curves(rows: &[&Row]) -> Vec<Mark> {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         let name = of.engine.split(" (").next().unwrap_or_default();
         let label = format!("{name}, {}, {} m", of.model, of.radius);
-        curve(&points, color(k), &label)
+        medians(&points, color(k), &label)
     });
     marks.collect()
 }

@@ -2,7 +2,8 @@
 
 use indicatif::HumanCount;
 use sandbox::analysis::statistics::Range;
-use sandbox::lab::bench::pictures::{around, color, curve};
+use sandbox::lab::bench::pictures::{color, medians};
+use sandbox::lab::gallery::around;
 use sandbox::output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style};
 
 use super::Row;
@@ -19,18 +20,14 @@ pub fn sheet(rows: &[Row]) -> Sheet {
         rows.iter().filter(same).collect()
     };
     let (still, moving) = (of(still), of(moving));
-    Sheet {
-        title: "Crowds cut into parts, one per process".to_owned(),
-        columns: 2,
-        panel_size: [300.0, 210.0],
-        panels: vec![
-            balance(&moving),
-            halos(rows),
-            speed_up(&still),
-            speed_up(&moving),
-        ],
-        ..Sheet::default()
-    }
+    let panels = vec![
+        balance(&moving),
+        halos(rows),
+        speed_up(&still),
+        speed_up(&moving),
+    ];
+    let title = "Crowds cut into parts, one per process";
+    Sheet::new(title, 2, [300.0, 210.0], panels)
 }
 
 /// The name and size of the crowd of some rows.
@@ -43,23 +40,16 @@ fn title(rows: &[&Row]) -> String {
 
 /// An axis over numbers of parts.
 fn parts_axis(rows: &[&Row]) -> Axis {
-    let mut axis = Axis::log(
-        "parts",
-        around(rows.iter().map(|row| row.parts as f64), 1.3),
-    );
-    let counts = rows
-        .chunk_by(|a, b| a.parts == b.parts)
-        .map(|chunk| chunk[0].parts);
-    axis.ticks = counts
-        .map(|parts| (parts as f64, parts.to_string()))
-        .collect();
-    axis
+    let ends = around(rows.iter().map(|row| row.parts as f64), 1.3);
+    let counts = rows.chunk_by(|a, b| a.parts == b.parts);
+    let counts = counts.map(|chunk| chunk[0].parts);
+    Axis::log("parts", ends).ticked(counts.map(|parts| (parts as f64, parts.to_string())))
 }
 
 /// A line through single values.
 fn line(points: &[(f64, f64)], number: usize, label: &str) -> Vec<Mark> {
     let points = points.iter().map(|&(x, y)| (x, Range::of(&[y])));
-    curve(&points.collect::<Vec<_>>(), color(number), label)
+    medians(&points.collect::<Vec<_>>(), color(number), label)
 }
 
 /// The work of the largest part over the mean, by parts and cut.
@@ -72,9 +62,7 @@ fn balance(rows: &[&Row]) -> Panel {
     }
     let most = rows.iter().map(|row| row.work_ratio).fold(1.0, f64::max);
     let y = Axis::log("work, largest part over mean", [0.9, 2.0 * most]);
-    let mut panel = Panel::new(&title(rows), parts_axis(rows), y, marks);
-    panel.legend = Some(Corner::UpperLeft);
-    panel
+    Panel::new(&title(rows), parts_axis(rows), y, marks).with_legend(Corner::UpperLeft)
 }
 
 /// Halos of bisections by work, relative to the own agents.
@@ -96,9 +84,8 @@ fn halos(rows: &[Row]) -> Panel {
     let shares = [shares[0] / 10.0, shares[1]];
     let x = Axis::log("agents per part", sizes);
     let y = Axis::log("agents of the halo per own agent", shares);
-    let mut panel = Panel::new("Halos of bisections by work, with their reach", x, y, marks);
-    panel.legend = Some(Corner::LowerLeft);
-    panel
+    let title = "Halos of bisections by work, with their reach";
+    Panel::new(title, x, y, marks).with_legend(Corner::LowerLeft)
 }
 
 /// Speed-ups of bisections by work by the model.
@@ -106,8 +93,8 @@ fn speed_up(rows: &[&Row]) -> Panel {
     let bisections = rows.iter().filter(|row| row.cut == Way::Work.name());
     let bisections: Vec<&Row> = bisections.copied().collect();
     let ends = around(bisections.iter().map(|row| row.parts as f64), 1.3);
-    let ideal = ends.map(|parts| [parts, parts]).to_vec();
-    let mut marks = vec![Mark::Line(ideal, Style::broken(GRAY, 0.8, "ideal"))];
+    let ideal = ends.map(|parts| [parts, parts]);
+    let mut marks = vec![Mark::line(ideal, Style::broken(GRAY, 0.8, "ideal"))];
     for (k, network) in NETWORKS.iter().enumerate() {
         let points = bisections
             .iter()
@@ -120,7 +107,5 @@ fn speed_up(rows: &[&Row]) -> Panel {
         .map(|model| model.speed_up);
     let y = around(all.chain(ends), 1.3);
     let y = Axis::log("times as fast as one thread (model)", y);
-    let mut panel = Panel::new(&title(rows), parts_axis(rows), y, marks);
-    panel.legend = Some(Corner::UpperLeft);
-    panel
+    Panel::new(&title(rows), parts_axis(rows), y, marks).with_legend(Corner::UpperLeft)
 }

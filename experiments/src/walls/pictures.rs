@@ -36,14 +36,8 @@ impl WallReport {
         panels.push(self.work_precision("density", |method| Some(method.density)));
         panels.push(self.work_precision("force", |method| Some(method.force)));
         panels.push(self.work_precision("force along a straight wall", |method| method.roughness));
-        Sheet {
-            title: "Walls in SPH: each method beside the exact integrals (broken, hollow: particles 0.25 m apart)"
-                .to_owned(),
-            columns: COLUMNS,
-            panel_size: [270.0, 180.0],
-            panels,
-            ..Sheet::default()
-        }
+        let title = "Walls in SPH: each method beside the exact integrals (broken, hollow: particles 0.25 m apart)";
+        Sheet::new(title, COLUMNS, [270.0, 180.0], panels)
     }
 
     /// A work-precision diagram with one dot for each path.
@@ -71,7 +65,7 @@ impl WallReport {
 fn curves(case: &CaseReport, n: usize, label: &str, legend: Option<Corner>) -> Panel {
     let line = |values: &[[f64; 2]], style| {
         let points = case.along.iter().zip(values);
-        Mark::Line(points.map(|(&x, value)| [x, value[n]]).collect(), style)
+        Mark::line(points.map(|(&x, value)| [x, value[n]]), style)
     };
     let truth = case.hidden.iter().chain(&case.solid);
     let largest = truth.map(|value| value[n]).fold(0.0, f64::max);

@@ -1,12 +1,11 @@
 //! The results as tables for readers and as rows for programs.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use sandbox::analysis::wall_integrals::Region;
+use sandbox::lab::bench::created;
 use sandbox::lab::error::LabError;
 use sandbox::output::table::{Cell, Table};
-use sandbox::runs::store::Store;
 use serde_json::{Value, json};
 
 use super::{CaseReport, Error, METHODS, MethodReport, WallReport};
@@ -28,10 +27,7 @@ impl WallReport {
     /// # Errors
     /// A file cannot be written.
     pub fn save(&self, folder: &Path) -> Result<Vec<PathBuf>, LabError> {
-        let shown = folder.display();
-        let unwritable = |error| LabError::Data(format!("cannot write {shown}: {error}"));
-        fs::create_dir_all(folder).map_err(unwritable)?;
-        let store = Store::at(folder);
+        let store = created(folder)?;
         store.write("walls.md", self.markdown().as_bytes())?;
         store.write("walls.csv", &self.csv()?)?;
         store.write("walls.json", format!("{:#}\n", self.json()).as_bytes())?;

@@ -16,7 +16,7 @@ mod threads;
 pub mod timing;
 
 pub use crowd::Crowd;
-pub use report::{Findings, Report, files};
+pub use report::{Findings, Report, created, files};
 pub use skips::{SKIPS, Skip, everything};
 pub use stages::{Started, Stretch, begin};
 

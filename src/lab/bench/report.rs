@@ -94,14 +94,22 @@ impl Report {
     /// # Errors
     /// A file cannot be written.
     pub fn save(&self, folder: &Path) -> Result<Vec<PathBuf>, LabError> {
-        let shown = folder.display();
-        let unwritable = |error| LabError::Data(format!("cannot write {shown}: {error}"));
-        fs::create_dir_all(folder).map_err(unwritable)?;
         let json = format!("{:#}\n", self.json());
-        Store::at(folder).write(&format!("{}.json", self.benchmark), json.as_bytes())?;
+        created(folder)?.write(&format!("{}.json", self.benchmark), json.as_bytes())?;
         self.findings.sheet.save(&folder.join(self.benchmark))?;
         Ok(files(self.benchmark, folder))
     }
+}
+
+/// A folder for files, created if it does not exist.
+///
+/// # Errors
+/// It cannot be created.
+pub fn created(folder: &Path) -> Result<Store, LabError> {
+    let shown = folder.display();
+    let unwritable = |error| LabError::Data(format!("cannot write {shown}: {error}"));
+    fs::create_dir_all(folder).map_err(unwritable)?;
+    Ok(Store::at(folder))
 }
 
 /// The files that a benchmark writes into a folder.

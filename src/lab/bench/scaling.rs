@@ -4,12 +4,13 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::crowd::Crowd;
-use super::pictures::{around, color, curve, sheet};
+use super::pictures::{color, medians, sheet};
 use super::report::Findings;
 use super::timing::ms_per_frame;
 use super::{Benchmark, Plan};
 use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
+use crate::lab::gallery::around;
 use crate::lab::machine::Resident;
 use crate::output::plot::{Axis, Mark, Sheet, Style};
 use crate::output::table::Table;
@@ -116,9 +117,9 @@ fn table(rows: &[Row]) -> Table {
 fn picture(rows: &[Row]) -> Sheet {
     let point = |row: &Row| (f64::from(row.agents), row.ns_per_agent_frame);
     let points: Vec<(f64, Range)> = rows.iter().map(point).collect();
-    let mut marks = curve(&points, color(0), "median");
+    let mut marks = medians(&points, color(0), "median");
     let range = Style::full(color(0), 0.8, "minimum to maximum");
-    marks.push(Mark::Line(Vec::new(), range));
+    marks.push(Mark::line([], range));
     let most = points.iter().map(|(_, range)| range.maximum);
     let times = [0.0, 1.1 * most.fold(1.0, f64::max)];
     let x = Axis::log("agents", around(points.iter().map(|point| point.0), 1.3));

@@ -10,7 +10,7 @@ use serde::Serialize;
 use serde_json::json;
 
 use self::work::{Course, Work};
-use super::pictures::{bar, color, key, sheet};
+use super::pictures::{color, key, sheet};
 use super::report::Findings;
 use super::stages::{Started, begin, busiest};
 use super::{Benchmark, Plan};
@@ -269,7 +269,7 @@ fn picture(rows: &[Row]) -> Sheet {
         marks.push(match ratio(row) {
             Some(ratio) => {
                 let ends = [ratio.min(1.0), ratio.max(1.0)];
-                bar([left, left + 0.9 * width], ends, color(skip))
+                Mark::rectangle([left, left + 0.9 * width], ends, color(skip))
             }
             None => Mark::Text(
                 [left + 0.5 * width, 1.0 - 0.03 * most],
@@ -278,8 +278,8 @@ fn picture(rows: &[Row]) -> Sheet {
             ),
         });
     }
-    let one = vec![[0.0, 1.0], [scenes.len() as f64, 1.0]];
-    marks.push(Mark::Line(one, Style::full(BLACK, 0.6, "")));
+    let one = [[0.0, 1.0], [scenes.len() as f64, 1.0]];
+    marks.push(Mark::line(one, Style::full(BLACK, 0.6, "")));
     let skips = SKIPS.iter().enumerate();
     marks.extend(skips.map(|(k, skip)| key(color(k), skip.name)));
     let names = scenes

@@ -9,7 +9,7 @@ use serde_json::json;
 
 use super::crowd::Crowd;
 use super::hall;
-use super::pictures::{bar, color, key, sheet};
+use super::pictures::{color, key, sheet};
 use super::report::Findings;
 use super::timing::{failed, ms_of, ms_per_frame, warmed};
 use super::{Benchmark, Plan};
@@ -249,7 +249,8 @@ fn picture(rows: &[Row]) -> Sheet {
         let mut foot = 0.0;
         for (k, stage) in Stage::ALL.into_iter().enumerate() {
             let head = foot + 100.0 * row.median(stage).unwrap_or(0.0) / all;
-            marks.push(bar([middle - 0.35, middle + 0.35], [foot, head], color(k)));
+            let sides = [middle - 0.35, middle + 0.35];
+            marks.push(Mark::rectangle(sides, [foot, head], color(k)));
             foot = head;
         }
         // About three digits.
@@ -262,9 +263,8 @@ fn picture(rows: &[Row]) -> Sheet {
     marks.extend(stages.map(|(k, stage)| key(color(k), &stage.name().replace('_', " "))));
     let name = |row: &Row| format!("{} ({})", row.crowd, row.profile);
     let names = Axis::names("", rows.iter().map(name));
-    let mut share = Axis::linear("share of the frame [%]", [0.0, 110.0]);
     let ticks = [0, 20, 40, 60, 80, 100].map(|k| (f64::from(k), k.to_string()));
-    share.ticks = ticks.into();
+    let share = Axis::linear("share of the frame [%]", [0.0, 110.0]).ticked(ticks);
     sheet(
         "Where the time of a frame goes; above, its length [ms]",
         names,

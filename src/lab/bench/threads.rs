@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::crowd::Crowd;
-use super::pictures::{color, curve, sheet};
+use super::pictures::{color, medians, sheet};
 use super::report::Findings;
 use super::timing::{alternate, going_on};
 use super::{Benchmark, Plan};
@@ -103,20 +103,17 @@ fn table(rows: &[Row]) -> Table {
 
 fn picture(rows: &[Row], counts: &[usize]) -> Sheet {
     let all = counts.last().map_or(1.0, |&count| count as f64);
-    let ideal = vec![[1.0, 1.0], [all, all]];
-    let mut marks = vec![Mark::Line(ideal, Style::broken(GRAY, 0.8, "ideal"))];
+    let ideal = Style::broken(GRAY, 0.8, "ideal");
+    let mut marks = vec![Mark::line([[1.0, 1.0], [all, all]], ideal)];
     for (k, size) in rows.chunk_by(|a, b| a.agents == b.agents).enumerate() {
         let points = size.iter().map(|row| (row.threads as f64, row.speed_up));
         let label = format!("{} agents", size[0].agents);
-        marks.extend(curve(&points.collect::<Vec<_>>(), color(k), &label));
+        marks.extend(medians(&points.collect::<Vec<_>>(), color(k), &label));
     }
     let most = rows.iter().map(|row| row.speed_up.maximum);
     let most = 1.1 * most.fold(all, f64::max);
-    let mut x = Axis::linear("threads", [0.8, all + 0.2]);
-    let ticks = counts
-        .iter()
-        .map(|&count| (count as f64, count.to_string()));
-    x.ticks = ticks.collect();
+    let ticks = counts.iter().map(|&k| (k as f64, k.to_string()));
+    let x = Axis::linear("threads", [0.8, all + 0.2]).ticked(ticks);
     let y = Axis::linear("times as fast as on one thread", [0.0, most]);
     sheet("Speed-up over threads, a crowd at 5 P/m²", x, y, marks)
 }
