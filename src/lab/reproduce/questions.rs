@@ -77,8 +77,7 @@ fn table(combinations: &[Combination]) -> String {
         let mut values = combinations.iter().flat_map(|row| row.values(metric));
         values.any(|value| value.is_some())
     };
-    let label = |row: &Combination| label(row).to_owned();
-    let mut table = Table::of(combinations).column("run", label);
+    let mut table = Table::of(combinations).column("run", |row| row.label().to_owned());
     for (metric, head) in COLUMNS.into_iter().filter(|(metric, _)| measured(metric)) {
         table = table.fixed(head, 2, |row| {
             let values: Vec<f64> = row.values(metric).into_iter().flatten().collect();
@@ -90,12 +89,6 @@ fn table(combinations: &[Combination]) -> String {
         });
     }
     table.table().markdown()
-}
-
-/// The label of a combination.
-fn label<'a>(row: &Combination<'a>) -> &'a str {
-    let cell = row.cells.first();
-    cell.and_then(|cell| cell.label()).unwrap_or_default()
 }
 
 /// The numbers of all seeds, or a single one if they are equal.
@@ -112,7 +105,7 @@ fn rankings(combinations: &[Combination]) -> Result<String, LabError> {
     let profiles = published()?.table2.rows.len();
     let mut geometries = Vec::new();
     for rows in combinations.chunks(profiles) {
-        let label = rows.first().map_or("", label);
+        let label = rows.first().map_or("", Combination::label);
         let through = rows.iter().flat_map(|row| row.values("uncounted"));
         let through = through.flatten();
         geometries.push(Geometry {

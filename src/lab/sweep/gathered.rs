@@ -196,7 +196,18 @@ impl<'a> Gathered<'a> {
     }
 }
 
-impl Combination<'_> {
+impl<'a> Combination<'a> {
+    /// The value of a varied setting.
+    pub fn value(&self, key: &str) -> Option<&'a Value> {
+        self.cells.first()?.value(key)
+    }
+
+    /// The label; empty for none.
+    pub fn label(&self) -> &'a str {
+        let cell = self.cells.first();
+        cell.and_then(Cell::label).unwrap_or_default()
+    }
+
     /// A metric of each finished cell, in the order of the seeds.
     pub fn values(&self, metric: &str) -> Vec<Option<f64>> {
         let results = self.results.iter();

@@ -1,6 +1,6 @@
 //! Pictures of a study: measurements over one or two varied settings, with the confidence of their means.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 use serde_json::Value;
 
@@ -9,8 +9,9 @@ use super::cell::{LABEL, plain};
 use super::gathered::{Combination, Gathered};
 use super::readable::{readable, readables};
 use crate::analysis::statistics::MeanStd;
-use crate::output::colors::{ColorMap, Rgb};
-use crate::output::plot::{Axis, Cells, ColorBar, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::lab::gallery::{self, band, curve, distinct, with_legend};
+use crate::output::colors::{ColorMap, Rgb, light};
+use crate::output::plot::{Axis, ColorBar, Mark, Panel, Point, Sheet, Style, line_color};
 
 /// The most panels of a sheet that draws everything.
 const MOST_PANELS: usize = 12;
@@ -20,8 +21,8 @@ const COLUMNS: usize = 3;
 const PANEL: [f64; 2] = [200.0, 130.0];
 /// The height of a panel with a map.
 const MAP: [f64; 2] = [180.0, 150.0];
-/// The part of white in the color of a confidence band.
-const PALE: f64 = 0.75;
+/// The color of a confidence band, as a part of its line's.
+const LIGHT: f64 = 0.25;
 
 /// What to draw.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -82,13 +83,9 @@ impl Gathered<'_> {
             [x] => lines(&combinations, &measured, x, &self.study.axes),
             _ => return Ok(None),
         };
-        Ok(Some(Sheet {
-            title: self.study.name.clone(),
-            columns: panels.len().min(COLUMNS),
-            panel_size: if over.len() == 2 { MAP } else { PANEL },
-            panels,
-            ..Sheet::default()
-        }))
+        let columns = panels.len().min(COLUMNS);
+        let size = if over.len() == 2 { MAP } else { PANEL };
+        Ok(Some(Sheet::new(&self.study.name, columns, size, panels)))
     }
 
     /// The measurements to draw: their numbers in the means, and their names.
@@ -145,23 +142,14 @@ fn lines(
         let mut bands = Vec::new();
         let mut marks = Vec::new();
         for (number, line) in names.iter().enumerate() {
-            let of_line = combinations.iter();
-            let of_line = of_line.filter(|one| other(one, &[x], axes) == *line);
-            let places = of_line.filter_map(|one| {
-                Some((
-                    scale.place(one.cells.first()?.value(x)?)?,
-                    one.means[*k].as_ref()?,
-                ))
-            });
+            let own = combinations.iter();
+            let own = own.filter(|one| other(one, &[x], axes) == *line);
+            let places = own.filter_map(|one| Some((scale.place(one)?, one.means[*k].as_ref()?)));
             let mut places: Vec<Place> = places.collect();
             places.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let color = LINES[number % LINES.len()];
-            let (band, line) = line_marks(&places, color, line, scale.is_numeric());
-            let (areas, borders): (Vec<_>, Vec<_>) = band
-                .into_iter()
-                .partition(|mark| matches!(mark, Mark::Area(..)));
-            bands.extend(areas);
-            marks.extend(borders.into_iter().chain(line));
+            let (area, line) = line_marks(&places, line_color(number), line, scale.numeric);
+            bands.extend(area);
+            marks.extend(line);
         }
         let values = || combinations.iter().filter_map(|one| one.means[*k].as_ref());
         let ends = values().flat_map(|mean| {
@@ -170,50 +158,44 @@ fn lines(
         });
         let y = Axis::linear(name, around(ends));
         let marks = bands.into_iter().chain(marks).collect();
-        Panel::new("", scale.axis(x), y, marks)
+        Panel::new("", scale.axis(), y, marks)
     };
-    let mut panels: Vec<Panel> = measured.iter().map(panel).collect();
-    // One legend for all, at the end of the first row.
-    if let Some(last) = panels.iter_mut().take(COLUMNS).last() {
-        last.legend = (names.len() > 1).then_some(Corner::Beside);
+    let panels: Vec<Panel> = measured.iter().map(panel).collect();
+    match names.len() > 1 {
+        true => with_legend(panels, COLUMNS),
+        false => panels,
     }
-    panels
 }
 
-/// A confidence band with its borders, if the axis has numbers and some mean has an interval; and a line with points,
-/// or points with error bars.
+/// A confidence band, if the axis has numbers and some mean has an interval; and a line with points and the borders of
+/// the band, or points with error bars.
 fn line_marks(
     places: &[Place],
     color: Rgb,
     label: &str,
     is_numeric: bool,
-) -> (Vec<Mark>, Vec<Mark>) {
+) -> (Option<Mark>, Vec<Mark>) {
     let half = |mean: &MeanStd| mean.interval_95().unwrap_or(0.0);
     let has_band =
         is_numeric && places.len() > 1 && places.iter().any(|(_, mean)| half(mean) > 0.0);
-    let mut band = Vec::new();
-    if has_band {
-        let border = |side: f64| -> Vec<[f64; 2]> {
-            let at = |(x, mean): &Place| [*x, mean.mean + side * half(mean)];
-            places.iter().map(at).collect()
-        };
-        let [upper, lower] = [border(1.0), border(-1.0)];
-        let around = upper.iter().chain(lower.iter().rev()).copied();
-        let pale = color.map(|value| (255.0 - (1.0 - PALE) * (255.0 - f64::from(value))) as u8);
-        band.push(Mark::Area(around.collect(), pale));
-        // Where bands cover each other, their borders show both.
-        let borders = [upper, lower].map(|line| Mark::Line(line, Style::full(color, 0.4, "")));
-        band.extend(borders);
-    }
+    let [upper, lower] = [1.0, -1.0].map(|side| -> Vec<[f64; 2]> {
+        let places = places.iter();
+        let border = places.map(|(x, mean)| [*x, mean.mean + side * half(mean)]);
+        border.collect()
+    });
+    let area = has_band.then(|| band(&upper, &lower, light(color, LIGHT)));
+    // Where bands cover each other, their borders show both.
+    let borders = [upper, lower].map(|line| Mark::Line(line, Style::full(color, 0.4, "")));
     let points = places.iter().map(|&(x, mean)| Point {
         x,
         y: mean.mean,
         error: if has_band { 0.0 } else { half(mean) },
     });
-    let points = Mark::Points(points.collect(), Style::full(color, 2.2, label));
-    let line = places.iter().map(|(x, mean)| [*x, mean.mean]).collect();
-    let line = is_numeric.then(|| Mark::Line(line, Style::full(color, 1.2, "")));
-    (band, line.into_iter().chain([points]).collect())
+    let [line, points] = curve(points, Style::full(color, 1.2, label), 2.2);
+    let mut marks: Vec<Mark> = borders.into_iter().filter(|_| has_band).collect();
+    marks.extend(is_numeric.then_some(line));
+    marks.push(points);
+    (area, marks)
 }
 
 /// One panel per measurement and combination of the other settings: a map over two settings.
@@ -230,36 +212,19 @@ fn maps(
         let values = || combinations.iter().filter_map(|one| one.means[*k].as_ref());
         let map = ColorMap::viridis(around(values().map(|mean| mean.mean)).map(|x| x as f32));
         for name in &names {
-            let [columns, rows] = [0, 1].map(|axis: usize| scales[axis].values.len());
+            let [columns, rows] = scales.each_ref().map(|scale| scale.values.len());
             let mut cells = vec![None; columns * rows];
             let of_panel = combinations.iter();
             for one in of_panel.filter(|one| other(one, &over, axes) == *name) {
-                let index = |axis: usize| {
-                    let value = one.cells.first()?.value(over[axis])?;
-                    scales[axis].index(value)
-                };
-                if let (Some(column), Some(row)) = (index(0), index(1)) {
+                if let [Some(column), Some(row)] = scales.each_ref().map(|scale| scale.index(one)) {
                     cells[row * columns + column] = one.means[*k].as_ref().map(|mean| mean.mean);
                 }
             }
-            let marks = vec![Mark::Cells(Cells {
-                extent: [[0.0; 2], [columns as f64, rows as f64]],
-                columns,
-                values: cells,
-                map: map.clone(),
-            })];
-            panels.push(Panel {
-                bar: Some(ColorBar {
-                    label: measurement.clone(),
-                    map: map.clone(),
-                }),
-                ..Panel::new(
-                    name,
-                    scales[0].axis(over[0]),
-                    scales[1].axis(over[1]),
-                    marks,
-                )
-            });
+            let (scaled, bar) = (
+                scales.each_ref().map(Scale::axis),
+                ColorBar::new(measurement, &map),
+            );
+            panels.push(gallery::map(name, scaled, cells, bar));
         }
     }
     panels
@@ -267,14 +232,7 @@ fn maps(
 
 /// The combinations of the settings that are not on an axis, in order.
 fn others(combinations: &[Combination], over: &[&str], axes: &[String]) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for one in combinations {
-        let name = other(one, over, axes);
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
-    names
+    distinct(combinations.iter().map(|one| other(one, over, axes)))
 }
 
 /// The settings of a combination that are not on an axis, as text: `sf->sph, viscosity=5`.
@@ -291,36 +249,35 @@ fn other(combination: &Combination, over: &[&str], axes: &[String]) -> String {
         (_, Value::String(_)) | ("profile", _) => readable(value),
         (key, _) => format!("{key}={}", readable(value)),
     });
-    label
-        .into_iter()
-        .chain(values)
-        .collect::<Vec<_>>()
-        .join(", ")
+    let all: Vec<String> = label.into_iter().chain(values).collect();
+    all.join(", ")
 }
 
 /// The values of a setting on an axis.
-struct Scale {
+struct Scale<'a> {
+    /// The setting.
+    name: &'a str,
     /// In ascending order if all are numbers, else as in the study.
     values: Vec<Value>,
     numeric: bool,
 }
 
-impl Scale {
-    fn of(combinations: &[Combination], axis: &str) -> Self {
-        let mut seen = BTreeMap::new();
-        let cells = combinations.iter().filter_map(|one| one.cells.first());
-        for (k, value) in cells.filter_map(|cell| cell.value(axis)).enumerate() {
-            seen.entry(plain(value)).or_insert((k, value.clone()));
-        }
-        let mut values: Vec<(usize, Value)> = seen.into_values().collect();
-        values.sort_by_key(|(k, _)| *k);
-        let mut values: Vec<Value> = values.into_iter().map(|(_, value)| value).collect();
+impl<'a> Scale<'a> {
+    fn of(combinations: &[Combination], name: &'a str) -> Self {
+        let mut seen = BTreeSet::new();
+        let all = combinations.iter().filter_map(|one| one.value(name));
+        let once = all.filter(|value| seen.insert(plain(value)));
+        let mut values: Vec<Value> = once.cloned().collect();
         let numeric = values.len() > 1 && values.iter().all(Value::is_number);
         if numeric {
             let number = |value: &Value| value.as_f64().unwrap_or_default();
             values.sort_by(|a, b| number(a).total_cmp(&number(b)));
         }
-        Self { values, numeric }
+        Self {
+            name,
+            values,
+            numeric,
+        }
     }
 
     /// Equal room for every value.
@@ -331,25 +288,25 @@ impl Scale {
         }
     }
 
-    fn is_numeric(&self) -> bool {
-        self.numeric
-    }
-
-    fn index(&self, value: &Value) -> Option<usize> {
+    /// The number of a combination's value.
+    fn index(&self, of: &Combination) -> Option<usize> {
+        let value = of.value(self.name)?;
         self.values.iter().position(|other| other == value)
     }
 
-    fn place(&self, value: &Value) -> Option<f64> {
+    /// Its place on the axis.
+    fn place(&self, of: &Combination) -> Option<f64> {
         match self.numeric {
-            true => value.as_f64(),
-            false => Some(self.index(value)? as f64 + 0.5),
+            true => of.value(self.name)?.as_f64(),
+            false => Some(self.index(of)? as f64 + 0.5),
         }
     }
 
-    fn axis(&self, name: &str) -> Axis {
+    fn axis(&self) -> Axis {
+        let numbers = self.values.iter().filter_map(Value::as_f64);
         match self.numeric {
-            true => Axis::linear(name, around(self.values.iter().filter_map(Value::as_f64))),
-            false => Axis::names(name, readables(&self.values)),
+            true => Axis::linear(self.name, around(numbers)),
+            false => Axis::names(self.name, readables(&self.values)),
         }
     }
 }

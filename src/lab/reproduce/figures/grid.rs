@@ -5,11 +5,10 @@ use serde_json::Value;
 use super::super::product::{Needs, Product, only};
 use super::save;
 use crate::analysis::statistics::{Estimate, Range};
+use crate::lab::gallery::{distinct, in_cell, map};
 use crate::lab::sweep::{Combination, Gathered};
-use crate::output::colors::{ColorMap, Rgb};
-use crate::output::plot::{Axis, BLACK, Cells, ColorBar, Mark, Panel, Sheet};
-
-const WHITE: Rgb = [255; 3];
+use crate::output::colors::ColorMap;
+use crate::output::plot::{Axis, ColorBar, Panel, Sheet};
 
 /// The study; not part of `all`.
 pub const PRODUCT: Product = Product {
@@ -72,14 +71,8 @@ impl Quantity {
 
 /// The values of a key in these rows, without repetitions.
 fn values(rows: &[Combination], key: &str) -> Vec<String> {
-    let mut values: Vec<String> = Vec::new();
-    for cell in rows.iter().filter_map(|row| row.cells.first()) {
-        let value = cell.value(key).map(Value::to_string).unwrap_or_default();
-        if !values.contains(&value) {
-            values.push(value);
-        }
-    }
-    values
+    let value = |row: &Combination| row.value(key).map(Value::to_string);
+    distinct(rows.iter().map(|row| value(row).unwrap_or_default()))
 }
 
 fn sheet(study: &Gathered) -> Sheet {
@@ -91,14 +84,12 @@ fn sheet(study: &Gathered) -> Sheet {
         let panel = |quantity| panel(block, &columns, quantity, quantity.range(&rows));
         QUANTITIES.iter().map(panel).collect::<Vec<_>>()
     });
-    Sheet {
-        title: "The shockwave against k, ρ⁰max, μ and Kᵃᵍ: mean ± standard error over seeds"
-            .to_owned(),
-        columns: QUANTITIES.len(),
-        panel_size: [170.0, 105.0],
-        panels: panels.collect(),
-        ..Sheet::default()
-    }
+    Sheet::new(
+        "The shockwave against k, ρ⁰max, μ and Kᵃᵍ: mean ± standard error over seeds",
+        QUANTITIES.len(),
+        [170.0, 105.0],
+        panels.collect(),
+    )
 }
 
 /// One quantity for one pair of μ and K^ag.
@@ -108,42 +99,32 @@ fn panel(
     quantity: &Quantity,
     range: [f32; 2],
 ) -> Panel {
-    let map = ColorMap::viridis(range);
     let columns = gas_constants.len();
-    let rest_densities = values(block, "rest_density_max");
     let estimates: Vec<_> = block.iter().map(|row| quantity.estimate(row)).collect();
-    let mut marks = vec![Mark::Cells(Cells {
-        extent: [[0.0, 0.0], [columns as f64, rest_densities.len() as f64]],
-        columns,
-        values: estimates.iter().map(|e| e.map(|e| e.value)).collect(),
-        map: map.clone(),
-    })];
+    let [mu, stiffness] = ["viscosity", "agent_stiffness"].map(|key| values(block, key).concat());
+    let x = Axis::names("k", gas_constants.to_vec());
+    let y = Axis::names("ρ⁰max [P/m²]", values(block, "rest_density_max"));
+    let mut panel = map(
+        &format!("μ = {mu}, Kᵃᵍ = {stiffness}"),
+        [x, y],
+        estimates.iter().map(|e| e.map(|e| e.value)).collect(),
+        ColorBar::new(quantity.label, &ColorMap::viridis(range)),
+    );
     let digits = quantity.digits;
     for (k, (row, estimate)) in block.iter().zip(&estimates).enumerate() {
-        let at = [(k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5];
         let waves = row.values(QUANTITIES[0].metric);
         let waves = waves.into_iter().flatten().count();
-        let (text, color) = match estimate {
-            None if waves > 1 => ("not clear".to_owned(), BLACK),
-            None => ("no wave".to_owned(), BLACK),
+        let (text, is_light) = match estimate {
+            None if waves > 1 => ("not clear".to_owned(), true),
+            None => ("no wave".to_owned(), true),
             Some(e) => {
                 let part = (e.value as f32 - range[0]) / (range[1] - range[0]);
                 let text = format!("{:.digits$} ± {:.digits$}", e.value, e.error);
-                (text, if part > 0.6 { BLACK } else { WHITE })
+                (text, part > 0.6)
             }
         };
-        marks.push(Mark::Text(at, text, color));
+        let cell = [k % columns, k / columns];
+        panel.marks.push(in_cell(cell, text, is_light));
     }
-    let [mu, stiffness] = ["viscosity", "agent_stiffness"].map(|key| values(block, key).concat());
-    Panel {
-        title: format!("μ = {mu}, Kᵃᵍ = {stiffness}"),
-        x: Axis::names("k", gas_constants.to_vec()),
-        y: Axis::names("ρ⁰max [P/m²]", rest_densities),
-        marks,
-        bar: Some(ColorBar {
-            label: quantity.label.to_owned(),
-            map,
-        }),
-        ..Panel::default()
-    }
+    panel
 }

@@ -4,7 +4,7 @@ use super::super::product::{Needs, Product};
 use super::save;
 use crate::engine::simulation::Stage;
 use crate::lab::error::LabError;
-use crate::output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Sheet, Style, line_color};
 use crate::output::table::Table;
 use crate::scenario::measurements::{FrameTime, StageTimes};
 
@@ -30,6 +30,9 @@ pub const PRODUCT: Product = Product {
 /// The paper's totals on six threads of a laptop with a Core i7-7920HQ (§6.4): agents, ms per frame.
 const PAPER: [[f64; 2]; 2] = [[10_000.0, 4.94], [30_000.0, 18.57]];
 
+/// The ends of the axis of agents.
+const SIZES: [f64; 2] = [2_000.0, 120_000.0];
+
 /// The stages in the order of the legend, with the paper's names.
 const TASKS: [(Stage, &str); 11] = [
     (Stage::Sort, "1 sorting (paper: kd-tree)"),
@@ -49,38 +52,26 @@ const TASKS: [(Stage, &str); 11] = [
 fn sheet(times: &[StageTimes], machine: &str) -> Sheet {
     let mut marks = Vec::new();
     let agents = |time: &StageTimes| time.agents as f64;
-    let exact = |[x, y]: [f64; 2]| Point { x, y, error: 0.0 };
-    for ((stage, task), color) in TASKS.into_iter().zip(LINES.into_iter().cycle()) {
+    for (k, (stage, task)) in TASKS.into_iter().enumerate() {
         let point = |time: &StageTimes| Some([agents(time), time.of_stage(stage)?]);
         let points: Vec<[f64; 2]> = times.iter().filter_map(point).collect();
         if !points.is_empty() {
-            let dots = points.iter().copied().map(exact).collect();
-            marks.push(Mark::Line(points, Style::full(color, 1.2, task)));
-            marks.push(Mark::Points(dots, Style::full(color, 1.8, "")));
+            let dots = Mark::dots(points.clone(), Style::full(line_color(k), 1.8, ""));
+            marks.push(Mark::line(points, Style::full(line_color(k), 1.2, task)));
+            marks.push(dots);
         }
     }
-    let total: Vec<[f64; 2]> = times.iter().map(|t| [agents(t), t.total()]).collect();
-    marks.push(Mark::Line(total, Style::full(BLACK, 1.8, "total")));
+    let total = times.iter().map(|time| [agents(time), time.total()]);
+    marks.push(Mark::line(total, Style::full(BLACK, 1.8, "total")));
     let paper = Style::broken(BLACK, 3.5, "total in the paper, 6 threads");
-    marks.push(Mark::Points(PAPER.map(exact).to_vec(), paper));
+    marks.push(Mark::dots(PAPER, paper));
     let real_time = Style::broken(LINES[6], 0.8, "real time (20 ms)");
-    let ends = vec![[2_000.0, 20.0], [120_000.0, 20.0]];
-    marks.push(Mark::Line(ends, real_time));
-    let panel = Panel {
-        title: machine.to_owned(),
-        x: Axis::log("agents", [2_000.0, 120_000.0]),
-        y: Axis::log("time per frame [ms]", [0.005, 200.0]),
-        marks,
-        legend: Some(Corner::Beside),
-        ..Panel::default()
-    };
-    Sheet {
-        title: "Fig. 11: frame time per task, concert".to_owned(),
-        columns: 1,
-        panel_size: [420.0, 300.0],
-        panels: vec![panel],
-        ..Sheet::default()
-    }
+    marks.push(Mark::line(SIZES.map(|agents| [agents, 20.0]), real_time));
+    let x = Axis::log("agents", SIZES);
+    let y = Axis::log("time per frame [ms]", [0.005, 200.0]);
+    let panel = Panel::new(machine, x, y, marks).with_legend(Corner::Beside);
+    let title = "Fig. 11: frame time per task, concert";
+    Sheet::new(title, 1, [420.0, 300.0], vec![panel])
 }
 
 /// One line per number of agents, with the milliseconds per frame of every stage.

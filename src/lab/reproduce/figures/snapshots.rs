@@ -94,10 +94,9 @@ impl Snapshots {
         if labels.is_empty() {
             labels.extend(study.study.cells.iter().filter_map(|cell| cell.label()));
         }
-        let titles = if self.titles.is_empty() {
-            labels.as_slice()
-        } else {
-            self.titles
+        let titles = match self.titles {
+            [] => labels.as_slice(),
+            titles => titles,
         };
         let [min, max] = self.region;
         let many = self.times.len() > 1;
@@ -124,20 +123,13 @@ impl Snapshots {
             }
             row_titles.extend(many.then(|| format!("({letter}) {title}")));
         }
+        let height = self.width * (max[1] - min[1]) / (max[0] - min[0]);
+        let map = (self.coloring.map)();
         let sheet = Sheet {
-            title: self.title.to_owned(),
-            columns: self.columns,
-            panel_size: [
-                self.width,
-                self.width * (max[1] - min[1]) / (max[0] - min[0]),
-            ],
             shared_axes: true,
             row_titles,
-            bar: Some(ColorBar {
-                label: self.coloring.label.to_owned(),
-                map: (self.coloring.map)().clone(),
-            }),
-            panels,
+            bar: Some(ColorBar::new(self.coloring.label, map)),
+            ..Sheet::new(self.title, self.columns, [self.width, height], panels)
         };
         super::save(&sheet, store, self.name)
     }
@@ -159,12 +151,8 @@ impl Snapshots {
             marks.push(Mark::Line(outline, Style::full(GREEN, 0.8, "")));
         }
         let [min, max] = self.region;
-        Panel {
-            title,
-            x: Axis::linear("x [m]", [min[0], max[0]]),
-            y: Axis::linear("y [m]", [min[1], max[1]]),
-            marks,
-            ..Panel::default()
-        }
+        let x = Axis::linear("x [m]", [min[0], max[0]]);
+        let y = Axis::linear("y [m]", [min[1], max[1]]);
+        Panel::new(&title, x, y, marks)
     }
 }

@@ -6,9 +6,10 @@ use crate::analysis::sound;
 use crate::analysis::statistics::Estimate;
 use crate::analysis::wave::{Ridge, Wave};
 use crate::lab::error::LabError;
+use crate::lab::gallery::points;
 use crate::lab::sweep::Gathered;
 use crate::output::colors::ColorMap;
-use crate::output::plot::{Axis, Cells, ColorBar, Corner, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::output::plot::{Axis, Cells, ColorBar, Corner, LINES, Mark, Panel, Sheet, Style};
 use crate::output::table::Table;
 use crate::scenario::measurements::WaveData;
 
@@ -81,16 +82,10 @@ fn sheet(speeds: &[Speed]) -> Sheet {
     let map = ColorMap::inferno([0.0, FASTEST]);
     let mut panels: Vec<Panel> = speeds.iter().map(|speed| diagram(speed, &map)).collect();
     panels.push(against_gas_constant(speeds));
+    let title = "The shockwave over place and time, and its speed against linear theory";
     Sheet {
-        title: "The shockwave over place and time, and its speed against linear theory".to_owned(),
-        columns: 3,
-        panel_size: [215.0, 190.0],
-        bar: Some(ColorBar {
-            label: "mean speed, |y| ≤ 8 m [m/s]".to_owned(),
-            map,
-        }),
-        panels,
-        ..Sheet::default()
+        bar: Some(ColorBar::new("mean speed, |y| ≤ 8 m [m/s]", &map)),
+        ..Sheet::new(title, 3, [215.0, 190.0], panels)
     }
 }
 
@@ -113,14 +108,11 @@ fn diagram(speed: &Speed, map: &ColorMap) -> Panel {
         title = format!("k = {}: {}", speed.gas_constant, summary(wave));
         marks.extend(crests(wave, speed));
     }
-    Panel {
-        title,
-        x: Axis::linear("x [m]", x),
-        y: Axis::linear("t [s]", [first, last]),
-        marks,
-        legend: Some(Corner::UpperRight),
-        ..Panel::default()
-    }
+    let (x, y) = (
+        Axis::linear("x [m]", x),
+        Axis::linear("t [s]", [first, last]),
+    );
+    Panel::new(&title, x, y, marks).with_legend(Corner::UpperRight)
 }
 
 fn summary(wave: &Wave) -> String {
@@ -136,21 +128,22 @@ fn summary(wave: &Wave) -> String {
 fn crests(wave: &Wave, speed: &Speed) -> Vec<Mark> {
     let run = speed.seen.run;
     let ends = [run.source, run.obstacle];
-    let line = |ridge: &Ridge| ends.map(|x| [x, ridge.time_at(x)]).to_vec();
-    let fitted = |label| Style::full(LINES[5], 1.0, label);
-    let mut marks = vec![Mark::Line(line(&wave.arriving), fitted("fitted"))];
-    let returning = wave.returning.iter();
-    marks.extend(returning.map(|ridge| Mark::Line(line(ridge), fitted(""))));
+    let fitted = |ridge: &Ridge, label| {
+        let line = ends.map(|x| [x, ridge.time_at(x)]);
+        Mark::line(line, Style::full(LINES[5], 1.0, label))
+    };
+    let mut marks = vec![fitted(&wave.arriving, "fitted")];
+    marks.extend(wave.returning.iter().map(|ridge| fitted(ridge, "")));
     if let Some(theory) = speed.with_contacts {
         let begin = wave.arriving.time_at(run.source);
         let crossing = (run.obstacle - run.source) / theory;
-        let path = vec![
+        let path = [
             [run.source, begin],
             [run.obstacle, begin + crossing],
             [run.source, begin + 2.0 * crossing],
         ];
         let style = Style::broken(LINES[2], 1.0, "theory, discs in contact");
-        marks.push(Mark::Line(path, style));
+        marks.push(Mark::line(path, style));
     }
     marks
 }
@@ -186,15 +179,11 @@ fn csv(speeds: &[Speed]) -> Result<Vec<u8>, LabError> {
 fn against_gas_constant(speeds: &[Speed]) -> Panel {
     let curve = |values: fn(&Speed) -> Option<f64>, style| {
         let point = |speed: &Speed| Some([speed.gas_constant, values(speed)?]);
-        Mark::Line(speeds.iter().filter_map(point).collect(), style)
+        Mark::line(speeds.iter().filter_map(point), style)
     };
-    let points = |estimate: Of, style| {
-        let point = |speed: &Speed| {
-            let Estimate { value, error } = estimate(speed.seen.wave.as_ref()?)?;
-            let (x, y) = (speed.gas_constant, value);
-            Some(Point { x, y, error })
-        };
-        Mark::Points(speeds.iter().filter_map(point).collect(), style)
+    let measured = |estimate: Of, style| {
+        let wave = |speed: &Speed| estimate(speed.seen.wave.as_ref()?);
+        Mark::Points(points(speeds, |of| Some(of.gas_constant), wave), style)
     };
     let touching = Style::broken(LINES[2], 1.0, "all discs touching");
     let in_contact = Style::full(LINES[2], 1.0, "discs in contact");
@@ -202,15 +191,10 @@ fn against_gas_constant(speeds: &[Speed]) -> Panel {
         curve(|of| Some(of.fluid), Style::broken(LINES[6], 1.0, "√(k/2)")),
         curve(|of| Some(of.all_touching), touching),
         curve(|of| of.with_contacts, in_contact),
-        points(ARRIVING, Style::full(LINES[0], 2.4, "to the stage")),
-        points(RETURNING, Style::broken(LINES[1], 2.4, "back")),
+        measured(ARRIVING, Style::full(LINES[0], 2.4, "to the stage")),
+        measured(RETURNING, Style::broken(LINES[1], 2.4, "back")),
     ];
-    Panel {
-        title: "speed against k, and linear theory".to_owned(),
-        x: Axis::log("k", [40.0, 1000.0]),
-        y: Axis::log("wave speed [m/s]", [4.0, 30.0]),
-        marks,
-        legend: Some(Corner::UpperLeft),
-        ..Panel::default()
-    }
+    let x = Axis::log("k", [40.0, 1000.0]);
+    let y = Axis::log("wave speed [m/s]", [4.0, 30.0]);
+    Panel::new("speed against k, and linear theory", x, y, marks).with_legend(Corner::UpperLeft)
 }

@@ -5,6 +5,7 @@ mod oscillations;
 mod queue_pushes;
 mod start_waves;
 
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 pub use oscillations::PRODUCT as OSCILLATIONS;
@@ -15,6 +16,7 @@ use super::figures::save;
 use super::product::only;
 use crate::analysis::statistics::{Estimate, MeanStd};
 use crate::lab::error::LabError;
+use crate::lab::gallery::distinct;
 use crate::lab::sweep::{Combination, Gathered};
 use crate::output::plot::Sheet;
 use crate::output::table::Table;
@@ -34,34 +36,27 @@ fn write(
     Ok(table(&rows).markdown())
 }
 
-/// The label of a combination.
-fn label<'a>(row: &Combination<'a>) -> &'a str {
-    let cell = row.cells.first();
-    cell.and_then(|cell| cell.label()).unwrap_or_default()
-}
-
 /// The profile of a combination: its name, or its base and the parameters that distinguish it.
 fn profile(row: &Combination) -> String {
-    let cell = row.cells.first();
-    let value = cell.and_then(|cell| cell.value("profile"));
+    let value = row.value("profile");
     let parameter = |key: &str| value?.get("parameters")?.get(key);
     let base = value.and_then(|value| value.get("base").unwrap_or(value).as_str());
-    let base = base.unwrap_or("default");
     let law = parameter("walking_law").and_then(Value::as_str);
     let number = |key: &str, sign: &str, unit: &str| {
         parameter(key).map(|value| format!("{sign} = {value}{unit}"))
     };
     let parts = [
+        Some(base.unwrap_or("default").to_owned()),
         law.map(str::to_owned),
         number("headway_anticipation", "t", " s"),
         number("gas_constant", "k", ""),
     ];
-    let parts = parts.into_iter().flatten();
-    [base.to_owned()]
-        .into_iter()
-        .chain(parts)
-        .collect::<Vec<_>>()
-        .join(", ")
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// What a measurement of the first run found.
+fn first<T: DeserializeOwned>(row: &Combination, name: &str) -> Option<T> {
+    row.results.first()?.summary.data(name)
 }
 
 /// The mean of a value over seeds, with its deviation; `None` without values.
@@ -83,13 +78,10 @@ fn grouped<'r, 'a>(
     rows: &'r [Combination<'a>],
     name: impl Fn(&Combination) -> String,
 ) -> Vec<(String, Vec<&'r Combination<'a>>)> {
-    let mut groups: Vec<(String, Vec<&Combination>)> = Vec::new();
-    for row in rows {
-        let name = name(row);
-        match groups.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, group)) => group.push(row),
-            None => groups.push((name, vec![row])),
-        }
-    }
-    groups
+    let group = |of: String| {
+        let own = rows.iter().filter(|row| name(row) == of).collect();
+        (of, own)
+    };
+    let names = distinct(rows.iter().map(&name));
+    names.into_iter().map(group).collect()
 }

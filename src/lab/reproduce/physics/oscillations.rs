@@ -1,10 +1,11 @@
 //! Oscillations of dense crowds: spectra of locally averaged velocities by density.
 
 use super::super::product::{Needs, Product};
-use super::{grouped, label, mean, profile, write};
+use super::{first, grouped, mean, profile, write};
 use crate::analysis::oscillation::Oscillation;
+use crate::lab::gallery::{BAND, with_legend};
 use crate::lab::sweep::Combination;
-use crate::output::plot::{Axis, Corner, LINES, Mark, Panel, Sheet, Style};
+use crate::output::plot::{Axis, Mark, Panel, Sheet, Style};
 use crate::output::table::Table;
 
 /// The measured angular frequency of crowds above 4 P/m² (Gu et al. 2025), rad/s.
@@ -28,7 +29,7 @@ fn table(rows: &[Combination]) -> Table {
     let speed = value("speed_m_per_s");
     let millimeters = move |row: &Combination| speed(row).map(|of| 1000.0 * of.mean);
     Table::of(rows)
-        .column("crowd", |row| label(row).to_owned())
+        .column("crowd", |row| row.label().to_owned())
         .column("profile", profile)
         .fixed("velocity [mm/s]", 2, millimeters)
         .fixed("peak [rad/s]", 2, value("peak_rad_per_s"))
@@ -42,38 +43,23 @@ fn table(rows: &[Combination]) -> Table {
 /// A panel for each profile, with a line for each crowd.
 fn sheet(rows: &[Combination]) -> Sheet {
     let groups = grouped(rows, profile);
-    let last = groups.len().saturating_sub(1);
-    let panels = groups.iter().enumerate().map(|(k, (name, rows))| Panel {
-        legend: (k == last).then_some(Corner::Beside),
-        ..panel(name, rows)
-    });
-    Sheet {
-        title: "Mean velocity in boxes of 2 m: power by angular frequency".to_owned(),
-        columns: groups.len().clamp(1, 3),
-        panel_size: [260.0, 200.0],
-        panels: panels.collect(),
-        ..Sheet::default()
-    }
+    let panels = groups.iter().map(|(name, rows)| panel(name, rows));
+    let panels = with_legend(panels.collect(), groups.len());
+    let title = "Mean velocity in boxes of 2 m: power by angular frequency";
+    Sheet::new(title, groups.len().clamp(1, 3), [260.0, 200.0], panels)
 }
 
 fn panel(name: &str, rows: &[&Combination]) -> Panel {
     let [[left, right], [low, high]] = AXES;
-    let [from, to] = MEASURED;
-    let band = vec![[from, low], [to, low], [to, high], [from, high]];
-    let mut marks = vec![Mark::Area(band, [225, 225, 225])];
+    let mut marks = vec![Mark::rectangle(MEASURED, [low, high], BAND)];
     for (k, row) in rows.iter().enumerate() {
-        let found = row.results.first();
-        let found: Option<Oscillation> = found.and_then(|of| of.summary.data("oscillation"));
-        let Some(found) = found else { continue };
+        let Some(found) = first::<Oscillation>(row, "oscillation") else {
+            continue;
+        };
         let points = found.spectrum.densities();
         let points = points.filter(|[frequency, _]| (left..=right).contains(frequency));
         let points = points.map(|[frequency, density]| [frequency, density.max(0.1 * low)]);
-        let color = LINES[k % LINES.len()];
-        let style = match k < LINES.len() {
-            true => Style::full(color, 1.0, label(row)),
-            false => Style::broken(color, 1.0, label(row)),
-        };
-        marks.push(Mark::Line(points.collect(), style));
+        marks.push(Mark::line(points, Style::nth(k, 1.0, row.label())));
     }
     let x = Axis::log("angular frequency [rad/s]", [left, right]);
     let y = Axis::log("power density [m²/s² per rad/s]", [low, high]);

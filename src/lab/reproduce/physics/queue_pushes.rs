@@ -1,10 +1,12 @@
 //! The speed and the reach of a push through a row of standing people.
 
 use super::super::product::{Needs, Product};
-use super::{front_speed, grouped, label, mean, profile, write};
+use super::{first, front_speed, grouped, mean, profile, write};
 use crate::analysis::sound::speed_of_fluid;
+use crate::analysis::statistics::Estimate;
+use crate::lab::gallery::{curve, points};
 use crate::lab::sweep::Combination;
-use crate::output::plot::{Axis, Corner, GRAY, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style, line_color};
 use crate::output::table::Table;
 use crate::scenario::measurements::FrontData;
 
@@ -27,7 +29,7 @@ pub const PRODUCT: Product = Product {
 
 /// The distance between neighbors at the start, meters.
 fn distance(row: &Combination) -> Option<f64> {
-    let found: FrontData = row.results.first()?.summary.data("front")?;
+    let found: FrontData = first(row, "front")?;
     let places = || found.people.iter().map(|of| of.place);
     let [first, last] = [places().reduce(f64::min)?, places().reduce(f64::max)?];
     Some((last - first) / (found.people.len() as f64 - 1.0))
@@ -35,7 +37,7 @@ fn distance(row: &Combination) -> Option<f64> {
 
 /// The initial speed of the pushed agent, m/s.
 fn push(row: &Combination) -> Option<f64> {
-    row.cells.first()?.value(PUSH)?.get(0)?.as_f64()
+    row.value(PUSH)?.get(0)?.as_f64()
 }
 
 /// The mean number of agents that the push reached, without the pushed agent.
@@ -45,7 +47,7 @@ fn reached(row: &Combination) -> Option<f64> {
 
 fn table(rows: &[Combination]) -> Table {
     Table::of(rows)
-        .column("row", |row| label(row).to_owned())
+        .column("row", |row| row.label().to_owned())
         .column("profile", profile)
         .fixed("push [m/s]", 1, push)
         .fixed("people reached", 0, reached)
@@ -62,51 +64,34 @@ fn sheet(rows: &[Combination]) -> Sheet {
         None => profile(row),
     };
     let groups = grouped(rows, name);
-    let speed = |row: &Combination| front_speed(row).map(|of| (of.value, of.error));
-    let people = |row: &Combination| Some((reached(row)?, 0.0));
+    let people = |row: &Combination| {
+        let value = reached(row)?;
+        Some(Estimate { value, error: 0.0 })
+    };
     let theory = DISTANCES.map(|x| [x, speed_of_fluid(GAS_CONSTANT)]);
-    let theory = Mark::Line(theory.to_vec(), Style::broken(GRAY, 1.0, ""));
-    let mut panels = vec![
-        panel(
-            &groups,
-            Axis::linear("front speed [m/s]", [0.0, 16.0]),
-            speed,
-        ),
-        Panel {
-            legend: Some(Corner::Beside),
-            ..panel(&groups, Axis::linear("people reached", [0.0, 21.0]), people)
-        },
-    ];
-    panels[0].title = "dashed: √(k/2), linear theory of SPH".to_owned();
-    panels[0].marks.push(theory);
-    Sheet {
-        title: "A push through a row of twenty people".to_owned(),
-        columns: 2,
-        panel_size: [220.0, 190.0],
-        panels,
-        ..Sheet::default()
-    }
+    let theory = Mark::line(theory, Style::broken(GRAY, 1.0, ""));
+    let fronts = Axis::linear("front speed [m/s]", [0.0, 16.0]);
+    let reach = Axis::linear("people reached", [0.0, 21.0]);
+    let title = "dashed: √(k/2), linear theory of SPH";
+    let mut fronts = panel(title, &groups, fronts, front_speed);
+    fronts.marks.push(theory);
+    let reach = panel("", &groups, reach, people).with_legend(Corner::Beside);
+    let title = "A push through a row of twenty people";
+    Sheet::new(title, 2, [220.0, 190.0], vec![fronts, reach])
 }
 
 /// A quantity by distance, with a line for each group.
 fn panel(
+    title: &str,
     groups: &[(String, Vec<&Combination>)],
     y: Axis,
-    quantity: impl Fn(&Combination) -> Option<(f64, f64)>,
+    quantity: impl Fn(&Combination) -> Option<Estimate>,
 ) -> Panel {
     let mut marks = Vec::new();
     for (k, (name, rows)) in groups.iter().enumerate() {
-        let points = rows.iter().filter_map(|row| {
-            let (y, error) = quantity(row)?;
-            let x = distance(row)?;
-            Some(Point { x, y, error })
-        });
-        let points: Vec<Point> = points.collect();
-        let line = points.iter().map(|point| [point.x, point.y]).collect();
-        let color = LINES[k % LINES.len()];
-        marks.push(Mark::Line(line, Style::full(color, 0.8, "")));
-        marks.push(Mark::Points(points, Style::full(color, 2.2, name)));
+        let points = points(rows.iter().copied(), distance, &quantity);
+        marks.extend(curve(points, Style::full(line_color(k), 0.8, name), 2.2));
     }
     let x = Axis::linear("distance from person to person [m]", DISTANCES);
-    Panel::new("", x, y, marks)
+    Panel::new(title, x, y, marks)
 }

@@ -1,12 +1,10 @@
 //! The speed at which a start runs back through a waiting crowd.
 
-use serde_json::Value;
-
 use super::super::product::{Needs, Product};
-use super::{front_speed, grouped, label, mean, profile, write};
-use crate::analysis::statistics::Estimate;
+use super::{first, front_speed, grouped, mean, profile, write};
+use crate::lab::gallery::points;
 use crate::lab::sweep::Combination;
-use crate::output::plot::{Axis, BLACK, Corner, GRAY, LINES, Mark, Panel, Point, Sheet, Style};
+use crate::output::plot::{Axis, BLACK, Corner, GRAY, Mark, Panel, Sheet, Style, line_color};
 use crate::output::table::Table;
 use crate::scenario::measurements::FrontData;
 
@@ -29,17 +27,14 @@ pub const PRODUCT: Product = Product {
 
 /// The distance between people along the corridor, meters.
 fn spacing(row: &Combination) -> Option<f64> {
-    let columns = row.cells.first()?.value("grids.0.columns")?.as_f64()?;
+    let columns = row.value("grids.0.columns")?.as_f64()?;
     Some(LENGTH / columns)
 }
 
 /// T of the headway law, seconds, if the profile gives it.
 fn headway_time(row: &Combination) -> Option<f64> {
-    let profile = row.cells.first()?.value("profile")?;
-    profile
-        .get("parameters")?
-        .get("headway_time")
-        .and_then(Value::as_f64)
+    let parameters = row.value("profile")?.get("parameters")?;
+    parameters.get("headway_time")?.as_f64()
 }
 
 /// Spacing over T, m/s.
@@ -51,7 +46,7 @@ fn table(rows: &[Combination]) -> Table {
     let value =
         |what: &str, row: &Combination| mean(row, &format!("front_{what}")).map(|of| of.mean);
     Table::of(rows)
-        .column("crowd", |row| label(row).to_owned())
+        .column("crowd", |row| row.label().to_owned())
         .column("profile", profile)
         .fixed("spacing [m]", 2, spacing)
         .fixed("spacing / T [m/s]", 3, expected)
@@ -66,14 +61,10 @@ fn table(rows: &[Combination]) -> Table {
 /// Start times over places for each profile, then front speeds over spacings.
 fn sheet(rows: &[Combination]) -> Sheet {
     let groups = grouped(rows, profile);
-    let mut panels: Vec<Panel> = groups
-        .iter()
-        .map(|(name, rows)| times(name, rows))
-        .collect();
-    let latest = panels
-        .iter()
-        .map(|panel| panel.y.range[1])
-        .fold(0.0, f64::max);
+    let panels = groups.iter().map(|(name, rows)| times(name, rows));
+    let mut panels: Vec<Panel> = panels.collect();
+    let latest = panels.iter().map(|panel| panel.y.range[1]);
+    let latest = latest.fold(0.0, f64::max);
     for panel in &mut panels {
         panel.y.range[1] = latest;
     }
@@ -81,13 +72,8 @@ fn sheet(rows: &[Combination]) -> Sheet {
         first.legend = Some(Corner::UpperLeft);
     }
     panels.push(speeds(&groups));
-    Sheet {
-        title: "A start runs back through a waiting crowd".to_owned(),
-        columns: 2,
-        panel_size: [250.0, 190.0],
-        panels,
-        ..Sheet::default()
-    }
+    let title = "A start runs back through a waiting crowd";
+    Sheet::new(title, 2, [250.0, 190.0], panels)
 }
 
 /// Dots at the start of each person in the first run, and the fitted lines.
@@ -95,20 +81,18 @@ fn times(name: &str, rows: &[&Combination]) -> Panel {
     let mut marks = Vec::new();
     let mut latest = 1.0_f64;
     for (k, row) in rows.iter().enumerate() {
-        let found = row.results.first();
-        let found: Option<FrontData> = found.and_then(|of| of.summary.data("front"));
-        let Some(found) = found else { continue };
-        let started = found
-            .people
-            .iter()
-            .filter_map(|of| Some([of.place, of.secs? - RELEASED]));
+        let Some(found) = first::<FrontData>(row, "front") else {
+            continue;
+        };
+        let started = found.people.iter();
+        let started = started.filter_map(|of| Some([of.place, of.secs? - RELEASED]));
         let started: Vec<[f64; 2]> = started.collect();
         latest = started.iter().map(|point| point[1]).fold(latest, f64::max);
-        let color = LINES[k % LINES.len()];
-        marks.push(Mark::dots(started, Style::full(color, 1.0, label(row))));
+        let color = line_color(k);
+        marks.push(Mark::dots(started, Style::full(color, 1.0, row.label())));
         if let (Some(slowness), Some(at_zero)) = (found.slowness, found.passes_zero) {
             let line = [0.0, LENGTH].map(|place| [place, at_zero - RELEASED + slowness * place]);
-            marks.push(Mark::Line(line.to_vec(), Style::full(color, 0.6, "")));
+            marks.push(Mark::line(line, Style::full(color, 0.6, "")));
         }
     }
     let x = Axis::linear("place behind the line [m]", [0.0, LENGTH]);
@@ -120,30 +104,19 @@ fn speeds(groups: &[(String, Vec<&Combination>)]) -> Panel {
     let mut marks = Vec::new();
     let all = groups.iter().flat_map(|(_, rows)| rows);
     if let Some(time) = all.clone().find_map(|row| headway_time(row)) {
-        let line = vec![[0.0, 0.0], [1.2, 1.2 / time]];
         let style = Style::full(GRAY, 1.0, &format!("spacing / {time} s"));
-        marks.push(Mark::Line(line, style));
+        marks.push(Mark::line([[0.0, 0.0], [1.2, 1.2 / time]], style));
     }
     let measured = Style::broken(BLACK, 1.0, "start corrals of marathons");
-    marks.push(Mark::Line(vec![[0.0, MEASURED], [1.2, MEASURED]], measured));
+    marks.push(Mark::line([[0.0, MEASURED], [1.2, MEASURED]], measured));
     for (k, (name, rows)) in groups.iter().enumerate() {
-        let points = rows.iter().filter_map(|row| {
-            let Estimate { value: y, error } = front_speed(row)?;
-            let x = spacing(row)?;
-            Some(Point { x, y, error })
-        });
-        let points: Vec<Point> = points.collect();
+        let points = points(rows.iter().copied(), spacing, front_speed);
         if !points.is_empty() {
-            marks.push(Mark::Points(
-                points,
-                Style::full(LINES[k % LINES.len()], 2.2, name),
-            ));
+            let style = Style::full(line_color(k), 2.2, name);
+            marks.push(Mark::Points(points, style));
         }
     }
     let x = Axis::linear("spacing [m]", [0.0, 1.2]);
     let y = Axis::linear("front speed [m/s]", [0.0, 1.6]);
-    Panel {
-        legend: Some(Corner::LowerRight),
-        ..Panel::new("speed of the front", x, y, marks)
-    }
+    Panel::new("speed of the front", x, y, marks).with_legend(Corner::LowerRight)
 }
