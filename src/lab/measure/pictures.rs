@@ -181,13 +181,9 @@ fn diagrams(diagrams: &[Diagram]) -> Sheet {
         };
         Panel::new(&title, x, y, marks).with_legend(Corner::UpperRight)
     };
+    let (kinds, panel) = (&kinds, &panel);
     let panels = QUANTITIES.iter();
-    let panels = panels.flat_map(|of| {
-        kinds
-            .iter()
-            .map(|&kind| panel(kind, of))
-            .collect::<Vec<_>>()
-    });
+    let panels = panels.flat_map(|of| kinds.iter().map(move |&kind| panel(kind, of)));
     Sheet::new("", kinds.len().max(1), [210.0, 180.0], panels.collect())
 }
 
