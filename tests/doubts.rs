@@ -235,10 +235,14 @@ fn agents_and_grids_off_the_floor_are_refused() {
     let behind = json!([{"position": [14, 5]}]);
     let far = json!([{"position": [500, 5]}]);
     let grid = json!([{"min": [10, 4], "max": [15, 6], "columns": 6, "rows": 3}]);
+    // In the wall beside the floor behind the exit, which is nearer than that of the room.
+    let source =
+        json!([{"min": [14, 3.2], "max": [14.4, 3.6], "columns": 1, "rows": 1, "every_secs": 1}]);
     for (key, value, place) in [
         ("agents", behind, "agents[0].position"),
         ("agents", far, "agents[0].position"),
         ("grids", grid, "grids[0]"),
+        ("sources", source, "sources[0]"),
     ] {
         let refused = scenario(&with(key, value), &[]).err().unwrap();
         assert!(refused.contains(place), "{refused}");

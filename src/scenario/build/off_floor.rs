@@ -3,6 +3,7 @@
 use crate::engine::geometry::Ring;
 use crate::engine::journeys::Place;
 use crate::engine::math::Vector;
+use crate::engine::placement::Grid;
 use crate::engine::scene::Scene;
 use crate::engine::ways::nearest_on;
 use crate::scenario::build::origin::{Member, Origins};
@@ -35,9 +36,11 @@ pub fn check(keys: &File, scene: &Scene) -> Result<(), Problem> {
 
 /// Single agents in obstacles start at the nearest free point, which may be this far away, meters.
 const NEAR: f64 = 2.0;
+/// Of larger grids, only the first cells are looked at.
+const MOST_CELLS: usize = 100_000;
 
-/// Rejects agents of `agents` and `grids` that start on the floors `behind` exits and entrances, and single ones that start
-/// far off the floor.
+/// Rejects agents of `agents`, `grids` and `sources` that start on the floors `behind` exits and entrances, or that would be
+/// moved there from an obstacle, and single ones that start far off the floor.
 pub fn check_starts(origins: &Origins, behind: &Rings) -> Result<(), Problem> {
     let rings = behind.iter().map(|ring| Ring::new(ring.clone()));
     let rings: Vec<Ring> = rings.filter_map(Result::ok).collect();
@@ -52,13 +55,7 @@ pub fn check_starts(origins: &Origins, behind: &Rings) -> Result<(), Problem> {
         };
         let p = agent.position;
         let at = format!("({:.2}, {:.2})", p.x, p.y);
-        if rings.iter().any(|ring| ring.contains(p)) && !is_on_line(scene, p) {
-            let reason = format!(
-                "an agent starts at {at}, behind the line of an exit or entrance and outside of the walkable area; move it \
-                 onto the floor"
-            );
-            return Err(Problem::new(key, reason));
-        }
+        check_behind(scene, &rings, p).under(&key)?;
         if origins.single(member).is_none() || scene.walls.obstacle_at(p).is_none() {
             continue;
         }
@@ -72,7 +69,35 @@ pub fn check_starts(origins: &Origins, behind: &Rings) -> Result<(), Problem> {
             return Err(Problem::new(key, reason));
         }
     }
+    for (k, source) in scene.sources.iter().enumerate() {
+        let reach = Vector::repeat(source.grid.jitter);
+        let centers = Grid {
+            jitter: 0.0,
+            ..source.grid
+        };
+        for center in centers.positions(scene.seed, 0).take(MOST_CELLS) {
+            for corner in [center, center - reach, center + reach] {
+                check_behind(scene, &rings, corner).under(&format!("sources[{k}]"))?;
+            }
+        }
+    }
     Ok(())
+}
+
+/// Rejects an agent at `p` if it, or the nearest free point, lies in one of `rings`: floors behind exits and entrances.
+fn check_behind(scene: &Scene, rings: &[Ring], p: Vector) -> Result<(), Problem> {
+    let is_solid = !rings.is_empty() && scene.walls.obstacle_at(p).is_some();
+    let free = is_solid.then(|| scene.walls.free_point_near(p)).flatten();
+    let start = free.unwrap_or(p);
+    if is_on_line(scene, start) || !rings.iter().any(|ring| ring.contains(start)) {
+        return Ok(());
+    }
+    let reason = format!(
+        "an agent starts at ({:.2}, {:.2}), behind the line of an exit or entrance and outside of the walkable area; move \
+         it onto the floor",
+        start.x, start.y
+    );
+    Err(Problem::new("", reason))
 }
 
 /// Whether a point lies on the line of an exit, at the edge of both floors.
