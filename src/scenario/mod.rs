@@ -1,4 +1,5 @@
-//! Scenario files: the text of a file → a checked [`Scenario`] → a [`Scene`] for the simulation.
+//! Scenario files: the text of a file → a checked [`Scenario`] → a [`Scene`](crate::engine::scene::Scene) for the
+//! simulation.
 //!
 //! A file is a JSON object. Every top-level key is optional; an unknown key is an error. The structs in `keys/`
 //! have one field per key, with its description, default and range; [`schema()`], [`settings()`] and the range checks
