@@ -170,8 +170,8 @@ fn exits_of_whose_lines_much_lies_off_the_floor_are_noted() {
         (json!([[12, 8], [12, 11]]), 33),
     ] {
         let expected = format!(
-            "exits[0].line: {percent} % of `east` lies in obstacles or outside of the walkable area, where nobody \
-             passes; draw the line on the floor, or on its edge"
+            "exits[0].line: {percent} % of `east` lies in obstacles or outside of the walkable area, where agents \
+             cannot pass; draw the line on the floor, or on its edge"
         );
         assert_eq!(with_line(line.clone()), [expected], "{line}");
     }
@@ -197,10 +197,10 @@ fn rooms_that_nearly_touch_are_noted() {
             ]),
         )
     };
-    for (gap, text) in [(0.001, "1 mm at (-0.00, 5.00)"), (0.015, "15 mm")] {
+    for (gap, text) in [(0.001, "1 mm at (0.00, 5.00)"), (0.015, "15 mm")] {
         let found = note(&rooms(gap));
         assert!(
-            found.contains(text) && found.contains("nobody passes"),
+            found.contains(text) && found.contains("agents cannot pass"),
             "{found}"
         );
     }

@@ -150,6 +150,15 @@ fn what_a_periodic_scene_cannot_have_is_refused_by_name() {
             "f: measurements[0].line_flow.line: reaches out of the period from 0 to 20 m",
         ),
         (
+            json!({"periodic": {"axis": "x", "length": 5e-324}, "obstacles": [[[1, 1], [2, 1], [2, 2]]]}),
+            "f: obstacles[0]: reaches over more than 1000 periods; lengthen `periodic.length`",
+        ),
+        (
+            json!({"periodic": {"axis": "x", "length": 0.01},
+                   "walkable_area": area(json!([[0, 0], [20, 0], [20, 3], [0, 3]]))}),
+            "f: walkable_area[0]: reaches over more than 1000 periods; lengthen `periodic.length`",
+        ),
+        (
             json!({"periodic": {"axis": "z", "length": 9}}),
             "f: periodic.axis: unknown value `z`",
         ),

@@ -6,59 +6,10 @@ use std::path::Path;
 
 use crate::common::documents::{count, invalid_value, replace};
 use crate::common::json_schema::refusal;
+use crate::common::whole::{Walk, all_keys, documents, whole};
 use proptest::prelude::*;
 use sandbox::scenario::{SHIPPED, Scenario, schema};
 use serde_json::{Value, json};
-
-/// A scenario with every key.
-fn whole() -> Value {
-    json!({
-        "$schema": "scenario.schema.json", "name": "whole", "description": "", "seed": 1,
-        "population_seed": 2, "behavior_seed": 3, "duration_secs": 5.5, "preset": "fast",
-        "time_step_secs": "auto", "longest_step_secs": 0.05, "coarse_every": 3,
-        "integrator": "velocity-verlet", "wall_method": "union", "precision": "double",
-        "neighbor_lists": "coarse", "navigation": "straight", "min_passage_width": 0.3, "preferred_speed": 1.4, "max_speed": 2, "goal": [5, 5],
-        "profile": {"name": "own", "blend": [
-            {"at_density": 2, "profile": "sf"},
-            {"at_density": 4, "profile": {"base": "sph", "parameters": {"viscosity": 1}}}
-        ]},
-        "parameters": {"goal_scale": 2, "candidates": 30, "walking_law": "headway", "lane_half_width": 0.4},
-        "walkable_area": [[[[0, 0], [9, 0], [9, 9]], [[5, 2], [6, 2], [6, 3]]]],
-        "obstacles": [[[0, 0], [1, 0], [1, 1]], [[[3, 1], [5, 1], [5, 3]], [[4, 1.5], [4.5, 1.5], [4.5, 2]]]],
-        "from": {"name": "f", "people": [[17, 0, 7, 0.5, 1, 0], [18.0, 0.2, 8, 8, 0, 0]], "goal": [8, 8], "profile": "sph",
-                 "remove_within": 0.5, "counted": true, "preferred_speed": 1.2, "radius": 0.2, "mass": 1},
-        "agents": [
-            {"position": [2, 1], "velocity": [1, 0], "radius": 0.2, "mass": 1, "goal": [8, 1],
-             "mean_density": 2, "preferred_speed": 1.3, "premovement_secs": 2, "profile": {"navigation": "rvo", "sph": false}, "remove_within": 1,
-             "counted": false},
-            {"position": [3, 1], "profile": null}
-        ],
-        "grids": [{"name": "g", "min": [7, 3], "max": [8, 4], "columns": 2, "rows": 2, "jitter": 0.1,
-                   "goal_offset": [1, 0], "preferred_speed": "weidmann_age", "radius": {"values": [[0.2, 1]]}, "mass": 1,
-                   "premovement_secs": {"exponential": {"mean": 2, "min": 1, "max": 9}}, "profile": "rvo->sph", "remove_within": 0.5, "counted": true}],
-        "crowds": [{"name": "c", "area": [[[6.5, 1], [8.5, 1], [8.5, 3], [6.5, 3]], [[7, 2], [8, 2], [8, 2.5]]],
-                    "number": 4, "spacing": "grid", "goal": [8, 8], "profile": "sph", "remove_within": 0.5,
-                    "counted": true, "preferred_speed": {"normal": {"mean": 1.34, "std": 0.2, "min": 1, "max": 2}},
-                    "radius": {"uniform": [0.2, 0.22]}, "mass": {"uniform": [0.9, 1.1]},
-                    "premovement_secs": {"lognormal": {"mean": 2, "std": 1, "min": 1, "max": 9}}}],
-        "sources": [{"name": "s", "min": [7, 2], "max": [8, 2], "columns": 2, "rows": 1, "goal": [1, 0],
-                     "start_secs": 1, "every_secs": 1, "times": 3}],
-        "entrances": [{"name": "i", "line": [[6.5, 0.5], [8.5, 0.5]], "per_sec": 2, "arrivals": "poisson",
-                       "from_secs": 1, "until_secs": 4, "number": 5, "goal": [8, 8], "profile": "sph",
-                       "remove_within": 0.5, "counted": true, "preferred_speed": 1.2, "radius": 0.2, "mass": 1,
-                       "premovement_secs": {"gamma": {"shape": 2, "scale": 1, "max": 5}}},
-                      {"line": [[6.5, 0.5], [8.5, 0.5]], "at_secs": [1, 2.5]}],
-        "events": [{"name": "e", "at_secs": 1, "for_secs": 1, "region": [[0, 0], [5, 5]], "goal_scale": 3,
-                    "ignore_contact": true, "ignore_sph": false}],
-        "measurements": [{"density": {"at_secs": 5, "region": [[0, 0], [5, 5]]}}, {"evacuated": {}},
-                         {"flow_of_first": {"arrivals": 2}}, {"flow_until": {"until_secs": 5}},
-                         {"walks": {"name": "w", "region": [[0, 0], [5, 5]], "from_secs": 1, "until_secs": 5}},
-                         {"line_flow": {"name": "l", "line": [[0, 0], [5, 0]], "region": [[0, 0], [5, 5]], "part": [0.2, 0.8]}}],
-        "stop": {"when_empty": true, "idle_secs": 5},
-        "view": {"region": [[0, 0], [9, 9]], "opens_at_secs": 1, "density_range": [0, 8], "speed_range": [0.1, 2]},
-        "debug_agents": [0, 1]
-    })
-}
 
 fn parsed(document: &Value) -> Result<Scenario, String> {
     Scenario::parse(&document.to_string(), "f.json", &[]).map_err(|error| error.to_string())
@@ -117,7 +68,7 @@ fn program_and_schema_refuse_journeys_and_queues_without_stages_places_or_points
 }
 
 #[test]
-fn all_scenario_files_and_one_with_every_key_are_valid() {
+fn all_scenario_files_and_those_with_every_key_are_valid() {
     let schema = schema();
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let mut seen = 0;
@@ -137,9 +88,11 @@ fn all_scenario_files_and_one_with_every_key_are_valid() {
         }
     }
     assert!(seen > 20, "{seen}");
-    assert_eq!(refused(&schema, &whole()), None);
-    let scenario = parsed(&whole()).unwrap();
-    assert_eq!(scenario.document.get("$schema"), None);
+    for document in documents() {
+        assert_eq!(refused(&schema, &document), None);
+        let scenario = parsed(&document).unwrap();
+        assert_eq!(scenario.document.get("$schema"), None);
+    }
     assert!(
         parsed(&json!({"$schema": 5}))
             .unwrap_err()
@@ -147,9 +100,9 @@ fn all_scenario_files_and_one_with_every_key_are_valid() {
     );
 }
 
-/// The valid keys at `pointer` in `whole`, from the error message for an additional key `?`.
-fn known(pointer: &str) -> Vec<String> {
-    let mut document = whole();
+/// The valid keys at `pointer` in a document, from the error message for an additional key `?`.
+fn known(document: &Value, pointer: &str) -> Vec<String> {
+    let mut document = document.clone();
     let object = document.pointer_mut(pointer).unwrap();
     object
         .as_object_mut()
@@ -168,60 +121,59 @@ fn known(pointer: &str) -> Vec<String> {
 }
 
 #[test]
+fn the_whole_documents_have_every_key_except_those_of_trajectory_files() {
+    let (schema, documents) = (schema(), documents());
+    let mut walk = Walk::default();
+    for document in &documents {
+        walk.add(&schema, document);
+    }
+    let missing: Vec<String> = all_keys(&schema).difference(&walk.keys).cloned().collect();
+    let expected = [
+        ".behaviour_seed", // another spelling
+        "FromData.at_secs",
+        "FromData.fps",
+        "FromData.trajectory",
+        "FromData.unit",
+        "FromData.until_secs",
+    ];
+    assert_eq!(missing, expected);
+}
+
+#[test]
 fn every_object_has_the_keys_that_the_parser_knows() {
     let schema = schema();
-    for (pointer, place) in [
-        ("", ""),
-        ("/parameters", "/$defs/Parameters"),
-        ("/profile", "/$defs/CustomProfile"),
-        ("/profile/blend/0", "/$defs/Step"),
-        ("/agents/0", "/$defs/Agent"),
-        ("/grids/0", "/properties/grids/items"),
-        ("/crowds/0", "/$defs/Crowd"),
-        ("/crowds/0/preferred_speed/normal", "/$defs/Normal"),
-        ("/crowds/0/premovement_secs/lognormal", "/$defs/Lognormal"),
-        ("/sources/0", "/properties/sources/items"),
-        ("/entrances/0", "/$defs/Entrance"),
-        ("/from", "/$defs/FromData"),
-        ("/events/0", "/$defs/Event"),
-        ("/measurements/0/density", "/$defs/Density"),
-        ("/measurements/2/flow_of_first", "/$defs/FlowOfFirst"),
-        ("/measurements/3/flow_until", "/$defs/FlowUntil"),
-        ("/measurements/4/walks", "/$defs/Walks"),
-        ("/stop", "/$defs/Stop"),
-        ("/view", "/$defs/View"),
-    ] {
-        let object = schema.pointer(place).unwrap();
-        let properties = object["properties"].as_object().unwrap();
-        let mut keys: Vec<&str> = properties.keys().map(String::as_str).collect();
-        keys.retain(|key| !["$schema", "behaviour_seed"].contains(key));
-        let mut expected = known(pointer);
-        expected.sort();
-        assert_eq!(keys, expected, "{place}");
-        // The parser refuses an object without a key if and only if the key is required.
-        let required = object
-            .get("required")
-            .map_or(vec![], |keys| keys.as_array().unwrap().clone());
-        for key in keys {
-            let mut document = whole();
-            let there = document
-                .pointer_mut(pointer)
-                .unwrap()
-                .as_object_mut()
-                .unwrap();
-            if there.remove(key).is_some() {
-                let missing = parsed(&document).is_err_and(|error| error.contains("missing key"));
-                assert_eq!(required.contains(&json!(key)), missing, "{place} {key}");
-            }
+    for document in documents() {
+        let mut walk = Walk::default();
+        walk.add(&schema, &document);
+        for object in walk.objects {
+            check_keys(&document, &object.pointer, object.schema);
         }
-        for (key, property) in properties {
-            assert!(
-                property["description"]
-                    .as_str()
-                    .is_some_and(|d| !d.is_empty()),
-                "{key}"
-            );
+    }
+}
+
+/// Checks that the parser and a schema know the same keys of the object at `pointer`, and require the same.
+fn check_keys(document: &Value, pointer: &str, schema: &Value) {
+    let properties = schema["properties"].as_object().unwrap();
+    let mut keys: Vec<&str> = properties.keys().map(String::as_str).collect();
+    keys.retain(|key| !["$schema", "behaviour_seed"].contains(key));
+    let mut expected = known(document, pointer);
+    expected.sort();
+    assert_eq!(keys, expected, "{pointer}");
+    // The parser refuses an object without a key if and only if the key is required.
+    let required = schema
+        .get("required")
+        .map_or(vec![], |keys| keys.as_array().unwrap().clone());
+    for key in keys {
+        let mut document = document.clone();
+        let object = document.pointer_mut(pointer).unwrap();
+        if object.as_object_mut().unwrap().remove(key).is_some() {
+            let missing = parsed(&document).is_err_and(|error| error.contains("missing key"));
+            assert_eq!(required.contains(&json!(key)), missing, "{pointer} {key}");
         }
+    }
+    for (key, property) in properties {
+        let description = property["description"].as_str();
+        assert!(description.is_some_and(|text| !text.is_empty()), "{key}");
     }
 }
 
@@ -366,7 +318,7 @@ proptest! {
     ) {
         let mut document: Value = match SHIPPED.get(which) {
             Some(shipped) => serde_json::from_str(shipped.text).unwrap(),
-            None => whole(),
+            None => documents()[which % 3].clone(),
         };
         for (index, value) in changes {
             let mut k = index.index(count(&document));

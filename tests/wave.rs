@@ -61,7 +61,13 @@ fn nothing_is_found_where_nothing_runs() {
     let mut still = synthetic(10.0, 10.0, 0.6, 0.1);
     still.velocity.fill(Some(0.2));
     assert_eq!(measure(&still, &RUN), None);
-    assert_eq!(measure(&SpaceTime::new(still.strip), &RUN), None);
+    // Diagrams with hardly any times, as of a run that ends early.
+    for times in 0..4 {
+        let mut short = synthetic(10.0, 10.0, 0.6, 0.1);
+        short.times.truncate(times);
+        short.velocity.truncate(times * short.strip.bins());
+        assert_eq!(measure(&short, &RUN), None, "{times}");
+    }
 }
 
 #[test]

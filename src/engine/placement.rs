@@ -33,17 +33,23 @@ impl Grid {
         self.len() == 0
     }
 
-    /// The positions, row by row from the lower left, for agents with ids from `first_id` on.
-    pub fn positions(&self, seed: u64, first_id: u32) -> impl Iterator<Item = Vector> + '_ {
+    /// The cell centers, row by row from the lower left.
+    pub fn centers(&self) -> impl Iterator<Item = Vector> + '_ {
         let cell = (self.max - self.min).component_div(&Vector::new(
             f64::from(self.columns.max(1)),
             f64::from(self.rows.max(1)),
         ));
         let cells =
             (0..self.rows).flat_map(|row| (0..self.columns).map(move |column| (column, row)));
-        cells.zip(first_id..).map(move |((column, row), id)| {
+        cells.map(move |(column, row)| {
             let step = Vector::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
-            let center = self.min + cell.component_mul(&step);
+            self.min + cell.component_mul(&step)
+        })
+    }
+
+    /// The positions, row by row from the lower left, for agents with ids from `first_id` on.
+    pub fn positions(&self, seed: u64, first_id: u32) -> impl Iterator<Item = Vector> + '_ {
+        self.centers().zip(first_id..).map(move |(center, id)| {
             if self.jitter == 0.0 {
                 return center;
             }

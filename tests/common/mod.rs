@@ -37,6 +37,7 @@ pub mod tracks;
 pub mod visibility;
 pub mod walking;
 pub mod wall_checks;
+pub mod whole;
 
 use sandbox::engine::agents::NewAgent;
 use sandbox::engine::breakdown::Breakdown;

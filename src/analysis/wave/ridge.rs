@@ -82,8 +82,15 @@ pub struct Wave {
     pub reflection: Option<Estimate>,
 }
 
-/// Finds the wave of `run` in a diagram; `None` if no crest stands out from the noise.
+/// A crest is a value between two others, so that a diagram needs this many times.
+const LEAST_TIMES: usize = 3;
+
+/// Finds the wave of `run` in a diagram; `None` if no crest stands out from the noise, or if there are fewer than three
+/// times.
 pub fn measure(diagram: &SpaceTime, run: &Run) -> Option<Wave> {
+    if diagram.times.len() < LEAST_TIMES {
+        return None;
+    }
     let field = Field::new(diagram, run);
     let near = run.obstacle - OVERLAP;
     let measured = run.source + FORMED..=near;

@@ -12,7 +12,7 @@ use crate::scenario::build::entrances::NEARLY_ALL;
 use crate::scenario::build::origin::{Member, Origins};
 use crate::scenario::build::ways::{Prepared, To};
 use crate::scenario::error::Problem;
-use crate::scenario::error::quote::shown;
+use crate::scenario::error::quote::{shown, to_centimeters};
 
 /// The part of its width that a body needs with turned shoulders. Adults are 0.46 m wide and 0.28 m deep in summer
 /// dress, 0.50 m and 0.32 m in winter dress (Predtechenskii and Milinskii 1978): 0.61 and 0.64. The widest 5 % of men
@@ -107,8 +107,8 @@ struct Leg {
 }
 
 impl Prepared<'_> {
-    /// Checks that the widest body of each group passes all passages on the widest of its ways. Adds notes on those that
-    /// it passes with turned shoulders only, or in which it can stick.
+    /// Checks that the widest body of each group passes all passages on the widest of its ways. Adds notes on those
+    /// that it passes with turned shoulders only, or in which it can stick.
     pub fn check_bodies(&self, floor: &Floor, notes: &mut Vec<String>) -> Result<(), Problem> {
         let most = self.widest.iter().map(|widest| widest.width);
         let most = most.fold(0.0, f64::max);
@@ -125,16 +125,16 @@ impl Prepared<'_> {
                 continue;
             };
             let (name, to) = (self.origins.name(widest.member), self.named(leg.to));
-            let (width, passage) = (rounded(widest.width), described(&leg.passage));
+            let (width, passage) = (to_centimeters(widest.width), described(&leg.passage));
             let sideways = SIDEWAYS * widest.width;
             if leg.passage.width < sideways {
                 let reason = format!(
                     "no way from ({}, {}) to {to} is wide enough for {name}: bodies {width} m wide need {} m with \
                      turned shoulders, and the widest way has a passage of {passage}; widen it, or give a smaller \
                      `radius`",
-                    rounded(leg.from.x),
-                    rounded(leg.from.y),
-                    rounded(sideways),
+                    to_centimeters(leg.from.x),
+                    to_centimeters(leg.from.y),
+                    to_centimeters(sideways),
                 );
                 return Err(Problem::new("", reason));
             }
@@ -260,7 +260,8 @@ impl<'a> Maps<'a> {
     }
 }
 
-/// Points that agents must reach to have reached a place, all of which stand for the same: behind an exit on both sides.
+/// Points that agents must reach to have reached a place, all of which stand for the same: behind an exit on both
+/// sides.
 fn sides(place: &Place) -> Vec<Vec<Vector>> {
     if let Kind::Exit(exit) = &place.kind {
         let [a, b] = exit.line;
@@ -286,11 +287,10 @@ fn points([a, b]: [Vector; 2]) -> impl Iterator<Item = Vector> {
 
 /// The width and the place of a passage, in words.
 pub fn described(passage: &Passage) -> String {
-    let (width, at) = (rounded(passage.width), passage.middle());
-    format!("{width} m at ({}, {})", rounded(at.x), rounded(at.y))
-}
-
-/// To centimeters.
-pub fn rounded(x: f64) -> f64 {
-    (100.0 * x).round() / 100.0 + 0.0 // turns −0 into 0
+    let (width, at) = (to_centimeters(passage.width), passage.middle());
+    format!(
+        "{width} m at ({}, {})",
+        to_centimeters(at.x),
+        to_centimeters(at.y)
+    )
 }

@@ -102,8 +102,8 @@ impl Population<'_> {
         let drawn = surroundings::area(given.area.rings()).under("area")?.area();
         if size < MOSTLY_OFF * drawn {
             self.notes.push(format!(
-                "{place}.area: {size:.1} m² of its {drawn:.1} m² are free floor, and all its agents start there; check that \
-                 it is where it should be"
+                "{place}.area: {size:.1} m² of its {drawn:.1} m² are free floor, and all its agents start there; check \
+                 that it is where it should be"
             ));
         }
         let behavior = Behavior {

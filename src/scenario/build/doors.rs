@@ -6,7 +6,7 @@ use crate::engine::math::{Vector, direction, perpendicular};
 use crate::engine::ways::Floor;
 use crate::scenario::build::journeys::SHORTEST_LINE;
 use crate::scenario::error::Problem;
-use crate::scenario::error::quote::shown;
+use crate::scenario::error::quote::{shown, to_centimeters};
 use crate::scenario::floor_plan::Rings;
 
 /// The distance between the points of a line that are looked at, meters.
@@ -64,8 +64,8 @@ pub fn notes(places: &[Place], floor: &Floor, behind: &Rings) -> Vec<String> {
         let share = Line::new(floor, exit.line).share_off(&behind);
         (share > MUCH).then(|| {
             format!(
-                "exits[{k}].line: {:.0} % of `{}` lies in obstacles or outside of the walkable area, where nobody passes; \
-                 draw the line on the floor, or on its edge",
+                "exits[{k}].line: {:.0} % of `{}` lies in obstacles or outside of the walkable area, where agents \
+                 cannot pass; draw the line on the floor, or on its edge",
                 100.0 * share,
                 shown(&place.name)
             )
@@ -159,8 +159,6 @@ impl<'a> Line<'a> {
             }
         }
         let p = self.at(low);
-        // + 0.0 turns −0 into 0.
-        let rounded = |x: f64| (100.0 * x).round() / 100.0 + 0.0;
-        Some([rounded(p.x), rounded(p.y)])
+        Some([p.x, p.y].map(to_centimeters))
     }
 }

@@ -43,8 +43,8 @@ pub fn notes(keys: &File, scene: &Scene, entering: u64) -> Vec<String> {
         .collect()
 }
 
-/// A note on a floor that is so large or empty that its unit may not be meters. Its size is that of the plan, without the
-/// floors behind exits and entrances.
+/// A note on a floor that is so large or empty that its unit may not be meters. Its size is that of the plan, without
+/// the floors behind exits and entrances.
 fn floor(keys: &File, walls: &Walls, entering: u64) -> Option<String> {
     let corners = keys.walkable_area.iter().flatten().flatten();
     let corners = corners.flat_map(|ring| ring.0.iter().map(|&corner| corner.into()));
@@ -119,8 +119,8 @@ fn peaks(keys: &File) -> Vec<String> {
     let note = |(k, given): (usize, &Measurement)| {
         let key = given.peaks_from_start()?;
         Some(format!(
-            "measurements[{k}].{key}: crowds start at random places, where forces are larger than after the first steps; \
-             give `from_secs` of a few seconds, so that the start does not count"
+            "measurements[{k}].{key}: crowds start at random places, where forces are larger than after the first \
+             steps; give `from_secs` of a few seconds, so that the start does not count"
         ))
     };
     measured.filter_map(note).collect()
@@ -141,8 +141,8 @@ fn at_exits(scene: &Scene) -> Vec<String> {
             line.is_some_and(|[a, b]| (nearest_on(middle, a, b) - middle).norm() < AT_EXIT)
         })?;
         Some(format!(
-            "entrances[{k}].line: agents enter on the line of the exit `{}` and walk to it; give them another exit, or move \
-             the line",
+            "entrances[{k}].line: agents enter on the line of the exit `{}` and walk to it; give them another exit, or \
+             move the line",
             shown(&exit.name)
         ))
     };

@@ -97,8 +97,8 @@ impl Population<'_> {
         let nobody = std::iter::empty();
         if entrance.free(widest, &self.scene.walls, nobody).is_empty() {
             let reason = format!(
-                "no agent with a radius of {widest:.3} m can stand on it: obstacles are too near, or it lies outside of \
-                 the walkable area; move or lengthen it"
+                "no agent with a radius of {widest:.3} m can stand on it: obstacles are too near, or it lies outside \
+                 of the walkable area; move or lengthen it"
             );
             return Err(Problem::new("line", reason));
         }

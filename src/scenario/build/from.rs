@@ -49,7 +49,8 @@ impl Population<'_> {
         }
         if faster > 0 {
             self.notes.push(format!(
-                "{faster} of {} people of `{FROM}` are faster at the start than `max_speed` allows, and are slowed to it",
+                "{faster} of {} people of `{FROM}` are faster at the start than `max_speed` allows, and are slowed to \
+                 it",
                 there.len()
             ));
         }
@@ -63,7 +64,7 @@ impl Population<'_> {
         Ok(())
     }
 
-    /// Checks that nobody begins in a wall: data and walls would not belong together.
+    /// Checks that no agent begins in a wall: data and walls would not belong together.
     fn check_floor(&self, people: &[Person]) -> Result<(), Problem> {
         let walls = &self.scene.walls;
         let place = |person: &Person| match self.scene.period {
@@ -75,8 +76,8 @@ impl Population<'_> {
             return Ok(());
         };
         let reason = format!(
-            "{first} is in an obstacle or outside of the walkable area, as {} of {} people are; mend the walls, or choose \
-             `unit`, the origin and `until_secs` to fit them",
+            "{first} is in an obstacle or outside of the walkable area, as {} of {} people are; mend the walls, or \
+             choose `unit`, the origin and `until_secs` to fit them",
             people.iter().filter(within).count(),
             people.len()
         );

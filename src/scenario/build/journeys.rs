@@ -277,10 +277,9 @@ impl Found<'_> {
             let before_last = journey.stages.iter().rev().skip(1);
             let mut visited = before_last.flat_map(|stage| stage.places.iter().copied());
             if let Some(place) = visited.find(is_endless) {
-                let reason = format!(
-                    "agents would wait forever in `{}`: give it `until_secs` or `for_secs`, or an event that releases it",
-                    shown(&places[usize::from(place)].name)
-                );
+                let name = shown(&places[usize::from(place)].name);
+                let mend = "`until_secs`, `for_secs` or an event that releases it";
+                let reason = format!("agents would wait forever in `{name}`: give it {mend}");
                 return Err(Problem::new(format!("journeys[{k}]"), reason));
             }
         }

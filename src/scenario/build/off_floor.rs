@@ -1,9 +1,9 @@
-//! Rejects zones, regions and lines off the floor, where there is nothing to slow or to measure, and agents off the floor.
+//! Rejects zones, regions and lines off the floor, where there is nothing to slow or to measure, and agents off the
+//! floor.
 
 use crate::engine::geometry::Ring;
 use crate::engine::journeys::Place;
 use crate::engine::math::Vector;
-use crate::engine::placement::Grid;
 use crate::engine::scene::Scene;
 use crate::engine::ways::nearest_on;
 use crate::scenario::build::origin::{Member, Origins};
@@ -36,11 +36,9 @@ pub fn check(keys: &File, scene: &Scene) -> Result<(), Problem> {
 
 /// Single agents in obstacles start at the nearest free point, which may be this far away, meters.
 const NEAR: f64 = 2.0;
-/// Of larger grids, only the first cells are looked at.
-const MOST_CELLS: usize = 100_000;
 
-/// Rejects agents of `agents`, `grids` and `sources` that start on the floors `behind` exits and entrances, or that would be
-/// moved there from an obstacle, and single ones that start far off the floor.
+/// Rejects agents of `agents`, `grids` and `sources` that start on the floors `behind` exits and entrances, or that
+/// would be moved there from an obstacle, and single ones that start far off the floor.
 pub fn check_starts(origins: &Origins, behind: &Rings) -> Result<(), Problem> {
     let rings = behind.iter().map(|ring| Ring::new(ring.clone()));
     let rings: Vec<Ring> = rings.filter_map(Result::ok).collect();
@@ -70,13 +68,18 @@ pub fn check_starts(origins: &Origins, behind: &Rings) -> Result<(), Problem> {
         }
     }
     for (k, source) in scene.sources.iter().enumerate() {
-        let reach = Vector::repeat(source.grid.jitter);
-        let centers = Grid {
-            jitter: 0.0,
-            ..source.grid
-        };
-        for center in centers.positions(scene.seed, 0).take(MOST_CELLS) {
-            for corner in [center, center - reach, center + reach] {
+        // The jittered positions are known only on entry, so check the corners of the squares in which they lie.
+        let reach = source.grid.jitter;
+        let around = [
+            (0.0, 0.0),
+            (-1.0, -1.0),
+            (1.0, -1.0),
+            (1.0, 1.0),
+            (-1.0, 1.0),
+        ];
+        for center in source.grid.centers() {
+            for (x, y) in around {
+                let corner = center + reach * Vector::new(x, y);
                 check_behind(scene, &rings, corner).under(&format!("sources[{k}]"))?;
             }
         }
@@ -93,8 +96,8 @@ fn check_behind(scene: &Scene, rings: &[Ring], p: Vector) -> Result<(), Problem>
         return Ok(());
     }
     let reason = format!(
-        "an agent starts at ({:.2}, {:.2}), behind the line of an exit or entrance and outside of the walkable area; move \
-         it onto the floor",
+        "an agent starts at ({:.2}, {:.2}), behind the line of an exit or entrance and outside of the walkable area; \
+         move it onto the floor",
         start.x, start.y
     );
     Err(Problem::new("", reason))

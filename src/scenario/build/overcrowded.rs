@@ -2,7 +2,6 @@
 
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
-use crate::engine::placement::Grid;
 use crate::engine::scene::Scene;
 use crate::scenario::build::need;
 use crate::scenario::build::origin::Items;
@@ -52,11 +51,7 @@ pub fn check(
             ));
         }
         // The jittered positions are known only on entry, so check the cell centers.
-        let grid = Grid {
-            jitter: 0.0,
-            ..source.grid
-        };
-        let centers: Vec<Vector> = grid.positions(scene.seed, 0).collect();
+        let centers: Vec<Vector> = source.grid.centers().collect();
         if let Some((_, reason)) = locked(&scene.walls, &centers) {
             return Err(Problem::new(format!("sources[{k}]"), reason));
         }

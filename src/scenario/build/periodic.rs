@@ -41,30 +41,41 @@ pub fn check_keys(keys: &File) -> Result<(), Problem> {
     Ok(())
 }
 
-/// The copies of a polygon in all periods that agents can see, the given one among them.
-pub fn copies(rings: &Rings, period: Option<&Period>) -> Vec<Rings> {
+/// Most copies of one polygon.
+const MOST_COPIES: f64 = 1000.0;
+
+/// The copies of a polygon in all periods that agents can see, the given one among them. An error if there are too
+/// many.
+pub fn copies(rings: &Rings, period: Option<&Period>) -> Result<Vec<Rings>, Problem> {
     let Some(period) = period else {
-        return vec![rings.clone()];
+        return Ok(vec![rings.clone()]);
     };
     let points = rings.iter().flatten().map(|&p| Vector::from(p));
     let [low, high] = bounds(points).unwrap_or_default().map(|p| period.along(p));
     let [from, to] = period.ends();
     // One period more on both sides than agents are in.
-    let first = ((from - period.length - high) / period.length).ceil() as i32;
-    let last = ((to + period.length - low) / period.length).floor() as i32;
+    let first = ((from - period.length - high) / period.length).ceil();
+    let last = ((to + period.length - low) / period.length).floor();
+    let count = last - first + 1.0;
+    if count.is_nan() || count > MOST_COPIES {
+        let reason = format!(
+            "reaches over more than {MOST_COPIES} periods; lengthen `{LENGTH}`, or shorten this polygon"
+        );
+        return Err(Problem::new("", reason));
+    }
     let moved = |laps: i32| {
         let way = period.way(laps);
         let ring =
             |ring: &Vec<[f64; 2]>| ring.iter().map(|p| [p[0] + way.x, p[1] + way.y]).collect();
         rings.iter().map(ring).collect()
     };
-    (first..=last).map(moved).collect()
+    Ok((first as i32..=last as i32).map(moved).collect())
 }
 
 /// An obstacle, from its outline and holes, in all periods that agents can see. Copies that touch become one body, so
 /// that no corner shows where they meet.
 pub fn bodies(rings: &Rings, period: &Period) -> Result<Vec<Polygon>, Problem> {
-    let copies = copies(rings, Some(period));
+    let copies = copies(rings, Some(period))?;
     let points = rings.iter().flatten().map(|&p| Vector::from(p));
     let [low, high] = bounds(points).unwrap_or_default();
     let touch = period.along(high - low) >= period.length - ON_END;
@@ -95,8 +106,8 @@ pub fn check_ends(solids: &[Polygon], period: &Period) -> Result<(), Problem> {
     let is_on = |p: Vector| (period.along(p) - to).abs() < ON_END;
     if let Some((a, b)) = edges().find(|&(a, b)| is_on(a) && is_on(b)) {
         let reason = format!(
-            "the two ends of the period do not fit together: at {name} = {to} a wall remains from ({}, {}) to ({}, {}); \
-             give both ends the same outline, or move them with `periodic.from`",
+            "the two ends of the period do not fit together: at {name} = {to} a wall remains from ({}, {}) to ({}, \
+             {}); give both ends the same outline, or move them with `periodic.from`",
             a.x, a.y, b.x, b.y
         );
         return Err(Problem::new("", reason));
@@ -109,8 +120,8 @@ pub fn check_ends(solids: &[Polygon], period: &Period) -> Result<(), Problem> {
         return Ok(());
     }
     let reason = format!(
-        "there is no floor at {name} = {to}, where the period ends; it must reach from {name} = {} to {name} = {to}, or \
-         beyond",
+        "there is no floor at {name} = {to}, where the period ends; it must reach from {name} = {} to {name} = {to}, \
+         or beyond",
         period.from
     );
     Err(Problem::new("", reason))
@@ -133,8 +144,8 @@ pub fn check(keys: &File, scene: &Scene) -> Result<(), Problem> {
     let least = (2.0 * range).max(ranges.longest_step + 2.0 * ranges.drift);
     if period.length < least {
         let reason = format!(
-            "must be at least {least} m, not {}: agents act on each other within {range} m, and must not meet one agent on \
-             both sides; lengthen it, or lower `avoidance_radius` or `support_radius`",
+            "must be at least {least} m, not {}: agents act on each other within {range} m, and must not meet one \
+             agent on both sides; lengthen it, or lower `avoidance_radius` or `support_radius`",
             period.length
         );
         return Err(Problem::new(LENGTH, reason));

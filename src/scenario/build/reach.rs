@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::engine::journeys::{Choice, JourneyStage};
 use crate::engine::math::Vector;
 use crate::engine::ways::{Destination, Floor, Ways};
-use crate::scenario::build::bodies::{Maps, described, rounded};
+use crate::scenario::build::bodies::{Maps, described};
 use crate::scenario::build::ways::{Prepared, To};
 use crate::scenario::error::Problem;
-use crate::scenario::error::quote::shown;
+use crate::scenario::error::quote::{shown, to_centimeters};
 
 /// A point from which agents choose between the places of a stage.
 struct Stand<'a> {
@@ -107,8 +107,8 @@ impl Prepared<'_> {
         never.map(note).collect()
     }
 
-    /// Checks that agents reach a place of `stage` from a point; all of its places if they choose without looking at the
-    /// way. Adds these places to `reached`.
+    /// Checks that agents reach a place of `stage` from a point; all of its places if they choose without looking at
+    /// the way. Adds these places to `reached`.
     fn check_stage(
         &self,
         ways: &Ways,
@@ -157,14 +157,15 @@ impl Prepared<'_> {
             .min_by(|a, b| b.alone.total_cmp(&a.alone)); // the first of the widest
         match setter.filter(|_| !self.is_given) {
             Some(setter) => format!(
-                "every way there has a passage narrower than {} m, too narrow for {}, up to {} m wide{widest}: widen it, \
-                 give a smaller `radius`, or set `min_passage_width`",
-                rounded(self.width),
+                "every way there has a passage narrower than {} m, too narrow for {}, up to {} m wide{widest}: widen \
+                 it, give a smaller `radius`, or set `min_passage_width`",
+                to_centimeters(self.width),
                 self.origins.name(setter.member),
-                rounded(setter.width),
+                to_centimeters(setter.width),
             ),
             None => format!(
-                "every way there has a passage narrower than `min_passage_width`, {} m{widest}: widen it, or lower that",
+                "every way there has a passage narrower than `min_passage_width`, {} m{widest}: widen it, or lower \
+                 that",
                 self.width
             ),
         }

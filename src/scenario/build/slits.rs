@@ -2,13 +2,16 @@
 
 use crate::engine::geometry::Walls;
 use crate::engine::math::{Vector, direction, perpendicular};
+use crate::scenario::error::quote::to_centimeters;
 
 /// Solids between floors that are thinner are slits, not walls, meters.
 const SLIT: f64 = 0.02;
-/// Through a shorter slit nobody would pass, were it open, meters.
+/// Shorter slits are not named: agents would not fit through, meters.
 const SHORTEST: f64 = 0.3;
 /// This many slits are named.
 const NAMED: usize = 3;
+/// The search stops after this many pairs of edges: some 0.1 s.
+const MOST_PAIRS: usize = 10_000_000;
 
 /// An edge of a floor: its ends, meters.
 type Edge = [Vector; 2];
@@ -19,7 +22,8 @@ pub fn note(walls: &Walls) -> Option<String> {
     let named = found.iter().take(NAMED).map(|(middle, width)| {
         let width = format!("{:.1}", 1e3 * width);
         let width = width.trim_end_matches(".0");
-        format!("{width} mm at ({:.2}, {:.2})", middle.x, middle.y)
+        let [x, y] = [middle.x, middle.y].map(to_centimeters);
+        format!("{width} mm at ({x:.2}, {y:.2})")
     });
     let named: Vec<String> = named.collect();
     let rest = match found.len().saturating_sub(NAMED) {
@@ -28,14 +32,14 @@ pub fn note(walls: &Walls) -> Option<String> {
     };
     (!found.is_empty()).then(|| {
         format!(
-            "walkable_area: floors end {}{rest} apart, and nobody passes there; let them touch or overlap, unless a wall \
-             stands between them",
+            "walkable_area: floors end {}{rest} apart, and agents cannot pass there; let them touch or overlap, unless \
+             a wall stands between them",
             named.join(", ")
         )
     })
 }
 
-/// The middles and widths of all slits, meters, from left to right.
+/// The middles and widths of slits, meters, from left to right.
 fn slits(walls: &Walls) -> Vec<(Vector, f64)> {
     let floors = walls.obstacles().iter().filter(|one| one.is_unbounded());
     let mut edges: Vec<Edge> = Vec::new();
@@ -46,13 +50,19 @@ fn slits(walls: &Walls) -> Vec<(Vector, f64)> {
     let left = |edge: &Edge| edge[0].x.min(edge[1].x);
     edges.sort_by(|one, other| left(one).total_cmp(&left(other)));
     let mut found = Vec::new();
+    let mut compared = 0;
     for (k, one) in edges.iter().enumerate() {
         let right = one[0].x.max(one[1].x) + SLIT;
         let near = edges[k + 1..]
             .iter()
             .take_while(|other| left(other) <= right);
-        let between = near.filter_map(|other| between(one, other));
+        let between = near
+            .inspect(|_| compared += 1)
+            .filter_map(|other| between(one, other));
         found.extend(between.filter(|(middle, _)| walls.obstacle_at(*middle).is_some()));
+        if compared > MOST_PAIRS {
+            break;
+        }
     }
     found
 }

@@ -26,8 +26,12 @@ pub fn walls(file: &File) -> u64 {
     corners * if file.periodic.is_some() { 3 } else { 1 }
 }
 
-/// Notes on obstacles off the floor, and on floors inside other floors.
+/// Notes on obstacles off the floor, and on floors inside other floors. None in a periodic scene, where a polygon
+/// counts with all its copies.
 pub fn without_effect(file: &File) -> Result<Vec<String>, Problem> {
+    if file.periodic.is_some() {
+        return Ok(Vec::new());
+    }
     let floors = file.walkable_area.iter().flatten().enumerate();
     let floors = floors.map(|(k, rings)| (WALKABLE_AREA, k, rings.as_slice()));
     let bodies = file.obstacles.iter().enumerate();
@@ -94,8 +98,8 @@ fn walls_round(
 ) -> Result<Surroundings, Problem> {
     let mut given = Vec::with_capacity(polygons.len());
     for (k, polygon) in polygons.iter().enumerate() {
-        let rings = rings(polygon).under(&format!("[{k}]"))?;
-        given.extend(periodic::copies(&rings, period));
+        let copies = rings(polygon).and_then(|rings| periodic::copies(&rings, period));
+        given.extend(copies.under(&format!("[{k}]"))?);
     }
     let mut plan = FloorPlan::walkable(&given).map_err(problem)?;
     let openings = openings(&plan.walkable, doors);

@@ -16,11 +16,11 @@ const ROUNDING: f64 = 1e-6;
 /// A note says how much of an area is free if it is less than this part.
 const NEARLY_ALL: f64 = 0.99;
 
-/// The waiting area of a file, and a note if much of it is not free. `behind` are the floors behind exits and entrances,
-/// on which agents do not wait.
+/// The waiting area of a file, and a note if much of it is not free. `behind` are the floors behind exits and
+/// entrances, on which agents do not wait.
 ///
-/// If a part of the area is not free, agents wait in the rest, in the largest part if walls divide it. They have arrived
-/// when they are well inside: its sides lie along walls, or end there, where bodies do not fit.
+/// If a part of the area is not free, agents wait in the rest, in the largest part if walls divide it. They have
+/// arrived when they are well inside: its sides lie along walls, or end there, where bodies do not fit.
 pub fn waiting_area(
     given: &WaitingArea,
     walls: &Walls,
@@ -82,8 +82,8 @@ fn note(name: &str, parts: usize, share: f64) -> String {
     match parts {
         1 => format!("area: {percent:.1} % of `{name}` is free floor; agents wait there"),
         _ => format!(
-            "area: walls divide the free floor of `{name}` into {parts} parts; agents wait in the largest, {percent:.1} % \
-             of the area: draw it within one room if they should wait in another"
+            "area: walls divide the free floor of `{name}` into {parts} parts; agents wait in the largest, \
+             {percent:.1} % of the area: draw it within one room if they should wait in another"
         ),
     }
 }

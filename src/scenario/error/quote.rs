@@ -1,4 +1,4 @@
-//! Quoting of user input in messages: shortened, and without control characters.
+//! Values in messages: user input, shortened and without control characters, and rounded lengths.
 
 /// Most characters of a value, name or key in a message.
 const LONGEST: usize = 80;
@@ -14,6 +14,11 @@ pub fn shown(text: &str) -> String {
 /// Like [`shown`], with a higher limit, for a library's message.
 pub fn shown_message(text: &str) -> String {
     within(text, LONGEST_MESSAGE)
+}
+
+/// A length in meters, rounded to centimeters.
+pub fn to_centimeters(length: f64) -> f64 {
+    (100.0 * length).round() / 100.0 + 0.0 // turns −0 into 0
 }
 
 /// Escapes control characters except line feeds.

@@ -1,5 +1,5 @@
-//! A scenario file as a whole. From its struct and the [`keys`](super::keys) come the JSON Schema, the range checks, the
-//! keys of `--set` and their descriptions in `sandbox list --settings`: each key is described once. The keys of
+//! A scenario file as a whole. From its struct and the [`keys`](super::keys) come the JSON Schema, the range checks,
+//! the keys of `--set` and their descriptions in `sandbox list --settings`: each key is described once. The keys of
 //! measurements are in [`measurements`](super::measurements).
 
 pub mod listed;
@@ -213,7 +213,8 @@ pub struct View {
     /// The time at which a recording opens, seconds. Default: the moment of the highest density.
     #[schemars(range(min = 0, max = LONGEST_TIME))]
     pub opens_at_secs: Option<f64>,
-    /// The densities with the first and the last color, P/m². Default: 0 and 1.2 rest_density_max, at most 10, rounded up.
+    /// The densities with the first and the last color, P/m². Default: 0 and 1.2 rest_density_max, at most 10, rounded
+    /// up.
     #[schemars(inner(range(min = 0, max = 1e6)))]
     pub density_range: Option<[f64; 2]>,
     /// The speeds with the first and the last color, m/s. Default: 0 and the 99th percentile of the preferred speeds,

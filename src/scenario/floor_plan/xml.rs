@@ -182,8 +182,8 @@ fn outline(walls: Vec<Path>, doors: Vec<Path>, place: &str) -> Result<Path, Floo
     if let Some(&[x, y]) = walls.first().and_then(|path| path.first()) {
         let [end_x, end_y] = outline[outline.len() - 1];
         let reason = format!(
-            "the walls do not join: no wall or door leads from ({end_x}, {end_y}) to the wall that begins at ({x}, {y}); \
-             close the gap, or write the outline as one polygon"
+            "the walls do not join: no wall or door leads from ({end_x}, {end_y}) to the wall that begins at ({x}, \
+             {y}); close the gap, or write the outline as one polygon"
         );
         return Err(wrong(place, reason));
     }

@@ -1,12 +1,10 @@
 //! Distributions in a file, and the traits that are drawn from them.
 
-use std::fmt;
-
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::Deserialize;
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, Error, MapAccess, Visitor};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
 use serde_json::Value;
+use serde_untagged::UntaggedEnumVisitor;
 
 use crate::engine::distribution::{AGES, LARGEST_SHAPE};
 use crate::scenario::keys::limits::LONGEST_TIME;
@@ -124,8 +122,8 @@ pub struct Scaled {
 }
 
 /// The mean of an exponential distribution, or an object with its bounds
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(untagged)]
+#[derive(Debug, Clone, JsonSchema)]
+#[schemars(untagged)]
 pub enum Exponential {
     Mean(#[schemars(range(max = LARGEST), extend("exclusiveMinimum" = 0))] f64),
     Bounded(BoundedExponential),
@@ -175,43 +173,31 @@ pub fn wait(generator: &mut SchemaGenerator) -> Schema {
     draw(generator, WAITS, &[])
 }
 
-/// Implemented by hand: the errors of an untagged enum do not name the wrong key.
+/// Not derived, nor for [`Exponential`]: the errors of a derived untagged enum do not name the wrong key.
 impl<'de> Deserialize<'de> for Draw {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(DrawVisitor)
+        UntaggedEnumVisitor::new()
+            .expecting("a number, or a distribution such as {\"uniform\": [1, 1.5]}")
+            .f64(|number| Ok(Self::Number(number)))
+            .u64(|number| Ok(Self::Number(number as f64)))
+            .i64(|number| Ok(Self::Number(number as f64)))
+            .string(|word| match word == WEIDMANN_AGE {
+                true => Ok(Self::WeidmannAge),
+                false => Err(Error::unknown_variant(word, &[WEIDMANN_AGE])),
+            })
+            .map(|keys| Ok(Self::From(Box::new(keys.deserialize()?))))
+            .deserialize(deserializer)
     }
 }
 
-struct DrawVisitor;
-
-impl<'de> Visitor<'de> for DrawVisitor {
-    type Value = Draw;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a number, or a distribution such as {\"uniform\": [1, 1.5]}")
-    }
-
-    fn visit_f64<E>(self, number: f64) -> Result<Draw, E> {
-        Ok(Draw::Number(number))
-    }
-
-    fn visit_u64<E>(self, number: u64) -> Result<Draw, E> {
-        Ok(Draw::Number(number as f64))
-    }
-
-    fn visit_i64<E>(self, number: i64) -> Result<Draw, E> {
-        Ok(Draw::Number(number as f64))
-    }
-
-    fn visit_str<E: Error>(self, word: &str) -> Result<Draw, E> {
-        match word == WEIDMANN_AGE {
-            true => Ok(Draw::WeidmannAge),
-            false => Err(E::unknown_variant(word, &[WEIDMANN_AGE])),
-        }
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, entries: A) -> Result<Draw, A::Error> {
-        let from = Spread::deserialize(MapAccessDeserializer::new(entries))?;
-        Ok(Draw::From(Box::new(from)))
+impl<'de> Deserialize<'de> for Exponential {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        UntaggedEnumVisitor::new()
+            .expecting("the mean, or an object with `mean`, `min` and `max`")
+            .f64(|mean| Ok(Self::Mean(mean)))
+            .u64(|mean| Ok(Self::Mean(mean as f64)))
+            .i64(|mean| Ok(Self::Mean(mean as f64)))
+            .map(|keys| Ok(Self::Bounded(keys.deserialize()?)))
+            .deserialize(deserializer)
     }
 }

@@ -26,11 +26,12 @@ pub struct FromData {
     /// The trajectory file, relative to this file's folder: SQLite (JuPedSim), CSV or text.
     #[schemars(length(min = 1))]
     pub trajectory: Option<String>,
-    /// With `trajectory`: the time in the file at which the scenario begins, seconds; frame f is at f / `fps`. Before the
-    /// first frame it is that of this frame. Default: the first frame.
+    /// With `trajectory`: the time in the file at which the scenario begins, seconds; frame f is at f / `fps`. Before
+    /// the first frame it is that of this frame. Default: the first frame.
     #[schemars(range(min = -LONGEST_TIME, max = LONGEST_TIME))]
     pub at_secs: Option<f64>,
-    /// With `trajectory`: people who appear in the file after this time in it are left out, seconds. Default: all enter.
+    /// With `trajectory`: people who appear in the file after this time in it are left out, seconds. Default: all
+    /// enter.
     #[schemars(range(min = -LONGEST_TIME, max = LONGEST_TIME))]
     pub until_secs: Option<f64>,
     /// With `trajectory`: the unit of its coordinates. Default: as the file says.

@@ -1,16 +1,28 @@
 //! The keys of goals, and of how agents find their ways.
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_untagged::UntaggedEnumVisitor;
 
 use crate::scenario::keys::shapes::Point;
 
 /// A goal: a point, or a direction
-#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
-#[serde(untagged)]
+#[derive(Debug, Clone, Copy, JsonSchema)]
+#[schemars(untagged)]
 pub enum Aim {
     Point(Point),
     Heading(Heading),
+}
+
+/// Not derived: the errors of a derived untagged enum do not name the wrong key.
+impl<'de> Deserialize<'de> for Aim {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        UntaggedEnumVisitor::new()
+            .expecting("a point [x, y] in meters, or {\"direction\": [x, y]}")
+            .seq(|point| Ok(Self::Point(point.deserialize()?)))
+            .map(|keys| Ok(Self::Heading(keys.deserialize()?)))
+            .deserialize(deserializer)
+    }
 }
 
 /// Instead of a point: agents walk in a direction, without end.

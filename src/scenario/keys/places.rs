@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
+use serde_untagged::UntaggedEnumVisitor;
 
 use crate::engine::journeys::Journey as Built;
 use crate::scenario::error::quote::shown;
@@ -22,7 +23,7 @@ pub struct Exit {
     pub name: String,
     /// Its ends. On the edge of the walkable area, the line opens the wall.
     pub line: [Point; 2],
-    /// Times between which nobody can pass, seconds: a list of [from, until].
+    /// Times between which agents cannot pass, seconds: a list of [from, until].
     #[serde(default)]
     #[schemars(inner(inner(range(min = 0, max = LONGEST_TIME))))]
     pub closed_secs: Vec<[f64; 2]>,
@@ -101,17 +102,27 @@ pub struct Journey {
 }
 
 /// A stage of a journey: the name of a place, or a choice between places
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(
-    untagged,
-    expecting = "must be the name of a place, or a choice: one of {\"nearest\": [names]}, {\"quickest\": [names]}, \
-                 {\"fewest\": [names]} or {\"shares\": {name: weight}}"
-)]
+#[derive(Debug, Clone, JsonSchema)]
+#[schemars(untagged)]
 pub enum Stage {
     /// This place.
     Place(String),
     /// One of several.
     Choice(Choice),
+}
+
+/// Not derived: the errors of a derived untagged enum do not name the wrong key.
+impl<'de> Deserialize<'de> for Stage {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        UntaggedEnumVisitor::new()
+            .expecting(
+                "the name of a place, or a choice: one of {\"nearest\": [names]}, {\"quickest\": [names]}, \
+                 {\"fewest\": [names]} or {\"shares\": {name: weight}}",
+            )
+            .string(|name| Ok(Self::Place(name.to_owned())))
+            .map(|choice| Ok(Self::Choice(choice.deserialize()?)))
+            .deserialize(deserializer)
+    }
 }
 
 /// A choice between places: exactly one of these keys.

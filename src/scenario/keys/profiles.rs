@@ -1,12 +1,9 @@
 //! The keys of profiles and blends.
 
-use std::fmt;
-
 use schemars::JsonSchema;
-use serde::Deserialize;
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use serde_json::{Value, json};
+use serde_untagged::UntaggedEnumVisitor;
 
 use crate::scenario::keys::catalog;
 use crate::scenario::keys::catalog::{ALIASES, NavigationKind, Parameters};
@@ -69,28 +66,13 @@ fn given(key: &str) -> Value {
     json!({"required": [key], "properties": {key: {"not": {"type": "null"}}}})
 }
 
-/// Implemented by hand: the errors of an untagged enum do not name the wrong key.
+/// Not derived: the errors of a derived untagged enum do not name the wrong key.
 impl<'de> Deserialize<'de> for ProfileChoice {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(ProfileVisitor)
-    }
-}
-
-struct ProfileVisitor;
-
-impl<'de> Visitor<'de> for ProfileVisitor {
-    type Value = ProfileChoice;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("the name of a profile, or an object with its parameters")
-    }
-
-    fn visit_str<E>(self, name: &str) -> Result<ProfileChoice, E> {
-        Ok(ProfileChoice::Named(ProfileName(name.to_owned())))
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, entries: A) -> Result<ProfileChoice, A::Error> {
-        let custom = CustomProfile::deserialize(MapAccessDeserializer::new(entries))?;
-        Ok(ProfileChoice::Custom(Box::new(custom)))
+        UntaggedEnumVisitor::new()
+            .expecting("the name of a profile, or an object with its parameters")
+            .string(|name| Ok(Self::Named(ProfileName(name.to_owned()))))
+            .map(|keys| Ok(Self::Custom(Box::new(keys.deserialize()?))))
+            .deserialize(deserializer)
     }
 }

@@ -119,9 +119,9 @@ impl Egress {
 }
 
 impl Seen {
-    /// The length of the shortest way from `from` to a place at which an agent at `end` ends a stage, meters; 0 if there
-    /// is none. Of a queue, that place is the front, up to which agents are served, and the rest of the way there does not
-    /// count.
+    /// The length of the shortest way from `from` to a place at which an agent at `end` ends a stage, meters; 0 if
+    /// there is none. Of a queue, that place is the front, up to which agents are served, and the rest of the way there
+    /// does not count.
     fn length(&mut self, simulation: &Simulation, number: u16, [from, end]: [Vector; 2]) -> f64 {
         let scene = simulation.scene();
         let Some(ways) = &scene.ways else {

@@ -274,8 +274,8 @@ impl Metrics {
         self.stuck.observe(simulation);
     }
 
-    /// The agents that made less than [`HEADWAY`] in [`STUCK_AFTER`] seconds of walking, grouped by the likely cause, the
-    /// largest group first.
+    /// The agents that made less than [`HEADWAY`] in [`STUCK_AFTER`] seconds of walking, grouped by the likely cause,
+    /// the largest group first.
     pub fn stuck(&self, simulation: &Simulation) -> Vec<StuckGroup> {
         stuck::groups(&self.stuck.1, simulation)
     }

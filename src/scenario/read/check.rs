@@ -23,7 +23,7 @@ use crate::scenario::keys::profiles::{ProfileChoice, ProfileName};
 use crate::scenario::keys::shapes::region;
 use crate::scenario::read::plans::PlanFile;
 use crate::scenario::read::scenario::Scenario;
-use crate::scenario::read::{data, late, plans};
+use crate::scenario::read::{data, late, plans, preset};
 use crate::scenario::trajectories::Tracks;
 use crate::scenario::{file, measurements};
 
@@ -44,7 +44,7 @@ pub struct Contents {
 impl Contents {
     /// Reads `document`, and the files that it names from the folder of `path`.
     pub fn of(document: Value, path: &Path) -> Result<Self, Problem> {
-        let mut document = plans::complete_preset(document);
+        let mut document = preset::completed(document);
         without_schema(&mut document)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut notes = Vec::new();

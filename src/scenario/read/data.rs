@@ -14,8 +14,8 @@ use crate::scenario::trajectories::{ReadOptions, TOO_FAST, Tracks, read};
 /// Velocities are means from this long before to this long after, seconds, as in the measurement `line_flow`.
 const REACH: f64 = 0.2;
 
-/// Replaces the name of the trajectory file, relative to `folder`, and the keys about it with the people, and adds notes
-/// on keys that overrule the file. Returns the file.
+/// Replaces the name of the trajectory file, relative to `folder`, and the keys about it with the people, and adds
+/// notes on keys that overrule the file. Returns the file.
 pub fn fill(
     document: &mut Value,
     keys: &mut File,
@@ -100,8 +100,8 @@ fn in_keys(said: &str) -> String {
     said.replace("--fps", "`fps`").replace("--unit", "`unit`")
 }
 
-/// The people in a file: those at the time, by id, then those who appear later, by time. Adds notes on keys that overrule
-/// the file.
+/// The people in a file: those at the time, by id, then those who appear later, by time. Adds notes on keys that
+/// overrule the file.
 fn people(path: &Path, given: &FromData, notes: &mut Vec<String>) -> Result<Vec<Person>, Problem> {
     let (tracks, at) = tracks(path, given)?;
     let overruled = tracks.notes.iter().filter(|note| note.starts_with("--"));

@@ -7,6 +7,7 @@ pub mod draft;
 pub mod effective;
 pub mod late;
 pub mod plans;
+pub mod preset;
 pub mod scenario;
 pub mod setting;
 pub mod shipped;

@@ -1,8 +1,7 @@
-//! The floor plans and the preset that a file names.
+//! The floor plans that a file names.
 
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::engine::geometry::{Area, Ring};
@@ -11,7 +10,6 @@ use crate::scenario::error::Problem;
 use crate::scenario::error::quote::shown;
 use crate::scenario::floor_plan;
 use crate::scenario::floor_plan::{FloorPlan, Label};
-use crate::scenario::keys::preset::Preset;
 use crate::scenario::read::setting::Setting;
 
 /// The keys that may name a file.
@@ -113,29 +111,4 @@ fn rings_value(area: &Area) -> Value {
 
 fn ring_value(ring: &Ring) -> Value {
     ring.points().iter().map(|p| json!([p.x, p.y])).collect()
-}
-
-/// The document with its preset's values for the keys that it does not give.
-pub fn complete_preset(mut document: Value) -> Value {
-    if let Some(named) = document.get("preset")
-        && let Ok(preset) = Preset::deserialize(named)
-    {
-        complete(&mut document, preset.document());
-    }
-    document
-}
-
-/// Adds missing values to an object, recursively.
-fn complete(given: &mut Value, values: Value) {
-    let (Value::Object(given), Value::Object(values)) = (given, values) else {
-        return;
-    };
-    for (key, value) in values {
-        match given.get_mut(&key) {
-            Some(present) => complete(present, value),
-            None => {
-                given.insert(key, value);
-            }
-        }
-    }
 }

@@ -25,8 +25,8 @@ const PARTS: f64 = 1e6;
 
 /// Observes in every run which agents are stuck: those that walk to a goal at which they would leave, to the place of a
 /// journey or in a direction, and whose way has become shorter by less than [`HEADWAY`] in the last [`STUCK_AFTER`]
-/// seconds in which they walked. Agents whose preferred speed is below 0.1 m/s need only half of what they would walk. An
-/// agent that waits, queues or stays at its goal is not stuck, and its time starts again when it walks on.
+/// seconds in which they walked. Agents whose preferred speed is below 0.1 m/s need only half of what they would walk.
+/// An agent that waits, queues or stays at its goal is not stuck, and its time starts again when it walks on.
 #[derive(Debug, Clone)]
 pub struct Stuck;
 
@@ -88,8 +88,8 @@ impl Measure for Stuck {
     }
 }
 
-/// The indices of the agents that are stuck in the current frame, by id, each with the time since when, seconds, and what
-/// it walks to.
+/// The indices of the agents that are stuck in the current frame, by id, each with the time since when, seconds, and
+/// what it walks to.
 pub(super) fn agents(seen: &[Option<Headway>], simulation: &Simulation) -> Vec<(usize, f64, Aim)> {
     let ids = &simulation.frame().agents.id;
     let mut order: Vec<usize> = (0..ids.len()).collect();
