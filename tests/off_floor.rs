@@ -83,3 +83,22 @@ fn without_walls_everything_is_floor() {
                       "measurements": [{"walks": {"region": region}}]});
     Scenario::parse(&open.to_string(), "open.json", &[]).unwrap();
 }
+
+#[test]
+fn every_corner_of_a_jittered_source_stays_in_front_of_exits() {
+    let room = |y: f64| {
+        json!({
+            "walkable_area": [[[[0, 0], [12, 0], [12, 10], [0, 10]]]],
+            "exits": [{"name": "east", "line": [[12, 4], [12, 6]]}],
+            "sources": [{"min": [11.9, y], "max": [11.9, y], "columns": 1, "rows": 1, "jitter": 0.4, "every_secs": 1}],
+        })
+    };
+    let read = |y| Scenario::parse(&room(y).to_string(), "room.json", &[]);
+    // Only the corner toward the exit lies behind it.
+    for y in [3.65, 6.35] {
+        let error = read(y).unwrap_err().to_string();
+        let expected = "room.json: sources[0]: an agent starts at (12.30, ";
+        assert!(error.starts_with(expected), "{error}");
+    }
+    assert!(read(8.0).is_ok());
+}
