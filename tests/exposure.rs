@@ -278,7 +278,7 @@ fn busy() -> Value {
         "measurements": [{"egress": {}}, {"exposure": {}}, {"service_levels": {"every_secs": 0.3}},
                          {"crowd_pressure": {}}, {"body_forces": {"every_secs": 0.2}},
                          {"wall_forces": {"every_secs": 0.2}}, {"walks": {}},
-                         {"jitter": {"from_secs": 0, "to_secs": 8}}],
+                         {"jitter": {"from_secs": 0, "until_secs": 8}}],
     })
 }
 

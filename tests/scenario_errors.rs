@@ -153,9 +153,9 @@ const BROKEN_SETTINGS: &[[&str; 2]] = &[
     ],
     [
         "sources.0.rwos=5",
-        "--set sources.0.rwos=5: unknown key `rwos`; did you mean `rows`? Expected one of `name`, `min`, `max`, \
-         `columns`, `rows`, `jitter`, `goal`, `goal_offset`, `journey`, `profile`, `remove_within`, `counted`, \
-         `preferred_speed`, `radius`, `mass`, `premovement_secs`, `start_secs`, `every_secs`, `times`",
+        "--set sources.0.rwos=5: unknown key `rwos`; did you mean `rows`? Expected one of `columns`, `counted`, \
+         `every_secs`, `goal`, `goal_offset`, `jitter`, `journey`, `mass`, `max`, `min`, `name`, `preferred_speed`, \
+         `premovement_secs`, `profile`, `radius`, `remove_within`, `rows`, `start_secs`, `times`",
     ],
     [
         "profile.base=sf",

@@ -57,9 +57,12 @@ fn the_keys_of_nested_objects_are_documented() {
         ("entrances", 1),
         ("events", 1),
     ] {
-        let first = json!({"?": 0, "position": [0, 0], "min": [0, 0], "max": [0, 0], "columns": 1, "rows": 1,
+        let mut first = json!({"?": 0, "position": [0, 0], "min": [0, 0], "max": [0, 0], "columns": 1, "rows": 1,
             "every_secs": 1, "line": [[0, 0], [0, 9]], "area": [[0, 0], [9, 0], [9, 9]], "at_secs": 0, "for_secs": 0,
             "region": [[0, 0], [0, 0]]});
+        if list == "entrances" {
+            first["at_secs"] = json!([0]);
+        }
         let documented = &nested.iter().find(|(name, _)| name == list).unwrap().1;
         let documented: Vec<&str> = documented.split(", ").collect();
         let optional = documented.iter().filter(|key| key.ends_with('?'));
@@ -92,8 +95,8 @@ fn the_keys_of_nested_objects_are_documented() {
         ("periodic", "axis, length, from?"),
         (
             "from",
-            "at_secs?, counted?, fps?, goal?, journey?, mass?, name?, people?, preferred_speed?, profile?, radius?, \
-             remove_within?, trajectory?, unit?, until_secs?",
+            "at_secs?, counted?, fps?, goal?, journey?, mass?, name?, people?, preferred_speed?, premovement_secs?, \
+             profile?, radius?, remove_within?, trajectory?, unit?, until_secs?",
         ),
         ("stop", "idle_secs?, when_empty?"),
         (
@@ -207,6 +210,19 @@ fn the_old_name_of_a_key_still_works() {
         "f: behaviour_seed: the old name of `behavior_seed`, which is given too; remove one"
     );
     assert_eq!(schema()["properties"]["behaviour_seed"]["deprecated"], true);
+    let jitter = |keys: Value| json!({"measurements": [{"jitter": keys}]}).to_string();
+    let present = jitter(json!({"from_secs": 1, "until_secs": 2}));
+    let present = Scenario::parse(&present, "f", &[]).unwrap().document;
+    let old = jitter(json!({"from_secs": 1, "to_secs": 2}));
+    assert_eq!(Scenario::parse(&old, "f", &[]).unwrap().document, present);
+    let set = ["measurements.0.jitter.to_secs=2".parse().unwrap()];
+    let changed = jitter(json!({"from_secs": 1, "until_secs": 9}));
+    let changed = Scenario::parse(&changed, "f", &set).unwrap();
+    assert_eq!(changed.document, present);
+    let both = jitter(json!({"from_secs": 1, "to_secs": 2, "until_secs": 2}));
+    let error = Scenario::parse(&both, "f", &[]).unwrap_err();
+    let expected = "f: measurements[0].jitter.to_secs: the old name of `until_secs`, which is given too; remove one";
+    assert_eq!(error.to_string(), expected);
     let result = json!({"scenario": "f", "profile": "sph", "seed": 1, "behaviour_seed": 5, "state_sha256": "",
         "frames": 1, "time_secs": 1, "agents": 1, "metrics": {}, "contained_moves": 0, "clamped_speeds": 0,
         "displaced_agents": 0});

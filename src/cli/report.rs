@@ -10,7 +10,7 @@ use crate::output::table::Table;
 use crate::runs::drive::{End, Run};
 use crate::runs::identity::Identity;
 use crate::runs::summary::{JourneyResult, PlaceResult, Summary, value};
-use crate::scenario::measurements::{HEADWAY, Integrity, Measurement, STUCK_AFTER, StuckGroup};
+use crate::scenario::measurements::{HEADWAY, Integrity, STUCK_AFTER, StuckGroup};
 use crate::scenario::quote::shown;
 
 /// The summary, with version, identity, all settings, threads and run times.
@@ -68,7 +68,8 @@ pub fn text(run: &Run) -> String {
         );
     }
     text += &through_walls(run);
-    if run.scenario.measurements.iter().any(has_thresholds) {
+    let mut measured = run.scenario.measurements.iter();
+    if measured.any(|one| one.about().has_thresholds) {
         text += "  (thresholds are from the literature, not safety limits: docs/measurements.md)\n";
     }
     text += &journeys(run);
@@ -135,18 +136,6 @@ fn through_walls(run: &Run) -> String {
     let ids: Vec<String> = ids.iter().map(u32::to_string).collect();
     let first = ids.join(", ");
     format!("  through walls, by id (at most ten): {first}; `sandbox inspect --agent` shows them\n")
-}
-
-/// Whether it compares with thresholds of the literature.
-fn has_thresholds(measurement: &Measurement) -> bool {
-    matches!(
-        measurement,
-        Measurement::Exposure(_)
-            | Measurement::ServiceLevels(_)
-            | Measurement::CrowdPressure(_)
-            | Measurement::BodyForces(_)
-            | Measurement::WallForces(_)
-    )
 }
 
 /// Tables of the journeys and places; empty without journeys.

@@ -6,9 +6,8 @@ use crate::engine::math::{Vector, bounds};
 use crate::engine::packing::{self, Body, Space};
 use crate::engine::random::{self, Purpose};
 use crate::engine::scene::Region;
-use crate::scenario::build::draws::traits;
 use crate::scenario::build::off_floor::OFF;
-use crate::scenario::build::people::{Behavior, Population};
+use crate::scenario::build::people::Population;
 use crate::scenario::build::surroundings;
 use crate::scenario::error::{Problem, Under};
 use crate::scenario::floor_plan::{free, outlines, rings};
@@ -58,17 +57,11 @@ impl Population<'_> {
                 ));
             }
         };
-        let draws = [
-            &given.preferred_speed,
-            &given.radius,
-            &given.mass,
-            &given.premovement_secs,
-        ];
-        let traits = traits(draws)?;
-        let journey = self.journey(given.journey.as_deref(), given.goal.is_some())?;
-        let target = self.target(given.goal, journey, given.remove_within)?;
-        let (seed, first) = (self.scene.seed, self.scene.agents.len() as u32);
         self.note_bodies();
+        let name = given.name.as_deref().unwrap_or(place);
+        let (group, target) = self.people(name, &given.people, None)?;
+        let traits = &self.scene.groups[usize::from(group)].traits;
+        let (seed, first) = (self.scene.seed, self.scene.agents.len() as u32);
         let space = Space::new(&areas, &self.scene.walls, self.scene.period);
         let least = traits.radius.as_ref();
         let least = least.map_or(RADIUS_RANGE[0], |radius| radius.quantile(RARE));
@@ -106,14 +99,6 @@ impl Population<'_> {
                  that it is where it should be"
             ));
         }
-        let behavior = Behavior {
-            journey,
-            direction: target.direction,
-            profile: given.profile.as_ref(),
-            remove_within: given.remove_within,
-            counted: given.counted,
-        };
-        let group = self.group(given.name.as_deref().unwrap_or(place), behavior, traits)?;
         let agents = places.into_iter().zip(radii);
         self.scene
             .agents

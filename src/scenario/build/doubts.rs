@@ -117,7 +117,7 @@ fn peaks(keys: &File) -> Vec<String> {
         .any(|crowd| crowd.spacing == Spacing::Random);
     let measured = keys.measurements.iter().enumerate().filter(|_| is_random);
     let note = |(k, given): (usize, &Measurement)| {
-        let key = given.peaks_from_start()?;
+        let key = given.about().peaks_from_start?;
         Some(format!(
             "measurements[{k}].{key}: crowds start at random places, where forces are larger than after the first \
              steps; give `from_secs` of a few seconds, so that the start does not count"

@@ -8,6 +8,7 @@ use crate::scenario::keys::distribution::{
     Draw, Exponential, Lognormal, MASSES, RADII, SPEED, SPEEDS, Spread, WAITS, WEIDMANN_AGE,
     Weighted,
 };
+use crate::scenario::keys::people::People;
 
 impl Draw {
     /// Whether it gives walking speeds.
@@ -110,10 +111,8 @@ impl Draw {
     }
 }
 
-/// The traits of agents, from the keys `preferred_speed`, `radius`, `mass` and `premovement_secs`.
-pub fn traits(
-    [preferred_speed, radius, mass, premovement_secs]: [&Option<Draw>; 4],
-) -> Result<Traits, Problem> {
+/// The traits of agents.
+pub fn traits(given: &People) -> Result<Traits, Problem> {
     let of = |key: &str, draw: &Option<Draw>, range| {
         let made = draw
             .as_ref()
@@ -127,9 +126,9 @@ pub fn traits(
         made.transpose().under(key)
     };
     Ok(Traits {
-        preferred_speed: of(SPEED, preferred_speed, SPEEDS)?,
-        radius: of("radius", radius, RADII)?,
-        mass: of("mass", mass, MASSES)?,
-        premovement: of("premovement_secs", premovement_secs, WAITS)?,
+        preferred_speed: of(SPEED, &given.preferred_speed, SPEEDS)?,
+        radius: of("radius", &given.radius, RADII)?,
+        mass: of("mass", &given.mass, MASSES)?,
+        premovement: of("premovement_secs", &given.premovement_secs, WAITS)?,
     })
 }

@@ -3,8 +3,7 @@
 use crate::engine::agents::RADIUS_RANGE;
 use crate::engine::entrance::{Arrivals, Entrance as Line, Flow};
 use crate::engine::math::Vector;
-use crate::scenario::build::draws::traits;
-use crate::scenario::build::people::{Behavior, Population};
+use crate::scenario::build::people::Population;
 use crate::scenario::error::Problem;
 use crate::scenario::keys::people::{Arriving, Ends, Entrance};
 
@@ -60,26 +59,11 @@ impl Entrance {
 impl Population<'_> {
     /// Adds an entrance.
     pub fn entrance(&mut self, given: &Entrance, place: &str) -> Result<(), Problem> {
-        let draws = [
-            &given.preferred_speed,
-            &given.radius,
-            &given.mass,
-            &given.premovement_secs,
-        ];
-        let traits = traits(draws)?;
-        let widest = match &traits.radius {
+        let name = given.name.as_deref().unwrap_or(place).to_owned();
+        let (group, target) = self.people(&name, &given.people, None)?;
+        let widest = match &self.scene.groups[usize::from(group)].traits.radius {
             Some(radius) => radius.quantile(NEARLY_ALL),
             None => RADIUS_RANGE[1],
-        };
-        let name = given.name.as_deref().unwrap_or(place).to_owned();
-        let journey = self.journey(given.journey.as_deref(), given.goal.is_some())?;
-        let target = self.target(given.goal, journey, given.remove_within)?;
-        let behavior = Behavior {
-            journey,
-            direction: target.direction,
-            profile: given.profile.as_ref(),
-            remove_within: given.remove_within,
-            counted: given.counted,
         };
         let Ends(ends) = given.line;
         let line: [Vector; 2] = ends.map(Into::into);
@@ -91,7 +75,7 @@ impl Population<'_> {
             line,
             goal: target.goal_from((line[0] + line[1]) * 0.5),
             arrivals: given.arrivals()?,
-            group: self.group(&name, behavior, traits)?,
+            group,
             name,
         };
         let nobody = std::iter::empty();

@@ -2,31 +2,20 @@
 
 use crate::engine::agents::NewAgent;
 use crate::engine::entrance::Latecomer;
-use crate::scenario::build::draws::traits;
 use crate::scenario::build::goals::Target;
-use crate::scenario::build::people::{Behavior, Population};
+use crate::scenario::build::people::Population;
 use crate::scenario::error::{Problem, Under};
 use crate::scenario::keys::from::{FROM, FromData, Person};
 
 impl Population<'_> {
     /// Adds the people of `from`.
     pub fn add_data(&mut self, given: &FromData) -> Result<(), Problem> {
-        let draws = [&given.preferred_speed, &given.radius, &given.mass, &None];
-        let traits = traits(draws)?;
-        let journey = self.journey(given.journey.as_deref(), given.goal.is_some())?;
-        let target = self.target(given.goal, journey, given.remove_within)?;
-        let behavior = Behavior {
-            journey,
-            direction: target.direction,
-            profile: given.profile.as_ref(),
-            remove_within: given.remove_within,
-            counted: given.counted,
-        };
         for (k, person) in given.people().iter().enumerate() {
             person.check().under(&format!("people[{k}]"))?;
         }
         self.check_floor(given.people())?;
-        let group = self.group(given.name.as_deref().unwrap_or(FROM), behavior, traits)?;
+        let name = given.name.as_deref().unwrap_or(FROM);
+        let (group, target) = self.people(name, &given.all, None)?;
         let agent = |person: &Person| agent(person, &target, group);
         let (there, mut later): (Vec<&Person>, Vec<&Person>) = given
             .people()

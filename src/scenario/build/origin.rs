@@ -2,6 +2,7 @@
 
 use crate::engine::scene::Scene;
 use crate::scenario::file::File;
+use crate::scenario::keys::people::{Grid, People};
 
 /// An agent of a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -125,18 +126,16 @@ impl Origins<'_> {
     pub fn goal_key(&self, member: Member) -> String {
         let keys = self.keys;
         let item = self.item(member);
-        let (goal, offset) = match item {
-            Item::From => (keys.from.as_ref().and_then(|from| from.goal), None),
-            Item::Agent(k) => (keys.agents[k].goal, None),
-            Item::Grid(k) => (keys.grids[k].goal, keys.grids[k].goal_offset),
-            Item::Crowd(k) => (keys.crowds[k].goal, None),
-            Item::Source(k) => (keys.sources[k].goal, keys.sources[k].goal_offset),
-            Item::Entrance(k) => (keys.entrances[k].goal, None),
+        let own = |people: &People| people.goal.is_some().then_some("goal");
+        let of_grid = |grid: &Grid| own(&grid.people).or(grid.goal_offset.and(Some("goal_offset")));
+        let given = match item {
+            Item::From => keys.from.as_ref().and_then(|from| own(&from.all)),
+            Item::Agent(k) => keys.agents[k].goal.and(Some("goal")),
+            Item::Grid(k) => of_grid(&keys.grids[k]),
+            Item::Crowd(k) => own(&keys.crowds[k].people),
+            Item::Source(k) => of_grid(&keys.sources[k]),
+            Item::Entrance(k) => own(&keys.entrances[k].people),
         };
-        match (goal, offset) {
-            (Some(_), _) => format!("{item}.goal"),
-            (None, Some(_)) => format!("{item}.goal_offset"),
-            (None, None) => "goal".to_owned(),
-        }
+        given.map_or("goal".to_owned(), |key| format!("{item}.{key}"))
     }
 }

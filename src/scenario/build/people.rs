@@ -17,9 +17,10 @@ use crate::scenario::build::{overlaps, profiles};
 use crate::scenario::error::{Problem, Under};
 use crate::scenario::file::File;
 use crate::scenario::keys::people;
+use crate::scenario::keys::people::People;
 use crate::scenario::keys::places::journey_named;
 use crate::scenario::keys::profiles::ProfileChoice;
-use crate::scenario::keys::shapes::{Corners, region};
+use crate::scenario::keys::shapes::{Corners, Point, region};
 
 /// Most groups or pushes: their numbers have 16 bits.
 pub const MOST_NUMBERED: usize = u16::MAX as usize;
@@ -153,8 +154,7 @@ impl<'a> Population<'a> {
                 return Err(Problem::new(key, reason));
             }
         }
-        let (grid, target) = self.placed(given)?;
-        let group = self.grid_group(given, target.direction, place)?;
+        let (grid, group, target) = self.placed(given, place)?;
         let first_id = self.scene.agents.len() as u32;
         let agents = grid.positions(self.scene.seed, first_id);
         let agents =
@@ -164,12 +164,12 @@ impl<'a> Population<'a> {
     }
 
     fn source(&mut self, given: &people::Grid, place: &str) -> Result<(), Problem> {
-        let (grid, target) = self.placed(given)?;
+        let (grid, group, target) = self.placed(given, place)?;
         let [start, every] = given.schedule();
         let source = Source {
             name: given.name.as_deref().unwrap_or(place).to_owned(),
             grid,
-            group: self.grid_group(given, target.direction, place)?,
+            group,
             goal: target.goal,
             start,
             every,
@@ -179,8 +179,12 @@ impl<'a> Population<'a> {
         Ok(())
     }
 
-    /// The grid and the target of a grid or source.
-    fn placed(&self, given: &people::Grid) -> Result<(Grid, Target), Problem> {
+    /// The grid, the group and the target of a grid or source.
+    fn placed(
+        &mut self,
+        given: &people::Grid,
+        place: &str,
+    ) -> Result<(Grid, u16, Target), Problem> {
         let Region { min, max } = region("min", Corners([given.min, given.max]))?;
         let grid = Grid {
             min,
@@ -200,9 +204,23 @@ impl<'a> Population<'a> {
                 return Err(Problem::new(key, reason));
             }
         }
-        let has_goal = given.goal.is_some() || given.goal_offset.is_some();
+        let name = given.name.as_deref().unwrap_or(place);
+        let (group, target) = self.people(name, &given.people, given.goal_offset)?;
+        Ok((grid, group, target))
+    }
+
+    /// Adds the group of agents that share keys. Returns it with their target, which is `offset` from where they start
+    /// if that is given.
+    pub fn people(
+        &mut self,
+        name: &str,
+        given: &People,
+        offset: Option<Point>,
+    ) -> Result<(u16, Target), Problem> {
+        let traits = traits(given)?;
+        let has_goal = given.goal.is_some() || offset.is_some();
         let journey = self.journey(given.journey.as_deref(), has_goal)?;
-        let target = match (given.goal, given.goal_offset) {
+        let target = match (given.goal, offset) {
             (_, Some(_)) if self.scene.period.is_some() => {
                 let reason =
                     "in a periodic scene agents walk in a direction, not to a point; remove it";
@@ -215,7 +233,14 @@ impl<'a> Population<'a> {
             (None, Some(offset)) => Target::to(Goal::Offset(offset.into())),
             (goal, None) => self.target(goal, journey, given.remove_within)?,
         };
-        Ok((grid, target))
+        let behavior = Behavior {
+            journey,
+            direction: target.direction,
+            profile: given.profile.as_ref(),
+            remove_within: given.remove_within,
+            counted: given.counted,
+        };
+        Ok((self.group(name, behavior, traits)?, target))
     }
 
     /// The journey of agents that name `given`; `None` if they walk to a goal.
@@ -243,38 +268,8 @@ impl<'a> Population<'a> {
         Ok(group)
     }
 
-    /// The group of the agents of a grid or source.
-    fn grid_group(
-        &mut self,
-        given: &people::Grid,
-        direction: Option<Vector>,
-        place: &str,
-    ) -> Result<u16, Problem> {
-        let has_goal = given.goal.is_some() || given.goal_offset.is_some();
-        let behavior = Behavior {
-            journey: self.journey(given.journey.as_deref(), has_goal)?,
-            direction,
-            profile: given.profile.as_ref(),
-            remove_within: given.remove_within,
-            counted: given.counted,
-        };
-        let draws = [
-            &given.preferred_speed,
-            &given.radius,
-            &given.mass,
-            &given.premovement_secs,
-        ];
-        let name = given.name.as_deref().unwrap_or(place);
-        self.group(name, behavior, traits(draws)?)
-    }
-
     /// Adds a group.
-    pub fn group(
-        &mut self,
-        name: &str,
-        behavior: Behavior,
-        traits: Traits,
-    ) -> Result<u16, Problem> {
+    fn group(&mut self, name: &str, behavior: Behavior, traits: Traits) -> Result<u16, Problem> {
         if self.scene.groups.len() >= MOST_NUMBERED {
             let reason = format!(
                 "more than {MOST_NUMBERED} groups of agents; put several into one grid or source, or give \
@@ -309,10 +304,10 @@ impl<'a> Population<'a> {
 
 /// The keys that decide on an agent's group.
 #[derive(Debug, Clone, Copy)]
-pub struct Behavior<'a> {
-    pub journey: Option<u16>,
-    pub direction: Option<Vector>,
-    pub profile: Option<&'a ProfileChoice>,
-    pub remove_within: Option<f64>,
-    pub counted: Option<bool>,
+struct Behavior<'a> {
+    journey: Option<u16>,
+    direction: Option<Vector>,
+    profile: Option<&'a ProfileChoice>,
+    remove_within: Option<f64>,
+    counted: Option<bool>,
 }

@@ -1,4 +1,4 @@
-//! Checks numbers against the ranges of the schema, with error messages.
+//! Checks numbers against the ranges of the schema, and names of keys, with error messages.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use crate::scenario::error::numbers::brief;
-use crate::scenario::error::{Problem, in_plain_words};
+use crate::scenario::error::{Problem, Under, in_plain_words};
 use crate::scenario::file::schema::{allows, resolved, root, ways, words_of};
 
 /// Rejects numbers out of range, empty names, lists that must not be empty, missing keys, and values of the wrong type
@@ -31,26 +31,58 @@ fn check_value(schema: &'static Value, value: &Value) -> Result<(), Problem> {
         Value::Array(list) if list.is_empty() && schema["minItems"] == 1 => {
             Err(Problem::new("", "must not be empty"))
         }
+        Value::Object(object) => match required(schema).find(|&key| !object.contains_key(key)) {
+            Some(key) => Err(Problem::new("", format!("missing key `{key}`"))),
+            None => Ok(()),
+        },
+        _ => Ok(()),
+    }?;
+    check_parts(schema, value, check_value)
+}
+
+/// Checks the items of a list and the values of an object, each against its schema.
+fn check_parts(
+    schema: &'static Value,
+    value: &Value,
+    check: fn(&'static Value, &Value) -> Result<(), Problem>,
+) -> Result<(), Problem> {
+    match value {
         Value::Array(list) => {
-            let item = resolved(&schema["items"]);
-            let check = |(k, value)| {
-                check_value(item, value).map_err(|problem| problem.under(&format!("[{k}]")))
-            };
-            list.iter().enumerate().try_for_each(check)
+            let mut items = list.iter().enumerate();
+            items.try_for_each(|(k, item)| check(&schema["items"], item).under(&format!("[{k}]")))
         }
-        Value::Object(object) => {
-            if let Some(key) = required(schema).find(|&key| !object.contains_key(key)) {
-                return Err(Problem::new("", format!("missing key `{key}`")));
-            }
-            object.iter().try_for_each(|(key, value)| {
-                let known = schema["properties"].get(key);
-                let of_key = known.unwrap_or(&schema["additionalProperties"]);
-                let checked = check_value(of_key, value);
-                checked.map_err(|problem| problem.under(key))
-            })
-        }
+        Value::Object(object) => object.iter().try_for_each(|(key, value)| {
+            let known = schema["properties"].get(key);
+            let of_key = known.unwrap_or(&schema["additionalProperties"]);
+            check(of_key, value).under(key)
+        }),
         _ => Ok(()),
     }
+}
+
+/// Rejects unknown keys. serde rejects most of them, but cannot do so where keys of several structs lie in one object.
+pub fn check_names(document: &Value) -> Result<(), Problem> {
+    check_names_in(root(), document)
+}
+
+fn check_names_in(schema: &'static Value, value: &Value) -> Result<(), Problem> {
+    let Some(schema) = chosen(schema, value) else {
+        return Ok(());
+    };
+    if let Value::Object(object) = value
+        && schema["additionalProperties"] == false
+    {
+        let known = schema["properties"].as_object().into_iter().flatten();
+        let known: Vec<&str> = known.map(|(key, _)| key.as_str()).collect();
+        if let Some(key) = object.keys().find(|key| !known.contains(&key.as_str())) {
+            let reason = format!(
+                "unknown field `{key}`, expected one of `{}`",
+                known.join("`, `")
+            );
+            return Err(Problem::new(key, in_plain_words(&reason)));
+        }
+    }
+    check_parts(schema, value, check_names_in)
 }
 
 fn may_be_null(schema: &Value) -> bool {

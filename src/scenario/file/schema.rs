@@ -10,7 +10,7 @@ use schemars::transform::RecursiveTransform;
 use serde_json::{Value, json};
 
 use crate::scenario::file::File;
-use crate::scenario::keys::names::OLD_KEYS;
+use crate::scenario::keys::names::{OLD_KEYS, OldKey};
 
 static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
     let settings = SchemaSettings::draft2020_12().with_transform(RecursiveTransform(tidy));
@@ -24,13 +24,41 @@ pub fn schema() -> Value {
     let mut schema = SCHEMA.clone();
     schema["properties"]["$schema"] =
         json!({"type": "string", "description": "The location of this schema, for editors."});
-    for (old, new) in OLD_KEYS {
-        let mut property = schema["properties"][new].clone();
-        property["deprecated"] = true.into();
-        property["description"] = format!("The old name of `{new}`.").into();
-        schema["properties"][old] = property;
+    for key in OLD_KEYS {
+        let definition = match key.measurement {
+            None => "",
+            Some(kind) => definition_of(kind),
+        };
+        if let Some(object) = schema.pointer_mut(definition) {
+            add_old(object, &key);
+        }
     }
     schema
+}
+
+/// The pointer to the definition of a kind of measurement.
+fn definition_of(kind: &str) -> &'static str {
+    let mut kinds = SCHEMA["$defs"]["Measurement"]["oneOf"]
+        .as_array()
+        .into_iter()
+        .flatten();
+    let pointer = kinds.find_map(|one| one["properties"][kind]["$ref"].as_str());
+    pointer.unwrap_or_default().trim_start_matches('#')
+}
+
+/// Adds the former name of a key to the schema of its object. One of both is enough.
+fn add_old(object: &mut Value, key: &OldKey) {
+    let mut property = object["properties"][key.new].clone();
+    property["deprecated"] = true.into();
+    property["description"] = format!("The old name of `{}`.", key.new).into();
+    object["properties"][key.old] = property;
+    if let Some(required) = object.get_mut("required").and_then(Value::as_array_mut) {
+        let count = required.len();
+        required.retain(|name| name != key.new);
+        if required.len() < count {
+            object["anyOf"] = json!([{"required": [key.new]}, {"required": [key.old]}]);
+        }
+    }
 }
 
 /// Joins the lines of descriptions, drops defaults that say nothing, and gives integers their largest value.

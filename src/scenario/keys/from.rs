@@ -5,11 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::math::Vector;
 use crate::scenario::error::Problem;
-use crate::scenario::keys::distribution;
-use crate::scenario::keys::distribution::Draw;
-use crate::scenario::keys::goals::Aim;
 use crate::scenario::keys::limits::{FARTHEST, LONGEST_TIME};
-use crate::scenario::keys::profiles::ProfileChoice;
+use crate::scenario::keys::people::People;
 use crate::scenario::trajectories::Unit;
 
 /// The key.
@@ -18,7 +15,8 @@ pub const FROM: &str = "from";
 pub const FILE: &str = "from.trajectory";
 /// The people of a trajectory file at one time, and those who appear in it later: `trajectory` or `people`.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
+#[serde(default)]
+#[schemars(deny_unknown_fields)]
 pub struct FromData {
     /// The name in reports. Default: `from`.
     #[schemars(length(min = 1))]
@@ -41,28 +39,8 @@ pub struct FromData {
     pub fps: Option<f64>,
     /// Instead of `trajectory`: the people.
     pub people: Option<Vec<Person>>,
-    /// The goal. Default: the scenario's goal.
-    pub goal: Option<Aim>,
-    /// Instead of `goal`: the name of the journey.
-    pub journey: Option<String>,
-    /// The behavior. Default: the scenario's profile.
-    pub profile: Option<ProfileChoice>,
-    /// Agents leave within this distance of their goal, meters. Default: they stay.
-    #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
-    pub remove_within: Option<f64>,
-    /// Whether arrivals count as evacuated.
-    #[schemars(extend("default" = true))]
-    pub counted: Option<bool>,
-    /// s_pref, m/s: a number, or a distribution to draw from for each agent. Default: the scenario's `preferred_speed`.
-    #[schemars(schema_with = "distribution::speed")]
-    pub preferred_speed: Option<Draw>,
-    /// D_i, meters: a number, or a distribution. Default: uniform from 0.215 to 0.265 (§5.6).
-    #[schemars(schema_with = "distribution::radius")]
-    pub radius: Option<Draw>,
-    /// m_i, 1 for an average person: a number, or a distribution. Lighter agents need shorter time steps. Default:
-    /// (D_i / 0.24)².
-    #[schemars(schema_with = "distribution::mass")]
-    pub mass: Option<Draw>,
+    #[serde(flatten)]
+    pub all: People,
 }
 
 /// A person: [id, seconds until it enters, x, y in meters, velocity along x, y in m/s]

@@ -57,5 +57,35 @@ impl<'de> Deserializer<'de> for Names<'_> {
     }
 }
 
-/// Former names of top-level keys, with the present ones.
-pub const OLD_KEYS: [(&str, &str); 1] = [("behaviour_seed", "behavior_seed")];
+/// The former name of a key.
+#[derive(Debug, Clone, Copy)]
+pub struct OldKey {
+    /// The kind of the measurements that have it; `None` at the top of the file.
+    pub measurement: Option<&'static str>,
+    /// The name that it had.
+    pub old: &'static str,
+    /// Its present name.
+    pub new: &'static str,
+}
+
+impl OldKey {
+    const fn end_of(measurement: &'static str) -> Self {
+        Self {
+            measurement: Some(measurement),
+            old: "to_secs",
+            new: "until_secs",
+        }
+    }
+}
+
+/// The former names of keys.
+pub const OLD_KEYS: [OldKey; 4] = [
+    OldKey {
+        measurement: None,
+        old: "behaviour_seed",
+        new: "behavior_seed",
+    },
+    OldKey::end_of("wave"),
+    OldKey::end_of("jitter"),
+    OldKey::end_of("speed_by_density"),
+];

@@ -50,9 +50,42 @@ pub struct Agent {
     pub counted: Option<bool>,
 }
 
+/// The keys that grids, crowds, sources, entrances and `from` have in common.
+///
+/// Structs that flatten it cannot refuse unknown keys: the walk over the schema does (`file::range`).
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct People {
+    /// The goal. Default: the scenario's goal.
+    pub goal: Option<Aim>,
+    /// Instead of `goal`: the name of the journey.
+    pub journey: Option<String>,
+    /// The behavior. Default: the scenario's profile.
+    pub profile: Option<ProfileChoice>,
+    /// Agents leave within this distance of their goal, meters. Default: they stay.
+    #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
+    pub remove_within: Option<f64>,
+    /// Whether arrivals count as evacuated.
+    #[schemars(extend("default" = true))]
+    pub counted: Option<bool>,
+    /// s_pref, m/s: a number, or a distribution to draw from for each agent. Default: the scenario's `preferred_speed`.
+    #[schemars(schema_with = "distribution::speed")]
+    pub preferred_speed: Option<Draw>,
+    /// D_i, meters: a number, or a distribution. Default: uniform from 0.215 to 0.265 (§5.6).
+    #[schemars(schema_with = "distribution::radius")]
+    pub radius: Option<Draw>,
+    /// m_i, 1 for an average person: a number, or a distribution. Lighter agents need shorter time steps. Default:
+    /// (D_i / 0.24)².
+    #[schemars(schema_with = "distribution::mass")]
+    pub mass: Option<Draw>,
+    /// The time from its entry until an agent walks, seconds: a number, or a distribution. Default: 0.
+    #[schemars(schema_with = "distribution::wait")]
+    pub premovement_secs: Option<Draw>,
+}
+
 /// Agents on a grid, one at the center of each cell.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields)]
 pub struct Grid {
     /// The name in reports. Default: its place in the file.
     #[schemars(length(min = 1))]
@@ -71,37 +104,8 @@ pub struct Grid {
     #[serde(default)]
     #[schemars(range(min = 0, max = 1e6))]
     pub jitter: f64,
-    /// The goal. Default: the scenario's goal.
-    pub goal: Option<Aim>,
     /// Instead of `goal`: the goal relative to each agent's start.
     pub goal_offset: Option<Point>,
-    /// Instead of `goal`: the name of the journey.
-    pub journey: Option<String>,
-    /// The behavior. Default: the scenario's profile.
-    pub profile: Option<ProfileChoice>,
-    /// Agents leave within this distance of their goal, meters. Default: they stay.
-    #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
-    pub remove_within: Option<f64>,
-    /// Whether arrivals count as evacuated.
-    #[schemars(extend("default" = true))]
-    pub counted: Option<bool>,
-    /// s_pref, m/s: a number, or a distribution to draw from for each agent. Default: the scenario's `preferred_speed`.
-    #[serde(default)]
-    #[schemars(schema_with = "distribution::speed")]
-    pub preferred_speed: Option<Draw>,
-    /// D_i, meters: a number, or a distribution. Default: uniform from 0.215 to 0.265 (§5.6).
-    #[serde(default)]
-    #[schemars(schema_with = "distribution::radius")]
-    pub radius: Option<Draw>,
-    /// m_i, 1 for an average person: a number, or a distribution. Lighter agents need shorter time steps. Default:
-    /// (D_i / 0.24)².
-    #[serde(default)]
-    #[schemars(schema_with = "distribution::mass")]
-    pub mass: Option<Draw>,
-    /// The time from its entry until an agent walks, seconds: a number, or a distribution. Default: 0.
-    #[serde(default)]
-    #[schemars(schema_with = "distribution::wait")]
-    pub premovement_secs: Option<Draw>,
     /// The time of the first entry, seconds.
     #[schemars(range(min = 0, max = LONGEST_TIME), extend("default" = 0))]
     pub start_secs: Option<f64>,
@@ -110,6 +114,8 @@ pub struct Grid {
     pub every_secs: Option<f64>,
     /// The number of entries. Default: unlimited.
     pub times: Option<u32>,
+    #[serde(flatten)]
+    pub people: People,
 }
 
 impl Grid {
@@ -133,7 +139,7 @@ pub enum Spacing {
 
 /// Agents that stand in an area at the start: `number` or `density` says how many.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields)]
 pub struct Crowd {
     /// The name in reports. Default: its place in the file.
     #[schemars(length(min = 1))]
@@ -152,35 +158,8 @@ pub struct Crowd {
     #[serde(default)]
     #[schemars(schema_with = "word::<Spacing>")]
     pub spacing: Spacing,
-    /// The goal. Default: the scenario's goal.
-    pub goal: Option<Aim>,
-    /// Instead of `goal`: the name of the journey.
-    pub journey: Option<String>,
-    /// The behavior. Default: the scenario's profile.
-    pub profile: Option<ProfileChoice>,
-    /// Agents leave within this distance of their goal, meters. Default: they stay.
-    #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
-    pub remove_within: Option<f64>,
-    /// Whether arrivals count as evacuated.
-    #[schemars(extend("default" = true))]
-    pub counted: Option<bool>,
-    /// s_pref, m/s: a number, or a distribution to draw from for each agent. Default: the scenario's `preferred_speed`.
-    #[serde(default)]
-    #[schemars(schema_with = "distribution::speed")]
-    pub preferred_speed: Option<Draw>,
-    /// D_i, meters: a number, or a distribution. Default: uniform from 0.215 to 0.265 (§5.6).
-    #[serde(default)]
-    #[schemars(schema_with = "distribution::radius")]
-    pub radius: Option<Draw>,
-    /// m_i, 1 for an average person: a number, or a distribution. Lighter agents need shorter time steps. Default:
-    /// (D_i / 0.24)².
-    #[serde(default)]
-    #[schemars(schema_with = "distribution::mass")]
-    pub mass: Option<Draw>,
-    /// The time from its entry until an agent walks, seconds: a number, or a distribution. Default: 0.
-    #[serde(default)]
-    #[schemars(schema_with = "distribution::wait")]
-    pub premovement_secs: Option<Draw>,
+    #[serde(flatten)]
+    pub people: People,
 }
 
 impl Crowd {
@@ -212,7 +191,7 @@ pub enum Arriving {
 /// A line through which agents come in, each where there is room; without room it waits. `per_sec` or `at_secs` says
 /// when they arrive.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields)]
 pub struct Entrance {
     /// The name in reports. Default: its place in the file.
     #[schemars(length(min = 1))]
@@ -239,35 +218,8 @@ pub struct Entrance {
     /// With `per_sec`: the most agents that arrive. Default: unlimited.
     #[schemars(range(min = 1))]
     pub number: Option<u32>,
-    /// The goal. Default: the scenario's goal.
-    pub goal: Option<Aim>,
-    /// Instead of `goal`: the name of the journey.
-    pub journey: Option<String>,
-    /// The behavior. Default: the scenario's profile.
-    pub profile: Option<ProfileChoice>,
-    /// Agents leave within this distance of their goal, meters. Default: they stay.
-    #[schemars(range(max = 1e6), extend("exclusiveMinimum" = 0))]
-    pub remove_within: Option<f64>,
-    /// Whether arrivals at the goal count as evacuated.
-    #[schemars(extend("default" = true))]
-    pub counted: Option<bool>,
-    /// s_pref, m/s: a number, or a distribution to draw from for each agent. Default: the scenario's `preferred_speed`.
-    #[serde(default)]
-    #[schemars(schema_with = "distribution::speed")]
-    pub preferred_speed: Option<Draw>,
-    /// D_i, meters: a number, or a distribution. Default: uniform from 0.215 to 0.265 (§5.6).
-    #[serde(default)]
-    #[schemars(schema_with = "distribution::radius")]
-    pub radius: Option<Draw>,
-    /// m_i, 1 for an average person: a number, or a distribution. Lighter agents need shorter time steps. Default:
-    /// (D_i / 0.24)².
-    #[serde(default)]
-    #[schemars(schema_with = "distribution::mass")]
-    pub mass: Option<Draw>,
-    /// The time from its entry until an agent walks, seconds: a number, or a distribution. Default: 0.
-    #[serde(default)]
-    #[schemars(schema_with = "distribution::wait")]
-    pub premovement_secs: Option<Draw>,
+    #[serde(flatten)]
+    pub people: People,
 }
 
 /// The two ends of a line

@@ -4,13 +4,11 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::window::{MOST_MASS, Window, body_mass, every};
-use super::{Measure, Observed};
+use super::window::{MOST_MASS, Window, body_mass};
+use super::{About, Measure, Observed};
 use crate::analysis::body_forces::{BodyForces as Seen, PersonForce, THRESHOLDS, WIDTH, pressed};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::Corners;
 
 /// The name of the values if none is given.
 const NAME: &str = "body_force";
@@ -19,24 +17,13 @@ const NAME: &str = "body_force";
 /// of people above 623, 1112 and 6227 N and the longest time of one of them. These thresholds are from the literature
 /// (Lee and Hughes 2006), not safety limits. Per agent, in the data: its largest force.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields)]
 pub struct BodyForces {
     /// The beginning of the names of its values. Default: `body_force`.
     #[schemars(length(min = 1))]
     name: Option<String>,
-    /// The region: lower left and upper right corner, meters; everywhere if missing.
-    pub(super) region: Option<Corners>,
-    /// The start, seconds.
-    #[schemars(range(min = 0, max = LONGEST_TIME))]
-    #[serde(default)]
-    pub(super) from_secs: f64,
-    /// The end, seconds. Default: the end of the run.
-    #[schemars(range(min = 0, max = LONGEST_TIME))]
-    until_secs: Option<f64>,
-    /// Time between two samples, seconds.
-    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
-    #[serde(default = "every")]
-    every_secs: f64,
+    #[serde(flatten)]
+    pub(super) window: Window,
     /// The mass of an average person, m = 1, kg.
     #[schemars(range(max = MOST_MASS), extend("exclusiveMinimum" = 0))]
     #[serde(default = "body_mass")]
@@ -47,15 +34,6 @@ impl BodyForces {
     fn name(&self) -> &str {
         self.name.as_deref().unwrap_or(NAME)
     }
-
-    fn window(&self) -> Window {
-        Window {
-            region: self.region,
-            from_secs: self.from_secs,
-            until_secs: self.until_secs,
-            every_secs: self.every_secs,
-        }
-    }
 }
 
 impl Measure for BodyForces {
@@ -63,11 +41,19 @@ impl Measure for BodyForces {
     type Seen = (Seen, f64);
 
     fn places(&self) -> Vec<(&'static str, Observed)> {
-        Observed::region("body_forces.region", self.region)
+        Observed::region("body_forces.region", self.window.region)
+    }
+
+    fn about(&self) -> About {
+        About {
+            has_thresholds: true,
+            peaks_from_start: (self.window.samples.from_secs == 0.0).then_some("body_forces"),
+            ..About::default()
+        }
     }
 
     fn check(&self) -> Result<(), Problem> {
-        self.window().check("body_forces")
+        self.window.check("body_forces")
     }
 
     fn names(&self) -> Vec<(String, &'static str)> {
@@ -89,11 +75,11 @@ impl Measure for BodyForces {
     }
 
     fn observe(&self, (seen, secs): &mut Self::Seen, simulation: &Simulation) {
-        let window = self.window();
-        if !window.is_due(simulation) {
+        let window = self.window;
+        if !window.samples.is_due(simulation) {
             return;
         }
-        *secs = window.secs(simulation);
+        *secs = window.samples.secs(simulation);
         let region = window.region();
         let mut people = pressed(simulation, self.body_mass_kg);
         people.retain(|person| region.is_none_or(|region| region.contains(person.position)));

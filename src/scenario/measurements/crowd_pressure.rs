@@ -3,13 +3,11 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::window::{Window, every};
-use super::{Measure, Observed};
+use super::window::Window;
+use super::{About, Measure, Observed};
 use crate::analysis::crowd_pressure::{BEFORE_ACCIDENT, Pressures};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::Corners;
 
 /// The name of the values if none is given.
 const NAME: &str = "crowd_pressure";
@@ -18,47 +16,34 @@ const NAME: &str = "crowd_pressure";
 /// and the longest time above 0.02 1/s², which was measured before the accident at Mina in 2006 (Helbing, Johansson and
 /// Al-Abideen 2007) and is not a safety limit.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields)]
 pub struct CrowdPressure {
     /// The beginning of the names of its values. Default: `crowd_pressure`.
     #[schemars(length(min = 1))]
     name: Option<String>,
-    /// The region: lower left and upper right corner, meters; everywhere if missing.
-    pub(super) region: Option<Corners>,
-    /// The start, seconds.
-    #[schemars(range(min = 0, max = LONGEST_TIME))]
-    #[serde(default)]
-    from_secs: f64,
-    /// The end, seconds. Default: the end of the run.
-    #[schemars(range(min = 0, max = LONGEST_TIME))]
-    until_secs: Option<f64>,
-    /// Time between two samples, seconds.
-    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
-    #[serde(default = "every")]
-    every_secs: f64,
+    #[serde(flatten)]
+    pub(super) window: Window,
 }
 
-impl CrowdPressure {
-    fn window(&self) -> Window {
-        Window {
-            region: self.region,
-            from_secs: self.from_secs,
-            until_secs: self.until_secs,
-            every_secs: self.every_secs,
-        }
-    }
-}
+impl CrowdPressure {}
 
 impl Measure for CrowdPressure {
     /// With the time between two samples, seconds.
     type Seen = (Pressures, f64);
 
     fn places(&self) -> Vec<(&'static str, Observed)> {
-        Observed::region("crowd_pressure.region", self.region)
+        Observed::region("crowd_pressure.region", self.window.region)
+    }
+
+    fn about(&self) -> About {
+        About {
+            has_thresholds: true,
+            ..About::default()
+        }
     }
 
     fn check(&self) -> Result<(), Problem> {
-        self.window().check("crowd_pressure")
+        self.window.check("crowd_pressure")
     }
 
     fn names(&self) -> Vec<(String, &'static str)> {
@@ -80,9 +65,9 @@ impl Measure for CrowdPressure {
     }
 
     fn observe(&self, (seen, secs): &mut Self::Seen, simulation: &Simulation) {
-        let window = self.window();
-        if window.is_due(simulation) {
-            *secs = window.secs(simulation);
+        let window = self.window;
+        if window.samples.is_due(simulation) {
+            *secs = window.samples.secs(simulation);
             let time = simulation.frame().clock.time();
             seen.add(time, window.people(simulation, true).iter());
         }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Measure, Observed};
+use super::{About, Measure, Observed};
 use crate::analysis::statistics::MeanStd;
 use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
@@ -40,8 +40,11 @@ impl Measure for Density {
         ["mean", "std"].map(name).into()
     }
 
-    fn needs_density_until(&self) -> Option<f64> {
-        Some(self.at_secs)
+    fn about(&self) -> About {
+        About {
+            density_until: Some(self.at_secs),
+            ..About::default()
+        }
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Measure, Observed};
+use super::{About, Measure, Observed};
 use crate::engine::journeys::Kind;
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
@@ -146,6 +146,14 @@ impl Measure for Egress {
 
     fn places(&self) -> Vec<(&'static str, Observed)> {
         Vec::new()
+    }
+
+    fn about(&self) -> About {
+        let journey = self.journey.clone();
+        About {
+            journey: journey.map(|name| ("egress.journey", name)),
+            ..About::default()
+        }
     }
 
     fn names(&self) -> Vec<(String, &'static str)> {

@@ -4,13 +4,11 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::window::{Window, every};
-use super::{Measure, Observed};
+use super::window::Window;
+use super::{About, Measure, Observed};
 use crate::analysis::exposure::{DENSITIES, Exposed, Exposure as Seen, PersonExposure};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::Corners;
 
 /// The name of the values if none is given.
 const NAME: &str = "exposure";
@@ -19,38 +17,18 @@ const NAME: &str = "exposure";
 /// the longest time above each density. Per agent, in the data: its seconds. Values from the literature, not limits of
 /// safety.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields)]
 pub struct Exposure {
     /// The beginning of the names of its values. Default: `exposure`.
     #[schemars(length(min = 1))]
     name: Option<String>,
-    /// The region: lower left and upper right corner, meters; everywhere if missing.
-    pub(super) region: Option<Corners>,
-    /// The start, seconds.
-    #[schemars(range(min = 0, max = LONGEST_TIME))]
-    #[serde(default)]
-    from_secs: f64,
-    /// The end, seconds. Default: the end of the run.
-    #[schemars(range(min = 0, max = LONGEST_TIME))]
-    until_secs: Option<f64>,
-    /// Time between two samples, seconds.
-    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
-    #[serde(default = "every")]
-    every_secs: f64,
+    #[serde(flatten)]
+    pub(super) window: Window,
 }
 
 impl Exposure {
     fn name(&self) -> &str {
         self.name.as_deref().unwrap_or(NAME)
-    }
-
-    fn window(&self) -> Window {
-        Window {
-            region: self.region,
-            from_secs: self.from_secs,
-            until_secs: self.until_secs,
-            every_secs: self.every_secs,
-        }
     }
 }
 
@@ -59,11 +37,18 @@ impl Measure for Exposure {
     type Seen = (Seen, f64);
 
     fn places(&self) -> Vec<(&'static str, Observed)> {
-        Observed::region("exposure.region", self.region)
+        Observed::region("exposure.region", self.window.region)
+    }
+
+    fn about(&self) -> About {
+        About {
+            has_thresholds: true,
+            ..About::default()
+        }
     }
 
     fn check(&self) -> Result<(), Problem> {
-        self.window().check("exposure")
+        self.window.check("exposure")
     }
 
     fn names(&self) -> Vec<(String, &'static str)> {
@@ -90,9 +75,9 @@ impl Measure for Exposure {
     }
 
     fn observe(&self, (seen, secs): &mut Self::Seen, simulation: &Simulation) {
-        let window = self.window();
-        if window.is_due(simulation) {
-            *secs = window.secs(simulation);
+        let window = self.window;
+        if window.samples.is_due(simulation) {
+            *secs = window.samples.secs(simulation);
             seen.add(window.people(simulation, false).iter());
         }
     }

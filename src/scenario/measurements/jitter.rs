@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Mean, Measure, Observed, is_due};
+use super::{About, Mean, Measure, Observed, is_due};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::keys::limits::LONGEST_TIME;
@@ -21,7 +21,7 @@ pub struct Jitter {
     from_secs: f64,
     /// The end, seconds.
     #[schemars(range(min = 0, max = LONGEST_TIME))]
-    to_secs: f64,
+    until_secs: f64,
 }
 
 impl Measure for Jitter {
@@ -33,28 +33,31 @@ impl Measure for Jitter {
     }
 
     fn check(&self) -> Result<(), Problem> {
-        if self.from_secs > self.to_secs {
+        if self.from_secs > self.until_secs {
             let reason = "must not be before from_secs";
-            return Err(Problem::new("jitter.to_secs", reason));
+            return Err(Problem::new("jitter.until_secs", reason));
         }
         Ok(())
     }
 
     fn names(&self) -> Vec<(String, &'static str)> {
-        let window = format!("{}_to_{}s", self.from_secs, self.to_secs);
+        let window = format!("{}_to_{}s", self.from_secs, self.until_secs);
         let name = |part| (format!("jitter{part}_{window}"), "m²/s²");
         ["", "_inside", "_rim"].map(name).into()
     }
 
-    fn needs_density_until(&self) -> Option<f64> {
-        Some(self.to_secs)
+    fn about(&self) -> About {
+        About {
+            density_until: Some(self.until_secs),
+            ..About::default()
+        }
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
         let frame = simulation.frame();
         let (agents, density) = (frame.agents, &frame.fields.density);
         let mut sorted: Vec<f64> = agents.present().map(|i| density[i]).collect();
-        if !is_due(simulation, [self.from_secs, self.to_secs], 0.0) {
+        if !is_due(simulation, [self.from_secs, self.until_secs], 0.0) {
             return;
         }
         sorted.sort_by(f64::total_cmp);

@@ -90,9 +90,9 @@ pub trait Measure: fmt::Debug + Clone + Send + Sync + 'static {
     /// Where it observes people, by the keys that say so; nowhere in particular if it is empty.
     fn places(&self) -> Vec<(&'static str, Observed)>;
 
-    /// The time until which it needs densities, seconds.
-    fn needs_density_until(&self) -> Option<f64> {
-        None
+    /// What checks, notes, reports and pictures need to know about it.
+    fn about(&self) -> About {
+        About::default()
     }
 
     /// Observes an evaluated frame; called in every frame.
@@ -108,6 +108,21 @@ pub trait Measure: fmt::Debug + Clone + Send + Sync + 'static {
     fn data(&self, _seen: &Self::Seen) -> Option<(String, Value)> {
         None
     }
+}
+
+/// What checks, notes, reports and pictures need to know about a measurement.
+#[derive(Debug, Clone, Default)]
+pub struct About {
+    /// The time until which it needs densities, seconds.
+    pub density_until: Option<f64>,
+    /// The key and the name of the journey that it asks for.
+    pub journey: Option<(&'static str, String)>,
+    /// Its key, if it reports the largest forces from the start of the run on.
+    pub peaks_from_start: Option<&'static str>,
+    /// The mass of an average person, kg, if it measures forces on walls.
+    pub mass_on_walls: Option<f64>,
+    /// Whether it compares with thresholds of the literature.
+    pub has_thresholds: bool,
 }
 
 /// A measurement of a scenario.
@@ -203,21 +218,9 @@ impl Measurement {
         self.started().places()
     }
 
-    /// The key of a measurement of the largest forces that begins with the run.
-    pub(super) fn peaks_from_start(&self) -> Option<&'static str> {
-        match self {
-            Self::BodyForces(keys) if keys.from_secs == 0.0 => Some("body_forces"),
-            Self::WallForces(keys) if keys.from_secs == 0.0 => Some("wall_forces"),
-            _ => None,
-        }
-    }
-
-    /// The mass of an average person, kg, if it measures forces on walls.
-    pub fn mass_on_walls(&self) -> Option<f64> {
-        match self {
-            Self::WallForces(keys) => Some(keys.body_mass_kg),
-            _ => None,
-        }
+    /// What checks, notes, reports and pictures need to know about it.
+    pub fn about(&self) -> About {
+        self.started().about()
     }
 
     /// The names of its values.
@@ -251,7 +254,7 @@ impl Metrics {
     /// Prepares the measurements, and requests from `simulation` what they need.
     pub fn new(measurements: &[Measurement], simulation: &mut Simulation) -> Self {
         let running: Vec<_> = measurements.iter().map(Measurement::started).collect();
-        for until in running.iter().filter_map(|one| one.needs_density_until()) {
+        for until in running.iter().filter_map(|one| one.about().density_until) {
             let last = simulation.frame().clock.frame_at(until);
             simulation.request_density_until(last + 1);
         }
@@ -341,11 +344,8 @@ pub(super) fn check(given: &[Measurement], journeys: &[Journey]) -> Result<(), P
         let place = format!("measurements[{k}]");
         let running = measurement.started();
         running.check().under(&place)?;
-        if let Measurement::Egress(keys) = measurement
-            && let Some(name) = &keys.journey
-        {
-            let named = journey_named(journeys, name).under("egress.journey");
-            named.under(&place)?;
+        if let Some((key, name)) = running.about().journey {
+            journey_named(journeys, &name).under(key).under(&place)?;
         }
         let data = running.data().map(|(name, _)| name);
         for name in measurement.names().into_iter().chain(data) {

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::window::Window;
+use super::window::{Samples, Window};
 use super::{Measure, Observed};
 use crate::analysis::oscillation::Oscillation as Found;
 use crate::engine::scene::Region;
@@ -80,9 +80,11 @@ impl Oscillation {
     fn window(&self) -> Window {
         Window {
             region: Some(self.region),
-            from_secs: self.from_secs,
-            until_secs: self.until_secs,
-            every_secs: self.every_secs,
+            samples: Samples {
+                from_secs: self.from_secs,
+                until_secs: self.until_secs,
+                every_secs: self.every_secs,
+            },
         }
     }
 
@@ -148,10 +150,10 @@ impl Measure for Oscillation {
 
     fn observe(&self, seen: &mut Seen, simulation: &Simulation) {
         let window = self.window();
-        let (true, Some(region)) = (window.is_due(simulation), window.region()) else {
+        let (true, Some(region)) = (window.samples.is_due(simulation), window.region()) else {
             return;
         };
-        seen.every = window.secs(simulation);
+        seen.every = window.samples.secs(simulation);
         let [columns, rows] = self.boxes(&region);
         let size = region.max - region.min;
         let mut sums = vec![(0_u32, [0.0; 2]); columns * rows];

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::{Measure, Observed};
+use super::{About, Measure, Observed};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 
@@ -11,7 +11,7 @@ pub trait Running: Send + Sync {
     fn check(&self) -> Result<(), Problem>;
     fn names(&self) -> Vec<(String, &'static str)>;
     fn places(&self) -> Vec<(&'static str, Observed)>;
-    fn needs_density_until(&self) -> Option<f64>;
+    fn about(&self) -> About;
     fn observe(&mut self, simulation: &Simulation);
     fn values(&self, simulation: &Simulation) -> Vec<Option<f64>>;
     fn data(&self) -> Option<(String, Value)>;
@@ -38,8 +38,8 @@ impl<M: Measure> Running for (M, M::Seen) {
         self.0.places()
     }
 
-    fn needs_density_until(&self) -> Option<f64> {
-        self.0.needs_density_until()
+    fn about(&self) -> About {
+        self.0.about()
     }
 
     fn observe(&mut self, simulation: &Simulation) {

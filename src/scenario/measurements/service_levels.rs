@@ -3,13 +3,11 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::window::{Window, every};
-use super::{Measure, Observed};
+use super::window::Window;
+use super::{About, Measure, Observed};
 use crate::analysis::service::{LEVELS, Levels};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
-use crate::scenario::keys::shapes::Corners;
 
 /// The name of the values if none is given.
 const NAME: &str = "service";
@@ -17,46 +15,33 @@ const NAME: &str = "service";
 /// The shares of the time that people spend at each level of service, A to F, by Fruin's (1971) thresholds for walkways
 /// and for queues. Planning values from the literature, not safety limits.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields)]
 pub struct ServiceLevels {
     /// The beginning of the names of its values. Default: `service`.
     #[schemars(length(min = 1))]
     name: Option<String>,
-    /// The region: lower left and upper right corner, meters; everywhere if missing.
-    pub(super) region: Option<Corners>,
-    /// The start, seconds.
-    #[schemars(range(min = 0, max = LONGEST_TIME))]
-    #[serde(default)]
-    from_secs: f64,
-    /// The end, seconds. Default: the end of the run.
-    #[schemars(range(min = 0, max = LONGEST_TIME))]
-    until_secs: Option<f64>,
-    /// Time between two samples, seconds.
-    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
-    #[serde(default = "every")]
-    every_secs: f64,
+    #[serde(flatten)]
+    pub(super) window: Window,
 }
 
-impl ServiceLevels {
-    fn window(&self) -> Window {
-        Window {
-            region: self.region,
-            from_secs: self.from_secs,
-            until_secs: self.until_secs,
-            every_secs: self.every_secs,
-        }
-    }
-}
+impl ServiceLevels {}
 
 impl Measure for ServiceLevels {
     type Seen = Levels;
 
     fn places(&self) -> Vec<(&'static str, Observed)> {
-        Observed::region("service_levels.region", self.region)
+        Observed::region("service_levels.region", self.window.region)
+    }
+
+    fn about(&self) -> About {
+        About {
+            has_thresholds: true,
+            ..About::default()
+        }
     }
 
     fn check(&self) -> Result<(), Problem> {
-        self.window().check("service_levels")
+        self.window.check("service_levels")
     }
 
     fn names(&self) -> Vec<(String, &'static str)> {
@@ -70,8 +55,8 @@ impl Measure for ServiceLevels {
     }
 
     fn observe(&self, seen: &mut Levels, simulation: &Simulation) {
-        let window = self.window();
-        if window.is_due(simulation) {
+        let window = self.window;
+        if window.samples.is_due(simulation) {
             seen.add(window.people(simulation, false).iter());
         }
     }

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::{Measure, Observed};
+use super::{About, Measure, Observed};
 use crate::engine::simulation::Simulation;
 use crate::scenario::keys::limits::LONGEST_TIME;
 
@@ -66,8 +66,11 @@ impl Measure for SnapshotAt {
         Vec::new()
     }
 
-    fn needs_density_until(&self) -> Option<f64> {
-        Some(self.at_secs)
+    fn about(&self) -> About {
+        About {
+            density_until: Some(self.at_secs),
+            ..About::default()
+        }
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Mean, Measure, Observed, is_due};
+use super::{About, Mean, Measure, Observed, is_due};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::keys::limits::LONGEST_TIME;
@@ -17,7 +17,7 @@ pub struct SpeedByDensity {
     from_secs: f64,
     /// The end, seconds.
     #[schemars(range(min = 0, max = LONGEST_TIME))]
-    to_secs: f64,
+    until_secs: f64,
     /// Time between the frames that are looked at, seconds.
     #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
     every_secs: f64,
@@ -46,15 +46,18 @@ impl Measure for SpeedByDensity {
         self.bins.iter().map(name).collect()
     }
 
-    fn needs_density_until(&self) -> Option<f64> {
-        Some(self.to_secs)
+    fn about(&self) -> About {
+        About {
+            density_until: Some(self.until_secs),
+            ..About::default()
+        }
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
         let frame = simulation.frame();
         let is_early = frame.clock.frame() < frame.clock.frame_at(self.from_secs);
         // Counted from the start of the run.
-        if is_early || !is_due(simulation, [0.0, self.to_secs], self.every_secs) {
+        if is_early || !is_due(simulation, [0.0, self.until_secs], self.every_secs) {
             return;
         }
         seen.resize(self.bins.len(), Mean::default());

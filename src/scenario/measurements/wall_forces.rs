@@ -4,12 +4,11 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::window::{MOST_MASS, Window, body_mass, every};
-use super::{Measure, Observed};
+use super::window::{MOST_MASS, Samples, body_mass};
+use super::{About, Measure, Observed};
 use crate::analysis::wall_forces::{CellForce, WallForces as Seen};
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
-use crate::scenario::keys::limits::LONGEST_TIME;
 
 /// The name of the values if none is given.
 const NAME: &str = "wall_force";
@@ -19,22 +18,13 @@ const NAME: &str = "wall_force";
 /// safety. Per part of a wall, in the data: its largest force. Recordings and pictures of the run color its walls by
 /// force.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[schemars(deny_unknown_fields)]
 pub struct WallForces {
     /// The beginning of the names of its values. Default: `wall_force`.
     #[schemars(length(min = 1))]
     name: Option<String>,
-    /// The start, seconds.
-    #[schemars(range(min = 0, max = LONGEST_TIME))]
-    #[serde(default)]
-    pub(super) from_secs: f64,
-    /// The end, seconds. Default: the end of the run.
-    #[schemars(range(min = 0, max = LONGEST_TIME))]
-    until_secs: Option<f64>,
-    /// Time between two samples, seconds.
-    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
-    #[serde(default = "every")]
-    every_secs: f64,
+    #[serde(flatten)]
+    pub(super) samples: Samples,
     /// The mass of an average person, m = 1, kg.
     #[schemars(range(max = MOST_MASS), extend("exclusiveMinimum" = 0))]
     #[serde(default = "body_mass")]
@@ -44,15 +34,6 @@ pub struct WallForces {
 impl WallForces {
     fn name(&self) -> &str {
         self.name.as_deref().unwrap_or(NAME)
-    }
-
-    fn window(&self) -> Window {
-        Window {
-            region: None,
-            from_secs: self.from_secs,
-            until_secs: self.until_secs,
-            every_secs: self.every_secs,
-        }
     }
 }
 
@@ -64,8 +45,17 @@ impl Measure for WallForces {
         Vec::new()
     }
 
+    fn about(&self) -> About {
+        About {
+            has_thresholds: true,
+            peaks_from_start: (self.samples.from_secs == 0.0).then_some("wall_forces"),
+            mass_on_walls: Some(self.body_mass_kg),
+            ..About::default()
+        }
+    }
+
     fn check(&self) -> Result<(), Problem> {
-        self.window().check("wall_forces")
+        self.samples.check("wall_forces")
     }
 
     fn names(&self) -> Vec<(String, &'static str)> {
@@ -82,9 +72,8 @@ impl Measure for WallForces {
     }
 
     fn observe(&self, (seen, secs): &mut Self::Seen, simulation: &Simulation) {
-        let window = self.window();
-        if window.is_due(simulation) {
-            *secs = window.secs(simulation);
+        if self.samples.is_due(simulation) {
+            *secs = self.samples.secs(simulation);
             seen.add(simulation, self.body_mass_kg);
         }
     }

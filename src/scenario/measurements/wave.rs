@@ -38,7 +38,7 @@ pub struct Wave {
     from_secs: f64,
     /// End of the diagram, seconds.
     #[schemars(range(min = 0, max = LONGEST_TIME))]
-    to_secs: f64,
+    until_secs: f64,
     /// Time between the columns of the diagram, seconds.
     #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
     #[serde(default = "often")]
@@ -109,7 +109,11 @@ impl Measure for Wave {
     }
 
     fn observe(&self, seen: &mut Self::Seen, simulation: &Simulation) {
-        if is_due(simulation, [self.from_secs, self.to_secs], self.every_secs) {
+        if is_due(
+            simulation,
+            [self.from_secs, self.until_secs],
+            self.every_secs,
+        ) {
             let diagram = seen.get_or_insert_with(|| SpaceTime::new(self.strip()));
             diagram.observe(&simulation.frame());
         }

@@ -1,5 +1,8 @@
 //! When and where measurements that sample the crowd look at it.
 
+use schemars::JsonSchema;
+use serde::Deserialize;
+
 use super::is_due;
 use crate::analysis::body_forces::BODY_MASS;
 use crate::analysis::local::{Local, local};
@@ -8,10 +11,11 @@ use crate::engine::scene::Region;
 use crate::engine::simulation::Simulation;
 use crate::scenario::error::Problem;
 use crate::scenario::floor_plan::parts_on_floor;
+use crate::scenario::keys::limits::LONGEST_TIME;
 use crate::scenario::keys::shapes::{Corners, wide_region};
 
 /// Time between two samples if none is given, seconds.
-pub fn every() -> f64 {
+fn every() -> f64 {
     1.0
 }
 
@@ -40,34 +44,36 @@ pub fn walkable_area(region: Region, walls: &Walls) -> f64 {
     }
 }
 
-/// The times and the place of samples.
-#[derive(Debug, Clone, Copy)]
-pub struct Window {
-    pub region: Option<Corners>,
-    /// Seconds.
+/// When a measurement samples the crowd.
+///
+/// Structs that flatten it or [`Window`] cannot refuse unknown keys: the walk over the schema does (`file::range`).
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+pub struct Samples {
+    /// The start, seconds.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
+    #[serde(default)]
     pub from_secs: f64,
-    /// Seconds; `None`: the end of the run.
+    /// The end, seconds. Default: the end of the run.
+    #[schemars(range(min = 0, max = LONGEST_TIME))]
     pub until_secs: Option<f64>,
-    /// Seconds.
+    /// Time between two samples, seconds.
+    #[schemars(range(max = LONGEST_TIME), extend("exclusiveMinimum" = 0))]
+    #[serde(default = "every")]
     pub every_secs: f64,
 }
 
-impl Window {
+impl Samples {
     /// Checks the keys of the measurement `name`.
     ///
     /// # Errors
-    /// The window is empty.
+    /// They end before they start.
     pub fn check(&self, name: &str) -> Result<(), Problem> {
-        if let Some(until) = self.until_secs.filter(|until| *until < self.from_secs) {
-            let reason = format!(
-                "must not be before `from_secs`, {}, but is {until}",
-                self.from_secs
-            );
-            return Err(Problem::new(format!("{name}.until_secs"), reason));
-        }
-        let key = format!("{name}.region");
-        self.region
-            .map_or(Ok(()), |corners| wide_region(&key, corners).map(|_| ()))
+        let Some(until) = self.until_secs.filter(|until| *until < self.from_secs) else {
+            return Ok(());
+        };
+        let from = self.from_secs;
+        let reason = format!("must not be before `from_secs`, {from}, but is {until}");
+        Err(Problem::new(format!("{name}.until_secs"), reason))
     }
 
     /// Whether the current frame is due.
@@ -80,6 +86,28 @@ impl Window {
     pub fn secs(&self, simulation: &Simulation) -> f64 {
         let clock = simulation.frame().clock;
         clock.time_at(clock.frame_at(self.every_secs).max(1))
+    }
+}
+
+/// When and where a measurement samples the crowd.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+pub struct Window {
+    /// The region: lower left and upper right corner, meters; everywhere if missing.
+    pub region: Option<Corners>,
+    #[serde(flatten)]
+    pub samples: Samples,
+}
+
+impl Window {
+    /// Checks the keys of the measurement `name`.
+    ///
+    /// # Errors
+    /// The window is empty.
+    pub fn check(&self, name: &str) -> Result<(), Problem> {
+        self.samples.check(name)?;
+        let key = format!("{name}.region");
+        self.region
+            .map_or(Ok(()), |corners| wide_region(&key, corners).map(|_| ()))
     }
 
     /// The region.

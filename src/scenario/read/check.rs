@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use serde::Deserialize;
 use serde_json::Value;
 
 use crate::engine::geometry::Polygon;
@@ -19,31 +20,18 @@ use crate::scenario::build::{
 use crate::scenario::error::{Problem, Under, in_plain_words};
 use crate::scenario::file::{File, range};
 use crate::scenario::keys::limits::{DEFAULT_DURATION, DEFAULT_PROFILE};
+use crate::scenario::keys::people::People;
 use crate::scenario::keys::profiles::{ProfileChoice, ProfileName};
 use crate::scenario::keys::shapes::region;
-use crate::scenario::read::plans::PlanFile;
+use crate::scenario::read::draft::{Draft, Inputs};
 use crate::scenario::read::scenario::Scenario;
 use crate::scenario::read::{data, late, plans, preset};
 use crate::scenario::trajectories::Tracks;
 use crate::scenario::{file, measurements};
 
-/// A document whose keys and values have been checked one by one.
-#[derive(Debug, Clone)]
-pub struct Contents {
-    /// With its preset expanded and the files that it names inlined.
-    document: Value,
-    /// The files that it names.
-    plans: Vec<PlanFile>,
-    keys: File,
-    /// Notes on these files, for readers of the results.
-    notes: Vec<String>,
-    /// The size of its run.
-    pub need: Need,
-}
-
-impl Contents {
+impl Draft {
     /// Reads `document`, and the files that it names from the folder of `path`.
-    pub fn of(document: Value, path: &Path) -> Result<Self, Problem> {
+    pub(super) fn of(document: Value, path: &Path) -> Result<Self, Problem> {
         let mut document = preset::completed(document);
         without_schema(&mut document)?;
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -58,22 +46,31 @@ impl Contents {
             keys,
             notes,
             need,
+            inputs: Inputs::default(),
         })
     }
 
     /// Checks names, types and ranges.
-    pub fn check_keys(document: &Value) -> Result<File, Problem> {
+    pub(super) fn check_keys(document: &Value) -> Result<File, Problem> {
         range::check(document)?;
-        serde_path_to_error::deserialize(document).map_err(|error| {
-            let path = error.path().to_string();
-            let path = if path == "." { String::new() } else { path };
-            Problem::new(path, in_plain_words(&error.into_inner().to_string()))
-        })
+        // serde does not say where an error is in keys that several structs share.
+        for list in ["grids", "crowds", "sources", "entrances"] {
+            let items = document[list].as_array().into_iter().flatten();
+            for (k, item) in items.enumerate() {
+                parsed::<People>(item).under(&format!("{list}[{k}]"))?;
+            }
+        }
+        if let Some(from) = document.get("from").filter(|from| from.is_object()) {
+            parsed::<People>(from).under("from")?;
+        }
+        let keys = parsed(document)?;
+        range::check_names(document)?;
+        Ok(keys)
     }
 
     /// The trajectories from which the scenario begins, and the time in them at which it does, seconds; `None` if it
     /// names no file. The file's name is relative to the folder of `path`.
-    pub fn trajectories(&self, path: &Path) -> Result<Option<(Tracks, f64)>, Problem> {
+    pub(super) fn tracks(&self, path: &Path) -> Result<Option<(Tracks, f64)>, Problem> {
         let Some(given) = &self.keys.from else {
             return Ok(None);
         };
@@ -85,20 +82,20 @@ impl Contents {
 
     /// The end of the run, and the time up to which what begins is not late, seconds: the later end of the file without
     /// settings, `own`, if they make the run shorter.
-    pub fn ends(&self, own: Option<&Value>) -> [f64; 2] {
+    pub(super) fn ends(&self, own: Option<&Value>) -> [f64; 2] {
         let end = duration(&self.keys);
         let own = own.map(|own| own["duration_secs"].as_f64().unwrap_or(DEFAULT_DURATION));
         [end, own.map_or(end, |own| own.max(end))]
     }
 
     /// A note on what begins after the end of the run.
-    pub fn late(&self, [end, last]: [f64; 2]) -> Option<String> {
+    pub(super) fn late(&self, [end, last]: [f64; 2]) -> Option<String> {
         late::note(&self.document, end, last)
     }
 
     /// Checks relations between values and places the agents. The name of the file `path` is the default name of the
     /// scenario.
-    pub fn scenario(self, path: &Path) -> Result<Scenario, Problem> {
+    pub(super) fn built(self, path: &Path) -> Result<Scenario, Problem> {
         let keys = &self.keys;
         periodic::check_keys(keys)?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -150,6 +147,15 @@ impl Contents {
             scene,
         })
     }
+}
+
+/// The value of a type, or the first problem and its place.
+fn parsed<'a, T: Deserialize<'a>>(value: &'a Value) -> Result<T, Problem> {
+    serde_path_to_error::deserialize(value).map_err(|error| {
+        let path = error.path().to_string();
+        let path = if path == "." { String::new() } else { path };
+        Problem::new(path, in_plain_words(&error.into_inner().to_string()))
+    })
 }
 
 /// Removes `$schema`, by which editors find the schema.

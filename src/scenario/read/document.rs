@@ -6,35 +6,60 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor}
 use serde_json::{Map, Number, Value};
 
 use crate::scenario::error::quote::shown;
-use crate::scenario::error::{Problem, ScenarioError, in_plain_words};
-use crate::scenario::keys::names::OLD_KEYS;
+use crate::scenario::error::{Problem, ScenarioError, Under, in_plain_words};
+use crate::scenario::keys::names::{OLD_KEYS, OldKey};
 
-/// The present name of a top-level key.
-pub fn present_name(key: &str) -> &str {
-    let renamed = OLD_KEYS.into_iter().find(|&(old, _)| old == key);
-    renamed.map_or(key, |(_, new)| new)
+/// Gives the last key of a path in a document its present name.
+pub fn rename_last(path: &mut [String]) {
+    let given: Vec<&str> = path.iter().map(String::as_str).collect();
+    let renamed = OLD_KEYS.iter().find(|key| match given[..] {
+        [name] => key.measurement.is_none() && name == key.old,
+        ["measurements", _, kind, name] => key.measurement == Some(kind) && name == key.old,
+        _ => false,
+    });
+    if let (Some(key), Some(last)) = (renamed, path.last_mut()) {
+        *last = key.new.to_owned();
+    }
 }
 
-/// Gives former keys their present names, so that `--set` and presets find them.
+/// Gives former keys their present names, so that settings and presets find them.
 pub fn rename_old_keys(document: &mut Value) -> Result<(), Problem> {
-    let Value::Object(object) = document else {
-        return Ok(());
-    };
-    for (old, new) in OLD_KEYS {
-        let Some(value) = object.remove(old) else {
+    for key in OLD_KEYS {
+        let Some(kind) = key.measurement else {
+            rename(document, &key)?;
             continue;
         };
-        if object.insert(new.to_owned(), value).is_some() {
-            let reason = format!("the old name of `{new}`, which is given too; remove one");
-            return Err(Problem::new(old, reason));
+        let measurements = document.get_mut("measurements");
+        let measurements = measurements.and_then(Value::as_array_mut);
+        for (k, measurement) in measurements.into_iter().flatten().enumerate() {
+            if let Some(keys) = measurement.get_mut(kind) {
+                rename(keys, &key).under(&format!("measurements[{k}].{kind}"))?;
+            }
         }
+    }
+    Ok(())
+}
+
+fn rename(object: &mut Value, key: &OldKey) -> Result<(), Problem> {
+    let Some(object) = object.as_object_mut() else {
+        return Ok(());
+    };
+    let Some(value) = object.remove(key.old) else {
+        return Ok(());
+    };
+    if object.insert(key.new.to_owned(), value).is_some() {
+        let reason = format!(
+            "the old name of `{}`, which is given too; remove one",
+            key.new
+        );
+        return Err(Problem::new(key.old, reason));
     }
     Ok(())
 }
 
 /// Parses `text`; messages call it `file`.
 pub(crate) fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
-    let document: Result<Document, _> = serde_json::from_str(text);
+    let document: Result<Unique, _> = serde_json::from_str(text);
     document.map(|document| document.0).map_err(|error| {
         let (line, column) = (error.line(), error.column());
         let said = error.to_string();
@@ -83,17 +108,17 @@ fn written(value: &Value, indent: usize, width: usize) -> String {
 }
 
 /// A JSON value whose objects have no duplicate keys.
-struct Document(Value);
+struct Unique(Value);
 
-impl<'de> Deserialize<'de> for Document {
+impl<'de> Deserialize<'de> for Unique {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(DocumentVisitor).map(Self)
+        deserializer.deserialize_any(UniqueVisitor).map(Self)
     }
 }
 
-struct DocumentVisitor;
+struct UniqueVisitor;
 
-impl<'de> Visitor<'de> for DocumentVisitor {
+impl<'de> Visitor<'de> for UniqueVisitor {
     type Value = Value;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -129,7 +154,7 @@ impl<'de> Visitor<'de> for DocumentVisitor {
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Value, A::Error> {
         let mut list = Vec::new();
-        while let Some(Document(item)) = items.next_element()? {
+        while let Some(Unique(item)) = items.next_element()? {
             list.push(item);
         }
         Ok(Value::Array(list))
@@ -144,7 +169,7 @@ impl<'de> Visitor<'de> for DocumentVisitor {
                     shown(&key)
                 )));
             }
-            let Document(value) = entries.next_value()?;
+            let Unique(value) = entries.next_value()?;
             object.insert(key, value);
         }
         Ok(Value::Object(object))

@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 
 use crate::scenario::build::need::Need;
 use crate::scenario::error::{Problem, ScenarioError};
-use crate::scenario::read::check::Contents;
+use crate::scenario::file::File;
+use crate::scenario::read::plans::PlanFile;
 use crate::scenario::read::scenario::Scenario;
 use crate::scenario::read::setting::Setting;
 use crate::scenario::read::{document, late, plans};
@@ -15,13 +16,20 @@ use crate::scenario::trajectories::Tracks;
 /// A scenario whose names, types and ranges are valid. Relations between values are not checked yet.
 #[derive(Debug, Clone)]
 pub struct Draft {
-    contents: Contents,
-    inputs: Inputs,
+    /// The JSON, with its preset expanded and the files that it names inlined.
+    pub(super) document: Value,
+    /// The files that it names.
+    pub(super) plans: Vec<PlanFile>,
+    pub(super) keys: File,
+    /// Notes on these files, for readers of the results.
+    pub(super) notes: Vec<String>,
+    pub(super) need: Need,
+    pub(super) inputs: Inputs,
 }
 
 /// The file and the settings of a draft: error messages name the one that caused a problem.
-#[derive(Debug, Clone)]
-struct Inputs {
+#[derive(Debug, Clone, Default)]
+pub(super) struct Inputs {
     file: String,
     /// The file without settings; `None` if there are none.
     without: Option<Value>,
@@ -51,16 +59,16 @@ impl Draft {
                 inputs.settings.push((path, setting.clone()));
             }
         }
-        let contents = Contents::of(document, Path::new(file));
-        let mut contents = contents.map_err(|problem| inputs.blame(problem))?;
+        let draft = Self::of(document, Path::new(file));
+        let mut draft = draft.map_err(|problem| inputs.blame(problem))?;
         inputs.check_replaced()?;
-        contents.need.text = text.len() as u64;
-        Ok(Self { contents, inputs })
+        draft.need.text = text.len() as u64;
+        Ok(Self { inputs, ..draft })
     }
 
     /// The size of its run.
     pub fn need(&self) -> &Need {
-        &self.contents.need
+        &self.need
     }
 
     /// The trajectories from which it begins, and the time in them at which it does, seconds; `None` if it names no
@@ -69,7 +77,7 @@ impl Draft {
     /// # Errors
     /// The file has changed since [`read`](Self::read), and is invalid now.
     pub fn trajectories(&self) -> Result<Option<(Tracks, f64)>, ScenarioError> {
-        let tracks = self.contents.trajectories(Path::new(&self.inputs.file));
+        let tracks = self.tracks(Path::new(&self.inputs.file));
         tracks.map_err(|problem| self.inputs.blame(problem))
     }
 
@@ -77,11 +85,11 @@ impl Draft {
     ///
     /// # Errors
     /// The first problem, with its place.
-    pub fn scenario(self) -> Result<Scenario, ScenarioError> {
-        let Self { contents, inputs } = self;
-        let ends = contents.ends(inputs.without.as_ref());
-        let late = contents.late(ends);
-        let scenario = contents.scenario(Path::new(&inputs.file));
+    pub fn scenario(mut self) -> Result<Scenario, ScenarioError> {
+        let inputs = std::mem::take(&mut self.inputs);
+        let ends = self.ends(inputs.without.as_ref());
+        let late = self.late(ends);
+        let scenario = self.built(Path::new(&inputs.file));
         let mut scenario = scenario.map_err(|problem| inputs.blame(problem))?;
         scenario.notes.extend(late);
         scenario.notes.extend(late::idle(&scenario.scene, ends));
@@ -99,7 +107,7 @@ impl Draft {
         there: Option<u64>,
         output: u64,
     ) -> Result<(Scenario, Need), ScenarioError> {
-        let (file, need) = (self.inputs.file.clone(), self.contents.need);
+        let (file, need) = (self.inputs.file.clone(), self.need);
         let check = |need: &Need| need.check(&file, output, there.unwrap_or(u64::MAX));
         check(&need)?;
         let scenario = self.scenario()?;
@@ -124,7 +132,7 @@ impl Inputs {
             if value.is_string() && plans::KEYS.contains(&key.as_str()) {
                 continue; // the name of a file
             }
-            let problem = Contents::check_keys(&json!({ key: value })).err();
+            let problem = Draft::check_keys(&json!({ key: value })).err();
             // Other settings may mend what lies elsewhere.
             if let Some(problem) = problem.filter(|problem| problem.seen_from(path).is_some()) {
                 let file = self.file.clone();
@@ -161,8 +169,8 @@ impl Inputs {
         let mut file = self.file.clone();
         if let Some(document) = &self.without {
             let path = Path::new(&self.file);
-            let alone = Contents::of(document.clone(), path);
-            if alone.and_then(|contents| contents.scenario(path)).is_ok() {
+            let alone = Draft::of(document.clone(), path);
+            if alone.and_then(|draft| draft.built(path)).is_ok() {
                 let settings = self.settings.iter();
                 let mut settings: Vec<_> = settings.map(|(_, one)| format!(" {one}")).collect();
                 settings.dedup();

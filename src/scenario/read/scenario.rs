@@ -67,9 +67,8 @@ impl Scenario {
 
     /// The mass of an average person, kg, if the scenario measures forces on walls.
     pub fn mass_on_walls(&self) -> Option<f64> {
-        self.measurements
-            .iter()
-            .find_map(Measurement::mass_on_walls)
+        let mut measured = self.measurements.iter();
+        measured.find_map(|one| one.about().mass_on_walls)
     }
 
     /// The floor without path maps, for goals that agents get during the run; `None` if agents walk straight, or see

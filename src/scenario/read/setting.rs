@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::scenario::error::quote::shown;
 use crate::scenario::error::{Problem, ScenarioError, suggestion};
 use crate::scenario::file::listed::{is_parameter, is_setting, is_text, may_be_empty, settings};
-use crate::scenario::read::document::present_name;
+use crate::scenario::read::document::rename_last;
 
 /// A change: `viscosity=5`, `seed=7`, `profile=sf`, `sources.0.rows=50`.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,7 +63,7 @@ impl Setting {
     /// The top-level key is unknown.
     pub fn new(key: &str, value: Value, text: String) -> Result<Self, SettingError> {
         let mut path: Vec<String> = key.split('.').map(str::to_owned).collect();
-        path[0] = present_name(&path[0]).to_owned();
+        rename_last(&mut path);
         if !is_setting(&path[0]) {
             let known = settings();
             return Err(SettingError::UnknownKey {
