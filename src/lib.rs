@@ -23,13 +23,7 @@
 
 #![warn(missing_docs, clippy::unwrap_used)]
 
-pub mod engine;
-
-pub mod analysis;
-
-pub mod scenario;
-
-pub mod runs;
+pub use sandbox_scenario::{analysis, engine, runs, scenario};
 
 #[cfg(feature = "program")]
 pub mod output;

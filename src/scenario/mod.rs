@@ -33,17 +33,14 @@ mod read;
 pub use build::need::{Need, in_units};
 pub use build::numerics::automatic_step;
 pub use build::view::View;
-pub use error::{Problem, ScenarioError, quote};
-#[cfg(feature = "program")]
-pub(crate) use error::{in_plain_words, suggestion};
+pub use error::{Problem, ScenarioError, in_plain_words, quote, suggestion};
 pub use file::Stop;
 pub use file::listed::{SettingDoc, nested_settings, settings};
 pub use file::schema::schema;
 pub use keys::goals::WayFinding;
 pub use keys::preset::Preset;
 pub use keys::{calibrated, catalog};
-#[cfg(feature = "program")]
-pub(crate) use read::document::read as read_document;
+pub use read::document::read as read_document;
 pub use read::draft::Draft;
 pub use read::plans::PlanFile;
 pub use read::scenario::{Scenario, read_text, shipped_text};

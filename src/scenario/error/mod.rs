@@ -80,7 +80,8 @@ impl std::fmt::Display for Problem {
 }
 
 impl Problem {
-    pub(crate) fn new(path: impl Into<String>, reason: impl Into<String>) -> Self {
+    /// A problem at a key path.
+    pub fn new(path: impl Into<String>, reason: impl Into<String>) -> Self {
         Self {
             path: path.into(),
             reason: reason.into(),
@@ -119,7 +120,7 @@ impl<T> Under for Result<T, Problem> {
 }
 
 /// "; did you mean `x`?" if one of `known` is similar to `given`, else empty.
-pub(crate) fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+pub fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     /// A prefix of at least this length suggests the full name.
     const STEM: usize = 4;
     let slips = |name: &str| {
@@ -141,7 +142,7 @@ pub(crate) fn suggestion<'a>(given: &str, known: impl IntoIterator<Item = &'a st
 }
 
 /// Rewrites a message of serde without Rust terms, and adds a suggestion for unknown names.
-pub(crate) fn in_plain_words(said: &str) -> String {
+pub fn in_plain_words(said: &str) -> String {
     let (head, given, tail) = around_the_given(said);
     let is_name = said.starts_with("unknown field") || said.starts_with("unknown variant");
     let near = match is_name {

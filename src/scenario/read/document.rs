@@ -58,7 +58,10 @@ fn rename(object: &mut Value, key: &OldKey) -> Result<(), Problem> {
 }
 
 /// Parses `text`; messages call it `file`.
-pub(crate) fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
+///
+/// # Errors
+/// The text is not JSON, or a key is given twice.
+pub fn read(text: &str, file: &str) -> Result<Value, ScenarioError> {
     let document: Result<Unique, _> = serde_json::from_str(text);
     document.map(|document| document.0).map_err(|error| {
         let (line, column) = (error.line(), error.column());

@@ -6,7 +6,7 @@ use include_dir::{Dir, include_dir};
 use serde_json::Value;
 
 /// The folder `scenarios/`.
-static FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/scenarios");
+static FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../scenarios");
 
 /// The text of a file under `scenarios/`, such as `stress/packed.json` or `studies/../stress/packed.json`.
 pub fn built_in(path: &Path) -> Option<&'static str> {

@@ -1,0 +1,11 @@
+//! Scenario files of the sandbox for dense crowds, and their runs: the crate `sandbox` shows both.
+
+#![warn(missing_docs, clippy::unwrap_used)]
+
+pub use sandbox_engine::{analysis, engine};
+
+#[path = "mod.rs"]
+pub mod scenario;
+
+#[path = "../runs/mod.rs"]
+pub mod runs;
