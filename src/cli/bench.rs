@@ -6,9 +6,10 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use serde_json::Value;
 
-use super::arguments::PrintOptions;
+use super::arguments::{PrintOptions, use_threads};
+use super::failure::Failure;
+use super::terminal::{talk, tell};
 use super::values::{repeats, threads};
-use super::{Failure, talk, tell, use_threads};
 use crate::lab::bench::{BENCHMARKS, Plan, Report, files};
 use crate::lab::error::LabError;
 use crate::runs::outputs::{Manner, Outputs};

@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::Value;
 
-use super::{Failure, talk, tell};
+use super::failure::Failure;
+use super::inputs::tracks;
+use super::terminal::{talk, tell};
 use crate::lab::differences::{Differences, of_reports, of_tracks};
 use crate::output::recording::Recorded;
 use crate::scenario::input;
 use crate::scenario::quote::shown;
-use crate::scenario::trajectories::{ReadOptions, Tracks, read};
+use crate::scenario::trajectories::{ReadOptions, Tracks};
 
 #[derive(Args)]
 pub struct CompareOptions {
@@ -78,10 +80,7 @@ fn open(path: &Path) -> Result<Input, Failure> {
             })?
         }
         _ => {
-            let tracks = read(path, &ReadOptions::default())?;
-            for note in &tracks.notes {
-                talk(&format!("note: {}: {note}", path.display()));
-            }
+            let tracks = tracks(path, &ReadOptions::default())?;
             return Ok(Input::Tracks(Box::new(tracks)));
         }
     };

@@ -1,22 +1,19 @@
 //! Runs a scenario to its end, with a progress bar, output files and a report.
 
-use std::ops::ControlFlow;
 use std::path::Path;
 
-use indicatif::ProgressBar;
-
-use super::arguments::{OutputOptions, ProgramOptions, ResumeOptions, RunOptions};
+use super::arguments::{OutputOptions, ProgramOptions, ResumeOptions, RunOptions, use_threads};
 use super::checkpoint::Checkpoints;
+use super::failure::Failure;
+use super::inputs::{scenario, setting};
 use super::interrupt::Interrupt;
 use super::output::{Recording, check};
-use super::watch::bar;
-use super::{
-    Failure, memory, notes, report, scenario, setting, talk, tell, trajectory, use_threads,
-};
+use super::terminal::{talk, tell};
+use super::watch::Progress;
+use super::{memory, notes, report, trajectory};
 use crate::analysis::stability::{FITTED, Mode, Scheme, three_digits};
 use crate::engine::clock::{Clock, SHORTEST_TIME_STEP};
 use crate::engine::scene::Scene;
-use crate::engine::simulation::Simulation;
 use crate::lab::machine::main_memory;
 use crate::runs::case::Source;
 use crate::runs::checkpoint::Checkpoint;
@@ -131,7 +128,7 @@ fn go_on(
     let driven = rayon::scope(|_| run.drive(&mut observers, interrupted));
     // Close all files first, so that they are kept even if the run failed.
     let finished: Vec<_> = observers.into_iter().map(Observer::finish).collect();
-    let end = driven.map_err(|failure| failure.laid_open(&mut run.simulation))?;
+    let end = driven.map_err(|failure| failure.with_forces(&mut run.simulation))?;
     notes::print(&run);
     notes::print_absent(&options.record, &run.simulation);
     tell(program.json, || report::json(&run), || report::text(&run))?;
@@ -164,32 +161,5 @@ fn warn_of_the_step(scene: &Scene) {
             three_digits(step / largest),
             three_digits(largest),
         ));
-    }
-}
-
-/// A progress bar on stderr, shown only if stderr is a terminal.
-pub struct Progress(ProgressBar);
-
-impl Progress {
-    pub fn new(duration: f64) -> Self {
-        let length = (duration * 10.0).ceil() as u64;
-        Self(bar(length, "{bar:30} {msg}, {eta} left"))
-    }
-
-    pub fn show(&self, simulation: &Simulation) {
-        let frame = simulation.frame();
-        if frame.clock.is_coarse() && !self.0.is_hidden() {
-            let (time, agents) = (frame.clock.time(), frame.agents.count_present());
-            self.0.set_position((time * 10.0) as u64);
-            self.0
-                .set_message(format!("t = {time:.1} s, {agents} agents"));
-        }
-    }
-}
-
-impl Observer<Failure> for Progress {
-    fn observe(&mut self, run: &Run, _: f64, _: ControlFlow<End>) -> Result<(), Failure> {
-        self.show(&run.simulation);
-        Ok(())
     }
 }

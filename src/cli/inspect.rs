@@ -1,14 +1,41 @@
 //! `sandbox inspect`: the forces on single agents, term by term.
 
+use std::path::PathBuf;
+
+use clap::Args;
 use serde_json::json;
 
-use super::arguments::InspectOptions;
-use super::moment::Moment;
-use super::{Failure, memory, moment, output, say, use_threads};
+use super::arguments::{SceneOptions, use_threads};
+use super::failure::Failure;
+use super::moment::{self, Moment};
+use super::terminal::say;
+use super::values::{id, recording, seconds};
+use super::{memory, output};
 use crate::engine::breakdown::Breakdown;
 use crate::engine::simulation::{Absent, Simulation};
 use crate::output::recording::check_enabled;
 use crate::runs::outputs::{Manner, Outputs};
+
+#[derive(Args)]
+pub struct InspectOptions {
+    /// A built-in scenario or a scenario file
+    #[arg(value_name = "SCENARIO_OR_FILE")]
+    pub scenario: String,
+    #[command(flatten)]
+    pub scene: SceneOptions,
+    /// Id of an agent; may be repeated
+    #[arg(long, value_name = "ID", required_unless_present = "all", value_parser = id)]
+    pub agent: Vec<u32>,
+    /// Inspect every agent
+    #[arg(long, conflicts_with = "agent")]
+    pub all: bool,
+    /// The moment, seconds; at 0 no agent has moved yet
+    #[arg(long, value_name = "SECS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = seconds)]
+    pub at: f64,
+    /// Also write this moment as a recording for the Rerun viewer
+    #[arg(long, value_name = "FILE.rrd", value_parser = recording())]
+    pub save: Option<PathBuf>,
+}
 
 impl InspectOptions {
     fn moment(&self) -> Moment<'_> {
@@ -36,7 +63,7 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     // The rest density depends on the density's history, so every frame needs the density.
     simulation.request_density_until(u64::MAX);
     let went = rayon::scope(|_| moment::go_to(options.at, &mut simulation));
-    went.map_err(|failure| failure.laid_open(&mut simulation))?;
+    went.map_err(|failure| failure.with_forces(&mut simulation))?;
     let inspected = inspected(&simulation, options)?;
     if let Some(path) = &options.save {
         let ids = inspected.iter().map(|&(id, _)| id).collect();

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::{Failure, say, tell};
+use super::failure::Failure;
+use super::terminal::{say, tell};
 use crate::scenario::catalog::{ABOUT, NAMES};
 use crate::scenario::{self, SHIPPED, SettingDoc, Shipped, calibrated, nested_settings, settings};
 

@@ -1,9 +1,9 @@
 //! A scenario at one moment, for commands that look at it.
 
-use super::Failure;
 use super::arguments::SceneOptions;
-use super::drive::Progress;
-use super::scenario as read;
+use super::failure::Failure;
+use super::inputs::scenario as read;
+use super::watch::Progress;
 use crate::engine::pairs::Precision;
 use crate::engine::simulation::Simulation;
 use crate::runs::case::Source;

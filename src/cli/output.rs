@@ -4,9 +4,11 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use super::arguments::{OutputOptions, RecordOptions};
+use super::failure::Failure;
 use super::interrupt::Interrupt;
-use super::values::region;
-use super::{Failure, report, talk, trajectory};
+use super::terminal::talk;
+use super::values::{ids, region};
+use super::{report, trajectory};
 use crate::engine::clock::Clock;
 use crate::engine::simulation::Simulation;
 use crate::output::recording::{
@@ -41,16 +43,6 @@ pub fn check(
         outputs.writes("--checkpoint", path, Manner::Whole);
     }
     Ok(outputs.check()?)
-}
-
-/// The ids that `--debug-agents` lists.
-pub fn ids(text: &str) -> Result<Vec<u32>, Failure> {
-    let ids: Result<Vec<u32>, _> = text.split(',').map(|id| id.trim().parse()).collect();
-    ids.map_err(|_| {
-        Failure::Input(format!(
-            "--debug-agents {text}: expected ids separated by commas, all or none"
-        ))
-    })
 }
 
 /// The recording of a run.
@@ -226,13 +218,4 @@ fn debug_agents(record: &RecordOptions, scenario: &Scenario) -> Result<DebugAgen
         )));
     }
     Ok(DebugAgents::Ids(ids))
-}
-
-impl From<RecordingError> for Failure {
-    fn from(error: RecordingError) -> Self {
-        match error {
-            RecordingError::SwitchedOff(_) => Self::Input(error.to_string()),
-            _ => Self::Output(error.to_string()),
-        }
-    }
 }

@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::arguments::PrintOptions;
+use super::arguments::{PrintOptions, use_threads};
+use super::failure::Failure;
+use super::terminal::{say, talk, tell};
 use super::watch::Watch;
-use super::{Failure, say, talk, tell, use_threads};
 use crate::lab::machine::main_memory;
 use crate::lab::sweep::{Drawing, Gathered, Shard, State, Study, run as run_shard};
 use crate::runs::job::Tally;

@@ -2,9 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use super::Failure;
 use super::arguments::TrajectoryOptions;
-use crate::output::trajectory::{Format, Trajectory, TrajectoryError, frames_between, journal};
+use super::failure::Failure;
+use crate::output::trajectory::{Format, Trajectory, frames_between, journal};
 use crate::runs::drive::{End, Observer, Run};
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::Scenario;
@@ -46,15 +46,5 @@ impl Observer<Failure> for Trajectory {
 
     fn finish(self: Box<Self>) -> Result<(), Failure> {
         Ok(Self::finish(*self)?)
-    }
-}
-
-impl From<TrajectoryError> for Failure {
-    fn from(error: TrajectoryError) -> Self {
-        match error {
-            TrajectoryError::Unwritten { .. } => Self::Output(error.to_string()),
-            TrajectoryError::FrameRate { .. } => Self::Input(format!("--trajectory-fps: {error}")),
-            TrajectoryError::UnknownFormat(_) => Self::Input(format!("--trajectory {error}")),
-        }
     }
 }

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::arguments::PrintOptions;
+use super::arguments::{PrintOptions, use_threads};
+use super::failure::Failure;
 use super::values::threads;
-use super::{Failure, use_threads};
 use crate::lab::reproduce::put_between;
 use crate::runs::outputs::{Manner, Outputs, write_whole};
 use crate::runs::store::Store;

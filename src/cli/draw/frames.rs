@@ -1,6 +1,6 @@
 //! The source of pictures of a crowd: a simulation, a trajectory file, or a recording.
 
-use super::super::Failure;
+use crate::cli::failure::Failure;
 use crate::engine::boundary::WallMethod;
 use crate::engine::math::Vector;
 use crate::engine::scene::{Region, Scene};

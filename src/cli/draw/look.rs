@@ -1,7 +1,7 @@
 //! The content of a picture of a crowd: colors by a quantity, a field, paths of the last seconds.
 
-use super::super::Failure;
 use super::frames::{Run, kernel, usual};
+use crate::cli::failure::Failure;
 use crate::engine::math::Vector;
 use crate::lab::measure::{Fields, Grid, Person, Site};
 use crate::output::colors::ColorMap;

@@ -2,6 +2,7 @@
 //!
 //! A run is a scenario, which is simulated until then, a trajectory file or a recording: [`frames::Frames`].
 
+mod arguments;
 mod frames;
 mod look;
 mod paths;
@@ -9,16 +10,19 @@ mod recorded;
 mod simulated;
 mod tracked;
 
+pub use arguments::DrawOptions;
+
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::arguments::{DrawOptions, SceneOptions};
+use super::arguments::{SceneOptions, use_threads};
+use super::failure::Failure;
 use super::moment::{self, Moment};
+use super::terminal::tell;
 use super::watch::bar;
-use super::{Failure, tell, use_threads};
 use crate::output::picture::{Paths, Picture, Trails};
-use crate::output::plot::{Animation, PAPER_DPI, PlotError, Print};
+use crate::output::plot::{Animation, PAPER_DPI, Print};
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::Scenario;
 use crate::scenario::trajectories::{ReadOptions, Unit};
@@ -373,13 +377,4 @@ fn approach(run: &mut Run, trails: &mut Trails, from: f64, to: f64) -> Result<()
         trails.add(run.frames.crowd());
     }
     Ok(())
-}
-
-impl From<PlotError> for Failure {
-    fn from(error: PlotError) -> Self {
-        match error {
-            PlotError::Large(..) | PlotError::NoFfmpeg { .. } => Self::Input(error.to_string()),
-            error => Self::Output(error.to_string()),
-        }
-    }
 }

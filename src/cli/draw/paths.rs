@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use super::super::Failure;
+use crate::cli::failure::Failure;
 use crate::engine::math::Vector;
 use crate::engine::ways::{Destination, Ways};
 use crate::output::picture::Paths;

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use super::super::{Failure, talk};
 use super::frames::{ALWAYS, Frames, Run, around, densities, kernel, speeds};
+use crate::cli::failure::Failure;
+use crate::cli::terminal::talk;
 use crate::engine::agents::REFERENCE_RADIUS;
 use crate::engine::geometry::{Polygon, assemble};
 use crate::engine::math::Vector;

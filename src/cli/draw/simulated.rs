@@ -1,8 +1,8 @@
 //! Frames of a simulation.
 
-use super::super::Failure;
-use super::super::drive::Progress;
 use super::frames::{Frames, Run, speeds};
+use crate::cli::failure::Failure;
+use crate::cli::watch::Progress;
 use crate::engine::scene::Scene;
 use crate::engine::simulation::Simulation;
 use crate::output::picture::Crowd;

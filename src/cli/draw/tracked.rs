@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::super::Failure;
-use super::super::measure::site;
 use super::frames::{ALWAYS, Frames, Run, around, densities, kernel, speeds};
+use crate::cli::failure::Failure;
+use crate::cli::inputs;
 use crate::engine::agents::REFERENCE_RADIUS;
 use crate::engine::math::Vector;
 use crate::engine::scene::Scene;
@@ -12,7 +12,7 @@ use crate::lab::measure::{Site, speed};
 use crate::output::colors::{DENSITY_RANGE, SPEED_RANGE};
 use crate::output::picture::Crowd;
 use crate::scenario::quote::shown;
-use crate::scenario::trajectories::{Column, ReadOptions, Tracks, columns, read};
+use crate::scenario::trajectories::{Column, ReadOptions, Tracks, columns};
 
 /// The support radius of the kernel, meters (§5.6).
 const SUPPORT: f64 = 1.0;
@@ -40,11 +40,8 @@ pub fn open(
     geometry: Option<&Path>,
     wanted: &str,
 ) -> Result<Run, Failure> {
-    let tracks = read(path, options)?;
-    for note in &tracks.notes {
-        super::super::talk(&format!("note: {}: {note}", path.display()));
-    }
-    let site = site(path, geometry, &tracks)?;
+    let tracks = inputs::tracks(path, options)?;
+    let site = inputs::site(path, geometry, &tracks)?;
     let solids = site.walls.obstacles().to_vec();
     let mut tracked = Tracked {
         path: path.to_owned(),
