@@ -147,11 +147,10 @@ pub fn about() -> String {
 }
 
 pub fn run(options: &BenchOptions) -> Result<(), Failure> {
-    let found = BENCHMARKS
-        .iter()
-        .find(|benchmark| benchmark.name == options.what);
-    let benchmark =
-        found.ok_or_else(|| Failure::Input(format!("{}: no benchmark", options.what)))?;
-    let measure = |plan: &Plan, say: &dyn Fn(&str)| benchmark.measure(plan, say);
-    options.timing.run(benchmark.name, measure)
+    let mut benchmarks = BENCHMARKS.iter();
+    let benchmark = benchmarks.find(|benchmark| benchmark.name == options.what);
+    let unknown = || Failure::Input(format!("{}: no benchmark", options.what));
+    let benchmark = benchmark.ok_or_else(unknown)?;
+    let timing = &options.timing;
+    timing.run(benchmark.name, |plan, say| benchmark.measure(plan, say))
 }

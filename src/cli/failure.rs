@@ -4,7 +4,7 @@ use crate::engine::breakdown::Breakdown;
 use crate::engine::simulation::{Fault, Simulation};
 use crate::lab::error::LabError;
 use crate::lab::measure::MeasureError;
-use crate::lab::sweep::StudyError;
+use crate::lab::sweep::{DrawingError, StudyError};
 use crate::output::plot::PlotError;
 use crate::output::recording::RecordingError;
 use crate::output::trajectory::TrajectoryError;
@@ -32,6 +32,9 @@ pub enum Failure {
     /// A study is invalid: exit code 2.
     #[error(transparent)]
     Study(#[from] StudyError),
+    /// A study cannot be drawn as asked for: exit code 2.
+    #[error(transparent)]
+    Drawing(#[from] DrawingError),
     /// The simulation failed: exit code 1.
     #[error(transparent)]
     Fault(#[from] Fault),
@@ -58,7 +61,7 @@ impl Failure {
             Self::Fault(_) | Self::Output(_) | Self::Reproduce(_) => 1,
             Self::Interrupted { exit_code, .. } => *exit_code,
             Self::Scenario(_) | Self::Input(_) => 2,
-            Self::Read(_) | Self::Measure(_) | Self::Study(_) => 2,
+            Self::Read(_) | Self::Measure(_) | Self::Study(_) | Self::Drawing(_) => 2,
         }
     }
 

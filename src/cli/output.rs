@@ -101,11 +101,9 @@ impl Observer<Failure> for Recording {
 
     fn finish(mut self: Box<Self>) -> Result<(), Failure> {
         if !self.ended {
-            let said = self
-                .recorder
-                .note(&self.last, "The run ends with an error.");
+            let end = "The run ends with an error.";
             // The recording's own error is reported when it is finished.
-            said.ok();
+            self.recorder.note(&self.last, end).ok();
         }
         if self.recorded == 0 {
             talk(
@@ -129,12 +127,12 @@ fn destination(
     record: &RecordOptions,
     interrupt: &Interrupt,
 ) -> Result<Option<Destination>, Failure> {
-    let address = |text: &String| {
-        let address = text.parse().map(Viewer::At);
-        address.map_err(|error| Failure::Input(format!("--connect {text}: {error}")))
-    };
     let viewer = match &record.connect {
-        Some(text) => Some(address(text)?),
+        Some(text) => Some(
+            text.parse()
+                .map(Viewer::At)
+                .map_err(|error| Failure::Input(format!("--connect {text}: {error}")))?,
+        ),
         None => record.spawn.then_some(Viewer::Spawned),
     };
     let file = record.save.clone();

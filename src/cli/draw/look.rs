@@ -1,6 +1,6 @@
 //! The content of a picture of a crowd: colors by a quantity, a field, paths of the last seconds.
 
-use super::frames::{Run, kernel, usual};
+use super::frames::{Run, kernel};
 use crate::cli::failure::Failure;
 use crate::engine::math::Vector;
 use crate::lab::measure::{Fields, Grid, Person, Site};
@@ -193,4 +193,21 @@ fn bar(run: &Run, name: &str, range: Option<[f64; 2]>) -> Result<ColorBar, Failu
         label: format!("{}{unit}", name.replace('_', " ")),
         map,
     })
+}
+
+/// The range from the 1st to the 99th percentile of the known values; from 0 to 1 without any.
+fn usual(values: &[f64]) -> [f64; 2] {
+    let mut known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    known.sort_by(f64::total_cmp);
+    if known.is_empty() {
+        return [0.0, 1.0];
+    }
+    let last = (known.len() - 1) as f64;
+    let [low, high] = [0.01, 0.99].map(|part| known[(part * last).round() as usize]);
+    // One value for everybody still needs a range.
+    let least = 1e-6 * low.abs().max(high.abs()).max(1e-3);
+    match high - low > least {
+        true => [low, high],
+        false => [low - 0.5, low + 0.5],
+    }
 }
