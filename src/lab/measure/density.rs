@@ -1,24 +1,11 @@
 //! The density of people in a frame (§8): Eqs. 9 and 10 without a simulation.
 
-use super::Options;
+use super::options::{Behind, Options};
 use crate::analysis::site::{Hidden, Kernel, Site};
 use crate::analysis::surroundings::{MOST_HIDDEN, Surroundings};
 use crate::engine::density::SphParameters;
 use crate::engine::kernel;
 use crate::engine::math::Vector;
-
-/// The density assumed behind walls: ρ_i⁰ in Eq. 10.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Behind {
-    /// The density at the person's position: ρ_i = Σ_j m_j W / (1 − Σ_k ∫ W over P_k), summed over the people that
-    /// walls do not hide. A uniform crowd then has the same density up to its walls, and people behind a thin wall do
-    /// not count.
-    #[default]
-    Same,
-    /// As in the engine: the moving average ρ̂_i of the person's own density (Eq. 8), clamped between 0 and this
-    /// value, P/m². It depends on earlier frames, and all people within reach count.
-    Rest(f64),
-}
 
 /// The terms of Eq. 9.
 #[derive(Debug, Clone, Copy, PartialEq)]

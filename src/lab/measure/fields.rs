@@ -4,14 +4,12 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::Person;
+use super::moment::Person;
+use super::options::MOST_CELLS;
 use crate::analysis::site::{Kernel, Site};
 use crate::analysis::surroundings::MOST_HIDDEN;
 use crate::engine::kernel;
 use crate::engine::math::Vector;
-
-/// Maximum number of cells.
-pub const MOST_CELLS: usize = 4_000_000;
 
 /// Rows of cells per parallel task.
 const BAND: usize = 8;

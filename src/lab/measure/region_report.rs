@@ -1,15 +1,10 @@
-//! The means of regions over time, as text, CSV, JSON and a picture.
+//! The means of regions over time, as text, CSV and JSON.
 
 use serde_json::{Value, json};
 
 use super::report::{mean_and_std, spread};
-use super::{Class, Density, Diagram, FrameMean, Measured};
-use crate::lab::gallery::thinned;
-use crate::output::plot::{Axis, Corner, Mark, Panel, Sheet, Style, line_color};
+use super::{Class, Density, Diagram, Measured};
 use crate::output::table::Table;
-
-/// Maximum number of points of a curve.
-const MOST_POINTS: usize = 2000;
 
 /// One density of a region.
 struct Row {
@@ -106,50 +101,3 @@ pub fn json(measured: &Measured) -> Vec<Value> {
     };
     regions.map(region).collect()
 }
-
-/// The densities and speeds of each region over time, side by side; `None` without regions.
-pub fn picture(measured: &Measured) -> Option<Sheet> {
-    let regions = measured.diagrams.iter().zip(1..);
-    let regions = regions.filter(|(diagram, _)| diagram.region.is_some());
-    let [first, last] = measured.overview.times;
-    let panels = regions.flat_map(|(diagram, number)| {
-        let panel = |what: &str, label: &str, kinds: &[Density], value: ByDensity| {
-            let curves = kinds.iter().map(|&kind| {
-                let frames = thinned(&diagram.frames, MOST_POINTS);
-                let points = frames.filter_map(|frame| Some([frame.time, value(frame, kind)?]));
-                (kind, points.collect::<Vec<[f64; 2]>>())
-            });
-            let curves: Vec<(Density, Vec<[f64; 2]>)> = curves.collect();
-            let values = curves.iter().flat_map(|(_, points)| points).map(|p| p[1]);
-            let top = 1.35 * values.fold(0.1, f64::max); // room for the legend
-            let marks = curves.into_iter().map(|(kind, points)| {
-                let name = match (kind, what) {
-                    (Density::SphAtPeople, "speed") => "mean of the people",
-                    _ => kind.name(),
-                };
-                Mark::Line(points, Style::full(line_color(kind as usize), 1.0, name))
-            });
-            let time = Axis::linear("t [s]", [first, last.max(first + 1.0)]);
-            let value = Axis::linear(label, [0.0, top]);
-            let title = format!("region {number}: {what}");
-            Panel::new(&title, time, value, marks.collect()).with_legend(Corner::UpperRight)
-        };
-        let speeds = [Density::SphAtPeople, Density::Voronoi];
-        [
-            panel(
-                "density",
-                "density [P/m²]",
-                &Density::ALL,
-                |frame, kind| frame.density(kind),
-            ),
-            panel("speed", "speed [m/s]", &speeds, |frame, kind| {
-                frame.speed(kind)
-            }),
-        ]
-    });
-    let panels: Vec<Panel> = panels.collect();
-    (!panels.is_empty()).then(|| Sheet::new("", 2, [260.0, 190.0], panels))
-}
-
-/// A value of a frame by a density.
-type ByDensity = fn(&FrameMean, Density) -> Option<f64>;

@@ -4,9 +4,9 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::fields::{MOST_CELLS, View};
+use super::fields::View;
+use super::options::{MOST_CELLS, MeasureError, Options};
 use super::tessellation::{OwnCell, Tessellation};
-use super::{MeasureError, Options};
 use crate::analysis::site::{Kernel, Site};
 use crate::engine::kernel;
 use crate::engine::math::Vector;
