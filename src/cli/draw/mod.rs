@@ -27,7 +27,7 @@ use crate::output::plot::{Animation, PAPER_DPI, Print};
 use crate::runs::outputs::{Manner, Outputs};
 use crate::scenario::trajectories::{ReadOptions, Unit};
 use frames::Run;
-use look::{Look, NONE, Quantity};
+use look::{Look, NONE};
 
 /// The width of pictures without another one, millimeters: two columns of a paper.
 const WIDTH_MM: f64 = 180.0;
@@ -263,9 +263,8 @@ fn draw(
     let before = trails.as_ref().map_or(0.0, |trails| trails.secs);
     let start = (times.from - before).max(0.0);
     approach(run, &mut trails, [start, times.from])?;
-    let field = options.field.as_deref().map(Quantity::named);
     let color = color(options, run.body_mass.is_some());
-    let mut look = Look::new(run, color, field, options.range)?;
+    let mut look = Look::new(run, color, options.field.as_deref(), options.range)?;
     let mut animation = None;
     let length = u64::from(if times.is_animation { times.count } else { 0 });
     let progress = bar(length, "{bar:30} {pos} of {len} frames, {eta} left");

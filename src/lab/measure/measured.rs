@@ -6,16 +6,17 @@ use rayon::prelude::*;
 
 use super::density::{History, Parts, parts};
 use super::diagram::Diagram;
-use super::fields::{Fields, Grid};
+use super::fields::{Fields, cells_over};
 use super::line::{self, Crossings};
 use super::moment::{Moment, Person};
 use super::options::{MeasureError, Options};
-use super::regions::{Body, Frame, Regions};
+use super::regions::{RegionState, Regions};
 use super::safety::{Departures, Safety};
 use super::speed;
 use crate::analysis::site::Site;
 use crate::analysis::statistics::MeanStd;
 use crate::analysis::surroundings::MOST_HIDDEN;
+use crate::analysis::way_field::Grid;
 use crate::engine::math::{Vector, bounds};
 use crate::scenario::trajectories::Tracks;
 
@@ -93,13 +94,25 @@ pub fn measure<E: From<MeasureError>>(
             let masses = tracks.mass.get(rows.clone()).unwrap_or(&[]);
             let how = (&options.kernel, options.behind);
             let parts = parts(site, &tracks.position[rows.clone()], masses, how);
-            let frame = places.measure(&bodies(tracks, rows, &parts, &velocities));
-            (parts, frame)
+            let people = rows.zip(&parts);
+            let people = people.map(|(row, parts)| person(tracks, row, parts, velocities[row]));
+            let mut people: Vec<Person> = people.collect();
+            let regions = places.measure(&mut people);
+            (parts, people, regions)
         });
-        let found: Vec<(Vec<Parts>, Frame)> = found.collect();
-        let moments = batch.zip(found).map(|(k, (parts, frame))| {
+        let found: Vec<(Vec<Parts>, Vec<Person>, Vec<RegionState>)> = found.collect();
+        let moments = batch.zip(found).map(|(k, (parts, mut people, regions))| {
             overview.look_at(&parts);
-            moment((tracks, k), &parts, frame, &velocities, &mut history)
+            let frame = tracks.frames[k];
+            for (person, parts) in people.iter_mut().zip(&parts) {
+                history.complete(person, parts, (frame, tracks.step, tracks.interval()));
+            }
+            Moment {
+                frame,
+                time: tracks.time(frame),
+                people,
+                regions,
+            }
         });
         let moments: Vec<Moment> = moments.collect();
         for moment in &moments {
@@ -187,7 +200,7 @@ fn grid(tracks: &Tracks, options: &Options, chosen: Range<usize>) -> Result<Grid
     let rows = tracks.rows(chosen.start).start..tracks.rows(chosen.end - 1).end;
     let [low, high] = bounds(tracks.position[rows].iter().copied()).unwrap_or_default();
     let margin = Vector::repeat(options.kernel.support_radius);
-    Grid::over(low - margin, high + margin, options.cell).ok_or(MeasureError::Cells(options.cell))
+    cells_over(low - margin, high + margin, options.cell).ok_or(MeasureError::Cells(options.cell))
 }
 
 fn overview(tracks: &Tracks, chosen: Range<usize>) -> Overview {
@@ -201,54 +214,20 @@ fn overview(tracks: &Tracks, chosen: Range<usize>) -> Overview {
     }
 }
 
-/// The people in these rows, as regions need them.
-fn bodies(
-    tracks: &Tracks,
-    rows: Range<usize>,
-    parts: &[Parts],
-    velocities: &[Option<Vector>],
-) -> Vec<Body> {
-    let bodies = rows.zip(parts).map(|(row, parts)| Body {
+/// The person in a row, whose densities are yet to be found.
+fn person(tracks: &Tracks, row: usize, parts: &Parts, velocity: Option<Vector>) -> Person {
+    let number = tracks.person[row];
+    Person {
+        number,
+        id: tracks.ids[number as usize],
         position: tracks.position[row],
         eye: parts.hidden.eye,
         mass: tracks.mass_of(row),
-        velocity: velocities[row],
-    });
-    bodies.collect()
-}
-
-fn moment(
-    (tracks, k): (&Tracks, usize),
-    parts: &[Parts],
-    Frame { voronoi, regions }: Frame,
-    velocities: &[Option<Vector>],
-    history: &mut History,
-) -> Moment {
-    let frame = tracks.frames[k];
-    let pace = (tracks.step, tracks.interval());
-    let people = tracks.rows(k).zip(parts).zip(voronoi);
-    let people = people.map(|((row, parts), voronoi)| {
-        let number = tracks.person[row];
-        let from_walls = history.walls_part((number as usize, frame), parts, pace);
-        let density = parts.from_people + from_walls;
-        Person {
-            number,
-            id: tracks.ids[number as usize],
-            position: tracks.position[row],
-            eye: parts.hidden.eye,
-            mass: tracks.mass_of(row),
-            velocity: velocities[row],
-            density,
-            density_of_others: (density - history.own_part(parts, tracks.mass_of(row))).max(0.0),
-            voronoi,
-            density_from_walls: from_walls,
-        }
-    });
-    Moment {
-        frame,
-        time: tracks.time(frame),
-        people: people.collect(),
-        regions,
+        velocity,
+        density: 0.0,
+        density_of_others: 0.0,
+        voronoi: None,
+        density_from_walls: 0.0,
     }
 }
 

@@ -46,7 +46,7 @@ pub fn sheets(measured: &Measured, site: &Site) -> impl Iterator<Item = (&'stati
 fn maps(measured: &Measured, walls: &Walls) -> Sheet {
     let grid = &measured.fields.grid;
     let means: Vec<_> = measured.fields.means(measured.overview.frames).collect();
-    let high = grid.center(grid.cells() - 1) + Vector::repeat(0.5 * grid.cell);
+    let high = grid.center(grid.len() - 1) + Vector::repeat(0.5 * grid.cell);
     let (x, y) = ([grid.min.x, high.x], [grid.min.y, high.y]);
     let (width, height) = (x[1] - x[0], y[1] - y[0]);
     let scale = MAP_SIDE / width.max(height);
