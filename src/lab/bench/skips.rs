@@ -11,9 +11,9 @@ use serde_json::json;
 
 use self::work::{Course, Work};
 use super::pictures::{color, key, sheet};
+use super::plan::{Benchmark, Plan};
 use super::report::Findings;
 use super::stages::{Started, begin, busiest};
-use super::{Benchmark, Plan};
 use crate::analysis::statistics::Range;
 use crate::engine::forces::near::Wanted;
 use crate::engine::scene::Needs;

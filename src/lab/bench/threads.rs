@@ -5,9 +5,9 @@ use serde_json::json;
 
 use super::crowd::Crowd;
 use super::pictures::{color, medians, sheet};
+use super::plan::{Benchmark, Plan};
 use super::report::Findings;
 use super::timing::{alternate, going_on};
-use super::{Benchmark, Plan};
 use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
 use crate::lab::machine::Machine;

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::product::{Needs, Product, only};
+use super::product::{Needs, Product};
 use super::published::{PublishedRow, published, written};
 use super::ranking::{LEAST_DIFFERENCE, Ranked, Ranking, rankings};
 use super::row::{self, Row, compared, profiles};
@@ -105,7 +105,7 @@ impl Table {
 }
 
 fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
-    let results = only(studies)?;
+    let results = &studies[0];
     let published = published()?;
     let table = Table::new(&results.combinations())?;
     let markdown = table.markdown();

@@ -6,8 +6,7 @@ use std::path::PathBuf;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::MOST_CELLS;
-use super::cell::{Cell, LABEL};
+use super::cell::{Cell, LABEL, MOST_CELLS};
 use super::choice::{Choice, Meaning, Root, SCENARIO, axis, choices, said, source};
 use super::entries::Entries;
 use super::seeds::Seeds;

@@ -6,9 +6,6 @@ mod snapshots;
 mod waves;
 
 use super::product::{Needs, Product};
-use crate::lab::error::LabError;
-use crate::output::plot::Sheet;
-use crate::runs::store::Store;
 use snapshots::{ALL, CROWD_SPEED, DENSITY, SPEED, Snapshots};
 
 pub use grid::PRODUCT as STUDY;
@@ -138,10 +135,3 @@ pub const FIG8: Product = figure::<3>();
 pub const FIG9: Product = figure::<4>();
 /// Fig. 10.
 pub const FIG10: Product = figure::<5>();
-
-/// Writes a picture into the store's folder, and returns a line with the file names.
-pub(super) fn save(sheet: &Sheet, store: &Store, name: &str) -> Result<String, LabError> {
-    let stem = store.path(name);
-    sheet.save(&stem)?;
-    Ok(format!("{0}.svg, {0}.png\n", stem.display()))
-}
