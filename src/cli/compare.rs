@@ -33,13 +33,13 @@ enum Input {
 
 pub fn run(options: &CompareOptions) -> Result<(), Failure> {
     let (a, b) = (open(&options.a)?, open(&options.b)?);
+    let paths = [&options.a, &options.b];
+    let [first, second] = paths.map(|path| path.display());
     let differences: Differences = match (&a, &b) {
         (Input::Report(a), Input::Report(b)) => {
-            let differences = of_reports(a, b).map_err(|error| {
-                let [a, b] = [&options.a, &options.b].map(|path| path.display());
-                Failure::Input(format!("{a} or {b}: {error}"))
-            })?;
-            for (path, report) in [(&options.a, a), (&options.b, b)] {
+            let invalid = |error| Failure::Input(format!("{first} or {second}: {error}"));
+            let differences = of_reports(a, b).map_err(invalid)?;
+            for (path, report) in paths.into_iter().zip([a, b]) {
                 if report.get("settings").is_none() {
                     let file = path.display();
                     talk(&format!(
@@ -51,9 +51,8 @@ pub fn run(options: &CompareOptions) -> Result<(), Failure> {
         }
         (Input::Tracks(a), Input::Tracks(b)) => of_tracks(a, b),
         _ => {
-            let [a, b] = [&options.a, &options.b].map(|path| path.display());
             return Err(Failure::Input(format!(
-                "{a} and {b}: one is the result of a run, the other has trajectories; give two of a kind"
+                "{first} and {second}: one is the result of a run, the other has trajectories; give two of a kind"
             )));
         }
     };
@@ -69,23 +68,19 @@ fn open(path: &Path) -> Result<Input, Failure> {
             input::text(path).map_err(|error| refused(format!("cannot be read: {error}")))?
         }
         Some("rrd") => {
+            let reason = "the recording has no results: its run did not end, or an earlier version wrote it; record \
+                          the run again";
             let recorded = Recorded::read(path)?;
             let report = recorded.report().map(str::to_owned);
-            report.ok_or_else(|| {
-                refused(
-                    "the recording has no results: its run did not end, or an earlier version wrote it; \
-                     record the run again"
-                        .to_owned(),
-                )
-            })?
+            report.ok_or_else(|| refused(reason.to_owned()))?
         }
         _ => {
             let tracks = tracks(path, &ReadOptions::default())?;
             return Ok(Input::Tracks(Box::new(tracks)));
         }
     };
-    let report = serde_json::from_str(&text);
-    let report =
-        report.map_err(|error| refused(format!("no JSON: {}", shown(&error.to_string()))))?;
-    Ok(Input::Report(Box::new(report)))
+    match serde_json::from_str(&text) {
+        Ok(report) => Ok(Input::Report(Box::new(report))),
+        Err(error) => Err(refused(format!("no JSON: {}", shown(&error.to_string())))),
+    }
 }

@@ -7,12 +7,12 @@ use super::checkpoint::Checkpoints;
 use super::failure::Failure;
 use super::inputs::{scenario, setting};
 use super::interrupt::Interrupt;
-use super::output::{Recording, check};
+use super::output::{Recording, check, trajectories};
 use super::terminal::{talk, tell};
 use super::watch::Progress;
-use super::{memory, notes, report, trajectory};
+use super::{memory, notes, report};
 use crate::analysis::stability::{FITTED, Mode, Scheme, three_digits};
-use crate::engine::clock::{Clock, SHORTEST_TIME_STEP};
+use crate::engine::clock::SHORTEST_TIME_STEP;
 use crate::engine::scene::Scene;
 use crate::lab::machine::main_memory;
 use crate::runs::case::Source;
@@ -69,23 +69,20 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
         let file = options.file.display();
         Failure::Input(format!("{file}: {error}; run the scenario again"))
     })?;
-    refuse_the_past(options, run.simulation.frame().clock)?;
+    let clock = run.simulation.frame().clock;
+    if let Some(until) = options.output.until
+        && clock.frame_at(until) < clock.frame()
+    {
+        return Err(Failure::Input(format!(
+            "--until {until}: the checkpoint {} was written at {:.2} s; give a later time",
+            options.file.display(),
+            clock.time()
+        )));
+    }
     let mut outputs = Outputs::new(options.program.force);
     outputs.goes_on_with("the checkpoint", &options.file, "--checkpoint");
     check(outputs, &options.output, &run.scenario)?;
     go_on(run, resumable.flatten(), &options.program, &options.output)
-}
-
-/// Rejects an end before the checkpoint's time.
-fn refuse_the_past(options: &ResumeOptions, clock: &Clock) -> Result<(), Failure> {
-    match options.output.until {
-        Some(until) if clock.frame_at(until) < clock.frame() => Err(Failure::Input(format!(
-            "--until {until}: the checkpoint {} was written at {:.2} s; give a later time",
-            options.file.display(),
-            clock.time()
-        ))),
-        _ => Ok(()),
-    }
 }
 
 /// Rejects a checkpoint file that is larger than main memory. The memory that its run needs is checked after
@@ -117,7 +114,7 @@ fn go_on(
     if let Some(recording) = Recording::create(&options.record, &mut run, &interrupt)? {
         observers.push(Box::new(recording));
     }
-    for trajectory in trajectory::create(&options.trajectory, &mut run)? {
+    for trajectory in trajectories(&options.trajectory, &mut run)? {
         observers.push(Box::new(trajectory));
     }
     if let Some(checkpoints) = checkpoints {

@@ -17,7 +17,6 @@ mod watch;
 
 mod checkpoint;
 mod report;
-mod trajectory;
 
 mod moment;
 mod notes;

@@ -1,19 +1,20 @@
-//! The output files of a run: options, checks and the recording.
+//! The output files of a run: checks, trajectories and the recording.
 
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use super::arguments::{OutputOptions, RecordOptions};
+use super::arguments::{OutputOptions, RecordOptions, TrajectoryOptions};
 use super::failure::Failure;
 use super::interrupt::Interrupt;
+use super::report;
 use super::terminal::talk;
 use super::values::{ids, region};
-use super::{report, trajectory};
 use crate::engine::clock::Clock;
 use crate::engine::simulation::Simulation;
 use crate::output::recording::{
     DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer, record_moment,
 };
+use crate::output::trajectory::{Format, Trajectory, frames_between, journal};
 use crate::runs::drive::{End, Observer, Run};
 use crate::runs::identity::Identity;
 use crate::runs::outputs::{Manner, Outputs};
@@ -26,8 +27,19 @@ pub fn check(
     options: &OutputOptions,
     scenario: &Scenario,
 ) -> Result<(), Failure> {
-    trajectory::add(&mut outputs, &options.trajectory, scenario)?;
-    let record = &options.record;
+    let (record, trajectory) = (&options.record, &options.trajectory);
+    for path in &trajectory.files {
+        let format = Format::of(path)?;
+        outputs.writes("--trajectory", path, Manner::InPlace);
+        if format == Format::Sqlite {
+            // SQLite's journal, which exists during every transaction.
+            let journal = journal(path).map_err(|error| Failure::Output(error.to_string()))?;
+            outputs.writes("--trajectory", &journal, Manner::Beside);
+        }
+    }
+    if !trajectory.files.is_empty() {
+        frames_between(&scenario.scene.clock, trajectory.fps)?;
+    }
     let (clock, end) = (&scenario.scene.clock, scenario.duration_secs);
     if clock.frame_at(record.record_from) > clock.frame_at(end) {
         return Err(Failure::Input(format!(
@@ -43,6 +55,27 @@ pub fn check(
         outputs.writes("--checkpoint", path, Manner::Whole);
     }
     Ok(outputs.check()?)
+}
+
+/// Opens the trajectory files.
+pub fn trajectories(
+    options: &TrajectoryOptions,
+    run: &mut Run,
+) -> Result<Vec<Trajectory>, Failure> {
+    let (view, fps) = (run.scenario.view.region, options.fps);
+    let files = options.files.iter();
+    let opened = files.map(|path| Trajectory::create(path, &mut run.simulation, view, fps));
+    Ok(opened.collect::<Result<_, _>>()?)
+}
+
+impl Observer<Failure> for Trajectory {
+    fn observe(&mut self, run: &Run, _: f64, _: ControlFlow<End>) -> Result<(), Failure> {
+        Ok(self.log(&run.simulation)?)
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), Failure> {
+        Ok(Self::finish(*self)?)
+    }
 }
 
 /// The recording of a run.

@@ -193,19 +193,13 @@ pub fn width(text: &str) -> Result<Width, &'static str> {
 }
 
 pub fn millimeters(text: &str) -> Result<f64, &'static str> {
-    within(
-        text,
-        50.0..=500.0,
-        "not a width between 50 and 500 millimeters",
-    )
+    let otherwise = "not a width between 50 and 500 millimeters";
+    within(text, 50.0..=500.0, otherwise)
 }
 
 pub fn dpi(text: &str) -> Result<f64, &'static str> {
-    within(
-        text,
-        20.0..=2400.0,
-        "not a number of pixels per inch between 20 and 2400",
-    )
+    let otherwise = "not a number of pixels per inch between 20 and 2400";
+    within(text, 20.0..=2400.0, otherwise)
 }
 
 /// Two numbers, the first less than the second.

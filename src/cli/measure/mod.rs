@@ -4,7 +4,7 @@ mod arguments;
 
 pub use arguments::MeasureOptions;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::arguments::use_threads;
 use super::failure::Failure;
@@ -26,7 +26,16 @@ pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     check_enabled()?;
     use_threads(options.program.threads)?;
     options.print.apply();
-    let folder = folder(options);
+    // By default the folder lies in the current folder, not beside the data.
+    let folder = options.out.clone().unwrap_or_else(|| {
+        let mut name = options
+            .trajectory
+            .file_stem()
+            .unwrap_or_default()
+            .to_owned();
+        name.push("-measured");
+        name.into()
+    });
     check_outputs(options, &folder)?;
     let read = ReadOptions {
         unit: options.unit.as_deref().and_then(Unit::named),
@@ -78,17 +87,6 @@ fn check_outputs(options: &MeasureOptions, folder: &Path) -> Result<(), Failure>
     Ok(outputs.check()?)
 }
 
-/// The folder for the results. By default it lies in the current folder, not beside the data.
-fn folder(options: &MeasureOptions) -> PathBuf {
-    let named = || {
-        let stem = options.trajectory.file_stem().unwrap_or_default();
-        let mut name = stem.to_owned();
-        name.push("-measured");
-        PathBuf::from(name)
-    };
-    options.out.clone().unwrap_or_else(named)
-}
-
 fn what(options: &MeasureOptions, tracks: &Tracks) -> Options {
     let walls = match options.wall_method.as_str() {
         "exact" => WallMethod::Exact,
@@ -137,11 +135,9 @@ fn report_oddities(measured: &Measured) {
         ));
     }
     if overview.crammed > 0 {
+        let (rows, most) = (overview.crammed, 100.0 * MOST_HIDDEN);
         talk(&format!(
-            "note: in {} rows walls hide more than {} % of the kernel; {} % are used",
-            overview.crammed,
-            100.0 * MOST_HIDDEN,
-            100.0 * MOST_HIDDEN
+            "note: in {rows} rows walls hide more than {most} % of the kernel; {most} % are used"
         ));
     }
     for (k, crossings) in measured.crossings.iter().enumerate() {
