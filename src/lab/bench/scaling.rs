@@ -34,7 +34,7 @@ const FRAMES: [u64; 2] = [15, 1_000];
 
 /// The results for one size.
 #[derive(Serialize)]
-struct Row {
+struct Size {
     agents: u32,
     /// Frames per repeat.
     frames: u64,
@@ -54,7 +54,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
         say(&format!("{agents} agents"));
         rows.push(measure(agents, plan, before)?);
     }
-    let median = |row: &Row| row.ns_per_agent_frame.median;
+    let median = |row: &Size| row.ns_per_agent_frame.median;
     let reference = rows.iter().find(|row| row.agents == REFERENCE).map(median);
     for row in &mut rows {
         row.ratio_to_10000 = reference.map(|reference| median(row) / reference);
@@ -78,7 +78,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     })
 }
 
-fn measure(agents: u32, plan: &Plan, before: Option<Resident>) -> Result<Row, LabError> {
+fn measure(agents: u32, plan: &Plan, before: Option<Resident>) -> Result<Size, LabError> {
     let peak_before = Resident::read();
     let mut simulation = Crowd::concert(agents).settled(plan.choose(SETTLING, 5))?;
     let frames = plan.frames(agents, AGENT_FRAMES, FRAMES);
@@ -91,7 +91,7 @@ fn measure(agents: u32, plan: &Plan, before: Option<Resident>) -> Result<Row, La
     // A crowd that needs no more memory than an earlier one has no peak of its own.
     let peak = before.zip(peak_before.zip(now));
     let peak = peak.filter(|(_, (then, now))| now.peak > then.peak);
-    Ok(Row {
+    Ok(Size {
         agents,
         frames,
         ns_per_agent_frame: ms_per_frame.times(1e6 / f64::from(agents)),
@@ -102,7 +102,7 @@ fn measure(agents: u32, plan: &Plan, before: Option<Resident>) -> Result<Row, La
     })
 }
 
-fn table(rows: &[Row]) -> Table {
+fn table(rows: &[Size]) -> Table {
     Table::of(rows)
         .column("agents", |row| row.agents)
         .column("frames", |row| row.frames)
@@ -114,8 +114,8 @@ fn table(rows: &[Row]) -> Table {
         .table()
 }
 
-fn picture(rows: &[Row]) -> Sheet {
-    let point = |row: &Row| (f64::from(row.agents), row.ns_per_agent_frame);
+fn picture(rows: &[Size]) -> Sheet {
+    let point = |row: &Size| (f64::from(row.agents), row.ns_per_agent_frame);
     let points: Vec<(f64, Range)> = rows.iter().map(point).collect();
     let mut marks = medians(&points, color(0), "median");
     let range = Style::full(color(0), 0.8, "minimum to maximum");

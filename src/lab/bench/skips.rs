@@ -146,7 +146,7 @@ pub fn everything() -> Needs {
 
 /// The result of one skip in one scene.
 #[derive(Serialize)]
-struct Row {
+struct Saving {
     scenario: &'static str,
     profile: String,
     skip: &'static str,
@@ -191,7 +191,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     })
 }
 
-fn measure(started: &Started, plan: &Plan) -> Result<Vec<Row>, LabError> {
+fn measure(started: &Started, plan: &Plan) -> Result<Vec<Saving>, LabError> {
     let mut with = Vec::new();
     let mut without = [const { Vec::new() }; SKIPS.len()];
     for _ in 0..plan.repeats {
@@ -204,7 +204,7 @@ fn measure(started: &Started, plan: &Plan) -> Result<Vec<Row>, LabError> {
     let row = |(skip, without): (&Skip, &Vec<f64>)| {
         let nothing_to_skip = (skip.undo)(&started.simulation).err();
         let known = nothing_to_skip.is_none();
-        Row {
+        Saving {
             scenario: started.name,
             profile: started.profile.clone(),
             skip: skip.name,
@@ -245,7 +245,7 @@ fn repeat(started: &Started) -> Result<(f64, Vec<Option<f64>>), LabError> {
     Ok((times.total_ms_per_frame(), without.collect()))
 }
 
-fn table(rows: &[Row]) -> Table {
+fn table(rows: &[Saving]) -> Table {
     Table::of(rows)
         .column("scenario", |row| row.scenario)
         .column("profile", |row| row.profile.as_str())
@@ -257,10 +257,10 @@ fn table(rows: &[Row]) -> Table {
 }
 
 /// A group of bars for each scene: frame time without each skip over frame time with it.
-fn picture(rows: &[Row]) -> Sheet {
-    let scenes: Vec<&[Row]> = rows.chunks(SKIPS.len()).collect();
+fn picture(rows: &[Saving]) -> Sheet {
+    let scenes: Vec<&[Saving]> = rows.chunks(SKIPS.len()).collect();
     let width = 0.9 / SKIPS.len() as f64;
-    let ratio = |row: &Row| row.ratio.map(|ratio| ratio.median);
+    let ratio = |row: &Saving| row.ratio.map(|ratio| ratio.median);
     let most = rows.iter().filter_map(ratio).fold(2.0, f64::max);
     let mut marks = Vec::new();
     for (k, row) in rows.iter().enumerate() {

@@ -29,7 +29,7 @@ const FRAMES: [u64; 2] = [20, 2_000];
 
 /// The results for one crowd and number of threads.
 #[derive(Serialize)]
-struct Row {
+struct Speed {
     agents: u32,
     threads: usize,
     /// Frames per repeat.
@@ -68,7 +68,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     })
 }
 
-fn measure(agents: u32, counts: &[usize], plan: &Plan) -> Result<Vec<Row>, LabError> {
+fn measure(agents: u32, counts: &[usize], plan: &Plan) -> Result<Vec<Speed>, LabError> {
     let crowd = Crowd::concert(agents).settled(plan.choose(SETTLING, 5))?;
     let frames = plan.frames(agents, AGENT_FRAMES, FRAMES);
     let contenders = counts
@@ -79,7 +79,7 @@ fn measure(agents: u32, counts: &[usize], plan: &Plan) -> Result<Vec<Row>, LabEr
     let times = alternate(&mut contenders, plan.repeats, frames)?;
     let row = |(&threads, ms): (&usize, &Vec<f64>)| {
         let speed_up = Range::of_ratios(&times[0], ms);
-        Row {
+        Speed {
             agents,
             threads,
             frames,
@@ -91,7 +91,7 @@ fn measure(agents: u32, counts: &[usize], plan: &Plan) -> Result<Vec<Row>, LabEr
     Ok(counts.iter().zip(&times).map(row).collect())
 }
 
-fn table(rows: &[Row]) -> Table {
+fn table(rows: &[Speed]) -> Table {
     Table::of(rows)
         .column("agents", |row| row.agents)
         .column("threads", |row| row.threads)
@@ -101,7 +101,7 @@ fn table(rows: &[Row]) -> Table {
         .table()
 }
 
-fn picture(rows: &[Row], counts: &[usize]) -> Sheet {
+fn picture(rows: &[Speed], counts: &[usize]) -> Sheet {
     let all = counts.last().map_or(1.0, |&count| count as f64);
     let ideal = Style::broken(GRAY, 0.8, "ideal");
     let mut marks = vec![Mark::line([[1.0, 1.0], [all, all]], ideal)];

@@ -16,7 +16,6 @@ mod options;
 mod output;
 pub mod pictures;
 mod record;
-mod region_report;
 mod regions;
 mod report;
 mod safety;

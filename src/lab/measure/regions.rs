@@ -32,11 +32,11 @@ pub struct RegionState {
 pub struct Regions<'a> {
     site: &'a Site,
     tessellation: Tessellation<'a>,
-    places: Vec<Place>,
+    places: Vec<Walkable>,
 }
 
 /// A region with its walkable area.
-struct Place {
+struct Walkable {
     region: Region,
     /// m².
     walkable: f64,
@@ -55,7 +55,7 @@ impl<'a> Regions<'a> {
             if walkable <= 0.0 {
                 return Err(MeasureError::Unwalkable(k + 1));
             }
-            Ok(Place {
+            Ok(Walkable {
                 region,
                 walkable,
                 field: Nodes::new(region, site, options)?,
@@ -89,7 +89,7 @@ impl<'a> Regions<'a> {
     }
 }
 
-impl Place {
+impl Walkable {
     fn measure(&self, site: &Site, people: &[Person], cells: &[Option<OwnCell>]) -> RegionState {
         let (mut share, mut covered, mut moved) = (0.0, 0.0, None);
         for (person, cell) in people.iter().zip(cells) {
