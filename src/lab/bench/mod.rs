@@ -7,7 +7,6 @@
 
 mod crowd;
 mod hall;
-pub mod pictures;
 mod plan;
 mod report;
 mod scaling;

@@ -4,13 +4,12 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::crowd::Crowd;
-use super::pictures::{color, medians, sheet};
 use super::plan::{Benchmark, Plan};
 use super::report::Findings;
 use super::timing::ms_per_frame;
 use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
-use crate::lab::gallery::around;
+use crate::lab::gallery::{around, color, medians, single};
 use crate::lab::machine::Resident;
 use crate::output::plot::{Axis, Mark, Sheet, Style};
 use crate::output::table::Table;
@@ -124,5 +123,5 @@ fn picture(rows: &[Size]) -> Sheet {
     let times = [0.0, 1.1 * most.fold(1.0, f64::max)];
     let x = Axis::log("agents", around(points.iter().map(|point| point.0), 1.3));
     let y = Axis::linear("time per agent and frame [ns]", times);
-    sheet("Time per agent and frame, a crowd at 5 P/m²", x, y, marks)
+    single("Time per agent and frame, a crowd at 5 P/m²", x, y, marks)
 }

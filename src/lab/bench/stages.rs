@@ -9,7 +9,6 @@ use serde_json::json;
 
 use super::crowd::Crowd;
 use super::hall;
-use super::pictures::{color, key, sheet};
 use super::plan::{Benchmark, Plan};
 use super::report::Findings;
 use super::timing::{failed, ms_of, ms_per_frame, warmed};
@@ -17,6 +16,7 @@ use crate::analysis::statistics::Range;
 use crate::engine::clock::PAPER_TIME_STEP;
 use crate::engine::simulation::{Simulation, Stage, StageTimes};
 use crate::lab::error::LabError;
+use crate::lab::gallery::{color, key, single};
 use crate::output::plot::{Axis, BLACK, Mark, Sheet};
 use crate::output::table::Table;
 use crate::scenario::measurements::{Measurement, Metrics};
@@ -265,7 +265,7 @@ fn picture(rows: &[Divided]) -> Sheet {
     let names = Axis::names("", rows.iter().map(name));
     let ticks = [0, 20, 40, 60, 80, 100].map(|k| (f64::from(k), k.to_string()));
     let share = Axis::linear("share of the frame [%]", [0.0, 110.0]).ticked(ticks);
-    sheet(
+    single(
         "Where the time of a frame goes; above, its length [ms]",
         names,
         share,

@@ -4,12 +4,12 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::crowd::Crowd;
-use super::pictures::{color, medians, sheet};
 use super::plan::{Benchmark, Plan};
 use super::report::Findings;
 use super::timing::{alternate, going_on};
 use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
+use crate::lab::gallery::{color, medians, single};
 use crate::lab::machine::Machine;
 use crate::output::plot::{Axis, GRAY, Mark, Sheet, Style};
 use crate::output::table::Table;
@@ -115,5 +115,5 @@ fn picture(rows: &[Speed], counts: &[usize]) -> Sheet {
     let ticks = counts.iter().map(|&k| (k as f64, k.to_string()));
     let x = Axis::linear("threads", [0.8, all + 0.2]).ticked(ticks);
     let y = Axis::linear("times as fast as on one thread", [0.0, most]);
-    sheet("Speed-up over threads, a crowd at 5 P/m²", x, y, marks)
+    single("Speed-up over threads, a crowd at 5 P/m²", x, y, marks)
 }
