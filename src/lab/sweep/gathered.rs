@@ -9,6 +9,7 @@ use super::Study;
 use super::cell::Cell;
 use crate::analysis::statistics::MeanStd;
 use crate::lab::error::LabError;
+use crate::lab::gallery::distinct;
 use crate::output::plot::Sheet;
 use crate::runs::case::RunResult;
 use crate::runs::identity::ENGINE;
@@ -154,13 +155,8 @@ impl<'a> Gathered<'a> {
     /// The names of all numbers that are averaged over seeds.
     pub(super) fn numbers(&self) -> Vec<String> {
         let mut names = self.metrics();
-        let own = ["evacuated", "time_secs"].map(str::to_owned);
-        let new: Vec<String> = own
-            .into_iter()
-            .filter(|name| !names.contains(name))
-            .collect();
-        names.extend(new);
-        names
+        names.extend(["evacuated", "time_secs"].map(str::to_owned));
+        distinct(names)
     }
 
     /// The combinations of settings in the order of their cells.
