@@ -1,6 +1,8 @@
 //! The native part of the Python package `sandbox_crowds`: the program, and simulations frame by frame. Conversions
 //! only; `sandbox_crowds/*.py` has the interface.
 
+#![warn(clippy::unwrap_used)]
+
 mod given;
 mod simulation;
 mod values;
