@@ -401,7 +401,7 @@ fn people_of_data_wait_for_their_premovement_time() {
         "from": {"people": [[1, 0, 0, 0, 0, 0], [2, 1, 0, 3, 0, 0]], "premovement_secs": 1.5},
     });
     let scenario = Scenario::parse(&document.to_string(), "f", &[]).unwrap();
-    let mut simulation = Simulation::new(&scenario.scene);
+    let mut simulation = Simulation::new(scenario.scene).unwrap();
     // The first may walk from 1.5 s on, the second, who enters after 1 s, from 2.5 s on. A frame is 0.02 s.
     for (frame, expected) in [
         (70, [false, false]),
