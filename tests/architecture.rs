@@ -79,9 +79,6 @@ fn place_of(path: &Path) -> (String, String) {
     (wing, names.next().unwrap_or_default().to_owned())
 }
 
-/// Wings that count as one module: their files may use each other.
-const WHOLE: [&str; 1] = ["cli"];
-
 /// Every identifier directly after `prefix` in a text, including the entries of a `{…}` list.
 fn names_after(text: &str, prefix: &str) -> Vec<String> {
     let identifier = |text: &str| -> String {
@@ -153,9 +150,6 @@ fn wings_and_modules_use_only_those_above_them() {
             );
             continue;
         };
-        if WHOLE.contains(&wing.as_str()) {
-            continue;
-        }
         let mut used = names_after(&text, &format!("crate::{wing}::"));
         // From a module's own file, `super` is its wing.
         let own_file = if path.ends_with("mod.rs") {

@@ -3,9 +3,10 @@
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
+use super::failure::Failure;
+use super::terminal::tell;
 use super::update::CaseOptions;
 use super::watch::Watch;
-use super::{Failure, tell};
 use crate::lab::accuracy::{CHOICES, Plan, SCENES, Scene, accuracy, knobs};
 
 #[derive(Args)]

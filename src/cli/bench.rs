@@ -6,9 +6,10 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use serde_json::Value;
 
-use super::arguments::PrintOptions;
+use super::arguments::{PrintOptions, use_threads};
+use super::failure::Failure;
+use super::terminal::{talk, tell};
 use super::values::{repeats, threads};
-use super::{Failure, talk, tell, use_threads};
 use crate::lab::bench::{BENCHMARKS, Plan, Report, files};
 use crate::lab::error::LabError;
 use crate::runs::outputs::{Manner, Outputs};
@@ -146,11 +147,10 @@ pub fn about() -> String {
 }
 
 pub fn run(options: &BenchOptions) -> Result<(), Failure> {
-    let found = BENCHMARKS
-        .iter()
-        .find(|benchmark| benchmark.name == options.what);
-    let benchmark =
-        found.ok_or_else(|| Failure::Input(format!("{}: no benchmark", options.what)))?;
-    let measure = |plan: &Plan, say: &dyn Fn(&str)| benchmark.measure(plan, say);
-    options.timing.run(benchmark.name, measure)
+    let mut benchmarks = BENCHMARKS.iter();
+    let benchmark = benchmarks.find(|benchmark| benchmark.name == options.what);
+    let unknown = || Failure::Input(format!("{}: no benchmark", options.what));
+    let benchmark = benchmark.ok_or_else(unknown)?;
+    let timing = &options.timing;
+    timing.run(benchmark.name, |plan, say| benchmark.measure(plan, say))
 }

@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::arguments::PrintOptions;
+use super::arguments::{PrintOptions, use_threads};
+use super::failure::Failure;
+use super::terminal::tell;
 use super::watch::Watch;
-use super::{Failure, tell, use_threads};
 use crate::lab::calibrate::{Calibration, FILES, Target, run as search};
 use crate::lab::machine::main_memory;
 use crate::lab::sweep::Shard;

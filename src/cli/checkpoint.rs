@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use super::arguments::CheckpointOptions;
-use super::{Failure, talk};
+use super::failure::Failure;
+use super::terminal::talk;
 use crate::runs::checkpoint::{Checkpoint, CheckpointError};
 use crate::runs::drive::{End, Observer, Run};
 use crate::scenario::Scenario;
@@ -84,14 +85,5 @@ impl Observer<Failure> for Checkpoints {
             None => "the file from before the run is kept".to_owned(),
         };
         Err(Failure::Output(format!("--checkpoint {error}; {kept}")))
-    }
-}
-
-impl From<CheckpointError> for Failure {
-    fn from(error: CheckpointError) -> Self {
-        match error {
-            CheckpointError::Unwritable { .. } => Self::Output(error.to_string()),
-            error => Self::Input(error.to_string()),
-        }
     }
 }

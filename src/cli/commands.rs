@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
-use super::arguments::{DrawOptions, InspectOptions, ResumeOptions, RunOptions};
-use super::{accuracy, bench, calibrate, compare, measure, reproduce, stress, suite, sweep};
+use super::arguments::{ResumeOptions, RunOptions};
+use super::{
+    accuracy, bench, calibrate, compare, draw, inspect, measure, reproduce, stress, suite, sweep,
+};
 use crate::lab::validate::VALIDATION;
 use crate::lab::verify::VERIFICATION;
 
@@ -67,10 +69,10 @@ pub enum Command {
     Resume(ResumeOptions),
     /// Print every force on single agents at one moment
     #[command(after_help = "Example: sandbox inspect evacuation --agent 17 --at 15 --json")]
-    Inspect(InspectOptions),
+    Inspect(inspect::InspectOptions),
     /// Draw a scenario, trajectories or a recording, as a picture or an animation
     #[command(after_help = "Example: sandbox draw scenarios/station.json --out station.png")]
-    Draw(DrawOptions),
+    Draw(draw::DrawOptions),
     /// Regenerate the paper's tables and figures (§6) and compare them with the published ones
     #[command(
         after_help = format!("{}Example: sandbox reproduce table1 fig5 --seeds 3", reproduce::about()),

@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::Value;
 
-use super::{Failure, talk, tell};
+use super::failure::Failure;
+use super::inputs::tracks;
+use super::terminal::{talk, tell};
 use crate::lab::differences::{Differences, of_reports, of_tracks};
 use crate::output::recording::Recorded;
 use crate::scenario::input;
 use crate::scenario::quote::shown;
-use crate::scenario::trajectories::{ReadOptions, Tracks, read};
+use crate::scenario::trajectories::{ReadOptions, Tracks};
 
 #[derive(Args)]
 pub struct CompareOptions {
@@ -31,13 +33,13 @@ enum Input {
 
 pub fn run(options: &CompareOptions) -> Result<(), Failure> {
     let (a, b) = (open(&options.a)?, open(&options.b)?);
+    let paths = [&options.a, &options.b];
+    let [first, second] = paths.map(|path| path.display());
     let differences: Differences = match (&a, &b) {
         (Input::Report(a), Input::Report(b)) => {
-            let differences = of_reports(a, b).map_err(|error| {
-                let [a, b] = [&options.a, &options.b].map(|path| path.display());
-                Failure::Input(format!("{a} or {b}: {error}"))
-            })?;
-            for (path, report) in [(&options.a, a), (&options.b, b)] {
+            let invalid = |error| Failure::Input(format!("{first} or {second}: {error}"));
+            let differences = of_reports(a, b).map_err(invalid)?;
+            for (path, report) in paths.into_iter().zip([a, b]) {
                 if report.get("settings").is_none() {
                     let file = path.display();
                     talk(&format!(
@@ -49,9 +51,8 @@ pub fn run(options: &CompareOptions) -> Result<(), Failure> {
         }
         (Input::Tracks(a), Input::Tracks(b)) => of_tracks(a, b),
         _ => {
-            let [a, b] = [&options.a, &options.b].map(|path| path.display());
             return Err(Failure::Input(format!(
-                "{a} and {b}: one is the result of a run, the other has trajectories; give two of a kind"
+                "{first} and {second}: one is the result of a run, the other has trajectories; give two of a kind"
             )));
         }
     };
@@ -67,26 +68,19 @@ fn open(path: &Path) -> Result<Input, Failure> {
             input::text(path).map_err(|error| refused(format!("cannot be read: {error}")))?
         }
         Some("rrd") => {
+            let reason = "the recording has no results: its run did not end, or an earlier version wrote it; record \
+                          the run again";
             let recorded = Recorded::read(path)?;
             let report = recorded.report().map(str::to_owned);
-            report.ok_or_else(|| {
-                refused(
-                    "the recording has no results: its run did not end, or an earlier version wrote it; \
-                     record the run again"
-                        .to_owned(),
-                )
-            })?
+            report.ok_or_else(|| refused(reason.to_owned()))?
         }
         _ => {
-            let tracks = read(path, &ReadOptions::default())?;
-            for note in &tracks.notes {
-                talk(&format!("note: {}: {note}", path.display()));
-            }
+            let tracks = tracks(path, &ReadOptions::default())?;
             return Ok(Input::Tracks(Box::new(tracks)));
         }
     };
-    let report = serde_json::from_str(&text);
-    let report =
-        report.map_err(|error| refused(format!("no JSON: {}", shown(&error.to_string()))))?;
-    Ok(Input::Report(Box::new(report)))
+    match serde_json::from_str(&text) {
+        Ok(report) => Ok(Input::Report(Box::new(report))),
+        Err(error) => Err(refused(format!("no JSON: {}", shown(&error.to_string())))),
+    }
 }

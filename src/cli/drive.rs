@@ -1,22 +1,19 @@
 //! Runs a scenario to its end, with a progress bar, output files and a report.
 
-use std::ops::ControlFlow;
 use std::path::Path;
 
-use indicatif::ProgressBar;
-
-use super::arguments::{OutputOptions, ProgramOptions, ResumeOptions, RunOptions};
+use super::arguments::{OutputOptions, ProgramOptions, ResumeOptions, RunOptions, use_threads};
 use super::checkpoint::Checkpoints;
+use super::failure::Failure;
+use super::inputs::{scenario, setting};
 use super::interrupt::Interrupt;
-use super::output::{Recording, check};
-use super::watch::bar;
-use super::{
-    Failure, memory, notes, report, scenario, setting, talk, tell, trajectory, use_threads,
-};
+use super::output::{Recording, check, trajectories};
+use super::terminal::{talk, tell};
+use super::watch::Progress;
+use super::{memory, notes, report};
 use crate::analysis::stability::{FITTED, Mode, Scheme, three_digits};
-use crate::engine::clock::{Clock, SHORTEST_TIME_STEP};
+use crate::engine::clock::SHORTEST_TIME_STEP;
 use crate::engine::scene::Scene;
-use crate::engine::simulation::Simulation;
 use crate::lab::machine::main_memory;
 use crate::runs::case::Source;
 use crate::runs::checkpoint::Checkpoint;
@@ -72,23 +69,20 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
         let file = options.file.display();
         Failure::Input(format!("{file}: {error}; run the scenario again"))
     })?;
-    refuse_the_past(options, run.simulation.frame().clock)?;
+    let clock = run.simulation.frame().clock;
+    if let Some(until) = options.output.until
+        && clock.frame_at(until) < clock.frame()
+    {
+        return Err(Failure::Input(format!(
+            "--until {until}: the checkpoint {} was written at {:.2} s; give a later time",
+            options.file.display(),
+            clock.time()
+        )));
+    }
     let mut outputs = Outputs::new(options.program.force);
     outputs.goes_on_with("the checkpoint", &options.file, "--checkpoint");
     check(outputs, &options.output, &run.scenario)?;
     go_on(run, resumable.flatten(), &options.program, &options.output)
-}
-
-/// Rejects an end before the checkpoint's time.
-fn refuse_the_past(options: &ResumeOptions, clock: &Clock) -> Result<(), Failure> {
-    match options.output.until {
-        Some(until) if clock.frame_at(until) < clock.frame() => Err(Failure::Input(format!(
-            "--until {until}: the checkpoint {} was written at {:.2} s; give a later time",
-            options.file.display(),
-            clock.time()
-        ))),
-        _ => Ok(()),
-    }
 }
 
 /// Rejects a checkpoint file that is larger than main memory. The memory that its run needs is checked after
@@ -120,7 +114,7 @@ fn go_on(
     if let Some(recording) = Recording::create(&options.record, &mut run, &interrupt)? {
         observers.push(Box::new(recording));
     }
-    for trajectory in trajectory::create(&options.trajectory, &mut run)? {
+    for trajectory in trajectories(&options.trajectory, &mut run)? {
         observers.push(Box::new(trajectory));
     }
     if let Some(checkpoints) = checkpoints {
@@ -131,7 +125,7 @@ fn go_on(
     let driven = rayon::scope(|_| run.drive(&mut observers, interrupted));
     // Close all files first, so that they are kept even if the run failed.
     let finished: Vec<_> = observers.into_iter().map(Observer::finish).collect();
-    let end = driven.map_err(|failure| failure.laid_open(&mut run.simulation))?;
+    let end = driven.map_err(|failure| failure.with_forces(&mut run.simulation))?;
     notes::print(&run);
     notes::print_absent(&options.record, &run.simulation);
     tell(program.json, || report::json(&run), || report::text(&run))?;
@@ -164,32 +158,5 @@ fn warn_of_the_step(scene: &Scene) {
             three_digits(step / largest),
             three_digits(largest),
         ));
-    }
-}
-
-/// A progress bar on stderr, shown only if stderr is a terminal.
-pub struct Progress(ProgressBar);
-
-impl Progress {
-    pub fn new(duration: f64) -> Self {
-        let length = (duration * 10.0).ceil() as u64;
-        Self(bar(length, "{bar:30} {msg}, {eta} left"))
-    }
-
-    pub fn show(&self, simulation: &Simulation) {
-        let frame = simulation.frame();
-        if frame.clock.is_coarse() && !self.0.is_hidden() {
-            let (time, agents) = (frame.clock.time(), frame.agents.count_present());
-            self.0.set_position((time * 10.0) as u64);
-            self.0
-                .set_message(format!("t = {time:.1} s, {agents} agents"));
-        }
-    }
-}
-
-impl Observer<Failure> for Progress {
-    fn observe(&mut self, run: &Run, _: f64, _: ControlFlow<End>) -> Result<(), Failure> {
-        self.show(&run.simulation);
-        Ok(())
     }
 }

@@ -1,23 +1,41 @@
 //! `sandbox inspect`: the forces on single agents, term by term.
 
+use std::path::PathBuf;
+
+use clap::Args;
 use serde_json::json;
 
-use super::arguments::InspectOptions;
-use super::moment::Moment;
-use super::{Failure, memory, moment, output, say, use_threads};
+use super::arguments::{SceneOptions, use_threads};
+use super::failure::Failure;
+use super::terminal::say;
+use super::values::{id, recording, seconds};
+use super::watch::Progress;
+use super::{memory, moment, output};
 use crate::engine::breakdown::Breakdown;
-use crate::engine::simulation::{Absent, Simulation};
+use crate::engine::pairs::Precision;
+use crate::engine::simulation::Simulation;
 use crate::output::recording::check_enabled;
 use crate::runs::outputs::{Manner, Outputs};
 
-impl InspectOptions {
-    fn moment(&self) -> Moment<'_> {
-        Moment {
-            scenario: &self.scenario,
-            scene: &self.scene,
-            at: self.at,
-        }
-    }
+#[derive(Args)]
+pub struct InspectOptions {
+    /// A built-in scenario or a scenario file
+    #[arg(value_name = "SCENARIO_OR_FILE")]
+    pub scenario: String,
+    #[command(flatten)]
+    pub scene: SceneOptions,
+    /// Id of an agent; may be repeated
+    #[arg(long, value_name = "ID", required_unless_present = "all", value_parser = id)]
+    pub agent: Vec<u32>,
+    /// Inspect every agent
+    #[arg(long, conflicts_with = "agent")]
+    pub all: bool,
+    /// The moment, seconds; at 0 no agent has moved yet
+    #[arg(long, value_name = "SECS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = seconds)]
+    pub at: f64,
+    /// Also write this moment as a recording for the Rerun viewer
+    #[arg(long, value_name = "FILE.rrd", value_parser = recording())]
+    pub save: Option<PathBuf>,
 }
 
 pub fn run(options: &InspectOptions) -> Result<(), Failure> {
@@ -27,7 +45,8 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     }
     let writing = memory::of_inspecting(options.save.is_some(), options.all);
     let mut outputs = Outputs::new(options.scene.program.force);
-    let scenario = moment::scenario(&options.moment(), writing, &mut outputs)?;
+    let (scene, at) = (&options.scene, options.at);
+    let scenario = moment::scenario(&options.scenario, (scene, at), writing, &mut outputs)?;
     if let Some(path) = &options.save {
         outputs.writes("--save", path, Manner::InPlace);
     }
@@ -35,8 +54,8 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     let mut simulation = Simulation::new(scenario.scene.clone())?;
     // The rest density depends on the density's history, so every frame needs the density.
     simulation.request_density_until(u64::MAX);
-    let went = rayon::scope(|_| moment::go_to(options.at, &mut simulation));
-    went.map_err(|failure| failure.laid_open(&mut simulation))?;
+    let went = rayon::scope(|_| go_to(at, &mut simulation));
+    went.map_err(|failure| failure.with_forces(&mut simulation))?;
     let inspected = inspected(&simulation, options)?;
     if let Some(path) = &options.save {
         let ids = inspected.iter().map(|&(id, _)| id).collect();
@@ -69,6 +88,16 @@ pub fn run(options: &InspectOptions) -> Result<(), Failure> {
     }
 }
 
+/// Advances to the time `at`, seconds. The state is that of a normal run; only the last frame is evaluated in double
+/// precision throughout.
+fn go_to(at: f64, simulation: &mut Simulation) -> Result<(), Failure> {
+    let option = format!("--at {at}");
+    moment::advance(simulation, at, (&option, &Progress::new(at)))?;
+    simulation.set_precision(Precision::Double);
+    simulation.evaluate()?;
+    Ok(())
+}
+
 /// Ids and indices of the requested agents.
 fn inspected(
     simulation: &Simulation,
@@ -80,13 +109,9 @@ fn inspected(
         all.sort_unstable();
         return Ok(all);
     }
-    let index = |&id: &u32| {
-        let i = simulation.present(id).map_err(|why| absent(id, why))?;
-        Ok((id, i))
+    let index = |&id: &u32| match simulation.present(id) {
+        Ok(i) => Ok((id, i)),
+        Err(why) => Err(Failure::Input(format!("--agent {id}: {why}"))),
     };
     options.agent.iter().map(index).collect()
-}
-
-fn absent(id: u32, why: Absent) -> Failure {
-    Failure::Input(format!("--agent {id}: {why}"))
 }

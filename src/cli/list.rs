@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::{Failure, say, tell};
+use super::failure::Failure;
+use super::terminal::{say, tell};
 use crate::scenario::catalog::{ABOUT, NAMES};
-use crate::scenario::{self, SHIPPED, SettingDoc, Shipped, calibrated, nested_settings, settings};
+use crate::scenario::{self, SHIPPED, SettingDoc, calibrated, nested_settings, settings};
 
 /// Most characters in a line beside a name.
 const WIDTH: usize = 80;
@@ -18,69 +19,34 @@ pub fn run(list_settings: bool, as_json: bool) -> Result<(), Failure> {
     }
 }
 
-/// A name and what it is.
-struct Entry {
-    name: &'static str,
-    about: String,
-}
-
-/// The built-in scenarios.
-fn scenarios() -> Vec<Entry> {
-    let entry = |scenario: Shipped| Entry {
-        name: scenario.name,
-        about: scenario.description(),
-    };
-    SHIPPED.into_iter().map(entry).collect()
-}
-
-/// The profiles of the paper, and the calibrated ones.
-fn profiles() -> [Vec<Entry>; 2] {
-    let entry = |(name, about): (&'static str, &str)| Entry {
-        name,
-        about: about.to_owned(),
-    };
+/// The built-in scenarios, the profiles of the paper, and the calibrated ones: names and descriptions.
+fn lists() -> [Vec<(&'static str, String)>; 3] {
+    let scenarios = SHIPPED.iter().map(|of| (of.name, of.description()));
+    let paper = NAMES.into_iter().zip(ABOUT);
+    let paper = paper.map(|(name, about)| (name, about.to_owned()));
     let calibrated = calibrated::all().iter();
-    [
-        NAMES.into_iter().zip(ABOUT).map(entry).collect(),
-        calibrated
-            .map(|profile| entry((profile.name, profile.about)))
-            .collect(),
-    ]
+    let calibrated = calibrated.map(|of| (of.name, of.about.to_owned()));
+    [scenarios.collect(), paper.collect(), calibrated.collect()]
 }
 
 fn overview() -> Value {
-    let list = |entries: Vec<Entry>| -> Value {
-        let entry = |Entry { name, about }| json!({"name": name, "description": about});
-        entries.into_iter().map(entry).collect()
-    };
-    let [paper, calibrated] = profiles();
-    json!({
-        "scenarios": list(scenarios()),
-        "profiles": { "paper": list(paper), "calibrated": list(calibrated) },
-    })
+    let entry = |(name, about)| json!({"name": name, "description": about});
+    let lists = lists().map(|list| list.into_iter().map(entry).collect::<Value>());
+    let [scenarios, paper, calibrated] = lists;
+    json!({ "scenarios": scenarios, "profiles": { "paper": paper, "calibrated": calibrated } })
 }
 
 fn overview_text() -> String {
-    let list = |head: &str, entries: Vec<Entry>| {
-        let lines = entries.iter();
-        let lines: String = lines
-            .map(|Entry { name, about }| entry(name, 0, about))
-            .collect();
-        format!("{head}\n{lines}")
-    };
-    let [paper, calibrated] = profiles();
-    [
-        list("Scenarios (sandbox NAME)", scenarios()),
-        list(
-            "Profiles of the paper (--profile NAME; quote the arrow, or write sf-sph)",
-            paper,
-        ),
-        list(
-            "Profiles fitted to experiments (docs/validation.md)",
-            calibrated,
-        ),
-    ]
-    .join("\n")
+    let heads = [
+        "Scenarios (sandbox NAME)",
+        "Profiles of the paper (--profile NAME; quote the arrow, or write sf-sph)",
+        "Profiles fitted to experiments (docs/validation.md)",
+    ];
+    let texts = heads.into_iter().zip(lists()).map(|(head, list)| {
+        let lines = list.iter().map(|(name, about)| entry(name, 0, about));
+        format!("{head}\n{}", lines.collect::<String>())
+    });
+    texts.collect::<Vec<_>>().join("\n")
 }
 
 fn all_settings() -> Value {

@@ -9,7 +9,8 @@ use clap_complete::{Shell, generate};
 use clap_mangen::{Man, generate_to};
 
 use super::commands::Arguments;
-use super::{Failure, say};
+use super::failure::Failure;
+use super::terminal::say;
 use crate::runs::outputs::{Manner, Outputs};
 
 /// `sandbox completions`.

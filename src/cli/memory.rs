@@ -22,15 +22,12 @@ pub fn of_writing(options: &OutputOptions) -> u64 {
         Some(extension) if extension == "csv" => WITH_EVERYTHING,
         _ => TRAJECTORY,
     };
-    let record = &options.record;
-    let parts = [
-        (record.save.is_some(), RECORDED),
-        (record.debug_agents.as_deref() == Some("all"), LAID_OPEN),
-        (options.checkpoint.checkpoint.is_some(), CHECKPOINT),
-    ];
-    let parts = parts.into_iter().filter(|&(asked, _)| asked);
-    let files = options.trajectory.files.iter();
-    parts.map(|(_, bytes)| bytes).sum::<u64>() + files.map(|path| trajectory(path)).sum::<u64>()
+    let (record, files) = (&options.record, options.trajectory.files.iter());
+    let of = |asked: bool, bytes: u64| if asked { bytes } else { 0 };
+    of(record.save.is_some(), RECORDED)
+        + of(record.debug_agents.as_deref() == Some("all"), LAID_OPEN)
+        + of(options.checkpoint.checkpoint.is_some(), CHECKPOINT)
+        + files.map(|path| trajectory(path)).sum::<u64>()
 }
 
 /// Memory that the recording of `inspect` takes, bytes per agent. Its printed output is produced agent by agent.

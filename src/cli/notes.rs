@@ -1,8 +1,8 @@
 //! Notes on a run that has ended: what a reader of its results should know.
 
 use super::arguments::RecordOptions;
-use super::output::ids;
-use super::talk;
+use super::terminal::talk;
+use super::values::ids;
 use crate::engine::journeys::Kind;
 use crate::engine::scene::Scene;
 use crate::engine::simulation::{EventKind, Limited, SPOT_RADIUS, Simulation};

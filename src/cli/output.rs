@@ -1,17 +1,20 @@
-//! The output files of a run: options, checks and the recording.
+//! The output files of a run: checks, trajectories and the recording.
 
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use super::arguments::{OutputOptions, RecordOptions};
+use super::arguments::{OutputOptions, RecordOptions, TrajectoryOptions};
+use super::failure::Failure;
 use super::interrupt::Interrupt;
-use super::values::region;
-use super::{Failure, report, talk, trajectory};
+use super::report;
+use super::terminal::talk;
+use super::values::{ids, region};
 use crate::engine::clock::Clock;
 use crate::engine::simulation::Simulation;
 use crate::output::recording::{
     DebugAgents, Destination, Recorder, RecordingError, RecordingOptions, Viewer, record_moment,
 };
+use crate::output::trajectory::{Format, Trajectory, frames_between, journal};
 use crate::runs::drive::{End, Observer, Run};
 use crate::runs::identity::Identity;
 use crate::runs::outputs::{Manner, Outputs};
@@ -24,8 +27,19 @@ pub fn check(
     options: &OutputOptions,
     scenario: &Scenario,
 ) -> Result<(), Failure> {
-    trajectory::add(&mut outputs, &options.trajectory, scenario)?;
-    let record = &options.record;
+    let (record, trajectory) = (&options.record, &options.trajectory);
+    for path in &trajectory.files {
+        let format = Format::of(path)?;
+        outputs.writes("--trajectory", path, Manner::InPlace);
+        if format == Format::Sqlite {
+            // SQLite's journal, which exists during every transaction.
+            let journal = journal(path).map_err(|error| Failure::Output(error.to_string()))?;
+            outputs.writes("--trajectory", &journal, Manner::Beside);
+        }
+    }
+    if !trajectory.files.is_empty() {
+        frames_between(&scenario.scene.clock, trajectory.fps)?;
+    }
     let (clock, end) = (&scenario.scene.clock, scenario.duration_secs);
     if clock.frame_at(record.record_from) > clock.frame_at(end) {
         return Err(Failure::Input(format!(
@@ -43,14 +57,25 @@ pub fn check(
     Ok(outputs.check()?)
 }
 
-/// The ids that `--debug-agents` lists.
-pub fn ids(text: &str) -> Result<Vec<u32>, Failure> {
-    let ids: Result<Vec<u32>, _> = text.split(',').map(|id| id.trim().parse()).collect();
-    ids.map_err(|_| {
-        Failure::Input(format!(
-            "--debug-agents {text}: expected ids separated by commas, all or none"
-        ))
-    })
+/// Opens the trajectory files.
+pub fn trajectories(
+    options: &TrajectoryOptions,
+    run: &mut Run,
+) -> Result<Vec<Trajectory>, Failure> {
+    let (view, fps) = (run.scenario.view.region, options.fps);
+    let files = options.files.iter();
+    let opened = files.map(|path| Trajectory::create(path, &mut run.simulation, view, fps));
+    Ok(opened.collect::<Result<_, _>>()?)
+}
+
+impl Observer<Failure> for Trajectory {
+    fn observe(&mut self, run: &Run, _: f64, _: ControlFlow<End>) -> Result<(), Failure> {
+        Ok(self.log(&run.simulation)?)
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), Failure> {
+        Ok(Self::finish(*self)?)
+    }
 }
 
 /// The recording of a run.
@@ -109,11 +134,9 @@ impl Observer<Failure> for Recording {
 
     fn finish(mut self: Box<Self>) -> Result<(), Failure> {
         if !self.ended {
-            let said = self
-                .recorder
-                .note(&self.last, "The run ends with an error.");
+            let end = "The run ends with an error.";
             // The recording's own error is reported when it is finished.
-            said.ok();
+            self.recorder.note(&self.last, end).ok();
         }
         if self.recorded == 0 {
             talk(
@@ -137,12 +160,12 @@ fn destination(
     record: &RecordOptions,
     interrupt: &Interrupt,
 ) -> Result<Option<Destination>, Failure> {
-    let address = |text: &String| {
-        let address = text.parse().map(Viewer::At);
-        address.map_err(|error| Failure::Input(format!("--connect {text}: {error}")))
-    };
     let viewer = match &record.connect {
-        Some(text) => Some(address(text)?),
+        Some(text) => Some(
+            text.parse()
+                .map(Viewer::At)
+                .map_err(|error| Failure::Input(format!("--connect {text}: {error}")))?,
+        ),
         None => record.spawn.then_some(Viewer::Spawned),
     };
     let file = record.save.clone();
@@ -226,13 +249,4 @@ fn debug_agents(record: &RecordOptions, scenario: &Scenario) -> Result<DebugAgen
         )));
     }
     Ok(DebugAgents::Ids(ids))
-}
-
-impl From<RecordingError> for Failure {
-    fn from(error: RecordingError) -> Self {
-        match error {
-            RecordingError::SwitchedOff(_) => Self::Input(error.to_string()),
-            _ => Self::Output(error.to_string()),
-        }
-    }
 }

@@ -3,9 +3,10 @@
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
+use super::failure::Failure;
+use super::terminal::say;
 use super::update::CaseOptions;
 use super::watch::Watch;
-use super::{Failure, say};
 use crate::lab::reproduce::{PRODUCTS, Product, reproduce};
 
 #[derive(Args)]

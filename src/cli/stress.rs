@@ -2,9 +2,10 @@
 
 use clap::Args;
 
+use super::failure::Failure;
+use super::terminal::say;
 use super::update::CaseOptions;
 use super::watch::Watch;
-use super::{Failure, say};
 use crate::lab::stress::{Detail, PARTS, stress};
 
 #[derive(Args)]

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
+use super::failure::Failure;
+use super::terminal::{say, talk};
 use super::update::CaseOptions;
 use super::watch::Watch;
-use super::{Failure, say, talk};
 use crate::lab::suite::{Chosen, Suite};
 use crate::lab::validate::VALIDATION;
 use crate::lab::verify::VERIFICATION;

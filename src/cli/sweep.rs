@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::arguments::PrintOptions;
+use super::arguments::{PrintOptions, use_threads};
+use super::failure::Failure;
+use super::terminal::{talk, tell};
 use super::watch::Watch;
-use super::{Failure, say, talk, tell, use_threads};
 use crate::lab::machine::main_memory;
 use crate::lab::sweep::{Drawing, Gathered, Shard, State, Study, run as run_shard};
 use crate::runs::job::Tally;
@@ -73,8 +74,11 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     let computes = !options.list && !options.merge;
     let memory = computes.then(main_memory).flatten();
     let study = Study::open(&options.file, memory)?;
-    let checked = drawing(options).check(&study);
-    checked.map_err(|error| Failure::Input(error.to_string()))?;
+    let drawing = Drawing {
+        measurements: options.draw.clone(),
+        over: options.over.clone(),
+    };
+    drawing.check(&study)?;
     let folder = options.out.clone();
     let folder = folder.unwrap_or_else(|| PathBuf::from(&study.name));
     let store = Store::at(&folder);
@@ -88,18 +92,20 @@ pub fn run(options: &SweepOptions) -> Result<(), Failure> {
     }
     check_outputs(&study, &store, options)?;
     if options.merge {
-        return merge(&study, &store, options);
+        return merge(&study, &store, &drawing, options.json);
     }
     let store = Store::open(&folder)?;
     let shard = options.shard.unwrap_or(Shard::WHOLE);
     let tally = run_shard(&study, shard, &store, &Watch::new())?;
     if options.shard.is_none() {
-        return merge(&study, &store, options);
+        return merge(&study, &store, &drawing, options.json);
     }
-    say(told(&tally, shard, options.json))?;
-    let failed = tally.failed.iter();
-    let failed: Vec<_> = failed.map(|(cell, why)| format!("{cell}: {why}")).collect();
-    some_failed(&failed, tally.jobs)
+    tell(
+        options.json,
+        || told_json(&tally, shard),
+        || told(&tally, shard),
+    )?;
+    some_failed(&tally.failed, tally.jobs)
 }
 
 /// Rejects results that cannot be written or would replace an input. In a folder that does not belong to a study,
@@ -121,43 +127,34 @@ fn check_outputs(study: &Study, store: &Store, options: &SweepOptions) -> Result
 
 fn list(gathered: &Gathered, options: &SweepOptions) -> Result<(), Failure> {
     let shard = options.shard.unwrap_or(Shard::WHOLE);
-    if options.json {
+    let json = || {
         let mut value = gathered.json();
         if let Some(cells) = value["cells"].as_array_mut() {
             let number = |cell: &Value| cell["cell"].as_u64().unwrap_or_default() as usize;
             cells.retain(|cell| shard.has(number(cell)));
         }
-        let cells = json!({ "study": value["study"], "cells": value["cells"] });
-        return say(format!("{cells}\n"));
-    }
-    say(gathered.list(shard))
-}
-
-/// The picture that the options request.
-fn drawing(options: &SweepOptions) -> Drawing {
-    Drawing {
-        measurements: options.draw.clone(),
-        over: options.over.clone(),
-    }
+        json!({ "study": value["study"], "cells": value["cells"] })
+    };
+    tell(options.json, json, || gathered.list(shard))
 }
 
 /// Merges the finished cells.
-fn merge(study: &Study, store: &Store, options: &SweepOptions) -> Result<(), Failure> {
+fn merge(study: &Study, store: &Store, drawing: &Drawing, as_json: bool) -> Result<(), Failure> {
     let gathered = Gathered::of(study, store);
     // The results are written even if the requested picture cannot be drawn.
-    let sheet = gathered.sheet(&drawing(options));
+    let sheet = gathered.sheet(drawing);
     let drawn = sheet.as_ref().ok().and_then(Option::as_ref);
     for path in gathered.write(store, drawn)? {
         talk(&format!("note: {} written", path.display()));
     }
-    tell(options.json, || gathered.json(), || gathered.text())?;
-    sheet.map_err(|error| Failure::Input(error.to_string()))?;
+    tell(as_json, || gathered.json(), || gathered.text())?;
+    sheet?;
     let (mut missing, mut failed) = (Vec::new(), Vec::new());
     for (cell, state) in study.cells.iter().zip(&gathered.states) {
         match state {
             State::Finished(_) => {}
             State::Missing => missing.push(cell.number),
-            State::Failed(message) => failed.push(format!("{cell}: {message}")),
+            State::Failed(message) => failed.push((cell.to_string(), message.clone())),
         }
     }
     let (count, of) = (missing.len(), study.cells.len());
@@ -168,18 +165,18 @@ fn merge(study: &Study, store: &Store, options: &SweepOptions) -> Result<(), Fai
         ));
     }
     some_failed(&failed, of)?;
-    if count > 0 {
-        return Err(Failure::Output(
+    match count {
+        0 => Ok(()),
+        _ => Err(Failure::Output(
             "the study is not finished; the tables have the finished cells (those of another version of the engine \
              do not count)"
                 .to_owned(),
-        ));
+        )),
     }
-    Ok(())
 }
 
-/// An error if some cells failed.
-fn some_failed(failed: &[String], of: usize) -> Result<(), Failure> {
+/// An error if some cells failed: their names and the reasons.
+fn some_failed(failed: &[(String, String)], of: usize) -> Result<(), Failure> {
     /// Most failures to print: more would scroll the first ones off the screen.
     const MOST: usize = 5;
     if failed.is_empty() {
@@ -189,8 +186,8 @@ fn some_failed(failed: &[String], of: usize) -> Result<(), Failure> {
         "{} of {of} cells failed (run the same command to retry them):",
         failed.len()
     );
-    for line in failed.iter().take(MOST) {
-        text += &format!("\n  {line}");
+    for (cell, why) in failed.iter().take(MOST) {
+        text += &format!("\n  {cell}: {why}");
     }
     if failed.len() > MOST {
         text += &format!("\n  … and {} more", failed.len() - MOST);
@@ -198,27 +195,26 @@ fn some_failed(failed: &[String], of: usize) -> Result<(), Failure> {
     Err(Failure::Output(text))
 }
 
-fn told(tally: &Tally, shard: Shard, as_json: bool) -> String {
-    let (cells, repeated, finished) = (tally.jobs, tally.repeated, tally.finished);
+fn told_json(tally: &Tally, shard: Shard) -> Value {
+    let failed = tally.failed.iter();
+    let failed = failed.map(|(cell, why)| json!({ "cell": cell, "error": why }));
+    json!({
+        "shard": shard.to_string(),
+        "cells": tally.jobs,
+        "kept": tally.kept + tally.by_others,
+        "repeated": tally.repeated,
+        "finished": tally.finished,
+        "failed": failed.collect::<Vec<_>>(),
+    })
+}
+
+fn told(tally: &Tally, shard: Shard) -> String {
+    let (cells, finished, failed) = (tally.jobs, tally.finished, tally.failed.len());
     let kept = tally.kept + tally.by_others;
-    if as_json {
-        let failed = tally.failed.iter();
-        let failed = failed.map(|(cell, why)| json!({ "cell": cell, "error": why }));
-        let told = json!({
-            "shard": shard.to_string(),
-            "cells": cells,
-            "kept": kept,
-            "repeated": repeated,
-            "finished": finished,
-            "failed": failed.collect::<Vec<_>>(),
-        });
-        return format!("{told}\n");
-    }
-    let repeated = match repeated {
+    let repeated = match tally.repeated {
         0 => String::new(),
         repeated => format!(", {repeated} same as another cell"),
     };
-    let failed = tally.failed.len();
     format!(
         "shard {shard}: {cells} cell(s); {finished} finished now, {kept} before, {failed} failed{repeated}\n"
     )

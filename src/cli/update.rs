@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::arguments::PrintOptions;
+use super::arguments::{PrintOptions, use_threads};
+use super::failure::Failure;
 use super::values::threads;
-use super::{Failure, use_threads};
 use crate::lab::reproduce::put_between;
 use crate::runs::outputs::{Manner, Outputs, write_whole};
 use crate::runs::store::Store;
@@ -72,7 +72,18 @@ impl UpdateOptions {
                 out.display()
             )));
         }
-        check_places(file, tables)
+        let document = input::text(file).map_err(|error| failed(file, &error))?;
+        let has_place = |table: &&str| put_between(&document, table, "").is_some();
+        if tables.iter().any(has_place) {
+            return Ok(());
+        }
+        let lines = tables.iter();
+        let lines = lines.map(|table| format!("<!-- {table} --> and <!-- /{table} --> after it"));
+        Err(Failure::Input(format!(
+            "--update {}: no place for a table; add the lines {}",
+            file.display(),
+            lines.collect::<Vec<_>>().join(" or ")
+        )))
     }
 
     /// Inserts texts at the places of the document that are marked with their names.
@@ -97,22 +108,6 @@ impl UpdateOptions {
         };
         put().map_err(|error| failed(file, &error))
     }
-}
-
-fn check_places(file: &Path, tables: &[&str]) -> Result<(), Failure> {
-    let document = input::text(file).map_err(|error| failed(file, &error))?;
-    let has_place = |table: &&str| put_between(&document, table, "").is_some();
-    if tables.iter().any(has_place) {
-        return Ok(());
-    }
-    let lines = tables.iter();
-    let lines = lines.map(|table| format!("<!-- {table} --> and <!-- /{table} --> after it"));
-    let lines: Vec<String> = lines.collect();
-    Err(Failure::Input(format!(
-        "--update {}: no place for a table; add the lines {}",
-        file.display(),
-        lines.join(" or ")
-    )))
 }
 
 fn failed(file: &Path, error: &io::Error) -> Failure {

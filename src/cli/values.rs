@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
-use super::measure::CutOff;
+use super::failure::Failure;
 use crate::analysis::crossing::{Line, Passages};
 use crate::engine::scene::Region;
 use crate::scenario::trajectories::FRAME_RATES;
@@ -96,6 +96,10 @@ pub fn segments(text: &str) -> Result<u32, &'static str> {
     within(text, 1..=100, "not a number of edges between 1 and 100")
 }
 
+/// The radius of Voronoi cells, meters.
+#[derive(Debug, Clone, Copy)]
+pub struct CutOff(pub Option<f64>);
+
 /// A length, or `none`.
 pub fn cut_off(text: &str) -> Result<CutOff, &'static str> {
     match text {
@@ -126,6 +130,16 @@ pub fn passages(text: &str) -> Result<Passages, &'static str> {
         (first, last) if first < last => Ok(Passages::Ranks([first, last])),
         _ => Err(otherwise),
     }
+}
+
+/// The ids that `--debug-agents` lists.
+pub fn ids(text: &str) -> Result<Vec<u32>, Failure> {
+    let ids: Result<Vec<u32>, _> = text.split(',').map(|id| id.trim().parse()).collect();
+    ids.map_err(|_| {
+        Failure::Input(format!(
+            "--debug-agents {text}: expected ids separated by commas, all or none"
+        ))
+    })
 }
 
 /// A path with the extension that the Rerun viewer expects of a recording.
@@ -179,19 +193,13 @@ pub fn width(text: &str) -> Result<Width, &'static str> {
 }
 
 pub fn millimeters(text: &str) -> Result<f64, &'static str> {
-    within(
-        text,
-        50.0..=500.0,
-        "not a width between 50 and 500 millimeters",
-    )
+    let otherwise = "not a width between 50 and 500 millimeters";
+    within(text, 50.0..=500.0, otherwise)
 }
 
 pub fn dpi(text: &str) -> Result<f64, &'static str> {
-    within(
-        text,
-        20.0..=2400.0,
-        "not a number of pixels per inch between 20 and 2400",
-    )
+    let otherwise = "not a number of pixels per inch between 20 and 2400";
+    within(text, 20.0..=2400.0, otherwise)
 }
 
 /// Two numbers, the first less than the second.

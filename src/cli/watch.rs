@@ -1,11 +1,15 @@
-//! Progress of long computations.
+//! Progress of runs and of long computations.
 
 use std::io::IsTerminal;
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 
-use super::talk;
+use super::failure::Failure;
+use super::terminal::talk;
+use crate::engine::simulation::Simulation;
+use crate::runs::drive::{End, Observer, Run};
 use crate::runs::job::Listener;
 
 /// A progress bar on stderr, shown only if stderr is a terminal, until it is dropped.
@@ -14,6 +18,33 @@ pub fn bar(length: u64, template: &str) -> ProgressBar {
     let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
     let bar = ProgressBar::new(length).with_style(style);
     bar.with_finish(ProgressFinish::AndClear)
+}
+
+/// The progress of a run.
+pub struct Progress(ProgressBar);
+
+impl Progress {
+    pub fn new(duration: f64) -> Self {
+        let length = (duration * 10.0).ceil() as u64;
+        Self(bar(length, "{bar:30} {msg}, {eta} left"))
+    }
+
+    pub fn show(&self, simulation: &Simulation) {
+        let frame = simulation.frame();
+        if frame.clock.is_coarse() && !self.0.is_hidden() {
+            let (time, agents) = (frame.clock.time(), frame.agents.count_present());
+            self.0.set_position((time * 10.0) as u64);
+            self.0
+                .set_message(format!("t = {time:.1} s, {agents} agents"));
+        }
+    }
+}
+
+impl Observer<Failure> for Progress {
+    fn observe(&mut self, run: &Run, _: f64, _: ControlFlow<End>) -> Result<(), Failure> {
+        self.show(&run.simulation);
+        Ok(())
+    }
 }
 
 /// A progress bar on stderr. If stderr is not a terminal, a line for every finished case instead.

@@ -1,12 +1,13 @@
-//! What the pictures of studies share: curves with dots, maps with text, bands, ranges of axes, one legend for all
-//! panels, and saving. The pictures of each study only say what is on which axis.
+//! What the pictures of studies share: curves with dots, medians, maps with text, bands, ranges of axes, one legend for
+//! all panels, and saving. The pictures of each study only say what is on which axis.
 
 use std::path::Path;
 
 use crate::analysis::statistics::{Estimate, Range};
-use crate::output::colors::Rgb;
+use crate::output::colors::{Rgb, light};
 use crate::output::plot::{
-    Axis, BLACK, Cells, ColorBar, Corner, Mark, Panel, PlotError, Point, Sheet, Style,
+    Axis, BLACK, Cells, ColorBar, Corner, LINES, Mark, Panel, PlotError, Point, Sheet, Style,
+    line_color,
 };
 
 /// Gray, for bands of measured values.
@@ -22,6 +23,35 @@ pub fn save<N: AsRef<Path>>(
 ) -> Result<(), PlotError> {
     let mut sheets = sheets.into_iter();
     sheets.try_for_each(|(name, sheet)| sheet.save(&folder.join(name)))
+}
+
+/// A sheet with one panel and its legend beside it.
+pub fn single(title: &str, x: Axis, y: Axis, marks: Vec<Mark>) -> Sheet {
+    let panel = Panel::new("", x, y, marks).with_legend(Corner::Beside);
+    Sheet::new(title, 1, [420.0, 280.0], vec![panel])
+}
+
+/// The color of line or bar `k`: after seven colors the same follow lighter. Colors repeat after fourteen.
+pub fn color(k: usize) -> Rgb {
+    let part = [1.0, 0.5][k / LINES.len() % 2];
+    light(line_color(k), part)
+}
+
+/// A line through the medians with a dot at each, and vertical lines from the minima to the maxima.
+pub fn medians(points: &[(f64, Range)], color: Rgb, label: &str) -> Vec<Mark> {
+    let medians = || points.iter().map(|&(x, range)| [x, range.median]);
+    let ends = points.iter().map(|&(x, range)| {
+        let ends = [[x, range.minimum], [x, range.maximum]];
+        Mark::line(ends, Style::full(color, 0.8, ""))
+    });
+    let line = Mark::line(medians(), Style::full(color, 1.4, label));
+    let dots = Mark::dots(medians(), Style::full(color, 2.2, ""));
+    [line].into_iter().chain(ends).chain([dots]).collect()
+}
+
+/// A legend entry for bars of this color.
+pub fn key(color: Rgb, label: &str) -> Mark {
+    Mark::line([], Style::full(color, 6.0, label))
 }
 
 /// One legend for all panels, beside the last one of the first row.

@@ -1,7 +1,6 @@
 //! The picture: cost over the number of agents.
 
-use sandbox::lab::bench::pictures::{color, medians};
-use sandbox::lab::gallery::{around, distinct};
+use sandbox::lab::gallery::{around, color, distinct, medians};
 use sandbox::output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style};
 
 use super::DENSITY;

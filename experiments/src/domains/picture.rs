@@ -2,8 +2,7 @@
 
 use indicatif::HumanCount;
 use sandbox::analysis::statistics::Range;
-use sandbox::lab::bench::pictures::{color, medians};
-use sandbox::lab::gallery::around;
+use sandbox::lab::gallery::{around, color, medians};
 use sandbox::output::plot::{Axis, Corner, GRAY, Mark, Panel, Sheet, Style};
 
 use super::Row;

@@ -1,14 +1,21 @@
 //! The source of pictures of a crowd: a simulation, a trajectory file, or a recording.
 
-use super::super::Failure;
+use crate::cli::failure::Failure;
 use crate::engine::boundary::WallMethod;
 use crate::engine::math::Vector;
 use crate::engine::scene::{Region, Scene};
 use crate::engine::simulation::Simulation;
 use crate::lab::measure::{Behind, Kernel, MOST_HIDDEN, Site, parts};
+use crate::output::colors::{DENSITY_RANGE, SPEED_RANGE};
 use crate::output::picture::Crowd;
+use crate::scenario::Scenario;
 use crate::scenario::floor_plan::Label;
 use crate::scenario::measurements::Observed;
+
+/// The names of quantities that every crowd has.
+const ALWAYS: [&str; 3] = ["density", "speed", "radius"];
+/// Margin around walls and people, meters.
+const MARGIN: f64 = 1.0;
 
 /// The crowd at the moments of a run.
 pub trait Frames: Send {
@@ -56,6 +63,129 @@ pub struct Run {
     pub times: Option<[f64; 2]>,
 }
 
+impl Run {
+    /// A run of a scenario, with its view, ranges and places.
+    pub fn of(scenario: &Scenario, frames: Box<dyn Frames>) -> Self {
+        let measurements = scenario.measurements.iter();
+        Self {
+            title: scenario.name.clone(),
+            view: scenario.view.region,
+            density_range: scenario.view.density_range,
+            speed_range: scenario.view.speed_range,
+            support_radius: support_radius(frames.scene()),
+            observed: measurements.flat_map(|one| one.observed()).collect(),
+            labels: scenario.labels.clone(),
+            body_mass: None,
+            times: None,
+            frames,
+        }
+    }
+
+    /// A run without a scenario, of which the picture shows these points.
+    pub fn around(points: impl Iterator<Item = Vector>, frames: Box<dyn Frames>) -> Self {
+        let [low, high] = crate::engine::math::bounds(points).unwrap_or_default();
+        let margin = Vector::repeat(MARGIN);
+        Self {
+            title: String::new(),
+            view: Region {
+                min: low - margin,
+                max: high + margin,
+            },
+            density_range: [0.0, DENSITY_RANGE.into()],
+            speed_range: [0.0, SPEED_RANGE.into()],
+            support_radius: support_radius(frames.scene()),
+            observed: Vec::new(),
+            labels: Vec::new(),
+            body_mass: None,
+            times: None,
+            frames,
+        }
+    }
+}
+
+/// The largest support radius of all groups, meters; that of §5.6 without groups.
+fn support_radius(scene: &Scene) -> f64 {
+    let groups = scene.groups.iter();
+    let radii = groups.map(|group| group.blend.sph.support_radius);
+    radii.reduce(f64::max).unwrap_or(1.0)
+}
+
+/// The frames of a file.
+pub trait Film: Send {
+    /// The crowd in frame `k`.
+    fn crowd(&self, k: usize) -> Crowd;
+
+    /// The names of its own quantities.
+    fn names(&self) -> Vec<&str>;
+
+    /// The values of one of them in frame `k`.
+    fn values(&self, k: usize, name: &str) -> Result<Option<Vec<f64>>, Failure>;
+}
+
+/// A run that is over.
+pub struct Over<F> {
+    film: F,
+    /// The times of its frames, seconds, ascending.
+    times: Vec<f64>,
+    scene: Scene,
+    site: Site,
+    /// The number of the current frame.
+    current: usize,
+    crowd: Crowd,
+}
+
+impl<F: Film> Over<F> {
+    /// The frames of a file at these times.
+    pub fn new(film: F, times: Vec<f64>, scene: Scene) -> Self {
+        Self {
+            crowd: film.crowd(0),
+            film,
+            times,
+            site: Site::new(scene.walls.obstacles().to_vec()),
+            scene,
+            current: 0,
+        }
+    }
+}
+
+impl<F: Film> Frames for Over<F> {
+    fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    fn go_to(&mut self, time: f64) -> Result<(), Failure> {
+        let away = |k: &usize| (self.times[*k] - time).abs();
+        let nearest = (0..self.times.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
+        self.current = nearest.unwrap_or(0);
+        self.crowd = self.film.crowd(self.current);
+        Ok(())
+    }
+
+    fn crowd(&self) -> &Crowd {
+        &self.crowd
+    }
+
+    fn columns(&self) -> Vec<String> {
+        let names = self.film.names().into_iter();
+        let own = names.filter(|name| !ALWAYS.contains(name));
+        ALWAYS.into_iter().chain(own).map(str::to_owned).collect()
+    }
+
+    fn column(&self, name: &str) -> Result<Option<Vec<f64>>, Failure> {
+        let own = self.film.values(self.current, name)?;
+        let own = own.filter(|values| values.len() == self.crowd.len());
+        Ok(own.or_else(|| match name {
+            "density" => {
+                let kernel = kernel(support_radius(&self.scene));
+                Some(densities(&self.crowd, &self.site, &kernel))
+            }
+            "speed" => Some(speeds(&self.crowd)),
+            "radius" => Some(self.crowd.radius.clone()),
+            _ => None,
+        }))
+    }
+}
+
 /// The speeds of a crowd, m/s.
 pub fn speeds(crowd: &Crowd) -> Vec<f64> {
     let speeds = crowd.velocity.iter();
@@ -73,7 +203,7 @@ pub fn kernel(support_radius: f64) -> Kernel {
 }
 
 /// The SPH density of each person (§8), P/m².
-pub fn densities(crowd: &Crowd, site: &Site, kernel: &Kernel) -> Vec<f64> {
+fn densities(crowd: &Crowd, site: &Site, kernel: &Kernel) -> Vec<f64> {
     let how = (kernel, Behind::Same);
     let parts = parts(site, &crowd.position, &crowd.mass, how);
     let density = parts.into_iter().map(|part| {
@@ -81,34 +211,4 @@ pub fn densities(crowd: &Crowd, site: &Site, kernel: &Kernel) -> Vec<f64> {
         part.from_people / seen
     });
     density.collect()
-}
-
-/// The names of quantities that every crowd has.
-pub const ALWAYS: [&str; 3] = ["density", "speed", "radius"];
-
-/// The bounding box of points, with a margin.
-pub fn around(points: impl Iterator<Item = Vector>, margin: f64) -> Region {
-    let [low, high] = crate::engine::math::bounds(points).unwrap_or_default();
-    let margin = Vector::repeat(margin);
-    Region {
-        min: low - margin,
-        max: high + margin,
-    }
-}
-
-/// The range from the 1st to the 99th percentile of the known values; from 0 to 1 without any.
-pub fn usual(values: &[f64]) -> [f64; 2] {
-    let mut known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    known.sort_by(f64::total_cmp);
-    if known.is_empty() {
-        return [0.0, 1.0];
-    }
-    let last = (known.len() - 1) as f64;
-    let [low, high] = [0.01, 0.99].map(|part| known[(part * last).round() as usize]);
-    // One value for everybody still needs a range.
-    let least = 1e-6 * low.abs().max(high.abs()).max(1e-3);
-    match high - low > least {
-        true => [low, high],
-        false => [low - 0.5, low + 0.5],
-    }
 }

@@ -1,9 +1,9 @@
 //! The content of a picture of a crowd: colors by a quantity, a field, paths of the last seconds.
 
-use super::super::Failure;
-use super::frames::{Run, kernel, usual};
+use super::frames::{Run, kernel};
+use crate::cli::failure::Failure;
 use crate::engine::math::Vector;
-use crate::lab::measure::{Fields, Grid, Person, Site};
+use crate::lab::measure::{Fields, Mean, Person, Site, cells_over};
 use crate::output::colors::ColorMap;
 use crate::output::picture::{Coloring, Field};
 use crate::output::plot::{Cells, ColorBar};
@@ -35,34 +35,15 @@ const UNITS: [(&str, &str); 14] = [
     ("radius", "m"),
 ];
 
-/// The quantity of a field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
-    Density,
-    Speed,
-}
-
-impl Quantity {
-    pub fn named(name: &str) -> Self {
-        match name {
-            "speed" => Self::Speed,
-            _ => Self::Density,
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Density => "density",
-            Self::Speed => "speed",
-        }
-    }
-}
+/// The value of a cell of a field.
+type OfCell = fn(Mean) -> Option<f64>;
 
 /// The coloring of crowds in all pictures of a run.
 pub struct Look {
     /// The column; `None`: by what agents do.
     column: Option<(String, ColorBar)>,
-    field: Option<(Quantity, ColorBar, Fields, Site)>,
+    /// The value of a cell, its colors, the field and the walls.
+    field: Option<(OfCell, ColorBar, Fields, Site)>,
 }
 
 impl Look {
@@ -70,7 +51,7 @@ impl Look {
     pub fn new(
         run: &Run,
         color: &str,
-        field: Option<Quantity>,
+        field: Option<&str>,
         range: Option<[f64; 2]>,
     ) -> Result<Self, Failure> {
         let column = match color {
@@ -79,15 +60,18 @@ impl Look {
         };
         let field = match field {
             None => None,
-            Some(quantity) => {
+            Some(name) => {
+                let value: OfCell = match name {
+                    "speed" => |mean| mean.speed,
+                    _ => |mean| Some(mean.density),
+                };
                 let site = Site::new(run.frames.scene().walls.obstacles().to_vec());
                 let (low, high) = (run.view.min, run.view.max);
                 let cell = ((high - low).max() / CELLS).max(LEAST_CELL);
-                let grid = Grid::over(low, high, cell);
-                let grid =
-                    grid.ok_or_else(|| Failure::Input("the view is too large".to_owned()))?;
+                let too_large = || Failure::Input("the view is too large".to_owned());
+                let grid = cells_over(low, high, cell).ok_or_else(too_large)?;
                 let fields = Fields::new(grid, &site, kernel(run.support_radius));
-                Some((quantity, bar(run, quantity.name(), range)?, fields, site))
+                Some((value, bar(run, name, range)?, fields, site))
             }
         };
         Ok(Self { column, field })
@@ -105,14 +89,10 @@ impl Look {
 
     /// The field in the current frame.
     pub fn field(&mut self, run: &Run) -> Option<Field> {
-        let (quantity, bar, fields, site) = self.field.as_mut()?;
+        let (value, bar, fields, site) = self.field.as_mut()?;
         fields.clear();
         let people = people(run, site);
         fields.add(&people.iter().collect::<Vec<_>>(), site);
-        let value = |mean: crate::lab::measure::Mean| match quantity {
-            Quantity::Density => Some(mean.density),
-            Quantity::Speed => mean.speed,
-        };
         let values = fields.means(1).map(|mean| value(mean?)).collect();
         let grid = &fields.grid;
         let size = Vector::new(grid.columns as f64, grid.rows as f64) * grid.cell;
@@ -193,4 +173,21 @@ fn bar(run: &Run, name: &str, range: Option<[f64; 2]>) -> Result<ColorBar, Failu
         label: format!("{}{unit}", name.replace('_', " ")),
         map,
     })
+}
+
+/// The range from the 1st to the 99th percentile of the known values; from 0 to 1 without any.
+fn usual(values: &[f64]) -> [f64; 2] {
+    let mut known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    known.sort_by(f64::total_cmp);
+    if known.is_empty() {
+        return [0.0, 1.0];
+    }
+    let last = (known.len() - 1) as f64;
+    let [low, high] = [0.01, 0.99].map(|part| known[(part * last).round() as usize]);
+    // One value for everybody still needs a range.
+    let least = 1e-6 * low.abs().max(high.abs()).max(1e-3);
+    match high - low > least {
+        true => [low, high],
+        false => [low - 0.5, low + 0.5],
+    }
 }

@@ -2,6 +2,7 @@
 //!
 //! A run is a scenario, which is simulated until then, a trajectory file or a recording: [`frames::Frames`].
 
+mod arguments;
 mod frames;
 mod look;
 mod paths;
@@ -9,21 +10,24 @@ mod recorded;
 mod simulated;
 mod tracked;
 
-use std::path::{Path, PathBuf};
+pub use arguments::DrawOptions;
+
+use std::path::Path;
 
 use serde_json::json;
 
-use super::arguments::{DrawOptions, SceneOptions};
-use super::moment::{self, Moment};
+use super::arguments::{SceneOptions, use_threads};
+use super::failure::Failure;
+use super::inputs::NO_WALLS;
+use super::moment;
+use super::terminal::tell;
 use super::watch::bar;
-use super::{Failure, tell, use_threads};
 use crate::output::picture::{Paths, Picture, Trails};
-use crate::output::plot::{Animation, PAPER_DPI, PlotError, Print};
+use crate::output::plot::{Animation, PAPER_DPI, Print};
 use crate::runs::outputs::{Manner, Outputs};
-use crate::scenario::Scenario;
 use crate::scenario::trajectories::{ReadOptions, Unit};
 use frames::Run;
-use look::{Look, NONE, Quantity};
+use look::{Look, NONE};
 
 /// The width of pictures without another one, millimeters: two columns of a paper.
 const WIDTH_MM: f64 = 180.0;
@@ -35,31 +39,6 @@ const TRAIL_STEP: f64 = 0.1;
 const MOST_FRAMES: f64 = 100_000.0;
 /// The fastest GIFs: its times are hundredths of a second, and programs show shorter ones than two more slowly.
 const FASTEST_GIF: f64 = 50.0;
-
-/// The kind of run that a name stands for.
-enum Kind {
-    Scenario,
-    Trajectory,
-    Recording,
-}
-
-impl Kind {
-    fn of(run: &str) -> Self {
-        let extension = Path::new(run).extension().unwrap_or_default();
-        let is = |names: &[&str]| {
-            names
-                .iter()
-                .any(|name| extension.eq_ignore_ascii_case(name))
-        };
-        if is(&["rrd"]) {
-            Self::Recording
-        } else if is(&["sqlite", "db", "txt", "csv"]) {
-            Self::Trajectory
-        } else {
-            Self::Scenario
-        }
-    }
-}
 
 /// The moments to draw: one, or several for an animation.
 struct Times {
@@ -86,10 +65,7 @@ impl Times {
                 options.fps
             )));
         }
-        let is_gif = out
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("gif"));
-        if is_gif && options.fps > FASTEST_GIF {
+        if extension(out) == "gif" && options.fps > FASTEST_GIF {
             return Err(Failure::Input(format!(
                 "--fps {}: a GIF has at most {FASTEST_GIF} frames per second",
                 options.fps
@@ -112,8 +88,10 @@ pub fn run(options: &DrawOptions) -> Result<(), Failure> {
     let program = &options.scene.program;
     use_threads(program.threads)?;
     let mut outputs = Outputs::new(program.force);
-    let out = options.out.clone();
-    let out = out.unwrap_or_else(|| own_name(&options.run));
+    let out = options.out.clone().unwrap_or_else(|| {
+        let stem = Path::new(&options.run).file_stem().unwrap_or_default();
+        Path::new(stem).with_added_extension("svg")
+    });
     let times = Times::of(options, &out)?;
     check_format(&out, times.is_animation)?;
     if times.is_animation {
@@ -123,47 +101,34 @@ pub fn run(options: &DrawOptions) -> Result<(), Failure> {
     outputs.writes("--out", &out, Manner::InPlace);
     outputs.check()?;
     check_times(&run, &times)?;
-    let drawn = rayon::scope(|_| draw(options, (&mut run, paths), &times, &out))?;
-    let (file, count) = (out.display().to_string(), times.count);
-    let [time, people] = [drawn.0, drawn.1 as f64];
-    tell(
-        program.json,
-        || {
-            let mut result = json!({"file": file, "time_secs": time, "agents": people as u64});
-            if times.is_animation {
-                result["frames"] = json!(count);
-            }
-            result
-        },
-        || match times.is_animation {
-            true => format!(
-                "{file}: {count} frames from {:.2} s to {time:.2} s\n",
-                times.from
-            ),
-            false => format!("{file}: {people} agents at {time:.2} s\n"),
-        },
-    )
+    rayon::scope(|_| draw(options, (&mut run, paths), &times, &out))?;
+    let (file, count, crowd) = (out.display().to_string(), times.count, run.frames.crowd());
+    let (from, time, people) = (times.from, crowd.time, crowd.len());
+    let mut result = json!({"file": file, "time_secs": time, "agents": people});
+    let mut text = format!("{file}: {people} agents at {time:.2} s\n");
+    if times.is_animation {
+        result["frames"] = json!(count);
+        text = format!("{file}: {count} frames from {from:.2} s to {time:.2} s\n");
+    }
+    tell(program.json, || result, || text)
 }
 
-/// The name of the picture of a run, in the working directory.
-fn own_name(run: &str) -> PathBuf {
-    let stem = Path::new(run).file_stem().unwrap_or_default();
-    Path::new(stem).with_added_extension("svg")
+/// The extension of a path in lowercase; empty without one.
+fn extension(path: &Path) -> String {
+    let extension = path.extension().unwrap_or_default();
+    extension.to_string_lossy().to_ascii_lowercase()
 }
 
 /// Rejects pictures of one moment as videos, and animations as drawings.
 fn check_format(out: &Path, is_animation: bool) -> Result<(), Failure> {
-    let extension = out.extension().unwrap_or_default().to_ascii_lowercase();
-    let moves = ["gif", "mp4", "webm"].iter().any(|name| extension == *name);
-    let stands = ["svg", "pdf"].iter().any(|name| extension == *name);
-    let problem = match is_animation {
-        true if stands => "is no format of animations; use .gif, .png, .mp4 or .webm",
-        false if moves => {
+    let extension = extension(out);
+    let problem = match (extension.as_str(), is_animation) {
+        ("svg" | "pdf", true) => "is no format of animations; use .gif, .png, .mp4 or .webm",
+        ("gif" | "mp4" | "webm", false) => {
             "is a format of animations; give --from and --to, or use .svg, .png or .pdf"
         }
         _ => return Ok(()),
     };
-    let extension = extension.to_string_lossy();
     Err(Failure::Input(format!(
         "--out {}: .{extension} {problem}",
         out.display()
@@ -176,33 +141,29 @@ fn open(
     times: &Times,
     outputs: &mut Outputs,
 ) -> Result<(Run, Vec<Paths>), Failure> {
-    let kind = Kind::of(&options.run);
     let path = Path::new(&options.run);
-    if !matches!(kind, Kind::Scenario) {
-        refuse_settings(options, &options.scene)?;
-    }
-    match kind {
-        Kind::Scenario => simulate(options, times, outputs),
-        Kind::Trajectory => {
+    let run = match extension(path).as_str() {
+        "rrd" => {
+            refuse_settings(options, &options.scene)?;
+            outputs.reads("the recording", path);
+            recorded::open(path)?
+        }
+        "sqlite" | "db" | "txt" | "csv" => {
+            refuse_settings(options, &options.scene)?;
             outputs.reads("the trajectories", path);
             let plan = options.scene.geometry.as_deref();
-            if let Some(plan) = plan.filter(|plan| plan.as_os_str() != "none") {
+            if let Some(plan) = plan.filter(|plan| plan.as_os_str() != NO_WALLS) {
                 outputs.reads("--geometry", plan);
             }
             let read = ReadOptions {
                 unit: options.unit.as_deref().and_then(Unit::named),
                 fps: options.trajectory_fps,
             };
-            Ok((
-                tracked::open(path, &read, plan, color(options, false))?,
-                Vec::new(),
-            ))
+            tracked::open(path, &read, plan, color(options, false))?
         }
-        Kind::Recording => {
-            outputs.reads("the recording", path);
-            Ok((recorded::open(path)?, Vec::new()))
-        }
-    }
+        _ => return simulate(options, times, outputs),
+    };
+    Ok((run, Vec::new()))
 }
 
 fn simulate(
@@ -215,12 +176,7 @@ fn simulate(
         return Err(Failure::Input(reason.to_owned()));
     }
     let until = times.at(times.count - 1);
-    let moment = Moment {
-        scenario: &options.run,
-        scene: &options.scene,
-        at: until,
-    };
-    let scenario: Scenario = moment::scenario(&moment, 0, outputs)?;
+    let scenario = moment::scenario(&options.run, (&options.scene, until), 0, outputs)?;
     let paths = options.paths.iter();
     let paths = paths.map(|text| paths::paths(text, &scenario));
     let paths = paths.collect::<Result<Vec<_>, _>>()?;
@@ -295,39 +251,27 @@ fn print(options: &DrawOptions, is_animation: bool) -> Print {
     }
 }
 
-/// Draws all moments; returns the last time and its number of people.
+/// Draws all moments.
 fn draw(
     options: &DrawOptions,
     (run, mut paths): (&mut Run, Vec<Paths>),
     times: &Times,
     out: &Path,
-) -> Result<(f64, usize), Failure> {
+) -> Result<(), Failure> {
     let print = print(options, times.is_animation);
     let mut trails = options.trails.map(Trails::new);
     let before = trails.as_ref().map_or(0.0, |trails| trails.secs);
     let start = (times.from - before).max(0.0);
+    approach(run, &mut trails, [start, times.from])?;
+    let color = color(options, run.body_mass.is_some());
+    let mut look = Look::new(run, color, options.field.as_deref(), options.range)?;
     let mut animation = None;
-    let mut look = None;
     let length = u64::from(if times.is_animation { times.count } else { 0 });
     let progress = bar(length, "{bar:30} {pos} of {len} frames, {eta} left");
     for k in 0..times.count {
-        let time = times.at(k);
-        if let Some(trails) = &mut trails {
-            let from = if k == 0 { start } else { times.at(k - 1) };
-            approach(run, trails, from, time)?;
+        if k > 0 {
+            approach(run, &mut trails, [times.at(k - 1), times.at(k)])?;
         }
-        run.frames.go_to(time)?;
-        if let Some(trails) = &mut trails {
-            trails.add(run.frames.crowd());
-        }
-        let look = match &mut look {
-            Some(look) => look,
-            none => {
-                let field = options.field.as_deref().map(Quantity::named);
-                let color = color(options, run.body_mass.is_some());
-                none.insert(Look::new(run, color, field, options.range)?)
-            }
-        };
         let picture = Picture {
             simulation: run.frames.simulation(),
             coloring: look.coloring(run)?,
@@ -344,8 +288,7 @@ fn draw(
             )
         };
         if !times.is_animation {
-            picture.save(out, &print)?;
-            break;
+            return Ok(picture.save(out, &print)?);
         }
         let image = picture.sheet(&print).image(&print)?;
         paths = picture.paths;
@@ -359,27 +302,26 @@ fn draw(
         animation.add(image)?;
         progress.inc(1);
     }
-    animation.map_or(Ok(()), Animation::finish)?;
-    let crowd = run.frames.crowd();
-    Ok((crowd.time, crowd.len()))
+    Ok(animation.map_or(Ok(()), Animation::finish)?)
 }
 
-/// Adds to the paths where people are between two times, without the second one.
-fn approach(run: &mut Run, trails: &mut Trails, from: f64, to: f64) -> Result<(), Failure> {
-    let steps = ((to - from) / TRAIL_STEP - 1e-6).ceil().max(1.0);
-    for k in 0..steps as u32 {
-        let time = from + (to - from) * f64::from(k) / steps;
-        run.frames.go_to(time)?;
+/// Goes to the second of two times, and adds to the paths where people are from the first one on.
+fn approach(
+    run: &mut Run,
+    trails: &mut Option<Trails>,
+    [from, to]: [f64; 2],
+) -> Result<(), Failure> {
+    if let Some(trails) = trails {
+        let steps = ((to - from) / TRAIL_STEP - 1e-6).ceil().max(1.0);
+        for k in 0..steps as u32 {
+            let time = from + (to - from) * f64::from(k) / steps;
+            run.frames.go_to(time)?;
+            trails.add(run.frames.crowd());
+        }
+    }
+    run.frames.go_to(to)?;
+    if let Some(trails) = trails {
         trails.add(run.frames.crowd());
     }
     Ok(())
-}
-
-impl From<PlotError> for Failure {
-    fn from(error: PlotError) -> Self {
-        match error {
-            PlotError::Large(..) | PlotError::NoFfmpeg { .. } => Self::Input(error.to_string()),
-            error => Self::Output(error.to_string()),
-        }
-    }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use super::super::Failure;
+use crate::cli::failure::Failure;
 use crate::engine::math::Vector;
 use crate::engine::ways::{Destination, Ways};
 use crate::output::picture::Paths;
@@ -29,40 +29,35 @@ pub fn paths(text: &str, scenario: &Scenario) -> Result<Paths, Failure> {
         };
         return Err(refused(reason.to_owned()));
     };
-    let (name, to, goals) = match (place, point) {
+    let (name, to) = match (place, point) {
         (Some(k), _) => {
             let name = format!("{} {}", places[k].kind.name(), places[k].name);
-            (name, Destination::Place(k as u16), vec![places[k].goals()])
+            (name, Destination::Place(k as u16))
         }
         (None, point) => {
             let point = point.unwrap_or_default();
-            let name = format!("({}, {})", point.x, point.y);
-            (name, Destination::Goal(point), Vec::new())
+            (
+                format!("({}, {})", point.x, point.y),
+                Destination::Goal(point),
+            )
         }
     };
-    let place = place.map(|k| k as u16);
-    if ways.leads_to(to) {
-        let ways = Arc::clone(ways);
-        return Ok(Paths {
-            name,
-            ways,
-            to,
-            place,
-        });
-    }
-    // No agent goes there, so the scene has no path map to it.
-    let extra = Ways::new(ways.floor.clone(), &goals, point.into_iter().collect());
-    let extra = extra.map_err(|error| refused(format!("{error}; give a point that is")))?;
-    let to = match place {
-        Some(_) => Destination::Place(0),
-        None => to,
+    let (ways, to) = match ways.leads_to(to) {
+        true => (Arc::clone(ways), to),
+        // No agent goes there, so the scene has no path map to it.
+        false => {
+            let goals: Vec<_> = place.map(|k| places[k].goals()).into_iter().collect();
+            let extra = Ways::new(ways.floor.clone(), &goals, point.into_iter().collect());
+            let extra = extra.map_err(|error| refused(format!("{error}; give a point that is")))?;
+            let to = place.map_or(to, |_| Destination::Place(0));
+            (Arc::new(extra), to)
+        }
     };
-    let ways = Arc::new(extra);
     Ok(Paths {
         name,
         ways,
         to,
-        place,
+        place: place.map(|k| k as u16),
     })
 }
 

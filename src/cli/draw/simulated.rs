@@ -1,8 +1,9 @@
 //! Frames of a simulation.
 
-use super::super::Failure;
-use super::super::drive::Progress;
 use super::frames::{Frames, Run, speeds};
+use crate::cli::failure::Failure;
+use crate::cli::moment;
+use crate::cli::watch::Progress;
 use crate::engine::scene::Scene;
 use crate::engine::simulation::Simulation;
 use crate::output::picture::Crowd;
@@ -49,8 +50,6 @@ pub fn open(scenario: &Scenario, until: f64, option: String) -> Result<Run, Fail
     let last = simulation.frame().clock.frame_at(until);
     simulation.request_density_until(last + 1);
     simulation.evaluate()?;
-    let support = scenario.scene.groups.iter();
-    let support = support.map(|group| group.blend.sph.support_radius);
     let frames = Simulated {
         crowd: Crowd::of(&simulation),
         simulation,
@@ -58,22 +57,9 @@ pub fn open(scenario: &Scenario, until: f64, option: String) -> Result<Run, Fail
         option,
         until,
     };
-    let view = &scenario.view;
     Ok(Run {
-        frames: Box::new(frames),
-        title: scenario.name.clone(),
-        view: view.region,
-        density_range: view.density_range,
-        speed_range: view.speed_range,
-        support_radius: support.reduce(f64::max).unwrap_or(1.0),
-        observed: scenario
-            .measurements
-            .iter()
-            .flat_map(|one| one.observed())
-            .collect(),
-        labels: scenario.labels.clone(),
         body_mass: scenario.mass_on_walls(),
-        times: None,
+        ..Run::of(scenario, Box::new(frames))
     })
 }
 
@@ -88,17 +74,8 @@ impl Frames for Simulated {
 
     fn go_to(&mut self, time: f64) -> Result<(), Failure> {
         let simulation = &mut self.simulation;
-        let last = simulation.frame().clock.frame_at(time.min(self.until));
-        while simulation.frame().clock.frame() < last {
-            self.progress.show(simulation);
-            simulation.step()?;
-            if simulation.frame().agents.count_present() == 0 && !simulation.expects_agents() {
-                let (option, time) = (&self.option, simulation.frame().clock.time());
-                return Err(Failure::Input(format!(
-                    "{option}: no agents are left at that time: the last one leaves at {time:.2} s"
-                )));
-            }
-        }
+        let by = (self.option.as_str(), &self.progress);
+        moment::advance(simulation, time.min(self.until), by)?;
         simulation.evaluate()?;
         self.crowd = Crowd::of(simulation);
         Ok(())

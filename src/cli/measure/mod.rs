@@ -2,43 +2,46 @@
 
 mod arguments;
 
-pub use arguments::{CutOff, MeasureOptions};
+pub use arguments::MeasureOptions;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use super::arguments::use_threads;
+use super::failure::Failure;
+use super::inputs::{site, tracks};
+use super::terminal::{talk, tell};
 use super::watch::bar;
-use super::{Failure, note_plan, talk, tell, use_threads};
 use crate::engine::boundary::WallMethod;
 use crate::lab::error::LabError;
 use crate::lab::gallery;
 use crate::lab::measure::{
     Behind, CellLimit, Kernel, MOST_HIDDEN, Measured, MomentRecorder, Options, Report, Results,
-    Site, check, files, measure, pictures, speed,
+    check, files, measure, pictures, speed,
 };
 use crate::output::recording::check_enabled;
 use crate::runs::outputs::{Manner, Outputs};
-use crate::scenario::floor_plan::{self, FloorPlan};
-use crate::scenario::trajectories::{ReadOptions, Tracks, Unit, read};
-
-/// The value of `--geometry` for no walls.
-const NO_WALLS: &str = "none";
+use crate::scenario::trajectories::{ReadOptions, Tracks, Unit};
 
 pub fn run(options: &MeasureOptions) -> Result<(), Failure> {
     check_enabled()?;
     use_threads(options.program.threads)?;
     options.print.apply();
-    let folder = folder(options);
+    // By default the folder lies in the current folder, not beside the data.
+    let folder = options.out.clone().unwrap_or_else(|| {
+        let mut name = options
+            .trajectory
+            .file_stem()
+            .unwrap_or_default()
+            .to_owned();
+        name.push("-measured");
+        name.into()
+    });
     check_outputs(options, &folder)?;
-    let tracks = read(
-        &options.trajectory,
-        &ReadOptions {
-            unit: options.unit.as_deref().and_then(Unit::named),
-            fps: options.fps,
-        },
-    )?;
-    for note in &tracks.notes {
-        talk(&format!("note: {}: {note}", options.trajectory.display()));
-    }
+    let read = ReadOptions {
+        unit: options.unit.as_deref().and_then(Unit::named),
+        fps: options.fps,
+    };
+    let tracks = tracks(&options.trajectory, &read)?;
     let site = site(&options.trajectory, options.geometry.as_deref(), &tracks)?;
     let what = what(options, &tracks);
     check(&tracks, &site, &what)?;
@@ -84,17 +87,6 @@ fn check_outputs(options: &MeasureOptions, folder: &Path) -> Result<(), Failure>
     Ok(outputs.check()?)
 }
 
-/// The folder for the results. By default it lies in the current folder, not beside the data.
-fn folder(options: &MeasureOptions) -> PathBuf {
-    let named = || {
-        let stem = options.trajectory.file_stem().unwrap_or_default();
-        let mut name = stem.to_owned();
-        name.push("-measured");
-        PathBuf::from(name)
-    };
-    options.out.clone().unwrap_or_else(named)
-}
-
 fn what(options: &MeasureOptions, tracks: &Tracks) -> Options {
     let walls = match options.wall_method.as_str() {
         "exact" => WallMethod::Exact,
@@ -131,36 +123,6 @@ fn what(options: &MeasureOptions, tracks: &Tracks) -> Options {
     }
 }
 
-/// The walls, from the floor plan `geometry` or else from the trajectory file at `path`.
-pub fn site(path: &Path, geometry: Option<&Path>, tracks: &Tracks) -> Result<Site, Failure> {
-    let plan = match (geometry, tracks.walkable.as_slice()) {
-        (Some(path), _) if path.as_os_str() == NO_WALLS => None,
-        (Some(path), _) => {
-            let plan = floor_plan::read(path);
-            let plan = plan.map_err(|error| Failure::Input(format!("--geometry {error}")))?;
-            note_plan(path, &plan);
-            Some(plan)
-        }
-        (None, []) => None,
-        (None, [text]) => Some(floor_plan::parse_wkt(text).map_err(|error| own(path, &error))?),
-        (None, several) => {
-            let problem = format!("{} geometries, one after the other", several.len());
-            return Err(own(path, &problem));
-        }
-    };
-    let solids = plan.map_or(Ok(Vec::new()), FloorPlan::solids);
-    let solids = solids.map_err(|error| Failure::Input(format!("the floor plan: {error}")))?;
-    Ok(Site::new(solids))
-}
-
-/// The error for a problem with the geometry in a trajectory file.
-fn own(path: &Path, problem: &dyn std::fmt::Display) -> Failure {
-    let path = path.display();
-    Failure::Input(format!(
-        "{path}: its geometry: {problem}; give another one with --geometry, or use --geometry {NO_WALLS}"
-    ))
-}
-
 /// Prints notes on unusual rows and crossings.
 fn report_oddities(measured: &Measured) {
     let overview = &measured.overview;
@@ -173,11 +135,9 @@ fn report_oddities(measured: &Measured) {
         ));
     }
     if overview.crammed > 0 {
+        let (rows, most) = (overview.crammed, 100.0 * MOST_HIDDEN);
         talk(&format!(
-            "note: in {} rows walls hide more than {} % of the kernel; {} % are used",
-            overview.crammed,
-            100.0 * MOST_HIDDEN,
-            100.0 * MOST_HIDDEN
+            "note: in {rows} rows walls hide more than {most} % of the kernel; {most} % are used"
         ));
     }
     for (k, crossings) in measured.crossings.iter().enumerate() {

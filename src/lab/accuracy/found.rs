@@ -81,15 +81,10 @@ pub struct Found {
 /// cost and their error.
 pub(super) type Choice = (&'static str, String, String, Option<f64>, Option<String>);
 
-/// Position errors for which the cheapest settings are listed, meters, with their names.
-const POSITIONS: [(f64, &str); 4] = [
-    (0.03, "30 mm"),
-    (0.01, "10 mm"),
-    (0.003, "3 mm"),
-    (0.001, "1 mm"),
-];
-/// The same for statistics, as relative errors.
-const PARTS: [(f64, &str); 3] = [(0.05, "5 %"), (0.02, "2 %"), (0.01, "1 %")];
+/// Position errors for which the cheapest settings are listed, millimeters.
+const POSITIONS: [f64; 4] = [30.0, 10.0, 3.0, 1.0];
+/// The same for statistics, as relative errors in percent.
+const PARTS: [f64; 3] = [5.0, 2.0, 1.0];
 
 impl Found {
     /// The error by which settings are compared. For motion: the error of positions after about a second, meters. For
@@ -124,28 +119,23 @@ impl Found {
             let error = found.map(|k| self.precise(compared[k].1));
             (self.scene.name, wanted, settings, cost, error)
         };
-        let bounds: &[_] = match self.scene.kind {
-            Kind::Motion => &POSITIONS,
-            Kind::Statistics => &PARTS,
+        let (bounds, unit, scale): (&[f64], _, _) = match self.scene.kind {
+            Kind::Motion => (&POSITIONS, "mm", 1e3),
+            Kind::Statistics => (&PARTS, "%", 1e2),
         };
-        let at_most = bounds.iter().map(|&(most, name)| {
-            let found = cheapest(&compared, most);
+        let at_most = bounds.iter().map(|most| {
+            let found = cheapest(&compared, most / scale);
             let settings = found.map_or("none".to_owned(), named);
-            choice(format!("at most {name}"), settings, found)
+            choice(format!("at most {most} {unit}"), settings, found)
         });
         let mut choices: Vec<Choice> = at_most.collect();
         if let Some(k) = points.iter().position(|point| point.trial.is_default) {
             let [at_cost, at_error] = better(&compared, k);
-            let at_cost = at_cost.map(|k| {
-                format!(
-                    "at its cost: {} ({})",
-                    named(k),
-                    self.precise(compared[k].1)
-                )
-            });
-            let at_error =
-                at_error.map(|k| format!("at its error: {} ({:.1} ms)", named(k), compared[k].0));
-            let beaten: Vec<String> = at_cost.into_iter().chain(at_error).collect();
+            let at_cost = at_cost.map(|k| (k, "cost", self.precise(compared[k].1)));
+            let at_error = at_error.map(|k| (k, "error", format!("{:.1} ms", compared[k].0)));
+            let beaten = at_cost.into_iter().chain(at_error);
+            let beaten = beaten.map(|(k, its, by)| format!("at its {its}: {} ({by})", named(k)));
+            let beaten: Vec<String> = beaten.collect();
             let verdict = match beaten.is_empty() {
                 true => "on the front".to_owned(),
                 false => format!("beaten {}", beaten.join("; ")),

@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use super::scenes::{SCENES, scenario, setting};
 use crate::lab::error::LabError;
+use crate::lab::gallery::distinct;
 use crate::lab::sweep::{Cell, Study};
 use crate::scenario::Setting;
 
@@ -53,14 +54,9 @@ fn texts<S: Serializer>(settings: &[Setting], serializer: S) -> Result<S::Ok, S:
 
 /// The names of all knobs.
 pub fn knobs() -> Vec<&'static str> {
-    let mut knobs = Vec::new();
-    for label in SCENES.iter().flat_map(|scene| scene.labels()) {
-        let (knob, _) = knob_and_curve(label);
-        if ![DEFAULT, REFERENCE].contains(&knob) && !knobs.contains(&knob) {
-            knobs.push(knob);
-        }
-    }
-    knobs
+    let labels = SCENES.iter().flat_map(|scene| scene.labels());
+    let knobs = labels.map(|label| knob_and_curve(label).0);
+    distinct(knobs.filter(|knob| ![DEFAULT, REFERENCE].contains(knob)))
 }
 
 fn knob_and_curve(label: &str) -> (&str, &str) {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::Plan;
+use super::plan::Plan;
 use crate::engine::pairs::Vectors;
 use crate::lab::error::LabError;
 use crate::lab::machine::Machine;

@@ -4,13 +4,12 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::crowd::Crowd;
-use super::pictures::{color, medians, sheet};
+use super::plan::{Benchmark, Plan};
 use super::report::Findings;
 use super::timing::ms_per_frame;
-use super::{Benchmark, Plan};
 use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
-use crate::lab::gallery::around;
+use crate::lab::gallery::{around, color, medians, single};
 use crate::lab::machine::Resident;
 use crate::output::plot::{Axis, Mark, Sheet, Style};
 use crate::output::table::Table;
@@ -34,7 +33,7 @@ const FRAMES: [u64; 2] = [15, 1_000];
 
 /// The results for one size.
 #[derive(Serialize)]
-struct Row {
+struct Size {
     agents: u32,
     /// Frames per repeat.
     frames: u64,
@@ -54,7 +53,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
         say(&format!("{agents} agents"));
         rows.push(measure(agents, plan, before)?);
     }
-    let median = |row: &Row| row.ns_per_agent_frame.median;
+    let median = |row: &Size| row.ns_per_agent_frame.median;
     let reference = rows.iter().find(|row| row.agents == REFERENCE).map(median);
     for row in &mut rows {
         row.ratio_to_10000 = reference.map(|reference| median(row) / reference);
@@ -78,7 +77,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     })
 }
 
-fn measure(agents: u32, plan: &Plan, before: Option<Resident>) -> Result<Row, LabError> {
+fn measure(agents: u32, plan: &Plan, before: Option<Resident>) -> Result<Size, LabError> {
     let peak_before = Resident::read();
     let mut simulation = Crowd::concert(agents).settled(plan.choose(SETTLING, 5))?;
     let frames = plan.frames(agents, AGENT_FRAMES, FRAMES);
@@ -91,7 +90,7 @@ fn measure(agents: u32, plan: &Plan, before: Option<Resident>) -> Result<Row, La
     // A crowd that needs no more memory than an earlier one has no peak of its own.
     let peak = before.zip(peak_before.zip(now));
     let peak = peak.filter(|(_, (then, now))| now.peak > then.peak);
-    Ok(Row {
+    Ok(Size {
         agents,
         frames,
         ns_per_agent_frame: ms_per_frame.times(1e6 / f64::from(agents)),
@@ -102,7 +101,7 @@ fn measure(agents: u32, plan: &Plan, before: Option<Resident>) -> Result<Row, La
     })
 }
 
-fn table(rows: &[Row]) -> Table {
+fn table(rows: &[Size]) -> Table {
     Table::of(rows)
         .column("agents", |row| row.agents)
         .column("frames", |row| row.frames)
@@ -114,8 +113,8 @@ fn table(rows: &[Row]) -> Table {
         .table()
 }
 
-fn picture(rows: &[Row]) -> Sheet {
-    let point = |row: &Row| (f64::from(row.agents), row.ns_per_agent_frame);
+fn picture(rows: &[Size]) -> Sheet {
+    let point = |row: &Size| (f64::from(row.agents), row.ns_per_agent_frame);
     let points: Vec<(f64, Range)> = rows.iter().map(point).collect();
     let mut marks = medians(&points, color(0), "median");
     let range = Style::full(color(0), 0.8, "minimum to maximum");
@@ -124,5 +123,5 @@ fn picture(rows: &[Row]) -> Sheet {
     let times = [0.0, 1.1 * most.fold(1.0, f64::max)];
     let x = Axis::log("agents", around(points.iter().map(|point| point.0), 1.3));
     let y = Axis::linear("time per agent and frame [ns]", times);
-    sheet("Time per agent and frame, a crowd at 5 P/m²", x, y, marks)
+    single("Time per agent and frame, a crowd at 5 P/m²", x, y, marks)
 }

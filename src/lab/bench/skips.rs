@@ -10,15 +10,15 @@ use serde::Serialize;
 use serde_json::json;
 
 use self::work::{Course, Work};
-use super::pictures::{color, key, sheet};
+use super::plan::{Benchmark, Plan};
 use super::report::Findings;
 use super::stages::{Started, begin, busiest};
-use super::{Benchmark, Plan};
 use crate::analysis::statistics::Range;
 use crate::engine::forces::near::Wanted;
 use crate::engine::scene::Needs;
 use crate::engine::simulation::{Simulation, Stage};
 use crate::lab::error::LabError;
+use crate::lab::gallery::{color, key, single};
 use crate::output::plot::{Axis, BLACK, GRAY, Mark, Sheet, Style};
 use crate::output::table::Table;
 
@@ -146,7 +146,7 @@ pub fn everything() -> Needs {
 
 /// The result of one skip in one scene.
 #[derive(Serialize)]
-struct Row {
+struct Saving {
     scenario: &'static str,
     profile: String,
     skip: &'static str,
@@ -191,20 +191,38 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     })
 }
 
-fn measure(started: &Started, plan: &Plan) -> Result<Vec<Row>, LabError> {
+/// The times of a scene as shipped, and with each skip undone, if there is something to skip.
+fn measure(started: &Started, plan: &Plan) -> Result<Vec<Saving>, LabError> {
+    let start = &started.simulation;
     let mut with = Vec::new();
     let mut without = [const { Vec::new() }; SKIPS.len()];
     for _ in 0..plan.repeats {
-        let (base, others) = repeat(started)?;
-        with.push(base);
-        for (times, ms) in without.iter_mut().zip(others) {
-            times.extend(ms);
+        let mut base = Course::new(start, None)?;
+        let others = SKIPS.iter().map(|skip| match (skip.undo)(start) {
+            Ok(undone) => Course::new(start, Some(undone)).map(Some),
+            Err(_) => Ok(None),
+        });
+        let mut others: Vec<Option<Course>> = others.collect::<Result<_, _>>()?;
+        // All of them take turns of a few frames.
+        let mut left = started.frames;
+        while left > 0 {
+            let some = left.min(TURN);
+            left -= some;
+            base.advance(some)?;
+            for course in others.iter_mut().flatten() {
+                course.advance(some)?;
+            }
+        }
+        let times = base.times();
+        with.push(times.total_ms_per_frame());
+        for (ms, course) in without.iter_mut().zip(&others) {
+            ms.extend(course.as_ref().map(|course| course.ms_per_frame(times)));
         }
     }
     let row = |(skip, without): (&Skip, &Vec<f64>)| {
-        let nothing_to_skip = (skip.undo)(&started.simulation).err();
+        let nothing_to_skip = (skip.undo)(start).err();
         let known = nothing_to_skip.is_none();
-        Row {
+        Saving {
             scenario: started.name,
             profile: started.profile.clone(),
             skip: skip.name,
@@ -217,35 +235,7 @@ fn measure(started: &Started, plan: &Plan) -> Result<Vec<Row>, LabError> {
     Ok(SKIPS.iter().zip(&without).map(row).collect())
 }
 
-/// Milliseconds per frame as shipped, and with each skip undone, if there is something to skip. All of them take turns
-/// of a few frames.
-fn repeat(started: &Started) -> Result<(f64, Vec<Option<f64>>), LabError> {
-    let start = &started.simulation;
-    let mut base = Course::new(start, None)?;
-    let others = SKIPS.iter().map(|skip| (skip.undo)(start).ok());
-    let others = others.map(|undone| {
-        undone
-            .map(|undone| Course::new(start, Some(undone)))
-            .transpose()
-    });
-    let mut others: Vec<Option<Course>> = others.collect::<Result<_, _>>()?;
-    let mut left = started.frames;
-    while left > 0 {
-        let some = left.min(TURN);
-        left -= some;
-        base.advance(some)?;
-        for course in others.iter_mut().flatten() {
-            course.advance(some)?;
-        }
-    }
-    let times = base.times();
-    let without = others
-        .iter()
-        .map(|course| Some(course.as_ref()?.ms_per_frame(times)));
-    Ok((times.total_ms_per_frame(), without.collect()))
-}
-
-fn table(rows: &[Row]) -> Table {
+fn table(rows: &[Saving]) -> Table {
     Table::of(rows)
         .column("scenario", |row| row.scenario)
         .column("profile", |row| row.profile.as_str())
@@ -257,10 +247,10 @@ fn table(rows: &[Row]) -> Table {
 }
 
 /// A group of bars for each scene: frame time without each skip over frame time with it.
-fn picture(rows: &[Row]) -> Sheet {
-    let scenes: Vec<&[Row]> = rows.chunks(SKIPS.len()).collect();
+fn picture(rows: &[Saving]) -> Sheet {
+    let scenes: Vec<&[Saving]> = rows.chunks(SKIPS.len()).collect();
     let width = 0.9 / SKIPS.len() as f64;
-    let ratio = |row: &Row| row.ratio.map(|ratio| ratio.median);
+    let ratio = |row: &Saving| row.ratio.map(|ratio| ratio.median);
     let most = rows.iter().filter_map(ratio).fold(2.0, f64::max);
     let mut marks = Vec::new();
     for (k, row) in rows.iter().enumerate() {
@@ -286,7 +276,7 @@ fn picture(rows: &[Row]) -> Sheet {
         .iter()
         .map(|scene| format!("{} ({})", scene[0].scenario, scene[0].profile));
     let ratios = Axis::linear("time without the skip over time with it", [0.0, 1.1 * most]);
-    sheet(
+    single(
         "What each skip saves",
         Axis::names("", names),
         ratios,

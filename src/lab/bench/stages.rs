@@ -9,14 +9,14 @@ use serde_json::json;
 
 use super::crowd::Crowd;
 use super::hall;
-use super::pictures::{color, key, sheet};
+use super::plan::{Benchmark, Plan};
 use super::report::Findings;
 use super::timing::{failed, ms_of, ms_per_frame, warmed};
-use super::{Benchmark, Plan};
 use crate::analysis::statistics::Range;
 use crate::engine::clock::PAPER_TIME_STEP;
 use crate::engine::simulation::{Simulation, Stage, StageTimes};
 use crate::lab::error::LabError;
+use crate::lab::gallery::{color, key, single};
 use crate::output::plot::{Axis, BLACK, Mark, Sheet};
 use crate::output::table::Table;
 use crate::scenario::measurements::{Measurement, Metrics};
@@ -106,7 +106,7 @@ fn scenario(name: &str, setting: Option<Setting>) -> Result<Scenario, LabError> 
 
 /// The results for one crowd.
 #[derive(Serialize)]
-struct Row {
+struct Divided {
     crowd: &'static str,
     profile: String,
     agents: usize,
@@ -178,7 +178,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     })
 }
 
-fn measure(started: Started, plan: &Plan) -> Result<Row, LabError> {
+fn measure(started: Started, plan: &Plan) -> Result<Divided, LabError> {
     let replays = (0..plan.repeats).map(|_| replay(&started));
     let times: Vec<(StageTimes, f64)> = replays.collect::<Result<_, LabError>>()?;
     let range = |ms: &dyn Fn(&StageTimes) -> f64| {
@@ -188,7 +188,7 @@ fn measure(started: Started, plan: &Plan) -> Result<Row, LabError> {
     let measuring: Vec<f64> = times.iter().map(|&(_, ms)| ms).collect();
     let stages = Stage::ALL.map(|stage| (stage.name(), range(&|times| ms_of(times, stage))));
     let stages = stages.into_iter().filter(|(_, range)| range.maximum > 0.0);
-    Ok(Row {
+    Ok(Divided {
         crowd: started.name,
         agents: started.simulation.frame().agents.len(),
         profile: started.profile,
@@ -218,14 +218,14 @@ fn replay(started: &Started) -> Result<(StageTimes, f64), LabError> {
     Ok((simulation.stages().clone(), measuring))
 }
 
-impl Row {
+impl Divided {
     /// The median time of a stage, ms; `None` if it never runs.
     fn median(&self, stage: Stage) -> Option<f64> {
         self.stages_ms.get(stage.name()).map(|range| range.median)
     }
 }
 
-fn table(rows: &[Row]) -> Table {
+fn table(rows: &[Divided]) -> Table {
     let mut table = Table::of(rows)
         .column("crowd", |row| row.crowd)
         .column("profile", |row| row.profile.as_str())
@@ -241,7 +241,7 @@ fn table(rows: &[Row]) -> Table {
 }
 
 /// Bars of equal height, divided by the shares of the stages.
-fn picture(rows: &[Row]) -> Sheet {
+fn picture(rows: &[Divided]) -> Sheet {
     let mut marks: Vec<Mark> = Vec::new();
     for (k, row) in rows.iter().enumerate() {
         let middle = k as f64 + 0.5;
@@ -261,11 +261,11 @@ fn picture(rows: &[Row]) -> Sheet {
     }
     let stages = Stage::ALL.iter().enumerate().rev();
     marks.extend(stages.map(|(k, stage)| key(color(k), &stage.name().replace('_', " "))));
-    let name = |row: &Row| format!("{} ({})", row.crowd, row.profile);
+    let name = |row: &Divided| format!("{} ({})", row.crowd, row.profile);
     let names = Axis::names("", rows.iter().map(name));
     let ticks = [0, 20, 40, 60, 80, 100].map(|k| (f64::from(k), k.to_string()));
     let share = Axis::linear("share of the frame [%]", [0.0, 110.0]).ticked(ticks);
-    sheet(
+    single(
         "Where the time of a frame goes; above, its length [ms]",
         names,
         share,

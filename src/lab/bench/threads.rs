@@ -4,12 +4,12 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::crowd::Crowd;
-use super::pictures::{color, medians, sheet};
+use super::plan::{Benchmark, Plan};
 use super::report::Findings;
 use super::timing::{alternate, going_on};
-use super::{Benchmark, Plan};
 use crate::analysis::statistics::Range;
 use crate::lab::error::LabError;
+use crate::lab::gallery::{color, medians, single};
 use crate::lab::machine::Machine;
 use crate::output::plot::{Axis, GRAY, Mark, Sheet, Style};
 use crate::output::table::Table;
@@ -29,7 +29,7 @@ const FRAMES: [u64; 2] = [20, 2_000];
 
 /// The results for one crowd and number of threads.
 #[derive(Serialize)]
-struct Row {
+struct Speed {
     agents: u32,
     threads: usize,
     /// Frames per repeat.
@@ -68,7 +68,7 @@ fn run(plan: &Plan, say: &dyn Fn(&str)) -> Result<Findings, LabError> {
     })
 }
 
-fn measure(agents: u32, counts: &[usize], plan: &Plan) -> Result<Vec<Row>, LabError> {
+fn measure(agents: u32, counts: &[usize], plan: &Plan) -> Result<Vec<Speed>, LabError> {
     let crowd = Crowd::concert(agents).settled(plan.choose(SETTLING, 5))?;
     let frames = plan.frames(agents, AGENT_FRAMES, FRAMES);
     let contenders = counts
@@ -79,7 +79,7 @@ fn measure(agents: u32, counts: &[usize], plan: &Plan) -> Result<Vec<Row>, LabEr
     let times = alternate(&mut contenders, plan.repeats, frames)?;
     let row = |(&threads, ms): (&usize, &Vec<f64>)| {
         let speed_up = Range::of_ratios(&times[0], ms);
-        Row {
+        Speed {
             agents,
             threads,
             frames,
@@ -91,7 +91,7 @@ fn measure(agents: u32, counts: &[usize], plan: &Plan) -> Result<Vec<Row>, LabEr
     Ok(counts.iter().zip(&times).map(row).collect())
 }
 
-fn table(rows: &[Row]) -> Table {
+fn table(rows: &[Speed]) -> Table {
     Table::of(rows)
         .column("agents", |row| row.agents)
         .column("threads", |row| row.threads)
@@ -101,7 +101,7 @@ fn table(rows: &[Row]) -> Table {
         .table()
 }
 
-fn picture(rows: &[Row], counts: &[usize]) -> Sheet {
+fn picture(rows: &[Speed], counts: &[usize]) -> Sheet {
     let all = counts.last().map_or(1.0, |&count| count as f64);
     let ideal = Style::broken(GRAY, 0.8, "ideal");
     let mut marks = vec![Mark::line([[1.0, 1.0], [all, all]], ideal)];
@@ -115,5 +115,5 @@ fn picture(rows: &[Row], counts: &[usize]) -> Sheet {
     let ticks = counts.iter().map(|&k| (k as f64, k.to_string()));
     let x = Axis::linear("threads", [0.8, all + 0.2]).ticked(ticks);
     let y = Axis::linear("times as fast as on one thread", [0.0, most]);
-    sheet("Speed-up over threads, a crowd at 5 P/m²", x, y, marks)
+    single("Speed-up over threads, a crowd at 5 P/m²", x, y, marks)
 }

@@ -1,24 +1,12 @@
 //! The density of people in a frame (§8): Eqs. 9 and 10 without a simulation.
 
-use super::Options;
+use super::moment::Person;
+use super::options::{Behind, Options};
 use crate::analysis::site::{Hidden, Kernel, Site};
 use crate::analysis::surroundings::{MOST_HIDDEN, Surroundings};
 use crate::engine::density::SphParameters;
 use crate::engine::kernel;
 use crate::engine::math::Vector;
-
-/// The density assumed behind walls: ρ_i⁰ in Eq. 10.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Behind {
-    /// The density at the person's position: ρ_i = Σ_j m_j W / (1 − Σ_k ∫ W over P_k), summed over the people that
-    /// walls do not hide. A uniform crowd then has the same density up to its walls, and people behind a thin wall do
-    /// not count.
-    #[default]
-    Same,
-    /// As in the engine: the moving average ρ̂_i of the person's own density (Eq. 8), clamped between 0 and this
-    /// value, P/m². It depends on earlier frames, and all people within reach count.
-    Rest(f64),
-}
 
 /// The terms of Eq. 9.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,35 +64,33 @@ impl History {
         }
     }
 
-    /// The part of ρ_i that comes from the weight of the person, which has this mass, P/m². The crowd that is assumed
-    /// behind walls is as dense as at the person's position, so its density includes this part.
-    pub fn own_part(&self, parts: &Parts, mass: f64) -> f64 {
-        let own = mass * kernel::density(0.0, self.support_radius);
-        match self.behind {
-            Behind::Same => own / (1.0 - parts.hidden.share.min(MOST_HIDDEN)),
-            Behind::Rest(_) => own,
-        }
-    }
-
-    /// The walls' part of ρ_i of a person in a frame, P/m². `step` frame numbers take `interval` seconds. Frames must
-    /// come in order.
-    pub fn walls_part(
+    /// Sets the densities of a person in a frame; `step` frame numbers take `interval` seconds. Frames must come in
+    /// order.
+    pub fn complete(
         &mut self,
-        (person, frame): (usize, i64),
+        person: &mut Person,
         parts: &Parts,
-        (step, interval): (i64, f64),
-    ) -> f64 {
+        (frame, step, interval): (i64, i64, f64),
+    ) {
         let (from_people, hidden) = (parts.from_people, parts.hidden.share);
+        // The crowd that is assumed behind walls may be as dense as at the person's position, whose density includes
+        // the person's own weight.
+        let mut own = person.mass * kernel::density(0.0, self.support_radius);
         if self.behind == Behind::Same {
             let hidden = hidden.min(MOST_HIDDEN);
-            return from_people * hidden / (1.0 - hidden);
+            own /= 1.0 - hidden;
+            person.density_from_walls = from_people * hidden / (1.0 - hidden);
+        } else {
+            let kept = &mut self.kept[person.number as usize];
+            // A person who was absent one frame earlier is new, as in the engine.
+            let before = kept.filter(|&(last, _)| last == frame - step);
+            let before = before.map(|(_, mean)| mean);
+            let sph = &self.sph;
+            let [from_walls, mean] = sph.from_walls_and_mean(from_people, hidden, before, interval);
+            *kept = Some((frame, mean));
+            person.density_from_walls = from_walls;
         }
-        // A person who was absent one frame earlier is new, as in the engine.
-        let before = self.kept[person].filter(|&(last, _)| last == frame - step);
-        let before = before.map(|(_, mean)| mean);
-        let sph = &self.sph;
-        let [from_walls, mean] = sph.from_walls_and_mean(from_people, hidden, before, interval);
-        self.kept[person] = Some((frame, mean));
-        from_walls
+        person.density = from_people + person.density_from_walls;
+        person.density_of_others = (person.density - own).max(0.0);
     }
 }

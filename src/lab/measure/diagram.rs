@@ -36,21 +36,20 @@ impl Density {
 
     /// The name in files.
     pub fn key(self) -> &'static str {
-        match self {
-            Self::SphAtPeople => "sph_at_people",
-            Self::SphField => "sph_field",
-            Self::Classic => "classic",
-            Self::Voronoi => "voronoi",
-        }
+        self.names()[0]
     }
 
     /// The name in texts and pictures.
     pub fn name(self) -> &'static str {
+        self.names()[1]
+    }
+
+    fn names(self) -> [&'static str; 2] {
         match self {
-            Self::SphAtPeople => "SPH at people",
-            Self::SphField => "SPH field mean",
-            Self::Classic => "classic",
-            Self::Voronoi => "Voronoi",
+            Self::SphAtPeople => ["sph_at_people", "SPH at people"],
+            Self::SphField => ["sph_field", "SPH field mean"],
+            Self::Classic => ["classic", "classic"],
+            Self::Voronoi => ["voronoi", "Voronoi"],
         }
     }
 }

@@ -4,55 +4,28 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::Person;
+use super::moment::Person;
+use super::options::MOST_CELLS;
 use crate::analysis::site::{Kernel, Site};
 use crate::analysis::surroundings::MOST_HIDDEN;
+use crate::analysis::way_field::Grid;
 use crate::engine::kernel;
 use crate::engine::math::Vector;
-
-/// Maximum number of cells.
-pub const MOST_CELLS: usize = 4_000_000;
 
 /// Rows of cells per parallel task.
 const BAND: usize = 8;
 
-/// Square cells over a part of the plane. Fields are evaluated at their centers.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Grid {
-    /// Lower left corner, meters.
-    pub min: Vector,
-    /// Side of a cell, meters.
-    pub cell: f64,
-    /// Number of cells in x.
-    pub columns: usize,
-    /// Number of cells in y.
-    pub rows: usize,
-}
-
-impl Grid {
-    /// Whole cells that cover a rectangle; `None` if there are too many.
-    pub fn over(low: Vector, high: Vector, cell: f64) -> Option<Self> {
-        let min = (low / cell).map(f64::floor);
-        let count = (high / cell).map(f64::ceil) - min;
-        let [columns, rows] = [count.x, count.y].map(|n| n.max(1.0));
-        (columns * rows <= MOST_CELLS as f64).then(|| Self {
-            min: min * cell,
-            cell,
-            columns: columns as usize,
-            rows: rows as usize,
-        })
-    }
-
-    /// The number of cells.
-    pub fn cells(&self) -> usize {
-        self.columns * self.rows
-    }
-
-    /// The center of cell `k`, meters; cells are in rows from the lower left.
-    pub fn center(&self, k: usize) -> Vector {
-        let (column, row) = (k % self.columns, k / self.columns);
-        self.min + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell
-    }
+/// Whole cells that cover a rectangle; `None` if there are too many. Fields are evaluated at their centers.
+pub fn cells_over(low: Vector, high: Vector, cell: f64) -> Option<Grid> {
+    let min = (low / cell).map(f64::floor);
+    let count = (high / cell).map(f64::ceil) - min;
+    let [columns, rows] = [count.x, count.y].map(|n| n.max(1.0));
+    (columns * rows <= MOST_CELLS as f64).then(|| Grid {
+        min: min * cell,
+        cell,
+        columns: columns as usize,
+        rows: rows as usize,
+    })
 }
 
 /// Sums over people and frames for one cell.
@@ -129,8 +102,8 @@ impl Fields {
     pub fn new(grid: Grid, site: &Site, kernel: Kernel) -> Self {
         let view = |k| View::new(site, &kernel, grid.center(k));
         Self {
-            views: (0..grid.cells()).into_par_iter().map(view).collect(),
-            sums: vec![Sums::default(); grid.cells()],
+            views: (0..grid.len()).into_par_iter().map(view).collect(),
+            sums: vec![Sums::default(); grid.len()],
             grid,
             kernel,
         }

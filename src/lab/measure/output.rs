@@ -6,7 +6,8 @@ use std::path::Path;
 
 use super::pictures::STEMS;
 use super::record::RECORDING;
-use super::{CLASS, Class, Classes, Density, Measured, Moment, Safety, region_report};
+use super::report::regions_table;
+use super::{CLASS, Class, Classes, Density, Measured, Moment, Safety};
 use crate::analysis::exposure::PersonExposure;
 use crate::analysis::statistics::MeanStd;
 use crate::engine::math::Vector;
@@ -112,7 +113,7 @@ impl Results {
         let frames = diagrams.iter().flat_map(|diagram| &diagram.frames);
         store.write(DIAGRAM, &csv_lines(&frames.collect::<Vec<_>>(), true)?)?;
         store.write(CLASSES, &classes(measured).csv()?)?;
-        store.write(REGIONS, &region_report::table(measured).csv()?)?;
+        store.write(REGIONS, &regions_table(measured).csv()?)?;
         store.write(EXPOSURE, &exposure(&measured.safety, tracks).csv()?)?;
         store.write(ALARMS, &csv_lines(&measured.safety.samples, true)?)?;
         if !crossings.is_empty() {

@@ -1,16 +1,15 @@
-//! Pictures of mean fields, fundamental diagrams and N(t).
+//! Pictures of mean fields, fundamental diagrams, N(t), regions and alarms.
 
-use super::{
-    Class, Crossings, Density, Diagram, FrameMean, Mean, Measured, Site, region_report,
-    safety_report,
-};
+use super::{Class, Crossings, Density, Diagram, FrameMean, Mean, Measured, Safety, Sample, Site};
+use crate::analysis::crowd_pressure::BEFORE_ACCIDENT;
+use crate::analysis::exposure::DENSITIES;
 use crate::analysis::statistics::MeanStd;
 use crate::engine::geometry::Walls;
 use crate::engine::math::{Vector, bounds};
 use crate::lab::gallery::thinned;
 use crate::output::colors::{ColorMap, DENSITY, SPEED, light};
 use crate::output::plot::{
-    Axis, BLACK, Cells, ColorBar, Corner, GRAY, Mark, Panel, Point, Sheet, Style, line_color,
+    Axis, BLACK, Cells, ColorBar, Corner, GRAY, LINES, Mark, Panel, Point, Sheet, Style, line_color,
 };
 
 /// Length of the longer side of a map, points.
@@ -19,6 +18,8 @@ const MAP_SIDE: f64 = 330.0;
 const LEAST_SIDE: f64 = 70.0;
 /// Maximum number of dots per diagram; more would hide each other.
 const MOST_DOTS: usize = 1500;
+/// Maximum number of points of a curve over time.
+const MOST_POINTS: usize = 2000;
 /// The color of frames, as a part of that of their classes.
 const LIGHT: f64 = 1.0 / 3.0;
 /// Below this density, P/m², the mean speed is not meaningful and is left blank.
@@ -34,8 +35,8 @@ pub fn sheets(measured: &Measured, site: &Site) -> impl Iterator<Item = (&'stati
         Some(maps(measured, &site.walls)),
         Some(diagrams(&measured.diagrams)),
         (!crossings.is_empty()).then(|| counts(crossings)),
-        Some(safety_report::picture(&measured.safety)),
-        region_report::picture(measured),
+        Some(safety(&measured.safety)),
+        regions(measured),
     ];
     let named = STEMS.into_iter().zip(sheets);
     named.filter_map(|(stem, sheet)| Some((stem, sheet?)))
@@ -45,7 +46,7 @@ pub fn sheets(measured: &Measured, site: &Site) -> impl Iterator<Item = (&'stati
 fn maps(measured: &Measured, walls: &Walls) -> Sheet {
     let grid = &measured.fields.grid;
     let means: Vec<_> = measured.fields.means(measured.overview.frames).collect();
-    let high = grid.center(grid.cells() - 1) + Vector::repeat(0.5 * grid.cell);
+    let high = grid.center(grid.len() - 1) + Vector::repeat(0.5 * grid.cell);
     let (x, y) = ([grid.min.x, high.x], [grid.min.y, high.y]);
     let (width, height) = (x[1] - x[0], y[1] - y[0]);
     let scale = MAP_SIDE / width.max(height);
@@ -226,4 +227,89 @@ fn counts(crossings: &[Crossings]) -> Sheet {
     let y = Axis::linear("N", [0.0, 1.05 * most]);
     let panel = Panel::new("crossings so far", x, y, marks).with_legend(Corner::UpperLeft);
     Sheet::new("", 1, [330.0, 210.0], vec![panel])
+}
+
+/// The points of a curve, and its style.
+type Curve = (Vec<[f64; 2]>, Style);
+
+/// Curves over time; the vertical axis reaches at least up to `least`.
+fn over_time(
+    [title, label]: [&str; 2],
+    [first, last]: [f64; 2],
+    least: f64,
+    curves: Vec<Curve>,
+) -> Panel {
+    let values = curves.iter().flat_map(|(points, _)| points).map(|at| at[1]);
+    let top = 1.35 * values.fold(least, f64::max); // room for the legend
+    let time = Axis::linear("t [s]", [first, last.max(first + 1.0)]);
+    let marks = curves.into_iter();
+    let marks = marks.map(|(points, style)| Mark::Line(points, style));
+    let value = Axis::linear(label, [0.0, top]);
+    Panel::new(title, time, value, marks.collect()).with_legend(Corner::UpperRight)
+}
+
+/// The densities and speeds of each region over time, side by side; `None` without regions.
+fn regions(measured: &Measured) -> Option<Sheet> {
+    type ByDensity = fn(&FrameMean, Density) -> Option<f64>;
+    let regions = measured.diagrams.iter().zip(1..);
+    let regions = regions.filter(|(diagram, _)| diagram.region.is_some());
+    let panels = regions.flat_map(|(diagram, number)| {
+        let panel = |[what, label]: [&str; 2], kinds: &[Density], value: ByDensity| {
+            let curves = kinds.iter().map(|&kind| {
+                let frames = thinned(&diagram.frames, MOST_POINTS);
+                let points = frames.filter_map(|frame| Some([frame.time, value(frame, kind)?]));
+                let name = match (kind, what) {
+                    (Density::SphAtPeople, "speed") => "mean of the people",
+                    _ => kind.name(),
+                };
+                let style = Style::full(line_color(kind as usize), 1.0, name);
+                (points.collect(), style)
+            });
+            let title = format!("region {number}: {what}");
+            let curves = curves.collect();
+            over_time([&title, label], measured.overview.times, 0.1, curves)
+        };
+        let speeds = [Density::SphAtPeople, Density::Voronoi];
+        let density = ["density", "density [P/m²]"];
+        [
+            panel(density, &Density::ALL, FrameMean::density),
+            panel(["speed", "speed [m/s]"], &speeds, FrameMean::speed),
+        ]
+    });
+    let panels: Vec<Panel> = panels.collect();
+    (!panels.is_empty()).then(|| Sheet::new("", 2, [260.0, 190.0], panels))
+}
+
+/// The area above each density and the highest crowd pressure, over time.
+fn safety(safety: &Safety) -> Sheet {
+    let samples = &safety.samples;
+    let ends = [samples.first(), samples.last()].map(|of| of.map_or(0.0, |sample| sample.time));
+    let series = |value: fn(&Sample) -> Option<f64>| -> Vec<[f64; 2]> {
+        let point = |sample: &Sample| Some([sample.time, value(sample)?]);
+        samples.iter().filter_map(point).collect()
+    };
+    let areas = [
+        series(|sample| Some(sample.area_above_4)),
+        series(|sample| Some(sample.area_above_5)),
+        series(|sample| Some(sample.area_above_6)),
+    ];
+    let styles = DENSITIES.into_iter().zip(LINES).map(|(density, color)| {
+        let label = format!("above {density} P/m²");
+        Style::full(color, 1.2, &label)
+    });
+    let areas = areas.into_iter().zip(styles).collect();
+    let label = format!("{BEFORE_ACCIDENT}: before the accident at Mina, 2006");
+    let mark = ends.map(|time| [time, BEFORE_ACCIDENT]).to_vec();
+    let highest = series(|sample| sample.pressure);
+    let pressures = vec![
+        (mark, Style::broken(LINES[1], 1.2, &label)),
+        (highest, Style::full(LINES[0], 1.2, "highest")),
+    ];
+    let pressure = ["crowd pressure", "ρ Var(v) [1/s²]"];
+    let panels = vec![
+        over_time(["alarms", "area [m²]"], ends, 1.0, areas),
+        over_time(pressure, ends, BEFORE_ACCIDENT, pressures),
+    ];
+    let title = "thresholds from the literature, not safety limits";
+    Sheet::new(title, 2, [240.0, 200.0], panels)
 }

@@ -4,26 +4,14 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::fields::{MOST_CELLS, View};
+use super::fields::View;
+use super::moment::Person;
+use super::options::{MOST_CELLS, MeasureError, Options};
 use super::tessellation::{OwnCell, Tessellation};
-use super::{MeasureError, Options};
 use crate::analysis::site::{Kernel, Site};
 use crate::engine::kernel;
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
-
-/// A person, as far as regions need it.
-#[derive(Debug, Clone, Copy)]
-pub struct Body {
-    /// Meters.
-    pub position: Vector,
-    /// The point from which the person is seen, meters.
-    pub eye: Vector,
-    /// 1 = an average person.
-    pub mass: f64,
-    /// m/s; `None` if unknown.
-    pub velocity: Option<Vector>,
-}
 
 /// The densities of a region in a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
@@ -40,23 +28,15 @@ pub struct RegionState {
     pub voronoi_covered: f64,
 }
 
-/// All people and regions of a frame.
-pub struct Frame {
-    /// 1 / |A_i|, P/m², of each person; `None` without a cell.
-    pub voronoi: Vec<Option<f64>>,
-    /// One per region.
-    pub regions: Vec<RegionState>,
-}
-
 /// The regions to measure.
 pub struct Regions<'a> {
     site: &'a Site,
     tessellation: Tessellation<'a>,
-    places: Vec<Place>,
+    places: Vec<Walkable>,
 }
 
 /// A region with its walkable area.
-struct Place {
+struct Walkable {
     region: Region,
     /// m².
     walkable: f64,
@@ -75,7 +55,7 @@ impl<'a> Regions<'a> {
             if walkable <= 0.0 {
                 return Err(MeasureError::Unwalkable(k + 1));
             }
-            Ok(Place {
+            Ok(Walkable {
                 region,
                 walkable,
                 field: Nodes::new(region, site, options)?,
@@ -94,40 +74,37 @@ impl<'a> Regions<'a> {
         self.places.iter().map(|place| place.walkable).collect()
     }
 
-    /// Measures the people of a frame.
-    pub fn measure(&self, people: &[Body]) -> Frame {
-        let of = |value: fn(&Body) -> Vector| people.iter().map(value).collect::<Vec<_>>();
-        let (positions, eyes) = (of(|body| body.position), of(|body| body.eye));
+    /// Measures the regions in a frame, and sets the Voronoi densities of its people.
+    pub fn measure(&self, people: &mut [Person]) -> Vec<RegionState> {
+        let of = |value: fn(&Person) -> Vector| people.iter().map(value).collect::<Vec<_>>();
+        let (positions, eyes) = (of(|person| person.position), of(|person| person.eye));
         let cells = self.tessellation.cells(&positions, &eyes);
-        let regions = self.places.iter();
-        Frame {
-            regions: regions
-                .map(|place| place.measure(self.site, people, &cells))
-                .collect(),
-            voronoi: cells
-                .iter()
-                .map(|cell| cell.as_ref().map(|cell| 1.0 / cell.area))
-                .collect(),
+        for (person, cell) in people.iter_mut().zip(&cells) {
+            person.voronoi = cell.as_ref().map(|cell| 1.0 / cell.area);
         }
+        let regions = self.places.iter();
+        regions
+            .map(|place| place.measure(self.site, people, &cells))
+            .collect()
     }
 }
 
-impl Place {
-    fn measure(&self, site: &Site, people: &[Body], cells: &[Option<OwnCell>]) -> RegionState {
+impl Walkable {
+    fn measure(&self, site: &Site, people: &[Person], cells: &[Option<OwnCell>]) -> RegionState {
         let (mut share, mut covered, mut moved) = (0.0, 0.0, None);
-        for (body, cell) in people.iter().zip(cells) {
+        for (person, cell) in people.iter().zip(cells) {
             let Some(cell) = cell else {
                 continue;
             };
             let inside = cell.inside(&self.region);
             share += inside / cell.area;
             covered += inside;
-            if let Some(velocity) = body.velocity.filter(|_| inside > 0.0) {
+            if let Some(velocity) = person.velocity.filter(|_| inside > 0.0) {
                 *moved.get_or_insert(0.0) += inside * velocity.norm();
             }
         }
         let inside = people.iter();
-        let inside = inside.filter(|body| self.region.contains(body.position));
+        let inside = inside.filter(|person| self.region.contains(person.position));
         RegionState {
             sph_field: self.field.mean(site, people),
             classic: inside.count() as f64 / self.walkable,
@@ -180,11 +157,11 @@ impl Nodes {
     }
 
     /// The mean of the SPH field over all nodes outside of obstacles, P/m².
-    fn mean(&self, site: &Site, people: &[Body]) -> f64 {
+    fn mean(&self, site: &Site, people: &[Person]) -> f64 {
         let h = self.kernel.support_radius;
         let mut sum = 0.0;
-        for body in people {
-            let place = (body.position - self.region.min).component_div(&self.sides);
+        for person in people {
+            let place = (person.position - self.region.min).component_div(&self.sides);
             let reach = Vector::repeat(h).component_div(&self.sides);
             let range = |place: f64, reach: f64, count: usize| {
                 let first = (place - reach - 0.5).ceil().max(0.0) as usize;
@@ -197,9 +174,9 @@ impl Nodes {
                         continue;
                     };
                     let at = self.at(k);
-                    let weight = kernel::density((at - body.position).norm_squared(), h);
-                    if weight > 0.0 && view.sees(site, at, body.eye) {
-                        sum += body.mass * weight / view.visible();
+                    let weight = kernel::density((at - person.position).norm_squared(), h);
+                    if weight > 0.0 && view.sees(site, at, person.eye) {
+                        sum += person.mass * weight / view.visible();
                     }
                 }
             }

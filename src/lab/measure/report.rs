@@ -2,14 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::{
-    CLASS, Class, Classes, Crossings, Density, Diagram, Measured, Options, Way, region_report,
-    safety_report,
+    CLASS, Class, Classes, Crossings, Density, Diagram, Measured, Options, Way, safety_report,
 };
 use crate::analysis::crossing::Passages;
 use crate::analysis::statistics::MeanStd;
+use crate::engine::scene::Region;
 use crate::output::table::{Cell, Table};
 use crate::scenario::trajectories::Tracks;
 
@@ -70,7 +70,7 @@ impl Report<'_> {
             let flow_of = self.options.flow_of;
             text += &format!("\n{}", flows(&self.measured.crossings, flow_of).text());
         }
-        text += &region_report::text(self.measured);
+        text += &regions_text(self.measured);
         for (k, diagram) in self.measured.diagrams.iter().enumerate() {
             let place = diagram.region.map(|region| {
                 let [min, max] = [region.min, region.max].map(|p| format!("({}, {})", p.x, p.y));
@@ -122,7 +122,7 @@ impl Report<'_> {
             })),
             "safety": safety_report::json(self.measured),
             "lines": lines.collect::<Vec<_>>(),
-            "regions": region_report::json(self.measured),
+            "regions": regions_json(self.measured),
             "fundamental_diagrams": self.measured.diagrams.iter().map(diagram).collect::<Vec<_>>(),
             "notes": self.tracks.notes,
         })
@@ -186,12 +186,12 @@ fn classes(diagram: &Diagram) -> Table {
 }
 
 /// A mean and its standard deviation; `None` without values.
-pub(super) fn spread(of: MeanStd) -> Option<Cell> {
+fn spread(of: MeanStd) -> Option<Cell> {
     (of.count > 0).then(|| Cell::Spread(of.mean, Some(of.population_std())))
 }
 
 /// `null` without values.
-pub(super) fn mean_and_std(of: &MeanStd) -> Option<Value> {
+fn mean_and_std(of: &MeanStd) -> Option<Value> {
     (of.count > 0).then(|| json!({"mean": of.mean, "std": of.population_std()}))
 }
 
@@ -208,14 +208,11 @@ fn line(crossings: &Crossings, flow_of: Passages) -> Value {
 
 fn diagram(diagram: &Diagram) -> Value {
     let class = |(&k, class): (&usize, &Class)| {
-        json!({
-            "density_from": k as f64 * CLASS,
-            "density_to": (k as f64 + 1.0) * CLASS,
-            "count": class.density.count,
-            "density": mean_and_std(&class.density),
-            "speed": mean_and_std(&class.speed),
-            "flow": mean_and_std(&class.flow),
-        })
+        let mut value = of_class(class);
+        value["density_from"] = json!(k as f64 * CLASS);
+        value["density_to"] = json!((k as f64 + 1.0) * CLASS);
+        value["count"] = json!(class.density.count);
+        value
     };
     let kinds = |kinds: &BTreeMap<Density, Classes>| -> BTreeMap<&str, Vec<Value>> {
         let kinds = kinds.iter();
@@ -225,9 +222,103 @@ fn diagram(diagram: &Diagram) -> Value {
     };
     let with_people = diagram.frames.iter().filter(|frame| frame.people > 0);
     json!({
-        "region": diagram.region.map(|region| [region.min, region.max].map(|p| [p.x, p.y])),
+        "region": diagram.region.as_ref().map(corners),
         "frames_with_people": with_people.count(),
         "persons": kinds(&diagram.of_persons),
         "frames": kinds(&diagram.of_frames),
     })
+}
+
+/// The means of a region by one density.
+struct RegionMeans<'m> {
+    /// The number of the region, from 1.
+    number: usize,
+    region: Region,
+    diagram: &'m Diagram,
+    kind: Density,
+    means: Class,
+}
+
+/// One row per region and density.
+fn region_means(measured: &Measured) -> Vec<RegionMeans<'_>> {
+    let regions = measured.diagrams.iter().zip(1..);
+    let rows = regions.flat_map(|(diagram, number)| {
+        let row = move |kind| {
+            Some(RegionMeans {
+                number,
+                region: diagram.region?,
+                diagram,
+                kind,
+                means: diagram.means(kind, measured.overview.frames)?,
+            })
+        };
+        Density::ALL.into_iter().filter_map(row)
+    });
+    rows.collect()
+}
+
+/// The means of regions as text; empty without regions.
+fn regions_text(measured: &Measured) -> String {
+    let rows = region_means(measured);
+    if rows.is_empty() {
+        return String::new();
+    }
+    let [from, until] = measured.overview.times;
+    let table = Table::of(&rows)
+        .column("region", |row| row.number)
+        .fixed("walkable [m²]", 2, |row| row.diagram.walkable)
+        .column("by", |row| row.kind.name())
+        .fixed("density [P/m²]", 3, |row| spread(row.means.density))
+        .fixed("speed [m/s]", 3, |row| spread(row.means.speed))
+        .fixed("flow [1/(m s)]", 3, |row| spread(row.means.flow))
+        .table();
+    format!(
+        "\nregions, means over {} frames from {from:.2} s to {until:.2} s\n{}",
+        measured.overview.frames,
+        table.text()
+    )
+}
+
+/// The means of regions as a table for programs.
+pub fn regions_table(measured: &Measured) -> Table {
+    let [from, until] = measured.overview.times;
+    let rows = region_means(measured);
+    let parts = ["_mean", "_std"];
+    Table::of(&rows)
+        .column("region", |row| row.number)
+        .column("walkable_m2", |row| row.diagram.walkable)
+        .column("from_secs", |_| from)
+        .column("until_secs", |_| until)
+        .column("by", |row| row.kind.key())
+        .spread("density", 3, parts, |row| spread(row.means.density))
+        .spread("speed", 3, parts, |row| spread(row.means.speed))
+        .spread("flow", 3, parts, |row| spread(row.means.flow))
+        .table()
+}
+
+fn regions_json(measured: &Measured) -> Vec<Value> {
+    let rows = region_means(measured);
+    let regions = rows.chunk_by(|a, b| a.number == b.number);
+    let region = |rows: &[RegionMeans]| {
+        let means = rows.iter();
+        let means = means.map(|row| (row.kind.key().to_owned(), of_class(&row.means)));
+        json!({
+            "region": corners(&rows[0].region),
+            "walkable_m2": rows[0].diagram.walkable,
+            "means": means.collect::<Map<_, _>>(),
+        })
+    };
+    regions.map(region).collect()
+}
+
+fn of_class(class: &Class) -> Value {
+    json!({
+        "density": mean_and_std(&class.density),
+        "speed": mean_and_std(&class.speed),
+        "flow": mean_and_std(&class.flow),
+    })
+}
+
+fn corners(region: &Region) -> [[f64; 2]; 2] {
+    [region.min, region.max].map(|p| [p.x, p.y])
 }

@@ -1,12 +1,11 @@
-//! Quantities for safety engineers, as text, JSON and a picture.
+//! Quantities for safety engineers, as text and JSON.
 
 use serde_json::{Value, json};
 
-use super::{Departures, Measured, Safety, Sample};
+use super::{Departures, Measured, Safety};
 use crate::analysis::crowd_pressure::BEFORE_ACCIDENT;
 use crate::analysis::exposure::{Alarm, DENSITIES, Exposed, SLOW};
 use crate::analysis::service::LEVELS;
-use crate::output::plot::{Axis, Corner, LINES, Mark, Panel, Sheet, Style};
 use crate::output::table::Table;
 
 /// As text for a terminal.
@@ -141,53 +140,4 @@ pub fn json(measured: &Measured) -> Value {
         })),
         "departures": measured.departures,
     })
-}
-
-/// The area above each density and the highest crowd pressure, over time.
-pub fn picture(safety: &Safety) -> Sheet {
-    let samples = &safety.samples;
-    let ends = [samples.first(), samples.last()].map(|of| of.map_or(0.0, |sample| sample.time));
-    let series = |value: fn(&Sample) -> Option<f64>| -> Vec<[f64; 2]> {
-        let point = |sample: &Sample| Some([sample.time, value(sample)?]);
-        samples.iter().filter_map(point).collect()
-    };
-    let panel = |title, label, least: f64, lines: Vec<(Vec<[f64; 2]>, Style)>| {
-        let values = lines.iter().flat_map(|(points, _)| points);
-        let top = 1.35 * values.map(|at| at[1]).fold(least, f64::max); // room for the legend
-        let time = Axis::linear("t [s]", [ends[0], ends[1].max(ends[0] + 1.0)]);
-        let value = Axis::linear(label, [0.0, top]);
-        let marks = lines.into_iter();
-        let marks = marks.map(|(points, style)| Mark::Line(points, style));
-        Panel::new(title, time, value, marks.collect()).with_legend(Corner::UpperRight)
-    };
-    let areas = [
-        series(|sample| Some(sample.area_above_4)),
-        series(|sample| Some(sample.area_above_5)),
-        series(|sample| Some(sample.area_above_6)),
-    ];
-    let styles = DENSITIES.into_iter().zip(LINES).map(|(density, color)| {
-        let label = format!("above {density} P/m²");
-        Style::full(color, 1.2, &label)
-    });
-    let areas = areas.into_iter().zip(styles).collect();
-    let label = format!("{BEFORE_ACCIDENT}: before the accident at Mina, 2006");
-    let mark = ends.map(|time| [time, BEFORE_ACCIDENT]).to_vec();
-    let pressures = vec![
-        (mark, Style::broken(LINES[1], 1.2, &label)),
-        (
-            series(|sample| sample.pressure),
-            Style::full(LINES[0], 1.2, "highest"),
-        ),
-    ];
-    let panels = vec![
-        panel("alarms", "area [m²]", 1.0, areas),
-        panel(
-            "crowd pressure",
-            "ρ Var(v) [1/s²]",
-            BEFORE_ACCIDENT,
-            pressures,
-        ),
-    ];
-    let title = "thresholds from the literature, not safety limits";
-    Sheet::new(title, 2, [240.0, 200.0], panels)
 }

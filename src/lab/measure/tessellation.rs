@@ -1,7 +1,7 @@
 //! Voronoi cells of people on the floor: cut off at a distance, and without the parts behind walls, as in PedPy
 //! (`compute_individual_voronoi_polygons`).
 
-use super::MeasureError;
+use super::options::{CellLimit, MeasureError};
 use crate::analysis::site::Site;
 use crate::analysis::voronoi::{area, cells, disk, within};
 use crate::engine::geometry::{Area, Polygon};
@@ -11,25 +11,6 @@ use crate::scenario::floor_plan::{self, Rings};
 
 /// Walls this far beyond a polygon are cut together with it, meters.
 const MARGIN: f64 = 0.1;
-
-/// The reach of cells.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CellLimit {
-    /// Radius of the circle around each person that limits its cell, meters; `None`: only walls limit cells.
-    pub cut_off: Option<f64>,
-    /// The circle is a regular polygon of four times as many corners, which lie on it (`quad_segments` in PedPy).
-    pub quad_segments: u32,
-}
-
-impl Default for CellLimit {
-    /// 2 m: people at less than 0.08 P/m² would need more. 8 segments: the polygon has 97 % of the circle's area.
-    fn default() -> Self {
-        Self {
-            cut_off: Some(2.0),
-            quad_segments: 8,
-        }
-    }
-}
 
 /// The part of a person's cell in which it can walk.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,6 +2,7 @@
 
 use crate::lab::error::LabError;
 use crate::lab::sweep::{Cell, Gathered, Study};
+use crate::output::plot::Sheet;
 use crate::runs::store::Store;
 
 /// A table or a figure.
@@ -12,11 +13,11 @@ pub struct Product {
     pub about: &'static str,
     /// Whether it is part of `all`.
     pub in_all: bool,
-    /// Its studies: files under `scenarios/studies/`, without their extension.
+    /// Its studies, at least one: files under `scenarios/studies/`, without their extension.
     pub studies: &'static [&'static str],
     /// The cells that it needs.
     pub needs: Needs,
-    /// Writes its files into the store's folder, and returns a text about them.
+    /// Writes its files into the store's folder from its studies, and returns a text about them.
     pub write: fn(&[Gathered], &Store) -> Result<String, LabError>,
 }
 
@@ -31,12 +32,6 @@ pub enum Needs {
     Labeled(&'static [&'static str]),
     /// All cells, each alone on all threads, because their computing time is measured.
     Alone,
-}
-
-/// The only study of a product.
-pub(super) fn only<'a, 'b>(studies: &'a [Gathered<'b>]) -> Result<&'a Gathered<'b>, LabError> {
-    let problem = || LabError::Data("this table or figure has one study".to_owned());
-    studies.first().ok_or_else(problem)
 }
 
 impl Needs {
@@ -58,4 +53,11 @@ impl Product {
         let study = |name: &&str| Ok(Study::built_in(name, seeds, None)?);
         self.studies.iter().map(study).collect()
     }
+}
+
+/// Writes a picture into the store's folder, and returns a line with the file names.
+pub(super) fn save(sheet: &Sheet, store: &Store, name: &str) -> Result<String, LabError> {
+    let stem = store.path(name);
+    sheet.save(&stem)?;
+    Ok(format!("{0}.svg, {0}.png\n", stem.display()))
 }

@@ -10,14 +10,14 @@ pub struct Published {
     /// The paper.
     pub source: String,
     /// The room evacuation.
-    pub table1: Table,
+    pub table1: PublishedTable,
     /// Crossing and bottleneck.
-    pub table2: Table,
+    pub table2: PublishedTable,
 }
 
 /// One table of the paper.
 #[derive(Debug, Clone, Deserialize)]
-pub struct Table {
+pub struct PublishedTable {
     /// Its place in the paper, and its contents.
     pub place: String,
     /// Its rows, in order.

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::product::{Needs, Product};
 use super::published::published;
-use super::table2;
+use super::table2::CrossingTable;
 use crate::analysis::statistics::{MeanStd, Range};
 use crate::lab::error::LabError;
 use crate::lab::sweep::{Combination, Gathered};
@@ -110,7 +110,7 @@ fn rankings(combinations: &[Combination]) -> Result<String, LabError> {
         let through = through.flatten();
         geometries.push(Geometry {
             name: label.rsplit_once(": ").map_or(label, |(name, _)| name),
-            table: table2::Table::new(rows)?,
+            table: CrossingTable::new(rows)?,
             through: Range::of(&through.collect::<Vec<f64>>()),
         });
     }
@@ -137,7 +137,7 @@ fn rankings(combinations: &[Combination]) -> Result<String, LabError> {
 /// Table 2 in one geometry.
 struct Geometry<'a> {
     name: &'a str,
-    table: table2::Table,
+    table: CrossingTable,
     /// Number of agents of the crossing stream that get through, over profiles and seeds.
     through: Range,
 }

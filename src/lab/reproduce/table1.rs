@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::comparison::Band;
-use super::product::{Needs, Product, only};
+use super::product::{Needs, Product};
 use super::published::{PublishedRow, Varied, published};
 use super::row::{self, Row, compared, profiles};
 use crate::lab::error::LabError;
@@ -116,7 +116,7 @@ fn varied(Varied { setting, value }: &Varied) -> String {
 }
 
 fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
-    let results = only(studies)?;
+    let results = &studies[0];
     let published = published()?;
     let rows = rows(results)?;
     let seeds = results.study.seeds;

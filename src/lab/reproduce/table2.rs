@@ -2,13 +2,13 @@
 
 use serde_json::json;
 
-use super::product::{Needs, Product, only};
+use super::product::{Needs, Product};
 use super::published::{PublishedRow, published, written};
 use super::ranking::{LEAST_DIFFERENCE, Ranked, Ranking, rankings};
 use super::row::{self, Row, compared, profiles};
 use crate::lab::error::LabError;
 use crate::lab::sweep::{Combination, Gathered};
-use crate::output::table;
+use crate::output::table::Table;
 use crate::runs::store::Store;
 
 /// The table.
@@ -30,14 +30,14 @@ const METRICS: [&str; 3] = [
 
 /// The whole table.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Table {
+pub struct CrossingTable {
     /// Its rows.
     pub rows: Vec<Row>,
     /// All rankings of flow and of density with a clear difference in the paper.
     pub rankings: Vec<Ranking>,
 }
 
-impl Table {
+impl CrossingTable {
     /// Compares seven combinations, in the order of the paper's rows, with the paper.
     ///
     /// # Errors
@@ -73,7 +73,7 @@ impl Table {
         let pair = |[a, b]: [f64; 2], sign| format!("{a:.2} {sign} {b:.2}");
         let either =
             |ranking: &Ranking, kept, broken| if ranking.is_kept() { kept } else { broken };
-        table::Table::of(&self.rankings)
+        Table::of(&self.rankings)
             .column("quantity", |ranking| ranking.quantity)
             .column("higher", |ranking| ranking.higher.as_str())
             .column("lower", |ranking| ranking.lower.as_str())
@@ -105,9 +105,9 @@ impl Table {
 }
 
 fn write(studies: &[Gathered], store: &Store) -> Result<String, LabError> {
-    let results = only(studies)?;
+    let results = &studies[0];
     let published = published()?;
-    let table = Table::new(&results.combinations())?;
+    let table = CrossingTable::new(&results.combinations())?;
     let markdown = table.markdown();
     let as_json = |ranking: &Ranking| {
         let mut value = json!(ranking);

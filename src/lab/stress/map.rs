@@ -5,6 +5,7 @@ use serde::Deserialize;
 
 use super::rest::Rest;
 use crate::lab::error::LabError;
+use crate::lab::gallery::distinct;
 
 /// The points of the maps, and how closely their limits are searched for. Values are in increasing order.
 #[derive(Debug, Clone, Deserialize)]
@@ -54,8 +55,6 @@ impl Detail {
         }));
         let thick = self.viscosities.iter();
         crowds.extend(thick.map(|&viscosity| Rest { viscosity, ..paper }));
-        let all = crowds.clone().into_iter().enumerate();
-        let once = all.filter(|(k, crowd)| !crowds[..*k].contains(crowd));
-        once.map(|(_, crowd)| crowd).collect()
+        distinct(crowds)
     }
 }

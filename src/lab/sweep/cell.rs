@@ -18,6 +18,9 @@ pub struct Cell {
     pub case: Case,
 }
 
+/// Studies with more cells are rejected as mistakes.
+pub(super) const MOST_CELLS: usize = 100_000;
+
 /// The key of a list's entry that names it in tables.
 pub(super) const LABEL: &str = "label";
 

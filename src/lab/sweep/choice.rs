@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::MOST_CELLS;
-use super::cell::short;
+use super::cell::{MOST_CELLS, short};
 use super::entries::Entries;
 use crate::runs::case::Source;
 use crate::scenario::quote::shown;

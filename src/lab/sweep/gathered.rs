@@ -9,6 +9,7 @@ use super::Study;
 use super::cell::Cell;
 use crate::analysis::statistics::MeanStd;
 use crate::lab::error::LabError;
+use crate::lab::gallery::distinct;
 use crate::output::plot::Sheet;
 use crate::runs::case::RunResult;
 use crate::runs::identity::ENGINE;
@@ -76,12 +77,6 @@ impl<'a> Gathered<'a> {
             study,
             states: study.cells.iter().map(state).collect(),
         }
-    }
-
-    /// Number of cells that are finished, failed and missing.
-    pub fn counts(&self) -> [usize; 3] {
-        let names = || self.states.iter().map(State::name);
-        ["finished", "failed", "missing"].map(|name| names().filter(|&own| own == name).count())
     }
 
     /// Writes `NAME.csv`, `NAME-summary.csv` and `NAME-results.json` into the store's folder, and the picture as
@@ -154,13 +149,8 @@ impl<'a> Gathered<'a> {
     /// The names of all numbers that are averaged over seeds.
     pub(super) fn numbers(&self) -> Vec<String> {
         let mut names = self.metrics();
-        let own = ["evacuated", "time_secs"].map(str::to_owned);
-        let new: Vec<String> = own
-            .into_iter()
-            .filter(|name| !names.contains(name))
-            .collect();
-        names.extend(new);
-        names
+        names.extend(["evacuated", "time_secs"].map(str::to_owned));
+        distinct(names)
     }
 
     /// The combinations of settings in the order of their cells.

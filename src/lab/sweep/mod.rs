@@ -40,41 +40,12 @@ pub use gathered::{Combination, Gathered, State};
 pub use pictures::{Drawing, DrawingError};
 pub(in crate::lab) use seeds::Seeds;
 pub use shard::Shard;
-pub use study::Study;
+pub use study::{Study, StudyError};
 pub(in crate::lab) use study::{check_name, parse};
 
-use crate::lab::error::LabError;
-use crate::runs::error::{RunError, StoreError};
+use crate::runs::error::StoreError;
 use crate::runs::job::{self, Listener, Tally};
 use crate::runs::store::Store;
-use crate::scenario::ScenarioError;
-
-/// Why a study is invalid.
-#[derive(Debug, thiserror::Error)]
-pub enum StudyError {
-    /// The study's file is invalid.
-    #[error(transparent)]
-    File(#[from] ScenarioError),
-    /// One of its cells is invalid.
-    #[error("{file}: cell {cell}: {error}")]
-    Cell {
-        /// The study's file.
-        file: String,
-        /// The cell's number.
-        cell: usize,
-        /// The reason.
-        error: RunError,
-    },
-    /// The cells cannot be checked in parallel.
-    #[error(transparent)]
-    Machine(#[from] StoreError),
-}
-
-impl From<StudyError> for LabError {
-    fn from(error: StudyError) -> Self {
-        Self::Data(error.to_string())
-    }
-}
 
 /// Computes the cells of a shard that are not in `store`, as [`job::run`] does, within the study's memory.
 ///
@@ -89,6 +60,3 @@ pub fn run(
     let jobs = study.jobs(|cell| shard.has(cell.number));
     job::run(&jobs, store, study.memory, listener)
 }
-
-/// Studies with more cells are rejected as mistakes.
-const MOST_CELLS: usize = 100_000;

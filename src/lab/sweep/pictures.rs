@@ -64,7 +64,7 @@ impl Drawing {
 }
 
 /// A mean at a value of the horizontal axis.
-type Place<'a> = (f64, &'a MeanStd);
+type MeanAt<'a> = (f64, &'a MeanStd);
 
 impl Gathered<'_> {
     /// The sheet of a study; `None` if no measurement has a value.
@@ -145,7 +145,7 @@ fn lines(
             let own = combinations.iter();
             let own = own.filter(|one| other(one, &[x], axes) == *line);
             let places = own.filter_map(|one| Some((scale.place(one)?, one.means[*k].as_ref()?)));
-            let mut places: Vec<Place> = places.collect();
+            let mut places: Vec<MeanAt> = places.collect();
             places.sort_by(|a, b| a.0.total_cmp(&b.0));
             let (area, line) = line_marks(&places, line_color(number), line, scale.numeric);
             bands.extend(area);
@@ -170,7 +170,7 @@ fn lines(
 /// A confidence band, if the axis has numbers and some mean has an interval; and a line with points and the borders of
 /// the band, or points with error bars.
 fn line_marks(
-    places: &[Place],
+    places: &[MeanAt],
     color: Rgb,
     label: &str,
     is_numeric: bool,

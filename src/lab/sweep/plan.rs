@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::MOST_CELLS;
-use super::cell::{Cell, LABEL};
+use super::cell::{Cell, LABEL, MOST_CELLS};
 use super::choice::{Choice, Meaning, Root, SCENARIO, axis, choices, said, source};
 use super::entries::Entries;
 use super::seeds::Seeds;
+use crate::lab::gallery::distinct;
 use crate::runs::case::{Case, Source};
 use crate::runs::error::RunError;
 use crate::runs::memory::Memory;
@@ -66,6 +66,7 @@ impl File {
 
 /// Everything that cells are combined from.
 pub(super) struct Plan {
+    /// The names of the varied settings, with the label first.
     pub(super) names: Vec<String>,
     /// The scenario of cells whose settings do not name one.
     scenario: Source,
@@ -105,8 +106,11 @@ impl Plan {
         let grid = file.grid.0.iter();
         let grid = grid.map(|(key, values)| axis(key, values, root));
         let grid = grid.collect::<Result<Vec<_>, _>>()?;
+        let label = labels.iter().any(Option::is_some);
+        let varied = rows.iter().flatten().chain(grid.iter().flatten());
+        let varied = varied.map(|choice| choice.key.clone());
         let mut plan = Self {
-            names: Vec::new(),
+            names: distinct(label.then(|| LABEL.to_owned()).into_iter().chain(varied)),
             scenario: match &file.scenario {
                 Some(name) => source(name, SCENARIO, root)?,
                 None => varied_scenario(&rows, &grid)?,
@@ -120,15 +124,6 @@ impl Plan {
             count: 0,
         };
         plan.refuse_repetitions()?;
-        let varied = plan.rows.iter().flatten().chain(plan.grid.iter().flatten());
-        for choice in varied {
-            if !plan.names.contains(&choice.key) {
-                plan.names.push(choice.key.clone());
-            }
-        }
-        if plan.labels.iter().any(Option::is_some) {
-            plan.names.insert(0, LABEL.to_owned());
-        }
         plan.count = plan.cells()?;
         Ok(plan)
     }

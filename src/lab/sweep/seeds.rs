@@ -1,10 +1,9 @@
 //! The key `seeds`: a number of seeds, or a list of them.
 
 use std::collections::HashSet;
-use std::fmt;
 
-use serde::de::value::SeqAccessDeserializer;
-use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Unexpected, Visitor};
+use serde::de::{Deserialize, Deserializer, Error, Unexpected};
+use serde_untagged::UntaggedEnumVisitor;
 
 use crate::scenario::Problem;
 
@@ -46,28 +45,13 @@ impl Seeds {
 
 impl<'de> Deserialize<'de> for Seeds {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(SeedsVisitor)
-    }
-}
-
-struct SeedsVisitor;
-
-impl<'de> Visitor<'de> for SeedsVisitor {
-    type Value = Seeds;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("how many seeds, or a list of them")
-    }
-
-    fn visit_u64<E>(self, count: u64) -> Result<Seeds, E> {
-        Ok(Seeds::Count(count))
-    }
-
-    fn visit_i64<E: Error>(self, count: i64) -> Result<Seeds, E> {
-        Err(E::invalid_value(Unexpected::Signed(count), &self))
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, items: A) -> Result<Seeds, A::Error> {
-        Vec::deserialize(SeqAccessDeserializer::new(items)).map(Seeds::List)
+        const EXPECTED: &str = "how many seeds, or a list of them";
+        let negative = |count| Error::invalid_value(Unexpected::Signed(count), &EXPECTED);
+        UntaggedEnumVisitor::new()
+            .expecting(EXPECTED)
+            .u64(|count| Ok(Self::Count(count)))
+            .i64(|count| Err(negative(count)))
+            .seq(|list| list.deserialize().map(Self::List))
+            .deserialize(deserializer)
     }
 }

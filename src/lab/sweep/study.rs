@@ -7,10 +7,10 @@ use std::sync::OnceLock;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use super::StudyError;
 use super::cell::{Cell, LABEL};
 use super::choice::Root;
 use super::plan::{File, Plan};
+use crate::lab::error::LabError;
 use crate::runs::error::{RunError, StoreError};
 use crate::runs::job::Job;
 use crate::runs::memory::Memory;
@@ -21,6 +21,33 @@ use crate::scenario::{Problem, ScenarioError, built_in, in_plain_words, read_doc
 
 /// The maximum length of a name, bytes: results add to it, and file names are limited.
 const LONGEST_NAME: usize = 200;
+
+/// Why a study is invalid.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// The study's file is invalid.
+    #[error(transparent)]
+    File(#[from] ScenarioError),
+    /// One of its cells is invalid.
+    #[error("{file}: cell {cell}: {error}")]
+    Cell {
+        /// The study's file.
+        file: String,
+        /// The cell's number.
+        cell: usize,
+        /// The reason.
+        error: RunError,
+    },
+    /// The cells cannot be checked in parallel.
+    #[error(transparent)]
+    Machine(#[from] StoreError),
+}
+
+impl From<StudyError> for LabError {
+    fn from(error: StudyError) -> Self {
+        Self::Data(error.to_string())
+    }
+}
 
 /// A scenario over settings and seeds.
 #[derive(Debug, Clone)]

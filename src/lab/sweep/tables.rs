@@ -92,15 +92,10 @@ impl Gathered<'_> {
         let rows = self.combinations();
         let mut columns = combined(&rows, &self.study.axes, plain);
         for (k, name) in self.numbers().iter().enumerate() {
-            let mean = |row: &Combination| row.means[k];
+            let count = |row: &Combination| row.means[k].map_or(0, |mean| mean.count);
             columns = columns
-                .column(&format!("{name}_mean"), |row| {
-                    mean(row).map(|mean| mean.mean)
-                })
-                .column(&format!("{name}_ci95"), |row| mean(row)?.interval_95())
-                .column(&format!("{name}_n"), |row| {
-                    mean(row).map_or(0, |mean| mean.count)
-                });
+                .spread(name, 3, ["_mean", "_ci95"], |row| confident(row, k))
+                .column(&format!("{name}_n"), count);
         }
         Ok(columns.table().csv()?)
     }
@@ -110,9 +105,7 @@ impl Gathered<'_> {
         let rows = self.combinations();
         let mut columns = combined(&rows, &self.study.short_axes(), short);
         for (k, name) in self.numbers().iter().enumerate() {
-            columns = columns.fixed(name, 3, |row| {
-                row.means[k].map(|mean| table::Cell::Spread(mean.mean, mean.interval_95()))
-            });
+            columns = columns.fixed(name, 3, |row| confident(row, k));
         }
         columns.table().text()
     }
@@ -139,6 +132,11 @@ impl Gathered<'_> {
         }
         columns.column("status", |(_, state)| state.name())
     }
+}
+
+/// The `k`-th mean with half its confidence interval.
+fn confident(row: &Combination, k: usize) -> Option<table::Cell> {
+    row.means[k].map(|mean| table::Cell::Spread(mean.mean, mean.interval_95()))
 }
 
 /// The varied settings and the number of finished runs.

@@ -2,8 +2,7 @@
 
 use serde_json::Value;
 
-use super::super::product::{Needs, Product, only};
-use super::save;
+use super::super::product::{Needs, Product, save};
 use crate::analysis::statistics::{Estimate, Range};
 use crate::lab::gallery::{distinct, in_cell, map};
 use crate::lab::sweep::{Combination, Gathered};
@@ -18,7 +17,7 @@ pub const PRODUCT: Product = Product {
     studies: &["wave_grid"],
     needs: Needs::All,
     write: |studies, store| {
-        let study = only(studies)?;
+        let study = &studies[0];
         store.write("study.csv", &study.summary_csv()?)?;
         save(&sheet(study), store, "study")
     },

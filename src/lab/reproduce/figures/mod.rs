@@ -6,9 +6,6 @@ mod snapshots;
 mod waves;
 
 use super::product::{Needs, Product};
-use crate::lab::error::LabError;
-use crate::output::plot::Sheet;
-use crate::runs::store::Store;
 use snapshots::{ALL, CROWD_SPEED, DENSITY, SPEED, Snapshots};
 
 pub use grid::PRODUCT as STUDY;
@@ -99,7 +96,7 @@ const CONTACTS: Snapshots = Snapshots {
     ..REST_DENSITIES
 };
 
-/// All of them.
+/// Figs. 5 to 10.
 const SNAPSHOTS: [Snapshots; 6] = [
     EVACUATION,
     CROSSING,
@@ -109,39 +106,24 @@ const SNAPSHOTS: [Snapshots; 6] = [
     CONTACTS,
 ];
 
-/// The figure that shows the `K`-th snapshots.
-const fn figure<const K: usize>() -> Product {
-    let Snapshots { labels, .. } = SNAPSHOTS[K];
+/// Fig. `NUMBER`, 5 to 10.
+pub const fn figure<const NUMBER: usize>() -> Product {
+    let Snapshots {
+        name,
+        about,
+        studies,
+        labels,
+        ..
+    } = SNAPSHOTS[NUMBER - 5];
     Product {
-        name: SNAPSHOTS[K].name,
-        about: SNAPSHOTS[K].about,
+        name,
+        about,
         in_all: true,
-        studies: SNAPSHOTS[K].studies,
-        needs: if labels.is_empty() {
-            Needs::All
-        } else {
-            Needs::Labeled(labels)
+        studies,
+        needs: match labels {
+            [] => Needs::All,
+            labels => Needs::Labeled(labels),
         },
-        write: |studies, store| SNAPSHOTS[K].write(studies, store),
+        write: |studies, store| SNAPSHOTS[NUMBER - 5].write(studies, store),
     }
-}
-
-/// Fig. 5.
-pub const FIG5: Product = figure::<0>();
-/// Fig. 6.
-pub const FIG6: Product = figure::<1>();
-/// Fig. 7.
-pub const FIG7: Product = figure::<2>();
-/// Fig. 8.
-pub const FIG8: Product = figure::<3>();
-/// Fig. 9.
-pub const FIG9: Product = figure::<4>();
-/// Fig. 10.
-pub const FIG10: Product = figure::<5>();
-
-/// Writes a picture into the store's folder, and returns a line with the file names.
-pub(super) fn save(sheet: &Sheet, store: &Store, name: &str) -> Result<String, LabError> {
-    let stem = store.path(name);
-    sheet.save(&stem)?;
-    Ok(format!("{0}.svg, {0}.png\n", stem.display()))
 }

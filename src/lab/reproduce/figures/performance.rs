@@ -1,7 +1,6 @@
 //! Fig. 11: frame time per task against the number of agents.
 
-use super::super::product::{Needs, Product};
-use super::save;
+use super::super::product::{Needs, Product, save};
 use crate::engine::simulation::Stage;
 use crate::lab::error::LabError;
 use crate::output::plot::{Axis, BLACK, Corner, LINES, Mark, Panel, Sheet, Style, line_color};

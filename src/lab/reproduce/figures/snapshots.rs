@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use super::super::product::only;
+use super::super::product::save;
 use crate::lab::error::LabError;
 use crate::lab::sweep::Gathered;
 use crate::output::colors::{self, ColorMap};
@@ -89,7 +89,7 @@ pub(super) const ALL: Snapshots = Snapshots {
 impl Snapshots {
     /// Draws the runs of the study.
     pub fn write(&self, studies: &[Gathered], store: &Store) -> Result<String, LabError> {
-        let study = only(studies)?;
+        let study = &studies[0];
         let mut labels = self.labels.to_vec();
         if labels.is_empty() {
             labels.extend(study.study.cells.iter().filter_map(|cell| cell.label()));
@@ -131,7 +131,7 @@ impl Snapshots {
             bar: Some(ColorBar::new(self.coloring.label, map)),
             ..Sheet::new(self.title, self.columns, [self.width, height], panels)
         };
-        super::save(&sheet, store, self.name)
+        save(&sheet, store, self.name)
     }
 
     fn panel(&self, title: String, snapshot: &Snapshot, walls: &[Vec<[f64; 2]>]) -> Panel {

@@ -1,7 +1,6 @@
 //! An addition to Fig. 7: the wave over space and time for several k, and its speed against linear theory.
 
-use super::super::product::{Needs, Product, only};
-use super::save;
+use super::super::product::{Needs, Product, save};
 use crate::analysis::sound;
 use crate::analysis::statistics::Estimate;
 use crate::analysis::wave::{Ridge, Wave};
@@ -28,7 +27,7 @@ pub const PRODUCT: Product = Product {
     studies: &["shockwave"],
     needs: Needs::Labeled(&LABELS),
     write: |studies, store| {
-        let study = only(studies)?;
+        let study = &studies[0];
         let runs = LABELS.into_iter().zip(GAS_CONSTANTS);
         let runs = runs.map(|(label, k)| Speed::of(study, label, k));
         let runs: Vec<Speed> = runs.collect::<Result<_, _>>()?;

@@ -12,8 +12,7 @@ pub use oscillations::PRODUCT as OSCILLATIONS;
 pub use queue_pushes::PRODUCT as QUEUE_PUSHES;
 pub use start_waves::PRODUCT as START_WAVES;
 
-use super::figures::save;
-use super::product::only;
+use super::product::save;
 use crate::analysis::statistics::{Estimate, MeanStd};
 use crate::lab::error::LabError;
 use crate::lab::gallery::distinct;
@@ -29,7 +28,7 @@ fn write(
     table: fn(&[Combination]) -> Table,
     sheet: fn(&[Combination]) -> Sheet,
 ) -> Result<String, LabError> {
-    let study = only(studies)?;
+    let study = &studies[0];
     let (rows, name) = (study.combinations(), &study.study.name);
     study.write(store, None)?;
     save(&sheet(&rows), store, name)?;

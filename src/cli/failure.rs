@@ -1,0 +1,130 @@
+//! Why a command failed, and its exit code.
+
+use crate::engine::breakdown::Breakdown;
+use crate::engine::simulation::{Fault, Simulation};
+use crate::lab::error::LabError;
+use crate::lab::measure::MeasureError;
+use crate::lab::sweep::{DrawingError, StudyError};
+use crate::output::plot::PlotError;
+use crate::output::recording::RecordingError;
+use crate::output::trajectory::TrajectoryError;
+use crate::runs::checkpoint::CheckpointError;
+use crate::runs::error::StoreError;
+use crate::runs::outputs::OutputsError;
+use crate::scenario::ScenarioError;
+use crate::scenario::trajectories::ReadError;
+
+/// Why a command failed.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// A scenario or a setting is invalid: exit code 2.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// Another input is invalid: exit code 2.
+    #[error("{0}")]
+    Input(String),
+    /// Trajectories cannot be read: exit code 2.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// Trajectories cannot be measured as asked for: exit code 2.
+    #[error(transparent)]
+    Measure(#[from] MeasureError),
+    /// A study is invalid: exit code 2.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// A study cannot be drawn as asked for: exit code 2.
+    #[error(transparent)]
+    Drawing(#[from] DrawingError),
+    /// The simulation failed: exit code 1.
+    #[error(transparent)]
+    Fault(#[from] Fault),
+    /// A file cannot be written, or a result is not as required: exit code 1.
+    #[error("{0}")]
+    Output(String),
+    /// `reproduce`, `accuracy` or `stress` failed: exit code 1.
+    #[error(transparent)]
+    Reproduce(#[from] LabError),
+    /// A signal ended the run: exit code 130 or 143.
+    #[error("interrupted at {time:.2} s; results and files end there")]
+    Interrupted {
+        /// The time of the last frame, seconds.
+        time: f64,
+        /// The exit code, 128 + the signal's number.
+        exit_code: u8,
+    },
+}
+
+impl Failure {
+    /// The exit code of the program.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Fault(_) | Self::Output(_) | Self::Reproduce(_) => 1,
+            Self::Interrupted { exit_code, .. } => *exit_code,
+            Self::Scenario(_) | Self::Input(_) => 2,
+            Self::Read(_) | Self::Measure(_) | Self::Study(_) | Self::Drawing(_) => 2,
+        }
+    }
+
+    /// Adds the forces on the agent that caused a fault.
+    pub(super) fn with_forces(self, simulation: &mut Simulation) -> Self {
+        let Self::Fault(fault) = self else {
+            return self;
+        };
+        match Breakdown::of_fault(simulation, &fault) {
+            Some(agent) => Self::Output(format!("{fault}\n{agent}")),
+            None => Self::Fault(fault),
+        }
+    }
+}
+
+impl From<StoreError> for Failure {
+    fn from(error: StoreError) -> Self {
+        LabError::from(error).into()
+    }
+}
+
+impl From<OutputsError> for Failure {
+    fn from(error: OutputsError) -> Self {
+        match error {
+            OutputsError::Unwritable(..) => Self::Output(error.to_string()),
+            error => Self::Input(error.to_string()),
+        }
+    }
+}
+
+impl From<CheckpointError> for Failure {
+    fn from(error: CheckpointError) -> Self {
+        match error {
+            CheckpointError::Unwritable { .. } => Self::Output(error.to_string()),
+            error => Self::Input(error.to_string()),
+        }
+    }
+}
+
+impl From<RecordingError> for Failure {
+    fn from(error: RecordingError) -> Self {
+        match error {
+            RecordingError::SwitchedOff(_) => Self::Input(error.to_string()),
+            error => Self::Output(error.to_string()),
+        }
+    }
+}
+
+impl From<TrajectoryError> for Failure {
+    fn from(error: TrajectoryError) -> Self {
+        match error {
+            TrajectoryError::Unwritten { .. } => Self::Output(error.to_string()),
+            TrajectoryError::FrameRate { .. } => Self::Input(format!("--trajectory-fps: {error}")),
+            TrajectoryError::UnknownFormat(_) => Self::Input(format!("--trajectory {error}")),
+        }
+    }
+}
+
+impl From<PlotError> for Failure {
+    fn from(error: PlotError) -> Self {
+        match error {
+            PlotError::Large(..) | PlotError::NoFfmpeg { .. } => Self::Input(error.to_string()),
+            error => Self::Output(error.to_string()),
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! What commands read: scenarios with the settings of the command line, trajectories, floor plans.
+
+use std::fmt::Display;
+use std::path::Path;
+
+use super::arguments::SceneOptions;
+use super::failure::Failure;
+use super::terminal::talk;
+use crate::lab::machine::main_memory;
+use crate::lab::measure::Site;
+use crate::runs::case::Source;
+use crate::runs::outputs::Outputs;
+use crate::scenario::floor_plan::{self, FloorPlan};
+use crate::scenario::quote::shown;
+use crate::scenario::trajectories::{self, ReadOptions, Tracks};
+use crate::scenario::{Draft, Scenario, Setting};
+
+/// Reads a scenario and applies the settings of the command line. `until` is the flag that sets another end, and the
+/// end in seconds. Writing the output files takes `writing` bytes of memory per agent. Adds the files that were read to
+/// `outputs`.
+pub fn scenario(
+    source: &Source,
+    scene: &SceneOptions,
+    until: Option<(&str, f64)>,
+    writing: u64,
+    outputs: &mut Outputs,
+) -> Result<Scenario, Failure> {
+    let (until_flag, until) =
+        until.map_or(("", None), |(flag, secs)| (flag, Some(secs.to_string())));
+    let seed = scene.seed.map(|seed| seed.to_string());
+    let flags = [
+        ("--profile", "profile", scene.profile.clone()),
+        ("--preset", "preset", scene.preset.clone()),
+        ("--seed", "seed", seed),
+        (until_flag, "duration_secs", until),
+        ("--time-step", "time_step_secs", scene.time_step.clone()),
+    ];
+    let typed: Vec<Setting> = scene
+        .set
+        .iter()
+        .map(|text| setting(text))
+        .collect::<Result<_, _>>()?;
+    let mut settings = Vec::new();
+    let mut last = None;
+    for (flag, key, value) in flags {
+        let Some(value) = value else { continue };
+        let setting = setting(&format!("{key}={value}"))?;
+        let setting = setting.typed_as(format!("{flag} {}", shown(&value)));
+        if flag == "--at" {
+            last = Some(setting); // applied last: --at beyond the end moves the end, even one given by --set
+            continue;
+        }
+        if let Some(other) = typed.iter().find(|other| other.path() == setting.path()) {
+            return Err(Failure::Input(format!(
+                "{setting} and {other} set the same key: give only one of them"
+            )));
+        }
+        settings.push(setting);
+    }
+    if let Some(path) = &scene.geometry {
+        let text = format!("--geometry {}", path.display());
+        outputs.reads("--geometry", path);
+        let plan = floor_plan(path)?;
+        settings.extend(Setting::floor_plan(&plan, &text));
+    }
+    settings.extend(typed.into_iter().chain(last));
+    let (text, file) = source.text()?;
+    let (scenario, _) = Draft::read(&text, &file, &settings)?.within(main_memory(), writing)?;
+    if let Source::File(path) = source {
+        outputs.reads("the scenario", path);
+    }
+    for (key, path) in &scenario.files {
+        outputs.reads(key, path);
+    }
+    for note in &scenario.notes {
+        talk(&format!("note: {note}"));
+    }
+    Ok(scenario)
+}
+
+/// Reads the plan of `--geometry`.
+fn floor_plan(path: &Path) -> Result<FloorPlan, Failure> {
+    let plan = floor_plan::read(path);
+    let plan = plan.map_err(|error| Failure::Input(format!("--geometry {error}")))?;
+    for note in &plan.notes {
+        talk(&format!("note: --geometry {}: {note}", path.display()));
+    }
+    Ok(plan)
+}
+
+/// The setting of `--set`.
+pub fn setting(text: &str) -> Result<Setting, Failure> {
+    text.parse()
+        .map_err(|error| Failure::Input(format!("--set {}: {error}", shown(text))))
+}
+
+/// Reads trajectories.
+pub fn tracks(path: &Path, options: &ReadOptions) -> Result<Tracks, Failure> {
+    let tracks = trajectories::read(path, options)?;
+    for note in &tracks.notes {
+        talk(&format!("note: {}: {note}", path.display()));
+    }
+    Ok(tracks)
+}
+
+/// The value of `--geometry` for no walls.
+pub const NO_WALLS: &str = "none";
+
+/// The walls, from the floor plan `geometry` or else from the trajectory file at `path`.
+pub fn site(path: &Path, geometry: Option<&Path>, tracks: &Tracks) -> Result<Site, Failure> {
+    let plan = match (geometry, tracks.walkable.as_slice()) {
+        (Some(path), _) if path.as_os_str() == NO_WALLS => None,
+        (Some(path), _) => Some(floor_plan(path)?),
+        (None, []) => None,
+        (None, [text]) => Some(floor_plan::parse_wkt(text).map_err(|error| own(path, &error))?),
+        (None, several) => {
+            let problem = format!("{} geometries, one after the other", several.len());
+            return Err(own(path, &problem));
+        }
+    };
+    let solids = plan.map_or(Ok(Vec::new()), FloorPlan::solids);
+    let solids = solids.map_err(|error| Failure::Input(format!("the floor plan: {error}")))?;
+    Ok(Site::new(solids))
+}
+
+/// The error for a problem with the geometry in a trajectory file.
+fn own(path: &Path, problem: &dyn Display) -> Failure {
+    let path = path.display();
+    Failure::Input(format!(
+        "{path}: its geometry: {problem}; give another one with --geometry, or use --geometry {NO_WALLS}"
+    ))
+}
