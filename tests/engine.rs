@@ -57,6 +57,7 @@ mod precision;
 mod queues;
 mod reference_states;
 mod resumed;
+mod round;
 mod runs;
 mod rvo;
 mod rvo_contact;

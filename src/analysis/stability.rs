@@ -151,7 +151,7 @@ impl Mode {
                 if profile.pressure {
                     mode.pressure = mode.pressure.max(speed / sph.support_radius);
                 }
-                mode.take(profile, mass);
+                mode.include(profile, mass);
                 let law = profile.walking.as_ref();
                 let pace = fastest(scene);
                 let steepness = law.map_or(0.0, |law| law.steepness(pace, sph.support_radius));
@@ -174,7 +174,8 @@ impl Mode {
         mode
     }
 
-    fn take(&mut self, profile: &Profile, mass: f64) {
+    /// Includes the rates of a profile.
+    fn include(&mut self, profile: &Profile, mass: f64) {
         let contact = profile.contact;
         let viscosity = profile.viscosity.map_or(0.0, |v| v.coefficient);
         let wall = contact.wall_stiffness.unwrap_or(0.0);

@@ -80,7 +80,7 @@ pub fn resume(options: &ResumeOptions) -> Result<(), Failure> {
         )));
     }
     let mut outputs = Outputs::new(options.program.force);
-    outputs.goes_on_with("the checkpoint", &options.file, "--checkpoint");
+    outputs.reads_and_replaces("the checkpoint", &options.file, "--checkpoint");
     check(outputs, &options.output, &run.scenario)?;
     go_on(run, resumable.flatten(), &options.program, &options.output)
 }

@@ -37,6 +37,8 @@ pub mod tracks;
 pub mod visibility;
 pub mod walking;
 pub mod wall_checks;
+#[path = "../../experiments/src/walls/integrals.rs"]
+pub mod wall_integrals;
 pub mod whole;
 
 use sandbox::engine::agents::NewAgent;

@@ -8,12 +8,14 @@ use rerun::blueprint::{
 use rerun::external::re_sdk_types::blueprint::archetypes::{
     Background, EntityBehavior, VisualBounds2D,
 };
-use rerun::{AsComponents, Color, EntityPath, Points2D};
+use rerun::{AsComponents, EntityPath, Points2D};
 
-use super::layout::Content;
-use super::{crowd, geometry, wall_forces};
+use super::Content;
 use crate::engine::scene::Region;
 use crate::output::colors::Rgb;
+use crate::output::recording::draw::color;
+use crate::output::recording::frame::{crowd, wall_forces};
+use crate::output::recording::scene::obstacles;
 
 /// Color of the crowd where it is only the background.
 const DIM: Rgb = [72, 77, 95];
@@ -71,8 +73,7 @@ impl<'a> View<'a> {
 
     /// The crowd in a single dark color, so that arrows stand out.
     pub fn dimmed(mut self) -> Self {
-        let [r, g, b] = DIM;
-        let points = Points2D::update_fields().with_colors([Color::from_rgb(r, g, b)]);
+        let points = Points2D::update_fields().with_colors([color(DIM)]);
         self.crowd = Some(points.visualizer());
         self
     }
@@ -97,12 +98,11 @@ impl<'a> View<'a> {
             y_range: [-shown.max.y, -shown.min.y].into(),
         }));
         properties.push((properties_of("VisualBounds2D"), Box::new(bounds)));
-        let [r, g, b] = match self.content.has_outside {
-            true => geometry::OUTSIDE,
-            false => geometry::GROUND,
+        let ground = match self.content.has_outside {
+            true => obstacles::OUTSIDE,
+            false => obstacles::GROUND,
         };
-        let background = Background::new(BackgroundKind::SolidColor);
-        let background = background.with_color(Color::from_rgb(r, g, b));
+        let background = Background::new(BackgroundKind::SolidColor).with_color(color(ground));
         properties.push((properties_of("Background"), Box::new(background)));
         let mut behave = |entity: &EntityPath, behavior: EntityBehavior| {
             let overrides = properties_of("ViewContents/overrides").join(entity);
@@ -111,7 +111,7 @@ impl<'a> View<'a> {
         };
         // The image would swallow clicks.
         let silent = EntityBehavior::new().with_interactive(false);
-        behave(&EntityPath::from(geometry::OBSTACLES), silent);
+        behave(&EntityPath::from(obstacles::ENTITY), silent);
         for entity in &self.content.fields {
             behave(entity, EntityBehavior::new().with_visible(false));
         }

@@ -1,16 +1,15 @@
 //! Integrals of the kernels over what walls hide or over what is solid, by adaptive quadrature, ray by ray: a reference
-//! for every method of including walls. It shares the kernels with [`crate::engine::boundary`], but none of its closed
-//! forms.
+//! for every method of including walls, also for the tests of the engine. It shares the kernels with
+//! [`sandbox::engine::boundary`], but none of its closed forms.
 
 use std::f64::consts::PI;
 use std::ops::{Add, Mul, Sub};
 
+use sandbox::engine::boundary::WallShare;
+use sandbox::engine::geometry::Walls;
+use sandbox::engine::kernel;
+use sandbox::engine::math::Vector;
 use serde::Serialize;
-
-use crate::engine::boundary::WallShare;
-use crate::engine::geometry::Walls;
-use crate::engine::kernel;
-use crate::engine::math::Vector;
 
 /// Maximum number of times a panel of angles is halved.
 const MOST_HALVINGS: u32 = 48;

@@ -4,10 +4,10 @@ use rerun::blueprint::BlueprintActivation;
 use rerun::external::re_log_types::{BlueprintActivationCommand, LogMsg, StoreKind};
 use rerun::{RecordingStream, RecordingStreamBuilder};
 
-use super::RecordingOptions;
-use super::error::Cause;
-use super::layout::{Content, Opening, layout};
-use super::output::application;
+use super::{Content, Opening, layout};
+use crate::output::recording::error::Cause;
+use crate::output::recording::options::RecordingOptions;
+use crate::output::recording::stream::application;
 
 /// Sends the default blueprint.
 pub fn send(

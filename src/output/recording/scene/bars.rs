@@ -1,15 +1,14 @@
 //! Color bars beside the crowd.
 
-use rerun::{
-    AsComponents, Color, Image, LineStrips2D, Points2D, Radius, RecordingStream, Transform3D,
-};
+use rerun::{AsComponents, Image, LineStrips2D, RecordingStream, Transform3D};
 
-use super::crowd::Maps;
-use super::error::Cause;
 use crate::analysis::round;
 use crate::engine::math::Vector;
 use crate::engine::scene::Region;
-use crate::output::colors::ColorMap;
+use crate::output::colors::{ColorMap, Rgb};
+use crate::output::recording::draw::{color, px, texts};
+use crate::output::recording::error::Cause;
+use crate::output::recording::frame::crowd::Maps;
 
 /// The entities of the bars.
 pub const DENSITY: &str = "world/legend/density";
@@ -32,7 +31,7 @@ const UNIT: f64 = 0.045;
 const BANDS: u16 = 64;
 /// The most steps between numbers.
 const MOST_STEPS: i32 = 5;
-const TEXT: Color = Color(rerun::Rgba32::from_rgb(214, 214, 222));
+const TEXT: Rgb = [214, 214, 222];
 
 /// The region with its bar.
 pub fn with_bar(view: &Region) -> Region {
@@ -87,22 +86,18 @@ fn log_bar(
         [[right as f32, y], [(right + TICK * side) as f32, y]]
     });
     let ticks = LineStrips2D::new(ticks)
-        .with_colors([TEXT])
-        .with_radii([Radius::new_ui_points(0.6)])
+        .with_colors([color(TEXT)])
+        .with_radii(px(0.6))
         .with_draw_order(30.0);
     let middle = (left + NUMBERS * side) as f32;
     let top = (low + height + UNIT * side).min(view.max.y);
     let above = [0.5 * (left + right), top].map(|x| x as f32);
-    let places = numbers
-        .iter()
-        .map(|&value| [middle, (at(value) + RAISED * side) as f32]);
-    let texts = numbers.iter().map(|&value| round::text(value));
-    let names = Points2D::new(places.chain([above]))
-        .with_labels(texts.chain([unit.to_owned()]))
-        .with_colors([TEXT])
-        .with_radii([Radius::new_ui_points(0.0)])
-        .with_show_labels(true)
+    let beside = |&value: &f64| [middle, (at(value) + RAISED * side) as f32];
+    let places = numbers.iter().map(beside).chain([above]);
+    let numbers = numbers.iter().map(|&value| round::text(value));
+    let texts = texts(places, numbers.chain([unit.to_owned()]))
+        .with_colors([color(TEXT)])
         .with_draw_order(31.0);
-    let parts: [&dyn AsComponents; 2] = [&ticks, &names];
+    let parts: [&dyn AsComponents; 2] = [&ticks, &texts];
     Ok(stream.log_static(entity, &parts)?)
 }

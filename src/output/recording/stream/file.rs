@@ -12,14 +12,13 @@ use rerun::external::re_log_encoding::rrd::{CrateVersion, EncodeError, Encoder, 
 use rerun::log::LogMsg;
 use rerun::sink::{LogSink, SinkFlushError};
 
+use crate::output::recording::error::GONE;
+
 /// Maximum number of queued messages; senders wait when the queue is full.
 const QUEUE: usize = 1024;
 
 /// The first error of a sink, shared by both of its sides; readable after the sink is dropped.
 pub type Failure = Arc<OnceLock<String>>;
-
-/// The error of a thread that has panicked.
-pub const GONE: &str = "the thread that writes has failed";
 
 /// A sink that writes rerun's messages to a file on its own thread.
 ///

@@ -1,17 +1,14 @@
 //! The entities under `world/debug`: kernels, hidden regions, wall points and every force.
 
-use rerun::{
-    Arrows2D, AsComponents, Color, Ellipses2D, LineStrips2D, Points2D, Radius, RecordingStream,
-};
+use rerun::{Arrows2D, AsComponents, Ellipses2D, LineStrips2D, Points2D, RecordingStream};
 
-use super::arrows;
-use super::debug::{DebugAgents, Open};
-use super::error::Cause;
-use super::geometry::xy;
+use super::{DebugAgents, Open, arrows};
 use crate::engine::boundary::WallMethod;
 use crate::engine::math::Vector;
 use crate::engine::scene::Scene;
 use crate::output::colors::Rgb;
+use crate::output::recording::draw::{Point, color, px, xy};
+use crate::output::recording::error::Cause;
 
 /// With more debug agents than this, labels would hide everything; a click still shows an agent's id.
 const MOST_LABELS: usize = 40;
@@ -73,8 +70,8 @@ pub fn begin(
     let style = point_style(WHITE, 1.5).with_show_labels(true);
     add("agents", &style, Box::new(labels))?;
     let style = Ellipses2D::update_fields()
-        .with_line_radii([Radius::new_ui_points(0.6)])
-        .with_colors([Color::from_rgb(150, 160, 220)])
+        .with_line_radii(px(0.6))
+        .with_colors([color([150, 160, 220])])
         .with_draw_order(10.0);
     add("kernels", &style, Box::new(kernels))?;
     let walls = !scene.walls.is_empty();
@@ -107,27 +104,27 @@ pub fn begin(
     Ok(layers)
 }
 
-fn point_style([r, g, b]: Rgb, radius: f32) -> Points2D {
+fn point_style(rgb: Rgb, radius: f32) -> Points2D {
     Points2D::update_fields()
-        .with_radii([Radius::new_ui_points(radius)])
-        .with_colors([Color::from_rgb(r, g, b)])
+        .with_radii(px(radius))
+        .with_colors([color(rgb)])
         .with_draw_order(12.0)
 }
 
-fn line_style([r, g, b]: Rgb, width: f32) -> LineStrips2D {
+fn line_style(rgb: Rgb, width: f32) -> LineStrips2D {
     LineStrips2D::update_fields()
-        .with_radii([Radius::new_ui_points(width)])
-        .with_colors([Color::from_rgb(r, g, b)])
+        .with_radii(px(width))
+        .with_colors([color(rgb)])
         .with_draw_order(11.0)
 }
 
-fn arrow_style([r, g, b]: Rgb, width: f32) -> Arrows2D {
+fn arrow_style(rgb: Rgb, width: f32) -> Arrows2D {
     Arrows2D::update_fields()
-        .with_radii([Radius::new_ui_points(width)])
-        .with_colors([Color::from_rgb(r, g, b)])
+        .with_radii(px(width))
+        .with_colors([color(rgb)])
 }
 
-fn positions(open: &[Open]) -> impl Iterator<Item = [f32; 2]> {
+fn positions(open: &[Open]) -> impl Iterator<Item = Point> {
     open.iter().map(|agent| xy(agent.position))
 }
 
@@ -161,7 +158,7 @@ fn ways(open: &[Open]) -> Data {
 }
 
 /// The positions of agents, each with its nearest point on a wall and its representative point there.
-fn walls(open: &[Open]) -> impl Iterator<Item = ([f32; 2], [f32; 2], Option<[f32; 2]>)> {
+fn walls(open: &[Open]) -> impl Iterator<Item = (Point, Point, Option<Point>)> {
     open.iter().flat_map(|agent| {
         let walls = agent.breakdown.walls.iter();
         walls.map(|term| {
@@ -188,14 +185,14 @@ fn representative_points(open: &[Open]) -> Data {
     dots(walls(open).filter_map(|(.., representative)| representative))
 }
 
-fn strips(strips: impl Iterator<Item = Vec<[f32; 2]>>) -> Data {
+fn strips(strips: impl Iterator<Item = Vec<Point>>) -> Data {
     let strips: Vec<_> = strips.collect();
     let count = strips.len();
     let lines = LineStrips2D::update_fields().with_strips(strips);
     (Box::new(lines), count)
 }
 
-fn dots(points: impl Iterator<Item = [f32; 2]>) -> Data {
+fn dots(points: impl Iterator<Item = Point>) -> Data {
     let points: Vec<_> = points.collect();
     let count = points.len();
     let points = Points2D::update_fields().with_positions(points);

@@ -1,8 +1,8 @@
 //! Which debug agents have views of their own, and which moment a recording opens at.
 
-use super::debug::DebugAgents;
-use super::snapshot::Snapshot;
+use super::DebugAgents;
 use crate::engine::simulation::Simulation;
+use crate::output::recording::frame::Snapshot;
 
 /// The most agents with views of their own.
 const MOST: usize = 12;
@@ -115,7 +115,7 @@ impl Moment {
     }
 
     /// Looks at a frame.
-    pub fn see(&mut self, snapshot: &Snapshot) {
+    pub fn update(&mut self, snapshot: &Snapshot) {
         let density = snapshot.densities.iter().copied().fold(0.0, f32::max);
         let is_asked = self.is_asked(snapshot.time);
         let is_denser = !self.is_settled && (self.at.is_none() || density > self.density);

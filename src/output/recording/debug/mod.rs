@@ -1,6 +1,12 @@
 //! Debug agents: some agents with the full breakdown of their forces, frame by frame.
 
-use super::geometry::xy;
+pub mod arrows;
+pub mod focus;
+pub mod follow;
+pub mod layers;
+pub mod moment;
+
+use super::draw::{Point, xy};
 use crate::engine::breakdown::Breakdown;
 use crate::engine::geometry::HiddenRegion;
 use crate::engine::math::Vector;
@@ -26,7 +32,7 @@ pub enum DebugAgents {
 
 impl DebugAgents {
     /// Whether agent `i` of the current frame is a debug agent.
-    pub(super) fn includes(&self, simulation: &Simulation, i: usize) -> bool {
+    pub(in crate::output::recording) fn includes(&self, simulation: &Simulation, i: usize) -> bool {
         let agents = simulation.frame().agents;
         if !agents.is_present(i) {
             return false;
@@ -41,7 +47,11 @@ impl DebugAgents {
 
     /// The breakdowns of the debug agents in the current frame, and of the agents `also` that are present, in the order
     /// of their ids; empty if the frame has no densities.
-    pub(super) fn open(&self, simulation: &Simulation, also: &[Option<u32>]) -> Vec<Open> {
+    pub(in crate::output::recording) fn open(
+        &self,
+        simulation: &Simulation,
+        also: &[Option<u32>],
+    ) -> Vec<Open> {
         let agents = simulation.frame().agents;
         let also = also.iter().flatten();
         let mut chosen: Vec<usize> = match self {
@@ -67,7 +77,7 @@ pub struct Open {
     pub position: Vector,
     pub support_radius: f64,
     /// The outlines of P_k, in the order of the breakdown's walls.
-    pub hidden: Vec<Vec<[f32; 2]>>,
+    pub hidden: Vec<Vec<Point>>,
 }
 
 impl Open {

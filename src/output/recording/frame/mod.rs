@@ -1,16 +1,24 @@
-//! A copy of one frame, so that another thread can write it.
+//! A frame: a copy of it, so that another thread can write it, and what is written of it.
 
-use rerun::EntityPath;
+pub mod crowd;
+pub mod events;
+pub mod stats;
+pub mod wall_forces;
+
+use rerun::{EntityPath, RecordingStream};
 
 use super::debug::{DebugAgents, Open};
-use super::events::Line;
-use super::geometry::xy;
-use super::places;
-use super::wall_forces::Part;
+use super::draw::{Point, xy};
 use crate::engine::math::Vector;
 use crate::engine::simulation::Simulation;
 use crate::output::colors::Rgb;
 use crate::output::scenery::stage_color;
+use events::Line;
+use wall_forces::Part;
+
+/// The timelines.
+pub const FRAME: &str = "frame";
+pub const SIM_TIME: &str = "sim_time";
 
 /// A copy of one frame in single precision, with agents in the simulation's order.
 #[derive(Default)]
@@ -20,9 +28,9 @@ pub struct Snapshot {
     /// `None` for measured data.
     pub ms_per_frame: Option<f64>,
     pub ids: Vec<u32>,
-    pub positions: Vec<[f32; 2]>,
+    pub positions: Vec<Point>,
     /// NaN if unknown.
-    pub velocities: Vec<[f32; 2]>,
+    pub velocities: Vec<Point>,
     pub radii: Vec<f32>,
     /// Empty if the masses are unknown.
     pub masses: Vec<f32>,
@@ -80,10 +88,15 @@ impl Snapshot {
             rest_densities: numbers(&fields.rest_density),
             pressures: numbers(&fields.pressure),
             stages: stages.collect(),
-            places: places::values(simulation),
+            places: stats::of_places(simulation),
             open,
             waiting: simulation.backlogs().map(|one| one.waiting).collect(),
             ..Self::default()
         }
     }
+}
+
+pub fn set_time(stream: &RecordingStream, frame: i64, time: f64) {
+    stream.set_time_sequence(FRAME, frame);
+    stream.set_duration_secs(SIM_TIME, time);
 }

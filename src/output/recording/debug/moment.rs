@@ -2,10 +2,10 @@
 
 use rerun::{RecordingStream, TextDocument};
 
-use super::debug::Open;
-use super::error::Cause;
+use super::Open;
 use crate::engine::breakdown::Breakdown;
 use crate::engine::math::Vector;
+use crate::output::recording::error::Cause;
 
 /// The most neighbors and walls in a table.
 const MOST_ROWS: usize = 20;

@@ -2,14 +2,15 @@
 
 use rerun::{RecordingStream, TextLog, TextLogLevel};
 
-use super::error::Cause;
 use super::set_time;
+use crate::analysis::round;
 use crate::engine::simulation::{Event, EventKind, Simulation};
+use crate::output::recording::error::Cause;
 
 /// The entity of the log.
 pub const ENTITY: &str = "log";
 /// The most lines on arrivals.
-const MOST_ARRIVALS: u64 = 100;
+const MOST_ARRIVALS: f64 = 100.0;
 
 /// A line of the log.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +20,19 @@ pub struct Line {
     pub time: f64,
     pub text: String,
     pub level: &'static str,
+}
+
+impl Line {
+    /// An ordinary line.
+    pub fn info((frame, time): (i64, f64), text: String) -> Self {
+        let level = TextLogLevel::INFO;
+        Self {
+            frame,
+            time,
+            text,
+            level,
+        }
+    }
 }
 
 /// The state of the log.
@@ -66,12 +80,9 @@ impl Events {
         for arrival in arrivals[arrived..].iter().filter(|arrival| arrival.counted) {
             self.evacuated += 1;
             if self.evacuated.is_multiple_of(self.step) && !is_first {
-                lines.push(Line {
-                    frame: clock.frame_at(arrival.time).cast_signed(),
-                    time: arrival.time,
-                    text: format!("{} agents have arrived", self.evacuated),
-                    level: TextLogLevel::INFO,
-                });
+                let frame = clock.frame_at(arrival.time).cast_signed();
+                let text = format!("{} agents have arrived", self.evacuated);
+                lines.push(Line::info((frame, arrival.time), text));
             }
         }
         lines
@@ -80,17 +91,8 @@ impl Events {
 
 /// 10, or the smallest of 20, 50, 100, 200, … with which `entering` agents make at most a hundred lines.
 fn step(entering: u64) -> usize {
-    let mut decade = 10_u64;
-    loop {
-        let fits = [1, 2, 5].map(|k| k * decade);
-        let fits = fits
-            .into_iter()
-            .find(|step| entering / step <= MOST_ARRIVALS);
-        if let Some(step) = fits {
-            return usize::try_from(step).unwrap_or(usize::MAX);
-        }
-        decade = decade.saturating_mul(10);
-    }
+    let least = (entering as f64 + 1.0) / (MOST_ARRIVALS + 1.0);
+    round::step(least).max(10.0) as usize
 }
 
 fn in_words(event: &Event) -> (String, &'static str) {

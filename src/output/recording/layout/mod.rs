@@ -1,5 +1,8 @@
 //! The layout that a recording opens with: views of the crowd and of single agents, plots, texts.
 
+pub mod blueprint;
+mod views;
+
 use rerun::EntityPath;
 use rerun::blueprint::components::{LoopMode, PanelState, PlayState};
 use rerun::blueprint::{
@@ -8,24 +11,19 @@ use rerun::blueprint::{
 };
 use rerun::external::re_log_types::TimeInt;
 
-use super::views::{Property, View};
-use super::{
-    RecordingOptions, SIM_TIME, bars, crowd, events, focus, moment, places, text, wall_forces,
-};
+use super::arrangement::Arrangement;
+use super::debug::{focus, moment};
+use super::frame::{SIM_TIME, crowd, events, stats, wall_forces};
+use super::options::RecordingOptions;
+use super::scene::bars;
+use super::text;
 use crate::analysis::round::brief;
-use crate::engine::math::Vector;
-use crate::engine::scene::Region;
+use views::{Property, View};
 
 /// Length of the loop that plays first, seconds.
 const LOOP: f64 = 10.0;
 /// The loop begins before the opening moment if less than this is left of the run, seconds.
 const SHORTEST_LOOP: f64 = 2.0;
-
-/// The usual size of the viewer without its panels, pixels, and the height of a view's title.
-const WINDOW: [f64; 2] = [1300.0, 800.0];
-const TITLE: f64 = 24.0;
-/// An arrangement is clearly better than another if it shows the crowd this many times as large.
-const CLEARLY: f64 = 1.15;
 
 /// The state of a recording, on which its layout depends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,13 +93,12 @@ pub fn layout(
 ) -> (Blueprint, Vec<Property>) {
     let mut properties = Vec::new();
     let all = &mut properties;
-    let agents = followed(all, opening, content);
     let root = match content.kind {
-        Kind::Moment => moment(agents, content),
+        Kind::Moment => moment(all, opening, content),
         _ => {
             let arrangement = Arrangement::of(&options.view);
             let crowds = crowds(all, options, arrangement, content);
-            let rest = rest(all, (options, arrangement), agents, content);
+            let rest = rest(all, (options, arrangement), opening, content);
             match arrangement {
                 Arrangement::Tall => Horizontal::new([crowds, rest]).into(),
                 _ => Vertical::new([crowds, rest])
@@ -117,56 +114,6 @@ pub fn layout(
         .with_selection_panel(SelectionPanel::from_state(PanelState::Expanded))
         .with_time_panel(time_panel(options, opening));
     (blueprint, properties)
-}
-
-/// The positions of the two views of the whole crowd.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Arrangement {
-    /// Side by side above the rest.
-    Columns,
-    /// One above the other, above the rest: for wide plans.
-    Wide,
-    /// Side by side, left of the rest: for tall plans.
-    Tall,
-}
-
-impl Arrangement {
-    /// The arrangement in which this part of the plane is largest, but columns unless another is clearly better.
-    fn of(view: &Region) -> Self {
-        let shown = bars::with_bar(view);
-        let scale = |other: &Self| {
-            let extent = shown.max - shown.min;
-            Vector::from(other.panel()).component_div(&extent).min()
-        };
-        let better = |other: &Self| scale(other) > CLEARLY * scale(&Self::Columns);
-        let mut others = [Self::Wide, Self::Tall].into_iter();
-        others.find(better).unwrap_or(Self::Columns)
-    }
-
-    /// The heights of the views of the whole crowd and of the rest.
-    fn row_shares(self) -> [f32; 2] {
-        match self {
-            Self::Wide => [13.0, 8.0],
-            _ => [11.0, 10.0],
-        }
-    }
-
-    /// The usual width and height of a view of the whole crowd, pixels.
-    fn panel(self) -> [f64; 2] {
-        let [width, height] = WINDOW;
-        let [crowds, rest] = self.row_shares().map(f64::from);
-        let above = height * crowds / (crowds + rest);
-        match self {
-            Self::Columns => [0.5 * width, above - TITLE],
-            Self::Wide => [width, 0.5 * above - TITLE],
-            Self::Tall => [0.25 * width, height - TITLE],
-        }
-    }
-}
-
-/// The usual width and height of a view of the whole crowd, pixels.
-pub fn panel(view: &Region) -> [f64; 2] {
-    Arrangement::of(view).panel()
 }
 
 /// The whole crowd by density, and by speed or stage.
@@ -200,53 +147,55 @@ fn crowds(
     }
 }
 
-/// The views of the followed agents, the one of the opening moment first; each with its view and its name.
+/// A tab for each followed agent, the one of the opening moment first: its view beside what `beside` shows of the agent
+/// with this name.
 fn followed(
     properties: &mut Vec<Property>,
     opening: Opening,
     content: &Content,
-) -> Vec<(String, ContainerLike)> {
+    beside: fn(&str) -> ContainerLike,
+) -> Vec<ContainerLike> {
     let first = match opening {
         Opening::Whole(first) => first.unwrap_or(0),
         _ => 0,
     };
     let mut order: Vec<usize> = (0..content.followed.len()).collect();
     order.sort_by_key(|&k| k != first);
-    let names = order.into_iter().map(|k| &content.followed[k]);
-    let view = |name: &String| {
-        let title = match name.parse::<u32>() {
-            Ok(id) => format!("Forces on agent {id}"),
-            Err(_) => "Forces on the densest agent".to_owned(),
+    let tab = |k: usize| {
+        let name = &content.followed[k];
+        let (title, tab) = match name.parse::<u32>() {
+            Ok(id) => (format!("agent {id}"), format!("Agent {id}")),
+            Err(_) => ("the densest agent".to_owned(), "Densest agent".to_owned()),
         };
-        let view = View::of_crowd(&title, content)
+        let view = View::of_crowd(&format!("Forces on {title}"), content)
             .following(&focus::entity(name))
             .dimmed()
             .add(properties, &focus::region());
-        (name.clone(), view)
+        let both = Horizontal::new([view, beside(name)]);
+        let both = match content.kind {
+            Kind::Moment => both.with_column_shares([5.0, 4.0]),
+            _ => both,
+        };
+        both.with_name(tab).into()
     };
-    names.map(view).collect()
+    order.into_iter().map(tab).collect()
 }
 
 /// The followed agents with their forces over time, all debug agents, plots and texts.
 fn rest(
     properties: &mut Vec<Property>,
     (options, arrangement): (&RecordingOptions, Arrangement),
-    agents: Vec<(String, ContainerLike)>,
+    opening: Opening,
     content: &Content,
 ) -> ContainerLike {
     let others = [plots(content), texts(content)];
-    if agents.is_empty() {
+    if content.followed.is_empty() {
         return Horizontal::new(others).into();
     }
-    let beside = |(name, view): (String, ContainerLike)| {
-        let series = plot(
-            "Accelerations [m/s²]",
-            &format!("/{}", focus::forces(&name)),
-        );
-        let both = Horizontal::new([view, series]);
-        both.with_name(in_words(&name)).into()
-    };
-    let mut tabs: Vec<ContainerLike> = agents.into_iter().map(beside).collect();
+    let mut tabs = followed(properties, opening, content, |name| {
+        let forces = format!("/{}", focus::forces(name));
+        plot("Accelerations [m/s²]", &forces)
+    });
     let everywhere = View::of_crowd("All debug agents", content)
         .with("world/debug")
         .dimmed()
@@ -262,23 +211,11 @@ fn rest(
         .into()
 }
 
-/// The name of a followed agent's tab.
-fn in_words(name: &str) -> String {
-    match name.parse::<u32>() {
-        Ok(id) => format!("Agent {id}"),
-        Err(_) => "Densest agent".to_owned(),
-    }
-}
-
 /// Each agent beside the table of its forces.
-fn moment(agents: Vec<(String, ContainerLike)>, content: &Content) -> ContainerLike {
-    let beside = |(name, view): (String, ContainerLike)| {
-        let table =
-            TextDocumentView::new("Numbers").with_origin(format!("/{}", moment::entity(&name)));
-        let beside = Horizontal::new([view, table.into()]).with_column_shares([5.0, 4.0]);
-        beside.with_name(in_words(&name)).into()
-    };
-    let mut tabs: Vec<ContainerLike> = agents.into_iter().map(beside).collect();
+fn moment(properties: &mut Vec<Property>, opening: Opening, content: &Content) -> ContainerLike {
+    let mut tabs = followed(properties, opening, content, |name| {
+        document("Numbers", &moment::entity(name))
+    });
     tabs.push(texts(content));
     Tabs::new(tabs).into()
 }
@@ -325,8 +262,8 @@ fn plots(content: &Content) -> ContainerLike {
     let places = || {
         let of = |what: &str| format!("/stats/places/{what}");
         let present = (content.has_waiting)
-            .then(|| plot("Agents in queues and waiting areas", &of(places::PRESENT)));
-        let passed = plot("Agents that have passed exits", &of(places::PASSED));
+            .then(|| plot("Agents in queues and waiting areas", &of(stats::PRESENT)));
+        let passed = plot("Agents that have passed exits", &of(stats::PASSED));
         let plots = present.into_iter().chain([passed]);
         Vertical::new(plots).with_name("Places").into()
     };
@@ -338,11 +275,12 @@ fn plots(content: &Content) -> ContainerLike {
     Tabs::new(first.chain([motion, crowd, time])).into()
 }
 
+fn document(name: &str, entity: &str) -> ContainerLike {
+    let view = TextDocumentView::new(name);
+    view.with_origin(format!("/{entity}")).into()
+}
+
 fn texts(content: &Content) -> ContainerLike {
-    let document = |name: &str, entity: &str| -> ContainerLike {
-        let view = TextDocumentView::new(name);
-        view.with_origin(format!("/{entity}")).into()
-    };
     let events = || TextLogView::new("Events").with_origin(format!("/{}", events::ENTITY));
     match content.kind {
         Kind::Run => Tabs::new([
@@ -353,38 +291,5 @@ fn texts(content: &Content) -> ContainerLike {
         .into(),
         Kind::Moment => document("Scenario", text::DOCUMENT),
         Kind::Measurement => document("Measurement", text::DOCUMENT),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn plans_of_any_shape_fill_most_of_their_views() {
-        for (aspect, expected) in [
-            (0.25, Some(Arrangement::Tall)),
-            (0.7, None),
-            (1.0, Some(Arrangement::Columns)),
-            (2.0, Some(Arrangement::Columns)),
-            (3.5, None),
-            (5.0, Some(Arrangement::Wide)),
-            (8.0, Some(Arrangement::Wide)),
-        ] {
-            let (min, max) = (Vector::zeros(), Vector::new(10.0 * aspect, 10.0));
-            let view = Region { min, max };
-            let chosen = Arrangement::of(&view);
-            assert!(
-                expected.is_none_or(|one| one == chosen),
-                "{aspect}: {chosen:?}"
-            );
-            let extent = bars::with_bar(&view).max;
-            let filled = |arrangement: Arrangement| {
-                let parts = extent.component_div(&Vector::from(arrangement.panel()));
-                parts.min() / parts.max()
-            };
-            assert!(filled(chosen) > 0.45, "{aspect}: {}", filled(chosen));
-            assert!(filled(Arrangement::Columns) > 0.45 || chosen != Arrangement::Columns);
-        }
     }
 }

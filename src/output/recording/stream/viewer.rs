@@ -13,9 +13,9 @@ use rerun::log::LogMsg;
 use rerun::sink::{GrpcSink, LogSink, SinkFlushError};
 use rerun::{DEFAULT_SERVER_PORT, SpawnError, SpawnOptions};
 
-use super::error::RecordingError;
 use super::file::Failure;
 use super::relay::{GivenUp, Items, Relay};
+use crate::output::recording::error::RecordingError;
 
 /// Timeout for connecting to a viewer.
 const CONNECTING: Duration = Duration::from_secs(3);

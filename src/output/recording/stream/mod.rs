@@ -1,5 +1,9 @@
 //! The destination of a recording, and the rerun stream that goes there.
 
+mod file;
+mod relay;
+pub mod viewer;
+
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -13,10 +17,10 @@ use rerun::log::ChunkBatcherConfig;
 use rerun::sink::LogSink;
 use rerun::{RecordingStream, RecordingStreamBuilder};
 
-use super::RecordingOptions;
 use super::error::{Cause, RecordingError};
-use super::file::{Failure, FileSink};
-use super::viewer::{Address, Viewer};
+use super::options::RecordingOptions;
+use file::{Failure, FileSink};
+use viewer::{Address, Viewer};
 
 /// The longest time whose data a killed run loses, besides the chunk being written.
 const FILE_TICK: Duration = Duration::from_secs(1);

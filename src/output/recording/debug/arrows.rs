@@ -1,13 +1,13 @@
 //! The arrows of forces: their lengths, colors and names.
 
-use rerun::{Arrows2D, Color, Points2D, Radius};
+use rerun::{Arrows2D, Points2D, Radius};
 
-use super::debug::Open;
-use super::geometry::xy;
+use super::Open;
 use crate::engine::math::{Vector, direction};
 use crate::engine::profile::Term;
 use crate::engine::scene::Scene;
 use crate::output::colors::{self, Rgb};
+use crate::output::recording::draw::{color as rgb, xy};
 
 /// The growth of an arrow's length per factor of ten of a large acceleration, meters.
 const PER_DECADE: f64 = 0.6;
@@ -88,7 +88,6 @@ pub fn in_words(term: Term) -> String {
 /// The arrows of these forces at the origin, the first one broad, and their names beside the tips. Arrows too short to
 /// see have no names.
 pub fn named(forces: &[Force]) -> (Arrows2D, Points2D) {
-    let rgb = |[r, g, b]: Rgb| Color::from_rgb(r, g, b);
     let vectors: Vec<Vector> = forces.iter().map(|force| arrow(force.1)).collect();
     let arrows = Arrows2D::update_fields()
         .with_origins(vectors.iter().map(|_| [0.0, 0.0]))

@@ -1,15 +1,18 @@
 //! The names of what a recording shows, where they do not cover each other before the viewer zooms in.
 
-use rerun::{AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStream};
+use std::collections::BTreeMap;
 
-use super::error::Cause;
-use super::geometry::xy;
-use super::{bars, layout};
+use rerun::{AsComponents, LineStrips2D, RecordingStream};
+
+use super::bars;
 use crate::engine::geometry::Walls;
 use crate::engine::math::Vector;
 use crate::engine::scene::{Region, Scene};
 use crate::output::colors::Rgb;
-use crate::output::labels::{Labels, Placed, Screen, Spot, along_lines, along_walls};
+use crate::output::labels::{self, Labels, Placed, Screen, Spot, along_lines, along_walls};
+use crate::output::recording::arrangement::Arrangement;
+use crate::output::recording::draw::{color, px, texts, xy};
+use crate::output::recording::error::Cause;
 use crate::scenario::floor_plan::Label;
 
 /// The usual width of a letter, and what a label has beside its text, pixels.
@@ -47,7 +50,7 @@ impl Names {
 
     /// Names that avoid the points that `avoided` returns for a distance between them, meters.
     fn new(view: &Region, avoided: impl FnOnce(f64) -> Vec<Vector>) -> Self {
-        let panel = Vector::from(layout::panel(view));
+        let panel = Vector::from(Arrangement::of(view).panel());
         let shown = bars::with_bar(view);
         let extent = shown.max - shown.min;
         let scale = panel.component_div(&extent).min();
@@ -88,40 +91,42 @@ impl Names {
         self.entities.extend(is_placed.then(|| entity.to_owned()));
     }
 
+    /// Adds the names of outlines in `{entity}/names`, around them.
+    pub fn add_outlines(&mut self, entity: &str, color: Rgb, named: &[(String, Vec<Vector>)]) {
+        for (name, outline) in named {
+            let spots = labels::around(outline, false);
+            self.add(
+                &format!("{entity}/names"),
+                named.len(),
+                name,
+                (color, &spots),
+            );
+        }
+    }
+
     /// Logs the names of each entity below it.
     pub fn log(self, stream: &RecordingStream) -> Result<(), Cause> {
-        let placed = self.labels.into_placed();
-        let all: Vec<(String, Placed)> = self.entities.into_iter().zip(placed).collect();
         let above = Vector::new(0.0, self.screen.meters(BELOW));
-        for (k, (entity, _)) in all.iter().enumerate() {
-            if all[..k].iter().any(|(other, _)| other == entity) {
-                continue;
-            }
-            let own = || {
-                let own = all.iter().filter(|(other, _)| other == entity);
-                own.map(|(_, label)| label)
-            };
-            let color = |label: &Placed| {
-                let [r, g, b] = label.color;
-                Color::from_rgb(r, g, b)
-            };
+        let mut by_entity: BTreeMap<String, Vec<Placed>> = BTreeMap::new();
+        for (entity, label) in self.entities.into_iter().zip(self.labels.into_placed()) {
+            by_entity.entry(entity).or_default().push(label);
+        }
+        for (entity, own) in by_entity {
+            let of = |label: &Placed| color(label.color);
             let middle = |label: &Placed| (label.around[0] + label.around[1]) * 0.5;
-            let far = || own().filter(|label| label.leader.is_some());
+            let far = || own.iter().filter(|label| label.leader.is_some());
             // To a place inside of the label: it keeps its size when the viewer zooms in.
             let end = |label: &Placed| label.at + (middle(label) - label.at) * INTO;
             let lines = far().filter_map(|label| Some([xy(label.leader?), xy(end(label))]));
             let lines = LineStrips2D::new(lines)
-                .with_colors(far().map(color))
-                .with_radii([Radius::new_ui_points(0.4)])
+                .with_colors(far().map(of))
+                .with_radii(px(0.4))
                 .with_draw_order(7.0);
-            // The viewer writes labels below their points.
-            let points = Points2D::new(own().map(|label| xy(middle(label) + above)))
-                .with_labels(own().map(|label| label.text.as_str()))
-                .with_colors(own().map(color))
-                .with_radii([Radius::new_ui_points(0.0)])
-                .with_show_labels(true)
+            let places = own.iter().map(|label| xy(middle(label) + above));
+            let texts = texts(places, own.iter().map(|label| label.text.as_str()))
+                .with_colors(own.iter().map(of))
                 .with_draw_order(7.0);
-            let parts: [&dyn AsComponents; 2] = [&lines, &points];
+            let parts: [&dyn AsComponents; 2] = [&lines, &texts];
             stream.log_static(format!("world/geometry/{entity}"), &parts)?;
         }
         Ok(())

@@ -11,19 +11,19 @@
 //! | `focus/ID/here/scale` | arrows of 0.2, 2 and 20 m/s² |
 
 use rerun::{
-    Arrows2D, AsComponents, Color, Ellipses2D, LineStrips2D, Points2D, Radius, RecordingStream,
-    Scalars, SeriesLines, Transform3D,
+    Arrows2D, AsComponents, Ellipses2D, LineStrips2D, Points2D, Radius, RecordingStream, Scalars,
+    SeriesLines, Transform3D,
 };
 
+use super::Open;
 use super::arrows::{self, TOTAL};
-use super::debug::Open;
-use super::error::Cause;
-use super::geometry::xy;
 use super::layers::{HIDDEN, LINK, NEAREST, REPRESENTATIVE, WAY};
 use crate::engine::math::Vector;
 use crate::engine::profile::Term;
 use crate::engine::scene::Region;
 use crate::output::colors::Rgb;
+use crate::output::recording::draw::{Point, color, px, texts, xy, y_up};
+use crate::output::recording::error::Cause;
 
 /// Half the side of the view around an agent, meters.
 pub const REACH: f64 = 2.5;
@@ -60,42 +60,38 @@ pub struct Focus {
     has_walls: bool,
 }
 
-fn rgb([r, g, b]: Rgb) -> Color {
-    Color::from_rgb(r, g, b)
-}
-
 impl Focus {
     /// Logs colors, widths, names and the scale.
     pub fn begin(stream: &RecordingStream, name: String, terms: &[Term]) -> Result<Self, Cause> {
         let here = format!("{}/here", entity(&name));
-        stream.log_static(here.as_str(), &Transform3D::from_scale([1.0, -1.0, 1.0]))?;
+        stream.log_static(here.as_str(), &y_up())?;
         let names = terms.iter().map(|&term| arrows::in_words(term));
         let colors = terms.iter().map(|&term| arrows::color(term).1);
         let series = SeriesLines::new()
             .with_names(["total".to_owned()].into_iter().chain(names))
-            .with_colors([TOTAL].into_iter().chain(colors).map(rgb))
+            .with_colors([TOTAL].into_iter().chain(colors).map(color))
             .with_widths(vec![1.5; terms.len() + 1]);
         let style = Arrows2D::update_fields().with_draw_order(21.0);
         let names = Points2D::update_fields()
-            .with_radii([Radius::new_ui_points(0.0)])
+            .with_radii(px(0.0))
             .with_show_labels(true)
             .with_draw_order(22.0);
         let parts: [&dyn AsComponents; 3] = [&style, &names, &series];
         stream.log_static(forces(&name), &parts)?;
         let lines = LineStrips2D::update_fields()
-            .with_radii([Radius::new_ui_points(0.8)])
+            .with_radii(px(0.8))
             .with_draw_order(18.0);
         let points = Points2D::update_fields()
-            .with_radii([Radius::new_ui_points(3.0)])
+            .with_radii(px(3.0))
             .with_draw_order(19.0);
         let parts: [&dyn AsComponents; 2] = [&lines, &points];
         stream.log_static(format!("{here}/walls"), &parts)?;
         let body = Points2D::update_fields()
-            .with_colors([rgb(AGENT)])
+            .with_colors([color(AGENT)])
             .with_draw_order(20.0);
         let kernel = Ellipses2D::update_fields()
-            .with_line_radii([Radius::new_ui_points(0.8)])
-            .with_colors([rgb(KERNEL)])
+            .with_line_radii(px(0.8))
+            .with_colors([color(KERNEL)])
             .with_draw_order(17.0);
         let parts: [&dyn AsComponents; 2] = [&body, &kernel];
         stream.log_static(format!("{here}/agent"), &parts)?;
@@ -154,8 +150,8 @@ impl Focus {
     }
 
     fn log_walls(&mut self, stream: &RecordingStream, agent: Option<&Open>) -> Result<(), Cause> {
-        let mut lines: Vec<(Vec<[f32; 2]>, Rgb)> = Vec::new();
-        let mut points: Vec<([f32; 2], Rgb)> = Vec::new();
+        let mut lines: Vec<(Vec<Point>, Rgb)> = Vec::new();
+        let mut points: Vec<(Point, Rgb)> = Vec::new();
         if let Some(agent) = agent {
             let from = agent.position;
             let here = |p: [f64; 2]| xy(Vector::from(p) - from);
@@ -182,11 +178,11 @@ impl Focus {
             let (strips, colors): (Vec<_>, Vec<_>) = lines.into_iter().unzip();
             let lines = LineStrips2D::update_fields()
                 .with_strips(strips)
-                .with_colors(colors.into_iter().map(rgb));
+                .with_colors(colors.into_iter().map(color));
             let (places, colors): (Vec<_>, Vec<_>) = points.into_iter().unzip();
             let points = Points2D::update_fields()
                 .with_positions(places)
-                .with_colors(colors.into_iter().map(rgb));
+                .with_colors(colors.into_iter().map(color));
             let parts: [&dyn AsComponents; 2] = [&lines, &points];
             stream.log(format!("{}/here/walls", entity(&self.name)), &parts)?;
         }
@@ -204,21 +200,16 @@ fn log_scale(stream: &RecordingStream, here: &str) -> Result<(), Cause> {
         .zip(examples)
         .map(|(place, a)| (place, arrows::arrow_length(a)))
         .collect();
-    let tips = arrows
-        .iter()
-        .map(|&(place, length)| place + Vector::new(length + 0.45, 0.1));
-    let texts = examples.map(|a| format!("{a} m/s²"));
+    let right = |&(place, length): &(Vector, f64)| place + Vector::new(length + 0.45, 0.1);
+    let tips = arrows.iter().map(right).map(xy);
+    let names = texts(tips, examples.map(|a| format!("{a} m/s²")))
+        .with_colors([color(SCALE)])
+        .with_draw_order(22.0);
     let scale = Arrows2D::from_vectors(arrows.iter().map(|&(_, length)| [length as f32, 0.0]))
         .with_origins(arrows.iter().map(|&(place, _)| xy(place)))
-        .with_colors([rgb(SCALE)])
-        .with_radii([Radius::new_ui_points(1.2)])
+        .with_colors([color(SCALE)])
+        .with_radii(px(1.2))
         .with_draw_order(21.0);
-    let names = Points2D::new(tips.map(xy))
-        .with_labels(texts)
-        .with_colors([rgb(SCALE)])
-        .with_radii([Radius::new_ui_points(0.0)])
-        .with_show_labels(true)
-        .with_draw_order(22.0);
     let parts: [&dyn AsComponents; 2] = [&scale, &names];
     Ok(stream.log_static(format!("{here}/scale"), &parts)?)
 }

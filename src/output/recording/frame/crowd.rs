@@ -9,10 +9,11 @@ use rerun::external::arrow::array::{ArrayRef, Float16Array, UInt32Array};
 use rerun::external::arrow::datatypes::{ArrowPrimitiveType, Float16Type};
 use rerun::{AsComponents, Color, DynamicArchetype, Points2D, Radius, RecordingStream};
 
-use super::RecordingOptions;
-use super::error::Cause;
-use super::snapshot::Snapshot;
+use super::Snapshot;
 use crate::output::colors::ColorMap;
+use crate::output::recording::draw::color;
+use crate::output::recording::error::Cause;
+use crate::output::recording::options::RecordingOptions;
 
 type F16 = <Float16Type as ArrowPrimitiveType>::Native;
 
@@ -22,7 +23,6 @@ pub const ENTITY: &str = "world/agents";
 const ARCHETYPE: &str = "agent";
 /// The component with the speed colors.
 pub const SPEED_COLORS: &str = "agent:speed_colors";
-
 /// The component with the colors by stage of the journey.
 pub const STAGE_COLORS: &str = "agent:stage_colors";
 
@@ -51,11 +51,7 @@ pub struct Crowd {
     logged_ids: Vec<u32>,
 }
 
-fn color(map: &ColorMap, value: f32) -> Color {
-    let [r, g, b] = map.one_of_few(value);
-    Color::from_rgb(r, g, b)
-}
-
+/// Logs the drawing order of agents.
 pub fn log_style(stream: &RecordingStream) -> Result<(), Cause> {
     let style = Points2D::update_fields().with_draw_order(1.0);
     Ok(stream.log_static(ENTITY, &style)?)
@@ -70,6 +66,7 @@ impl Crowd {
     }
 
     pub fn log(&mut self, stream: &RecordingStream, snapshot: &Snapshot) -> Result<(), Cause> {
+        let of = |map: &ColorMap, value| color(map.one_of_few(value));
         let mut rows: Vec<usize> = (0..snapshot.ids.len()).collect();
         rows.sort_unstable_by_key(|&i| snapshot.ids[i]);
         self.log_bodies(stream, snapshot, &rows)?;
@@ -77,14 +74,14 @@ impl Crowd {
         let mut points = Points2D::update_fields().with_positions(positions);
         let speeds = snapshot.velocities.iter().map(|[x, y]| x.hypot(*y));
         let speeds: Vec<f32> = speeds.collect();
-        let speed_colors = rows.iter().map(|&i| color(&self.maps.speed, speeds[i]));
+        let speed_colors = rows.iter().map(|&i| of(&self.maps.speed, speeds[i]));
         let mut values = DynamicArchetype::new(ARCHETYPE)
-            .with_component::<rerun::components::Color>("speed_colors", speed_colors)
+            .with_component::<Color>("speed_colors", speed_colors)
             .with_component_from_data("speed", halves(&rows, &speeds));
         if snapshot.densities.is_empty() {
-            points = points.with_colors([Color::from_rgb(128, 128, 128)]);
+            points = points.with_colors([color([128; 3])]);
         } else {
-            let density = |&i: &usize| color(&self.maps.density, snapshot.densities[i]);
+            let density = |&i: &usize| of(&self.maps.density, snapshot.densities[i]);
             points = points.with_colors(rows.iter().map(density));
             values = values.with_component_from_data("density", halves(&rows, &snapshot.densities));
         }
@@ -94,12 +91,8 @@ impl Crowd {
                 .with_component_from_data("pressure", halves(&rows, &snapshot.pressures));
         }
         if !snapshot.stages.is_empty() {
-            let stage = |&i: &usize| {
-                let [r, g, b] = snapshot.stages[i];
-                Color::from_rgb(r, g, b)
-            };
-            let colors = rows.iter().map(stage);
-            values = values.with_component::<rerun::components::Color>("stage_colors", colors);
+            let colors = rows.iter().map(|&i| color(snapshot.stages[i]));
+            values = values.with_component::<Color>("stage_colors", colors);
         }
         stream.log(ENTITY, &[&points as &dyn AsComponents, &values])?;
         Ok(())
