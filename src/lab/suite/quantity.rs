@@ -14,7 +14,7 @@ pub(super) const COUNTS: [&str; 4] = ["entered", "remaining", "stuck", "time_sec
 /// A quantity of a run.
 #[derive(Debug, Clone)]
 pub enum Quantity {
-    /// A measured value, or one of [`COUNTS`].
+    /// A measured value, or one of `COUNTS`.
     Named(String),
     /// Another one.
     Other(Other),
