@@ -4,10 +4,14 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
+use proptest::prelude::*;
+use proptest::sample::Index;
 use sandbox::lab::suite::{Case, Chosen, Suite};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
+use crate::common::bounded;
+use crate::common::documents::{count, invalid_value, replace};
 use crate::common::program::{run_in, stderr};
 
 /// People who come one by one and walk toward smaller y; lengths in `unit` meters.
@@ -170,4 +174,37 @@ fn broken_suites_are_refused_by_place_with_what_would_be_right() {
         assert_eq!(output.status.code(), Some(2), "{case}");
         assert!(!folder.path().join("validation").exists());
     }
+}
+
+#[test]
+fn a_suite_with_changed_values_is_planned_or_refused() {
+    let folder = example();
+    let path = folder.path().join("my_suite.json");
+    let suite: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+    let planned = |document: &Value| {
+        fs::write(&path, document.to_string()).unwrap();
+        let suite = Suite::read(&path).map_err(|error| error.to_string())?;
+        let chosen = Chosen {
+            cases: suite.cases.iter().collect(),
+            profiles: &[],
+            seeds: None,
+            data: None,
+        };
+        let planned = suite.planned(&chosen);
+        planned.map(|_| ()).map_err(|error| error.to_string())
+    };
+    assert_eq!(planned(&suite), Ok(()));
+    let changes = || prop::collection::vec((any::<Index>(), invalid_value()), 1..3);
+    bounded::cases(500, changes, |changes| {
+        let mut document = suite.clone();
+        for (at, by) in changes {
+            let mut k = at.index(count(&document));
+            replace(&mut document, &mut k, &by);
+        }
+        if let Err(said) = planned(&document) {
+            let is_short = said.len() < 3000 && !said.contains(char::is_control);
+            assert!(said.contains("my_suite.json: ") && is_short, "{said:?}");
+        }
+        1 << 24
+    });
 }

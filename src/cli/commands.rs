@@ -94,7 +94,10 @@ pub enum Command {
     Stress(stress::StressOptions),
     /// Run verification cases of RiMEA, ISO 20414 and NIST: tables and pictures
     #[command(
-        after_help = format!("{}Example: sandbox verify --only 12 --only iso6 --seeds 3", suite::about(suite::VERIFICATION)),
+        after_help = format!(
+            "{}Example: sandbox verify --only 12 --only iso6 --seeds 3",
+            suite::about(suite::VERIFICATION)
+        ),
         mut_arg("out", |out| out.required(false).default_value("verification"))
     )]
     Verify(suite::VerifyOptions),

@@ -33,8 +33,8 @@ pub struct VerifyOptions {
 
 #[derive(Args)]
 pub struct ValidateOptions {
-    /// Only these scenes, such as gap-2.4 or door [default: all]; after SUITE.json those of a suite of your own: a study
-    /// with `cases` (docs/validation.md)
+    /// Only these scenes, such as gap-2.4 or door [default: all]; after SUITE.json those of a suite of your own: a
+    /// study with `cases` (docs/validation.md)
     #[arg(value_name = "SUITE.json|SCENE")]
     pub scene: Vec<String>,
     #[command(flatten)]

@@ -124,6 +124,12 @@ pub fn check_runs(suite: &Suite, study: &Study) -> Result<(), StudyError> {
     for (run, cell) in cells {
         let scenario = cell.case.scenario()?;
         each(&suite.cases, "cases", |case| {
+            let mut drawn = case.picture.iter().filter(|picture| picture.run == run);
+            let end = scenario.duration_secs;
+            if drawn.any(|picture| !(0.0..=end).contains(&picture.at_secs)) {
+                let reason = format!("must be at least 0 and at most {end}, the end of the run");
+                return Err(Problem::new("picture.at_secs", reason));
+            }
             each(&case.checks, "checks", |check| {
                 let own = check.of.iter().filter(|of| *of == run);
                 let mut asked = own.flat_map(|_| &check.quantity);

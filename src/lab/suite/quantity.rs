@@ -14,7 +14,7 @@ pub(super) const COUNTS: [&str; 4] = ["entered", "remaining", "stuck", "time_sec
 /// A quantity of a run.
 #[derive(Debug, Clone)]
 pub enum Quantity {
-    /// A measured value, or one of [`COUNTS`].
+    /// A measured value, or one of `COUNTS`.
     Named(String),
     /// Another one.
     Other(Other),
@@ -113,7 +113,7 @@ impl Function {
         match self {
             Self::Mean | Self::Sum => None,
             Self::Difference => (count != 2).then_some("needs two values"),
-            Self::Ratio => (count % 2 != 0).then_some("needs an even number of values"),
+            Self::Ratio => (!count.is_multiple_of(2)).then_some("needs an even number of values"),
             Self::Place => (count != 3).then_some("needs three values"),
         }
     }
