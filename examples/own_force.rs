@@ -18,6 +18,15 @@ impl Force for Slope {
         "slope"
     }
 
+    // The slope pushes equally at all places on it and at all velocities: it does not limit the time step.
+    fn stiffness(&self) -> f64 {
+        0.0
+    }
+
+    fn friction(&self) -> f64 {
+        0.0
+    }
+
     fn acceleration(&self, frame: &Frame, i: usize) -> Vector {
         let x = frame.agents.position[i].x;
         let is_on_it = (self.x[0]..self.x[1]).contains(&x);

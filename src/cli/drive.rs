@@ -13,8 +13,9 @@ use super::watch::bar;
 use super::{
     Failure, memory, notes, report, scenario, setting, talk, tell, trajectory, use_threads,
 };
-use crate::analysis::stability::{FITTED, Mode, Scheme, three_digits};
+use crate::analysis::stability::{FITTED, Scheme, three_digits};
 use crate::engine::clock::{Clock, SHORTEST_TIME_STEP};
+use crate::engine::forces::rates::Rates;
 use crate::engine::scene::Scene;
 use crate::engine::simulation::Simulation;
 use crate::lab::machine::main_memory;
@@ -151,7 +152,7 @@ fn warn_of_the_step(scene: &Scene) {
         return;
     };
     let step = scene.clock.time_step();
-    let largest = Mode::of(scene).largest_step(scheme, &FITTED);
+    let largest = Rates::of(scene).largest_step(scheme, &FITTED);
     if step > largest {
         let automatic = automatic_step(scene).filter(|&step| step >= SHORTEST_TIME_STEP);
         let advice = match automatic {
