@@ -75,6 +75,7 @@ mod social_tolerance;
 mod sound;
 mod statistics;
 mod steering;
+mod stiff_forces;
 mod stuck;
 mod voronoi;
 mod waiting;

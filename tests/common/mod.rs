@@ -88,7 +88,7 @@ pub fn blend(name: &str) -> Blend {
 }
 
 pub fn blend_with(name: &str, parameters: &Parameters) -> Blend {
-    catalog::named(name, parameters).unwrap().unwrap()
+    catalog::named(name, parameters).unwrap()
 }
 
 /// A scene in double precision with one group, number 0, whose agents are never removed.

@@ -13,8 +13,8 @@ use crate::lab::jobs::each;
 use crate::runs::error::{RunError, StoreError};
 use crate::runs::job::Job;
 use crate::runs::memory::Memory;
-use crate::scenario::{Problem, ScenarioError};
 use crate::scenario::quote::shown;
+use crate::scenario::{Problem, ScenarioError};
 
 /// The maximum length of a name, bytes: results add to it, and file names are limited.
 const LONGEST_NAME: usize = 200;
